@@ -1,0 +1,1 @@
+"""Speed, as ratios against something else measured in the same run."""

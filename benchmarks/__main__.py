@@ -1,0 +1,66 @@
+"""``python -m benchmarks``: print all ratios; with ``--check``, fail when a stated one is missed by half."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import platform
+import sys
+from dataclasses import asdict
+from pathlib import Path
+
+from benchmarks import chains, startup
+from benchmarks.measure import Claim, Measurement
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run all benchmarks and return the exit code."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+    parser.add_argument("--check", action="store_true", help="fail below half of a stated ratio")
+    parser.add_argument("--limit", type=float, default=60.0, help="seconds each way may take (default: 60)")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write all numbers to a file as well")
+    asked = parser.parse_args(arguments)
+
+    measurements, claims = startup.measure()
+    for more_measurements, more_claims in (chains.measure(asked.limit),):
+        measurements += more_measurements
+        claims += more_claims
+
+    print(_markdown(measurements, claims))
+    if asked.json:
+        asked.json.write_text(_json(measurements, claims), encoding="utf-8")
+    return 1 if asked.check and not all(claim.holds for claim in claims) else 0
+
+
+def _markdown(measurements: list[Measurement], claims: list[Claim]) -> str:
+    lines = [f"Python {platform.python_version()}, {platform.system()} {platform.machine()}"]
+    for task in dict.fromkeys(m.task for m in measurements):
+        rows = [m for m in measurements if m.task == task]
+        lines += ["", f"## {task}", "", "| way | time [ms] | ratio to the first |", "|---|---:|---:|"]
+        for row in rows:
+            more = "> " if row.seconds is None else ""
+            ratio = row.at_least / rows[0].at_least
+            lines.append(f"| {row.way} | {more}{1e3 * row.at_least:.2f} | {more}{ratio:.3g} |")
+    lines += ["", "## claims", "", "| claim | stated | this run | |", "|---|---:|---:|---|"]
+    for claim in claims:
+        verdict = "holds" if claim.holds else "MISSED"
+        lines.append(f"| {claim.text} | {claim.stated:g} | {claim.measured:.3g} | {verdict} |")
+    return "\n".join(lines)
+
+
+def _json(measurements: list[Measurement], claims: list[Claim]) -> str:
+    content = {
+        "schema": "symflex.benchmarks/1",
+        "python": platform.python_version(),
+        "machine": platform.machine(),
+        "measurements": [
+            {"task": m.task, "way": m.way, "seconds": m.seconds, "reached_limit": m.seconds is None}
+            for m in measurements
+        ],
+        "claims": [{**asdict(claim), "holds": claim.holds} for claim in claims],
+    }
+    return json.dumps(content, indent=2) + "\n"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,90 @@
+"""Render the registries into the documentation, so that the reference cannot lag behind the program.
+
+A page asks for a part with a comment on a line of its own, ``<!-- reference: elements -->``.
+"""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from typing import TYPE_CHECKING
+
+import click
+
+from symflex.blocks import BLOCKS
+from symflex.cli import main
+from symflex.elements import ELEMENTS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from symflex.blocks import Block, BlockParameter
+    from symflex.elements import Element, ParameterPort, Port
+
+PLACE = re.compile(r"^<!-- reference: (\w+) -->$", re.MULTILINE)
+
+
+def on_page_markdown(markdown: str, **_: object) -> str:
+    """Replace every place-holder of a page; an unknown one is an error of the build."""
+    return PLACE.sub(lambda match: PARTS[match[1]](), markdown)
+
+
+def elements() -> str:
+    """Return one section per element, in the registry's order."""
+    return "\n\n".join(_element(name, element) for name, element in ELEMENTS.items())
+
+
+def blocks() -> str:
+    """Return one section per block, in the registry's order."""
+    return "\n\n".join(_block(name, block) for name, block in BLOCKS.items())
+
+
+def commands() -> str:
+    """Return one section per command, in the order of ``symflex --help``."""
+    with click.Context(main, info_name="symflex") as context:
+        return "\n\n".join(_command(name, command, context) for name, command in main.commands.items())
+
+
+def _element(name: str, element: Element) -> str:
+    rows = [*map(_port_row, element.ports), *map(_parameter_row, element.parameters)]
+    quantities = ", ".join(f"`{name}.{quantity}`" for quantity in element.through)
+    through = [f"Through quantities, for an element named `{name}`: {quantities}."] if quantities else []
+    return "\n\n".join([f"### `{name}`", f"{element.summary}.", _table(rows), *through])
+
+
+def _block(name: str, block: Block) -> str:
+    return "\n\n".join([f"### `{name}`", f"`{block.summary}`", _table(map(_parameter_row, block.parameters))])
+
+
+def _command(name: str, command: click.Command, parent: click.Context) -> str:
+    context = click.Context(command, info_name=name, parent=parent)
+    usage = command.get_usage(context).removeprefix("Usage: ")
+    formatter = context.make_formatter()
+    command.format_options(context, formatter)
+    options = textwrap.dedent(formatter.getvalue().partition("\n")[2])
+    about = textwrap.dedent(command.help or "").replace("\b\n", "")
+    return "\n\n".join([f"## `symflex {name}`", _text(usage), about, _text(options)])
+
+
+def _text(content: str) -> str:
+    return f"```text\n{content.rstrip()}\n```"
+
+
+def _table(rows: Iterable[tuple[str, ...]]) -> str:
+    head = [("key", "value", "meaning", "default"), ("---",) * 4]
+    return "\n".join(f"| {' | '.join(row)} |" for row in [*head, *rows])
+
+
+def _port_row(port: Port) -> tuple[str, ...]:
+    count = "a node" if port.terminals == 1 else f"{port.terminals} nodes"
+    default = "required" if port.default is None else ", ".join(f"`{node}`" for node in port.default)
+    return f"`{port.name}`", f"{count} ({port.domain})", port.doc, default
+
+
+def _parameter_row(parameter: ParameterPort | BlockParameter) -> tuple[str, ...]:
+    unit = f"`{parameter.unit}`" if parameter.unit else "inferred"
+    default = "required" if parameter.default is None else f"`{parameter.default}`"
+    return f"`{parameter.name}`", unit, parameter.doc, default
+
+
+PARTS: dict[str, Callable[[], str]] = {"elements": elements, "blocks": blocks, "commands": commands}

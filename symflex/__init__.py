@@ -1,0 +1,66 @@
+"""Closed-form transfer functions of flexible electromechanical systems, with their poles and zeros proved.
+
+Examples
+--------
+>>> import symflex
+>>> model = symflex.loads('''
+... symflex = 1
+... [parameters]
+... m = "2 kg"
+... k = "8 N/m"
+... [elements]
+... body = { type = "mass", at = "x", m = "m" }
+... wall = { type = "spring", between = ["x", "ground"], k = "k" }
+... [inputs]
+... F = { force = "x" }
+... [outputs]
+... X = "x"
+... ''')
+>>> G = model.transfer_function("X", "F")
+>>> print(G.form("polynomial"))
+X/F = 1/(m*s^2 + k)
+>>> [complex(p) for p in G.bind().poles()]
+[2j, -2j]
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from symflex.api import BoundTransferFunction, Form, Model, Root, TransferFunction, load, loads
+    from symflex.errors import SymflexError
+
+__version__ = "0.1.0"
+
+_HOME = {
+    "BoundTransferFunction": "symflex.api",
+    "Form": "symflex.api",
+    "Model": "symflex.api",
+    "Root": "symflex.api",
+    "SymflexError": "symflex.errors",
+    "TransferFunction": "symflex.api",
+    "load": "symflex.api",
+    "loads": "symflex.api",
+}
+
+__all__ = [
+    "BoundTransferFunction",
+    "Form",
+    "Model",
+    "Root",
+    "SymflexError",
+    "TransferFunction",
+    "__version__",
+    "load",
+    "loads",
+]
+
+
+def __getattr__(name: str) -> object:
+    """Import a public name when it is first used: the command line starts without numpy and SymPy."""
+    if name in _HOME:
+        return getattr(import_module(_HOME[name]), name)
+    message = f"module 'symflex' has no attribute '{name}'"
+    raise AttributeError(message)

@@ -1,0 +1,469 @@
+"""The classes a user meets: thin faces over the pipeline, with SymPy and mpmath at the surface."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import mpmath
+
+from symflex import pipeline
+from symflex import roots as roots_room
+from symflex.emit.forms import PrintedForm, print_form
+from symflex.emit.json_format import derive_json
+from symflex.emit.sympy_expression import symbols_of, to_sympy
+from symflex.emit.text import form_text
+from symflex.errors import Diagnostic, UsageError
+from symflex.expressions import Expression, Name
+from symflex.spec import write
+
+if TYPE_CHECKING:
+    import numpy as np
+    import sympy
+    from flint import arb
+    from numpy.typing import ArrayLike, NDArray
+
+    from symflex import model as model_room
+    from symflex import transfer as transfer_room
+    from symflex.response import FrequencyResponse
+
+Number = int | float | Fraction | Decimal | str
+Table = Mapping[str, object]
+
+
+@dataclass(frozen=True, init=False)
+class Model:
+    """A resolved model.
+
+    Parameters
+    ----------
+    parameters, definitions, elements, signals, blocks, inputs, outputs, analysis, figures, published : mapping
+        The tables of the specification language, as Python mappings of the same shape.
+    title, source : str
+        What the model is and where it comes from.
+
+    Raises
+    ------
+    SpecError
+        With every problem; positions refer to the specification text the mappings stand for.
+
+    Examples
+    --------
+    >>> model = Model(
+    ...     parameters={"m": "2 kg"},
+    ...     elements={"body": {"type": "mass", "at": "x", "m": "m"}},
+    ...     inputs={"F": {"force": "x"}},
+    ...     outputs={"X": "x"},
+    ... )
+    >>> print(model.transfer_function("X", "F"))
+    X/F = 1/(m*s^2)
+    """
+
+    resolved: model_room.Model
+
+    def __init__(
+        self,
+        *,
+        parameters: Table | None = None,
+        definitions: Table | None = None,
+        elements: Table | None = None,
+        signals: Table | None = None,
+        blocks: Table | None = None,
+        inputs: Table | None = None,
+        outputs: Table | None = None,
+        analysis: Table | None = None,
+        figures: Table | None = None,
+        published: Table | None = None,
+        title: str = "",
+        source: str = "",
+    ) -> None:
+        tables = {
+            "parameters": parameters,
+            "definitions": definitions,
+            "elements": elements,
+            "signals": signals,
+            "blocks": blocks,
+            "inputs": inputs,
+            "outputs": outputs,
+            "analysis": analysis,
+            "figures": figures,
+            "published": published,
+        }
+        header = {"symflex": 1, **{k: v for k, v in (("title", title), ("source", source)) if v}}
+        text = write({**header, **{name: table for name, table in tables.items() if table}})
+        object.__setattr__(self, "resolved", pipeline.loads(text, "<python>"))
+
+    @staticmethod
+    def of(resolved: model_room.Model) -> Model:
+        """Return the face of an already resolved model."""
+        model = object.__new__(Model)
+        object.__setattr__(model, "resolved", resolved)
+        return model
+
+    @property
+    def title(self) -> str:
+        """What the model is."""
+        return self.resolved.title
+
+    @property
+    def parameters(self) -> tuple[model_room.Parameter, ...]:
+        """The parameters in declared order, with exact values in SI units."""
+        return self.resolved.parameters
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the inputs."""
+        return tuple(i.name for i in self.resolved.inputs)
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of the outputs."""
+        return tuple(o.name for o in self.resolved.outputs)
+
+    def transfer_function(self, output: str, input: str) -> TransferFunction:  # noqa: A002
+        """Derive output over input.
+
+        Raises
+        ------
+        UsageError
+            SF902 when there is no such output or input.
+        ModelError
+            SF30x when the equations are singular, with the reason.
+        """
+        (pair,) = pipeline.pick_pairs(self.resolved, [f"{output}/{input}"])
+        return TransferFunction(pipeline.derive_all(self.resolved, [pair])[0])
+
+    def transfer_functions(self) -> tuple[TransferFunction, ...]:
+        """Derive every output over every input, sharing one elimination."""
+        return tuple(TransferFunction(tf) for tf in pipeline.derive_all(self.resolved))
+
+    def export_numpy(self) -> str:
+        """Return one numpy module with a function per transfer function; see ``symflex export --to numpy``."""
+        return self._export("numpy")
+
+    def export_latex(self) -> str:
+        """Return a standalone LaTeX document of the model."""
+        return self._export("latex")
+
+    def _export(self, target: str) -> str:
+        from symflex.emit.exporters import EXPORTERS  # the numeric exporters import numpy
+
+        return EXPORTERS[target].export(self.resolved, pipeline.derive_all(self.resolved)).text
+
+
+def load(path: str | Path) -> Model:
+    """Read a specification file.
+
+    Raises
+    ------
+    SpecError
+        With every problem of the file as ``file:line:col``.
+    """
+    return Model.of(pipeline.load(path))
+
+
+def loads(text: str, name: str = "<string>") -> Model:
+    """Read a specification given as text; ``name`` is what messages call it."""
+    return Model.of(pipeline.loads(text, name))
+
+
+@dataclass(frozen=True)
+class Form:
+    """A transfer function arranged for print, as SymPy expressions and as text.
+
+    Parameters
+    ----------
+    source : TransferFunction
+        The transfer function.
+    printed : PrintedForm
+        Its arrangement.
+    """
+
+    source: transfer_room.TransferFunction
+    printed: PrintedForm
+
+    @property
+    def name(self) -> str:
+        """The form's name."""
+        return self.printed.name
+
+    @cached_property
+    def _symbols(self) -> dict[str, sympy.Symbol]:
+        return symbols_of(self.source.model)
+
+    def _sympy(self, expression: Expression) -> sympy.Expr:
+        return to_sympy(expression, self._symbols)
+
+    @property
+    def num(self) -> sympy.Expr:
+        """Numerator."""
+        return self._sympy(self.printed.num)
+
+    @property
+    def den(self) -> sympy.Expr:
+        """Denominator."""
+        return self._sympy(self.printed.den)
+
+    @property
+    def expr(self) -> sympy.Expr:
+        """Numerator over denominator."""
+        return self.num / self.den
+
+    @property
+    def where(self) -> tuple[tuple[sympy.Symbol, sympy.Expr], ...]:
+        """The closed names that occur, with what they stand for."""
+        return tuple((self._sympy(Name(n)), self._sympy(e)) for n, e in self.printed.where)
+
+    def latex(self) -> str:
+        """Return the equation in LaTeX."""
+        from symflex.emit.latex import inline_latex
+
+        return inline_latex(self.source, self.printed)
+
+    def _repr_latex_(self) -> str:
+        return f"$\\displaystyle {self.latex()}$"
+
+    def __str__(self) -> str:
+        return form_text(self.source, self.printed)
+
+
+@dataclass(frozen=True)
+class TransferFunction:
+    """An exact transfer function; its parts are SymPy expressions in the shortest form."""
+
+    exact: transfer_room.TransferFunction
+
+    @property
+    def name(self) -> str:
+        """``OUT/IN``."""
+        return self.exact.name
+
+    @property
+    def quantity(self) -> str:
+        """Receptance, mobility, accelerance, impedance, ..."""
+        return self.exact.quantity
+
+    @property
+    def unit(self) -> str:
+        """SI unit, empty when unknown."""
+        return self.exact.unit
+
+    @cached_property
+    def _shortest(self) -> Form:
+        return self.form()
+
+    @property
+    def num(self) -> sympy.Expr:
+        """Numerator of the shortest form."""
+        return self._shortest.num
+
+    @property
+    def den(self) -> sympy.Expr:
+        """Denominator of the shortest form."""
+        return self._shortest.den
+
+    @property
+    def expr(self) -> sympy.Expr:
+        """Numerator over denominator; closed names are explained by :attr:`where`."""
+        return self._shortest.expr
+
+    @property
+    def where(self) -> tuple[tuple[sympy.Symbol, sympy.Expr], ...]:
+        """The definitions that occur in :attr:`expr`."""
+        return self._shortest.where
+
+    @property
+    def hidden(self) -> tuple[tuple[sympy.Expr, int], ...]:
+        """The factors in s that cancelled, with multiplicity: uncontrollable or unobservable modes."""
+        from symflex.emit.forms import hidden_expressions
+
+        symbols = symbols_of(self.exact.model)
+        return tuple((to_sympy(e, symbols), m) for e, m in hidden_expressions(self.exact))
+
+    def form(self, name: str | None = None, digits: int = 6) -> Form:
+        """Return the function as ``polynomial``, ``monic``, ``factored``, ``zpk`` or ``definitions``.
+
+        Parameters
+        ----------
+        name : str, optional
+            The shortest symbolic form when missing.
+        digits : int
+            Significant digits of ``zpk``.
+        """
+        return Form(self.exact, print_form(self.exact, name, digits))
+
+    def latex(self, form: str | None = None) -> str:
+        """Return the equation in LaTeX."""
+        return self.form(form).latex()
+
+    def to_json_dict(self, form: str | None = None) -> dict[str, object]:
+        """Return the transfer function as ``symflex derive --json`` lists it."""
+        return derive_json(self.exact, print_form(self.exact, form))
+
+    def bind(self, **values: Number) -> BoundTransferFunction:
+        """Return the function with the declared values, or the given ones in their place.
+
+        Numbers are in SI units; strings may carry a unit, ``l="80 cm"``.
+
+        Raises
+        ------
+        ModelError
+            SF229 when a parameter has no value.
+        UsageError
+            SF902 for an unknown parameter.
+        """
+        return BoundTransferFunction(pipeline.bind(self.exact, values))
+
+    def _repr_latex_(self) -> str:
+        return self._shortest._repr_latex_()  # noqa: SLF001
+
+    def __str__(self) -> str:
+        return str(self._shortest)
+
+
+@dataclass(frozen=True)
+class Root:
+    """A certified root s [rad/s].
+
+    Parameters
+    ----------
+    certified_root : symflex.roots.Root
+        The enclosure and what was proved about it.
+    """
+
+    certified_root: roots_room.Root
+
+    @property
+    def re(self) -> mpmath.mpf:
+        """Real part [rad/s], midpoint of its enclosure; exactly zero on the imaginary axis."""
+        return to_mpmath(self.certified_root.re)
+
+    @property
+    def im(self) -> mpmath.mpf:
+        """Imaginary part [rad/s]; exactly zero for a real root."""
+        return to_mpmath(self.certified_root.im)
+
+    @property
+    def value(self) -> mpmath.mpc:
+        """The midpoint of the enclosure [rad/s]."""
+        return mpmath.mpc(self.re, self.im)
+
+    @property
+    def radius(self) -> mpmath.mpf:
+        """A bound on the distance from :attr:`value` to the root [rad/s]."""
+        root = self.certified_root
+        with roots_room.precision(64):
+            return to_mpmath((root.re.rad() ** 2 + root.im.rad() ** 2).sqrt().upper())
+
+    @property
+    def multiplicity(self) -> int:
+        """How often the root counts."""
+        return self.certified_root.multiplicity
+
+    @property
+    def certified(self) -> bool:
+        """False when several roots could not be told apart inside the enclosure."""
+        return self.certified_root.certified
+
+    @property
+    def on_imaginary_axis(self) -> bool:
+        """True when the real part is proved to be zero."""
+        return self.certified_root.on_imaginary_axis
+
+    @property
+    def is_real(self) -> bool:
+        """True when the imaginary part is proved to be zero."""
+        return self.certified_root.is_real
+
+    @property
+    def frequency_hz(self) -> float:
+        """Natural frequency abs(s)/(2 pi) [Hz]."""
+        return self.certified_root.frequency_hz()
+
+    @property
+    def damping_ratio(self) -> float | None:
+        """``-re/abs(s)``, None at the origin."""
+        return self.certified_root.damping_ratio()
+
+    def __complex__(self) -> complex:
+        return complex(self.re, self.im)
+
+
+def to_mpmath(ball: arb) -> mpmath.mpf:
+    """Return the midpoint of a real ball, exactly."""
+    mantissa, exponent = ball.mid().man_exp()
+    return mpmath.mp.make_mpf(mpmath.libmp.from_man_exp(int(mantissa), int(exponent)))
+
+
+@dataclass(frozen=True)
+class BoundTransferFunction:
+    """A transfer function with numbers: evaluates, and finds its poles and zeros with proof."""
+
+    bound: transfer_room.BoundTransferFunction
+
+    @property
+    def name(self) -> str:
+        """``OUT/IN``."""
+        return self.bound.name
+
+    def __call__(self, s: ArrayLike) -> complex | NDArray[np.complex128]:
+        """Return the value at s [rad/s], a number or an array, to double precision."""
+        import numpy as np
+
+        points = np.asarray(s, dtype=complex)
+        if points.ndim == 0:
+            return self.bound(complex(points))
+        values = np.array([self.bound(complex(p)) for p in points.ravel()], dtype=complex)
+        return values.reshape(points.shape)
+
+    def frequency_response(self, omega: ArrayLike) -> FrequencyResponse:
+        """Return the response at real angular frequencies [rad/s]."""
+        from symflex.response import respond
+
+        return respond(self.bound, omega)
+
+    def poles(
+        self, modes: int | None = None, *, band: tuple[float, float] | None = None, digits: int = 15
+    ) -> tuple[Root, ...]:
+        """Return the poles by natural frequency, both members of each conjugate pair.
+
+        Parameters
+        ----------
+        modes : int, optional
+            Only the lowest modes, with the roots at the origin.
+        band : (float, float), optional
+            Only natural frequencies in this band [Hz].
+        digits : int
+            Correct significant digits.
+        """
+        return tuple(Root(r) for r in pipeline.roots(self.bound, _region(modes, band), digits).poles)
+
+    def zeros(
+        self, modes: int | None = None, *, band: tuple[float, float] | None = None, digits: int = 15
+    ) -> tuple[Root, ...]:
+        """Return the zeros; see :meth:`poles`."""
+        return tuple(Root(r) for r in pipeline.roots(self.bound, _region(modes, band), digits).zeros)
+
+    def pole_zero_map(self, digits: int = 15) -> roots_room.PoleZeroMap:
+        """Return poles, zeros and hidden modes with their certificate."""
+        return pipeline.roots(self.bound, None, digits)
+
+    def dcgain(self) -> float:
+        """Return the limit for s -> 0 from the right, possibly infinite."""
+        return self.bound.limit_at_zero()
+
+
+def _region(modes: int | None, band: tuple[float, float] | None) -> roots_room.Region | None:
+    if modes is not None and band is not None:
+        raise UsageError(Diagnostic("SF902", "give modes or band, not both"))
+    if modes is not None:
+        return roots_room.Modes(modes)
+    if band is not None:
+        low, high = (Fraction(Decimal(repr(float(f)))) for f in band)
+        return roots_room.Band(low, high)
+    return None

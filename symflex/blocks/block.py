@@ -1,0 +1,34 @@
+"""What a block is: a transfer function that may stand as a factor in expressions."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from symflex.kernels import Factored
+
+
+@dataclass(frozen=True, slots=True)
+class BlockParameter:
+    """A value a block takes: its key, SI unit (empty: any), meaning and default expression."""
+
+    name: str
+    unit: str
+    doc: str
+    default: str | None = None
+
+
+class Block(ABC):
+    """Base of every block. Subclasses are final, stateless and registered in ``BLOCKS``."""
+
+    type_name: ClassVar[str]
+    summary: ClassVar[str]
+    parameters: ClassVar[tuple[BlockParameter, ...]]
+
+    @abstractmethod
+    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
+        """Return the block's transfer function for the given values."""

@@ -1,0 +1,96 @@
+"""The command line. A command's module is imported when the command runs, so that ``--help`` starts at once."""
+
+from __future__ import annotations
+
+import os
+import sys
+from importlib import import_module
+
+import click
+
+import symflex
+
+COMMANDS: dict[str, str] = {
+    "check": "Parse and resolve a specification; report every problem at once.",
+    "derive": "Print transfer functions in closed form.",
+    "roots": "Print poles and zeros with proved enclosures.",
+    "plot": "Draw a Bode plot or pole-zero array.",
+    "export": "Write numeric code or LaTeX.",
+    "new": "Write a specification to start from.",
+    "elements": "List the element and block library.",
+}
+
+
+class LazyGroup(click.Group):
+    """A group whose commands live in modules of their own."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the command names in the order of a session."""
+        del ctx
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Import and return a command."""
+        del ctx
+        if cmd_name not in COMMANDS:
+            return None
+        command = import_module(f"symflex.cli.{cmd_name}").command
+        if not isinstance(command, click.Command):
+            message = f"symflex.cli.{cmd_name} defines no command"
+            raise TypeError(message)
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """List the commands without importing them."""
+        del ctx
+        with formatter.section("Commands"):
+            formatter.write_dl(list(COMMANDS.items()))
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Name the nearest command when there is none of that name."""
+        name = args[0]
+        if name not in COMMANDS and not name.startswith("-"):
+            from symflex.errors.diagnostic import nearest  # difflib is not needed to start
+
+            hint = nearest(name, COMMANDS)
+            ctx.fail(f"No such command '{name}'." + (f" {hint[0].upper()}{hint[1:]}" if hint else ""))
+        return super().resolve_command(ctx, args)
+
+
+@click.group(
+    cls=LazyGroup,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    epilog="Exit codes: 0 ok, 2 usage, 3 invalid specification or data, 4 not certified, 5 budget exceeded.",
+)
+@click.version_option(symflex.__version__, prog_name="symflex")
+def group() -> None:
+    """Derive closed-form transfer functions of flexible electromechanical systems.
+
+    A model is one TOML file; its poles and zeros are proved, its formulas printed, its functions exported.
+    """
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run the command line and exit with the documented code."""
+    sys.exit(run(arguments))
+
+
+def run(arguments: list[str] | None = None) -> int:
+    """Run the command line and return the exit code."""
+    try:
+        result = group.main(args=arguments, prog_name="symflex", standalone_mode=False)
+    except click.exceptions.Exit as stop:
+        return stop.exit_code
+    except click.exceptions.Abort:
+        click.echo("stopped", err=True)
+        return 130
+    except click.ClickException as problem:
+        problem.show()
+        return problem.exit_code
+    except BrokenPipeError:
+        # The reader of a pipe went away; nothing is left to tell it.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    return result if isinstance(result, int) else 0

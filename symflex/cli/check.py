@@ -1,0 +1,52 @@
+"""``symflex check``."""
+
+from __future__ import annotations
+
+import click
+
+from symflex.cli.report import diagnostic_json, emit_json, reporting
+from symflex.errors import SymflexError
+
+
+@click.command("check")
+@click.argument("spec", type=click.Path())
+@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@reporting
+def command(spec: str, *, as_json: bool) -> int:
+    """Parse and resolve SPEC; report every problem at once.
+
+    Names, units, ports, linearity and solvability are checked; nothing is derived.
+    """
+    from symflex import pipeline
+
+    try:
+        model = pipeline.load(spec)
+        pipeline.check_solvable(pipeline.assemble(model))
+    except SymflexError as error:
+        if not as_json:
+            raise
+        problems = [diagnostic_json(d) for d in error.diagnostics]
+        emit_json({"schema": "symflex.check/1", "ok": False, "problems": problems})
+        return error.exit_code
+    names = ["/".join(pair) for pair in model.transfer_functions]
+    if as_json:
+        emit_json({"schema": "symflex.check/1", "ok": True, "problems": [], "transfer_functions": names})
+        return 0
+    symbolic = [p.name for p in model.parameters if p.value is None]
+    counts = ", ".join(
+        f"{len(group)} {word}{'' if len(group) == 1 else 's'}"
+        for group, word in (
+            (model.parameters, "parameter"),
+            (model.nodes, "node"),
+            (model.elements, "element"),
+            (model.signals, "signal"),
+            (model.blocks, "block"),
+        )
+        if group
+    )
+    click.echo(f"{spec}: ok" + (f", {model.title}" if model.title else ""))
+    click.echo(f"  {counts}")
+    click.echo(f"  transfer functions: {', '.join(names)}")
+    if symbolic:
+        click.echo(f"  symbolic (no value): {', '.join(symbolic)}")
+    return 0

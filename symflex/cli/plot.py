@@ -1,0 +1,48 @@
+"""``symflex plot``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from symflex.cli.report import reporting
+from symflex.errors import Diagnostic, UsageError
+from symflex.errors.diagnostic import nearest
+
+SUFFIXES = (".pdf", ".png", ".svg")
+
+
+@click.command("plot")
+@click.argument("spec", type=click.Path())
+@click.argument("kind")
+@click.option("--tf", "tfs", multiple=True, metavar="OUT/IN", help="Draw this transfer function; repeatable.")
+@click.option("-o", "--output", type=click.Path(), help="File to write: .pdf, .svg or .png.")
+@reporting
+def command(spec: str, kind: str, *, tfs: tuple[str, ...], output: str | None) -> int:
+    """Draw KIND (bode, poles_zeros) or a figure that SPEC defines in [figures].
+
+    Without -o the figure is written beside the current folder's files as SPEC-KIND.pdf.
+    """
+    from symflex import pipeline
+    from symflex.emit.figures import FIGURES, draw, save
+
+    model = pipeline.load(spec)
+    figure = next((f for f in model.figures if f.name == kind), None)
+    if figure is None and kind not in FIGURES:
+        names = [*FIGURES, *(f.name for f in model.figures)]
+        hint = nearest(kind, names) or "choose from: " + ", ".join(names)
+        raise UsageError(Diagnostic("SF902", f"there is no figure '{kind[:64]}'", None, hint))
+    drawn = figure.kind if figure else kind
+    if drawn not in FIGURES:
+        raise UsageError(Diagnostic("SF911", f"figures of kind '{drawn}' are not available yet"))
+    path = Path(output) if output else Path(f"{Path(spec).stem}-{kind}.pdf")
+    if path.suffix not in SUFFIXES:
+        raise UsageError(Diagnostic("SF902", f"'{path.name}' must end in .pdf, .svg or .png"))
+    pairs = figure.of if figure and figure.of and not tfs else pipeline.pick_pairs(model, tfs)
+    derived = pipeline.derive_all(model, pairs)
+    bounds = [pipeline.bind(tf) for tf in derived]
+    title = figure.title if figure else ""
+    save(draw(drawn, derived, bounds, band_hz=model.analysis.band, title=title or None), path)
+    click.echo(str(path))
+    return 0

@@ -1,0 +1,80 @@
+"""What all commands share: errors and notes on stderr, JSON on stdout, exit codes."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from functools import wraps
+from typing import TYPE_CHECKING, ParamSpec
+
+import click
+
+from symflex.errors import Diagnostic, SymflexError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+P = ParamSpec("P")
+
+
+def reporting(command: Callable[P, int | None]) -> Callable[P, int]:
+    """Turn a :class:`SymflexError` into its message on stderr and its exit code."""
+
+    @wraps(command)
+    def run(*args: P.args, **kwargs: P.kwargs) -> int:
+        try:
+            return command(*args, **kwargs) or 0
+        except SymflexError as error:
+            show_error(error)
+            return error.exit_code
+        except MemoryError:
+            show_error(SymflexError(Diagnostic("SF503", "out of memory")))
+            return 5
+
+    return run
+
+
+def colours() -> bool:
+    """True when stderr is a terminal that may be coloured."""
+    return sys.stderr.isatty() and "NO_COLOR" not in os.environ
+
+
+def show_error(error: SymflexError) -> None:
+    """Print every diagnostic to stderr."""
+    for diagnostic in error.diagnostics:
+        text = diagnostic.render()
+        if colours():
+            mark = f"error[{diagnostic.code}]"
+            text = text.replace(mark, click.style(mark, fg="red", bold=True), 1)
+        click.echo(text, err=True)
+
+
+def note(message: str) -> None:
+    """Print a line to stderr."""
+    click.echo(message, err=True)
+
+
+def emit_json(document: Mapping[str, object]) -> None:
+    """Print a document as JSON to stdout."""
+    click.echo(json.dumps(document, indent=2, ensure_ascii=False))
+
+
+def diagnostic_json(diagnostic: Diagnostic) -> dict[str, object]:
+    """Return a diagnostic as JSON data."""
+    span = diagnostic.span
+    return {
+        "code": diagnostic.code,
+        "message": diagnostic.message,
+        "file": span.source.name if span else None,
+        "line": span.line if span else None,
+        "column": span.column if span else None,
+        "hint": diagnostic.hint,
+    }
+
+
+def terminal_width() -> int:
+    """Return the columns to use: the terminal's, at most 120, and 80 when there is none."""
+    if not sys.stdout.isatty():
+        return 80
+    return max(40, min(120, os.get_terminal_size(sys.stdout.fileno()).columns))

@@ -1,0 +1,94 @@
+"""``symflex roots``."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import click
+
+from symflex.cli.report import emit_json, note, reporting
+from symflex.errors import Diagnostic, UsageError
+
+if TYPE_CHECKING:
+    from symflex.roots import Region
+
+DIGITS_LIMIT = 10_000
+
+
+@click.command("roots", context_settings={"ignore_unknown_options": True})
+@click.argument("spec", type=click.Path())
+@click.option("--tf", metavar="OUT/IN", help="The transfer function; the first one by default.")
+@click.option("--modes", type=click.IntRange(1), help="Only the N lowest modes, with roots at the origin.")
+@click.option("--band", nargs=2, metavar="LO HI", help='Only natural frequencies in a band: 0.1 1000, "1 kHz".')
+@click.option("--region", nargs=4, metavar="RE0 RE1 IM0 IM1", help="Only a rectangle of the s plane [rad/s].")
+@click.option("--digits", type=click.IntRange(1, DIGITS_LIMIT), help="Correct significant digits.  [default: 15]")
+@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@reporting
+def command(
+    spec: str,
+    *,
+    tf: str | None,
+    modes: int | None,
+    band: tuple[str, str] | None,
+    region: tuple[str, str, str, str] | None,
+    digits: int | None,
+    as_json: bool,
+) -> int:
+    """Print poles, zeros and hidden modes of one transfer function of SPEC.
+
+    Every root comes with a proved radius and multiplicity, its natural frequency and damping ratio. Exit code
+    4 says that some roots could not be told apart.
+    """
+    from symflex import pipeline
+    from symflex.emit.text import roots_text
+
+    model = pipeline.load(spec)
+    pairs = pipeline.pick_pairs(model, [tf] if tf else [])
+    if tf is None and len(pairs) > 1:
+        others = ", ".join("/".join(pair) for pair in pairs[1:])
+        note(f"showing {'/'.join(pairs[0])}; choose with --tf: {others}")
+    derived = pipeline.derive_all(model, pairs[:1])[0]
+    shown = digits or model.analysis.digits or 15
+    found = pipeline.roots(pipeline.bind(derived), _region(modes, band, region), shown)
+    if as_json:
+        emit_json(found.to_json_dict())
+    else:
+        click.echo(roots_text(found, shown))
+    return 0 if found.certificate.certified else 4
+
+
+def _region(
+    modes: int | None, band: tuple[str, str] | None, region: tuple[str, str, str, str] | None
+) -> Region | None:
+    from symflex.roots import Band, Modes, Rectangle
+
+    if sum(choice is not None for choice in (modes, band, region)) > 1:
+        raise UsageError(Diagnostic("SF902", "give only one of --modes, --band and --region"))
+    if modes is not None:
+        return Modes(modes)
+    if band is not None:
+        low, high = (_number(text, "--band") for text in band)
+        if not 0 <= low < high:
+            raise UsageError(Diagnostic("SF902", "--band takes two frequencies in Hz, the lower one first"))
+        return Band(low, high)
+    if region is not None:
+        re_low, re_high, im_low, im_high = (_number(text, "--region") for text in region)
+        if re_low > re_high or im_low > im_high:
+            raise UsageError(Diagnostic("SF902", "--region takes RE0 <= RE1 and IM0 <= IM1"))
+        return Rectangle(re_low, re_high, im_low, im_high)
+    return None
+
+
+def _number(text: str, option: str) -> Fraction:
+    """Return a number; a quantity is accepted where its unit counts per second."""
+    from symflex.errors import Source, Span, Text
+    from symflex.quantities import parse_quantity, unit_of
+
+    quantity = parse_quantity(Text(text, Span(Source(option, text), 0, len(text))))
+    if quantity.unit and quantity.dimension != unit_of("1/s").dimension:
+        raise UsageError(Diagnostic("SF203", f"{option} takes frequencies, found '{quantity.unit}'"))
+    number, pi_power = quantity.cyclic()
+    if pi_power:
+        raise UsageError(Diagnostic("SF902", f"{option} takes plain numbers, found '{text[:60]}'"))
+    return number

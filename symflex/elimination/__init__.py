@@ -1,0 +1,18 @@
+"""Exact elimination: closed sub-impedances, unit pivots, memoised minors, and singular systems explained."""
+
+from symflex.elimination.closing import ClosedSystem, Closure, close
+from symflex.elimination.minors import Minors, expansion_order
+from symflex.elimination.singular import explain_singular, is_singular
+from symflex.elimination.unit_pivots import Reduced, eliminate_unit_pivots
+
+__all__ = [
+    "ClosedSystem",
+    "Closure",
+    "Minors",
+    "Reduced",
+    "close",
+    "eliminate_unit_pivots",
+    "expansion_order",
+    "explain_singular",
+    "is_singular",
+]

@@ -1,0 +1,124 @@
+"""Closing sub-impedances: every repeated sum becomes one generator, so that elimination and print stay compact.
+
+Input: :class:`symflex.equations.Equations`, entries factored over the ring of parameters.
+Output: a :class:`ClosedSystem`, a sparse matrix over a ring with one more generator per distinct sum.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from symflex.kernels import Factored, Ring
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from flint import fmpz_mpoly
+
+    from symflex.elements import LinearForm, Variable
+    from symflex.equations import Equations
+
+SparseRow = dict[int, "fmpz_mpoly"]
+
+
+@dataclass(frozen=True)
+class Closure:
+    """A ring extended by one generator per closed sum, and the way back.
+
+    Parameters
+    ----------
+    base : Ring
+        s, parameters, definitions, pi, functions of constants.
+    ring : Ring
+        The same generators and then the closed sums.
+    sums : tuple of (str, fmpz_mpoly)
+        Each closed generator's name and its polynomial in ``base``.
+    """
+
+    base: Ring
+    ring: Ring
+    sums: tuple[tuple[str, fmpz_mpoly], ...]
+
+    @cached_property
+    def images(self) -> tuple[fmpz_mpoly, ...]:
+        """What every generator of ``ring`` is in ``base``."""
+        return (*self.base.context.gens(), *(p for _, p in self.sums))
+
+    @cached_property
+    def _closed(self) -> Mapping[str, fmpz_mpoly]:
+        return {str(p): self.ring.generator(name) for name, p in self.sums}
+
+    def close(self, value: Factored) -> fmpz_mpoly:
+        """Return a polynomial entry with its sums closed."""
+        result = self.ring.constant(int(value.unit))
+        for factor, exponent in value.factors:
+            image = (
+                self._closed[str(factor)]
+                if len(factor) > 1
+                else self.ring.context.gen(factor.degrees().index(1))
+            )
+            result = result * image**exponent
+        return result
+
+    def open(self, polynomial: fmpz_mpoly) -> Factored:
+        """Return a closed polynomial over ``base``; factors that stand in front stay factored."""
+        if polynomial.is_zero():
+            return Factored.number(self.base, 0)
+        content = polynomial.term_content()
+        result = Factored.number(self.base, Fraction(int(content.leading_coefficient())))
+        for image, exponent in zip(self.images, content.monoms()[0], strict=True):
+            if exponent:
+                result = result * Factored.polynomial(self.base, image) ** int(exponent)
+        rest = polynomial / content
+        if rest.is_constant():
+            return result * int(rest.leading_coefficient())
+        return result * Factored.polynomial(self.base, self.base.compose(rest, self.images))
+
+
+@dataclass(frozen=True)
+class ClosedSystem:
+    """The equations as sparse rows over the closed ring.
+
+    ``rows`` have one column per unknown and then one per input; ``outputs`` likewise.
+    """
+
+    closure: Closure
+    unknowns: tuple[Variable, ...]
+    inputs: tuple[Variable, ...]
+    rows: tuple[SparseRow, ...]
+    outputs: tuple[SparseRow, ...]
+
+
+def close(equations: Equations) -> ClosedSystem:
+    """Return the equations with every sum of two or more terms closed."""
+    sums: dict[str, fmpz_mpoly] = {}
+    forms = [r.form for r in equations.rows] + [o.form for o in equations.outputs]
+    for form in forms:
+        for _, coefficient in form.terms:
+            for factor, _ in coefficient.factors:
+                if len(factor) > 1:
+                    sums.setdefault(str(factor), factor)
+    named = tuple((f"sum{i}", factor) for i, factor in enumerate(sums.values()))
+    # A parameter may be called like a closed sum; generator names must differ.
+    taken = set(equations.ring.names)
+    named = tuple((name if name not in taken else f"{name}!", factor) for name, factor in named)
+    closure = Closure(equations.ring, Ring((*equations.ring.names, *(n for n, _ in named))), named)
+    columns = {v: i for i, v in enumerate((*equations.unknowns, *equations.inputs))}
+
+    def sparse(form: LinearForm) -> SparseRow:
+        row: SparseRow = {}
+        for variable, coefficient in form.terms:
+            column, entry = columns[variable], closure.close(coefficient)
+            row[column] = row[column] + entry if column in row else entry
+        return {c: e for c, e in row.items() if not e.is_zero()}
+
+    return ClosedSystem(
+        closure,
+        equations.unknowns,
+        equations.inputs,
+        tuple(sparse(r.form) for r in equations.rows),
+        tuple(sparse(o.form) for o in equations.outputs),
+    )

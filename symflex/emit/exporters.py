@@ -1,0 +1,69 @@
+"""Targets of ``symflex export``. A new target is one file and one line in ``EXPORTERS``."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+from symflex.emit.forms import print_form
+from symflex.emit.latex import latex_document
+from symflex.emit.numpy_module import numpy_module
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.model import Model
+    from symflex.transfer import TransferFunction
+
+
+@dataclass(frozen=True, slots=True)
+class Export:
+    """What an exporter made.
+
+    Parameters
+    ----------
+    text : str
+        The file's content.
+    warnings : tuple of str
+        What the user should know, for instance an accuracy that was not reached.
+    """
+
+    text: str
+    warnings: tuple[str, ...] = ()
+
+
+class Exporter(Protocol):
+    """Turns the transfer functions of a model into a file of some language."""
+
+    suffix: str
+    summary: str
+
+    def export(self, model: Model, tfs: Sequence[TransferFunction]) -> Export:
+        """Return the file."""
+        ...
+
+
+class NumpyExporter:
+    """One self-contained numpy module."""
+
+    suffix = ".py"
+    summary = "numpy module, one function per transfer function, verified against ball arithmetic"
+
+    def export(self, model: Model, tfs: Sequence[TransferFunction]) -> Export:
+        """Return the module; accuracy that was not reached is a warning."""
+        made = numpy_module(tfs, model, model.analysis.band)
+        return Export(made.text, made.warnings)
+
+
+class LatexExporter:
+    """A standalone LaTeX document."""
+
+    suffix = ".tex"
+    summary = "standalone LaTeX document: parameters, transfer functions, hidden modes"
+
+    def export(self, model: Model, tfs: Sequence[TransferFunction]) -> Export:
+        """Return the document."""
+        return Export(latex_document(model, tfs, [print_form(tf) for tf in tfs]))
+
+
+EXPORTERS: dict[str, Exporter] = {"numpy": NumpyExporter(), "latex": LatexExporter()}

@@ -1,0 +1,248 @@
+"""Arranging polynomials as a person would: common factors first, descending powers of s, repeated sums grouped."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import gcd
+from typing import TYPE_CHECKING
+
+from symflex.expressions import (
+    Expression,
+    Name,
+    Product,
+    Sum,
+    format_expression,
+    number,
+    power,
+    product_of,
+    sum_of,
+)
+from symflex.kernels import LAPLACE, Ring, degree_in
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from flint import fmpz_mpoly
+
+FACTOR_LIMIT = 400
+"""Number of terms up to which a coefficient is factored for print."""
+
+
+@dataclass(frozen=True)
+class Arranger:
+    """Arranges polynomials of one ring.
+
+    Parameters
+    ----------
+    ring : Ring
+        The generators, s first, in declared order.
+    names : mapping of str to Expression
+        What to print for a generator, where it is not its own name (closed sums).
+    degrees : mapping of str to int
+        Degree in s of such generators, so that they stand where their power belongs.
+    """
+
+    ring: Ring
+    names: Mapping[str, Expression]
+    degrees: Mapping[str, int]
+
+    @staticmethod
+    def plain(ring: Ring, names: Mapping[str, Expression] | None = None) -> Arranger:
+        """Return an arranger for a ring whose generators print as themselves."""
+        return Arranger(ring, names or {}, {})
+
+    @cached_property
+    def _symbols(self) -> tuple[Expression, ...]:
+        return tuple(self.names.get(n, Name(n)) for n in self.ring.names)
+
+    @cached_property
+    def _s_degree(self) -> tuple[int, ...]:
+        return tuple(1 if n == LAPLACE else self.degrees.get(n, 0) for n in self.ring.names)
+
+    @cached_property
+    def _is_sum(self) -> tuple[bool, ...]:
+        return tuple(n in self.degrees for n in self.ring.names)
+
+    def collected(self, polynomial: fmpz_mpoly, *, factored: bool = True) -> Expression:
+        """Return a polynomial by descending powers of s, each coefficient factored."""
+        parts = coefficients(self.ring, polynomial)
+        s = Name(LAPLACE)
+        terms = []
+        for exponent in sorted(parts, reverse=True):
+            coefficient = self.coefficient(parts[exponent], factored=factored)
+            terms.append(product_of([coefficient, power(s, exponent)]))
+        return sum_of(terms) if terms else number(0)
+
+    def coefficient(self, polynomial: fmpz_mpoly, *, factored: bool = True) -> Expression:
+        """Return a polynomial free of s as a product of factors, or as a sum when it has none."""
+        if len(polynomial) == 1 or not factored or len(polynomial) > FACTOR_LIMIT:
+            return self._with_content(polynomial)
+        constant, factors = polynomial.factor()
+        sign = 1
+        pieces: list[Expression] = []
+        for factor, exponent in sorted(factors, key=lambda fe: (len(fe[0]) > 1, _order_key(fe[0]))):
+            positive = factor
+            if int(factor.leading_coefficient()) < 0:
+                positive, sign = -factor, sign * (-1) ** int(exponent)
+            pieces.append(power(self._flat(positive), int(exponent)))
+        return product_of([number(int(constant) * sign), *pieces])
+
+    def _with_content(self, polynomial: fmpz_mpoly) -> Expression:
+        content = polynomial.term_content()
+        if int(polynomial.leading_coefficient()) < 0:
+            content = -content if int(content.leading_coefficient()) > 0 else content
+        rest = polynomial / content
+        if rest.is_constant():
+            return self._flat(polynomial)
+        return product_of([self._flat(content), self._flat(rest)])
+
+    def _flat(self, polynomial: fmpz_mpoly) -> Expression:
+        return self._sum(_terms(polynomial))
+
+    def grouped(self, polynomial: fmpz_mpoly) -> Expression:
+        """Return a polynomial nested by its most shared generators."""
+        if polynomial.is_zero():
+            return number(0)
+        return self._group(_terms(polynomial))
+
+    def grouped_by_s(self, polynomial: fmpz_mpoly) -> Expression:
+        """Return the shorter of the nested print and the one by descending powers of s."""
+        nested = self.grouped(polynomial)
+        if polynomial.is_zero() or not degree_in(polynomial, 0):
+            return nested
+        collected = self.collected(polynomial)
+        longer = len(format_expression(collected)) > len(format_expression(nested))
+        return nested if longer else collected
+
+    def _group(self, terms: dict[tuple[int, ...], int]) -> Expression:
+        content, rest = _pull_content(terms)
+        front = self._monomial(content, 1)
+        if len(rest) == 1:
+            ((monomial, coefficient),) = rest.items()
+            return product_of([number(coefficient), front, self._monomial(monomial, 1)])
+        scale, rest = _pull_number(rest)
+        inner = self._split(rest)
+        return product_of([number(scale), front, inner])
+
+    def _split(self, terms: dict[tuple[int, ...], int]) -> Expression:
+        shared = self._most_shared(terms)
+        if shared is None:
+            return self._sum(terms)
+        chosen = {m: c for m, c in terms.items() if m[shared]}
+        others = {m: c for m, c in terms.items() if not m[shared]}
+        parts = [(self._rank(chosen), self._group(chosen))]
+        if others:
+            parts += self._parts(others)
+        return sum_of(_share_sums([part for _, part in sorted(parts, key=lambda p: p[0])]))
+
+    def _parts(self, terms: dict[tuple[int, ...], int]) -> list[tuple[tuple[int, ...], Expression]]:
+        """Return the groups of a sum with their places in print."""
+        shared = self._most_shared(terms)
+        if shared is None:
+            return [(self._rank({m: c}), self._sum({m: c})) for m, c in terms.items()]
+        chosen = {m: c for m, c in terms.items() if m[shared]}
+        others = {m: c for m, c in terms.items() if not m[shared]}
+        return [(self._rank(chosen), self._group(chosen)), *(self._parts(others) if others else [])]
+
+    def _most_shared(self, terms: dict[tuple[int, ...], int]) -> int | None:
+        """Return the generator to take out of a sum: closed sums first, then parameters; never s alone."""
+        counts = [0] * len(self.ring.names)
+        for monomial in terms:
+            for i, exponent in enumerate(monomial):
+                if exponent and i:
+                    counts[i] += 1
+        candidates = [i for i, n in enumerate(counts) if n > 1]
+        if not candidates:
+            return None
+        return max(candidates, key=lambda i: (self._is_sum[i], counts[i], -i))
+
+    def _rank(self, terms: dict[tuple[int, ...], int]) -> tuple[int, ...]:
+        """Return a sort key: descending degree in s, then closed sums, then declared order."""
+        best = min(terms, key=self._monomial_key)
+        return self._monomial_key(best)
+
+    def _monomial_key(self, monomial: tuple[int, ...]) -> tuple[int, ...]:
+        degree = sum(e * d for e, d in zip(monomial, self._s_degree, strict=True))
+        sums = sum(e for e, is_sum in zip(monomial, self._is_sum, strict=True) if is_sum)
+        return (-degree, -sums, *(-e for e in monomial[1:]))
+
+    def _sum(self, terms: dict[tuple[int, ...], int]) -> Expression:
+        ordered = sorted(terms, key=self._monomial_key)
+        return sum_of([self._monomial(m, terms[m]) for m in ordered])
+
+    def _monomial(self, monomial: tuple[int, ...], coefficient: int) -> Expression:
+        """Return number, pi, parameters in declared order, s, closed sums."""
+        plain: list[Expression] = []
+        sums: list[Expression] = []
+        for i, exponent in enumerate(monomial):
+            if i and exponent:
+                target = sums if self._is_sum[i] else plain
+                target.append(power(self._symbols[i], exponent))
+        pi = self.ring.index.get("pi")
+        if pi is not None and monomial[pi]:
+            symbol = power(Name("pi"), monomial[pi])
+            plain.remove(symbol)
+            plain.insert(0, symbol)
+        laplace = [power(Name(LAPLACE), monomial[0])] if monomial and monomial[0] else []
+        return product_of([number(coefficient), *plain, *laplace, *sums])
+
+
+def _share_sums(parts: list[Expression]) -> list[Expression]:
+    """Return the terms of a sum with a parenthesis that several of them bear taken out once."""
+    for part in parts:
+        for shared in _factors(part):
+            if not isinstance(shared, Sum):
+                continue
+            bearing = [p for p in parts if shared in _factors(p)]
+            if len(bearing) > 1:
+                inner = sum_of(_share_sums([_without(p, shared) for p in bearing]))
+                merged = product_of([shared, inner])
+                first = parts.index(bearing[0])
+                rest = [p for p in parts if p not in bearing]
+                return _share_sums([*rest[:first], merged, *rest[first:]])
+    return parts
+
+
+def _factors(part: Expression) -> tuple[Expression, ...]:
+    return part.factors if isinstance(part, Product) else (part,)
+
+
+def _without(part: Expression, shared: Expression) -> Expression:
+    factors = list(_factors(part))
+    factors.remove(shared)
+    return product_of(factors) if factors else number(1)
+
+
+def _order_key(polynomial: fmpz_mpoly) -> tuple[tuple[int, ...], ...]:
+    """Return a key that sorts factors by declared order of their generators, independent of the engine's order."""
+    return tuple(tuple(-int(e) for e in m) for m in polynomial.monoms())
+
+
+def _terms(polynomial: fmpz_mpoly) -> dict[tuple[int, ...], int]:
+    return {tuple(int(e) for e in m): int(c) for m, c in polynomial.terms()}
+
+
+def _pull_content(
+    terms: dict[tuple[int, ...], int],
+) -> tuple[tuple[int, ...], dict[tuple[int, ...], int]]:
+    """Return the common monomial and the terms without it."""
+    content = tuple(min(column) for column in zip(*terms, strict=True))
+    return content, {tuple(e - c for e, c in zip(m, content, strict=True)): n for m, n in terms.items()}
+
+
+def _pull_number(terms: dict[tuple[int, ...], int]) -> tuple[int, dict[tuple[int, ...], int]]:
+    """Return the common integer, negative when every term is, and the terms without it."""
+    scale = gcd(*terms.values())
+    if all(c < 0 for c in terms.values()):
+        scale = -scale
+    return scale, {m: c // scale for m, c in terms.items()}
+
+
+def coefficients(ring: Ring, polynomial: fmpz_mpoly) -> dict[int, fmpz_mpoly]:
+    """Return the coefficient of every power of s that occurs, over the same ring."""
+    parts: dict[int, dict[tuple[int, ...], int]] = {}
+    for monomial, coefficient in polynomial.terms():
+        key = (0, *(int(e) for e in monomial[1:]))
+        parts.setdefault(int(monomial[0]), {})[key] = int(coefficient)
+    return {exponent: ring.context.from_dict(part) for exponent, part in parts.items()}

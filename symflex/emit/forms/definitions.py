@@ -1,0 +1,126 @@
+"""The compact form: sub-impedances and the user's definitions stay closed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symflex.emit.forms.arrange import Arranger
+from symflex.emit.forms.polynomial import constant_symbols
+from symflex.emit.forms.printed import PrintedForm
+from symflex.expressions import Expression, Name, format_expression, names
+from symflex.kernels import Factored, Ring, degree_in
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.elimination import Closure
+    from symflex.transfer import ClosedForm, TransferFunction
+
+REWRITE_LIMIT = 5_000
+"""Number of terms up to which an expanded polynomial is rewritten in definitions."""
+
+
+def definitions_form(tf: TransferFunction, digits: int) -> PrintedForm:
+    """Return the shortest print that keeps sums of the network and definitions closed.
+
+    Numerator and denominator each have two candidates, and the shorter one is taken: the elimination's own
+    closed form, and the expanded polynomial rewritten in the definitions by exact division.
+    """
+    del digits
+    num, den = _rewritten(tf)
+    if tf.closed is not None:
+        closed_num, closed_den = _from_closure(tf, tf.closed)
+        # A rational factor may stand differently in the two: take both parts from one of them then.
+        if _same_parts(tf, tf.closed):
+            num, den = min(closed_num, num, key=_length), min(closed_den, den, key=_length)
+        elif _length(closed_num) + _length(closed_den) <= _length(num) + _length(den):
+            num, den = closed_num, closed_den
+    return _with_where(tf, num, den)
+
+
+def _length(expression: Expression) -> int:
+    return len(format_expression(expression))
+
+
+def _same_parts(tf: TransferFunction, closed: ClosedForm) -> bool:
+    """True when the closed denominator opens to the expanded one, not to a multiple of it."""
+    opened = closed.closure.open(closed.den)
+    return tf.base == tf.ratio.ring and (opened / tf.ratio.denominator()).is_one
+
+
+def _from_closure(tf: TransferFunction, closed: ClosedForm) -> tuple[Expression, Expression]:
+    closure = closed.closure
+    base = Arranger.plain(closure.base, constant_symbols(tf))
+    named = _named_sums(tf, closure)
+    symbols = {**constant_symbols(tf), **{n: named.get(n, base.grouped_by_s(p)) for n, p in closure.sums}}
+    degrees = {n: degree_in(p, 0) for n, p in closure.sums}
+    arranger = Arranger(closure.ring, symbols, degrees)
+    return arranger.grouped(closed.num), arranger.grouped(closed.den)
+
+
+def _named_sums(tf: TransferFunction, closure: Closure) -> dict[str, Expression]:
+    """Return the definitions that are exactly a closed sum."""
+    found: dict[str, Expression] = {}
+    for name, value in tf.definitions:
+        if value.unit == 1 and len(value.factors) == 1 and value.factors[0][1] == 1:
+            polynomial = value.factors[0][0]
+            for closed_name, closed_sum in closure.sums:
+                if polynomial == closed_sum:
+                    found.setdefault(closed_name, Name(name))
+    return found
+
+
+def _rewritten(tf: TransferFunction) -> tuple[Expression, Expression]:
+    """Return the expanded form, divided by every definition that makes it shorter."""
+    ring = tf.base
+    above = _embed(tf.ratio.numerator(), ring)
+    below = _embed(tf.ratio.denominator(), ring)
+    arranger = Arranger.plain(ring, constant_symbols(tf))
+    if max(len(above), len(below)) <= REWRITE_LIMIT:
+        above, below = (_rewrite(p, tf.definitions, ring) for p in (above, below))
+    return arranger.grouped_by_s(above), arranger.grouped_by_s(below)
+
+
+def _embed(value: Factored, ring: Ring) -> fmpz_mpoly:
+    expanded = value.expand()
+    return expanded.compose(*(ring.generator(n) for n in value.ring.names), ctx=ring.context)
+
+
+def _rewrite(polynomial: fmpz_mpoly, definitions: Sequence[tuple[str, Factored]], ring: Ring) -> fmpz_mpoly:
+    """Return the polynomial in terms of the definitions, each used when it saves terms."""
+    for name, value in definitions:
+        if value.is_constant or value.denominator().factors or value.unit.denominator != 1:
+            continue
+        divisor = value.expand()
+        rewritten = _in_powers_of(polynomial, divisor, ring.generator(name), ring)
+        shorter = len(rewritten) < len(polynomial)
+        if shorter or (len(divisor) == 1 and rewritten != polynomial):
+            polynomial = rewritten
+    return polynomial
+
+
+def _in_powers_of(polynomial: fmpz_mpoly, divisor: fmpz_mpoly, symbol: fmpz_mpoly, ring: Ring) -> fmpz_mpoly:
+    """Return ``sum(r_i * symbol**i)`` where ``polynomial = sum(r_i * divisor**i)``."""
+    result = ring.constant(0)
+    place = ring.constant(1)
+    while not polynomial.is_zero():
+        polynomial, remainder = divmod(polynomial, divisor)
+        result = result + remainder * place
+        place = place * symbol
+    return result
+
+
+def _with_where(tf: TransferFunction, num: Expression, den: Expression) -> PrintedForm:
+    """Return the form with the definitions it uses, also those used by definitions."""
+    definitions = {d.name: d.expression for d in tf.model.definitions}
+    pending, used = [num, den], set()
+    while pending:
+        for found in names(pending.pop()):
+            name = found.name
+            if isinstance(found, Name) and name in definitions and name not in used:
+                used.add(name)
+                pending.append(definitions[name])
+    where = tuple((d.name, d.expression) for d in tf.model.definitions if d.name in used)
+    return PrintedForm("definitions", num, den, where)

@@ -1,0 +1,89 @@
+"""Forms over the expanded ring: polynomial, monic, factored."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from symflex.emit.forms.arrange import Arranger, coefficients
+from symflex.emit.forms.printed import PrintedForm
+from symflex.expressions import Expression, Name, number, power, product_of, quotient, sum_of
+from symflex.kernels import LAPLACE, Factored, Ring, degree_in
+
+if TYPE_CHECKING:
+    from flint import fmpz_mpoly
+
+    from symflex.transfer import TransferFunction
+
+
+def constant_symbols(tf: TransferFunction) -> dict[str, Expression]:
+    """Return what the generators of functions of constants print as."""
+    return {c.generator: c.expression for c in tf.constants}
+
+
+def polynomial_form(tf: TransferFunction, digits: int) -> PrintedForm:
+    """Return numerator and denominator by descending powers of s, coefficients collected and factored."""
+    del digits
+    arranger = Arranger.plain(tf.ratio.ring, constant_symbols(tf))
+    return PrintedForm(
+        "polynomial",
+        arranger.collected(tf.ratio.numerator().expand()),
+        arranger.collected(tf.ratio.denominator().expand()),
+    )
+
+
+def monic_form(tf: TransferFunction, digits: int) -> PrintedForm:
+    """Return the polynomial form divided by the denominator's leading coefficient."""
+    del digits
+    ring = tf.ratio.ring
+    arranger = Arranger.plain(ring, constant_symbols(tf))
+    den = tf.ratio.denominator().expand()
+    parts = coefficients(ring, den)
+    leading = parts[max(parts)]
+    return PrintedForm(
+        "monic",
+        _divided(arranger, ring, tf.ratio.numerator().expand(), leading),
+        _divided(arranger, ring, den, leading),
+    )
+
+
+def _divided(arranger: Arranger, ring: Ring, polynomial: fmpz_mpoly, divisor: fmpz_mpoly) -> Expression:
+    parts = coefficients(ring, polynomial)
+    terms = []
+    for exponent in sorted(parts, reverse=True):
+        common = parts[exponent].gcd(divisor)
+        below = divisor / common
+        above = parts[exponent] / common
+        if int(below.leading_coefficient()) < 0:
+            above, below = -above, -below
+        coefficient = quotient(arranger.coefficient(above), arranger.coefficient(below))
+        terms.append(product_of([coefficient, power(Name(LAPLACE), exponent)]))
+    return sum_of(terms) if terms else number(0)
+
+
+def factored_form(tf: TransferFunction, digits: int) -> PrintedForm:
+    """Return numerator and denominator as products of irreducible factors over the rationals."""
+    del digits
+    arranger = Arranger.plain(tf.ratio.ring, constant_symbols(tf))
+    return PrintedForm(
+        "factored",
+        _irreducible(arranger, tf.ratio.numerator()),
+        _irreducible(arranger, tf.ratio.denominator()),
+    )
+
+
+def _irreducible(arranger: Arranger, value: Factored) -> Expression:
+    """Return number, parameters, powers of s, then polynomials by degree in s."""
+    unit = Fraction(value.unit)
+    pieces: list[tuple[tuple[object, ...], Expression]] = []
+    for factor, exponent in value.factors:
+        constant, parts = factor.factor()
+        unit *= Fraction(int(constant)) ** exponent
+        for part, times in parts:
+            positive, sign = (part, 1) if int(part.leading_coefficient()) > 0 else (-part, -1)
+            unit *= Fraction(sign) ** (exponent * int(times))
+            degree = degree_in(positive, 0)
+            printed = power(arranger.collected(positive), exponent * int(times))
+            key = (len(positive) > 1, degree, tuple(tuple(-int(e) for e in m[1:]) for m in positive.monoms()))
+            pieces.append((key, printed))
+    return product_of([number(unit), *(p for _, p in sorted(pieces, key=lambda item: item[0]))])

@@ -1,0 +1,188 @@
+"""The language-neutral program tree: what generated code computes, before any language prints it.
+
+A :class:`Program` is straight-line code: assignments that need parameters only, then one or two branches that
+depend on s. Sums and products are n-ary and are evaluated from left to right, so that every language computes
+the same floating-point numbers in the same order.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from fractions import Fraction
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """Base of all nodes."""
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The operands, from left to right; empty for a leaf."""
+        return ()
+
+
+@dataclass(frozen=True, slots=True)
+class Constant(Node):
+    """The non-negative number ``value * pi**pi_power``."""
+
+    value: Fraction
+    pi_power: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter(Node):
+    """A parameter, by its name in the model."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Laplace(Node):
+    """The Laplace variable s."""
+
+
+@dataclass(frozen=True, slots=True)
+class InverseLaplace(Node):
+    """The quotient 1/s."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reference(Node):
+    """The value of an earlier assignment."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Add(Node):
+    """A sum, evaluated from left to right."""
+
+    terms: tuple[Node, ...]
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The operands, from left to right."""
+        return self.terms
+
+
+@dataclass(frozen=True, slots=True)
+class Multiply(Node):
+    """A product, evaluated from left to right."""
+
+    factors: tuple[Node, ...]
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The operands, from left to right."""
+        return self.factors
+
+
+@dataclass(frozen=True, slots=True)
+class Divide(Node):
+    """A quotient."""
+
+    numerator: Node
+    denominator: Node
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The operands, from left to right."""
+        return (self.numerator, self.denominator)
+
+
+@dataclass(frozen=True, slots=True)
+class Power(Node):
+    """An expression free of s raised to an integer of at least two."""
+
+    base: Node
+    exponent: int
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The operands, from left to right."""
+        return (self.base,)
+
+
+@dataclass(frozen=True, slots=True)
+class Negate(Node):
+    """Minus its operand."""
+
+    operand: Node
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The operands, from left to right."""
+        return (self.operand,)
+
+
+@dataclass(frozen=True, slots=True)
+class Apply(Node):
+    """An elementary function of an expression free of s; ``function`` is a key of ``kernels.FUNCTIONS``."""
+
+    function: str
+    argument: Node
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The operands, from left to right."""
+        return (self.argument,)
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """A named intermediate value; the name is unique in its program, and no identifier of any language yet."""
+
+    name: str
+    value: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Branch:
+    """Assignments in order, and the value they lead to."""
+
+    assignments: tuple[Assignment, ...]
+    value: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """How to compute one transfer function.
+
+    Parameters
+    ----------
+    parameters : tuple of str
+        Names of the parameters it takes, as in the model.
+    constants : tuple of Assignment
+        Intermediates that do not depend on s.
+    near : Branch
+        Valid where ``abs(s) <= limit``.
+    far : Branch or None
+        The same function in powers of 1/s, for larger ``abs(s)``, where powers of s would overflow.
+        It may refer to assignments of ``near``. ``None`` when ``near`` serves everywhere.
+    limit : float
+        Infinite when there is no far branch.
+    """
+
+    parameters: tuple[str, ...]
+    constants: tuple[Assignment, ...]
+    near: Branch
+    far: Branch | None
+    limit: float
+
+    @property
+    def size(self) -> int:
+        """The number of operations that depend on s: what an array of frequencies pays for, per element."""
+        roots = [*(a.value for a in self.near.assignments), self.near.value]
+        return sum(_operations(root) for root in roots)
+
+
+def _operations(root: Node) -> int:
+    total, pending = 0, [root]
+    while pending:
+        node = pending.pop()
+        total += max(len(node.children) - 1, 0)
+        pending += node.children
+    return total

@@ -1,0 +1,72 @@
+"""Expressions as SymPy objects, made only when a user asks for them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import sympy
+
+from symflex.expressions import (
+    Attribute,
+    Call,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from symflex.model import Model
+
+
+def symbols_of(model: Model) -> dict[str, sympy.Symbol]:
+    """Return one SymPy symbol per parameter, with its assumption; others are made without any."""
+    assumptions = {"positive": {"positive": True}, "nonnegative": {"nonnegative": True}, "real": {"real": True}}
+    return {p.name: sympy.Symbol(p.name, **assumptions[p.assume]) for p in model.parameters}
+
+
+def to_sympy(expression: Expression, symbols: Mapping[str, sympy.Symbol]) -> sympy.Expr:
+    """Return an expression as a SymPy expression, in the same nesting.
+
+    Parameters
+    ----------
+    expression : Expression
+        Any expression of names, numbers and functions.
+    symbols : mapping of str to Symbol
+        What to use for names; a missing name becomes a plain symbol.
+
+    Examples
+    --------
+    >>> from symflex.expressions import Name, Sum
+    >>> to_sympy(Sum((Name("a"), Name("b"))), {})
+    a + b
+    """
+    match expression:
+        case Number(value):
+            return sympy.Rational(value.numerator, value.denominator)
+        case Name("pi"):
+            return sympy.pi
+        case Name(name):
+            return symbols[name] if name in symbols else sympy.Symbol(name)
+        case Attribute(owner, name):
+            return sympy.Symbol(f"{owner}.{name}")
+        case Negative(operand):
+            return -to_sympy(operand, symbols)
+        case Sum(terms):
+            return sympy.Add(*(to_sympy(t, symbols) for t in terms))
+        case Product(factors):
+            return sympy.Mul(*(to_sympy(f, symbols) for f in factors))
+        case Quotient(numerator, denominator):
+            return to_sympy(numerator, symbols) / to_sympy(denominator, symbols)
+        case Power(base, exponent):
+            return to_sympy(base, symbols) ** to_sympy(exponent, symbols)
+        case Call(name, argument):
+            return getattr(sympy, name)(to_sympy(argument, symbols))
+    message = f"{type(expression).__name__} has no SymPy counterpart"
+    raise TypeError(message)

@@ -1,0 +1,301 @@
+"""From a model to its equations.
+
+Input: a :class:`symflex.model.Model` and the transfer functions of its ``model`` blocks.
+Output: :class:`Equations`; every element has left its stamp, parallel branches are added up, rows are polynomial.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from math import lcm
+from typing import TYPE_CHECKING
+
+from symflex.elements import ElementUse, LinearForm, Row, Stamp, Terminal, Variable
+from symflex.equations.equations import ConstantFunction, EquationRow, Equations, OutputRow, Role
+from symflex.equations.evaluate import Evaluator, open_definitions
+from symflex.errors import Diagnostic, ModelError, SymflexError
+from symflex.expressions import Call, Expression, format_expression, names
+from symflex.kernels import FUNCTIONS, LAPLACE, Factored, Ring
+from symflex.model import scope_of
+from symflex.model.nodes import variable_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+    from symflex.elements import Branch, Injection
+    from symflex.model import Model, NodeReference, PlacedBlock, PlacedElement
+
+PI = "pi"
+
+
+
+def assemble(model: Model, nested: Callable[[PlacedBlock, Ring], Factored] | None = None) -> Equations:
+    """Stamp every element and signal of a model into one linear system.
+
+    Parameters
+    ----------
+    model : Model
+        Resolved.
+    nested : callable, optional
+        Returns the transfer function of a ``model`` block over a given ring.
+
+    Raises
+    ------
+    ModelError
+        SF224 division by zero, SF910 a function of s; with positions, all at once.
+    """
+    constants = _constant_functions(model)
+    ring = Ring(
+        (
+            LAPLACE,
+            *(p.name for p in model.parameters),
+            *(d.name for d in model.definitions),
+            PI,
+            *(c.generator for c in constants),
+        )
+    )
+    return _Assembly(model, ring, constants, nested).run()
+
+
+def _constant_functions(model: Model) -> tuple[ConstantFunction, ...]:
+    found: dict[str, ConstantFunction] = {}
+    for part in _with_submodels(model):
+        definitions = {d.name: d.expression for d in part.definitions}
+        for expression in _expressions(part):
+            for call in reversed(names(expression)):
+                if isinstance(call, Call) and call.name in FUNCTIONS:
+                    opened = open_definitions(call, definitions)
+                    text = format_expression(opened)
+                    found.setdefault(text, ConstantFunction(text, opened))
+    return tuple(found.values())
+
+
+def _with_submodels(model: Model) -> Iterable[Model]:
+    yield model
+    for block in model.blocks:
+        if block.submodel is not None:
+            yield from _with_submodels(block.submodel)
+
+
+def _expressions(model: Model) -> Iterable[Expression]:
+    yield from (d.expression for d in model.definitions)
+    for use in (*model.elements, *model.blocks):
+        yield from (e for _, e in use.values)
+    yield from (x.expression for x in model.signals)
+    yield from (x.expression for x in model.outputs)
+
+
+@dataclass
+class _Assembly:
+    """The one mutable workbench of this room: collects stamps, then freezes them."""
+
+    model: Model
+    ring: Ring
+    constants: tuple[ConstantFunction, ...]
+    nested: Callable[[PlacedBlock, Ring], Factored] | None
+    problems: list[Diagnostic] = field(default_factory=list)
+    branches: dict[tuple[Variable | None, Variable | None], Factored] = field(default_factory=dict)
+    balance: dict[Variable, LinearForm] = field(default_factory=dict)
+    unknowns: list[Variable] = field(default_factory=list)
+    rows: list[EquationRow] = field(default_factory=list)
+    through: dict[Variable, LinearForm] = field(default_factory=dict)
+
+    def run(self) -> Equations:
+        """Return the finished equations."""
+        scope = scope_of(self.model)
+        evaluator = Evaluator(self.ring, scope, self._blocks(), self.through, self._definitions)
+        nodes = {n.name: n for n in self.model.nodes}
+        for node in self.model.nodes:
+            for component in node.components:
+                self.balance[Variable("node", node.name, component)] = LinearForm()
+        values: list[tuple[Variable, Expression]] = []
+        for use in self.model.elements:
+            stamp = self._stamp(use, evaluator, nodes, values)
+            if stamp is not None:
+                self._take(use, stamp)
+        self._take_inputs(nodes)
+        for variable, expression in values:
+            self._equal(variable, expression, evaluator)
+        for signal in self.model.signals:
+            self._equal(Variable("signal", signal.name), signal.expression, evaluator)
+        outputs = [self._output(o.name, o.expression, evaluator) for o in self.model.outputs]
+        if self.problems:
+            raise ModelError(*self.problems)
+        return Equations(
+            self.model,
+            self.ring,
+            tuple((d.name, evaluator.constant(d.expression)) for d in self.model.definitions),
+            self.constants,
+            (*self.balance, *self.unknowns),
+            tuple(Variable("input", i.name) for i in self.model.inputs),
+            tuple(self._polynomial(row) for row in (*self._balances(), *self.rows)),
+            tuple(o for o in outputs if o is not None),
+        )
+
+    @property
+    def _definitions(self) -> dict[str, Expression]:
+        return {d.name: d.expression for d in self.model.definitions}
+
+    def _blocks(self) -> Mapping[str, Factored]:
+        found: dict[str, Factored] = {}
+        scope = scope_of(self.model)
+        evaluator = Evaluator(self.ring, scope, found, {}, self._definitions)
+        s = Factored.generator(self.ring, LAPLACE)
+        for block in self.model.blocks:
+            try:
+                if block.block is not None:
+                    values = {name: evaluator.constant(e) for name, e in block.values}
+                    found[block.name] = block.block.transfer(s, values)
+                elif self.nested is not None:
+                    found[block.name] = self.nested(block, self.ring)
+            except ZeroDivisionError:
+                self.problems.append(
+                    Diagnostic("SF224", f"block '{block.name}' divides by zero", block.span)
+                )
+                found[block.name] = Factored.number(self.ring, 1)
+            except SymflexError as error:
+                self.problems.extend(error.diagnostics)
+                found[block.name] = Factored.number(self.ring, 1)
+        return found
+
+    def _stamp(
+        self,
+        use: PlacedElement,
+        evaluator: Evaluator,
+        nodes: Mapping[str, object],
+        values: list[tuple[Variable, Expression]],
+    ) -> Stamp | None:
+        signal_ports = {p.name for p in use.element.parameters if p.signal}
+        constants: dict[str, Factored] = {}
+        forms: dict[str, LinearForm] = {}
+        one = Factored.number(self.ring, 1)
+        for name, expression in use.values:
+            if name in signal_ports:
+                variable = Variable("value", use.name, name)
+                values.append((variable, expression))
+                forms[name] = LinearForm.of((variable, one))
+                continue
+            try:
+                constants[name] = evaluator.constant(expression)
+            except SymflexError as error:
+                self.problems.extend(error.diagnostics)
+                return None
+        terminals = {
+            port: tuple(self._terminal(r, dict(use.domains)[port], nodes) for r in references)
+            for port, references in use.nodes
+        }
+        s = Factored.generator(self.ring, LAPLACE)
+        return use.element.stamp(ElementUse(use.name, s, terminals, dict(use.domains), constants, forms))
+
+    @staticmethod
+    def _terminal(reference: NodeReference, domain: str, nodes: Mapping[str, object]) -> Terminal:
+        if reference.is_ground:
+            return Terminal()
+        node = nodes[reference.node]
+        if domain == "planar":
+            name = reference.node
+            return Terminal(None, Variable("node", name, "y"), Variable("node", name, "theta"))
+        return Terminal(variable_of(reference, node, domain))  # type: ignore[arg-type]
+
+    def _take(self, use: PlacedElement, stamp: Stamp) -> None:
+        for branch in stamp.branches:
+            self._add_branch(branch)
+        for injection in stamp.injections:
+            self._inject(injection)
+        self.unknowns += stamp.unknowns
+        self.rows += [self._element_row(row) for row in stamp.rows]
+        for quantity, form in stamp.through:
+            self.through[Variable("through", use.name, quantity)] = form
+
+    @staticmethod
+    def _element_row(row: Row) -> EquationRow:
+        return EquationRow(row.about, row.role, row.form)
+
+    def _add_branch(self, branch: Branch) -> None:
+        key = (branch.a, branch.b)
+        if (branch.b, branch.a) in self.branches:
+            key = (branch.b, branch.a)
+        known = self.branches.get(key)
+        self.branches[key] = branch.admittance if known is None else known + branch.admittance
+
+    def _inject(self, injection: Injection) -> None:
+        if injection.node is not None:
+            minus = Factored.number(self.ring, -1)
+            self.balance[injection.node] = _side_by_side(self.balance[injection.node], injection.form * minus)
+
+    def _balances(self) -> list[EquationRow]:
+        """Return each node's balance: what flows out through branches minus what is delivered."""
+        balance = dict(self.balance)
+        for (a, b), admittance in self.branches.items():
+            for here, there in ((a, b), (b, a)):
+                if here is not None:
+                    out = LinearForm.of((here, admittance), (there, -admittance))
+                    balance[here] = _side_by_side(balance[here], out)
+        return [EquationRow(node, "balance", form) for node, form in balance.items()]
+
+    def _take_inputs(self, nodes: Mapping[str, object]) -> None:
+        one = Factored.number(self.ring, 1)
+        domains = {"force": "translation", "torque": "rotation", "voltage": "electrical", "current": "electrical"}
+        for source in self.model.inputs:
+            if source.kind == "signal":
+                continue
+            variable = Variable("input", source.name)
+            ends = [self._terminal(r, domains[source.kind], nodes).across for r in source.nodes]
+            signs = [one, -one]
+            if source.kind == "voltage":
+                current = Variable("through", source.name, "i")
+                difference = LinearForm.of(*zip(ends, signs, strict=False), (variable, -one))
+                self.unknowns.append(current)
+                self.rows.append(EquationRow(current, "constraint", difference))
+                variable = current
+            for end, sign in zip(ends, signs, strict=False):
+                if end is not None:
+                    form = LinearForm.of((variable, -sign))
+                    self.balance[end] = _side_by_side(self.balance[end], form)
+
+    def _polynomial(self, row: EquationRow) -> EquationRow:
+        return EquationRow(row.about, row.role, row.form * common_denominator(self.ring, row.form))
+
+    def _equal(self, variable: Variable, expression: Expression, evaluator: Evaluator) -> None:
+        """Add the row ``variable = expression``."""
+        try:
+            form = evaluator.linear(expression)
+        except SymflexError as error:
+            self.problems.extend(error.diagnostics)
+            return
+        minus = Factored.number(self.ring, -1)
+        self.unknowns.append(variable)
+        self.rows.append(EquationRow(variable, "signal", LinearForm.of((variable, minus)) + form))
+
+    def _output(self, name: str, expression: Expression, evaluator: Evaluator) -> OutputRow | None:
+        try:
+            form = evaluator.linear(expression)
+        except SymflexError as error:
+            self.problems.extend(error.diagnostics)
+            return None
+        one = Factored.number(self.ring, 1)
+        if any(c.denominator().depends_on(LAPLACE) for _, c in form.terms):
+            # A rational expression is a filter with states of its own: give it an unknown.
+            variable = Variable("value", name, "")
+            self.unknowns.append(variable)
+            self.rows.append(EquationRow(variable, "signal", LinearForm.of((variable, -one)) + form))
+            return OutputRow(name, LinearForm.of((variable, one)), one)
+        divisor = common_denominator(self.ring, form)
+        return OutputRow(name, form * divisor, divisor)
+
+
+def _side_by_side(left: LinearForm, right: LinearForm) -> LinearForm:
+    """Return the sum without adding coefficients of equal variables, so that each branch stays one symbol."""
+    return LinearForm((*left.terms, *right.terms))
+
+
+def common_denominator(ring: Ring, form: LinearForm) -> Factored:
+    """Return the least common multiple of the coefficients' denominators."""
+    result = Factored.number(ring, lcm(*(c.unit.denominator for _, c in form.terms)))
+    for _, coefficient in form.terms:
+        for factor, exponent in coefficient.factors:
+            have = next((e for f, e in result.factors if f == factor), 0)
+            if -exponent > have:
+                result = result * Factored(ring, Fraction(1), ((factor, -exponent - have),))
+    return result

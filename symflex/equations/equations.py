@@ -1,0 +1,78 @@
+"""The linear equations of a model, with the names of everything in them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from symflex.elements import LinearForm, Variable
+    from symflex.expressions import Call
+    from symflex.kernels import Factored, Ring
+    from symflex.model import Model
+
+Role = Literal["balance", "law", "constraint", "signal"]
+
+
+@dataclass(frozen=True, slots=True)
+class ConstantFunction:
+    """A generator that stands for an elementary function of constants.
+
+    ``generator`` is its name in the ring, the expression's own text: ``sqrt(k*m)``.
+    """
+
+    generator: str
+    expression: Call
+
+
+@dataclass(frozen=True, slots=True)
+class EquationRow:
+    """One row ``form = 0``, polynomial in the ring: a node's balance or an element's, constraint's or signal's row.
+
+    A variable may occur several times in ``form``, once per branch that meets it.
+    """
+
+    about: Variable
+    role: Role
+    form: LinearForm
+
+
+@dataclass(frozen=True, slots=True)
+class OutputRow:
+    """An output ``y = form / divisor``; the divisor is free of s."""
+
+    name: str
+    form: LinearForm
+    divisor: Factored
+
+
+@dataclass(frozen=True)
+class Equations:
+    """``A(s) x + B u = 0``, ``y = C x + D u``, over an exact ring.
+
+    Parameters
+    ----------
+    model : Model
+        Where they come from.
+    ring : Ring
+        Generators: s, parameters, closed definitions, pi, functions of constants.
+    definitions : tuple of (str, Factored)
+        Each closed definition in terms of the generators before it.
+    constants : tuple of ConstantFunction
+        What the function generators stand for.
+    unknowns, inputs : tuple of Variable
+        The names of x and u.
+    rows : tuple of EquationRow
+        As many as unknowns.
+    outputs : tuple of OutputRow
+        The names of y and their forms.
+    """
+
+    model: Model
+    ring: Ring
+    definitions: tuple[tuple[str, Factored], ...]
+    constants: tuple[ConstantFunction, ...]
+    unknowns: tuple[Variable, ...]
+    inputs: tuple[Variable, ...]
+    rows: tuple[EquationRow, ...]
+    outputs: tuple[OutputRow, ...]

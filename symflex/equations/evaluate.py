@@ -1,0 +1,217 @@
+"""From expressions to linear forms over the exact ring."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import isqrt
+from typing import TYPE_CHECKING
+
+from symflex.elements import LinearForm, Variable
+from symflex.errors import BudgetError, Diagnostic, ModelError
+from symflex.expressions import (
+    Attribute,
+    Call,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+    format_expression,
+    names,
+    substitute,
+)
+from symflex.kernels import LAPLACE, Factored, Ring
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from symflex.model import Scope
+
+
+OPENED_LIMIT = 500
+
+
+@dataclass(frozen=True)
+class Evaluator:
+    """Evaluates the expressions of one model.
+
+    Parameters
+    ----------
+    ring : Ring
+        Generators: s, parameters, definitions, pi and elementary functions of constants.
+    scope : Scope
+        What names mean.
+    blocks : mapping of str to Factored
+        The blocks' transfer functions.
+    through : mapping of Variable to LinearForm
+        The elements' through quantities.
+    definitions : mapping of str to Expression
+        Opened inside the arguments of functions.
+    """
+
+    ring: Ring
+    scope: Scope
+    blocks: Mapping[str, Factored]
+    through: Mapping[Variable, LinearForm]
+    definitions: Mapping[str, Expression]
+
+    def constant(self, expression: Expression) -> Factored:
+        """Return the value of an expression without unknowns.
+
+        Raises
+        ------
+        ModelError
+            SF224 when it divides by zero.
+        BudgetError
+            SF501 when it would expand beyond the limits.
+        """
+        value = self._value(expression)
+        if isinstance(value, LinearForm):
+            message = f"'{format_expression(expression)}' must be constant"
+            raise ModelError(Diagnostic("SF212", message, expression.span))
+        return value
+
+    def linear(self, expression: Expression) -> LinearForm:
+        """Return an expression of unknowns and inputs as a linear form; zero is the empty form."""
+        value = self._value(expression)
+        if isinstance(value, LinearForm):
+            return value
+        if value.is_zero:
+            return LinearForm()
+        raise ModelError(Diagnostic("SF221", "the expression has a term without an unknown", expression.span))
+
+    def _value(self, expression: Expression) -> Factored | LinearForm:
+        try:
+            return self._evaluate(expression)
+        except BudgetError as error:
+            located = [
+                d if d.span else Diagnostic(d.code, d.message, expression.span, d.hint) for d in error.diagnostics
+            ]
+            raise BudgetError(*located) from None
+
+    def _evaluate(self, expression: Expression) -> Factored | LinearForm:
+        match expression:
+            case Number(value):
+                return Factored.number(self.ring, value)
+            case Name() | Attribute():
+                return self._name(expression)
+            case Negative(operand):
+                return _scale(self._evaluate(operand), Factored.number(self.ring, -1))
+            case Sum(terms):
+                return self._sum(expression, terms)
+            case Product(factors):
+                result: Factored | LinearForm = Factored.number(self.ring, 1)
+                for factor in factors:
+                    result = _product(result, self._evaluate(factor), expression)
+                return result
+            case Quotient(numerator, denominator):
+                divisor = self.constant(denominator)
+                if divisor.is_zero:
+                    raise ModelError(Diagnostic("SF224", "division by zero", denominator.span or expression.span))
+                return _scale(self._evaluate(numerator), divisor**-1)
+            case Power(base, exponent):
+                return self._power(expression, base, exponent)
+            case Call(name, argument):
+                return self._call(expression, name, argument)
+        message = f"unexpected expression {type(expression).__name__}"
+        raise TypeError(message)
+
+    def _name(self, expression: Name | Attribute) -> Factored | LinearForm:
+        meaning = self.scope.lookup(expression, constant=False)
+        if meaning.kind == "block":
+            return self.blocks[meaning.name]
+        if meaning.kind == "through" and meaning.variable is not None:
+            return self.through[meaning.variable]
+        if meaning.variable is not None:
+            return LinearForm.of((meaning.variable, Factored.number(self.ring, 1)))
+        return Factored.generator(self.ring, LAPLACE if meaning.kind == "laplace" else meaning.name)
+
+    def _sum(self, expression: Sum, terms: tuple[Expression, ...]) -> Factored | LinearForm:
+        values = [self._evaluate(term) for term in terms]
+        forms = [v for v in values if isinstance(v, LinearForm)]
+        constants = [v for v in values if isinstance(v, Factored) and not v.is_zero]
+        if not forms:
+            total = Factored.number(self.ring, 0)
+            for value in constants:
+                total = total + value
+            return total
+        if constants:
+            raise ModelError(Diagnostic("SF221", "the sum has a term without an unknown", expression.span))
+        form = LinearForm()
+        for part in forms:
+            form = form + part
+        return form
+
+    def _power(self, expression: Power, base: Expression, exponent: Expression) -> Factored | LinearForm:
+        value = self._evaluate(base)
+        power = self.constant(exponent)
+        n = int(power.unit)
+        if isinstance(value, LinearForm):
+            if n == 1:
+                return value
+            raise ModelError(Diagnostic("SF222", "a power of an unknown is not linear", expression.span))
+        if n < 0 and value.is_zero:
+            raise ModelError(Diagnostic("SF224", "division by zero", expression.span))
+        return value**n
+
+    def _call(self, expression: Call, name: str, argument: Expression) -> Factored:
+        inner = self.constant(argument)
+        if inner.depends_on(LAPLACE):
+            message = f"{name} of an expression in s is not available yet"
+            raise ModelError(Diagnostic("SF910", message, expression.span))
+        if name == "sqrt" and inner.is_constant and (root := exact_root(inner.unit)) is not None:
+            return Factored.number(self.ring, root)
+        if inner.is_zero and name in ("sin", "tan", "sinh", "tanh"):
+            return Factored.number(self.ring, 0)
+        if inner.is_zero and name in ("cos", "cosh", "exp"):
+            return Factored.number(self.ring, 1)
+        return Factored.generator(self.ring, format_expression(open_definitions(expression, self.definitions)))
+
+
+def open_definitions(call: Call, definitions: Mapping[str, Expression]) -> Call:
+    """Return a function call whose argument contains no definition.
+
+    Raises
+    ------
+    ModelError
+        SF103 when the opened argument would be unreasonably long.
+    """
+    opened: Expression = call
+    while any(isinstance(n, Name) and n.name in definitions for n in names(opened)):
+        opened = substitute(opened, definitions)
+        if len(names(opened)) > OPENED_LIMIT:
+            message = f"the argument of {call.name} has more than {OPENED_LIMIT} names with its definitions opened"
+            raise ModelError(Diagnostic("SF103", message, call.span))
+    if not isinstance(opened, Call):
+        message = "a call stays a call"
+        raise TypeError(message)
+    return opened
+
+
+def exact_root(value: Fraction) -> Fraction | None:
+    """Return the square root of a rational number when it is rational."""
+    if value < 0:
+        return None
+    top, bottom = isqrt(value.numerator), isqrt(value.denominator)
+    exact = top * top == value.numerator and bottom * bottom == value.denominator
+    return Fraction(top, bottom) if exact else None
+
+
+def _scale(value: Factored | LinearForm, factor: Factored) -> Factored | LinearForm:
+    return value * factor
+
+
+def _product(
+    left: Factored | LinearForm, right: Factored | LinearForm, expression: Expression
+) -> Factored | LinearForm:
+    if isinstance(left, LinearForm):
+        if isinstance(right, LinearForm):
+            raise ModelError(Diagnostic("SF222", "a product of two unknowns is not linear", expression.span))
+        return left * right
+    if isinstance(right, LinearForm):
+        return right * left
+    return left * right

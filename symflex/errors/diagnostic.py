@@ -1,0 +1,86 @@
+"""One problem found in a text: what is wrong, where, and what to do."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from symflex.errors.source import Span
+
+SHOWN_COLUMNS = 160
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One problem, with a stable code.
+
+    Parameters
+    ----------
+    code : str
+        ``SF`` and three digits; listed in :data:`symflex.errors.codes.CODES`.
+    message : str
+        What is wrong, with the value found.
+    span : Span, optional
+        Where; ``None`` when the problem has no place in a text.
+    hint : str, optional
+        What to do about it.
+
+    Examples
+    --------
+    >>> from symflex.errors import Source, Span
+    >>> source = Source("a.toml", 'm = "3 kgg"')
+    >>> print(Diagnostic("SF201", "unknown unit 'kgg'", Span(source, 7, 10), "did you mean 'kg'?").render())
+    a.toml:1:8: error[SF201]: unknown unit 'kgg'
+      1 | m = "3 kgg"
+        |        ^^^
+      hint: did you mean 'kg'?
+    """
+
+    code: str
+    message: str
+    span: Span | None = None
+    hint: str | None = None
+
+    def render(self) -> str:
+        """Return the diagnostic as the lines a terminal shows."""
+        if self.span is None:
+            lines = [f"error[{self.code}]: {self.message}"]
+        else:
+            lines = [f"{self.span}: error[{self.code}]: {self.message}", *_excerpt(self.span)]
+        if self.hint:
+            lines.append(f"  hint: {self.hint}")
+        return "\n".join(printable(line) for line in lines)
+
+
+def _excerpt(span: Span) -> list[str]:
+    number = str(span.line)
+    text = span.line_text.replace("\t", " ")
+    first = span.column - 1
+    offset = max(0, first - SHOWN_COLUMNS // 2) if len(text) > SHOWN_COLUMNS else 0
+    shown = text[offset : offset + SHOWN_COLUMNS]
+    width = max(1, min(span.end - span.start, len(shown) - (first - offset)))
+    gutter = " " * len(number)
+    return [f"  {number} | {shown}", f"  {gutter} | {' ' * (first - offset)}{'^' * width}"]
+
+
+def printable(text: str) -> str:
+    """Return ``text`` with control characters escaped, so that a file cannot drive a terminal."""
+    return "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in text)
+
+
+def nearest(name: str, known: Iterable[str]) -> str | None:
+    """Return a hint naming the closest known name, or ``None`` when none is close.
+
+    Examples
+    --------
+    >>> nearest("sprnig", ["mass", "spring"])
+    "did you mean 'spring'?"
+    """
+    if len(name) > 64:  # noqa: PLR2004
+        return None
+    matches = get_close_matches(name, sorted(known), n=1, cutoff=0.6)
+    return f"did you mean '{matches[0]}'?" if matches else None

@@ -1,0 +1,62 @@
+"""The exception family. Each class carries the command line's exit code."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from symflex.errors.diagnostic import Diagnostic
+
+
+class SymflexError(Exception):
+    """Base of every error symflex raises on purpose.
+
+    Parameters
+    ----------
+    *diagnostics : Diagnostic
+        Everything that is wrong, in the order of the text.
+
+    Examples
+    --------
+    >>> str(SymflexError(Diagnostic("SF900", "no such file")))
+    'error[SF900]: no such file'
+    """
+
+    exit_code: ClassVar[int] = 3
+
+    def __init__(self, *diagnostics: Diagnostic) -> None:
+        super().__init__(*diagnostics)
+        self.diagnostics = diagnostics
+
+    def __str__(self) -> str:
+        """Return all diagnostics, rendered one after the other."""
+        return "\n".join(d.render() for d in self.diagnostics)
+
+
+class UsageError(SymflexError):
+    """A command or call asks for something that does not exist."""
+
+    exit_code = 2
+
+
+class SpecError(SymflexError):
+    """A text is not a valid specification."""
+
+    exit_code = 3
+
+
+class ModelError(SymflexError):
+    """A well-formed specification describes no solvable model."""
+
+    exit_code = 3
+
+
+class UncertifiedError(SymflexError):
+    """A result could not be proved."""
+
+    exit_code = 4
+
+
+class BudgetError(SymflexError):
+    """A limit on time, memory or size was exceeded."""
+
+    exit_code = 5

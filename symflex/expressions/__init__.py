@@ -1,0 +1,52 @@
+"""Expressions as text and as trees: read, printed, built and searched."""
+
+from symflex.expressions.build import negative, number, power, product_of, quotient, sum_of
+from symflex.expressions.format import format_expression
+from symflex.expressions.limits import PROGRAM_LIMITS, USER_LIMITS, Limits
+from symflex.expressions.nodes import (
+    Attribute,
+    Call,
+    Derivative,
+    Equation,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+)
+from symflex.expressions.parse import parse, parse_equation
+from symflex.expressions.slips import FUNCTIONS
+from symflex.expressions.walk import names, substitute
+
+__all__ = [
+    "FUNCTIONS",
+    "PROGRAM_LIMITS",
+    "USER_LIMITS",
+    "Attribute",
+    "Call",
+    "Derivative",
+    "Equation",
+    "Expression",
+    "Limits",
+    "Name",
+    "Negative",
+    "Number",
+    "Power",
+    "Product",
+    "Quotient",
+    "Sum",
+    "format_expression",
+    "names",
+    "negative",
+    "number",
+    "parse",
+    "parse_equation",
+    "power",
+    "product_of",
+    "quotient",
+    "substitute",
+    "sum_of",
+]

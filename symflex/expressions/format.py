@@ -1,0 +1,195 @@
+"""From a tree to text in the specification's own grammar, with no parentheses to spare."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+from enum import Enum
+from typing import TYPE_CHECKING
+
+from symflex.expressions.nodes import (
+    Attribute,
+    Call,
+    Derivative,
+    Equation,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+)
+
+if TYPE_CHECKING:
+    from fractions import Fraction
+
+# A decimal is short up to so many significant digits, and readable back down to this decimal exponent.
+SHORT_DIGITS = 40
+SMALLEST_EXPONENT = -200
+SMALLEST_PLAIN_EXPONENT = -4
+
+
+class _Place(Enum):
+    """Where a subtree is printed, which decides whether it needs parentheses."""
+
+    ALONE = "the whole text, or between parentheses"
+    TERM = "a term of a sum, or what a leading minus negates"
+    LEAD = "the first factor of a product, or a numerator"
+    FACTOR = "a later factor, a denominator or an exponent"
+    BASE = "the base of a power"
+
+
+_BARE_SUM = frozenset({_Place.ALONE})
+_BARE_NEGATIVE = frozenset({_Place.ALONE, _Place.TERM, _Place.FACTOR})
+_BARE_PRODUCT = frozenset({_Place.ALONE, _Place.TERM, _Place.LEAD})
+_BARE_POWER = frozenset(_Place) - {_Place.BASE}
+_BARE_LEAF = frozenset(_Place)
+
+# Work still to do, last piece first: finished text, or a subtree and its place.
+_Work = list["str | tuple[Expression, _Place]"]
+
+
+def format_expression(expression: Expression, *, multiply: str = "*", power: str = "^") -> str:
+    """Print a tree so that :func:`~symflex.expressions.parse` reads the same tree back.
+
+    Parameters
+    ----------
+    expression : Expression
+        A tree of any width and depth; an :class:`Equation` is printed as ``left = right``.
+    multiply, power : str, optional
+        The operators; ``power="**"`` is read back too and suits other languages.
+
+    Returns
+    -------
+    str
+        Text with the fewest parentheses.
+
+    Notes
+    -----
+    Text is read back as the same tree when sums do not stand directly in sums, nor products in products, and
+    numbers are non-negative integers or finite decimals of at most 40 significant digits, not below 1e-200.
+    Any other number prints as numerator over denominator and is read back as the ``Quotient`` of two
+    integers, of the same value; a negative number is read back as the ``Negative`` of a positive one.
+
+    Examples
+    --------
+    >>> from fractions import Fraction
+    >>> s, m = Name("s"), Name("m")
+    >>> format_expression(Product((m, Power(s, Number(Fraction(2))))))
+    'm*s^2'
+    >>> format_expression(Quotient(Number(Fraction(1, 8)), Sum((m, Negative(s)))))
+    '0.125/(m - s)'
+    >>> format_expression(Power(Number(Fraction(1, 3)), s), power="**")
+    '(1/3)**s'
+    """
+    pieces: list[str] = []
+    work: _Work = [(expression, _Place.ALONE)]
+    while work:
+        item = work.pop()
+        if isinstance(item, str):
+            pieces.append(item)
+            continue
+        node, place = item
+        parts, bare = _parts(_unsigned(node), place, multiply, power)
+        if place not in bare:
+            parts = ["(", *parts, ")"]
+        work.extend(reversed(parts))
+    return "".join(pieces)
+
+
+def _parts(node: Expression, place: _Place, multiply: str, power: str) -> tuple[_Work, frozenset[_Place]]:
+    """Return the pieces a node prints as, and the places where they need no parentheses."""
+    match node:
+        case Number(value=value):
+            text = number_text(value)
+            return [text], _BARE_PRODUCT if "/" in text else _BARE_LEAF
+        case Name() | Attribute() | Derivative():
+            return [_leaf_text(node)], _BARE_LEAF
+        case Call(name=name, argument=argument, order=order):
+            return [name + "'" * order + "(", (argument, _Place.ALONE), ")"], _BARE_LEAF
+        case Negative(operand=operand):
+            # A sign before a product is the whole product's, a sign inside one its next factor's alone.
+            within = _Place.FACTOR if place is _Place.FACTOR else _Place.TERM
+            return ["-", (operand, within)], _BARE_NEGATIVE
+        case Power(base=base, exponent=exponent):
+            return [(base, _Place.BASE), power, (exponent, _Place.FACTOR)], _BARE_POWER
+        case Quotient(numerator=numerator, denominator=denominator):
+            return [(numerator, _Place.LEAD), "/", (denominator, _Place.FACTOR)], _BARE_PRODUCT
+        case Product(factors=factors):
+            parts: _Work = [(factors[0], _Place.LEAD)]
+            for factor in factors[1:]:
+                parts += [multiply, (factor, _Place.FACTOR)]
+            return parts, _BARE_PRODUCT
+        case Sum(terms=terms):
+            return _sum_parts(terms), _BARE_SUM
+        case Equation(left=left, right=right):
+            return [(left, _Place.ALONE), " = ", (right, _Place.ALONE)], _BARE_SUM
+        case _:
+            raise TypeError(f"no text for {type(node).__name__}")
+
+
+def _leaf_text(leaf: Name | Attribute | Derivative) -> str:
+    match leaf:
+        case Name(name=name):
+            return name
+        case Attribute(owner=owner, name=name):
+            return f"{owner}.{name}"
+        case Derivative(name=name, order=order):
+            return name + "'" * order
+
+
+def _sum_parts(terms: tuple[Expression, ...]) -> _Work:
+    parts: _Work = [(terms[0], _Place.TERM)]
+    for written in terms[1:]:
+        term = _unsigned(written)
+        if isinstance(term, Negative):
+            parts += [" - ", (term.operand, _Place.TERM)]
+        else:
+            parts += [" + ", (term, _Place.TERM)]
+    return parts
+
+
+def _unsigned(node: Expression) -> Expression:
+    return Negative(Number(-node.value)) if isinstance(node, Number) and node.value < 0 else node
+
+
+def number_text(value: Fraction) -> str:
+    """Print a non-negative number exactly: an integer, a short decimal, or numerator over denominator.
+
+    Examples
+    --------
+    >>> from fractions import Fraction
+    >>> [number_text(Fraction(text)) for text in ("3", "21/10000", "4.7e-12", "2/3")]
+    ['3', '0.0021', '4.7e-12', '2/3']
+    """
+    # Decimal writes integers of any length; str(int) stops at the interpreter's digit limit.
+    fraction = f"{Decimal(value.numerator)}/{Decimal(value.denominator)}"
+    if value.denominator == 1:
+        return fraction.removesuffix("/1")
+    return _decimal_text(value) or fraction
+
+
+def _decimal_text(value: Fraction) -> str | None:
+    """Return the exact decimal of a proper fraction, or ``None`` when it is endless or long."""
+    most_places = SHORT_DIGITS - SMALLEST_EXPONENT
+    denominator = value.denominator
+    twos = (denominator & -denominator).bit_length() - 1
+    odd, fives = denominator >> twos, 0
+    while fives <= most_places and odd % 5 == 0:
+        odd, fives = odd // 5, fives + 1
+    places = max(twos, fives)
+    if odd != 1 or places > most_places:
+        return None
+    mantissa = value.numerator * 10**places // denominator
+    if mantissa >= 10**SHORT_DIGITS:
+        return None
+    digits = str(mantissa)
+    exponent = len(digits) - 1 - places
+    if exponent >= SMALLEST_PLAIN_EXPONENT:
+        digits = digits.zfill(places + 1)
+        return f"{digits[:-places]}.{digits[-places:]}"
+    if exponent < SMALLEST_EXPONENT:
+        return None
+    point = "." if len(digits) > 1 else ""
+    return f"{digits[0]}{point}{digits[1:]}e{exponent}"

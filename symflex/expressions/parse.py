@@ -1,0 +1,374 @@
+"""From the text of an expression to its tree.
+
+Input: a :class:`~symflex.errors.Text`, hostile until read. Output: an immutable, n-ary tree whose
+every node knows its place. The parser keeps its own stack and the nodes are built while it reduces, so no
+depth of nesting reaches the interpreter's; limits are checked before or while reading, never after.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import deque
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from functools import cache
+from importlib.resources import files
+from typing import TYPE_CHECKING, NamedTuple, NoReturn
+
+from lark import Lark, Token, Transformer, v_args
+from lark.exceptions import UnexpectedCharacters, UnexpectedToken
+
+from symflex.errors import Diagnostic, SpecError
+from symflex.expressions.limits import (
+    SIZE_OF_NAME,
+    USER_LIMITS,
+    Limits,
+    Size,
+    exponent_problem,
+    power_problem,
+    size_of_call,
+    size_of_negative,
+    size_of_number,
+    size_of_power,
+    size_of_product,
+    size_of_quotient,
+    size_of_sum,
+)
+from symflex.expressions.nodes import (
+    Attribute,
+    Call,
+    Derivative,
+    Equation,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+)
+from symflex.expressions.slips import Slip, character_slip, end_slip, token_slip
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.errors import Text
+
+NAME_LENGTH = 64
+BLANKS = " \t\r\n"
+
+# A level of the tree takes at most three entries of the parser's stack and a parenthesis one.
+STACK_PER_LEVEL = 4
+
+
+def parse(text: Text, *, limits: Limits = USER_LIMITS) -> Expression:
+    """Read an expression.
+
+    Parameters
+    ----------
+    text : Text
+        The characters and where they stand.
+    limits : Limits, optional
+        What is refused; :data:`PROGRAM_LIMITS` for text the program itself has written.
+
+    Returns
+    -------
+    Expression
+        The tree; sums and products are flat, parentheses leave no trace, numbers are exact.
+
+    Raises
+    ------
+    SpecError
+        SF111 for a character or word that cannot stand where it stands, SF112 for a name that is too long or
+        begins with an underscore, SF103 for text beyond the limits. Only the first problem is reported.
+
+    Examples
+    --------
+    >>> from symflex.errors import Source, Span, Text
+    >>> source = Source("robot.toml", "m*s + 2.5e-3")
+    >>> tree = parse(Text(source.text, Span(source, 0, 12)))
+    >>> tree.terms
+    (Product(factors=(Name(name='m'), Name(name='s'))), Number(value=Fraction(1, 400)))
+    >>> str(tree.terms[1].span), tree.terms[1].span.text
+    ('robot.toml:1:7', '2.5e-3')
+    """
+    return _read(text, limits, "sum").node
+
+
+def parse_equation(text: Text, *, limits: Limits = USER_LIMITS) -> Equation:
+    """Read ``left = right``, as fields write their equations and conditions.
+
+    Parameters
+    ----------
+    text : Text
+        The characters and where they stand.
+    limits : Limits, optional
+        As in :func:`parse`.
+
+    Returns
+    -------
+    Equation
+        Both sides.
+
+    Raises
+    ------
+    SpecError
+        As :func:`parse`; SF111 also when there is not exactly one ``=``.
+
+    Examples
+    --------
+    >>> from symflex.errors import Source, Span, Text
+    >>> source = Source("beam.toml", "w''(l) = 0")
+    >>> parse_equation(Text(source.text, Span(source, 0, 10)))
+    Equation(left=Call(name='w', argument=Name(name='l'), order=2), right=Number(value=Fraction(0, 1)))
+    """
+    equation = _read(text, limits, "equation").node
+    assert isinstance(equation, Equation)
+    return equation
+
+
+@dataclass(frozen=True, slots=True)
+class _Reading:
+    """One text being read; every leaf's token carries it to the callbacks, which are shared by all texts."""
+
+    text: Text
+    limits: Limits
+
+    def refuse(self, start: int, end: int, code: str, message: str, hint: str | None = None) -> NoReturn:
+        raise SpecError(Diagnostic(code, message, self.text.at(start, end), hint))
+
+
+class _Piece(NamedTuple):
+    """A subtree on the parser's stack. Its extent includes parentheses around it, its node's does not."""
+
+    node: Expression
+    start: int
+    end: int
+    size: Size
+    reading: _Reading
+
+
+@v_args(inline=True)
+class _Builder(Transformer[Token, _Piece]):
+    """The parser's callbacks, one for each rule of the grammar; they hold no state."""
+
+    def equation(self, left: _Piece, _equal: Token, right: _Piece) -> _Piece:
+        span = left.reading.text.at(left.start, right.end)
+        size = size_of_quotient(left.size, right.size)
+        return _piece(Equation(left.node, right.node, span=span), left, right, size)
+
+    def sum(self, first: _Piece, *rest: Token | _Piece) -> _Piece:
+        pieces = [first]
+        sign = None
+        for item in rest:
+            if isinstance(item, Token):
+                sign = item
+            else:
+                pieces.append(item if sign is None else self.signed(sign, item))
+        terms, sizes = _flat(pieces, Sum)
+        span = first.reading.text.at(first.start, pieces[-1].end)
+        return _piece(Sum(terms, span=span), first, pieces[-1], size_of_sum(sizes))
+
+    def product(self, first: _Piece, *rest: Token | _Piece) -> _Piece:
+        pieces = [first]
+        operator = ""
+        for item in rest:
+            if isinstance(item, Token):
+                operator = str(item)
+            elif operator == "*":
+                pieces.append(item)
+            else:
+                pieces = [_quotient(_product(pieces), item)]
+        return _product(pieces)
+
+    def signed(self, sign: Token, operand: _Piece) -> _Piece:
+        start, _ = _extent(sign)
+        if sign == "+":
+            return operand._replace(start=start)
+        reading = operand.reading
+        node = Negative(operand.node, span=reading.text.at(start, operand.end))
+        return _checked(_Piece(node, start, operand.end, size_of_negative(operand.size), reading))
+
+    def power(self, base: _Piece, _operator: Token, exponent: _Piece) -> _Piece:
+        reading = base.reading
+        if problem := exponent_problem(exponent.size, reading.limits):
+            reading.refuse(exponent.start, exponent.end, "SF103", problem)
+        if problem := power_problem(base.size, exponent.size, reading.limits):
+            reading.refuse(base.start, exponent.end, "SF103", problem)
+        node = Power(base.node, exponent.node, span=reading.text.at(base.start, exponent.end))
+        return _piece(node, base, exponent, size_of_power(base.size, exponent.size))
+
+    def number(self, token: Token) -> _Piece:
+        reading = _reading(token)
+        start, end = _extent(token)
+        # Decimal is exact here and, unlike int, reads numbers of any length.
+        value = Fraction(Decimal(str(token)))
+        node = Number(value, span=reading.text.at(start, end))
+        return _Piece(node, start, end, size_of_number(value), reading)
+
+    def name(self, token: Token) -> _Piece:
+        reading = _reading(token)
+        start, end = _extent(token)
+        return _Piece(Name(str(token), span=reading.text.at(start, end)), start, end, SIZE_OF_NAME, reading)
+
+    def attribute(self, owner: Token, _dot: Token, name: Token) -> _Piece:
+        reading = _reading(owner)
+        start, end = _extent(owner)[0], _extent(name)[1]
+        node = Attribute(str(owner), str(name), span=reading.text.at(start, end))
+        return _Piece(node, start, end, SIZE_OF_NAME, reading)
+
+    def derivative(self, name: Token, primes: Token) -> _Piece:
+        reading = _reading(name)
+        start, end = _extent(name)[0], _extent(primes)[1]
+        node = Derivative(str(name), len(primes), span=reading.text.at(start, end))
+        return _Piece(node, start, end, SIZE_OF_NAME, reading)
+
+    def call(self, name: Token, _left: Token, argument: _Piece, right: Token) -> _Piece:
+        return _called(name, 0, argument, right)
+
+    def evaluation(self, name: Token, primes: Token, _left: Token, argument: _Piece, right: Token) -> _Piece:
+        return _called(name, len(primes), argument, right)
+
+    def group(self, left: Token, inner: _Piece, right: Token) -> _Piece:
+        return inner._replace(start=_extent(left)[0], end=_extent(right)[1])
+
+
+def _flat(pieces: Sequence[_Piece], kind: type[Expression]) -> tuple[tuple[Expression, ...], list[Size]]:
+    """Return the operands with those of the same kind opened, and the sizes they then have."""
+    nodes: list[Expression] = []
+    sizes: list[Size] = []
+    for piece in pieces:
+        if isinstance(piece.node, kind):
+            nodes.extend(piece.node.children)
+            sizes.append(piece.size._replace(depth=piece.size.depth - 1))
+        else:
+            nodes.append(piece.node)
+            sizes.append(piece.size)
+    return tuple(nodes), sizes
+
+
+def _called(name: Token, order: int, argument: _Piece, right: Token) -> _Piece:
+    reading = argument.reading
+    start, end = _extent(name)[0], _extent(right)[1]
+    node = Call(str(name), argument.node, order, span=reading.text.at(start, end))
+    return _checked(_Piece(node, start, end, size_of_call(argument.size), reading))
+
+
+def _product(pieces: Sequence[_Piece]) -> _Piece:
+    if len(pieces) == 1:
+        return pieces[0]
+    factors, sizes = _flat(pieces, Product)
+    span = pieces[0].reading.text.at(pieces[0].start, pieces[-1].end)
+    return _piece(Product(factors, span=span), pieces[0], pieces[-1], size_of_product(sizes))
+
+
+def _quotient(numerator: _Piece, denominator: _Piece) -> _Piece:
+    span = numerator.reading.text.at(numerator.start, denominator.end)
+    size = size_of_quotient(numerator.size, denominator.size)
+    return _piece(Quotient(numerator.node, denominator.node, span=span), numerator, denominator, size)
+
+
+def _piece(node: Expression, first: _Piece, last: _Piece, size: Size) -> _Piece:
+    return _checked(_Piece(node, first.start, last.end, size, first.reading))
+
+
+def _checked(piece: _Piece) -> _Piece:
+    if piece.size.depth > piece.reading.limits.depth:
+        _refuse_depth(piece.reading, piece.start, piece.end)
+    return piece
+
+
+def _refuse_depth(reading: _Reading, start: int, end: int) -> NoReturn:
+    message = f"this expression is nested too deeply; at most {reading.limits.depth} levels are allowed"
+    reading.refuse(start, end, "SF103", message, "name parts of it in [definitions]")
+
+
+def _reading(token: Token) -> _Reading:
+    reading = token.value
+    assert isinstance(reading, _Reading)
+    return reading
+
+
+def _extent(token: Token) -> tuple[int, int]:
+    assert token.start_pos is not None
+    return token.start_pos, token.start_pos + len(token)
+
+
+@cache
+def _grammar() -> Lark:
+    grammar = files("symflex.expressions").joinpath("grammar.lark").read_text(encoding="utf-8")
+    return Lark(grammar, parser="lalr", lexer="basic", start=["sum", "equation"], transformer=_Builder())
+
+
+def _read(text: Text, limits: Limits, start: str) -> _Piece:
+    reading = _Reading(text, limits)
+    _check_extent(reading, start)
+    parser = _grammar().parse_interactive(text.value, start=start)
+    recent: deque[Token] = deque(maxlen=4)
+    try:
+        for token in parser.iter_parse():
+            _check_token(reading, token)
+            recent.append(token)
+            token.value = reading
+            if len(parser.parser_state.value_stack) > STACK_PER_LEVEL * (limits.depth + limits.parentheses):
+                _refuse_depth(reading, *_extent(token))
+        piece = parser.feed_token(Token.new_borrow_pos("$END", "", recent[-1]))
+    except UnexpectedCharacters:
+        end = _extent(recent[-1])[1] if recent else 0
+        slip = character_slip(text.value, len(text.value) - len(text.value[end:].lstrip(BLANKS)))
+    except UnexpectedToken as error:
+        is_equation = start == "equation"
+        if error.token.type == "$END":
+            slip = end_slip(text.value, recent[-1], error.expected, is_equation=is_equation)
+        else:
+            slip = token_slip(text.value, tuple(recent), error.expected, is_equation=is_equation)
+    else:
+        assert isinstance(piece, _Piece)
+        return piece
+    _refuse_slip(reading, slip)
+
+
+def _refuse_slip(reading: _Reading, slip: Slip) -> NoReturn:
+    reading.refuse(slip.start, slip.end, slip.code, slip.message, slip.hint)
+
+
+def _check_extent(reading: _Reading, start: str) -> None:
+    value, limits = reading.text.value, reading.limits
+    if len(value) > limits.characters:
+        message = f"this text has {len(value)} characters; at most {limits.characters} are allowed"
+        first = limits.characters
+        reading.refuse(first, first + 1, "SF103", message, "name parts of it in [definitions]")
+    if not value.strip(BLANKS):
+        what = "equation" if start == "equation" else "expression"
+        reading.refuse(0, len(value), "SF111", f"the {what} is empty")
+    depth = 0
+    for match in re.finditer(r"[()]", value):
+        depth += 1 if match[0] == "(" else -1
+        if depth > limits.parentheses:
+            message = f"parentheses are nested too deeply; at most {limits.parentheses} levels are allowed"
+            reading.refuse(match.start(), match.end(), "SF103", message, "name parts of it in [definitions]")
+
+
+def _check_token(reading: _Reading, token: Token) -> None:
+    limits = reading.limits
+    start, end = _extent(token)
+    if token.type == "NAME" and len(token) > NAME_LENGTH:
+        message = f"this name has {len(token)} characters; at most {NAME_LENGTH} are allowed"
+        reading.refuse(start, end, "SF112", message)
+    if token.type == "PRIMES" and len(token) > limits.order:
+        message = f"a derivative of order {len(token)}; at most {limits.order} is allowed"
+        reading.refuse(start, end, "SF103", message)
+    if token.type == "NUMBER":
+        mantissa, _, exponent = token.lower().partition("e")
+        digits = len(mantissa) - mantissa.count(".")
+        if digits > limits.digits:
+            message = f"this number has {digits} digits; at most {limits.digits} are allowed"
+            reading.refuse(start, end, "SF103", message)
+        significant = exponent.lstrip("+-0")
+        # Compared by length first: the exponent may itself have thousands of digits.
+        longest = len(str(limits.decimal_exponent))
+        if len(significant) > longest or int(significant or "0") > limits.decimal_exponent:
+            message = f"the exponent of this number is beyond {limits.decimal_exponent}"
+            reading.refuse(start, end, "SF103", message)

@@ -1,0 +1,7 @@
+"""The exact ring, factored rational functions over it, and the functions that may appear as generators."""
+
+from symflex.kernels.factored import Factored
+from symflex.kernels.functions import FUNCTIONS, ElementaryFunction
+from symflex.kernels.ring import LAPLACE, Ring, degree_in
+
+__all__ = ["FUNCTIONS", "LAPLACE", "ElementaryFunction", "Factored", "Ring", "degree_in"]

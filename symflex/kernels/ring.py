@@ -1,0 +1,107 @@
+"""The exact ring: integer polynomials in s, the parameters, closed definitions and constants.
+
+Input: an ordered tuple of generator names.
+Output: a :class:`Ring` whose elements are python-flint ``fmpz_mpoly``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import comb
+from typing import TYPE_CHECKING
+
+from flint import Ordering, fmpz_mpoly, fmpz_mpoly_ctx
+
+from symflex.errors import BudgetError, Diagnostic
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+LAPLACE = "s"
+TERM_LIMIT = 3_000_000
+DEGREE_LIMIT = 20_000
+
+
+@dataclass(frozen=True)
+class Ring:
+    """Integer polynomials in named generators, lexicographic order, ``s`` first.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Generator names in order; the first one is ``s``.
+
+    Examples
+    --------
+    >>> ring = Ring(("s", "m", "b"))
+    >>> ring.generator("m") * ring.generator("s") + ring.generator("b")
+    s*m + b
+    """
+
+    names: tuple[str, ...]
+    context: fmpz_mpoly_ctx = field(init=False, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        internal = [f"x{i}" if not name.isidentifier() else name for i, name in enumerate(self.names)]
+        object.__setattr__(self, "context", fmpz_mpoly_ctx.get(internal, Ordering.lex))
+
+    @cached_property
+    def index(self) -> Mapping[str, int]:
+        """Position of each generator."""
+        return {name: i for i, name in enumerate(self.names)}
+
+    def generator(self, name: str) -> fmpz_mpoly:
+        """Return the generator called ``name``."""
+        return self.context.gen(self.index[name])
+
+    def constant(self, value: int) -> fmpz_mpoly:
+        """Return an integer as a polynomial."""
+        return self.context.constant(value)
+
+    def compose(self, polynomial: fmpz_mpoly, images: Sequence[fmpz_mpoly]) -> fmpz_mpoly:
+        """Replace every generator of ``polynomial``'s ring by its image in this ring.
+
+        Raises
+        ------
+        BudgetError
+            SF501 when the result could exceed the size limit.
+        """
+        check_expansion(polynomial, images)
+        return polynomial.compose(*images, ctx=self.context)
+
+
+def check_expansion(polynomial: fmpz_mpoly, images: Sequence[fmpz_mpoly]) -> None:
+    """Refuse a substitution whose result could be too large.
+
+    Raises
+    ------
+    BudgetError
+        SF501, before any work is done.
+    """
+    lengths = [len(image) for image in images]
+    degrees = [int(image.total_degree()) if len(image) else 0 for image in images]
+    if max(lengths, default=0) <= 1 and polynomial.total_degree() * max(degrees, default=0) <= DEGREE_LIMIT:
+        return
+    terms = 0
+    for monomial in polynomial.monoms():
+        product, degree = 1, 0
+        for i, exponent in enumerate(monomial):
+            if exponent:
+                length, image_degree = lengths[i], degrees[i]
+                degree += exponent * image_degree
+                if length > 1:
+                    product *= comb(length + exponent - 1, exponent)
+        terms += product
+        if terms > TERM_LIMIT or degree > DEGREE_LIMIT:
+            message = (
+                f"the expanded form would exceed {TERM_LIMIT} terms"
+                if terms > TERM_LIMIT
+                else f"the expanded form would exceed degree {DEGREE_LIMIT}"
+            )
+            raise BudgetError(Diagnostic("SF501", message, None, "keep repeated sums in [definitions]"))
+
+
+def degree_in(polynomial: fmpz_mpoly, generator: int) -> int:
+    """Return the degree of ``polynomial`` in the generator at position ``generator``; 0 for zero."""
+    return int(polynomial.degrees()[generator]) if len(polynomial) else 0

@@ -1,0 +1,41 @@
+"""The model a specification describes: names, nodes, units and values resolved, with exact parameters."""
+
+from symflex.model.model import (
+    Analysis,
+    Definition,
+    ExactValue,
+    Figure,
+    Input,
+    Model,
+    Node,
+    NodeReference,
+    Output,
+    Parameter,
+    PlacedBlock,
+    PlacedElement,
+    Published,
+    Signal,
+)
+from symflex.model.resolve import load_model, resolve
+from symflex.model.scope import Scope, scope_of
+
+__all__ = [
+    "Analysis",
+    "Definition",
+    "ExactValue",
+    "Figure",
+    "Input",
+    "Model",
+    "Node",
+    "NodeReference",
+    "Output",
+    "Parameter",
+    "PlacedBlock",
+    "PlacedElement",
+    "Published",
+    "Scope",
+    "Signal",
+    "load_model",
+    "resolve",
+    "scope_of",
+]

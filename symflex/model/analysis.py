@@ -1,0 +1,163 @@
+"""Reading what a specification asks of the commands: analysis defaults, figures, published formulas."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from symflex.errors.diagnostic import nearest
+from symflex.model.model import Analysis, Figure, Published
+from symflex.quantities import unit_of
+from symflex.spec import ArrayValue, NumberValue, TableValue
+
+if TYPE_CHECKING:
+    from symflex.errors import Span, Text
+    from symflex.expressions import Expression
+    from symflex.model.model import Model
+    from symflex.model.reading import Reader
+    from symflex.spec import Entry, Value
+
+FIGURE_KINDS = ("bode", "poles_zeros", "nyquist", "locus", "modes", "step")
+MODES_LIMIT = 1_000_000
+DIGITS_LIMIT = 10_000
+PER_SECOND = unit_of("1/s").dimension
+
+
+def read_analysis(reader: Reader, section: TableValue | None) -> Analysis:
+    """Return the defaults for the commands."""
+    if section is None:
+        return Analysis()
+    reader.keys(section, ("band", "modes", "digits"), "[analysis]")
+    band = section.get("band")
+    return Analysis(
+        _band(reader, band) if band else None,
+        _count(reader, section, "modes", MODES_LIMIT),
+        _count(reader, section, "digits", DIGITS_LIMIT),
+    )
+
+
+def _band(reader: Reader, entry: Entry) -> tuple[Fraction, Fraction] | None:
+    value = entry.value
+    if not isinstance(value, ArrayValue) or len(value.items) != 2:  # noqa: PLR2004
+        reader.note("SF206", 'band must be two frequencies, for instance ["0.1 Hz", "1 kHz"]', value.span)
+        return None
+    limits = [_frequency(reader, item) for item in value.items]
+    if limits[0] is None or limits[1] is None:
+        return None
+    low, high = limits[0], limits[1]
+    if not 0 < low < high:
+        reader.note("SF227", "band must be two positive frequencies, the lower one first", value.span)
+        return None
+    return low, high
+
+
+def _frequency(reader: Reader, value: Value) -> Fraction | None:
+    """Return a frequency in Hz; a bare number is in Hz, rad/s is converted by an approximation of 1/(2 pi)."""
+    if isinstance(value, NumberValue):
+        return value.value
+    quantity = reader.quantity(value, "a frequency")
+    if quantity is None:
+        return None
+    if quantity.unit and quantity.dimension != PER_SECOND:
+        reader.note("SF203", f"a frequency is in 'Hz', found '{quantity.unit}'", value.span)
+        return None
+    number, pi_power = quantity.cyclic()
+    turns_per_radian = Fraction(1) if quantity.cycles or not quantity.unit else 1 / (2 * PI_NEARLY)
+    return number * PI_NEARLY**pi_power * turns_per_radian
+
+
+PI_NEARLY = Fraction(314159265358979323846264338328, 10**29)
+"""The limits of a plot or search band need no exact pi."""
+
+
+def _count(reader: Reader, section: TableValue, key: str, limit: int) -> int | None:
+    entry = section.get(key)
+    if entry is None:
+        return None
+    value = entry.value
+    if isinstance(value, NumberValue) and value.value.denominator == 1 and 0 < value.value <= limit:
+        return int(value.value)
+    reader.note("SF206", f"{key} must be an integer from 1 to {limit}", value.span)
+    return None
+
+
+def pick_tf(reader: Reader, text: Text, model: Model) -> tuple[str, str] | None:
+    """Return the (output, input) pair that "OUT/IN" names."""
+    available = ["/".join(tf) for tf in model.transfer_functions]
+    if text.value in available:
+        return model.transfer_functions[available.index(text.value)]
+    hint = nearest(text.value, available) or "available: " + ", ".join(available[:8])
+    reader.note("SF218", f"there is no transfer function '{text.value[:80]}'", text.span, hint)
+    return None
+
+
+def read_figures(reader: Reader, section: TableValue | None, model: Model) -> tuple[Figure, ...]:
+    """Return the figures asked for."""
+    found: list[Figure] = []
+    for entry in section.entries if section else ():
+        what = f"figure '{entry.key}'"
+        table = reader.table(entry, what) if reader.name(entry, "a figure") else None
+        if table is None:
+            continue
+        reader.keys(table, ("kind", "of", "title", "doc"), what)
+        kind = reader.plain(table, "kind", what)
+        kind_entry = table.get("kind")
+        if kind not in FIGURE_KINDS:
+            span = kind_entry.value.span if kind_entry else entry.key_span
+            hint = nearest(kind, FIGURE_KINDS) or "kinds: " + ", ".join(FIGURE_KINDS)
+            reader.note("SF208", f"{what} has no known kind", span, hint)
+        of = table.get("of")
+        texts = reader.strings(of, f"of of {what}") if of else ()
+        chosen = tuple(tf for t in texts or () if (tf := pick_tf(reader, t, model)))
+        found.append(Figure(entry.key, kind, chosen, reader.plain(table, "title", what), entry.key_span))
+    return tuple(found)
+
+
+def read_published(reader: Reader, section: TableValue | None, model: Model) -> tuple[Published, ...]:
+    """Return the printed formulas; their names are checked when they are compared."""
+    found: list[Published] = []
+    for entry in section.entries if section else ():
+        what = f"published '{entry.key[:80]}'"
+        tf = _published_tf(reader, entry.key, entry.key_span, model)
+        table = reader.table(entry, what)
+        if table is None or tf is None:
+            continue
+        reader.keys(table, ("expr", "where", "scale", "source", "doc"), what)
+        expr = table.get("expr")
+        if expr is None:
+            reader.note("SF214", f"{what} has no 'expr'", entry.key_span)
+            continue
+        expression = reader.expression(expr.value, what)
+        scale = table.get("scale")
+        if expression is not None:
+            found.append(
+                Published(
+                    tf,
+                    expression,
+                    _where(reader, table, what),
+                    reader.expression(scale.value, f"scale of {what}") if scale else None,
+                    reader.plain(table, "source", what),
+                    entry.key_span,
+                )
+            )
+    return tuple(found)
+
+
+def _published_tf(reader: Reader, key: str, span: Span, model: Model) -> tuple[str, str] | None:
+    available = {"/".join(tf): tf for tf in model.transfer_functions}
+    if key not in available:
+        hint = nearest(key, available) or "available: " + ", ".join(list(available)[:8])
+        reader.note("SF218", f"there is no transfer function '{key[:80]}'", span, hint)
+    return available.get(key)
+
+
+def _where(reader: Reader, table: TableValue, what: str) -> tuple[tuple[str, Expression], ...]:
+    entry = table.get("where")
+    inner = reader.table(entry, f"where of {what}") if entry else None
+    found = []
+    for item in inner.entries if inner else ():
+        if reader.name(item, "an abbreviation"):
+            expression = reader.expression(item.value, f"'{item.key}' of {what}")
+            if expression is not None:
+                found.append((item.key, expression))
+    return tuple(found)

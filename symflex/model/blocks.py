@@ -1,0 +1,176 @@
+"""Reading blocks; a ``model`` block resolves another specification."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from symflex.blocks import ANNOUNCED, BLOCKS, MODEL_BLOCK
+from symflex.errors import Diagnostic, SymflexError
+from symflex.errors.diagnostic import nearest
+from symflex.expressions import Expression, Name, Number, power, product_of, sum_of
+from symflex.kernels import LAPLACE
+from symflex.model.model import PlacedBlock
+from symflex.model.reading import signed_number
+from symflex.model.scope import RESERVED
+from symflex.spec import ArrayValue, read
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from symflex.blocks import Block
+    from symflex.errors import Source, Text
+    from symflex.model.model import Model
+    from symflex.model.reading import Reader
+    from symflex.spec import Entry, TableValue, Value
+
+NESTING_LIMIT = 8
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where a specification stands, and which ones led to it.
+
+    ``resolve`` turns a source into a model; it is passed down so that a nested specification
+    is resolved exactly as the outer one.
+    """
+
+    source: Source
+    ancestors: tuple[Path, ...]
+    resolve: Callable[[Source, tuple[Path, ...]], Model]
+
+
+def read_blocks(reader: Reader, section: TableValue | None, origin: Origin) -> tuple[PlacedBlock, ...]:
+    """Return the blocks in order."""
+    found = [_read_block(reader, e, origin) for e in section.entries] if section else []
+    return tuple(b for b in found if b is not None)
+
+
+def _read_block(reader: Reader, entry: Entry, origin: Origin) -> PlacedBlock | None:
+    what = f"block '{entry.key}'"
+    if not reader.name(entry, "a block", RESERVED):
+        return None
+    table = reader.table(entry, what)
+    if table is None:
+        return None
+    kind = table.get("type")
+    if kind is None:
+        types = ", ".join((*BLOCKS, MODEL_BLOCK))
+        reader.note("SF214", f"{what} has no type", entry.key_span, f"block types: {types}")
+        return None
+    text = reader.string(kind, f"type of {what}")
+    if text is None:
+        return None
+    if text.value in ANNOUNCED:
+        reader.note("SF911", f"block type '{text.value}' is not available yet", text.span)
+        return None
+    if text.value == MODEL_BLOCK:
+        return _read_model_block(reader, entry, table, origin)
+    block = BLOCKS.get(text.value)
+    if block is None:
+        hint = nearest(text.value, (*BLOCKS, MODEL_BLOCK)) or "types: " + ", ".join((*BLOCKS, MODEL_BLOCK))
+        reader.note("SF216", f"unknown block type '{text.value[:60]}'", text.span, hint)
+        return None
+    values = _read_values(reader, entry, table, block)
+    return None if values is None else PlacedBlock(entry.key, block, values, span=entry.key_span)
+
+
+def _read_values(
+    reader: Reader, entry: Entry, table: TableValue, block: Block
+) -> tuple[tuple[str, Expression], ...] | None:
+    reader.keys(table, ("type", "doc", *(p.name for p in block.parameters)), f"{block.type_name} '{entry.key}'")
+    values: list[tuple[str, Expression]] = []
+    complete = True
+    for parameter in block.parameters:
+        where = f"{parameter.name} of {block.type_name} '{entry.key}'"
+        found = table.get(parameter.name)
+        if found is not None:
+            expression = _value(reader, found.value, where, coefficients=block.type_name == "tf")
+        elif parameter.default is not None:
+            expression = signed_number(Fraction(parameter.default))
+        else:
+            names = ", ".join(p.name for p in block.parameters)
+            reader.note(
+                "SF214",
+                f"{block.type_name} '{entry.key}' lacks {parameter.name}, {parameter.doc}",
+                entry.key_span,
+                f"a {block.type_name} block takes {names}",
+            )
+            expression = None
+        if expression is None:
+            complete = False
+        else:
+            values.append((parameter.name, expression))
+    return tuple(values) if complete else None
+
+
+def _value(reader: Reader, value: Value, where: str, *, coefficients: bool) -> Expression | None:
+    """Return an expression; a list of coefficients, highest power first, becomes a polynomial in s."""
+    if not (coefficients and isinstance(value, ArrayValue)):
+        return reader.expression(value, where)
+    if not value.items:
+        reader.note("SF206", f"{where} is an empty list of coefficients", value.span)
+        return None
+    parts = [reader.expression(item, where) for item in value.items]
+    terms = [
+        product_of([part, power(Name(LAPLACE), Number(Fraction(degree)))])
+        for degree, part in zip(range(len(parts) - 1, -1, -1), parts, strict=True)
+        if part is not None
+    ]
+    return sum_of(terms) if len(terms) == len(parts) else None
+
+
+def _read_model_block(reader: Reader, entry: Entry, table: TableValue, origin: Origin) -> PlacedBlock | None:
+    what = f"block '{entry.key}'"
+    reader.keys(table, ("type", "spec", "tf", "doc"), what)
+    missing = [key for key in ("spec", "tf") if table.get(key) is None]
+    for key in missing:
+        reader.note("SF214", f"{what} lacks {key}", entry.key_span, 'spec = "file.toml", tf = "OUT/IN"')
+    spec_entry, tf_entry = table.get("spec"), table.get("tf")
+    if spec_entry is None or tf_entry is None:
+        return None
+    path_text, tf_text = reader.string(spec_entry, f"spec of {what}"), reader.string(tf_entry, f"tf of {what}")
+    if path_text is None or tf_text is None:
+        return None
+    submodel = _load(reader, path_text, origin)
+    if submodel is None:
+        return None
+    tf = _pick(reader, tf_text, submodel)
+    return None if tf is None else PlacedBlock(entry.key, None, (), submodel, tf, entry.key_span)
+
+
+def _load(reader: Reader, path_text: Text, origin: Origin) -> Model | None:
+    if "\0" in path_text.value:
+        reader.note("SF901", "a path cannot contain a NUL character", path_text.span)
+        return None
+    path = (Path(origin.source.name).parent / path_text.value).resolve()
+    if path in origin.ancestors:
+        circle = " -> ".join(p.name for p in (*origin.ancestors, path))
+        reader.note("SF215", f"specifications refer to each other in a circle: {circle}", path_text.span)
+        return None
+    if len(origin.ancestors) >= NESTING_LIMIT:
+        reader.note("SF103", f"model blocks are nested deeper than {NESTING_LIMIT}", path_text.span)
+        return None
+    shown = Path(origin.source.name).parent / path_text.value
+    try:
+        return origin.resolve(read(shown), (*origin.ancestors, path))
+    except SymflexError as error:
+        for diagnostic in error.diagnostics:
+            if diagnostic.span is None:
+                reader.problems.append(
+                    Diagnostic(diagnostic.code, diagnostic.message, path_text.span, diagnostic.hint)
+                )
+            else:
+                reader.problems.append(diagnostic)
+        return None
+
+
+def _pick(reader: Reader, text: Text, submodel: Model) -> tuple[str, str] | None:
+    available = ["/".join(tf) for tf in submodel.transfer_functions]
+    if text.value in available:
+        return submodel.transfer_functions[available.index(text.value)]
+    hint = nearest(text.value, available) or "available: " + ", ".join(available[:8])
+    reader.note("SF218", f"the specification has no transfer function '{text.value[:80]}'", text.span, hint)
+    return None

@@ -1,0 +1,239 @@
+"""Reading parameters and definitions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
+from symflex.errors import Diagnostic, SpecError, Text
+from symflex.errors.diagnostic import nearest
+from symflex.expressions import Attribute, Expression, Name, names
+from symflex.model.labels import check_label
+from symflex.model.model import Assumption, Definition, ExactValue, Parameter
+from symflex.model.scope import RESERVED
+from symflex.quantities import DIMENSIONLESS, Quantity, parse_unit
+from symflex.spec import NumberValue, StringValue, TableValue
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from symflex.errors import Span
+    from symflex.model.reading import Reader
+    from symflex.spec import Entry
+
+ASSUMPTIONS = ("positive", "nonnegative", "real")
+PARAMETER_KEYS = ("value", "unit", "doc", "latex", "assume")
+
+
+@dataclass(frozen=True, slots=True)
+class DeclaredParameter:
+    """A parameter as written: its quantity still counts cycles; ``None`` when symbolic."""
+
+    name: str
+    quantity: Quantity | None
+    has_unit: bool
+    unit_text: str
+    assume: Assumption
+    latex: str
+    doc: str
+    span: Span
+
+    def resolve(self, *, angular: bool, implied_unit: str) -> Parameter:
+        """Return the parameter in SI units, its cycles read as angular or not."""
+        value, unit = None, implied_unit
+        if self.quantity is not None:
+            value = ExactValue(*(self.quantity.angular() if angular else self.quantity.cyclic()))
+        if self.has_unit and self.quantity is not None:
+            unit = implied_unit or _unit_text(self.quantity, angular=angular)
+        elif self.unit_text:
+            unit = self.unit_text
+        return Parameter(self.name, value, unit, self.assume, self.latex, self.doc, self.span)
+
+
+def _unit_text(quantity: Quantity, *, angular: bool) -> str:
+    """Return the SI unit, with rad where the declared unit turned."""
+    turns = quantity.radians + (quantity.cycles if angular else 0)
+    text = str(quantity.dimension)
+    if turns > 0 and text.startswith("1"):
+        return "rad" + text[1:]
+    if turns > 0 and quantity.dimension == DIMENSIONLESS:
+        return "rad"
+    return f"{text}/rad" if turns < 0 and "/" not in text else text
+
+
+def read_label(reader: Reader, table: TableValue, what: str) -> str:
+    """Return the ``latex`` entry of a table when it is harmless."""
+    entry = table.get("latex")
+    text = reader.string(entry, f"latex of {what}") if entry else None
+    if text is None:
+        return ""
+    try:
+        return check_label(text)
+    except SpecError as error:
+        reader.problems.extend(error.diagnostics)
+        return ""
+
+
+def read_parameters(reader: Reader, section: TableValue | None) -> tuple[DeclaredParameter, ...]:
+    """Return the declared parameters in order."""
+    found = [_read_parameter(reader, e) for e in section.entries] if section else []
+    return tuple(p for p in found if p is not None)
+
+
+def _read_parameter(reader: Reader, entry: Entry) -> DeclaredParameter | None:
+    what = f"parameter '{entry.key}'"
+    if not reader.name(entry, "a parameter", RESERVED):
+        return None
+    value, table = entry.value, None
+    if isinstance(value, TableValue):
+        table = value
+        reader.keys(table, PARAMETER_KEYS, what)
+        inner = table.get("value")
+        quantity, literal = _quantity(reader, inner, what) if inner else (None, False)
+    else:
+        quantity, literal = _quantity(reader, entry, what)
+    assume, unit_text = _assumption(reader, table, what), ""
+    if table is not None and (unit := table.get("unit")):
+        text = reader.string(unit, f"unit of {what}")
+        quantity, unit_text = _with_unit(reader, quantity, text, what)
+        literal = literal or quantity is not None
+    _check_sign(reader, quantity, assume, entry)
+    return DeclaredParameter(
+        entry.key,
+        quantity,
+        literal,
+        unit_text,
+        assume,
+        read_label(reader, table, what) if table else "",
+        reader.plain(table, "doc", what) if table else "",
+        entry.key_span,
+    )
+
+
+def _quantity(reader: Reader, entry: Entry, what: str) -> tuple[Quantity | None, bool]:
+    """Return (quantity, whether a unit was written)."""
+    if isinstance(entry.value, NumberValue):
+        return Quantity(entry.value.value, 0, 0, DIMENSIONLESS, 0, ""), False
+    quantity = reader.quantity(entry.value, what)
+    return quantity, bool(quantity and quantity.unit)
+
+
+def _with_unit(
+    reader: Reader, quantity: Quantity | None, text: Text | None, what: str
+) -> tuple[Quantity | None, str]:
+    """Apply a separate ``unit`` key to a bare number, or keep it for a symbolic parameter."""
+    if text is None:
+        return quantity, ""
+    try:
+        unit = parse_unit(text)
+    except SpecError as error:
+        reader.problems.extend(error.diagnostics)
+        return quantity, ""
+    if quantity is None:
+        return None, str(unit.dimension)
+    if quantity.unit:
+        reader.note("SF202", f"{what} has a unit in its value and a 'unit' key", text.span, "remove one of them")
+        return quantity, ""
+    scaled = Quantity(
+        quantity.magnitude * unit.scale,
+        quantity.pi_power + unit.pi_power,
+        unit.cycles,
+        unit.dimension,
+        unit.radians,
+        text.value,
+    )
+    return scaled, ""
+
+
+def _assumption(reader: Reader, table: TableValue | None, what: str) -> Assumption:
+    entry = table.get("assume") if table else None
+    if entry is None:
+        return "positive"
+    text = reader.string(entry, f"assume of {what}")
+    if text is not None and text.value in ASSUMPTIONS:
+        return cast("Assumption", text.value)
+    if text is not None:
+        hint = nearest(text.value, ASSUMPTIONS) or "positive, nonnegative or real"
+        reader.note("SF208", f"unknown assumption '{text.value[:60]}'", text.span, hint)
+    return "positive"
+
+
+def _check_sign(reader: Reader, quantity: Quantity | None, assume: Assumption, entry: Entry) -> None:
+    if quantity is None or assume == "real":
+        return
+    magnitude = quantity.magnitude
+    if magnitude < 0 or (magnitude == 0 and assume == "positive"):
+        shown = "0" if magnitude == 0 else "negative"
+        span = entry.value.span
+        if isinstance(entry.value, TableValue) and (inner := entry.value.get("value")):
+            span = inner.value.span
+        reader.note(
+            "SF209",
+            f"parameter '{entry.key}' is {shown}, but a parameter is assumed {assume}",
+            span,
+            'say assume = "nonnegative"' if magnitude == 0 else 'say assume = "real"',
+        )
+
+
+def read_definitions(reader: Reader, section: TableValue | None) -> tuple[Definition, ...]:
+    """Return the definitions in order, without circular ones."""
+    found: list[Definition] = []
+    for entry in section.entries if section else ():
+        if not reader.name(entry, "a definition", RESERVED):
+            continue
+        what, table = f"definition '{entry.key}'", None
+        value = entry.value
+        if isinstance(value, TableValue):
+            table = value
+            reader.keys(table, ("expr", "latex", "doc"), what)
+            inner = table.get("expr")
+            if inner is None:
+                reader.note("SF214", f"{what} has no 'expr'", entry.key_span)
+                continue
+            value = inner.value
+        if isinstance(value, NumberValue | StringValue):
+            expression = reader.expression(value, what)
+        else:
+            reader.misfit(f"{what} must be an expression", value)
+            expression = None
+        if expression is not None:
+            label = read_label(reader, table, what) if table else ""
+            found.append(Definition(entry.key, expression, label, entry.key_span))
+    return _without_circles(reader, found)
+
+
+def _without_circles(reader: Reader, definitions: Sequence[Definition]) -> tuple[Definition, ...]:
+    """Return the definitions ordered so that each uses only earlier ones."""
+    by_name: Mapping[str, Definition] = {d.name: d for d in definitions}
+    state: dict[str, str] = {}
+    ordered: list[Definition] = []
+    for start in definitions:
+        stack = [(start.name, iter(_used(start.expression, by_name)))] if start.name not in state else []
+        if stack:
+            state[start.name] = "open"
+        while stack:
+            name, used = stack[-1]
+            following = next(used, None)
+            if following is None:
+                stack.pop()
+                if state[name] == "open":
+                    state[name] = "done"
+                    ordered.append(by_name[name])
+            elif following not in state:
+                state[following] = "open"
+                stack.append((following, iter(_used(by_name[following].expression, by_name))))
+            elif state[following] == "open":
+                circle = [n for n, _ in stack]
+                circle = circle[circle.index(following) :]
+                path = " -> ".join([*circle, following])
+                reader.problems.append(
+                    Diagnostic("SF215", f"definitions refer to each other in a circle: {path}", by_name[name].span)
+                )
+                for member in circle:
+                    state[member] = "circular"
+    return tuple(ordered)
+
+
+def _used(expression: Expression, known: Mapping[str, Definition]) -> list[str]:
+    found = names(expression)
+    return [n.name for n in found if isinstance(n, Name) and not isinstance(n, Attribute) and n.name in known]

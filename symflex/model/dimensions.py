@@ -1,0 +1,395 @@
+"""Units: what every expression is measured in, what free signals must be, and whether Hz means 2 pi rad/s.
+
+Dimensions of signals and free inputs are unknowns of linear equations over the exponents of the SI base
+units (a product adds exponents), solved exactly; an equation that contradicts the others is an error at its
+expression. A parameter given as a bare number has no unit and stops the check where it stands.
+
+Hz, rpm and rev count cycles. A value in them is angular (2 pi enters, exactly) where an angular quantity is
+needed or where it is added to terms in s; it is left as cycles where the expression converts it itself with a
+factor pi (``2*pi*f``) or where a time is needed (``1/f``). One parameter must be read one way throughout.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from symflex.errors import Diagnostic, SpecError
+from symflex.expressions import (
+    Attribute,
+    Call,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+    names,
+)
+from symflex.model.linearity import integer_exponent
+from symflex.quantities import DIMENSIONLESS, Dimension, unit_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from symflex.elements import Variable
+    from symflex.errors import Span
+    from symflex.model.scope import Scope
+    from symflex.quantities import Quantity
+
+PER_SECOND = unit_of("1/s").dimension
+SECOND = unit_of("s").dimension
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """The dimension of an expression, as far as it is known.
+
+    Parameters
+    ----------
+    dimension : Dimension
+        Known part.
+    unknowns : tuple of (Variable, Fraction)
+        Variables of yet unknown dimension, with exponents.
+    open : bool
+        True when a number without unit takes part: nothing can be checked.
+    literal : bool
+        True when a written number takes part, which may stand for any unit in a sum.
+    cycles, pis : Fraction
+        Exponents of the cycle and of a written ``pi``.
+    cyclic : frozenset of str
+        Parameters given in cycles that take part.
+    """
+
+    dimension: Dimension = DIMENSIONLESS
+    unknowns: tuple[tuple[Variable, Fraction], ...] = ()
+    open: bool = False
+    literal: bool = False
+    cycles: Fraction = Fraction(0)
+    pis: Fraction = Fraction(0)
+    cyclic: frozenset[str] = frozenset()
+
+    def times(self, other: Measure) -> Measure:
+        """Return the measure of a product."""
+        merged = dict(self.unknowns)
+        for variable, exponent in other.unknowns:
+            merged[variable] = merged.get(variable, Fraction(0)) + exponent
+        return Measure(
+            self.dimension * other.dimension,
+            tuple((v, e) for v, e in merged.items() if e),
+            self.open or other.open,
+            self.literal or other.literal,
+            self.cycles + other.cycles,
+            self.pis + other.pis,
+            self.cyclic | other.cyclic,
+        )
+
+    def power(self, exponent: Fraction | int) -> Measure:
+        """Return the measure of a power."""
+        e = Fraction(exponent)
+        return replace(
+            self,
+            dimension=self.dimension**e,
+            unknowns=tuple((v, x * e) for v, x in self.unknowns),
+            cycles=self.cycles * e,
+            pis=self.pis * e,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """One use of a parameter given in cycles: angular or not, and where."""
+
+    angular: bool
+    span: Span | None
+
+
+class DimensionSystem:
+    """Collects dimension equations of one model and solves them.
+
+    Parameters
+    ----------
+    scope : Scope
+        The model's names.
+    quantities : mapping of str to Quantity or None
+        Per parameter, what was declared; ``None`` when without unit.
+    definitions : mapping of str to Expression
+        Per definition, its expression.
+    known : mapping of Variable to Dimension
+        Variables whose dimension their domain fixes.
+    block_measures : mapping of str to Measure
+        Per block, what its transfer function is measured in.
+    """
+
+    def __init__(
+        self,
+        scope: Scope,
+        quantities: Mapping[str, Quantity | None],
+        definitions: Mapping[str, Expression],
+        known: Mapping[Variable, Dimension],
+        block_measures: Mapping[str, Measure],
+    ) -> None:
+        self._scope = scope
+        self._quantities = quantities
+        self._definitions = definitions
+        self._known = dict(known)
+        self._blocks = block_measures
+        self._solved: dict[Variable, tuple[tuple[tuple[Variable, Fraction], ...], Dimension]] = {}
+        self._readings: dict[str, list[Reading]] = {}
+        self._defined: dict[str, Measure] = {}
+        self.problems: list[Diagnostic] = []
+
+    def require(self, expression: Expression, unit: str, what: str, a_what: str) -> None:
+        """Demand that ``expression`` is measured in ``unit``.
+
+        Parameters
+        ----------
+        expression : Expression
+            A port's value.
+        unit : str
+            The port's SI unit; empty accepts anything.
+        what, a_what : str
+            "m of mass 'tip'" and "a mass", for the message.
+        """
+        measure = self.measure(expression)
+        if not unit:
+            self._read_cycles(measure, None, expression.span)
+            return
+        wanted = unit_of(unit)
+        self._read_cycles(measure, bool(wanted.radians), expression.span, wanted.dimension)
+        if measure.open or not names(expression):
+            return
+        reduced = self._reduce(measure.times(Measure(wanted.dimension).power(-1)))
+        if not self._learn(reduced):
+            found = self._reduce(measure).dimension
+            declared = self._declaration(expression)
+            self.problems.append(
+                Diagnostic(
+                    "SF203",
+                    f"{what} is in '{found}'; {a_what} is in '{unit}'",
+                    expression.span,
+                    declared,
+                )
+            )
+
+    def equate(self, variable: Variable, expression: Expression) -> None:
+        """Demand that a signal is measured as its expression is."""
+        measure = self.measure(expression)
+        self._read_cycles(measure, None, expression.span)
+        if measure.open or not names(expression):
+            return
+        left = self.variable(variable)
+        if not self._learn(self._reduce(measure.times(left.power(-1)))) and not measure.literal:
+            found, wanted = self._reduce(measure).dimension, self._reduce(left).dimension
+            self.problems.append(
+                Diagnostic(
+                    "SF203",
+                    f"'{variable}' is used in '{wanted}' but its expression is in '{found}'",
+                    expression.span,
+                )
+            )
+
+    def dimension(self, measure: Measure) -> Dimension | None:
+        """Return the dimension when it is known by now."""
+        reduced = self._reduce(measure)
+        return None if reduced.unknowns or reduced.open else reduced.dimension
+
+    def finish(self) -> Mapping[str, bool]:
+        """Return, per parameter given in cycles, whether it is angular; contradictions become problems."""
+        readings: dict[str, bool] = {}
+        for name, uses in self._readings.items():
+            readings[name] = uses[0].angular
+            other = next((u for u in uses if u.angular != uses[0].angular), None)
+            if other is not None:
+                first = uses[0].span
+                place = f" (line {first.line})" if first else ""
+                words = ("an angular frequency", "cycles") if uses[0].angular else ("cycles", "an angular frequency")
+                self.problems.append(
+                    Diagnostic(
+                        "SF204",
+                        f"'{name}' is read as {words[0]}{place} and as {words[1]} here",
+                        other.span,
+                        "write 2*pi*f wherever an angular frequency is meant, or give the value in rad/s",
+                    )
+                )
+        return readings
+
+    def measure(self, expression: Expression) -> Measure:
+        """Return what an expression is measured in; disagreeing sums become problems."""
+        match expression:
+            case Number():
+                return Measure(literal=True)
+            case Name() | Attribute():
+                return self._name(expression)
+            case Negative(operand):
+                return self.measure(operand)
+            case Product(factors):
+                result = Measure()
+                for factor in factors:
+                    result = result.times(self.measure(factor))
+                return result
+            case Quotient(numerator, denominator):
+                return self.measure(numerator).times(self.measure(denominator).power(-1))
+            case Power(base, exponent):
+                value = integer_exponent(exponent)
+                return self.measure(base).power(value) if value is not None else Measure(open=True)
+            case Sum(terms):
+                return self._sum(expression, terms)
+            case Call(name, argument):
+                return self._call(name, argument)
+            case _:
+                return Measure(open=True)
+
+    def _name(self, expression: Name | Attribute) -> Measure:
+        try:
+            meaning = self._scope.lookup(expression, constant=False)
+        except SpecError:
+            try:
+                meaning = self._scope.lookup(expression, constant=True)
+            except SpecError:
+                return Measure(open=True)
+        if meaning.kind == "laplace":
+            return Measure(PER_SECOND)
+        if meaning.kind == "pi":
+            return Measure(pis=Fraction(1))
+        if meaning.kind == "parameter":
+            return self._parameter(meaning.name)
+        if meaning.kind == "definition":
+            return self._definition(meaning.name)
+        if meaning.kind == "block":
+            return self._blocks.get(meaning.name, Measure(open=True))
+        return self.variable(meaning.variable) if meaning.variable else Measure(open=True)
+
+    def _parameter(self, name: str) -> Measure:
+        quantity = self._quantities.get(name)
+        if quantity is None:
+            return Measure(open=True)
+        if not quantity.cycles:
+            return Measure(quantity.dimension)
+        return Measure(quantity.dimension, cycles=Fraction(quantity.cycles), cyclic=frozenset({name}))
+
+    def _definition(self, name: str) -> Measure:
+        if name not in self._defined:
+            self._defined[name] = Measure(open=True)
+            self._defined[name] = self.measure(self._definitions[name])
+        return self._defined[name]
+
+    def variable(self, variable: Variable) -> Measure:
+        """Return what a variable is measured in."""
+        known = self._known.get(variable)
+        return Measure(known) if known is not None else Measure(unknowns=((variable, Fraction(1)),))
+
+    def _call(self, name: str, argument: Expression) -> Measure:
+        inner = self.measure(argument)
+        if name == "sqrt":
+            return inner.power(Fraction(1, 2))
+        self._read_cycles(inner, True, argument.span)
+        reduced = self._reduce(inner)
+        if not (reduced.open or reduced.unknowns or reduced.literal) and reduced.dimension != DIMENSIONLESS:
+            self.problems.append(
+                Diagnostic(
+                    "SF203",
+                    f"the argument of {name} is in '{reduced.dimension}'; it must be a pure number",
+                    argument.span,
+                )
+            )
+        return Measure()
+
+    def _sum(self, expression: Expression, terms: tuple[Expression, ...]) -> Measure:
+        measures = [(t, self.measure(t)) for t in terms if not (isinstance(t, Number) and t.value == 0)]
+        if not measures:
+            return Measure(open=True)
+        mixed = len({(m.cycles, m.pis) if m.cyclic else None for _, m in measures}) > 1
+        if mixed:
+            for term, measure in measures:
+                self._read_cycles(measure, None, term.span)
+        closed = [(t, self._reduce(m)) for t, m in measures if not m.open]
+        if not closed:
+            return Measure(open=True, cyclic=frozenset() if mixed else measures[0][1].cyclic)
+        first_term, first = next(((t, m) for t, m in closed if not m.literal), closed[0])
+        for term, measure in closed:
+            if term is first_term:
+                continue
+            loose = measure.literal or first.literal
+            if not self._learn(self._reduce(measure.times(first.power(-1))), only_check=loose) and not loose:
+                here = self._reduce(measure).dimension
+                there = self._reduce(first).dimension
+                self.problems.append(
+                    Diagnostic(
+                        "SF205",
+                        f"terms of a sum disagree: '{there}' and '{here}'",
+                        term.span or expression.span,
+                    )
+                )
+        result = self._reduce(first)
+        if mixed:
+            return replace(result, cycles=Fraction(0), pis=Fraction(0), cyclic=frozenset())
+        return replace(result, cyclic=frozenset().union(*(m.cyclic for _, m in measures)))
+
+    def _read_cycles(
+        self, measure: Measure, angular: bool | None, span: Span | None, wanted: Dimension | None = None
+    ) -> None:
+        """Decide how the cycles in a complete term are meant."""
+        if not measure.cyclic or not (measure.cycles or measure.pis):
+            return
+        if measure.pis and measure.pis == measure.cycles:
+            reading = False
+        elif angular is not None and angular:
+            reading = True
+        else:
+            is_time = (wanted or measure.dimension) == SECOND
+            reading = not (measure.cycles < 0 and is_time)
+        for name in sorted(measure.cyclic):
+            self._readings.setdefault(name, []).append(Reading(reading, span))
+
+    def _reduce(self, measure: Measure) -> Measure:
+        """Replace solved variables by what they were solved for."""
+        dimension, unknowns = measure.dimension, dict(measure.unknowns)
+        for variable in list(unknowns):
+            if variable in self._solved:
+                exponent = unknowns.pop(variable)
+                others, known = self._solved[variable]
+                dimension = dimension * known**exponent
+                for other, weight in others:
+                    unknowns[other] = unknowns.get(other, Fraction(0)) + weight * exponent
+        return replace(
+            measure, dimension=dimension, unknowns=tuple((v, e) for v, e in unknowns.items() if e)
+        )
+
+    def _learn(self, measure: Measure, *, only_check: bool = False) -> bool:
+        """Take ``measure = dimensionless`` as an equation; False when it contradicts what is known."""
+        if not measure.unknowns:
+            return measure.dimension == DIMENSIONLESS
+        if only_check:
+            return True
+        (variable, exponent), *rest = measure.unknowns
+        others = tuple((v, -e / exponent) for v, e in rest)
+        known = measure.dimension ** (-1 / exponent)
+        self._solved[variable] = (others, known)
+        for solved, (terms, dimension) in list(self._solved.items()):
+            weight = dict(terms).get(variable)
+            if weight is not None:
+                merged = {v: e for v, e in terms if v != variable}
+                for other, e in others:
+                    merged[other] = merged.get(other, Fraction(0)) + e * weight
+                self._solved[solved] = (
+                    tuple((v, e) for v, e in merged.items() if e),
+                    dimension * known**weight,
+                )
+        return True
+
+    def _declaration(self, expression: Expression) -> str | None:
+        if isinstance(expression, Name):
+            quantity = self._quantities.get(expression.name)
+            if quantity is not None:
+                return f"'{expression.name}' is declared in '{quantity.unit}'"
+        return None
+
+
+
+
+
+

@@ -1,0 +1,218 @@
+"""The resolved model: elements at nodes, signals, blocks, inputs and outputs, with exact parameters.
+
+Every noun here is pure data made by :func:`symflex.model.resolve`; positions do not take part in equality.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+from symflex.quantities import Dimension
+
+if TYPE_CHECKING:
+    from fractions import Fraction
+
+    from symflex.elements import Element, Placing, Variable
+    from symflex.blocks import Block as BlockType
+    from symflex.errors import Span
+    from symflex.expressions import Expression
+
+Assumption = Literal["positive", "nonnegative", "real"]
+
+
+@dataclass(frozen=True, slots=True)
+class ExactValue:
+    """The real number ``rational * pi**pi_power``."""
+
+    rational: Fraction
+    pi_power: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A named constant.
+
+    Parameters
+    ----------
+    name : str
+        As declared.
+    value : ExactValue or None
+        In SI units (angular frequencies in rad/s); ``None`` keeps it symbolic.
+    unit : str
+        SI unit of ``value``; empty when neither declared nor implied by its use.
+    assume : str
+        ``positive``, ``nonnegative`` or ``real``.
+    latex, doc : str
+        Label and description; empty when not given.
+    """
+
+    name: str
+    value: ExactValue | None
+    unit: str = ""
+    assume: Assumption = "positive"
+    latex: str = ""
+    doc: str = ""
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Definition:
+    """A name kept closed in the printed form, equal to ``expression``."""
+
+    name: str
+    expression: Expression
+    latex: str = ""
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A place where elements meet."""
+
+    name: str
+    domain: Placing
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """The degrees of freedom: ``("",)``, or ``("y", "theta")`` of a planar node."""
+        return ("y", "theta") if self.domain == "planar" else ("",)
+
+
+@dataclass(frozen=True, slots=True)
+class NodeReference:
+    """A node as a port names it; ``component`` is ``y`` or ``theta`` when one was picked."""
+
+    node: str
+    component: str = ""
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def is_ground(self) -> bool:
+        """True for the reference."""
+        return self.node == "ground"
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedElement:
+    """An element type attached to nodes, with an expression for every parameter."""
+
+    name: str
+    element: Element
+    nodes: tuple[tuple[str, tuple[NodeReference, ...]], ...]
+    domains: tuple[tuple[str, Placing], ...]
+    values: tuple[tuple[str, Expression], ...]
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Signal:
+    """A name in the signal-flow part, equal to its expression."""
+
+    name: str
+    expression: Expression
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedBlock:
+    """A block with its values, or another model's transfer function (``submodel`` and ``tf``)."""
+
+    name: str
+    block: BlockType | None
+    values: tuple[tuple[str, Expression], ...] = ()
+    submodel: Model | None = None
+    tf: tuple[str, str] | None = None
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """A force, torque, voltage or current at a node, or a free signal.
+
+    A force, torque or current given at two nodes acts on the first and reacts on the second.
+    """
+
+    name: str
+    kind: Literal["force", "torque", "voltage", "current", "signal"]
+    nodes: tuple[NodeReference, ...] = ()
+    dimension: Dimension | None = None
+    unit: str = ""
+    latex: str = ""
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """A named expression of nodes, signals, element quantities and inputs."""
+
+    name: str
+    expression: Expression
+    dimension: Dimension | None = None
+    unit: str = ""
+    latex: str = ""
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Analysis:
+    """Defaults for the commands: band [Hz], number of modes, digits."""
+
+    band: tuple[Fraction, Fraction] | None = None
+    modes: int | None = None
+    digits: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """A figure the specification asks for."""
+
+    name: str
+    kind: str
+    of: tuple[tuple[str, str], ...]
+    title: str = ""
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Published:
+    """What a paper printed for one transfer function."""
+
+    tf: tuple[str, str]
+    expression: Expression
+    where: tuple[tuple[str, Expression], ...] = ()
+    scale: Expression | None = None
+    source: str = ""
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """Everything a specification says, resolved.
+
+    Raises
+    ------
+    SpecError, ModelError
+        By :func:`symflex.model.resolve`, with every problem of the text at once.
+    """
+
+    parameters: tuple[Parameter, ...] = ()
+    definitions: tuple[Definition, ...] = ()
+    nodes: tuple[Node, ...] = ()
+    elements: tuple[PlacedElement, ...] = ()
+    signals: tuple[Signal, ...] = ()
+    blocks: tuple[PlacedBlock, ...] = ()
+    inputs: tuple[Input, ...] = ()
+    outputs: tuple[Output, ...] = ()
+    title: str = ""
+    source: str = ""
+    analysis: Analysis = Analysis()
+    figures: tuple[Figure, ...] = ()
+    published: tuple[Published, ...] = ()
+    signal_units: tuple[tuple[Variable, Dimension], ...] = ()
+
+    @property
+    def transfer_functions(self) -> tuple[tuple[str, str], ...]:
+        """Every (output, input) pair, outputs first."""
+        return tuple((o.name, i.name) for o in self.outputs for i in self.inputs)

@@ -1,0 +1,263 @@
+"""Reading elements, inputs and their nodes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import TYPE_CHECKING, Literal, cast
+
+from symflex.elements import ANNOUNCED, ELEMENTS, Element, Port
+from symflex.errors import SpecError, Text
+from symflex.errors.diagnostic import nearest
+from symflex.model.declarations import read_label
+from symflex.model.model import Input, NodeReference
+from symflex.model.nodes import Attachment
+from symflex.model.reading import NAME, Reader, signed_number
+from symflex.quantities import parse_unit
+
+if TYPE_CHECKING:
+    from symflex.elements.element import PortDomain
+    from symflex.errors import Span
+    from symflex.expressions import Expression
+    from symflex.spec import Entry, TableValue
+
+InputKind = Literal["force", "torque", "voltage", "current", "signal"]
+INPUT_DOMAINS: dict[str, PortDomain] = {
+    "force": "translation",
+    "torque": "rotation",
+    "voltage": "electrical",
+    "current": "electrical",
+}
+INPUT_UNITS = {"force": "N", "torque": "N*m", "voltage": "V", "current": "A"}
+
+
+@dataclass(frozen=True, slots=True)
+class DraftElement:
+    """An element as written, before the nodes' domains are known."""
+
+    name: str
+    element: Element
+    nodes: tuple[tuple[Port, tuple[NodeReference, ...]], ...]
+    values: tuple[tuple[str, Expression], ...]
+    span: Span
+
+    def attachments(self) -> list[Attachment]:
+        """Return what this element says about its nodes."""
+        who = f"{self.element.type_name} '{self.name}'"
+        found = []
+        for port, references in self.nodes:
+            others = [r for p, rs in self.nodes if p is not port for r in rs]
+            partner = others[0] if port.domain == "any" and others else None
+            found += [Attachment(r, port.domain, who, partner) for r in references]
+        return found
+
+
+@dataclass(frozen=True, slots=True)
+class DraftInput:
+    """An input as written."""
+
+    input: Input
+    unit_text: str = ""
+
+    def attachments(self) -> list[Attachment]:
+        """Return what this input says about its nodes."""
+        if self.input.kind == "signal":
+            return []
+        domain = INPUT_DOMAINS[self.input.kind]
+        return [Attachment(r, domain, f"input '{self.input.name}'") for r in self.input.nodes]
+
+
+@dataclass(slots=True)
+class NetworkReader:
+    """Reads ``[elements]`` and ``[inputs]``."""
+
+    reader: Reader
+    elements: list[DraftElement] = field(default_factory=list)
+    inputs: list[DraftInput] = field(default_factory=list)
+
+    def read_elements(self, section: TableValue | None) -> None:
+        """Read every element; what is wrong is noted and the element left out."""
+        for entry in section.entries if section else ():
+            element = self._read_element(entry)
+            if element is not None:
+                self.elements.append(element)
+
+    def _read_element(self, entry: Entry) -> DraftElement | None:
+        reader, what = self.reader, f"element '{entry.key}'"
+        if not reader.name(entry, "an element"):
+            return None
+        table = reader.table(entry, what)
+        element = self._element_type(table, entry) if table else None
+        if table is None or element is None:
+            return None
+        reader.keys(table, ("type", *(p.name for p in element.ports), *(p.name for p in element.parameters), "doc"),
+                    f"{element.type_name} '{entry.key}'")
+        nodes = [(port, self._references(table, port, entry, element)) for port in element.ports]
+        values: list[tuple[str, Expression]] = []
+        complete = True
+        given: dict[str, Expression] = {}
+        for parameter in element.parameters:
+            where = f"{parameter.name} of {element.type_name} '{entry.key}'"
+            found = table.get(parameter.name)
+            if found is not None:
+                expression = reader.expression(found.value, where)
+            elif parameter.default is not None:
+                like = any(p.name == parameter.default for p in element.parameters)
+                expression = given.get(parameter.default) if like else signed_number(Fraction(parameter.default))
+            else:
+                names = ", ".join(p.name for p in element.parameters)
+                reader.note(
+                    "SF214",
+                    f"{element.type_name} '{entry.key}' lacks {parameter.name}, {parameter.doc}",
+                    entry.key_span,
+                    f"a {element.type_name} takes {names}",
+                )
+                expression = None
+            if expression is None:
+                complete = False
+            else:
+                given[parameter.name] = expression
+                values.append((parameter.name, expression))
+        if any(references is None for _, references in nodes):
+            return None
+        attached = tuple((p, r) for p, r in nodes if r is not None)
+        return DraftElement(entry.key, element, attached, tuple(values) if complete else (), entry.key_span)
+
+    def _element_type(self, table: TableValue, entry: Entry) -> Element | None:
+        kind = table.get("type")
+        if kind is None:
+            self.reader.note(
+                "SF214", f"element '{entry.key}' has no type", entry.key_span, "symflex elements lists the types"
+            )
+            return None
+        text = self.reader.string(kind, f"type of element '{entry.key}'")
+        if text is None:
+            return None
+        if text.value in ANNOUNCED:
+            self.reader.note(
+                "SF911",
+                f"element type '{text.value}' is not available yet",
+                text.span,
+                "this version derives networks of lumped elements",
+            )
+            return None
+        element = ELEMENTS.get(text.value)
+        if element is None:
+            hint = nearest(text.value, ELEMENTS) or "symflex elements lists the types"
+            self.reader.note("SF216", f"unknown element type '{text.value[:60]}'", text.span, hint)
+        return element
+
+    def _references(
+        self, table: TableValue, port: Port, entry: Entry, element: Element
+    ) -> tuple[NodeReference, ...] | None:
+        what = f"{port.name} of {element.type_name} '{entry.key}'"
+        found = table.get(port.name)
+        if found is None:
+            if port.default is not None:
+                return tuple(NodeReference(n) for n in port.default)
+            ports = ", ".join(p.name for p in element.ports)
+            self.reader.note(
+                "SF217",
+                f"{element.type_name} '{entry.key}' lacks its port '{port.name}' ({port.doc})",
+                entry.key_span,
+                f"a {element.type_name} is attached by {ports}",
+            )
+            return None
+        texts = self.reader.strings(found, what)
+        if texts is None:
+            return None
+        if len(texts) != port.terminals:
+            plural = "node" if port.terminals == 1 else "nodes"
+            self.reader.note(
+                "SF217", f"{what} takes {port.terminals} {plural}, found {len(texts)}", found.value.span,
+                'a port to the reference is "ground"' if len(texts) < port.terminals else None,
+            )
+            return None
+        references = [self._reference(t, port.domain, what) for t in texts]
+        if any(r is None for r in references):
+            return None
+        kept = tuple(r for r in references if r is not None)
+        if len(kept) == 2 and (kept[0].node, kept[0].component) == (kept[1].node, kept[1].component):  # noqa: PLR2004
+            self.reader.note("SF218", f"both ends of {element.type_name} '{entry.key}' are at '{texts[0].value}'",
+                             found.value.span)
+            return None
+        return kept
+
+    def _reference(self, text: Text, domain: PortDomain, what: str) -> NodeReference | None:
+        node, dot, component = text.value.partition(".")
+        good = NAME.match(node) and (not dot or component in ("y", "theta"))
+        if not good or (dot and node == "ground"):
+            self.reader.note(
+                "SF213",
+                f"{what}: '{text.value[:80]}' is not a node",
+                text.span,
+                "a node is a name, or name.y or name.theta of a planar node",
+            )
+            return None
+        if dot and domain in ("planar", "whole"):
+            self.reader.note("SF219", f"{what} takes a whole node, not '{text.value}'", text.span, f"write '{node}'")
+            return None
+        if dot and (domain, component) in (("translation", "theta"), ("rotation", "y")):
+            kind = "translational" if domain == "translation" else "rotational"
+            self.reader.note("SF219", f"{what} is {kind}; '{text.value}' is not", text.span)
+            return None
+        if dot and domain == "electrical":
+            self.reader.note("SF219", f"{what} is electrical; '{text.value}' is mechanical", text.span)
+            return None
+        return NodeReference(node, component, text.span)
+
+    def read_inputs(self, section: TableValue | None) -> None:
+        """Read every input."""
+        for entry in section.entries if section else ():
+            found = self._read_input(entry)
+            if found is not None:
+                self.inputs.append(found)
+
+    def _read_input(self, entry: Entry) -> DraftInput | None:
+        reader, what = self.reader, f"input '{entry.key}'"
+        if not reader.name(entry, "an input", ("s", "pi", "ground")):
+            return None
+        table = reader.table(entry, what)
+        if table is None:
+            return None
+        reader.keys(table, (*INPUT_DOMAINS, "signal", "unit", "latex", "doc"), what)
+        label = read_label(reader, table, what)
+        kinds = [e for e in table.entries if e.key in INPUT_DOMAINS]
+        if len(kinds) > 1:
+            keys = " and ".join(e.key for e in kinds)
+            reader.note("SF217", f"{what} is given as {keys}; it can be only one", kinds[1].key_span)
+            return None
+        if not kinds:
+            unit = table.get("unit")
+            text = reader.string(unit, f"unit of {what}") if unit else None
+            return DraftInput(
+                Input(entry.key, "signal", (), None, "", label, entry.key_span), self._unit(text) if text else ""
+            )
+        (place,) = kinds
+        kind = cast("InputKind", place.key)
+        texts = reader.strings(place, f"{kind} of {what}")
+        if texts is None:
+            return None
+        if len(texts) not in (1, 2):
+            reader.note("SF217", f"{what} acts on one node, or on one with its reaction on a second",
+                        place.value.span)
+            return None
+        references = [self._reference(t, INPUT_DOMAINS[kind], what) for t in texts]
+        kept = tuple(r for r in references if r is not None)
+        if len(kept) != len(texts):
+            return None
+        if all(r.is_ground for r in kept):
+            reader.note("SF218", f"{what} acts on ground only", place.value.span)
+            return None
+        if len({(r.node, r.component) for r in kept}) != len(kept):
+            reader.note("SF218", f"{what} acts and reacts on the same node", place.value.span)
+            return None
+        return DraftInput(Input(entry.key, kind, kept, None, INPUT_UNITS[kind], label, entry.key_span))
+
+    def _unit(self, text: Text) -> str:
+        try:
+            parse_unit(text)
+        except SpecError as error:
+            self.reader.problems.extend(error.diagnostics)
+            return ""
+        return text.value

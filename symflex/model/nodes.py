@@ -1,0 +1,110 @@
+"""Which domain each node has, from what is attached to it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from symflex.elements import Variable
+from symflex.errors import Diagnostic
+from symflex.model.model import Node
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.elements import Domain
+    from symflex.elements.element import PortDomain
+    from symflex.model.model import NodeReference
+
+
+@dataclass(frozen=True, slots=True)
+class Attachment:
+    """One port at one node; ``partner`` is the port's other side, from which an unknown domain is taken."""
+
+    reference: NodeReference
+    domain: PortDomain
+    who: str
+    partner: NodeReference | None = None
+
+
+WORDS = {
+    "translation": "a displacement",
+    "rotation": "an angle",
+    "electrical": "a voltage",
+    "planar": "a planar node",
+}
+
+
+def infer_nodes(attachments: Sequence[Attachment]) -> tuple[tuple[Node, ...], list[Diagnostic]]:
+    """Return the nodes in order of appearance, with every contradiction found.
+
+    A node touched by a planar element, or named with ``.y`` or ``.theta``, is planar; translational
+    elements then act on y and rotational ones on theta. Otherwise all elements must agree.
+    """
+    problems: list[Diagnostic] = []
+    first: dict[str, Attachment] = {}
+    claims: dict[str, dict[str, Attachment]] = {}
+    for attachment in attachments:
+        reference = attachment.reference
+        if reference.is_ground:
+            continue
+        first.setdefault(reference.node, attachment)
+        claim = "planar" if reference.component else attachment.domain
+        claims.setdefault(reference.node, {}).setdefault(claim, attachment)
+    nodes: dict[str, Node] = {}
+    for name, claimed in claims.items():
+        span = first[name].reference.span
+        definite = [d for d in ("translation", "rotation", "electrical") if d in claimed]
+        if "planar" in claimed:
+            if "electrical" in claimed:
+                problems.append(_contradiction(name, claimed["planar"], claimed["electrical"], "electrical"))
+            nodes[name] = Node(name, "planar", span)
+            continue
+        for other in definite[1:]:
+            problems.append(_contradiction(name, claimed[definite[0]], claimed[other], other))
+        if definite:
+            nodes[name] = Node(name, definite[0], span)  # type: ignore[arg-type]
+    _spread(attachments, nodes, first)
+    return tuple(nodes[name] for name in first), problems
+
+
+def _spread(attachments: Sequence[Attachment], nodes: dict[str, Node], first: dict[str, Attachment]) -> None:
+    """Give nodes that only couplings touch the domain of the coupling's other side (translation at last)."""
+    changed = True
+    while changed:
+        changed = False
+        for attachment in attachments:
+            name, partner = attachment.reference.node, attachment.partner
+            if attachment.reference.is_ground or name in nodes or partner is None or partner.node not in nodes:
+                continue
+            domain = domain_of(partner, nodes[partner.node])
+            nodes[name] = Node(name, domain, first[name].reference.span)
+            changed = True
+    for name, attachment in first.items():
+        nodes.setdefault(name, Node(name, "translation", attachment.reference.span))
+
+
+def domain_of(reference: NodeReference, node: Node) -> Domain:
+    """Return the domain a one-variable port sees at a node; a bare planar node is its deflection y."""
+    if node.domain == "planar":
+        return "rotation" if reference.component == "theta" else "translation"
+    return node.domain
+
+
+def variable_of(reference: NodeReference, node: Node, domain: PortDomain) -> Variable:
+    """Return the across variable a port of the given domain acts on."""
+    if node.domain != "planar":
+        return Variable("node", node.name)
+    component = reference.component or ("theta" if domain == "rotation" else "y")
+    return Variable("node", node.name, component)
+
+
+def _contradiction(name: str, one: Attachment, other: Attachment, domain: str) -> Diagnostic:
+    word = "planar" if one.reference.component else one.domain
+    return Diagnostic(
+        "SF220",
+        f"node '{name}' is {WORDS[word]} for {one.who} and {WORDS[domain]} for {other.who}",
+        other.reference.span,
+        "use two nodes and couple them, with a transformer for instance; a node that both moves and turns "
+        "is planar: name its parts with .y and .theta",
+    )

@@ -1,0 +1,157 @@
+"""Reading values out of a parsed specification, noting every problem instead of stopping at the first."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from symflex.errors import Diagnostic, SpecError
+from symflex.errors.diagnostic import nearest
+from symflex.expressions import Expression, Negative, Number, parse
+from symflex.quantities import Quantity, looks_like_quantity, parse_quantity
+from symflex.spec import ArrayValue, BooleanValue, NumberValue, OtherValue, StringValue, TableValue
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from symflex.errors import Span, Text
+    from symflex.spec import Entry, Value
+
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}\Z")
+
+
+@dataclass(frozen=True, slots=True)
+class QuantityLiteral(Expression):
+    """A quantity written where an expression may stand: ``m = "150 g"``."""
+
+    quantity: Quantity
+
+
+def describe(value: Value) -> str:
+    """Return what a value is, for messages."""
+    match value:
+        case StringValue():
+            shown = value.text.value if len(value.text.value) <= 40 else value.text.value[:37] + "..."
+            return f"the string '{shown}'"
+        case NumberValue():
+            return f"the number {value.literal[:40]}"
+        case BooleanValue():
+            return "true" if value.value else "false"
+        case ArrayValue():
+            return f"an array of {len(value.items)}"
+        case TableValue():
+            return "a table"
+        case _:
+            return f"a {value.kind}"
+
+
+@dataclass(slots=True)
+class Reader:
+    """Typed access to entries; ``problems`` collects what does not fit."""
+
+    problems: list[Diagnostic] = field(default_factory=list)
+
+    def misfit(self, message: str, value: Value) -> None:
+        """Note a value of the wrong kind, unless its syntax error is already reported."""
+        if not (isinstance(value, OtherValue) and value.kind == "invalid"):
+            self.note("SF206", f"{message}, found {describe(value)}", value.span)
+
+    def note(self, code: str, message: str, span: Span | None, hint: str | None = None) -> None:
+        """Add one problem."""
+        self.problems.append(Diagnostic(code, message, span, hint))
+
+    def table(self, entry: Entry, what: str) -> TableValue | None:
+        """Return the entry's table."""
+        if isinstance(entry.value, TableValue):
+            return entry.value
+        self.misfit(f"{what} must be a table", entry.value)
+        return None
+
+    def keys(self, table: TableValue, allowed: Iterable[str], what: str) -> None:
+        """Note every key that is not allowed."""
+        known = tuple(allowed)
+        for entry in table.entries:
+            if entry.key not in known:
+                hint = nearest(entry.key, known) or "known keys: " + ", ".join(known)
+                self.note("SF207", f"unknown key '{entry.key}' in {what}", entry.key_span, hint)
+
+    def name(self, entry: Entry, what: str, reserved: Iterable[str] = ()) -> bool:
+        """True when the entry's key is a name."""
+        if not NAME.match(entry.key):
+            self.note(
+                "SF213",
+                f"'{entry.key[:80]}' is not a name for {what}",
+                entry.key_span,
+                "names are a letter followed by up to 63 letters, digits and underscores",
+            )
+            return False
+        if entry.key in reserved:
+            self.note("SF213", f"'{entry.key}' is reserved and cannot name {what}", entry.key_span)
+            return False
+        return True
+
+    def string(self, entry: Entry, what: str) -> Text | None:
+        """Return the entry's string."""
+        if isinstance(entry.value, StringValue):
+            return entry.value.text
+        self.misfit(f"{what} must be a string", entry.value)
+        return None
+
+    def plain(self, table: TableValue, key: str, what: str) -> str:
+        """Return an optional string, empty when missing."""
+        entry = table.get(key)
+        text = self.string(entry, f"{key} of {what}") if entry else None
+        return text.value if text else ""
+
+    def strings(self, entry: Entry, what: str) -> tuple[Text, ...] | None:
+        """Return the entry's array of strings; one string counts as an array of one."""
+        value = entry.value
+        if isinstance(value, StringValue):
+            return (value.text,)
+        if isinstance(value, ArrayValue) and all(isinstance(i, StringValue) for i in value.items):
+            return tuple(i.text for i in value.items if isinstance(i, StringValue))
+        self.misfit(f"{what} must be a string or an array of strings", value)
+        return None
+
+    def parsed(self, text: Text) -> Expression | None:
+        """Return the expression a string holds."""
+        try:
+            return parse(text)
+        except SpecError as error:
+            self.problems.extend(error.diagnostics)
+            return None
+
+    def quantity(self, value: Value, what: str) -> Quantity | None:
+        """Return a number or a quantity."""
+        if isinstance(value, StringValue):
+            try:
+                return parse_quantity(value.text)
+            except SpecError as error:
+                self.problems.extend(error.diagnostics)
+                return None
+        self.misfit(f'{what} must be a number or a quantity such as "35 kN/m"', value)
+        return None
+
+    def expression(self, value: Value, what: str) -> Expression | None:
+        """Return an expression, a number, or a quantity wrapped as :class:`QuantityLiteral`."""
+        if isinstance(value, NumberValue):
+            return signed_number(value.value, value.span)
+        if not isinstance(value, StringValue):
+            self.misfit(f"{what} must be an expression or a number", value)
+            return None
+        if looks_like_quantity(value.text.value):
+            found = self.quantity(value, what)
+            if found is None:
+                return None
+            if found.unit:
+                return QuantityLiteral(found, span=value.text.span)
+        return self.parsed(value.text)
+
+
+def signed_number(value: Fraction, span: Span | None = None) -> Expression:
+    """Return a rational number as an expression."""
+    if value < 0:
+        return Negative(Number(-value, span=span), span=span)
+    return Number(Fraction(value), span=span)

@@ -1,0 +1,185 @@
+"""What a name in an expression means, and which names may stand where."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from symflex.elements import Variable
+from symflex.errors import Diagnostic, SpecError
+from symflex.errors.diagnostic import nearest
+from symflex.expressions import Attribute, Name
+from symflex.kernels import LAPLACE
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from symflex.model.model import Definition, Input, Model, Node, PlacedBlock, PlacedElement, Signal
+
+Kind = Literal["laplace", "pi", "parameter", "definition", "block", "variable", "through"]
+CONSTANT_KINDS: frozenset[Kind] = frozenset({"laplace", "pi", "parameter", "definition", "block"})
+RESERVED = (LAPLACE, "pi", "ground")
+
+
+@dataclass(frozen=True, slots=True)
+class Meaning:
+    """What a name stands for; ``described`` says it in words for messages."""
+
+    kind: Kind
+    name: str
+    described: str
+    variable: Variable | None = None
+
+
+@dataclass(frozen=True)
+class Scope:
+    """All names of one model.
+
+    Parameters
+    ----------
+    meanings : mapping of str to tuple of Meaning
+        What a bare name can be read as.
+    attributes : mapping of (str, str) to Meaning
+        What ``owner.name`` means.
+    owners : mapping of str to tuple of str
+        Names that may stand after ``owner.``.
+    """
+
+    meanings: Mapping[str, tuple[Meaning, ...]]
+    attributes: Mapping[tuple[str, str], Meaning]
+    owners: Mapping[str, tuple[str, ...]]
+
+    def lookup(self, expression: Name | Attribute, *, constant: bool) -> Meaning:
+        """Return the meaning of a name.
+
+        Parameters
+        ----------
+        expression : Name or Attribute
+            As parsed.
+        constant : bool
+            True where only parameters, definitions, blocks, ``s`` and ``pi`` may stand.
+
+        Raises
+        ------
+        SpecError
+            SF210 unknown, SF211 ambiguous, SF212 not allowed here.
+        """
+        if isinstance(expression, Attribute):
+            return self._lookup_attribute(expression, constant=constant)
+        found = self.meanings.get(expression.name, ())
+        readable = [m for m in found if not constant or m.kind in CONSTANT_KINDS]
+        if len(readable) == 1:
+            return readable[0]
+        if len(readable) > 1:
+            readings = " or ".join(m.described for m in readable)
+            raise SpecError(
+                Diagnostic(
+                    "SF211",
+                    f"'{expression.name}' can be read two ways: {readings}",
+                    expression.span,
+                    "rename one of them",
+                )
+            )
+        if found:
+            raise SpecError(
+                Diagnostic(
+                    "SF212",
+                    f"'{expression.name}' is {found[0].described}; only parameters, definitions, s and pi "
+                    "may stand here",
+                    expression.span,
+                )
+            )
+        known = [n for n, ms in self.meanings.items() if not constant or any(m.kind in CONSTANT_KINDS for m in ms)]
+        hint = nearest(expression.name, known)
+        if hint is None and expression.name in self.owners:
+            names = ", ".join(f"{expression.name}.{a}" for a in self.owners[expression.name])
+            hint = f"an element has no value of its own; it offers {names}"
+        raise SpecError(Diagnostic("SF210", f"unknown name '{expression.name}'", expression.span, hint))
+
+    def _lookup_attribute(self, expression: Attribute, *, constant: bool) -> Meaning:
+        text = f"{expression.owner}.{expression.name}"
+        meaning = self.attributes.get((expression.owner, expression.name))
+        if meaning is None:
+            offered = self.owners.get(expression.owner)
+            if offered is None:
+                hint = nearest(expression.owner, self.owners)
+                message = f"'{text}': no element or planar node is called '{expression.owner}'"
+            else:
+                hint = "it offers " + ", ".join(f"{expression.owner}.{a}" for a in offered) if offered else None
+                message = f"'{expression.owner}' has no quantity '{expression.name}'"
+            raise SpecError(Diagnostic("SF210", message, expression.span, hint))
+        if constant:
+            raise SpecError(
+                Diagnostic(
+                    "SF212",
+                    f"'{text}' is {meaning.described}; only parameters, definitions, s and pi may stand here",
+                    expression.span,
+                )
+            )
+        return meaning
+
+
+def build_scope(
+    parameters: Sequence[str],
+    definitions: Sequence[Definition],
+    nodes: Sequence[Node],
+    elements: Sequence[PlacedElement],
+    signals: Sequence[Signal],
+    blocks: Sequence[PlacedBlock],
+    inputs: Sequence[Input],
+) -> Scope:
+    """Return what every name of a model means."""
+    meanings: dict[str, list[Meaning]] = {
+        "s": [Meaning("laplace", "s", "the Laplace variable")],
+        "pi": [Meaning("pi", "pi", "the number pi")],
+    }
+    attributes: dict[tuple[str, str], Meaning] = {}
+    owners: dict[str, list[str]] = {}
+
+    def add(name: str, meaning: Meaning) -> None:
+        meanings.setdefault(name, []).append(meaning)
+
+    for name in parameters:
+        add(name, Meaning("parameter", name, f"the parameter '{name}'"))
+    for definition in definitions:
+        add(definition.name, Meaning("definition", definition.name, f"the definition '{definition.name}'"))
+    for block in blocks:
+        add(block.name, Meaning("block", block.name, f"the block '{block.name}'"))
+    for node in nodes:
+        for component in node.components:
+            variable = Variable("node", node.name, component)
+            if component:
+                attributes[node.name, component] = Meaning("variable", node.name, f"node '{variable}'", variable)
+                owners.setdefault(node.name, []).append(component)
+        first = Variable("node", node.name, node.components[0])
+        add(node.name, Meaning("variable", node.name, f"the node '{node.name}'", first))
+    for signal in signals:
+        variable = Variable("signal", signal.name)
+        add(signal.name, Meaning("variable", signal.name, f"the signal '{signal.name}'", variable))
+    for source in inputs:
+        variable = Variable("input", source.name)
+        add(source.name, Meaning("variable", source.name, f"the input '{source.name}'", variable))
+    for use in elements:
+        for quantity in use.element.quantities(dict(use.domains)):
+            variable = Variable("through", use.name, quantity)
+            described = f"a quantity of {use.element.type_name} '{use.name}'"
+            attributes[use.name, quantity] = Meaning("through", use.name, described, variable)
+            owners.setdefault(use.name, []).append(quantity)
+    return Scope(
+        {name: tuple(found) for name, found in meanings.items()},
+        attributes,
+        {name: tuple(found) for name, found in owners.items()},
+    )
+
+
+def scope_of(model: Model) -> Scope:
+    """Return what every name of a resolved model means."""
+    return build_scope(
+        [p.name for p in model.parameters],
+        model.definitions,
+        model.nodes,
+        model.elements,
+        model.signals,
+        model.blocks,
+        model.inputs,
+    )

@@ -1,0 +1,115 @@
+"""The pipeline, one function per arrow: text, model, equations, transfer functions, and what is made of them.
+
+    text --parse--> Spec --resolve--> Model --assemble--> Equations --derive--> TransferFunction
+                                                                                   | bind(values)
+       PoleZeroMap <--roots--  FrequencyResponse <--response--                     |
+                                                                                   |
+                                                     emit: text, JSON, LaTeX, numpy, figure
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from symflex import equations as equations_room
+from symflex import spec as spec_room
+from symflex import transfer as transfer_room
+from symflex.elimination import explain_singular, is_singular
+from symflex.errors import Diagnostic, Source, UsageError
+from symflex.errors.diagnostic import nearest
+from symflex.kernels import Factored
+from symflex.model import Model, load_model
+from symflex.roots.locate import locate
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from decimal import Decimal
+    from fractions import Fraction
+
+    from symflex.equations import Equations
+    from symflex.kernels import Ring
+    from symflex.model import PlacedBlock
+    from symflex.roots import PoleZeroMap, Region
+    from symflex.spec import Spec
+    from symflex.transfer import BoundTransferFunction, TransferFunction
+
+
+def parse(text: str, name: str = "<string>") -> Spec:
+    """Return the specification a text holds, with the position of everything."""
+    return spec_room.parse(Source(name, text))
+
+
+def load(path: str | Path) -> Model:
+    """Read a specification file and resolve it.
+
+    Raises
+    ------
+    SpecError
+        With every problem of the file, each at its place.
+    """
+    return load_model(spec_room.read(Path(path)))
+
+
+def loads(text: str, name: str = "<string>") -> Model:
+    """Resolve a specification given as text."""
+    return load_model(Source(name, text))
+
+
+def assemble(model: Model) -> Equations:
+    """Return the model's equations ``A(s) x + B u = 0``; nested models are derived first."""
+    return equations_room.assemble(model, _nested_transfer)
+
+
+def _nested_transfer(block: PlacedBlock, ring: Ring) -> Factored:
+    """Return the transfer function of a ``model`` block over the outer model's ring."""
+    if block.submodel is None or block.tf is None:
+        message = f"block '{block.name}' holds no model"
+        raise ValueError(message)
+    inner = derive(assemble(block.submodel), *block.tf).ratio
+    images = [ring.generator(name) for name in inner.ring.names]
+    return inner.map_factors(ring, lambda factor: Factored.polynomial(ring, ring.compose(factor, images)))
+
+
+def check_solvable(equations: Equations) -> None:
+    """Raise the explanation when the equations have no unique solution."""
+    if is_singular(equations):
+        raise explain_singular(equations)
+
+
+def derive(equations: Equations, output: str, source: str) -> TransferFunction:
+    """Return one transfer function; see :func:`symflex.transfer.derive`."""
+    return transfer_room.derive(equations, output, source)
+
+
+def derive_all(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> tuple[TransferFunction, ...]:
+    """Return the transfer functions of the given pairs, all by default, from one elimination."""
+    return transfer_room.derive_all(assemble(model), model.transfer_functions if pairs is None else tuple(pairs))
+
+
+def pick_pairs(model: Model, names: Sequence[str]) -> tuple[tuple[str, str], ...]:
+    """Return the (output, input) pairs named "OUT/IN", all of them when no name is given.
+
+    Raises
+    ------
+    UsageError
+        SF902 for a name the model does not have.
+    """
+    known = {"/".join(pair): pair for pair in model.transfer_functions}
+    for name in names:
+        if name not in known:
+            hint = nearest(name, known) or "available: " + ", ".join(list(known)[:8])
+            raise UsageError(Diagnostic("SF902", f"there is no transfer function '{name[:100]}'", None, hint))
+    return tuple(known[name] for name in names) if names else model.transfer_functions
+
+
+def bind(
+    tf: TransferFunction, values: Mapping[str, int | float | Fraction | Decimal | str] | None = None
+) -> BoundTransferFunction:
+    """Return the transfer function with numbers; see :func:`symflex.transfer.bind`."""
+    return transfer_room.bind(tf, values)
+
+
+def roots(bound: BoundTransferFunction, region: Region | None = None, digits: int = 15) -> PoleZeroMap:
+    """Return poles, zeros and hidden modes, proved; see :func:`symflex.roots.locate.locate`."""
+    return locate(bound, region, digits)

@@ -1,0 +1,404 @@
+"""The grammar of quantities and units, and the exact value of each of its rules.
+
+A quantity is a constant and a unit. The constant is made of decimal numbers, ``pi``, ``+ - * / ^`` (or
+``**``) and parentheses; every intermediate value is a rational number times an integer power of pi. The
+unit is made of symbols, ``*``, ``/``, integer powers and parentheses; a space or a dot multiplies too,
+except after a slash, where its reach would be a guess (``J/kg K``). ``1/s`` is the one place for a
+number in a unit.
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Final, TypeVar, cast
+
+from lark import Lark, Token, Transformer, UnexpectedInput, UnexpectedToken, v_args
+
+from symflex.quantities.units import Unit, unit_hint, unit_named
+
+MAXIMUM_CHARACTERS: Final = 200
+MAXIMUM_DIGITS: Final = 60
+MAXIMUM_DECIMAL_EXPONENT: Final = 60
+MAXIMUM_NUMBER_POWER: Final = 64
+MAXIMUM_UNIT_POWER: Final = 12
+MAXIMUM_UNIT_EXPONENT: Final = 144
+MAXIMUM_BITS: Final = 2000
+MAXIMUM_NESTING: Final = 20
+
+NUMBER: Final = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+PI: Final = r"(?:pi(?![A-Za-z0-9_])|\u03c0)"
+_SUPERSCRIPTS: Final = "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079"
+# Letters of any script, so that a wrong one is reported as an unknown unit.
+_SYMBOL: Final = rf"(?:\u00b0[A-Za-z]*|%|(?![{_SUPERSCRIPTS}])[^\W\d_](?:(?![{_SUPERSCRIPTS}])\w)*)"
+# Plain, no-break, thin and narrow no-break spaces: what a typeset number carries.
+SPACES: Final = " \t\u00a0\u2009\u202f"
+
+_GRAMMAR: Final = rf"""
+    quantity: sum                          -> bare_quantity
+            | sum chain                    -> quantity
+    unit:     chain                        -> lone_unit
+            | NUMBER                       -> number_one
+
+    ?sum:     term
+            | sum "+" term                 -> add
+            | sum "-" term                 -> subtract
+    ?term:    factor
+            | term "*" factor              -> multiply
+            | term "/" factor              -> divide
+    ?factor:  power
+            | MINUS factor                 -> negate
+            | PLUS factor                  -> confirm
+    ?power:   atom
+            | atom _POWER factor           -> raise_number
+    ?atom:    NUMBER                       -> number
+            | PI                           -> pi
+            | LPAR sum RPAR                -> parenthesis
+
+    ?chain:   group
+            | NUMBER "/" group             -> reciprocal
+            | chain "*" group              -> multiply_units
+            | chain "/" group              -> divide_units
+    group:    factors
+    factors:  measure                      -> first_factor
+            | factors measure              -> next_factor
+            | factors _DOT measure         -> next_factor
+    ?measure: symbol
+            | symbol _POWER exponent       -> raise_unit
+            | symbol SUPERSCRIPT           -> raise_superscript
+    ?symbol:  SYMBOL                       -> symbol
+            | LPAR chain RPAR              -> parenthesis
+    exponent: integer                      -> whole_exponent
+            | LPAR integer RPAR            -> enclosed_exponent
+            | LPAR integer "/" NUMBER RPAR -> broken_exponent
+    integer:  NUMBER
+            | MINUS NUMBER
+            | PLUS NUMBER
+
+    MINUS: "-"
+    PLUS: "+"
+    LPAR: "("
+    RPAR: ")"
+    _POWER: "**" | "^"
+    _DOT: /[\u00b7\u22c5]/
+    SUPERSCRIPT: /[\u207a\u207b]?[{_SUPERSCRIPTS}]+/
+    NUMBER: /{NUMBER}/
+    PI: /{PI}/
+    SYMBOL: /{_SYMBOL}/
+    SPACE: /[{SPACES}]+/
+    %ignore SPACE
+"""
+
+SIGNED_NUMBER: Final = re.compile(rf"[+-]?[{SPACES}]*{NUMBER}")
+_INTEGER: Final = re.compile(r"[0-9]{1,60}")
+UNIT_START: Final = re.compile(_SYMBOL)
+
+
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """A value and the characters it was read from."""
+
+    magnitude: Fraction
+    pi_power: int
+    start: int
+    end: int
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedUnit:
+    """A unit and the characters it was read from; ``factors`` counts what a space or dot joins."""
+
+    unit: Unit
+    start: int
+    end: int
+    factors: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class _Exponent:
+    value: Fraction
+    start: int
+    end: int
+
+
+class RejectedError(Exception):
+    """A reason to refuse the text, with offsets in it; becomes a SpecError where the text is known."""
+
+    def __init__(self, code: str, message: str, start: int, end: int, hint: str | None = None) -> None:
+        super().__init__(message)
+        self.code, self.message, self.start, self.end, self.hint = code, message, start, end, hint
+
+
+_Placed = TypeVar("_Placed", Constant, PlacedUnit)
+_Result = tuple[Constant, PlacedUnit]
+
+_ONE_NUMBER: Final = "the number stands before the unit and the unit holds no other, except 1 in '1/s'"
+_NO_UNIT: Final = Unit(Fraction(1))
+# Stands at no place, so that a unit alone never seems to touch it.
+_NO_CONSTANT: Final = Constant(Fraction(1), 0, -1, -1)
+
+
+def evaluate(value: str, kind: str) -> tuple[Constant, PlacedUnit]:
+    """Read a text as a ``"quantity"`` or a ``"unit"``; a part that is not there is 1.
+
+    Raises
+    ------
+    RejectedError
+        With offsets in ``value``.
+
+    Examples
+    --------
+    >>> constant, placed = evaluate("1/4 mm", "quantity")
+    >>> constant.magnitude, placed.unit.scale, (placed.start, placed.end)
+    (Fraction(1, 4), Fraction(1, 1000), (4, 6))
+    """
+    if len(value) > MAXIMUM_CHARACTERS:
+        message = f"a {kind} of {len(value)} characters; at most {MAXIMUM_CHARACTERS} are read"
+        raise RejectedError("SF103", message, 0, len(value))
+    if not value.strip(SPACES):
+        hint = "write a number and a unit, as in '35 kN/m'"
+        if kind == "unit":
+            hint = "a pure number has the unit '1'"
+        raise RejectedError("SF202", f"the {kind} is empty", 0, len(value), hint)
+    _check_nesting(value)
+    try:
+        # Lark types a parse as a tree; with an embedded transformer it is the start rule's value.
+        result: object = _parser().parse(value, start=kind)
+    except UnexpectedInput as unexpected:
+        raise _syntax_rejection(unexpected, value, kind) from None
+    assert isinstance(result, tuple)
+    constant, placed = result
+    if placed.start == constant.end < placed.end and not _may_touch(value, constant, placed):
+        message = f"no space between number and unit in '{value}'"
+        hint = "only a plain number may touch its unit, as in '3kg'"
+        raise RejectedError("SF202", message, constant.start, placed.end, hint)
+    return constant, placed
+
+
+def _may_touch(value: str, constant: Constant, placed: PlacedUnit) -> bool:
+    plain = SIGNED_NUMBER.fullmatch(value, constant.start, constant.end)
+    return bool(plain and UNIT_START.match(value, placed.start))
+
+
+def _check_nesting(value: str) -> None:
+    depth = 0
+    for place, character in enumerate(value):
+        depth += (character == "(") - (character == ")")
+        if depth > MAXIMUM_NESTING:
+            message = f"parentheses nested deeper than {MAXIMUM_NESTING}"
+            raise RejectedError("SF103", message, place, place + 1)
+
+
+def _syntax_rejection(unexpected: UnexpectedInput, value: str, kind: str) -> RejectedError:
+    # Lark declares the attribute without a type.
+    start = cast("int | None", unexpected.pos_in_stream)
+    if start is None or (isinstance(unexpected, UnexpectedToken) and unexpected.token.type == "$END"):
+        return RejectedError("SF202", f"the {kind} '{value}' ends too early", len(value), len(value))
+    found = str(unexpected.token) if isinstance(unexpected, UnexpectedToken) else value[start]
+    hint = _syntax_hint(value[:start].strip(SPACES), value[start:].strip(SPACES), found)
+    message = f"unexpected '{found}' in the {kind} '{value}'"
+    return RejectedError("SF202", message, start, start + len(found), hint)
+
+
+def _syntax_hint(before: str, after: str, found: str) -> str | None:
+    if UNIT_START.match(found):
+        if not before:
+            return "a quantity begins with a number, as in '1 kg'"
+        constant = before[:-1].strip(SPACES)
+        if SIGNED_NUMBER.fullmatch(constant) and before[-1] in "*/":
+            return f"a space parts number and unit: '{constant} {'1/' if before[-1] == '/' else ''}{after}'"
+    if re.match(NUMBER, found):
+        return _ONE_NUMBER
+    return None
+
+
+@functools.cache
+def _parser() -> Lark:
+    # The transformer runs inside the parser: no tree, and no recursion that a nested text could deepen.
+    return Lark(_GRAMMAR, parser="lalr", start=["quantity", "unit"], transformer=_Evaluator())
+
+
+def _checked(constant: Constant) -> Constant:
+    value = constant.magnitude
+    size = max(value.numerator.bit_length(), value.denominator.bit_length())
+    if size > MAXIMUM_BITS or abs(constant.pi_power) > MAXIMUM_NUMBER_POWER:
+        message = f"the number is too large to be kept exactly (more than {MAXIMUM_BITS} bits)"
+        if size <= MAXIMUM_BITS:
+            message = f"the power of pi is beyond {MAXIMUM_NUMBER_POWER}"
+        raise RejectedError("SF103", message, constant.start, constant.end)
+    return constant if value else Constant(value, 0, constant.start, constant.end)
+
+
+def _checked_unit(placed: PlacedUnit) -> PlacedUnit:
+    unit = placed.unit
+    size = max(unit.scale.numerator.bit_length(), unit.scale.denominator.bit_length())
+    powers = (unit.pi_power, unit.cycles, unit.radians)
+    parts = (part for e in unit.dimension.exponents for part in (e.numerator, e.denominator))
+    if size > MAXIMUM_BITS or any(abs(power) > MAXIMUM_UNIT_EXPONENT for power in (*powers, *parts)):
+        raise RejectedError("SF103", "the unit's powers are too large", placed.start, placed.end)
+    return placed
+
+
+@v_args(inline=True)
+class _Evaluator(Transformer[Token, _Result]):
+    """The value of each grammar rule, computed while parsing."""
+
+    def bare_quantity(self, constant: Constant) -> _Result:
+        return constant, PlacedUnit(_NO_UNIT, constant.end, constant.end)
+
+    def quantity(self, constant: Constant, placed: PlacedUnit) -> _Result:
+        magnitude = constant.magnitude * placed.unit.scale
+        pi_power = constant.pi_power + placed.unit.pi_power
+        _checked(Constant(magnitude, pi_power, constant.start, placed.end))
+        return constant, placed
+
+    def lone_unit(self, placed: PlacedUnit) -> _Result:
+        return _NO_CONSTANT, placed
+
+    def number_one(self, number: Token) -> _Result:
+        _require_one(number)
+        return _NO_CONSTANT, PlacedUnit(_NO_UNIT, _start(number), _end(number))
+
+    def number(self, number: Token) -> Constant:
+        mantissa, _, exponent = number.lower().partition("e")
+        if sum(character != "." for character in mantissa) > MAXIMUM_DIGITS:
+            message = f"a number of more than {MAXIMUM_DIGITS} digits"
+            raise RejectedError("SF103", message, _start(number), _end(number))
+        if exponent and abs(int(exponent)) > MAXIMUM_DECIMAL_EXPONENT:
+            message = f"a decimal exponent beyond {MAXIMUM_DECIMAL_EXPONENT}"
+            raise RejectedError("SF103", message, _start(number), _end(number))
+        return Constant(Fraction(str(number)), 0, _start(number), _end(number))
+
+    def pi(self, token: Token) -> Constant:
+        return Constant(Fraction(1), 1, _start(token), _end(token))
+
+    def parenthesis(self, left: Token, inner: _Placed, right: Token) -> _Placed:
+        if isinstance(inner, Constant):
+            return Constant(inner.magnitude, inner.pi_power, _start(left), _end(right))
+        return PlacedUnit(inner.unit, _start(left), _end(right))
+
+    def negate(self, sign: Token, operand: Constant) -> Constant:
+        return Constant(-operand.magnitude, operand.pi_power, _start(sign), operand.end)
+
+    def confirm(self, sign: Token, operand: Constant) -> Constant:
+        return Constant(operand.magnitude, operand.pi_power, _start(sign), operand.end)
+
+    def add(self, left: Constant, right: Constant) -> Constant:
+        if left.magnitude and right.magnitude and left.pi_power != right.pi_power:
+            message = "the sum is not a rational number times a power of pi"
+            raise RejectedError("SF202", message, left.start, right.end)
+        pi_power = left.pi_power if left.magnitude else right.pi_power
+        return _checked(Constant(left.magnitude + right.magnitude, pi_power, left.start, right.end))
+
+    def subtract(self, left: Constant, right: Constant) -> Constant:
+        return self.add(left, Constant(-right.magnitude, right.pi_power, right.start, right.end))
+
+    def multiply(self, left: Constant, right: Constant) -> Constant:
+        magnitude, pi_power = left.magnitude * right.magnitude, left.pi_power + right.pi_power
+        return _checked(Constant(magnitude, pi_power, left.start, right.end))
+
+    def divide(self, left: Constant, right: Constant) -> Constant:
+        if not right.magnitude:
+            raise RejectedError("SF202", "division by zero", left.start, right.end)
+        magnitude, pi_power = left.magnitude / right.magnitude, left.pi_power - right.pi_power
+        return _checked(Constant(magnitude, pi_power, left.start, right.end))
+
+    def raise_number(self, base: Constant, exponent: Constant) -> Constant:
+        if exponent.pi_power or exponent.magnitude.denominator != 1:
+            message = "the exponent is not an integer"
+            raise RejectedError("SF202", message, exponent.start, exponent.end)
+        power = exponent.magnitude.numerator
+        if abs(power) > MAXIMUM_NUMBER_POWER:
+            message = f"an exponent beyond {MAXIMUM_NUMBER_POWER}"
+            raise RejectedError("SF103", message, exponent.start, exponent.end)
+        if not base.magnitude and power < 0:
+            raise RejectedError("SF202", "division by zero", base.start, exponent.end)
+        return _checked(Constant(base.magnitude**power, base.pi_power * power, base.start, exponent.end))
+
+    def symbol(self, symbol: Token) -> PlacedUnit:
+        unit = unit_named(str(symbol))
+        if unit is None:
+            message = f"unknown unit '{symbol}'"
+            raise RejectedError("SF201", message, _start(symbol), _end(symbol), unit_hint(str(symbol)))
+        return PlacedUnit(unit, _start(symbol), _end(symbol))
+
+    def raise_unit(self, base: PlacedUnit, exponent: _Exponent) -> PlacedUnit:
+        above, degree = exponent.value.numerator, exponent.value.denominator
+        if max(abs(above), degree) > MAXIMUM_UNIT_POWER:
+            message = f"a unit's power beyond {MAXIMUM_UNIT_POWER}"
+            raise RejectedError("SF103", message, exponent.start, exponent.end)
+        unit: Unit | None = base.unit**above
+        if degree > 1:
+            unit = (base.unit**above).root(degree)
+        if unit is None:
+            message = f"the power {exponent.value} of this unit has no exact factor"
+            raise RejectedError("SF202", message, base.start, exponent.end)
+        return _checked_unit(PlacedUnit(unit, base.start, exponent.end))
+
+    def raise_superscript(self, base: PlacedUnit, superscript: Token) -> PlacedUnit:
+        digits = superscript.translate(_PLAIN_DIGITS)
+        return self.raise_unit(base, _Exponent(Fraction(digits), _start(superscript), _end(superscript)))
+
+    def integer(self, *tokens: Token) -> _Exponent:
+        number = tokens[-1]
+        start, end = _start(tokens[0]), _end(number)
+        if not _INTEGER.fullmatch(number):
+            hint = "a root is written 'm^(1/2)'"
+            raise RejectedError("SF202", "a unit's power is an integer", start, end, hint)
+        return _Exponent(Fraction("".join(tokens)), start, end)
+
+    def whole_exponent(self, exponent: _Exponent) -> _Exponent:
+        return exponent
+
+    def enclosed_exponent(self, left: Token, exponent: _Exponent, right: Token) -> _Exponent:
+        return _Exponent(exponent.value, _start(left), _end(right))
+
+    def broken_exponent(self, left: Token, above: _Exponent, below: Token, right: Token) -> _Exponent:
+        divisor = self.integer(below).value
+        if not divisor:
+            raise RejectedError("SF202", "division by zero", above.start, _end(below))
+        return _Exponent(above.value / divisor, _start(left), _end(right))
+
+    def first_factor(self, placed: PlacedUnit) -> PlacedUnit:
+        return placed
+
+    def next_factor(self, left: PlacedUnit, right: PlacedUnit) -> PlacedUnit:
+        unit = left.unit * right.unit
+        return _checked_unit(PlacedUnit(unit, left.start, right.end, left.factors + 1))
+
+    def group(self, placed: PlacedUnit) -> PlacedUnit:
+        return placed
+
+    def reciprocal(self, number: Token, right: PlacedUnit) -> PlacedUnit:
+        _require_one(number)
+        return self.divide_units(PlacedUnit(_NO_UNIT, _start(number), _end(number)), right)
+
+    def multiply_units(self, left: PlacedUnit, right: PlacedUnit) -> PlacedUnit:
+        return _checked_unit(PlacedUnit(left.unit * right.unit, left.start, right.end))
+
+    def divide_units(self, left: PlacedUnit, right: PlacedUnit) -> PlacedUnit:
+        if right.factors > 1:
+            message = "after a slash, a product without '*' can be read two ways"
+            hint = "write '/(a*b)' when both divide, '/a*b' when only the first does"
+            raise RejectedError("SF202", message, right.start, right.end, hint)
+        return _checked_unit(PlacedUnit(left.unit / right.unit, left.start, right.end))
+
+
+_PLAIN_DIGITS: Final = str.maketrans(f"{_SUPERSCRIPTS}\u207a\u207b", "0123456789+-")
+
+
+def _require_one(number: Token) -> None:
+    if number != "1":
+        message = f"the number '{number}' in a unit"
+        raise RejectedError("SF202", message, _start(number), _end(number), _ONE_NUMBER)
+
+
+def _start(token: Token) -> int:
+    assert token.start_pos is not None
+    return token.start_pos
+
+
+def _end(token: Token) -> int:
+    return _start(token) + len(token)

@@ -1,0 +1,332 @@
+"""Units of measurement: exact factors to SI, the table of symbols, and the prefixes.
+
+Sources: BIPM, The International System of Units, 9th edition (2019; prefixes of 2022), tables 4, 7 and 8;
+NIST Special Publication 811 (2008), appendix B, for the inch, pound, and what follows from them.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise, product
+from typing import Final
+
+from symflex.errors.diagnostic import nearest
+from symflex.quantities.dimension import DIMENSIONLESS, Dimension
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """A unit as ``scale * pi**pi_power`` times a product of SI base units.
+
+    Parameters
+    ----------
+    scale : Fraction
+        Exact factor to SI, without its power of pi.
+    pi_power : int
+        Power of pi in the factor: 1 for deg.
+    dimension : Dimension
+        Exponents of the SI base units.
+    cycles : int
+        Exponent of the cycle: 1 for Hz, rev and rpm, -1 for mm/rev. A cycle is *not* multiplied in.
+    radians : int
+        Exponent of the radian, which is the number 1: -1 for N*m/rad. A degree counts as a radian.
+
+    Examples
+    --------
+    >>> (UNITS["in"] ** 2).scale
+    Fraction(16129, 25000000)
+    """
+
+    scale: Fraction
+    pi_power: int = 0
+    dimension: Dimension = DIMENSIONLESS
+    cycles: int = 0
+    radians: int = 0
+
+    def __mul__(self, other: Unit) -> Unit:
+        """Return the product of two units."""
+        return Unit(
+            self.scale * other.scale,
+            self.pi_power + other.pi_power,
+            self.dimension * other.dimension,
+            self.cycles + other.cycles,
+            self.radians + other.radians,
+        )
+
+    def __truediv__(self, other: Unit) -> Unit:
+        """Return the quotient of two units."""
+        return self * other**-1
+
+    def __pow__(self, exponent: int) -> Unit:
+        """Return an integer power of the unit."""
+        return Unit(
+            self.scale**exponent,
+            self.pi_power * exponent,
+            self.dimension**exponent,
+            self.cycles * exponent,
+            self.radians * exponent,
+        )
+
+    def scaled(self, factor: Fraction) -> Unit:
+        """Return the unit ``factor`` times as large."""
+        return Unit(self.scale * factor, self.pi_power, self.dimension, self.cycles, self.radians)
+
+    def root(self, degree: int) -> Unit | None:
+        """Return the exact root of the unit, or ``None`` when it is not a unit of this kind.
+
+        Examples
+        --------
+        >>> str(UNITS["m"].root(2).dimension), UNITS["Hz"].root(2)
+        ('m^(1/2)', None)
+        """
+        above, below = _exact_root(self.scale.numerator, degree), _exact_root(self.scale.denominator, degree)
+        counts = (self.pi_power, self.cycles, self.radians)
+        if above is None or below is None or any(count % degree for count in counts):
+            return None
+        pi_power, cycles, radians = (count // degree for count in counts)
+        return Unit(Fraction(above, below), pi_power, self.dimension ** Fraction(1, degree), cycles, radians)
+
+
+def _exact_root(value: int, degree: int) -> int | None:
+    low, high = 0, 1 << (value.bit_length() // degree + 1)
+    while low < high:
+        middle = (low + high) // 2
+        if middle**degree < value:
+            low = middle + 1
+        else:
+            high = middle
+    return low if low**degree == value else None
+
+
+PREFIXES: Final[dict[str, Fraction]] = {
+    symbol: Fraction(10) ** power
+    for symbol, power in (
+        ("Q", 30), ("R", 27), ("Y", 24), ("Z", 21), ("E", 18), ("P", 15), ("T", 12), ("G", 9), ("M", 6),
+        ("k", 3), ("h", 2), ("da", 1), ("d", -1), ("c", -2), ("m", -3), ("\u00b5", -6), ("\u03bc", -6),
+        ("u", -6), ("n", -9), ("p", -12), ("f", -15), ("a", -18), ("z", -21), ("y", -24), ("r", -27),
+        ("q", -30),
+    )
+}  # fmt: skip
+
+_BASE: Final = {
+    name: Unit(Fraction(1), dimension=Dimension(**{name: Fraction(1)}))
+    for name in ("kg", "m", "s", "A", "K", "mol", "cd")
+}
+_ONE: Final = Unit(Fraction(1))
+_KG, _M, _S, _A = _BASE["kg"], _BASE["m"], _BASE["s"], _BASE["A"]
+_N: Final = _KG * _M / _S**2
+_PA: Final = _N / _M**2
+_J: Final = _N * _M
+_W: Final = _J / _S
+_C: Final = _A * _S
+_V: Final = _W / _A
+_OHM: Final = _V / _A
+_WB: Final = _V * _S
+_RAD: Final = Unit(Fraction(1), radians=1)
+_CYCLE: Final = Unit(Fraction(1), cycles=1)
+_MIN: Final = _S.scaled(Fraction(60))
+_HOUR: Final = _S.scaled(Fraction(3600))
+_DEG: Final = Unit(Fraction(1, 180), pi_power=1, radians=1)
+_GRAVITY: Final = (_M / _S**2).scaled(Fraction("9.80665"))
+_LITRE: Final = (_M**3).scaled(Fraction(1, 1000))
+_INCH: Final = _M.scaled(Fraction("0.0254"))
+_FOOT: Final = _M.scaled(Fraction("0.3048"))
+_POUND: Final = _KG.scaled(Fraction("0.45359237"))
+_OUNCE: Final = _POUND.scaled(Fraction(1, 16))
+_LBF: Final = _POUND * _GRAVITY
+_PSI: Final = _LBF / _INCH**2
+
+PREFIXABLE_UNITS: Final[dict[str, Unit]] = {
+    "m": _M,
+    "g": _KG.scaled(Fraction(1, 1000)),
+    "s": _S,
+    "A": _A,
+    "K": _BASE["K"],
+    "mol": _BASE["mol"],
+    "cd": _BASE["cd"],
+    "rad": _RAD,
+    "sr": _RAD**2,
+    "Hz": _CYCLE / _S,
+    "N": _N,
+    "Pa": _PA,
+    "J": _J,
+    "W": _W,
+    "C": _C,
+    "V": _V,
+    "F": _C / _V,
+    "Ohm": _OHM,
+    "ohm": _OHM,
+    "\u03a9": _OHM,  # Greek capital omega
+    "\u2126": _OHM,  # ohm sign
+    "S": _OHM**-1,
+    "Wb": _WB,
+    "T": _WB / _M**2,
+    "H": _WB / _A,
+    "lm": _BASE["cd"] * _RAD**2,
+    "lx": _BASE["cd"] * _RAD**2 / _M**2,
+    "L": _LITRE,
+    "l": _LITRE,
+    "bar": _PA.scaled(Fraction(100_000)),
+    "Wh": _W * _HOUR,
+    "Ah": _A * _HOUR,
+    "gf": _KG.scaled(Fraction(1, 1000)) * _GRAVITY,
+    "deg": _DEG,
+    "rpm": _CYCLE / _MIN,
+}
+
+PLAIN_UNITS: Final[dict[str, Unit]] = {
+    "t": _KG.scaled(Fraction(1000)),
+    "min": _MIN,
+    "h": _HOUR,
+    "\u00b0": _DEG,
+    "arcmin": _DEG.scaled(Fraction(1, 60)),
+    "arcsec": _DEG.scaled(Fraction(1, 3600)),
+    "rev": _CYCLE,
+    "cycle": _CYCLE,
+    "%": _ONE.scaled(Fraction(1, 100)),
+    "ppm": _ONE.scaled(Fraction(1, 1_000_000)),
+    "g_n": _GRAVITY,
+    "dyn": _N.scaled(Fraction(1, 100_000)),
+    "atm": _PA.scaled(Fraction(101_325)),
+    "in": _INCH,
+    "inch": _INCH,
+    "mil": _INCH.scaled(Fraction(1, 1000)),
+    "ft": _FOOT,
+    "yd": _FOOT.scaled(Fraction(3)),
+    "mi": _FOOT.scaled(Fraction(5280)),
+    "lb": _POUND,
+    "lbm": _POUND,
+    "oz": _OUNCE,
+    "slug": _LBF * _S**2 / _FOOT,
+    "lbf": _LBF,
+    "ozf": _OUNCE * _GRAVITY,
+    "kip": _LBF.scaled(Fraction(1000)),
+    "psi": _PSI,
+    "ksi": _PSI.scaled(Fraction(1000)),
+    "hp": (_FOOT * _LBF / _S).scaled(Fraction(550)),
+}
+
+UNITS: Final[dict[str, Unit]] = PREFIXABLE_UNITS | PLAIN_UNITS
+
+_INSTEAD: Final[dict[str, str]] = {
+    written: f"did you mean '{meant}'?"
+    for meant, many in {
+        "s": "sec secs second seconds",
+        "ms": "msec msecs",
+        "min": "mins minute minutes",
+        "h": "hr hrs hour hours",
+        "m": "meter meters metre metres mtr",
+        "mm": "millimeter millimeters millimetre millimetres",
+        "um": "micron microns",
+        "in": "inches",
+        "ft": "foot feet",
+        "g": "gram grams gm gr",
+        "kg": "kgs kilo kilos kilogram kilograms",
+        "t": "ton tons tonne tonnes",
+        "N": "newton newtons",
+        "Pa": "pascal pascals",
+        "J": "joule joules",
+        "W": "watt watts",
+        "A": "amp amps ampere amperes",
+        "V": "volt volts",
+        "Ohm": "ohms Ohms",
+        "H": "henry henries",
+        "F": "farad farads",
+        "Hz": "hertz cps",
+        "kHz": "kilohertz",
+        "rad": "radian radians",
+        "deg": "degree degrees",
+        "rev": "revs revolution revolutions turn turns",
+        "rev/s": "rps",
+        "cycle": "cycles cyc",
+        "N*m": "Nm",
+        "N*m*s": "Nms",
+        "N*s": "Ns",
+        "g_n": "g_0 g0 gn",
+        "%": "percent",
+    }.items()
+    for written in many.split()
+} | {
+    "lbs": "did you mean 'lb' (mass) or 'lbf' (force)?",
+    "pi": "write pi before the unit, as in '2*pi rad/s'",
+    "\u03c0": "write pi before the unit, as in '2*pi rad/s'",
+    "dB": "write the ratio itself: x dB is 10^(x/20)",
+    "degC": "only absolute temperatures are read: use 'K'",
+    "degF": "only absolute temperatures are read: use 'K'",
+    "\u00b0C": "only absolute temperatures are read: use 'K'",
+    "\u00b0F": "only absolute temperatures are read: use 'K'",
+}
+
+# Units long enough to be given a plural; a shorter one with an s is a product, as in Pas.
+_WORDS: Final = tuple(name for name in UNITS if len(name) > 2)  # noqa: PLR2004
+_LONGEST_PRODUCT: Final = 8
+_USUAL_PREFIXES: Final = ("", "n", "u", "m", "c", "k", "M", "G")
+
+
+def unit_named(symbol: str) -> Unit | None:
+    """Return the unit of a symbol, prefixed or not, or ``None`` when there is none.
+
+    A symbol of the table goes before a prefixed reading: ``min`` is the minute.
+
+    Examples
+    --------
+    >>> unit_named("krpm").scale, unit_named("Krpm")
+    (Fraction(50, 3), None)
+    """
+    if symbol in UNITS:
+        return UNITS[symbol]
+    for length in (1, 2):
+        factor, unit = PREFIXES.get(symbol[:length]), PREFIXABLE_UNITS.get(symbol[length:])
+        if factor is not None and unit is not None:
+            return unit.scaled(factor)
+    return None
+
+
+def unit_hint(symbol: str) -> str | None:
+    """Return what an unknown symbol was probably meant to be.
+
+    Examples
+    --------
+    >>> unit_hint("KN"), unit_hint("Nm"), unit_hint("kgm2")
+    ("did you mean 'kN'?", "did you mean 'N*m'?", "did you mean 'kg*m^2'?")
+    """
+    if symbol in _INSTEAD:
+        return _INSTEAD[symbol]
+    known = _usual_symbols()
+    # Of mPa and MPa, 'MPA' is nearer to the one with more letters as written.
+    same = [name for name in known if name.lower() == symbol.lower()]
+    if same:
+        best = max(same, key=lambda name: sum(a == b for a, b in zip(name, symbol, strict=False)))
+        return f"did you mean '{best}'?"
+    if symbol.endswith("s") and symbol[:-1] in known and symbol[:-1].endswith(_WORDS):
+        return f"did you mean '{symbol[:-1]}'?"
+    product_of_units = _product_hint(symbol)
+    if product_of_units is None and "_" in symbol:
+        return "between a number and a parameter write '*'"
+    return product_of_units or nearest(symbol, known)
+
+
+@functools.cache
+def _usual_symbols() -> tuple[str, ...]:
+    names = [name for name in PREFIXABLE_UNITS if name.isascii()]
+    return tuple(sorted({*map("".join, product(_USUAL_PREFIXES, names)), *PLAIN_UNITS}))
+
+
+def _product_hint(symbol: str) -> str | None:
+    """Read ``Nm`` as ``N*m`` and ``m2`` as ``m^2``; the fewest factors win."""
+    letters = symbol.rstrip("0123456789")
+    digits = symbol[len(letters) :]
+    if not 0 < len(letters) <= _LONGEST_PRODUCT or len(digits) > 1:
+        return None
+    places = range(1, len(letters))
+    cuts = [(), *((i,) for i in places), *((i, j) for i in places for j in range(i + 1, len(letters)))]
+    known = _usual_symbols()
+    for cut in cuts:
+        factors = [letters[i:j] for i, j in pairwise((0, *cut, len(letters)))]
+        units = [unit_named(factor) for factor in factors if factor in known]
+        # Two factors of one dimension are a slip of the finger: kgg is kg, not kg*g.
+        if len({unit.dimension for unit in units if unit}) == len(factors):
+            return f"did you mean '{'*'.join(factors)}{'^' + digits if digits else ''}'?"
+    return None

@@ -1,0 +1,129 @@
+"""Frequency grids that miss no resonance, and the band shown when none is asked for.
+
+Input: certified poles and zeros. Output: angular frequencies [rad/s].
+"""
+
+from __future__ import annotations
+
+from math import log, pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from symflex.errors import Diagnostic, UsageError
+from symflex.roots.locate import locate
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from symflex.roots import PoleZeroMap
+    from symflex.transfer import BoundTransferFunction
+
+REFINED_DAMPING = 0.3
+AXIS_GAP = 1e-7
+PHASE_STEPS = 24
+WIDEST_ANGLE = 0.94 * pi / 2
+POINTS_PER_DECADE = 6
+COARSE_STEPS = 3
+DEFAULT_BAND_HZ = (0.1, 10.0)
+
+
+def default_band(*maps: PoleZeroMap) -> tuple[float, float]:
+    """Return a band [Hz] that shows all poles and zeros.
+
+    Parameters
+    ----------
+    *maps : PoleZeroMap
+        Of the functions to be shown together.
+
+    Returns
+    -------
+    tuple of float
+        From a decade below the lowest to a decade above the highest nonzero natural frequency; 0.1 Hz
+        to 10 Hz when there is none.
+
+    Examples
+    --------
+    >>> from symflex.roots import RootProblem, find_pole_zero_map
+    >>> one = RootProblem.from_rationals([1])
+    >>> low, high = default_band(find_pole_zero_map("x/F", RootProblem.from_rationals([9, 0, 1]), one))
+    >>> print(f"{low * 2 * pi:.3f} {high * 2 * pi:.3f}")
+    0.300 30.000
+    """
+    roots = [root for found in maps for root in (*found.poles, *found.zeros) if not root.is_zero]
+    frequencies = [root.frequency_hz() for root in roots]
+    return (min(frequencies) / 10, max(frequencies) * 10) if frequencies else DEFAULT_BAND_HZ
+
+
+def adaptive_grid(
+    bound: BoundTransferFunction,
+    low_hz: float,
+    high_hz: float,
+    points: int = 600,
+    roots: PoleZeroMap | None = None,
+) -> npt.NDArray[np.float64]:
+    """Return angular frequencies [rad/s] on which no peak or trough of a transfer function is missed.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        With numbers.
+    low_hz, high_hz : float
+        Limits of the band [Hz], 0 < low < high.
+    points : int
+        Logarithmically spaced points, at least 2; more are added around lightly damped poles and zeros.
+    roots : PoleZeroMap, optional
+        All poles and zeros, when they are known already.
+
+    Returns
+    -------
+    array of float
+        Increasing. Around a root -a + j b the points advance in equal steps of the phase it causes, b itself
+        among them; around a root on the axis they close in up to 1e-7 b and leave it out.
+
+    Raises
+    ------
+    UsageError
+        SF227 when the band is empty or not positive.
+    ValueError
+        When ``points`` is less than 2.
+    """
+    if not 0 < low_hz < high_hz < float("inf"):
+        message = f"a band runs from a positive to a higher frequency, not from {low_hz:g} to {high_hz:g} Hz"
+        raise UsageError(Diagnostic("SF227", message))
+    if points < 2:  # noqa: PLR2004
+        message = f"a grid has at least 2 points, not {points}"
+        raise ValueError(message)
+    found = locate(bound) if roots is None else roots
+    low, high = 2 * pi * low_hz, 2 * pi * high_hz
+    step = log(high / low) / (points - 1)
+    parts = [np.geomspace(low, high, points)]
+    on_axis: list[float] = []
+    for root in (*found.poles, *found.zeros):
+        damping = root.damping_ratio()
+        if root.is_real or root.im < 0 or damping is None or abs(damping) > REFINED_DAMPING:
+            continue
+        width, centre = abs(float(root.re.mid())), float(root.im.mid())
+        if root.on_imaginary_axis:
+            on_axis.append(centre)
+        offsets = _offsets(width, centre, COARSE_STEPS * step * centre)
+        parts += [centre - offsets, centre + offsets]
+    grid = np.unique(np.concatenate(parts))
+    grid = grid[(grid >= low) & (grid <= high)]
+    for centre in on_axis:
+        # A hair less than the gap, so that the points placed at the gap itself survive rounding.
+        grid = grid[np.abs(grid - centre) > 0.99 * AXIS_GAP * centre]
+    return grid
+
+
+def _offsets(width: float, centre: float, reach: float) -> npt.NDArray[np.float64]:
+    """Return distances from the centre of a resonance, out to where the coarse grid takes over."""
+    if width == 0:
+        near, inner = np.empty(0), AXIS_GAP * centre
+    else:
+        near = width * np.tan(np.linspace(0, WIDEST_ANGLE, PHASE_STEPS))
+        inner = float(near[-1])
+    if reach <= inner:
+        return near
+    count = int(POINTS_PER_DECADE * log(reach / inner, 10)) + 2
+    return np.concatenate((near, np.geomspace(inner, reach, count)))

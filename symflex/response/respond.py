@@ -1,0 +1,111 @@
+"""From a bound transfer function to its frequency response.
+
+Input: a :class:`BoundTransferFunction` and frequencies. Output: a :class:`FrequencyResponse`.
+"""
+
+from __future__ import annotations
+
+from math import inf, nan
+from typing import TYPE_CHECKING
+
+import numpy as np
+from flint import acb, ctx
+
+from symflex.response.frequency_response import FrequencyResponse
+from symflex.response.phase import count_turns
+from symflex.roots.locate import locate
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy.typing as npt
+
+    from symflex.roots import PoleZeroMap
+    from symflex.transfer import BoundTransferFunction, EnclosedTransferFunction
+
+FIRST_BITS = 96
+LAST_BITS = 6144
+DOUBLE_BITS = 54
+
+
+def respond(
+    bound: BoundTransferFunction, omega: npt.ArrayLike, roots: PoleZeroMap | None = None
+) -> FrequencyResponse:
+    """Evaluate a transfer function on the imaginary axis to double precision.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        With numbers.
+    omega : array_like of float, shape (n,)
+        Angular frequencies [rad/s], finite.
+    roots : PoleZeroMap, optional
+        All poles and zeros, when they are known already.
+
+    Returns
+    -------
+    FrequencyResponse
+        Each value is right to the last bits of its absolute value; ``inf + nan*1j`` at a pole. The phase is
+        counted from the poles and zeros, so it does not depend on how fine the grid is.
+
+    Raises
+    ------
+    ValueError
+        When ``omega`` is not one-dimensional or not finite.
+
+    Examples
+    --------
+    >>> from symflex.errors import Source
+    >>> from symflex.model import load_model
+    >>> from symflex.equations import assemble
+    >>> from symflex.transfer import bind, derive
+    >>> text = '''
+    ... symflex = 1
+    ... elements.load = { type = "mass", at = "x", m = "2 kg" }
+    ... inputs.F = { force = "x" }
+    ... outputs.X = "x"
+    ... '''
+    >>> inertia = bind(derive(assemble(load_model(Source("mass.toml", text))), "X", "F"))
+    >>> response = respond(inertia, [0.5, 1.0])
+    >>> response.values.real.tolist(), np.degrees(response.phase).tolist(), response.unit
+    ([-2.0, -0.5], [-180.0, -180.0], 'm/N')
+    """
+    grid = np.atleast_1d(np.array(omega, dtype=np.float64))
+    if grid.ndim != 1 or not np.isfinite(grid).all():
+        message = "omega must be a one-dimensional array of finite numbers"
+        raise ValueError(message)
+    quantity, unit = bound.source.quantity, bound.source.unit
+    if bound.ratio.is_zero:
+        return FrequencyResponse(bound.name, grid, np.zeros(grid.shape, np.complex128), quantity, unit)
+    values = _evaluate(bound, grid)
+    turns = count_turns(grid, values, locate(bound) if roots is None else roots)
+    return FrequencyResponse(bound.name, grid, values, quantity, unit, turns)
+
+
+def _evaluate(bound: BoundTransferFunction, omega: npt.NDArray[np.float64]) -> npt.NDArray[np.complex128]:
+    """Return the values, with more bits for those points where cancellation asks for them."""
+    values = np.zeros(omega.shape, np.complex128)
+    pending, bits = list(enumerate(omega.tolist())), FIRST_BITS
+    while pending:
+        balls = _enclose(bound.enclosed(bits), [value for _, value in pending])
+        unsettled = []
+        for point, ball in zip(pending, balls, strict=True):
+            if ball.is_finite() and ball.rel_accuracy_bits() >= DOUBLE_BITS:
+                values[point[0]] = complex(ball)
+            elif bits < LAST_BITS:
+                unsettled.append(point)
+            elif not ball.is_finite():
+                values[point[0]] = complex(inf, nan)
+        pending, bits = unsettled, 2 * bits
+    return values
+
+
+def _enclose(function: EnclosedTransferFunction, omega: Sequence[float]) -> list[acb]:
+    """Return balls around the values, one polynomial after the other, for all points at once."""
+    with ctx.workprec(function.bits):
+        points = [acb(0, value) for value in omega]
+        values = [function.unit] * len(points)
+        for polynomial, exponent in function.factors:
+            factor = polynomial.evaluate(points, "iter")
+            values = [value * ball**exponent for value, ball in zip(values, factor, strict=True)]
+        return values

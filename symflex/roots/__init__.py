@@ -1,0 +1,43 @@
+"""Certified roots: every pole and zero enclosed, with its multiplicity, and none missing.
+
+A new engine is one file and one line in :data:`ROOT_FINDERS`.
+"""
+
+from symflex.roots.durand_kerner import propose_by_durand_kerner
+from symflex.roots.finder import RootFinder
+from symflex.roots.laguerre import propose_by_laguerre
+from symflex.roots.pole_zero_map import Certificate, HiddenRoot, PoleZeroMap, find_pole_zero_map
+from symflex.roots.polynomial import POLYNOMIAL, PolynomialRootFinder, find_polynomial_roots
+from symflex.roots.precision import precision
+from symflex.roots.problem import Constant, PolynomialInS, RootProblem
+from symflex.roots.region import Band, Everything, Modes, Position, Rectangle, Region
+from symflex.roots.root import Root, RootDecimals
+
+ROOT_FINDERS: dict[str, RootFinder] = {
+    "polynomial": POLYNOMIAL,
+    "laguerre": PolynomialRootFinder("laguerre", (propose_by_laguerre,)),
+    "durand-kerner": PolynomialRootFinder("durand-kerner", (propose_by_durand_kerner,)),
+}
+
+__all__ = [
+    "ROOT_FINDERS",
+    "Band",
+    "Certificate",
+    "Constant",
+    "Everything",
+    "HiddenRoot",
+    "Modes",
+    "PoleZeroMap",
+    "PolynomialInS",
+    "PolynomialRootFinder",
+    "Position",
+    "Rectangle",
+    "Region",
+    "Root",
+    "RootDecimals",
+    "RootFinder",
+    "RootProblem",
+    "find_pole_zero_map",
+    "find_polynomial_roots",
+    "precision",
+]

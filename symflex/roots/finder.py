@@ -1,0 +1,31 @@
+"""What every root finder offers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from symflex.roots.problem import RootProblem
+    from symflex.roots.region import Region
+    from symflex.roots.root import Root
+
+
+class RootFinder(Protocol):
+    """An engine that encloses roots with proof.
+
+    A new engine is one file that offers an object of this shape, and one line in
+    :data:`symflex.roots.ROOT_FINDERS`.
+    """
+
+    @property
+    def name(self) -> str:
+        """Key in the registry."""
+        ...
+
+    def accepts(self, problem: RootProblem) -> bool:
+        """Return whether the engine can solve the problem."""
+        ...
+
+    def find(self, problem: RootProblem, region: Region, digits: int) -> tuple[Root, ...]:
+        """Return at least all roots in the closed region, in the order of :func:`find_polynomial_roots`."""
+        ...

@@ -1,0 +1,66 @@
+"""Poles and zeros of a bound transfer function."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from flint import fmpz_mpoly_ctx
+
+from symflex.errors import Diagnostic, ModelError
+from symflex.roots.pole_zero_map import PoleZeroMap, find_pole_zero_map
+from symflex.roots.problem import Constant, PolynomialInS, RootProblem
+from symflex.transfer import BoundTransferFunction, coefficients_in_s
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.roots.region import Region
+
+
+def locate(bound: BoundTransferFunction, region: Region | None = None, digits: int = 30) -> PoleZeroMap:
+    """Find the poles and zeros of a transfer function, proved, with its hidden modes.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        With numbers.
+    region : Region, optional
+        Everything by default.
+    digits : int
+        Correct significant digits of each root.
+
+    Raises
+    ------
+    ModelError
+        SF402 when the transfer function is identically zero.
+    """
+    if bound.ratio.is_zero:
+        raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero: every point is a zero"))
+    above = [(f, e) for f, e in bound.ratio.factors if e > 0]
+    below = [(f, -e) for f, e in bound.ratio.factors if e < 0]
+    hidden = [(f.polynomial, f.multiplicity) for f in bound.hidden]
+    return find_pole_zero_map(
+        bound.name,
+        _problem(bound, below),
+        _problem(bound, above),
+        region,
+        digits,
+        [(_problem(bound, [factor]), "cancelled") for factor in hidden],
+    )
+
+
+def _problem(bound: BoundTransferFunction, factors: Sequence[tuple[fmpz_mpoly, int]]) -> RootProblem:
+    polynomials = [(_polynomial(bound, f), e) for f, e in factors]
+    return RootProblem(tuple((p, e) for p, e in polynomials if p.degree > 0))
+
+
+def _polynomial(bound: BoundTransferFunction, factor: fmpz_mpoly) -> PolynomialInS:
+    coefficients = coefficients_in_s(factor, bound.constant_ring)
+    if all(c.is_constant() for c in coefficients):
+        integers = fmpz_mpoly_ctx.get([], "lex")
+        numbers = (int(c.leading_coefficient()) if len(c) else 0 for c in coefficients)
+        return PolynomialInS(tuple(integers.constant(n) for n in numbers), integers)
+    constants = tuple(Constant(name, evaluate) for name, evaluate in bound.constants)
+    return PolynomialInS(coefficients, bound.constant_ring.context, constants)

@@ -1,0 +1,201 @@
+"""Poles and zeros of one transfer function in a region, with the certificate that none is missing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from symflex.roots.polynomial import POLYNOMIAL
+from symflex.roots.region import Everything, Modes, Position, Region
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.roots.finder import RootFinder
+    from symflex.roots.problem import RootProblem
+    from symflex.roots.root import Root
+
+SCHEMA = "symflex.roots/1"
+REFINEMENTS = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Certificate:
+    """What was proved about a list of roots.
+
+    Parameters
+    ----------
+    engine : str
+        Name of the root finder.
+    certified : bool
+        Every root counted was found, and told apart from the others.
+    counted : int
+        Roots that exist, with multiplicity: the degrees of numerator, denominator and hidden factors.
+    found : int
+        Roots enclosed, with multiplicity.
+    reason : str, optional
+        Why it is not certified.
+    """
+
+    engine: str
+    certified: bool
+    counted: int
+    found: int
+    reason: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class HiddenRoot:
+    """A root of a factor that cancelled between numerator and denominator.
+
+    Parameters
+    ----------
+    root : Root
+        The mode that input and output do not see together.
+    cause : str
+        Such as ``"cancelled"``, ``"uncontrollable"``, ``"unobservable"``.
+    """
+
+    root: Root
+    cause: str = "cancelled"
+
+
+@dataclass(frozen=True, slots=True)
+class PoleZeroMap:
+    """Poles and zeros in a region of the s plane.
+
+    Parameters
+    ----------
+    tf : str
+        ``"OUT/IN"``.
+    region : Region
+        What was searched; roots on its boundary are included and carry ``on_boundary``.
+    poles, zeros : tuple of Root
+        By natural frequency; both members of each conjugate pair.
+    hidden : tuple of HiddenRoot
+        Cancelled modes.
+    certificate : Certificate
+        The count behind it.
+    digits : int
+        Significant digits printed.
+    """
+
+    tf: str
+    region: Region
+    poles: tuple[Root, ...]
+    zeros: tuple[Root, ...]
+    hidden: tuple[HiddenRoot, ...]
+    certificate: Certificate
+    digits: int = 30
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return the map in the schema ``symflex.roots/1``, ready for :func:`json.dumps`."""
+        certificate = self.certificate
+        return {
+            "schema": SCHEMA,
+            "tf": self.tf,
+            "region": self.region.to_json_dict(),
+            "certified": certificate.certified,
+            "poles": [_root_to_json(root, self.digits) for root in self.poles],
+            "zeros": [_root_to_json(root, self.digits) for root in self.zeros],
+            "hidden": [{**_root_to_json(h.root, self.digits), "cause": h.cause} for h in self.hidden],
+            "certificate": {
+                "engine": certificate.engine,
+                "counted": certificate.counted,
+                "found": certificate.found,
+                "reason": certificate.reason,
+            },
+        }
+
+
+def find_pole_zero_map(
+    tf: str,
+    poles: RootProblem,
+    zeros: RootProblem,
+    region: Region | None = None,
+    digits: int = 30,
+    hidden: Sequence[tuple[RootProblem, str]] = (),
+    finder: RootFinder = POLYNOMIAL,
+) -> PoleZeroMap:
+    """Find poles and zeros in a region.
+
+    Parameters
+    ----------
+    tf : str
+        Name shown, ``"OUT/IN"``.
+    poles, zeros : RootProblem
+        Denominator and numerator, without common factors.
+    region : Region, optional
+        Everything by default.
+    digits : int
+        Correct significant digits of each part of each root; more are computed where the region asks for it.
+    hidden : sequence of (RootProblem, str)
+        Cancelled factors, each with its cause. All their roots are reported when the region is a number of
+        modes, else those in the region.
+    finder : RootFinder
+        The engine.
+
+    Returns
+    -------
+    PoleZeroMap
+        A root whose side of the boundary stays undecided after refinement counts as on the boundary.
+
+    Examples
+    --------
+    >>> from symflex.roots.problem import RootProblem
+    >>> poles, zeros = RootProblem.from_rationals([0, 0, 9, 0, 1]), RootProblem.from_rationals([4, 0, 1])
+    >>> found = find_pole_zero_map("x/F", poles, zeros, Modes(1), 3)
+    >>> [(root.decimal(3).im, root.multiplicity) for root in found.poles], found.certificate.counted
+    ([('0', 2), ('3.00', 1), ('-3.00', 1)], 6)
+    """
+    where = region if region is not None else Everything()
+    whole = Everything() if isinstance(where, Modes) else where
+    pole_roots, pole_found, poles_apart = _locate(poles, where, digits, finder)
+    zero_roots, zero_found, zeros_apart = _locate(zeros, where, digits, finder)
+    counted, found = poles.degree + zeros.degree, pole_found + zero_found
+    apart = poles_apart and zeros_apart
+    concealed: list[HiddenRoot] = []
+    for problem, cause in hidden:
+        roots, number, hidden_apart = _locate(problem, whole, digits, finder)
+        concealed.extend(HiddenRoot(root, cause) for root in roots)
+        counted, found, apart = counted + problem.degree, found + number, apart and hidden_apart
+    reason = None
+    if counted != found:
+        reason = f"{counted} roots exist, {found} were found"
+    elif not apart:
+        reason = "some roots could not be told apart; each such group is enclosed as one"
+    certificate = Certificate(finder.name, reason is None, counted, found, reason)
+    return PoleZeroMap(tf, where, pole_roots, zero_roots, tuple(concealed), certificate, digits)
+
+
+def _locate(
+    problem: RootProblem, region: Region, digits: int, finder: RootFinder
+) -> tuple[tuple[Root, ...], int, bool]:
+    """Return the roots in the region, the number of roots enclosed in all, and whether all are told apart."""
+    for doubling in range(REFINEMENTS):
+        roots = finder.find(problem, region, digits << doubling)
+        positions = region.classify(roots)
+        if Position.UNDECIDED not in positions:
+            break
+    inside = tuple(
+        root if position is Position.INSIDE else replace(root, on_boundary=True)
+        for root, position in zip(roots, positions, strict=True)
+        if position is not Position.OUTSIDE
+    )
+    return inside, sum(root.multiplicity for root in roots), all(root.certified for root in roots)
+
+
+def _root_to_json(root: Root, digits: int) -> dict[str, object]:
+    decimals = root.decimal(digits)
+    return {
+        "re": decimals.re,
+        "im": decimals.im,
+        "radius": decimals.radius,
+        "multiplicity": root.multiplicity,
+        "frequency_hz": root.frequency_hz(),
+        "damping_ratio": root.damping_ratio(),
+        "on_imaginary_axis": root.on_imaginary_axis,
+        "is_real": root.is_real,
+        "certified": root.certified,
+        "boundary": root.on_boundary,
+    }

@@ -1,0 +1,182 @@
+"""The input of the polynomial root finders: a product of polynomials in s with exact coefficients."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from flint import arb, arb_poly, fmpz_mpoly, fmpz_mpoly_ctx
+
+from symflex.errors import Diagnostic, ModelError, UncertifiedError
+from symflex.roots.precision import precision
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from fractions import Fraction
+
+ZERO_TEST_BITS = (64, 256, 1024, 4096)
+
+
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """A real number that exact steps treat as an independent symbol.
+
+    Parameters
+    ----------
+    name : str
+        Such as ``pi`` or ``sqrt(2)``; equal names are the same constant.
+    evaluate : callable
+        Returns the constant as a real ball at the current ``flint.ctx.prec``.
+
+    Examples
+    --------
+    >>> from flint import arb
+    >>> Constant("pi", arb.pi).name
+    'pi'
+    """
+
+    name: str
+    evaluate: Callable[[], arb]
+
+
+@dataclass(frozen=True, slots=True)
+class PolynomialInS:
+    """A polynomial in s whose coefficients are integer polynomials in real constants.
+
+    Parameters
+    ----------
+    coefficients : tuple of fmpz_mpoly
+        In ascending powers of s, all in ``context``; trailing zeros are dropped.
+    context : fmpz_mpoly_ctx
+        Ring of the coefficients; generator number i stands for ``constants[i]``.
+    constants : tuple of Constant
+        One for each generator; empty when all coefficients are integers.
+
+    Raises
+    ------
+    ModelError
+        SF403 when the polynomial is zero.
+
+    Examples
+    --------
+    >>> from fractions import Fraction
+    >>> p = PolynomialInS.from_rationals([Fraction(1, 2), 0, Fraction(1, 3)])
+    >>> p.degree, p.integers()
+    (2, (3, 0, 2))
+    """
+
+    coefficients: tuple[fmpz_mpoly, ...]
+    context: fmpz_mpoly_ctx
+    constants: tuple[Constant, ...] = ()
+
+    def __post_init__(self) -> None:
+        if len(self.constants) != self.context.nvars():
+            message = f"{self.context.nvars()} generators but {len(self.constants)} constants"
+            raise ValueError(message)
+        length = len(self.coefficients)
+        while length and self.coefficients[length - 1].is_zero():
+            length -= 1
+        if length == 0:
+            raise ModelError(Diagnostic("SF403", "the polynomial is zero: every s is a root of it"))
+        object.__setattr__(self, "coefficients", tuple(self.coefficients[:length]))
+
+    @classmethod
+    def from_rationals(cls, coefficients: Sequence[Fraction | int]) -> PolynomialInS:
+        """Return the polynomial with these ascending coefficients, scaled to integers."""
+        scale = math.lcm(*(c.denominator for c in coefficients))
+        return cls.from_integers([int(c * scale) for c in coefficients])
+
+    @classmethod
+    def from_integers(cls, coefficients: Sequence[int]) -> PolynomialInS:
+        """Return the polynomial with these ascending integer coefficients."""
+        context = fmpz_mpoly_ctx.get([], "lex")
+        return cls(tuple(context.constant(c) for c in coefficients), context)
+
+    @property
+    def degree(self) -> int:
+        """Degree in s."""
+        return len(self.coefficients) - 1
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether every coefficient is an integer."""
+        return not self.constants
+
+    def integers(self) -> tuple[int, ...]:
+        """Return the ascending coefficients of a polynomial without constants."""
+        if self.constants:
+            message = "the coefficients contain constants"
+            raise ValueError(message)
+        return tuple(int(c.to_dict().get((), 0)) for c in self.coefficients)
+
+    def enclosure(self) -> arb_poly:
+        """Return the polynomial with coefficients as balls, at the current ``flint.ctx.prec``."""
+        if self.is_exact:
+            return arb_poly([arb(c) for c in self.integers()])
+        values = tuple(constant.evaluate() for constant in self.constants)
+        return arb_poly([_evaluate(c, values) for c in self.coefficients])
+
+    def require_leading_coefficient(self) -> None:
+        """Prove that the leading coefficient is not zero.
+
+        Raises
+        ------
+        UncertifiedError
+            SF401 when balls of 4096 bits still contain zero, as they do when the constants
+            satisfy a relation that makes the coefficient vanish.
+        """
+        if self.is_exact:
+            return
+        for bits in ZERO_TEST_BITS:
+            with precision(bits):
+                values = tuple(constant.evaluate() for constant in self.constants)
+                if _evaluate(self.coefficients[-1], values) != 0:
+                    return
+        message = f"cannot tell whether the coefficient {self.coefficients[-1]} of s^{self.degree} is zero"
+        hint = "its constants seem to satisfy a relation; write the coefficient without it"
+        raise UncertifiedError(Diagnostic("SF401", message, hint=hint))
+
+
+def _evaluate(coefficient: fmpz_mpoly, values: tuple[arb, ...]) -> arb:
+    total = arb(0)
+    for exponents, integer in coefficient.to_dict().items():
+        term = arb(integer)
+        for value, exponent in zip(values, exponents, strict=True):
+            if exponent:
+                term *= value ** int(exponent)
+        total += term
+    return total
+
+
+@dataclass(frozen=True, slots=True)
+class RootProblem:
+    """The roots of a product of powers of polynomials.
+
+    Parameters
+    ----------
+    factors : tuple of (PolynomialInS, int)
+        Polynomials with positive exponents; they need not be coprime nor square-free.
+
+    Examples
+    --------
+    >>> RootProblem(((PolynomialInS.from_integers([1, 0, 1]), 3),)).degree
+    6
+    """
+
+    factors: tuple[tuple[PolynomialInS, int], ...]
+
+    def __post_init__(self) -> None:
+        if any(exponent < 1 for _, exponent in self.factors):
+            message = "exponents of factors are positive"
+            raise ValueError(message)
+
+    @classmethod
+    def from_rationals(cls, coefficients: Sequence[Fraction | int]) -> RootProblem:
+        """Return the problem of one polynomial with these ascending coefficients."""
+        return cls(((PolynomialInS.from_rationals(coefficients), 1),))
+
+    @property
+    def degree(self) -> int:
+        """Number of roots, counted with multiplicity."""
+        return sum(polynomial.degree * exponent for polynomial, exponent in self.factors)

@@ -1,0 +1,215 @@
+"""Regions of the s plane, and the classification of enclosed roots against them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING
+
+from flint import arb, fmpq
+
+from symflex.roots.precision import precision
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+    from fractions import Fraction
+
+    from symflex.roots.root import Root
+
+
+class Position(Enum):
+    """Where a root lies with respect to a closed region."""
+
+    INSIDE = "inside"
+    BOUNDARY = "boundary"
+    OUTSIDE = "outside"
+    UNDECIDED = "undecided"
+
+
+@dataclass(frozen=True, slots=True)
+class Everything:
+    """The whole s plane."""
+
+    def classify(self, roots: Sequence[Root]) -> tuple[Position, ...]:
+        """Return the position of every root."""
+        return tuple(Position.INSIDE for _ in roots)
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return the region as JSON data."""
+        return {"kind": "everything"}
+
+
+@dataclass(frozen=True, slots=True)
+class Band:
+    """The roots with natural frequency abs(s)/(2 pi) from ``low`` to ``high`` [Hz]; ``low`` = 0 is no limit.
+
+    Examples
+    --------
+    >>> from fractions import Fraction
+    >>> Band(Fraction(1, 10), Fraction(1000)).to_json_dict()
+    {'kind': 'band', 'low_hz': 0.1, 'high_hz': 1000.0}
+    """
+
+    low: Fraction
+    high: Fraction
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.low <= self.high:
+            message = f"a band runs from a lower to a higher frequency, not from {self.low} to {self.high}"
+            raise ValueError(message)
+
+    def classify(self, roots: Sequence[Root]) -> tuple[Position, ...]:
+        """Return the position of every root."""
+        return tuple(self._position(root) for root in roots)
+
+    def _position(self, root: Root) -> Position:
+        frequency = root.natural_frequency()
+        with precision(root.working_bits()):
+            turn = 2 * arb.pi()
+            signs = [_sign(_bound(self.high) * turn - frequency)]
+            if self.low:
+                signs.append(_sign(frequency - _bound(self.low) * turn))
+        return _position(signs)
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return the region as JSON data."""
+        return {"kind": "band", "low_hz": float(self.low), "high_hz": float(self.high)}
+
+
+@dataclass(frozen=True, slots=True)
+class Rectangle:
+    """The closed rectangle re_low <= re s <= re_high, im_low <= im s <= im_high [rad/s].
+
+    Examples
+    --------
+    >>> from fractions import Fraction
+    >>> Rectangle(*(Fraction(x) for x in (-1, 0, -5, 5))).to_json_dict()
+    {'kind': 'rectangle', 're': [-1.0, 0.0], 'im': [-5.0, 5.0]}
+    """
+
+    re_low: Fraction
+    re_high: Fraction
+    im_low: Fraction
+    im_high: Fraction
+
+    def __post_init__(self) -> None:
+        if self.re_low > self.re_high or self.im_low > self.im_high:
+            message = "a rectangle is given as RE0 <= RE1, IM0 <= IM1"
+            raise ValueError(message)
+
+    def classify(self, roots: Sequence[Root]) -> tuple[Position, ...]:
+        """Return the position of every root."""
+        return tuple(self._position(root) for root in roots)
+
+    def _position(self, root: Root) -> Position:
+        with precision(root.working_bits()):
+            return _position(
+                [
+                    _sign(root.re - _bound(self.re_low)),
+                    _sign(_bound(self.re_high) - root.re),
+                    _sign(root.im - _bound(self.im_low)),
+                    _sign(_bound(self.im_high) - root.im),
+                ]
+            )
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return the region as JSON data."""
+        return {
+            "kind": "rectangle",
+            "re": [float(self.re_low), float(self.re_high)],
+            "im": [float(self.im_low), float(self.im_high)],
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Modes:
+    """The ``count`` modes of lowest nonzero natural frequency, and the roots at 0.
+
+    A conjugate pair or a real root is one mode; a root of multiplicity m counts as m modes and is kept whole.
+    Roots of equal frequency that straddle the limit, as a pair +a and -a may, are all on the boundary.
+
+    Examples
+    --------
+    >>> Modes(5).to_json_dict()
+    {'kind': 'modes', 'count': 5}
+    """
+
+    count: int
+
+    def __post_init__(self) -> None:
+        if self.count < 0:
+            message = f"the number of modes cannot be {self.count}"
+            raise ValueError(message)
+
+    def classify(self, roots: Sequence[Root]) -> tuple[Position, ...]:
+        """Return the position of every root; the roots are in order of natural frequency."""
+        positions = [Position.INSIDE] * len(roots)
+        before = 0
+        for indices in _by_frequency(roots):
+            leaders = [roots[i] for i in indices if not roots[i].im < 0]
+            after = before + sum(root.multiplicity for root in leaders)
+            if before >= self.count:
+                position = Position.OUTSIDE
+            elif after <= self.count or len(leaders) == 1:
+                position = Position.INSIDE
+            elif all(_mirrored(leaders[0], root) for root in leaders):
+                position = Position.BOUNDARY
+            else:
+                position = Position.UNDECIDED
+            for i in indices:
+                positions[i] = position
+            before = after
+        return tuple(positions)
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return the region as JSON data."""
+        return {"kind": "modes", "count": self.count}
+
+
+Region = Everything | Band | Rectangle | Modes
+
+
+def _by_frequency(roots: Sequence[Root]) -> list[list[int]]:
+    """Return the indices of the roots other than 0, grouped where their frequencies overlap."""
+    grouped: list[list[int]] = []
+    reached: arb | None = None
+    for i, root in enumerate(roots):
+        if root.is_zero:
+            continue
+        frequency = root.natural_frequency()
+        if reached is not None and reached.overlaps(frequency):
+            grouped[-1].append(i)
+        else:
+            grouped.append([i])
+        reached = frequency
+    return grouped
+
+
+def _mirrored(a: Root, b: Root) -> bool:
+    """Return whether two enclosures are equal up to signs, so that the roots lie equally far from 0."""
+    with precision(max(a.working_bits(), b.working_bits())):
+        return all(
+            bool(abs(x.mid()) == abs(y.mid())) and bool(x.rad() == y.rad())
+            for x, y in ((a.re, b.re), (a.im, b.im))
+        )
+
+
+def _bound(value: Fraction) -> arb:
+    return arb(fmpq(value.numerator, value.denominator))
+
+
+def _sign(difference: arb) -> int | None:
+    """Return the sign of a real ball, None when it is not determined."""
+    if difference == 0:
+        return 0
+    return 1 if difference > 0 else -1 if difference < 0 else None
+
+
+def _position(signs: Iterable[int | None]) -> Position:
+    """Return where a point lies whose signed distances to all sides have these signs."""
+    known = list(signs)
+    if -1 in known:
+        return Position.OUTSIDE
+    if None in known:
+        return Position.UNDECIDED
+    return Position.BOUNDARY if 0 in known else Position.INSIDE

@@ -1,0 +1,185 @@
+"""One root with its enclosure, and its rigorous decimal print."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+
+from flint import acb, arb
+
+from symflex.roots.precision import precision
+
+GUARD_BITS = 32
+FLOAT_BITS = 128
+PLAIN_FROM = -5
+HUNDRED = 100
+
+
+@dataclass(frozen=True, slots=True)
+class RootDecimals:
+    """A root in decimals: the true root lies within ``radius`` of ``re + j im``.
+
+    Parameters
+    ----------
+    re, im : str
+        Decimal strings; ``"0"`` when the component is exactly zero.
+    radius : str
+        Distance bound, rounded up, such as ``"3.1e-52"``; ``"0"`` when the print is exact.
+    """
+
+    re: str
+    im: str
+    radius: str
+
+
+@dataclass(frozen=True, slots=True)
+class Root:
+    """A root s [rad/s] of a polynomial, proved to lie in the box ``re`` x ``im``.
+
+    Parameters
+    ----------
+    re, im : arb
+        Enclosures [rad/s]; exactly zero where that is proved.
+    multiplicity : int
+        Exact when ``certified``; otherwise the number of roots the box holds, counted with multiplicity.
+    on_imaginary_axis, is_real : bool
+        Proved to have real (imaginary) part exactly zero; a root at 0 is both.
+    certified : bool
+        False when the box is proved to hold ``multiplicity`` roots that could not be told apart.
+    on_boundary : bool
+        On the boundary of the region searched, or too close to it to be decided.
+
+    Examples
+    --------
+    >>> root = Root(arb(-3), arb(4), 1, on_imaginary_axis=False, is_real=False)
+    >>> root.damping_ratio(), root.decimal(5)
+    (0.6, RootDecimals(re='-3.0000', im='4.0000', radius='0'))
+    """
+
+    re: arb
+    im: arb
+    multiplicity: int
+    on_imaginary_axis: bool
+    is_real: bool
+    certified: bool = True
+    on_boundary: bool = False
+
+    @property
+    def is_zero(self) -> bool:
+        """Whether the root is exactly 0, a rigid-body motion when it is a pole."""
+        return self.on_imaginary_axis and self.is_real
+
+    def working_bits(self) -> int:
+        """Return a precision at which arithmetic with the enclosure loses nothing."""
+        return max(FLOAT_BITS, self.re.bits(), self.im.bits()) + GUARD_BITS
+
+    def enclosure(self) -> acb:
+        """Return the box as one complex ball."""
+        return acb(self.re, self.im)
+
+    def natural_frequency(self) -> arb:
+        """Return abs(s) [rad/s]."""
+        with precision(self.working_bits()):
+            if self.on_imaginary_axis:
+                return abs(self.im)
+            return abs(self.re) if self.is_real else abs(self.enclosure())
+
+    def frequency_hz(self) -> float:
+        """Return abs(s) / (2 pi) [Hz] in double precision."""
+        frequency = self.natural_frequency()
+        with precision(FLOAT_BITS):
+            return float((frequency / (2 * arb.pi())).mid())
+
+    def damping_ratio(self) -> float | None:
+        """Return -re/abs(s): exactly 0.0 on the imaginary axis, None at 0 and where abs(s) may be 0."""
+        if self.on_imaginary_axis:
+            return None if self.is_real else 0.0
+        frequency = self.natural_frequency()
+        if not frequency > 0:
+            return None
+        with precision(FLOAT_BITS):
+            return float((-self.re / frequency).mid())
+
+    def decimal(self, digits: int) -> RootDecimals:
+        """Print the root with at most ``digits`` significant digits in each component.
+
+        Fewer digits appear where the enclosure does not certify them all.
+
+        Parameters
+        ----------
+        digits : int
+            Significant digits, at least 1.
+
+        Returns
+        -------
+        RootDecimals
+            ``radius`` bounds the rounding of the print and the enclosure together.
+        """
+        re, re_error = _round_ball(self.re, digits)
+        im, im_error = _round_ball(self.im, digits)
+        return RootDecimals(re, im, _round_up(re_error, im_error))
+
+
+def exact_fraction(number: arb) -> Fraction:
+    """Return the midpoint of a ball as the rational number it is.
+
+    Examples
+    --------
+    >>> exact_fraction(arb(0.75))
+    Fraction(3, 4)
+    """
+    mantissa, exponent = number.mid().man_exp()
+    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+
+
+def _decimal_exponent(value: Fraction) -> int:
+    """Return floor(log10(value)) of a positive rational, exactly."""
+    estimate = math.floor((value.numerator.bit_length() - value.denominator.bit_length()) * math.log10(2))
+    while value >= Fraction(10) ** (estimate + 1):
+        estimate += 1
+    while value < Fraction(10) ** estimate:
+        estimate -= 1
+    return estimate
+
+
+def _round_ball(ball: arb, digits: int) -> tuple[str, Fraction]:
+    """Return the print of a real ball and a bound on its distance from every point of the ball."""
+    middle, radius = exact_fraction(ball), exact_fraction(ball.rad())
+    if middle == 0:
+        return "0", radius
+    last = _decimal_exponent(abs(middle)) - digits + 1
+    if radius:
+        last = max(last, _decimal_exponent(radius) + 1)
+    unit = Fraction(10) ** last
+    count = round(middle / unit)
+    return _format(count, last), abs(middle - count * unit) + radius
+
+
+def _format(count: int, last: int) -> str:
+    """Write ``count * 10**last``, plainly where that is short, else with an exponent."""
+    if count == 0:
+        return "0"
+    sign, text = ("-" if count < 0 else ""), str(abs(count))
+    leading = len(text) - 1 + last
+    if last > 0 or leading < PLAIN_FROM:
+        return f"{sign}{text[0]}{'.' if len(text) > 1 else ''}{text[1:]}e{leading}"
+    if last == 0:
+        return sign + text
+    text = text.rjust(1 - last, "0")
+    return f"{sign}{text[:last]}.{text[last:]}"
+
+
+def _round_up(*errors: Fraction) -> str:
+    """Write a two-digit upper bound of the hypotenuse of the errors."""
+    square = sum((error**2 for error in errors), Fraction(0))
+    if square == 0:
+        return "0"
+    scale = _decimal_exponent(square) // 2 - 1
+    unit = Fraction(10) ** scale
+    count = math.isqrt(math.ceil(square / unit**2))
+    if count**2 * unit**2 < square:
+        count += 1
+    while count >= HUNDRED:
+        count, scale = -(-count // 10), scale + 1
+    return f"{count // 10}.{count % 10}e{scale + 1}"

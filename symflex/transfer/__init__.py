@@ -1,0 +1,17 @@
+"""Transfer functions: derived exactly, reduced, named, and bound to numbers."""
+
+from symflex.transfer.bind import BoundTransferFunction, EnclosedTransferFunction, bind, coefficients_in_s
+from symflex.transfer.derive import derive, derive_all
+from symflex.transfer.transfer_function import ClosedForm, HiddenFactor, TransferFunction
+
+__all__ = [
+    "BoundTransferFunction",
+    "ClosedForm",
+    "EnclosedTransferFunction",
+    "HiddenFactor",
+    "TransferFunction",
+    "bind",
+    "coefficients_in_s",
+    "derive",
+    "derive_all",
+]

@@ -1,0 +1,87 @@
+"""Enclosing the value of an expression of constants in a real ball."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from flint import arb, fmpq
+
+from symflex.errors import Diagnostic, ModelError
+from symflex.expressions import (
+    Call,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+    format_expression,
+)
+from symflex.kernels import FUNCTIONS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from fractions import Fraction
+
+
+def ball(value: Fraction) -> arb:
+    """Return a rational number as a ball at the current precision."""
+    return arb(fmpq(value.numerator, value.denominator))
+
+
+def enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> arb:
+    """Return a ball that contains the value of an expression at the current precision.
+
+    Parameters
+    ----------
+    expression : Expression
+        Of numbers, ``pi``, named constants and elementary functions.
+    values : mapping of str to callable
+        The named constants, evaluated at the current precision.
+
+    Raises
+    ------
+    ModelError
+        SF228 when the value is not a finite real number.
+
+    Examples
+    --------
+    >>> from symflex.expressions import Call, Number
+    >>> from fractions import Fraction
+    >>> enclose(Call("sqrt", Number(Fraction(4))), {}).contains(2)
+    True
+    """
+    result = _enclose(expression, values)
+    if not result.is_finite():
+        message = f"'{format_expression(expression)}' is not a finite real number for these values"
+        raise ModelError(Diagnostic("SF228", message, expression.span))
+    return result
+
+
+def _enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> arb:
+    match expression:
+        case Number(value):
+            return ball(value)
+        case Name("pi"):
+            return arb.pi()
+        case Name(name):
+            return values[name]()
+        case Negative(operand):
+            return -_enclose(operand, values)
+        case Sum(terms):
+            return sum((_enclose(t, values) for t in terms), arb(0))
+        case Product(factors):
+            product = arb(1)
+            for factor in factors:
+                product = product * _enclose(factor, values)
+            return product
+        case Quotient(numerator, denominator):
+            return _enclose(numerator, values) / _enclose(denominator, values)
+        case Power(base, exponent):
+            return _enclose(base, values) ** _enclose(exponent, values)
+        case Call(name, argument):
+            return FUNCTIONS[name].evaluate(_enclose(argument, values))
+    message = f"unexpected expression {type(expression).__name__}"
+    raise TypeError(message)

@@ -1,0 +1,331 @@
+"""From a transfer function to the same with numbers.
+
+Input: a :class:`TransferFunction` and exact values of its parameters.
+Output: a :class:`BoundTransferFunction`, whose coefficients are exact in pi and functions of constants.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from functools import cached_property
+from math import inf, isfinite, lcm, nan
+from typing import TYPE_CHECKING
+
+from flint import acb, acb_poly, arb, ctx
+
+from symflex.errors import Diagnostic, ModelError, Source, Span, Text, UsageError
+from symflex.errors.diagnostic import nearest
+from symflex.kernels import LAPLACE, Factored, Ring, degree_in
+from symflex.model import ExactValue
+from symflex.quantities import parse_quantity, unit_of
+from symflex.transfer.balls import ball, enclose
+from symflex.transfer.cancel import cancel
+from symflex.transfer.transfer_function import HiddenFactor, TransferFunction
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from flint import fmpz_mpoly
+
+    from symflex.expressions import Expression
+    from symflex.model import Parameter
+
+FIRST_BITS = 96
+LAST_BITS = 6144
+DOUBLE_BITS = 54
+
+
+@dataclass(frozen=True)
+class EnclosedTransferFunction:
+    """Ball coefficients of a bound transfer function at one precision.
+
+    Parameters
+    ----------
+    bits : int
+        The precision everything is computed at.
+    unit : acb
+        The factor in front.
+    factors : tuple of (acb_poly, int)
+        Polynomials in s with their exponents.
+    """
+
+    bits: int
+    unit: acb
+    factors: tuple[tuple[acb_poly, int], ...]
+
+    def __call__(self, s: acb) -> acb:
+        """Return a ball that contains the values on the ball ``s`` [rad/s]."""
+        with ctx.workprec(self.bits):
+            value = self.unit
+            for polynomial, exponent in self.factors:
+                value = value * polynomial(s) ** exponent
+            return value
+
+    def logarithmic_derivative(self, s: acb) -> acb:
+        """Return a ball around ``G'(s)/G(s)``."""
+        with ctx.workprec(self.bits):
+            total = acb(0)
+            for polynomial, exponent in self.factors:
+                total = total + exponent * polynomial.derivative()(s) / polynomial(s)
+            return total
+
+
+@dataclass(frozen=True)
+class BoundTransferFunction:
+    """A transfer function with numbers.
+
+    Parameters
+    ----------
+    source : TransferFunction
+        The symbolic function.
+    values : tuple of (str, ExactValue)
+        Every parameter's value, in declared order.
+    ratio : Factored
+        Over a ring with generators s, pi and the functions of constants.
+    hidden : tuple of HiddenFactor
+        Factors cancelled symbolically or by these values, over the same ring.
+    """
+
+    source: TransferFunction
+    values: tuple[tuple[str, ExactValue], ...]
+    ratio: Factored
+    hidden: tuple[HiddenFactor, ...]
+
+    @property
+    def name(self) -> str:
+        """``OUT/IN``."""
+        return self.source.name
+
+    @cached_property
+    def constants(self) -> tuple[tuple[str, Callable[[], arb]], ...]:
+        """Per generator after s, how to enclose it at the current precision."""
+        values: dict[str, Callable[[], arb]] = {name: _enclosure(value) for name, value in self.values}
+        known: dict[str, Callable[[], arb]] = {"pi": arb.pi}
+        for constant in self.source.constants:
+            known[constant.generator] = _later(constant.expression, values)
+        return tuple((name, known[name]) for name in self.ratio.ring.names[1:])
+
+    def enclosed(self, bits: int) -> EnclosedTransferFunction:
+        """Return the function with ball coefficients of the given precision."""
+        with ctx.workprec(bits):
+            values = [evaluate() for _, evaluate in self.constants]
+            factors = tuple(
+                (acb_poly([_value(c, values) for c in coefficients_in_s(f, self.constant_ring)]), e)
+                for f, e in self.ratio.factors
+            )
+            return EnclosedTransferFunction(bits, acb(ball(self.ratio.unit)), factors)
+
+    @cached_property
+    def constant_ring(self) -> Ring:
+        """The ring of the coefficients of powers of s."""
+        return Ring(self.ratio.ring.names[1:])
+
+    @cached_property
+    def _first(self) -> EnclosedTransferFunction:
+        return self.enclosed(FIRST_BITS)
+
+    def __call__(self, s: complex) -> complex:
+        """Return the value at one complex frequency [rad/s] to double precision.
+
+        The precision is raised until the ball's radius is below the last bit, so that cancellation between
+        large terms costs no digits. At a pole the value is ``inf + nan*1j``.
+        """
+        if self.ratio.is_zero:
+            return 0j
+        if not isfinite(abs(s)):
+            return complex(nan, nan)
+        point, function = acb(s.real, s.imag), self._first
+        while True:
+            value = function(point)
+            if value.is_finite() and value.rel_accuracy_bits() >= DOUBLE_BITS:
+                return complex(float(value.real.mid()), float(value.imag.mid()))
+            if function.bits >= LAST_BITS:
+                break
+            function = self.enclosed(2 * function.bits)
+        return 0j if value.is_finite() else complex(inf, nan)
+
+    def limit_at_zero(self) -> float:
+        """Return the limit for s -> 0 from the right: 0, a finite gain, or a signed infinity."""
+        if self.ratio.is_zero:
+            return 0.0
+        s = self.ratio.ring.context.gen(0)
+        order = next((e for f, e in self.ratio.factors if f == s), 0)
+        if order > 0:
+            return 0.0
+        rest = tuple((f, e) for f, e in self.ratio.factors if f != s)
+        finite = BoundTransferFunction(
+            self.source, self.values, Factored(self.ratio.ring, self.ratio.unit, rest), ()
+        )
+        value = finite(0j).real
+        return value if order == 0 else inf if value > 0 else -inf
+
+
+def _enclosure(value: ExactValue) -> Callable[[], arb]:
+    return lambda: ball(value.rational) * arb.pi() ** value.pi_power
+
+
+def _later(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> Callable[[], arb]:
+    return lambda: enclose(expression, values)
+
+
+def _value(coefficient: fmpz_mpoly, values: list[arb]) -> arb:
+    """Return an integer polynomial in the constants as a ball."""
+    total = arb(0)
+    for monomial, integer in coefficient.terms():
+        term = arb(integer)
+        for value, exponent in zip(values, monomial, strict=True):
+            if exponent:
+                term = term * value ** int(exponent)
+        total = total + term
+    return total
+
+
+def coefficients_in_s(polynomial: fmpz_mpoly, constants: Ring) -> tuple[fmpz_mpoly, ...]:
+    """Return the ascending coefficients of s (the first generator) over the ring of the other generators."""
+    parts: list[dict[tuple[int, ...], int]] = [{} for _ in range(degree_in(polynomial, 0) + 1)]
+    for monomial, coefficient in polynomial.terms():
+        parts[int(monomial[0])][tuple(int(e) for e in monomial[1:])] = int(coefficient)
+    return tuple(constants.context.from_dict(part) for part in parts)
+
+
+def read_values(
+    parameters: tuple[Parameter, ...], given: Mapping[str, int | float | Fraction | Decimal | str]
+) -> tuple[tuple[str, ExactValue], ...]:
+    """Return every parameter's exact value, the given ones instead of the declared ones.
+
+    A float counts as the shortest decimal that prints it, so ``0.1`` is 1/10.
+
+    Raises
+    ------
+    UsageError
+        SF902 for an unknown name or a value that is no finite number.
+    ModelError
+        SF229 when a parameter has no value.
+    """
+    names = [p.name for p in parameters]
+    for name in given:
+        if name not in names:
+            hint = nearest(name, names) or "parameters: " + ", ".join(names)
+            raise UsageError(Diagnostic("SF902", f"there is no parameter '{name[:64]}'", None, hint))
+    values = [(p.name, _read_value(p, given[p.name]) if p.name in given else p.value) for p in parameters]
+    missing = [name for name, value in values if value is None]
+    if missing:
+        listed = ", ".join(missing)
+        word = "parameter has" if len(missing) == 1 else "parameters have"
+        raise ModelError(Diagnostic("SF229", f"these {word} no value: {listed}", None, "give a value to bind"))
+    return tuple((name, value) for name, value in values if value is not None)
+
+
+def _read_value(parameter: Parameter, given: float | Fraction | Decimal | str) -> ExactValue:
+    if isinstance(given, str):
+        quantity = parse_quantity(Text(given, Span(Source("<value>", given), 0, len(given))))
+        wanted = unit_of(parameter.unit) if parameter.unit else None
+        if quantity.unit and wanted is not None and quantity.dimension != wanted.dimension:
+            message = f"'{parameter.name}' is in '{parameter.unit}', the value given in '{quantity.unit}'"
+            raise UsageError(Diagnostic("SF203", message))
+        angular = wanted is None or bool(wanted.radians)
+        return ExactValue(*(quantity.angular() if angular else quantity.cyclic()))
+    if isinstance(given, float) and isfinite(given):
+        return ExactValue(Fraction(Decimal(repr(given))))
+    if isinstance(given, int | Fraction) or (isinstance(given, Decimal) and given.is_finite()):
+        return ExactValue(Fraction(given))
+    as_float = getattr(given, "item", None)
+    if callable(as_float):
+        return _read_value(parameter, as_float())
+    raise UsageError(Diagnostic("SF902", f"the value of '{parameter.name}' must be a finite number"))
+
+
+def bind(
+    tf: TransferFunction, values: Mapping[str, int | float | Fraction | Decimal | str] | None = None
+) -> BoundTransferFunction:
+    """Return the transfer function with the declared values, or the given ones in their place.
+
+    Parameters
+    ----------
+    tf : TransferFunction
+        Derived.
+    values : mapping of str to number or quantity, optional
+        Replacements, in SI units or with a unit ("0.8 m").
+
+    Raises
+    ------
+    ModelError
+        SF229 a parameter without value; SF231 the denominator vanishes for these values.
+    UsageError
+        SF902 an unknown parameter.
+    """
+    given = dict(values or {})
+    used = tf.parameters
+    everything = {p.name: p for p in tf.model.parameters}
+    extra = tuple(everything[n] for n in given if n in everything and everything[n] not in used)
+    if unknown := [n for n in given if n not in everything]:
+        read_values(tuple(everything.values()), {unknown[0]: given[unknown[0]]})
+    exact = read_values((*used, *extra), given)
+    table = dict(exact)
+    generators = [n for n in tf.ratio.ring.names[1:] if n not in everything]
+    ring = Ring((LAPLACE, *generators))
+    images = _Substitution(ring, tf.ratio.ring, table)
+    bound = Factored.number(ring, tf.ratio.unit)
+    for factor, exponent in tf.ratio.factors:
+        value = images.apply(factor)
+        if value.is_zero and exponent < 0:
+            message = f"the denominator of {tf.name} is zero for these values"
+            raise ModelError(Diagnostic("SF231", message, None, "a rigid or massless limit has its own equations"))
+        bound = bound * value**exponent
+    ratio, shared = cancel(bound.numerator(), bound.denominator())
+    hidden = [HiddenFactor(f, e) for f, e in shared.factors if degree_in(f, 0)]
+    for known in tf.hidden:
+        value = images.apply(known.polynomial)
+        hidden += [HiddenFactor(f, e * known.multiplicity) for f, e in value.factors if degree_in(f, 0) and e > 0]
+    return BoundTransferFunction(tf, exact, ratio, tuple(hidden))
+
+
+@dataclass(frozen=True)
+class _Substitution:
+    """Puts exact values in place of parameters."""
+
+    ring: Ring
+    source: Ring
+    values: Mapping[str, ExactValue]
+
+    def apply(self, polynomial: fmpz_mpoly) -> Factored:
+        """Return the polynomial over s, pi and functions of constants."""
+        names = self.source.names
+        targets = [self.ring.index.get(n) for n in names]
+        pi = self.ring.index["pi"]
+        powers: dict[tuple[str, int], Fraction] = {}
+        collected: dict[tuple[int, ...], Fraction] = {}
+        for monomial, coefficient in polynomial.terms():
+            number = Fraction(int(coefficient))
+            exponents = [0] * len(self.ring.names)
+            for name, target, exponent in zip(names, targets, monomial, strict=True):
+                e = int(exponent)
+                if not e:
+                    continue
+                if target is not None:
+                    exponents[target] += e
+                    continue
+                value = self.values[name]
+                key = (name, e)
+                if key not in powers:
+                    powers[key] = value.rational**e
+                number *= powers[key]
+                exponents[pi] += value.pi_power * e
+            place = tuple(exponents)
+            collected[place] = collected.get(place, Fraction(0)) + number
+        return self._clear(collected, pi)
+
+    def _clear(self, collected: dict[tuple[int, ...], Fraction], pi: int) -> Factored:
+        terms = {m: c for m, c in collected.items() if c}
+        if not terms:
+            return Factored.number(self.ring, 0)
+        lowest = min(m[pi] for m in terms)
+        shift = min(lowest, 0)
+        scale = lcm(*(c.denominator for c in terms.values()))
+        integers = {
+            tuple(e - shift if i == pi else e for i, e in enumerate(m)): int(c * scale) for m, c in terms.items()
+        }
+        value = Factored.polynomial(self.ring, self.ring.context.from_dict(integers))
+        return value * Fraction(1, scale) * Factored.generator(self.ring, "pi") ** shift

@@ -1,0 +1,108 @@
+"""The transfer function: an exact rational function of s with names, units and what was cancelled from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from symflex.expressions import Name, names
+from symflex.kernels import LAPLACE, degree_in
+
+if TYPE_CHECKING:
+    from flint import fmpz_mpoly
+
+    from symflex.elimination import Closure
+    from symflex.equations import ConstantFunction
+    from symflex.kernels import Factored, Ring
+    from symflex.model import Input, Model, Output, Parameter
+
+
+@dataclass(frozen=True, slots=True)
+class HiddenFactor:
+    """A polynomial in s that cancelled: its roots are uncontrollable or unobservable modes."""
+
+    polynomial: fmpz_mpoly
+    multiplicity: int
+
+
+@dataclass(frozen=True)
+class ClosedForm:
+    """The same function with sub-impedances and definitions kept as single symbols.
+
+    Parameters
+    ----------
+    closure : Closure
+        The ring with one generator per closed sum, and what each sum is.
+    num, den : fmpz_mpoly
+        Coprime polynomials in that ring.
+    """
+
+    closure: Closure
+    num: fmpz_mpoly
+    den: fmpz_mpoly
+
+
+@dataclass(frozen=True)
+class TransferFunction:
+    """``output = ratio(s) * input``, in lowest terms.
+
+    Parameters
+    ----------
+    output, input : Output, Input
+        What is measured and what drives.
+    ratio : Factored
+        Numerator over denominator; every factor of one is coprime to every factor of the other.
+    closed : ClosedForm or None
+        The compact form; ``None`` when it could not be reduced without opening its sums.
+    hidden : tuple of HiddenFactor
+        The common factors in s that were cancelled.
+    quantity, unit : str
+        ``receptance``, ``mobility``, ...; SI unit, empty when unknown.
+    base : Ring
+        The equations' ring: as ``ratio.ring``, and one generator per definition.
+    definitions : tuple of (str, Factored)
+        The definitions over ``base``, each in terms of earlier ones.
+    constants : tuple of ConstantFunction
+        What function generators such as ``sqrt(k*m)`` stand for.
+    model : Model
+        Where it comes from.
+    """
+
+    output: Output
+    input: Input
+    ratio: Factored
+    closed: ClosedForm | None
+    hidden: tuple[HiddenFactor, ...]
+    quantity: str
+    unit: str
+    base: Ring
+    definitions: tuple[tuple[str, Factored], ...]
+    constants: tuple[ConstantFunction, ...]
+    model: Model
+
+    @property
+    def name(self) -> str:
+        """``OUT/IN``."""
+        return f"{self.output.name}/{self.input.name}"
+
+    @cached_property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The parameters that occur, in declared order."""
+        ring = self.ratio.ring
+        used = {name for name in ring.names if self.ratio.depends_on(name)}
+        for constant in self.constants:
+            if constant.generator in used:
+                used |= {n.name for n in names(constant.expression) if isinstance(n, Name)}
+        return tuple(p for p in self.model.parameters if p.name in used)
+
+    @property
+    def order(self) -> tuple[int, int]:
+        """Degrees in s of numerator and denominator."""
+        return degree(self.ratio.numerator()), degree(self.ratio.denominator())
+
+
+def degree(value: Factored) -> int:
+    """Return the degree in s of a product of polynomials."""
+    i = value.ring.index[LAPLACE]
+    return sum(degree_in(f, i) * e for f, e in value.factors)

@@ -1,0 +1,92 @@
+"""What the pages show is what the program does."""
+
+from __future__ import annotations
+
+import doctest
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+import symflex
+from tests.house.repository import ROOT, all_blocks, blocks, pages
+
+SPECIFICATIONS = [block for block in all_blocks("toml") if block.text.startswith("symflex = 1")]
+SESSIONS = [block for block in all_blocks("console") if block.text.startswith("$ symflex")]
+PYTHON = [block for block in all_blocks("python") if ">>>" in block.text]
+FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
+
+
+@pytest.fixture
+def reader(tmp_path, monkeypatch):
+    """The folder of a reader who copied every titled file of a page."""
+
+    def copy(page):
+        for block in blocks(page):
+            if block.title:
+                (tmp_path / block.title).write_text(block.text, encoding="utf-8")
+        shutil.copytree(ROOT / "derivations", tmp_path / "derivations")
+        monkeypatch.chdir(tmp_path)
+        return tmp_path
+
+    return copy
+
+
+def symflex_output(arguments, folder):
+    command = [sys.executable, "-m", "symflex", *arguments]
+    environment = {"PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "error", "NO_COLOR": "1"}
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+
+
+def test_there_is_something_to_check():
+    assert SPECIFICATIONS
+    assert SESSIONS
+    assert PYTHON
+
+
+@pytest.mark.parametrize("block", [b for b in SPECIFICATIONS if b.title != "wrong.toml"], ids=str)
+def test_every_specification_on_a_page_loads(block):
+    assert symflex.loads(block.text)
+
+
+@pytest.mark.parametrize("block", [b for b in SPECIFICATIONS if b.title == "wrong.toml"], ids=str)
+def test_a_specification_shown_as_wrong_is_refused(block):
+    with pytest.raises(symflex.SymflexError):
+        symflex.loads(block.text)
+
+
+@pytest.mark.parametrize("block", SESSIONS, ids=str)
+def test_every_session_on_a_page_shows_what_the_program_prints(block, reader):
+    folder = reader(block.page)
+    for session in re.split(r"^\$ ", block.text, flags=re.MULTILINE)[1:]:
+        command, _, expected = session.partition("\n")
+        done = symflex_output(shlex.split(command)[1:], folder)
+        printed = done.stdout + done.stderr
+        if not doctest.OutputChecker().check_output(expected, printed, doctest.ELLIPSIS):
+            pytest.fail(f"{block}: `{command}` prints\n{printed}", pytrace=False)
+
+
+@pytest.mark.parametrize(
+    "page", [page for page in pages() if any(b.page == page for b in PYTHON)], ids=lambda p: p.name
+)
+def test_the_python_examples_of_a_page_run_in_order(page, reader):
+    reader(page)
+    globs = {}
+    runner = doctest.DocTestRunner(optionflags=FLAGS)
+    for block in PYTHON:
+        if block.page == page:
+            test = doctest.DocTestParser().get_doctest(block.text, globs, str(block), str(page), block.line)
+            report = []
+            runner.run(test, out=report.append, clear_globs=False)
+            globs = test.globs
+            assert not runner.failures, "".join(report)
+
+
+def test_the_readme_shows_what_its_example_prints(reader):
+    readme = ROOT / "README.md"
+    specification, shown = [b for b in blocks(readme) if b.title or b.language == "text"]
+    printed = symflex_output(["derive", specification.title], reader(readme)).stdout
+    assert printed.strip() == shown.text.strip()

@@ -1,0 +1,119 @@
+"""What symflex derives from random networks is what an independent dense solution gives at any s."""
+
+from __future__ import annotations
+
+import importlib.util
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, assume, given, settings
+
+import symflex
+from tests.property.networks import networks, passive_networks, reciprocal_networks, to_toml
+from tests.property.tableau import respond
+
+POINTS = (0.37 + 1.13j, 1.71 - 0.59j, 0.05 + 2.9j, -0.23 + 0.67j, 2.3 + 0j)
+WORST_RELATIVE_ERROR = 1e-9
+FLOOR = 1e-4
+"""A value smaller than this part of what it was computed from is a difference: its error is absolute."""
+
+
+def quiet(examples):
+    return settings(
+        max_examples=examples,
+        deadline=None,
+        database=None,
+        derandomize=True,
+        print_blob=False,
+        suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+    )
+
+
+@pytest.fixture(scope="session")
+def numpy_functions(tmp_path_factory):
+    """Return a function that exports a specification to numpy and imports what was written."""
+    folder = tmp_path_factory.mktemp("exports")
+    numbers = itertools.count(1)
+
+    def load(text):
+        path = folder / f"export_{next(numbers)}.py"
+        path.write_text(symflex.loads(text).export_numpy(), "utf-8")
+        found = importlib.util.spec_from_file_location(path.stem, path)
+        module = importlib.util.module_from_spec(found)
+        found.loader.exec_module(module)
+        return module.TRANSFER_FUNCTIONS
+
+    return load
+
+
+def pairs(network):
+    """Return every (output, input)."""
+    return itertools.product((name for name, _ in network.outputs), (entry.name for entry in network.inputs))
+
+
+def reference(network, output, source, at):
+    """Return the independent response, or drop the example when ``at`` is a pole of a signal loop."""
+    try:
+        return respond(network, output, source, at)
+    except np.linalg.LinAlgError:
+        assume(False)
+
+
+def assert_close(found, expected):
+    allowed = WORST_RELATIVE_ERROR * max(abs(expected.value), FLOOR * expected.scale)
+    assert abs(complex(found) - expected.value) <= allowed
+
+
+@given(network=networks())
+@quiet(300)
+def test_the_exported_functions_agree_with_the_dense_tableau(numpy_functions, network):
+    functions = numpy_functions(to_toml(network))
+    for output, source in pairs(network):
+        for at in POINTS:
+            assert_close(functions[f"{output}/{source}"](at), reference(network, output, source, at))
+
+
+@given(network=networks())
+@quiet(100)
+def test_an_exported_function_broadcasts_over_s(numpy_functions, network):
+    function = next(iter(numpy_functions(to_toml(network)).values()))
+    one_by_one = np.array([function(at) for at in POINTS])
+    assert np.allclose(function(np.array(POINTS)), one_by_one, rtol=1e-12, atol=1e-300)
+
+
+@given(network=networks())
+@quiet(100)
+def test_the_bound_transfer_functions_agree_with_the_dense_tableau(network):
+    model = symflex.loads(to_toml(network))
+    for output, source in pairs(network):
+        H = model.transfer_function(output, source).bind()
+        for at in POINTS:
+            assert_close(H(at), reference(network, output, source, at))
+
+
+@given(network=reciprocal_networks())
+@quiet(100)
+def test_a_passive_network_is_reciprocal(network):
+    model = symflex.loads(to_toml(network))
+    there = model.transfer_function("Y_2", "U_1").bind()
+    back = model.transfer_function("Y_1", "U_2").bind()
+    for at in POINTS:
+        scale = reference(network, "Y_2", "U_1", at).scale
+        assert abs(complex(there(at)) - complex(back(at))) <= WORST_RELATIVE_ERROR * scale
+
+
+@given(network=passive_networks())
+@quiet(100)
+def test_the_poles_of_a_passive_network_are_not_in_the_right_half_plane(network):
+    H = symflex.loads(to_toml(network)).transfer_function("Y_1", "U_1").bind()
+    assert not any(pole.re > 0 for pole in H.poles())  # a ball is positive only when all of it is
+
+
+@given(network=passive_networks())
+@quiet(100)
+def test_the_zeros_of_a_driving_point_are_not_in_the_right_half_plane(network):
+    G = symflex.loads(to_toml(network)).transfer_function("Y_1", "U_1")
+    assume(G.num != 0)  # a held node has no zeros to speak of
+    H = G.bind()
+    assert not any(zero.re > 0 for zero in H.zeros())

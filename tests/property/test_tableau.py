@@ -1,0 +1,185 @@
+"""The tableau that judges random networks agrees with derivations by hand; the networks are well posed."""
+
+from __future__ import annotations
+
+import contextlib
+import tomllib
+
+import numpy as np
+import pytest
+import sympy
+from hypothesis import HealthCheck, Phase, find, given, settings
+
+from tests.independent import eppinger1988
+from tests.property.networks import (
+    BLOCKS,
+    ELEMENTS,
+    GROUND,
+    Element,
+    Input,
+    Network,
+    Parameter,
+    Term,
+    networks,
+    passive_networks,
+    reciprocal_networks,
+    to_toml,
+)
+from tests.property.tableau import respond
+
+POINTS = (0.4 + 1.3j, 1.7 - 0.6j, 0.05 + 2.9j)
+QUIET = settings(
+    max_examples=300,
+    deadline=None,
+    database=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
+
+
+def parameters(**tenths):
+    return {name: Parameter(name, value) for name, value in tenths.items()}
+
+
+def element(kind, name, ports, values, source=()):
+    ports = {key: (nodes,) if isinstance(nodes, str) else nodes for key, nodes in ports.items()}
+    return Element(kind, name, tuple(ports.items()), tuple(values.items()), source)
+
+
+def value_of(expr, values, at):
+    numbers = {name: sympy.Rational(p.tenths, 10) for name, p in values.items()}
+    return complex(expr.subs(numbers).subs("s", at))
+
+
+def assert_agrees(network, output, expr, values):
+    for at in POINTS:
+        expected = value_of(expr, values, at)
+        assert abs(respond(network, output, "F", at).value - expected) < 1e-13 * abs(expected)
+
+
+def lumped_beam():
+    p = parameters(m_1=31, m_2=7, J=4, c=9, h=23, EI=52, l=13)
+    network = Network(
+        coordinates=tuple(
+            (f"{node}.{axis}", domain)
+            for node in ("act", "joint", "tip")
+            for axis, domain in (("y", "translation"), ("theta", "rotation"))
+        ),
+        elements=(
+            element("mass", "actuator", {"at": "act"}, {"m": p["m_1"]}),
+            element("slider", "guide", {"at": "act"}, {}),
+            element("massless_beam", "beam", {"between": ("act", "joint")}, {"EI": p["EI"], "l": p["l"]}),
+            element("rigid_body", "body", {"at": "joint"}, {"m": p["m_2"], "J": p["J"], "cg": p["c"]}),
+            element("rigid_link", "overhang", {"between": ("joint", "tip")}, {"length": p["h"]}),
+        ),
+        inputs=(Input("F", "force", ("act",)),),
+        outputs=(("x_act", (Term("act.y"),)), ("x_tip", (Term("tip.y"),))),
+    )
+    return network, p
+
+
+@pytest.mark.parametrize("output", ["x_act", "x_tip"])
+def test_the_tableau_of_the_lumped_beam_agrees_with_its_energies(output):
+    network, values = lumped_beam()
+    assert_agrees(network, output, eppinger1988.lumped_bending_beam(output), values)
+
+
+@pytest.mark.parametrize("output", ["tip", "motor", "base"])
+def test_the_tableau_of_the_flexible_base_agrees_with_its_energies(output):
+    p = parameters(m=31, m_base=77, k_base=52, b_base=3, b=4)
+    network = Network(
+        coordinates=(("x_tip", "translation"), ("x_base", "translation")),
+        elements=(
+            element("mass", "carriage", {"at": "x_tip"}, {"m": p["m"]}),
+            element("mass", "base", {"at": "x_base"}, {"m": p["m_base"]}),
+            element("damper", "friction", {"between": ("x_tip", "x_base")}, {"b": p["b"]}),
+            element("damper", "loss", {"between": ("x_base", GROUND)}, {"b": p["b_base"]}),
+            element("spring", "foundation", {"between": ("x_base", GROUND)}, {"k": p["k_base"]}),
+        ),
+        inputs=(Input("F", "force", ("x_tip", "x_base")),),
+        outputs=(
+            ("tip", (Term("x_tip"),)),
+            ("motor", (Term("x_tip"), Term("x_base", -1))),
+            ("base", (Term("x_base"),)),
+        ),
+    )
+    assert_agrees(network, output, eppinger1988.base_flexure(output), p)
+
+
+def test_the_tableau_of_the_rigid_body_agrees_with_the_printed_formula():
+    p = parameters(
+        m_eff=31, b_eff=7, r=4, L=3, R=12, k_amp=50, k_preamp=9, k_tau=6, k_current=2, k_tach=3, k_bemf=5
+    )
+    network = Network(
+        coordinates=(("terminal", "electrical"), ("shaft", "rotation"), ("x_tip", "translation")),
+        elements=(
+            element("voltage_source", "amplifier", {"at": "terminal"}, {}, (Term("v_m"),)),
+            element(
+                "dc_motor",
+                "motor",
+                {"terminals": ("terminal", GROUND), "shaft": "shaft"},
+                {"L": p["L"], "R": p["R"], "k_t": p["k_tau"], "k_e": p["k_bemf"]},
+            ),
+            element("transformer", "screw", {"from": "shaft", "to": "x_tip"}, {"ratio": p["r"]}),
+            element("mass", "axis", {"at": "x_tip"}, {"m": p["m_eff"]}),
+            element("damper", "friction", {"between": ("x_tip", GROUND)}, {"b": p["b_eff"]}),
+        ),
+        inputs=(Input("F"),),
+        outputs=(("V_tip", (Term("x_tip", power=1),)),),
+        signals=(
+            ("e_1", (Term("F", 1, (p["k_preamp"],)), Term("shaft", -1, (p["k_preamp"], p["k_tach"]), 1))),
+            ("v_m", (Term("e_1", 1, (p["k_amp"],)), Term("motor.i", -1, (p["k_amp"], p["k_current"])))),
+        ),
+    )
+    assert_agrees(network, "V_tip", eppinger1988.printed_rigid_body(), p)
+
+
+@pytest.mark.parametrize("kind", [*ELEMENTS, *BLOCKS])
+def test_every_element_and_block_occurs_in_some_random_network(kind):
+    search = settings(QUIET, max_examples=3000, phases=[Phase.generate])
+    assert find(networks(), lambda network: kind in network.kinds, settings=search)
+
+
+@given(networks())
+@QUIET
+def test_every_random_network_is_a_toml_document_with_an_input_and_an_output(network):
+    entries = tomllib.loads(to_toml(network))
+    assert entries["inputs"]
+    assert entries["outputs"]
+
+
+@given(networks())
+@QUIET
+def test_every_random_network_responds_somewhere(network):
+    """A signal loop may have a pole at one point, but no network is singular at all of them."""
+    solved = 0
+    for at in POINTS:
+        with contextlib.suppress(np.linalg.LinAlgError):
+            respond(network, network.outputs[0][0], network.inputs[0].name, at)
+            solved += 1
+    assert solved
+
+
+@given(passive_networks())
+@QUIET
+def test_every_random_passive_network_is_nonsingular_in_the_right_half_plane(network):
+    for at in POINTS:
+        assert respond(network, "Y_1", "U_1", at)
+
+
+@given(reciprocal_networks())
+@QUIET
+def test_the_tableau_of_a_passive_network_is_reciprocal(network):
+    for at in POINTS:
+        there, back = respond(network, "Y_2", "U_1", at), respond(network, "Y_1", "U_2", at)
+        assert abs(there.value - back.value) <= 1e-11 * max(there.scale, back.scale)
+
+
+@given(passive_networks())
+@QUIET
+def test_the_driving_point_of_a_passive_network_is_positive_real(network):
+    for at in POINTS:
+        response = respond(network, "Y_1", "U_1", at)
+        electrical = network.inputs[0].key == "current"
+        immittance = response.value * (1 if electrical else at)
+        assert immittance.real >= -1e-12 * response.scale

@@ -1,0 +1,210 @@
+"""Every unit and prefix against pint, which keeps its own tables."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pint
+import pytest
+
+from symflex.quantities import Unit, unit_of
+from symflex.quantities.units import (
+    _INSTEAD,
+    PLAIN_UNITS,
+    PREFIXABLE_UNITS,
+    PREFIXES,
+    UNITS,
+    unit_hint,
+    unit_named,
+)
+
+PINT_PREFIXES = {
+    "Q": "quetta", "R": "ronna", "Y": "yotta", "Z": "zetta", "E": "exa", "P": "peta", "T": "tera",
+    "G": "giga", "M": "mega", "k": "kilo", "h": "hecto", "da": "deca", "d": "deci", "c": "centi",
+    "m": "milli", "u": "micro", "\u00b5": "micro", "\u03bc": "micro", "n": "nano", "p": "pico",
+    "f": "femto", "a": "atto", "z": "zepto", "y": "yocto", "r": "ronto", "q": "quecto",
+}  # fmt: skip
+
+PINT_UNITS = {
+    "m": "meter", "g": "gram", "s": "second", "A": "ampere", "K": "kelvin", "mol": "mole",
+    "cd": "candela", "rad": "radian", "sr": "steradian", "Hz": "hertz", "N": "newton", "Pa": "pascal",
+    "J": "joule", "W": "watt", "C": "coulomb", "V": "volt", "F": "farad", "Ohm": "ohm", "ohm": "ohm",
+    "\u03a9": "ohm", "\u2126": "ohm", "S": "siemens", "Wb": "weber", "T": "tesla", "H": "henry",
+    "lm": "lumen", "lx": "lux", "L": "liter", "l": "liter", "bar": "bar", "Wh": "watt_hour",
+    "Ah": "ampere_hour", "gf": "gram_force", "deg": "degree", "rpm": "revolutions_per_minute",
+    "t": "metric_ton", "min": "minute", "h": "hour", "\u00b0": "degree", "arcmin": "arcminute",
+    "arcsec": "arcsecond", "rev": "turn", "cycle": "turn", "%": "percent", "ppm": "ppm",
+    "g_n": "standard_gravity", "dyn": "dyne", "atm": "standard_atmosphere", "in": "inch", "inch": "inch",
+    "mil": "thou", "ft": "foot", "yd": "yard", "mi": "mile", "lb": "pound", "lbm": "pound", "oz": "ounce",
+    "slug": "slug", "lbf": "force_pound", "ozf": "force_ounce", "kip": "kip", "psi": "psi", "ksi": "ksi",
+    "hp": "horsepower",
+}  # fmt: skip
+
+BASE_OF_PINT = {
+    "[mass]": "kg", "[length]": "m", "[time]": "s", "[current]": "A", "[temperature]": "K",
+    "[substance]": "mol", "[luminosity]": "cd",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def registry():
+    return pint.UnitRegistry(non_int_type=Fraction)
+
+
+def factor_in_pint(registry, name):
+    quantity = registry.Quantity(Fraction(1), name).to_root_units()
+    # The kilogram is no root unit of pint.
+    return Fraction(quantity.magnitude) / Fraction(1000) ** quantity.dimensionality.get("[mass]", 0)
+
+
+def factor_here(registry, unit, name):
+    pi = Fraction(registry.Quantity(Fraction(1), "pi").to_root_units().magnitude)
+    # Pint's turn is 2 pi radians, and so is its rpm; its hertz is 1/s.
+    cycles = 0 if name == "Hz" else unit.cycles
+    return unit.scale * pi**unit.pi_power * (2 * pi) ** cycles
+
+
+def exponents(dimensionality):
+    return {BASE_OF_PINT[name]: Fraction(exponent) for name, exponent in dimensionality.items()}
+
+
+def nonzero(dimension):
+    names = ("kg", "m", "s", "A", "K", "mol", "cd")
+    return {name: e for name, e in zip(names, dimension.exponents, strict=True) if e}
+
+
+def test_pint_knows_every_unit_of_the_table():
+    assert set(PINT_UNITS) == set(UNITS)
+
+
+def test_pint_knows_every_prefix():
+    assert set(PINT_PREFIXES) == set(PREFIXES)
+
+
+@pytest.mark.parametrize("name", UNITS)
+def test_the_factor_of_a_unit_is_exactly_that_of_pint(registry, name):
+    assert factor_here(registry, unit_of(name), name) == factor_in_pint(registry, PINT_UNITS[name])
+
+
+@pytest.mark.parametrize("name", UNITS)
+def test_the_dimension_of_a_unit_is_that_of_pint(registry, name):
+    assert nonzero(unit_of(name).dimension) == exponents(registry.Unit(PINT_UNITS[name]).dimensionality)
+
+
+@pytest.mark.parametrize("prefix", PREFIXES)
+def test_a_prefix_scales_a_unit_exactly_as_in_pint(registry, prefix):
+    prefixed = registry.Quantity(Fraction(1), PINT_PREFIXES[prefix] + "meter")
+    assert unit_of(prefix + "m").scale == Fraction(prefixed.to_root_units().magnitude)
+
+
+@pytest.mark.parametrize("prefix", PREFIXES)
+def test_a_prefix_scales_all_units_alike(prefix):
+    factor = unit_of(prefix + "m").scale
+    expected = {name: unit.scaled(factor) for name, unit in PREFIXABLE_UNITS.items()}
+    assert {name: unit_of(prefix + name) for name in PREFIXABLE_UNITS} == expected
+
+
+def test_no_prefixed_symbol_has_two_readings():
+    symbols = [*UNITS, *(prefix + name for prefix in PREFIXES for name in PREFIXABLE_UNITS)]
+    assert len(symbols) == len(set(symbols))
+
+
+@pytest.mark.parametrize("name", PLAIN_UNITS)
+def test_a_unit_that_takes_no_prefix_is_unknown_with_one(name):
+    assert unit_named("k" + name) is None
+
+
+@pytest.mark.parametrize(
+    ("name", "cycles"),
+    [("Hz", 1), ("rev", 1), ("cycle", 1), ("rpm", 1), ("V/krpm", -1), ("mm/rev", -1), ("rad", 0)],
+)
+def test_the_exponent_of_the_cycle_is_kept(name, cycles):
+    assert unit_of(name).cycles == cycles
+
+
+@pytest.mark.parametrize(
+    ("name", "radians"),
+    [("rad", 1), ("deg", 1), ("N*m/rad", -1), ("N*m/deg", -1), ("sr", 2), ("rev", 0), ("m", 0)],
+)
+def test_the_exponent_of_the_radian_is_kept(name, radians):
+    assert unit_of(name).radians == radians
+
+
+def test_every_factor_is_a_fraction():
+    assert {type(unit.scale) for unit in UNITS.values()} == {Fraction}
+
+
+def test_a_rpm_is_a_sixtieth_of_a_cycle_per_second():
+    assert unit_of("rpm") == unit_of("cycle/s").scaled(Fraction(1, 60))
+
+
+def test_a_pound_force_is_the_standard_weight_of_a_pound():
+    # 0.45359237 kg (1959 agreement) times 9.80665 m/s^2 (3rd CGPM, 1901).
+    assert unit_of("lbf").scale == Fraction("4.4482216152605")
+
+
+def test_a_unit_has_an_exact_root_when_its_factor_has():
+    assert unit_of("cm^2").root(2) == unit_of("cm")
+
+
+@pytest.mark.parametrize("name", ["km", "Hz", "deg", "rad"])
+def test_a_unit_without_an_exact_root_has_none(name):
+    assert unit_of(name).root(2) is None
+
+
+def test_a_quotient_of_units_undoes_their_product():
+    assert unit_of("krpm") * unit_of("deg") / unit_of("deg") == unit_of("krpm")
+
+
+def test_units_compare_by_value():
+    assert unit_of("kg*m/s^2") == Unit(Fraction(1), dimension=unit_of("N").dimension)
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("KN", "kN"),
+        ("Kg", "kg"),
+        ("KG", "kg"),
+        ("MPA", "MPa"),
+        ("mpa", "mPa"),
+        ("khz", "kHz"),
+        ("HZ", "Hz"),
+        ("RPM", "rpm"),
+        ("sec", "s"),
+        ("ohms", "Ohm"),
+        ("kohms", "kohm"),
+        ("Nm", "N*m"),
+        ("kNm", "kN*m"),
+        ("Nms", "N*m*s"),
+        ("Vs", "V*s"),
+        ("kgm2", "kg*m^2"),
+        ("m2", "m^2"),
+        ("s2", "s^2"),
+        ("kgg", "kg"),
+        ("rads", "rad"),
+        ("Pas", "Pa*s"),
+        ("inches", "in"),
+        ("degrees", "deg"),
+        ("micron", "um"),
+    ],
+)
+def test_an_unknown_unit_brings_a_hint(written, meant):
+    assert unit_hint(written) == f"did you mean '{meant}'?"
+
+
+@pytest.mark.parametrize(
+    ("written", "word"),
+    [("lbs", "'lbf' (force)"), ("dB", "10^(x/20)"), ("degC", "'K'"), ("\u00b0C", "'K'"), ("m_1", "'*'")],
+)
+def test_a_unit_that_has_no_single_replacement_brings_advice(written, word):
+    assert word in unit_hint(written)
+
+
+def test_a_unit_like_no_other_brings_no_hint():
+    assert unit_hint("qwertyuiop") is None
+
+
+def test_every_hint_of_a_single_unit_can_be_read():
+    meant = {hint.split("'")[1] for hint in _INSTEAD.values() if hint.startswith("did you mean")}
+    assert all(isinstance(unit_of(unit), Unit) for unit in meant)
