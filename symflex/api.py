@@ -42,7 +42,8 @@ class Model:
 
     Parameters
     ----------
-    parameters, definitions, elements, signals, blocks, inputs, outputs, analysis, figures, published : mapping
+    parameters, definitions, elements, signals, blocks, inputs, outputs : mapping
+    analysis, figures, published : mapping
         The tables of the specification language, as Python mappings of the same shape.
     title, source : str
         What the model is and where it comes from.
@@ -125,7 +126,7 @@ class Model:
         """Names of the outputs."""
         return tuple(o.name for o in self.resolved.outputs)
 
-    def transfer_function(self, output: str, input: str) -> TransferFunction:  # noqa: A002
+    def transfer_function(self, output: str, input: str) -> TransferFunction:
         """Derive output over input.
 
         Raises
@@ -143,7 +144,7 @@ class Model:
         return tuple(TransferFunction(tf) for tf in pipeline.derive_all(self.resolved))
 
     def export_numpy(self) -> str:
-        """Return one numpy module with a function per transfer function; see ``symflex export --to numpy``."""
+        """Return a numpy module with a function per transfer function."""
         return self._export("numpy")
 
     def export_latex(self) -> str:
@@ -320,7 +321,7 @@ class TransferFunction:
         return BoundTransferFunction(pipeline.bind(self.exact, values))
 
     def _repr_latex_(self) -> str:
-        return self._shortest._repr_latex_()  # noqa: SLF001
+        return self._shortest._repr_latex_()
 
     def __str__(self) -> str:
         return str(self._shortest)

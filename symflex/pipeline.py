@@ -1,10 +1,10 @@
 """The pipeline, one function per arrow: text, model, equations, transfer functions, and what is made of them.
 
-    text --parse--> Spec --resolve--> Model --assemble--> Equations --derive--> TransferFunction
-                                                                                   | bind(values)
-       PoleZeroMap <--roots--  FrequencyResponse <--response--                     |
-                                                                                   |
-                                                     emit: text, JSON, LaTeX, numpy, figure
+text --parse--> Spec --resolve--> Model --assemble--> Equations --derive--> TransferFunction
+                                                                               | bind(values)
+   PoleZeroMap <--roots--  FrequencyResponse <--response--                     |
+                                                                               |
+                                                 emit: text, JSON, LaTeX, numpy, figure
 """
 
 from __future__ import annotations
@@ -84,7 +84,9 @@ def derive(equations: Equations, output: str, source: str) -> TransferFunction:
 
 def derive_all(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> tuple[TransferFunction, ...]:
     """Return the transfer functions of the given pairs, all by default, from one elimination."""
-    return transfer_room.derive_all(assemble(model), model.transfer_functions if pairs is None else tuple(pairs))
+    return transfer_room.derive_all(
+        assemble(model), model.transfer_functions if pairs is None else tuple(pairs)
+    )
 
 
 def pick_pairs(model: Model, names: Sequence[str]) -> tuple[tuple[str, str], ...]:

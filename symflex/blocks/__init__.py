@@ -4,8 +4,7 @@ from symflex.blocks.block import Block, BlockParameter
 from symflex.blocks.library import Integrator, LeadLag, Pid, Resonance, TransferFunctionBlock
 
 BLOCKS: dict[str, Block] = {
-    block.type_name: block
-    for block in (Resonance(), TransferFunctionBlock(), Integrator(), LeadLag(), Pid())
+    block.type_name: block for block in (Resonance(), TransferFunctionBlock(), Integrator(), LeadLag(), Pid())
 }
 
 MODEL_BLOCK = "model"

@@ -19,7 +19,9 @@ class Resonance(Block):
     """
 
     type_name = "resonance"
-    summary = "(omega_p/omega_z)^2 (s^2 + 2 zeta_z omega_z s + omega_z^2)/(s^2 + 2 zeta_p omega_p s + omega_p^2)"
+    summary = (
+        "(omega_p/omega_z)^2 (s^2 + 2 zeta_z omega_z s + omega_z^2)/(s^2 + 2 zeta_p omega_p s + omega_p^2)"
+    )
     parameters = (
         BlockParameter("omega_p", "rad/s", "an angular frequency"),
         BlockParameter("zeta_p", "1", "a damping ratio"),
@@ -36,7 +38,7 @@ class Resonance(Block):
 
 
 class TransferFunctionBlock(Block):
-    """A numerator over a denominator, each an expression in s or a list of coefficients, highest power first."""
+    """A numerator over a denominator: expressions in s, or lists of coefficients, highest power first."""
 
     type_name = "tf"
     summary = "num/den, each an expression in s or a list of coefficients (highest power first)"

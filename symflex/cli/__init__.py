@@ -1,4 +1,4 @@
-"""The command line. A command's module is imported when the command runs, so that ``--help`` starts at once."""
+"""The command line. A command is imported when it runs, so that ``--help`` starts at once."""
 
 from __future__ import annotations
 

@@ -40,7 +40,9 @@ def command(
     if as_json or format_ == "json":
         emit_json(derive_document(entries))
     elif format_ == "latex":
-        click.echo("\n\n".join(transfer_function_latex(tf, printed, width_mm=None) for tf, printed in entries))
+        click.echo(
+            "\n\n".join(transfer_function_latex(tf, printed, width_mm=None) for tf, printed in entries)
+        )
     else:
         width = terminal_width()
         click.echo("\n".join(derive_text(tf, printed, width) for tf, printed in entries).rstrip("\n"))

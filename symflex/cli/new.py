@@ -38,7 +38,9 @@ def command(template: str | None, *, output: str | None) -> int:
         click.echo(text, nl=False)
         return 0
     if Path(output).exists():
-        raise UsageError(Diagnostic("SF903", f"'{output}' exists and is not overwritten", None, "choose another name"))
+        raise UsageError(
+            Diagnostic("SF903", f"'{output}' exists and is not overwritten", None, "choose another name")
+        )
     from symflex.emit.write import write_atomically
 
     write_atomically(Path(output), text.encode())

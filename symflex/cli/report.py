@@ -36,7 +36,7 @@ def reporting(command: Callable[P, int | None]) -> Callable[P, int]:
 
 
 def colours() -> bool:
-    """True when stderr is a terminal that may be coloured."""
+    """Tell whether stderr is a terminal that may be coloured."""
     return sys.stderr.isatty() and "NO_COLOR" not in os.environ
 
 

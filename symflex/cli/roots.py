@@ -20,9 +20,13 @@ DIGITS_LIMIT = 10_000
 @click.argument("spec", type=click.Path())
 @click.option("--tf", metavar="OUT/IN", help="The transfer function; the first one by default.")
 @click.option("--modes", type=click.IntRange(1), help="Only the N lowest modes, with roots at the origin.")
-@click.option("--band", nargs=2, metavar="LO HI", help='Only natural frequencies in a band: 0.1 1000, "1 kHz".')
+@click.option(
+    "--band", nargs=2, metavar="LO HI", help='Only natural frequencies in a band: 0.1 1000, "1 kHz".'
+)
 @click.option("--region", nargs=4, metavar="RE0 RE1 IM0 IM1", help="Only a rectangle of the s plane [rad/s].")
-@click.option("--digits", type=click.IntRange(1, DIGITS_LIMIT), help="Correct significant digits.  [default: 15]")
+@click.option(
+    "--digits", type=click.IntRange(1, DIGITS_LIMIT), help="Correct significant digits.  [default: 15]"
+)
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @reporting
 def command(

@@ -60,7 +60,7 @@ class Transformer(Element):
         through = use.unknown(quantity)
         ratio = use.values["ratio"]
         denominator, numerator = ratio.denominator(), ratio * ratio.denominator()
-        # The unknown is the through variable divided by the ratio's denominator, which keeps both sides polynomial.
+        # The unknown is the through variable over the ratio's denominator: both sides stay polynomial.
         law = LinearForm.of((target, denominator), (source, -numerator))
         delivered = LinearForm.of((through, denominator))
         return Stamp(
@@ -75,7 +75,7 @@ class Transformer(Element):
 
 
 class Gyrator(Element):
-    """A lossless crossing of effort and flow: ``effort_from = ratio*flow_to``, ``effort_to = ratio*flow_from``.
+    """A lossless crossing: ``effort_from = ratio*flow_to``, ``effort_to = ratio*flow_from``.
 
     Effort is force [N], torque [N m] or voltage [V]; flow is velocity [m/s, rad/s] or current [A].
     Power drawn at ``from`` is delivered at ``to``. The quantity named by the domain of ``to``

@@ -6,7 +6,7 @@ from symflex.elements.element import Element, ElementUse, ParameterPort, Port, S
 
 
 class RotaryDamper(Element):
-    """A rotary damper b [N m s/rad]; the torque ``tau`` [N m] it carries from the first node to the second."""
+    """A rotary damper b [N m s/rad]; it carries ``tau`` [N m] from the first node to the second."""
 
     type_name = "rotary_damper"
     summary = "Rotary viscous damper"

@@ -1,4 +1,4 @@
-"""Closing sub-impedances: every repeated sum becomes one generator, so that elimination and print stay compact.
+"""Closing sub-impedances: every sum becomes one generator, so that elimination and print stay compact.
 
 Input: :class:`symflex.equations.Equations`, entries factored over the ring of parameters.
 Output: a :class:`ClosedSystem`, a sparse matrix over a ring with one more generator per distinct sum.

@@ -86,7 +86,12 @@ class Minors:
 
 def _too_large(message: str) -> BudgetError:
     return BudgetError(
-        Diagnostic("SF502", f"the closed form is too large: {message}", None, "split the model or give it fewer nodes")
+        Diagnostic(
+            "SF502",
+            f"the closed form is too large: {message}",
+            None,
+            "split the model or give it fewer nodes",
+        )
     )
 
 

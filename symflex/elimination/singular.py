@@ -12,12 +12,11 @@ from symflex.errors import Diagnostic, ModelError
 if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
-    from symflex.elements import Variable
     from symflex.equations import Equations
     from symflex.errors import Span
 
 PRIME = 2**61 - 1
-"""A Mersenne prime; by Schwartz-Zippel a random point mod PRIME misses the generic rank with odds below 1e-12."""
+"""A Mersenne prime; a random point mod PRIME misses the generic rank with odds below 1e-12."""
 SHOWN = 6
 
 
@@ -77,7 +76,13 @@ def explain_singular(equations: Equations) -> ModelError:
 def _listed(names: list[str]) -> str:
     if len(names) > SHOWN:
         names = [*names[:SHOWN], f"{len(names) - SHOWN} more"]
-    return names[0] if len(names) == 1 else ", ".join(names[:-1]) + " and " + names[-1] if names else "the system"
+    return (
+        names[0]
+        if len(names) == 1
+        else ", ".join(names[:-1]) + " and " + names[-1]
+        if names
+        else "the system"
+    )
 
 
 def _at_random_point(equations: Equations) -> nmod_mat:
@@ -96,7 +101,9 @@ def _at_random_point(equations: Equations) -> nmod_mat:
             if variable in columns:
                 number = coefficient.unit.numerator % PRIME
                 for factor, exponent in coefficient.factors:
-                    number = number * pow(_value(factor, equations.ring.names, values), exponent, PRIME) % PRIME
+                    number = (
+                        number * pow(_value(factor, equations.ring.names, values), exponent, PRIME) % PRIME
+                    )
                 position = i * len(columns) + columns[variable]
                 entries[position] = (entries[position] + number) % PRIME
     return nmod_mat(size, len(columns), entries, PRIME)
@@ -129,7 +136,7 @@ def _place(equations: Equations, owner: str) -> Span | None:
 
 
 def is_singular(equations: Equations) -> bool:
-    """True when the determinant vanishes at a random point of a prime field, so almost surely identically."""
+    """Tell whether the determinant vanishes at a random point of a prime field."""
     if len(equations.rows) != len(equations.unknowns):
         return True
     return bool(equations.unknowns) and int(_at_random_point(equations).rank()) < len(equations.unknowns)

@@ -1,4 +1,4 @@
-"""Elimination of unknowns whose pivot is plus or minus one: it divides by nothing and keeps rows polynomial."""
+"""Elimination of unknowns whose pivot is plus or minus one, which keeps rows polynomial."""
 
 from __future__ import annotations
 

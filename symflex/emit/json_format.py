@@ -28,9 +28,7 @@ def derive_json(tf: TransferFunction, form: PrintedForm) -> dict[str, object]:
         "den": format_expression(form.den),
         "where": [[name, format_expression(e)] for name, e in form.where],
         "latex": inline_latex(tf, form),
-        "hidden": [
-            {"factor": format_expression(e), "multiplicity": m} for e, m in hidden_expressions(tf)
-        ],
+        "hidden": [{"factor": format_expression(e), "multiplicity": m} for e, m in hidden_expressions(tf)],
     }
 
 

@@ -27,7 +27,11 @@ if TYPE_CHECKING:
 
 def symbols_of(model: Model) -> dict[str, sympy.Symbol]:
     """Return one SymPy symbol per parameter, with its assumption; others are made without any."""
-    assumptions = {"positive": {"positive": True}, "nonnegative": {"nonnegative": True}, "real": {"real": True}}
+    assumptions = {
+        "positive": {"positive": True},
+        "nonnegative": {"nonnegative": True},
+        "real": {"real": True},
+    }
     return {p.name: sympy.Symbol(p.name, **assumptions[p.assume]) for p in model.parameters}
 
 

@@ -1,7 +1,7 @@
 """From a model to its equations.
 
 Input: a :class:`symflex.model.Model` and the transfer functions of its ``model`` blocks.
-Output: :class:`Equations`; every element has left its stamp, parallel branches are added up, rows are polynomial.
+Output: :class:`Equations`; every element has left its stamp, parallel branches are added up.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from math import lcm
 from typing import TYPE_CHECKING
 
 from symflex.elements import ElementUse, LinearForm, Row, Stamp, Terminal, Variable
-from symflex.equations.equations import ConstantFunction, EquationRow, Equations, OutputRow, Role
+from symflex.equations.equations import ConstantFunction, EquationRow, Equations, OutputRow
 from symflex.equations.evaluate import Evaluator, open_definitions
 from symflex.errors import Diagnostic, ModelError, SymflexError
 from symflex.expressions import Call, Expression, format_expression, names
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from symflex.model import Model, NodeReference, PlacedBlock, PlacedElement
 
 PI = "pi"
-
 
 
 def assemble(model: Model, nested: Callable[[PlacedBlock, Ring], Factored] | None = None) -> Equations:
@@ -80,8 +79,8 @@ def _with_submodels(model: Model) -> Iterable[Model]:
 
 def _expressions(model: Model) -> Iterable[Expression]:
     yield from (d.expression for d in model.definitions)
-    for use in (*model.elements, *model.blocks):
-        yield from (e for _, e in use.values)
+    for values in (*(u.values for u in model.elements), *(b.values for b in model.blocks)):
+        yield from (e for _, e in values)
     yield from (x.expression for x in model.signals)
     yield from (x.expression for x in model.outputs)
 
@@ -150,9 +149,7 @@ class _Assembly:
                 elif self.nested is not None:
                     found[block.name] = self.nested(block, self.ring)
             except ZeroDivisionError:
-                self.problems.append(
-                    Diagnostic("SF224", f"block '{block.name}' divides by zero", block.span)
-                )
+                self.problems.append(Diagnostic("SF224", f"block '{block.name}' divides by zero", block.span))
                 found[block.name] = Factored.number(self.ring, 1)
             except SymflexError as error:
                 self.problems.extend(error.diagnostics)
@@ -236,7 +233,12 @@ class _Assembly:
 
     def _take_inputs(self, nodes: Mapping[str, object]) -> None:
         one = Factored.number(self.ring, 1)
-        domains = {"force": "translation", "torque": "rotation", "voltage": "electrical", "current": "electrical"}
+        domains = {
+            "force": "translation",
+            "torque": "rotation",
+            "voltage": "electrical",
+            "current": "electrical",
+        }
         for source in self.model.inputs:
             if source.kind == "signal":
                 continue

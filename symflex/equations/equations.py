@@ -27,7 +27,7 @@ class ConstantFunction:
 
 @dataclass(frozen=True, slots=True)
 class EquationRow:
-    """One row ``form = 0``, polynomial in the ring: a node's balance or an element's, constraint's or signal's row.
+    """One polynomial row ``form = 0``: a node's balance, or an element's, constraint's or signal's law.
 
     A variable may occur several times in ``form``, once per branch that meets it.
     """

@@ -89,7 +89,8 @@ class Evaluator:
             return self._evaluate(expression)
         except BudgetError as error:
             located = [
-                d if d.span else Diagnostic(d.code, d.message, expression.span, d.hint) for d in error.diagnostics
+                d if d.span else Diagnostic(d.code, d.message, expression.span, d.hint)
+                for d in error.diagnostics
             ]
             raise BudgetError(*located) from None
 
@@ -111,7 +112,9 @@ class Evaluator:
             case Quotient(numerator, denominator):
                 divisor = self.constant(denominator)
                 if divisor.is_zero:
-                    raise ModelError(Diagnostic("SF224", "division by zero", denominator.span or expression.span))
+                    raise ModelError(
+                        Diagnostic("SF224", "division by zero", denominator.span or expression.span)
+                    )
                 return _scale(self._evaluate(numerator), divisor**-1)
             case Power(base, exponent):
                 return self._power(expression, base, exponent)
@@ -169,7 +172,9 @@ class Evaluator:
             return Factored.number(self.ring, 0)
         if inner.is_zero and name in ("cos", "cosh", "exp"):
             return Factored.number(self.ring, 1)
-        return Factored.generator(self.ring, format_expression(open_definitions(expression, self.definitions)))
+        return Factored.generator(
+            self.ring, format_expression(open_definitions(expression, self.definitions))
+        )
 
 
 def open_definitions(call: Call, definitions: Mapping[str, Expression]) -> Call:
@@ -184,7 +189,9 @@ def open_definitions(call: Call, definitions: Mapping[str, Expression]) -> Call:
     while any(isinstance(n, Name) and n.name in definitions for n in names(opened)):
         opened = substitute(opened, definitions)
         if len(names(opened)) > OPENED_LIMIT:
-            message = f"the argument of {call.name} has more than {OPENED_LIMIT} names with its definitions opened"
+            message = (
+                f"the argument of {call.name} has more than {OPENED_LIMIT} names with its definitions opened"
+            )
             raise ModelError(Diagnostic("SF103", message, call.span))
     if not isinstance(opened, Call):
         message = "a call stays a call"

@@ -23,11 +23,11 @@ class Source:
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """A half-open range of characters ``start <= i < end`` of a source.
+    r"""A half-open range of characters ``start <= i < end`` of a source.
 
     Examples
     --------
-    >>> span = Span(Source("a.toml", "x = 1\\nk = 2\\n"), 6, 7)
+    >>> span = Span(Source("a.toml", "x = 1\nk = 2\n"), 6, 7)
     >>> span.line, span.column, span.text
     (2, 1, 'k')
     """

@@ -120,7 +120,7 @@ class Factored:
         common = self._common(other)
         left, right = self / common, other / common
         scale = fmpz(left.unit.denominator).lcm(fmpz(right.unit.denominator))
-        total = left._expand_scaled(int(scale)) + right._expand_scaled(int(scale))  # noqa: SLF001
+        total = left._expand_scaled(int(scale)) + right._expand_scaled(int(scale))
         return common * Factored.polynomial(self.ring, total) * Fraction(1, int(scale))
 
     __radd__ = __add__
@@ -160,7 +160,7 @@ class Factored:
         return Factored(self.ring, Fraction(1), tuple((f, e) for f, e in self.factors if keep(f)))
 
     def depends_on(self, name: str) -> bool:
-        """True when a factor contains the generator called ``name``."""
+        """Tell whether a factor contains the generator called ``name``."""
         i = self.ring.index[name]
         return any(degree_in(f, i) for f, _ in self.factors)
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from flint import arb
 
 
-
 @dataclass(frozen=True, slots=True)
 class ElementaryFunction:
     """A function the expression language knows.

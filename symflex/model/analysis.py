@@ -52,7 +52,7 @@ def _band(reader: Reader, entry: Entry) -> tuple[Fraction, Fraction] | None:
 
 
 def _frequency(reader: Reader, value: Value) -> Fraction | None:
-    """Return a frequency in Hz; a bare number is in Hz, rad/s is converted by an approximation of 1/(2 pi)."""
+    """Return a frequency in Hz; a bare number is in Hz, rad/s is converted with pi to 30 digits."""
     if isinstance(value, NumberValue):
         return value.value
     quantity = reader.quantity(value, "a frequency")

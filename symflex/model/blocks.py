@@ -80,7 +80,9 @@ def _read_block(reader: Reader, entry: Entry, origin: Origin) -> PlacedBlock | N
 def _read_values(
     reader: Reader, entry: Entry, table: TableValue, block: Block
 ) -> tuple[tuple[str, Expression], ...] | None:
-    reader.keys(table, ("type", "doc", *(p.name for p in block.parameters)), f"{block.type_name} '{entry.key}'")
+    reader.keys(
+        table, ("type", "doc", *(p.name for p in block.parameters)), f"{block.type_name} '{entry.key}'"
+    )
     values: list[tuple[str, Expression]] = []
     complete = True
     for parameter in block.parameters:
@@ -131,7 +133,10 @@ def _read_model_block(reader: Reader, entry: Entry, table: TableValue, origin: O
     spec_entry, tf_entry = table.get("spec"), table.get("tf")
     if spec_entry is None or tf_entry is None:
         return None
-    path_text, tf_text = reader.string(spec_entry, f"spec of {what}"), reader.string(tf_entry, f"tf of {what}")
+    path_text, tf_text = (
+        reader.string(spec_entry, f"spec of {what}"),
+        reader.string(tf_entry, f"tf of {what}"),
+    )
     if path_text is None or tf_text is None:
         return None
     submodel = _load(reader, path_text, origin)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 from symflex.errors import Diagnostic, SpecError, Text
 from symflex.errors.diagnostic import nearest
-from symflex.expressions import Attribute, Expression, Name, names
+from symflex.expressions import Expression, Name, names
 from symflex.model.labels import check_label
 from symflex.model.model import Assumption, Definition, ExactValue, Parameter
 from symflex.model.scope import RESERVED
@@ -132,7 +132,9 @@ def _with_unit(
     if quantity is None:
         return None, str(unit.dimension)
     if quantity.unit:
-        reader.note("SF202", f"{what} has a unit in its value and a 'unit' key", text.span, "remove one of them")
+        reader.note(
+            "SF202", f"{what} has a unit in its value and a 'unit' key", text.span, "remove one of them"
+        )
         return quantity, ""
     scaled = Quantity(
         quantity.magnitude * unit.scale,
@@ -227,7 +229,9 @@ def _without_circles(reader: Reader, definitions: Sequence[Definition]) -> tuple
                 circle = circle[circle.index(following) :]
                 path = " -> ".join([*circle, following])
                 reader.problems.append(
-                    Diagnostic("SF215", f"definitions refer to each other in a circle: {path}", by_name[name].span)
+                    Diagnostic(
+                        "SF215", f"definitions refer to each other in a circle: {path}", by_name[name].span
+                    )
                 )
                 for member in circle:
                     state[member] = "circular"
@@ -236,4 +240,4 @@ def _without_circles(reader: Reader, definitions: Sequence[Definition]) -> tuple
 
 def _used(expression: Expression, known: Mapping[str, Definition]) -> list[str]:
     found = names(expression)
-    return [n.name for n in found if isinstance(n, Name) and not isinstance(n, Attribute) and n.name in known]
+    return [n.name for n in found if isinstance(n, Name) and n.name in known]

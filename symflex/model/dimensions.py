@@ -206,7 +206,11 @@ class DimensionSystem:
             if other is not None:
                 first = uses[0].span
                 place = f" (line {first.line})" if first else ""
-                words = ("an angular frequency", "cycles") if uses[0].angular else ("cycles", "an angular frequency")
+                words = (
+                    ("an angular frequency", "cycles")
+                    if uses[0].angular
+                    else ("cycles", "an angular frequency")
+                )
                 self.problems.append(
                     Diagnostic(
                         "SF204",
@@ -355,9 +359,7 @@ class DimensionSystem:
                 dimension = dimension * known**exponent
                 for other, weight in others:
                     unknowns[other] = unknowns.get(other, Fraction(0)) + weight * exponent
-        return replace(
-            measure, dimension=dimension, unknowns=tuple((v, e) for v, e in unknowns.items() if e)
-        )
+        return replace(measure, dimension=dimension, unknowns=tuple((v, e) for v, e in unknowns.items() if e))
 
     def _learn(self, measure: Measure, *, only_check: bool = False) -> bool:
         """Take ``measure = dimensionless`` as an equation; False when it contradicts what is known."""
@@ -387,9 +389,3 @@ class DimensionSystem:
             if quantity is not None:
                 return f"'{expression.name}' is declared in '{quantity.unit}'"
         return None
-
-
-
-
-
-

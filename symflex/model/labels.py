@@ -1,4 +1,4 @@
-r"""LaTeX labels a specification may give: an allow-list, so that no label can reach ``\input`` or ``\def``."""
+r"""LaTeX labels: an allow-list of commands, so that no label can reach ``\input`` or ``\def``."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from symflex.errors import Text
 
 GREEK = (
-    "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu xi pi varpi rho "
-    "varrho sigma varsigma tau upsilon phi varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon "
+    "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu xi pi varpi "
+    "rho varrho sigma varsigma tau upsilon phi varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon "
     "Phi Psi Omega"
 ).split()
 ACCENTS = "dot ddot bar hat tilde vec check breve acute grave overline underline".split()
@@ -46,7 +46,9 @@ def check_label(label: Text) -> str:
     while position < len(value):
         match = _TOKEN.match(value, position)
         if match is None:
-            raise _refused(label, position, position + 1, f"{value[position]!r} may not stand in a LaTeX label")
+            raise _refused(
+                label, position, position + 1, f"{value[position]!r} may not stand in a LaTeX label"
+            )
         command = match["command"]
         if command and command not in ALLOWED_COMMANDS:
             raise _refused(label, match.start(), match.end(), f"\\{command} is not an allowed LaTeX command")
@@ -62,7 +64,7 @@ def check_label(label: Text) -> str:
 
 
 def _scripts_are_single(value: str) -> bool:
-    """True when no atom bears two subscripts or two superscripts and none is empty."""
+    """Tell whether no atom bears two subscripts or two superscripts and none is empty."""
     used: list[set[str]] = [set()]
     position = 0
     while position < len(value):

@@ -1,4 +1,4 @@
-"""Whether an expression is linear in the unknowns and rational in everything else, told from its tree alone."""
+"""Whether an expression is linear in the unknowns and rational in the rest, told from its tree alone."""
 
 from __future__ import annotations
 
@@ -100,8 +100,7 @@ def _degree(expression: Expression, scope: Scope, constant: bool, problems: list
             degrees = {walk(term) for term in terms if not _is_zero(term)}
             return degrees.pop() if len(degrees) == 1 else ("mixed" if degrees else "constant")
         case Product(factors):
-            degrees = [walk(factor) for factor in factors]
-            moving = [d for d in degrees if d != "constant"]
+            moving = [d for d in (walk(factor) for factor in factors) if d != "constant"]
             if len(moving) > 1:
                 problems.append(
                     Diagnostic(
@@ -154,7 +153,9 @@ def _power_degree(power: Power, base: str, exponent: Expression, problems: list[
             Diagnostic("SF103", f"exponent {value} is larger than {EXPONENT_LIMIT}", exponent.span)
         )
     if base != "constant" and value != 1:
-        problems.append(Diagnostic("SF222", "a power of a quantity that varies in time is not linear", power.span))
+        problems.append(
+            Diagnostic("SF222", "a power of a quantity that varies in time is not linear", power.span)
+        )
     return base
 
 

@@ -13,8 +13,8 @@ from symflex.quantities import Dimension
 if TYPE_CHECKING:
     from fractions import Fraction
 
-    from symflex.elements import Element, Placing, Variable
     from symflex.blocks import Block as BlockType
+    from symflex.elements import Element, Placing, Variable
     from symflex.errors import Span
     from symflex.expressions import Expression
 

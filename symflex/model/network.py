@@ -11,14 +11,17 @@ from symflex.errors import SpecError, Text
 from symflex.errors.diagnostic import nearest
 from symflex.model.declarations import read_label
 from symflex.model.model import Input, NodeReference
-from symflex.model.nodes import Attachment
+from symflex.model.nodes import Attachment, Coupling
 from symflex.model.reading import NAME, Reader, signed_number
 from symflex.quantities import parse_unit
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from symflex.elements.element import PortDomain
     from symflex.errors import Span
     from symflex.expressions import Expression
+    from symflex.quantities import Dimension
     from symflex.spec import Entry, TableValue
 
 InputKind = Literal["force", "torque", "voltage", "current", "signal"]
@@ -41,15 +44,23 @@ class DraftElement:
     values: tuple[tuple[str, Expression], ...]
     span: Span
 
-    def attachments(self) -> list[Attachment]:
-        """Return what this element says about its nodes."""
+    def attachments(self, measure: Callable[[Expression], Dimension | None]) -> list[Attachment]:
+        """Return what this element says about its nodes; ``measure`` tells a constant's dimension."""
         who = f"{self.element.type_name} '{self.name}'"
         found = []
         for port, references in self.nodes:
-            others = [r for p, rs in self.nodes if p is not port for r in rs]
-            partner = others[0] if port.domain == "any" and others else None
-            found += [Attachment(r, port.domain, who, partner) for r in references]
+            coupling = self._coupling(port, measure) if port.domain == "any" else None
+            found += [Attachment(r, port.domain, who, coupling) for r in references]
         return found
+
+
+    def _coupling(self, port: Port, measure: Callable[[Expression], Dimension | None]) -> Coupling | None:
+        ratio = dict(self.values).get("ratio")
+        for other, references in self.nodes:
+            if other is not port:
+                dimension = measure(ratio) if ratio is not None else None
+                return Coupling(self.element, port.name, other.name, references[0], dimension)
+        return None
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,8 +101,11 @@ class NetworkReader:
         element = self._element_type(table, entry) if table else None
         if table is None or element is None:
             return None
-        reader.keys(table, ("type", *(p.name for p in element.ports), *(p.name for p in element.parameters), "doc"),
-                    f"{element.type_name} '{entry.key}'")
+        reader.keys(
+            table,
+            ("type", *(p.name for p in element.ports), *(p.name for p in element.parameters), "doc"),
+            f"{element.type_name} '{entry.key}'",
+        )
         nodes = [(port, self._references(table, port, entry, element)) for port in element.ports]
         values: list[tuple[str, Expression]] = []
         complete = True
@@ -103,7 +117,9 @@ class NetworkReader:
                 expression = reader.expression(found.value, where)
             elif parameter.default is not None:
                 like = any(p.name == parameter.default for p in element.parameters)
-                expression = given.get(parameter.default) if like else signed_number(Fraction(parameter.default))
+                expression = (
+                    given.get(parameter.default) if like else signed_number(Fraction(parameter.default))
+                )
             else:
                 names = ", ".join(p.name for p in element.parameters)
                 reader.note(
@@ -127,7 +143,10 @@ class NetworkReader:
         kind = table.get("type")
         if kind is None:
             self.reader.note(
-                "SF214", f"element '{entry.key}' has no type", entry.key_span, "symflex elements lists the types"
+                "SF214",
+                f"element '{entry.key}' has no type",
+                entry.key_span,
+                "symflex elements lists the types",
             )
             return None
         text = self.reader.string(kind, f"type of element '{entry.key}'")
@@ -169,7 +188,9 @@ class NetworkReader:
         if len(texts) != port.terminals:
             plural = "node" if port.terminals == 1 else "nodes"
             self.reader.note(
-                "SF217", f"{what} takes {port.terminals} {plural}, found {len(texts)}", found.value.span,
+                "SF217",
+                f"{what} takes {port.terminals} {plural}, found {len(texts)}",
+                found.value.span,
                 'a port to the reference is "ground"' if len(texts) < port.terminals else None,
             )
             return None
@@ -178,8 +199,11 @@ class NetworkReader:
             return None
         kept = tuple(r for r in references if r is not None)
         if len(kept) == 2 and (kept[0].node, kept[0].component) == (kept[1].node, kept[1].component):  # noqa: PLR2004
-            self.reader.note("SF218", f"both ends of {element.type_name} '{entry.key}' are at '{texts[0].value}'",
-                             found.value.span)
+            self.reader.note(
+                "SF218",
+                f"both ends of {element.type_name} '{entry.key}' are at '{texts[0].value}'",
+                found.value.span,
+            )
             return None
         return kept
 
@@ -195,7 +219,9 @@ class NetworkReader:
             )
             return None
         if dot and domain in ("planar", "whole"):
-            self.reader.note("SF219", f"{what} takes a whole node, not '{text.value}'", text.span, f"write '{node}'")
+            self.reader.note(
+                "SF219", f"{what} takes a whole node, not '{text.value}'", text.span, f"write '{node}'"
+            )
             return None
         if dot and (domain, component) in (("translation", "theta"), ("rotation", "y")):
             kind = "translational" if domain == "translation" else "rotational"
@@ -231,7 +257,8 @@ class NetworkReader:
             unit = table.get("unit")
             text = reader.string(unit, f"unit of {what}") if unit else None
             return DraftInput(
-                Input(entry.key, "signal", (), None, "", label, entry.key_span), self._unit(text) if text else ""
+                Input(entry.key, "signal", (), None, "", label, entry.key_span),
+                self._unit(text) if text else "",
             )
         (place,) = kinds
         kind = cast("InputKind", place.key)
@@ -239,8 +266,9 @@ class NetworkReader:
         if texts is None:
             return None
         if len(texts) not in (1, 2):
-            reader.note("SF217", f"{what} acts on one node, or on one with its reaction on a second",
-                        place.value.span)
+            reader.note(
+                "SF217", f"{what} acts on one node, or on one with its reaction on a second", place.value.span
+            )
             return None
         references = [self._reference(t, INPUT_DOMAINS[kind], what) for t in texts]
         kept = tuple(r for r in references if r is not None)

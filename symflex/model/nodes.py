@@ -8,25 +8,61 @@ from typing import TYPE_CHECKING
 from symflex.elements import Variable
 from symflex.errors import Diagnostic
 from symflex.model.model import Node
+from symflex.quantities import unit_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.elements import Domain
+    from symflex.elements import Domain, Element
     from symflex.elements.element import PortDomain
     from symflex.model.model import NodeReference
+    from symflex.quantities import Dimension
+
+
+@dataclass(frozen=True, slots=True)
+class Coupling:
+    """What a coupling says about the domains of its two sides.
+
+    Parameters
+    ----------
+    element : Element
+        Whose ``ratio`` has a unit that depends on both domains.
+    port, partner_port : str
+        This side and the other side.
+    partner : NodeReference
+        The node at the other side.
+    ratio : Dimension or None
+        What the given ratio is measured in, when that is known.
+    """
+
+    element: Element
+    port: str
+    partner_port: str
+    partner: NodeReference
+    ratio: Dimension | None
+
+    def suggested(self, partner: Domain) -> Domain:
+        """Return the domain for this side that the ratio's unit asks for, or else its partner's."""
+        if self.ratio is None:
+            return partner
+        for domain in (partner, *DOMAINS):
+            unit = self.element.unit_of("ratio", {self.port: domain, self.partner_port: partner})
+            if unit_of(unit).dimension == self.ratio:
+                return domain
+        return partner
 
 
 @dataclass(frozen=True, slots=True)
 class Attachment:
-    """One port at one node; ``partner`` is the port's other side, from which an unknown domain is taken."""
+    """One port at one node; a coupling's port has no domain of its own."""
 
     reference: NodeReference
     domain: PortDomain
     who: str
-    partner: NodeReference | None = None
+    coupling: Coupling | None = None
 
 
+DOMAINS: tuple[Domain, ...] = ("translation", "rotation", "electrical")
 WORDS = {
     "translation": "a displacement",
     "rotation": "an angle",
@@ -54,7 +90,7 @@ def infer_nodes(attachments: Sequence[Attachment]) -> tuple[tuple[Node, ...], li
     nodes: dict[str, Node] = {}
     for name, claimed in claims.items():
         span = first[name].reference.span
-        definite = [d for d in ("translation", "rotation", "electrical") if d in claimed]
+        definite = [d for d in DOMAINS if d in claimed]
         if "planar" in claimed:
             if "electrical" in claimed:
                 problems.append(_contradiction(name, claimed["planar"], claimed["electrical"], "electrical"))
@@ -63,21 +99,23 @@ def infer_nodes(attachments: Sequence[Attachment]) -> tuple[tuple[Node, ...], li
         for other in definite[1:]:
             problems.append(_contradiction(name, claimed[definite[0]], claimed[other], other))
         if definite:
-            nodes[name] = Node(name, definite[0], span)  # type: ignore[arg-type]
+            nodes[name] = Node(name, definite[0], span)
     _spread(attachments, nodes, first)
     return tuple(nodes[name] for name in first), problems
 
 
 def _spread(attachments: Sequence[Attachment], nodes: dict[str, Node], first: dict[str, Attachment]) -> None:
-    """Give nodes that only couplings touch the domain of the coupling's other side (translation at last)."""
+    """Give nodes that only couplings touch a domain that suits the ratio's unit (translation at last)."""
     changed = True
     while changed:
         changed = False
         for attachment in attachments:
-            name, partner = attachment.reference.node, attachment.partner
-            if attachment.reference.is_ground or name in nodes or partner is None or partner.node not in nodes:
+            name, coupling = attachment.reference.node, attachment.coupling
+            if attachment.reference.is_ground or name in nodes or coupling is None:
                 continue
-            domain = domain_of(partner, nodes[partner.node])
+            if coupling.partner.node not in nodes:
+                continue
+            domain = coupling.suggested(domain_of(coupling.partner, nodes[coupling.partner.node]))
             nodes[name] = Node(name, domain, first[name].reference.span)
             changed = True
     for name, attachment in first.items():

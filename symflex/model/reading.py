@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from symflex.errors import Span, Text
     from symflex.spec import Entry, Value
 
+SHOWN = 40
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}\Z")
 
 
@@ -29,14 +30,18 @@ class QuantityLiteral(Expression):
     quantity: Quantity
 
 
+def shorten(text: str) -> str:
+    """Return the text, cut where it is too long for a message."""
+    return text if len(text) <= SHOWN else text[: SHOWN - 3] + "..."
+
+
 def describe(value: Value) -> str:
     """Return what a value is, for messages."""
     match value:
         case StringValue():
-            shown = value.text.value if len(value.text.value) <= 40 else value.text.value[:37] + "..."
-            return f"the string '{shown}'"
+            return f"the string '{shorten(value.text.value)}'"
         case NumberValue():
-            return f"the number {value.literal[:40]}"
+            return f"the number {shorten(value.literal)}"
         case BooleanValue():
             return "true" if value.value else "false"
         case ArrayValue():
@@ -78,7 +83,7 @@ class Reader:
                 self.note("SF207", f"unknown key '{entry.key}' in {what}", entry.key_span, hint)
 
     def name(self, entry: Entry, what: str, reserved: Iterable[str] = ()) -> bool:
-        """True when the entry's key is a name."""
+        """Tell whether the entry's key is a name."""
         if not NAME.match(entry.key):
             self.note(
                 "SF213",

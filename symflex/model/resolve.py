@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 
 from symflex.elements import ACROSS_UNIT, Placing, Variable
 from symflex.errors import Diagnostic, SpecError
-from symflex.errors.diagnostic import nearest
-from symflex.expressions import Expression, Name, Number, Product, power, product_of, substitute
+from symflex.expressions import Expression, Name, names, power, product_of
 from symflex.model.analysis import read_analysis, read_figures, read_published
 from symflex.model.blocks import Origin, read_blocks
 from symflex.model.declarations import DeclaredParameter, read_definitions, read_label, read_parameters
@@ -32,18 +31,17 @@ from symflex.model.model import (
     PlacedElement,
     Signal,
 )
-from symflex.model.network import INPUT_DOMAINS, DraftElement, DraftInput, NetworkReader
-from symflex.model.nodes import domain_of, infer_nodes, variable_of
+from symflex.model.network import DraftElement, DraftInput, NetworkReader
+from symflex.model.nodes import domain_of, infer_nodes
 from symflex.model.reading import QuantityLiteral, Reader, signed_number
 from symflex.model.scope import RESERVED, Scope, build_scope
 from symflex.quantities import DIMENSIONLESS, Dimension, Quantity, unit_of
 from symflex.spec import TableValue, parse_with_recovery
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from symflex.errors import Source
-    from symflex.model.network import NodeReference
     from symflex.spec import Entry, Spec
 
 FORMAT_VERSION = 1
@@ -112,12 +110,21 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     outputs = _read_outputs(reader, sections["outputs"])
     _refuse_fields(reader, sections["fields"])
     inherited = _inherited_parameters(reader, declared, blocks)
-    nodes, contradictions = infer_nodes(
-        [a for d in (*network.elements, *network.inputs) for a in d.attachments()]
-    )
+    _refuse_twins(reader, [p.name for p in (*declared, *inherited)], definitions, blocks)
+    measure = _constant_measure(declared, inherited, definitions)
+    attachments = [a for element in network.elements for a in element.attachments(measure)]
+    attachments += [a for source in network.inputs for a in source.attachments()]
+    nodes, contradictions = infer_nodes(attachments)
     reader.problems += contradictions
     draft = _Draft(
-        declared, inherited, definitions, nodes, tuple(network.elements), tuple(network.inputs), blocks, signals,
+        declared,
+        inherited,
+        definitions,
+        nodes,
+        tuple(network.elements),
+        tuple(network.inputs),
+        blocks,
+        signals,
         outputs,
     )
     model = _finish(reader, draft)
@@ -132,7 +139,9 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     if not model.outputs and not reader.problems:
         reader.note("SF214", "the specification has no [outputs]", None, 'for instance: X = "x_tip"')
     if not model.inputs and not reader.problems:
-        reader.note("SF214", "the specification has no [inputs]", None, 'for instance: F = { force = "x_act" }')
+        reader.note(
+            "SF214", "the specification has no [inputs]", None, 'for instance: F = { force = "x_act" }'
+        )
     if reader.problems:
         raise SpecError(*_in_order(reader.problems, spec.source))
     return model
@@ -171,7 +180,10 @@ def _check_header(reader: Reader, spec: Spec) -> None:
     version = spec.root.get("symflex")
     if version is None:
         reader.note(
-            "SF200", "the specification does not say its format version", None, "begin the file with: symflex = 1"
+            "SF200",
+            "the specification does not say its format version",
+            None,
+            "begin the file with: symflex = 1",
         )
         return
     literal = getattr(version.value, "value", None)
@@ -228,6 +240,22 @@ def _read_output(reader: Reader, entry: Entry) -> Output | None:
     return None if expression is None else Output(entry.key, expression, None, "", label, entry.key_span)
 
 
+def _refuse_twins(
+    reader: Reader,
+    parameters: Sequence[str],
+    definitions: Sequence[Definition],
+    blocks: Sequence[PlacedBlock],
+) -> None:
+    """Note definitions and blocks that bear the name of a parameter or of each other."""
+    taken = dict.fromkeys(parameters, "a parameter")
+    for what, group in (("a definition", definitions), ("a block", blocks)):
+        for item in group:
+            if item.name in taken:
+                message = f"'{item.name}' is {what} and {taken[item.name]}"
+                reader.note("SF211", message, item.span, "rename one of them")
+            taken.setdefault(item.name, what)
+
+
 def _inherited_parameters(
     reader: Reader, declared: Sequence[DeclaredParameter], blocks: Sequence[PlacedBlock]
 ) -> tuple[Parameter, ...]:
@@ -276,12 +304,17 @@ def _finish(reader: Reader, draft: _Draft) -> Model:
         ),
         signals=tuple(replace(x, expression=_lower(x.expression)) for x in draft.signals),
         blocks=tuple(
-            replace(b, values=tuple((n, _lower(v, _block_unit(b, n))) for n, v in b.values)) for b in draft.blocks
+            replace(b, values=tuple((n, _lower(v, _block_unit(b, n))) for n, v in b.values))
+            for b in draft.blocks
         ),
         inputs=tuple(_measured_input(i, system) for i in inputs),
         outputs=tuple(
-            replace(o, expression=_lower(o.expression), dimension=(d := _output_dimension(o, system)),
-                    unit="" if d is None else str(d))
+            replace(
+                o,
+                expression=_lower(o.expression),
+                dimension=(d := _output_dimension(o, system)),
+                unit="" if d is None else str(d),
+            )
             for o in draft.outputs
         ),
         signal_units=tuple(units.items()),
@@ -301,7 +334,7 @@ def _place(draft: DraftElement, nodes: Mapping[str, Node]) -> PlacedElement:
                 domain = "planar"
             else:
                 domain = domain_of(live, node) if live else "translation"
-        domains.append((port.name, domain))  # type: ignore[arg-type]
+        domains.append((port.name, domain))
     attached = tuple((port.name, references) for port, references in draft.nodes)
     return PlacedElement(draft.name, draft.element, attached, tuple(domains), draft.values, draft.span)
 
@@ -321,17 +354,7 @@ def _all_expressions(draft: _Draft) -> list[tuple[Expression, bool]]:
 def _check_units(
     reader: Reader, draft: _Draft, placed: Sequence[PlacedElement], scope: Scope
 ) -> DimensionSystem:
-    quantities: dict[str, Quantity | None] = {}
-    for p in draft.declared:
-        quantities[p.name] = p.quantity if p.has_unit else None
-        if p.quantity is None and p.unit_text:
-            unit = unit_of(p.unit_text)
-            quantities[p.name] = Quantity(Fraction(1), 0, unit.cycles, unit.dimension, unit.radians, p.unit_text)
-    for inherited in draft.inherited:
-        unit = unit_of(inherited.unit) if inherited.unit else None
-        quantities[inherited.name] = (
-            Quantity(Fraction(1), 0, 0, unit.dimension, unit.radians, inherited.unit) if unit else None
-        )
+    quantities = _quantities(draft.declared, draft.inherited)
     known = _known_dimensions(draft, placed)
     blocks = {b.name: _block_measure(b) for b in draft.blocks}
     system = DimensionSystem(
@@ -355,6 +378,45 @@ def _check_units(
     for output in draft.outputs:
         system.measure(output.expression)
     return system
+
+
+def _quantities(
+    declared: Sequence[DeclaredParameter], inherited: Sequence[Parameter]
+) -> dict[str, Quantity | None]:
+    """Return what every parameter is measured in, ``None`` where no unit was written."""
+    found: dict[str, Quantity | None] = {}
+    for p in declared:
+        found[p.name] = p.quantity if p.has_unit else None
+        if p.quantity is None and p.unit_text:
+            unit = unit_of(p.unit_text)
+            found[p.name] = Quantity(Fraction(1), 0, unit.cycles, unit.dimension, unit.radians, p.unit_text)
+    for parameter in inherited:
+        found[parameter.name] = _in_si(parameter)
+    return found
+
+
+def _constant_measure(
+    declared: Sequence[DeclaredParameter], inherited: Sequence[Parameter], definitions: Sequence[Definition]
+) -> Callable[[Expression], Dimension | None]:
+    """Return a function that tells the dimension of an expression of parameters, ``None`` when it is open."""
+    quantities = _quantities(declared, inherited)
+    scope = build_scope([*quantities], definitions, (), (), (), (), ())
+    system = DimensionSystem(scope, quantities, {d.name: d.expression for d in definitions}, {}, {})
+
+    def measure(expression: Expression) -> Dimension | None:
+        if isinstance(expression, QuantityLiteral):
+            return expression.quantity.dimension
+        return system.dimension(system.measure(expression)) if names(expression) else None
+
+    return measure
+
+
+def _in_si(parameter: Parameter) -> Quantity | None:
+    """Return a quantity of a resolved parameter's unit, ``None`` when it has none."""
+    if not parameter.unit:
+        return None
+    unit = unit_of(parameter.unit)
+    return Quantity(Fraction(1), 0, 0, unit.dimension, unit.radians, parameter.unit)
 
 
 def _require(

@@ -89,7 +89,9 @@ class Scope:
                     expression.span,
                 )
             )
-        known = [n for n, ms in self.meanings.items() if not constant or any(m.kind in CONSTANT_KINDS for m in ms)]
+        known = [
+            n for n, ms in self.meanings.items() if not constant or any(m.kind in CONSTANT_KINDS for m in ms)
+        ]
         hint = nearest(expression.name, known)
         if hint is None and expression.name in self.owners:
             names = ", ".join(f"{expression.name}.{a}" for a in self.owners[expression.name])
@@ -105,7 +107,9 @@ class Scope:
                 hint = nearest(expression.owner, self.owners)
                 message = f"'{text}': no element or planar node is called '{expression.owner}'"
             else:
-                hint = "it offers " + ", ".join(f"{expression.owner}.{a}" for a in offered) if offered else None
+                hint = (
+                    "it offers " + ", ".join(f"{expression.owner}.{a}" for a in offered) if offered else None
+                )
                 message = f"'{expression.owner}' has no quantity '{expression.name}'"
             raise SpecError(Diagnostic("SF210", message, expression.span, hint))
         if constant:
@@ -149,7 +153,9 @@ def build_scope(
         for component in node.components:
             variable = Variable("node", node.name, component)
             if component:
-                attributes[node.name, component] = Meaning("variable", node.name, f"node '{variable}'", variable)
+                attributes[node.name, component] = Meaning(
+                    "variable", node.name, f"node '{variable}'", variable
+                )
                 owners.setdefault(node.name, []).append(component)
         first = Variable("node", node.name, node.components[0])
         add(node.name, Meaning("variable", node.name, f"the node '{node.name}'", first))

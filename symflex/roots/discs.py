@@ -56,19 +56,26 @@ class Disc:
         return Disc(self.centre.conjugate(), self.radius, self.count)
 
 
+@dataclass(frozen=True, slots=True)
 class LevelPolynomial:
     """A real polynomial at the current working precision, with its derivative.
 
     Parameters
     ----------
-    polynomial : acb_poly
-        Coefficients are real balls.
+    value, slope : acb_poly
+        The polynomial, its coefficients real balls, and its derivative.
+    degree : int
+        Of the polynomial, known exactly.
     """
 
-    def __init__(self, polynomial: acb_poly) -> None:
-        self.value = polynomial
-        self.slope = polynomial.derivative()
-        self.degree = int(polynomial.degree())
+    value: acb_poly
+    slope: acb_poly
+    degree: int
+
+    @classmethod
+    def of(cls, polynomial: acb_poly) -> LevelPolynomial:
+        """Return the polynomial with its derivative."""
+        return cls(polynomial, polynomial.derivative(), int(polynomial.degree()))
 
     def shifted(self, centre: acb) -> acb_poly:
         """Return p(centre + x) as a polynomial in x."""
@@ -93,6 +100,21 @@ class LevelPolynomial:
                 centre = acb(centre.real)
         return best
 
+    def _centred(self, centre: acb, count: int) -> tuple[acb, acb_poly] | None:
+        """Return a nearby zero of the derivative of order ``count - 1``, and p expanded about it."""
+        is_real = centre.imag == 0
+        shifted = self.shifted(centre)
+        for _ in range(CENTRE_STEPS):
+            step = shifted[count - 1] / (count * shifted[count])
+            if not step.is_finite():
+                return None
+            moved = (centre - step).mid()
+            moved = acb(moved.real) if is_real else moved
+            if step.abs_upper() <= moved.abs_upper() * arb(2) ** (16 - ctx.prec):
+                break
+            centre, shifted = moved, self.shifted(moved)
+        return centre, shifted
+
     def separate(
         self, centre: acb, count: int, goal: Callable[[acb], arb], proposers: Sequence[Proposer]
     ) -> tuple[Disc, ...] | None:
@@ -115,16 +137,10 @@ class LevelPolynomial:
             In the closed upper half plane if the centre is real; None when no engine tells the roots apart.
         """
         is_real = centre.imag == 0
-        shifted = self.shifted(centre)
-        for _ in range(CENTRE_STEPS):
-            step = shifted[count - 1] / (count * shifted[count])
-            if not step.is_finite():
-                return None
-            moved = (centre - step).mid()
-            moved = acb(moved.real) if is_real else moved
-            if step.abs_upper() <= moved.abs_upper() * arb(2) ** (16 - ctx.prec):
-                break
-            centre, shifted = moved, self.shifted(moved)
+        centred = self._centred(centre, count)
+        if centred is None:
+            return None
+        centre, shifted = centred
         size = (shifted[0] / shifted[count]).abs_upper().root(count).mid()
         if not (size.is_finite() and size > 0):
             return None
@@ -140,12 +156,15 @@ class LevelPolynomial:
 
         Source: Pellet (1881): abs(a_k) r^k > sum over i != k of abs(a_i) r^i.
         """
-        shifted = self.shifted(centre)
+        centred = self._centred(centre, count)
+        if centred is None:
+            return None
+        centre, shifted = centred
         pivot = shifted[count].abs_lower()
         sizes = [abs(shifted[i]).upper() for i in range(self.degree + 1)]
         if not pivot > 0:
             return None
-        radius = arb(2) ** -ctx.prec * centre.abs_upper()
+        radius = (arb(2) ** -ctx.prec * centre.abs_upper()).upper()
         for i in range(count):
             scale = (sizes[i] / pivot).root(count - i).upper()
             radius = scale if scale > radius else radius
@@ -225,6 +244,8 @@ def overlapping_pairs(discs: Sequence[Disc]) -> list[tuple[int, int]]:
 def complete(discs: Sequence[Disc], degree: int) -> bool:
     """Return whether the discs and their conjugates are disjoint and account for all roots."""
     everything = with_mirrors(discs)
+    if not all(disc.radius.is_finite() for disc in discs):
+        return False
     return sum(d.count for d in everything) == degree and not overlapping_pairs(everything)
 
 
@@ -277,4 +298,3 @@ def is_symmetric(group: Sequence[Disc]) -> bool:
     return any(d.is_real for d in group) or any(
         bool(a.centre == b.centre.conjugate()) for i, a in enumerate(group) for b in group[:i]
     )
-

@@ -83,7 +83,7 @@ def isolate(
     known: tuple[acb, ...] | None = None
     while True:
         with precision(bits):
-            level = LevelPolynomial(acb_poly(polynomial.enclosure()))
+            level = LevelPolynomial.of(acb_poly(polynomial.enclosure()))
             discs = _solve(level, goal, proposers, known, last=bits >= limit)
             if discs is not None:
                 if bits >= limit or all(disc.radius <= goal(disc.centre) for disc in discs):

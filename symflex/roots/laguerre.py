@@ -135,6 +135,8 @@ def _find_one(
         if iteration % KICK_EVERY == KICK_EVERY - 1:
             step *= 0.7 + 0.2j  # leaves a cycle, should there be one
         z -= step
+        if not cmath.isfinite(z):
+            return None
         settled = CONVERGED if abs(step) < abs(last) else STALLED
         if abs(step) <= settled * abs(z):
             break
@@ -158,4 +160,3 @@ def _log_derivatives(
         complex(float(slope.real.mid()), float(slope.imag.mid())),
         complex(float(bend.real.mid()), float(bend.imag.mid())),
     )
-

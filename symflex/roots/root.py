@@ -153,7 +153,10 @@ def _round_ball(ball: arb, digits: int) -> tuple[str, Fraction]:
         last = max(last, _decimal_exponent(radius) + 1)
     unit = Fraction(10) ** last
     count = round(middle / unit)
-    return _format(count, last), abs(middle - count * unit) + radius
+    error = abs(middle - count * unit) + radius
+    if abs(count) == 10**digits:  # 9.996 became 10.00, one digit too many
+        count, last = count // 10, last + 1
+    return _format(count, last), error
 
 
 def _format(count: int, last: int) -> str:

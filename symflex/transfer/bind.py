@@ -214,7 +214,9 @@ def read_values(
     if missing:
         listed = ", ".join(missing)
         word = "parameter has" if len(missing) == 1 else "parameters have"
-        raise ModelError(Diagnostic("SF229", f"these {word} no value: {listed}", None, "give a value to bind"))
+        raise ModelError(
+            Diagnostic("SF229", f"these {word} no value: {listed}", None, "give a value to bind")
+        )
     return tuple((name, value) for name, value in values if value is not None)
 
 
@@ -257,7 +259,7 @@ def bind(
         SF902 an unknown parameter.
     """
     given = dict(values or {})
-    used = tf.parameters
+    used = (*tf.parameters, *(p for p in tf.hidden_parameters if p not in tf.parameters))
     everything = {p.name: p for p in tf.model.parameters}
     extra = tuple(everything[n] for n in given if n in everything and everything[n] not in used)
     if unknown := [n for n in given if n not in everything]:
@@ -272,13 +274,17 @@ def bind(
         value = images.apply(factor)
         if value.is_zero and exponent < 0:
             message = f"the denominator of {tf.name} is zero for these values"
-            raise ModelError(Diagnostic("SF231", message, None, "a rigid or massless limit has its own equations"))
+            raise ModelError(
+                Diagnostic("SF231", message, None, "a rigid or massless limit has its own equations")
+            )
         bound = bound * value**exponent
     ratio, shared = cancel(bound.numerator(), bound.denominator())
     hidden = [HiddenFactor(f, e) for f, e in shared.factors if degree_in(f, 0)]
     for known in tf.hidden:
         value = images.apply(known.polynomial)
-        hidden += [HiddenFactor(f, e * known.multiplicity) for f, e in value.factors if degree_in(f, 0) and e > 0]
+        hidden += [
+            HiddenFactor(f, e * known.multiplicity) for f, e in value.factors if degree_in(f, 0) and e > 0
+        ]
     return BoundTransferFunction(tf, exact, ratio, tuple(hidden))
 
 
@@ -325,7 +331,8 @@ class _Substitution:
         shift = min(lowest, 0)
         scale = lcm(*(c.denominator for c in terms.values()))
         integers = {
-            tuple(e - shift if i == pi else e for i, e in enumerate(m)): int(c * scale) for m, c in terms.items()
+            tuple(e - shift if i == pi else e for i, e in enumerate(m)): int(c * scale)
+            for m, c in terms.items()
         }
         value = Factored.polynomial(self.ring, self.ring.context.from_dict(integers))
         return value * Fraction(1, scale) * Factored.generator(self.ring, "pi") ** shift

@@ -58,7 +58,9 @@ def cancel(numerator: Factored, denominator: Factored) -> tuple[Factored, Factor
     return result, shared
 
 
-def _pieces(factor: fmpz_mpoly, common: fmpz_mpoly, exponent: int, power: int) -> list[tuple[fmpz_mpoly, int]]:
+def _pieces(
+    factor: fmpz_mpoly, common: fmpz_mpoly, exponent: int, power: int
+) -> list[tuple[fmpz_mpoly, int]]:
     """Return ``factor**exponent / common**power`` as factors with positive exponents."""
     rest = factor / common
     pieces = [(rest, exponent), (common, exponent - power)]
@@ -66,7 +68,7 @@ def _pieces(factor: fmpz_mpoly, common: fmpz_mpoly, exponent: int, power: int) -
 
 
 def coprime_by_image(ring: Ring, f: fmpz_mpoly, g: fmpz_mpoly) -> bool:
-    """True when two large polynomials are proved coprime cheaply; False decides nothing.
+    """Tell whether two large polynomials are proved coprime cheaply; False decides nothing.
 
     A common factor that contains s would survive setting all other generators to integers, as long as
     neither degree in s drops; a common factor without s divides every coefficient of both, also their

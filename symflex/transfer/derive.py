@@ -58,7 +58,9 @@ def derive_all(equations: Equations, pairs: Sequence[tuple[str, str]]) -> tuple[
     if den.is_zero():
         raise explain_singular(equations)
     workshop = _Workshop(equations, system.closure, den)
-    outputs = {row.name: (row, sparse) for row, sparse in zip(equations.outputs, reduced.outputs, strict=True)}
+    outputs = {
+        row.name: (row, sparse) for row, sparse in zip(equations.outputs, reduced.outputs, strict=True)
+    }
     found = []
     for output, source in pairs:
         row, sparse = outputs[output]
@@ -129,9 +131,7 @@ class _Workshop:
         if self._ring == self._equations.ring:
             return value
         names = self._equations.ring.names
-        images = [
-            self._definitions[n] if n in self._definitions else self._generator(n) for n in names
-        ]
+        images = [self._definitions[n] if n in self._definitions else self._generator(n) for n in names]
         return value.map_factors(self._ring, lambda factor: self._open(factor, images))
 
     def _generator(self, name: str) -> Factored | None:
@@ -146,7 +146,9 @@ class _Workshop:
             raise ModelError(Diagnostic("SF215", message))
         if len(factor) == 1:
             return known[0]
-        if all(len(image.factors) == 1 and image.unit == 1 and len(image.factors[0][0]) == 1 for image in known):
+        if all(
+            len(image.factors) == 1 and image.unit == 1 and len(image.factors[0][0]) == 1 for image in known
+        ):
             zero = self._ring.constant(0)
             plain = [zero if image is None else _as_polynomial(image) for image in images]
             return Factored.polynomial(self._ring, self._ring.compose(factor, plain))

@@ -96,6 +96,16 @@ class TransferFunction:
                 used |= {n.name for n in names(constant.expression) if isinstance(n, Name)}
         return tuple(p for p in self.model.parameters if p.name in used)
 
+    @cached_property
+    def hidden_parameters(self) -> tuple[Parameter, ...]:
+        """The parameters that occur in hidden factors, in declared order."""
+        index = self.ratio.ring.index
+        return tuple(
+            p
+            for p in self.model.parameters
+            if any(degree_in(h.polynomial, index[p.name]) for h in self.hidden)
+        )
+
     @property
     def order(self) -> tuple[int, int]:
         """Degrees in s of numerator and denominator."""

@@ -241,6 +241,7 @@ class _Builder:
     draw: Callable
     coordinates: dict[str, str] = field(default_factory=dict)
     planar: list[str] = field(default_factory=list)
+    sprung: set[str] = field(default_factory=set)
     elements: list[Element] = field(default_factory=list)
     blocks: list[Block] = field(default_factory=list)
     pool: list[Parameter] = field(default_factory=list)
@@ -262,8 +263,12 @@ class _Builder:
         return new
 
     def port(self, coordinate: str) -> str:
-        """Return a coordinate as an element of its domain may name it: ``p_1.y``, or ``p_1`` for short."""
-        return coordinate.partition(".")[0] if self.chance(2) else coordinate
+        """Return a coordinate as an element of its domain may name it: ``p_1.y``, or ``p_1`` for short.
+
+        The short name needs a planar element at the node; springs alone do not make it planar.
+        """
+        node = coordinate.partition(".")[0]
+        return node if node not in self.sprung and self.chance(2) else coordinate
 
     def moving(self, names: Sequence[str]) -> list[str]:
         """Return the coordinates that no support holds; all of them when every one is held."""
@@ -313,11 +318,13 @@ class _Builder:
         if way == "body":
             self.add_body(name)
         elif way == "springs":
+            self.sprung.add(name)
             self.add_two_terminal(self.pick(("spring", "damper")), y, GROUND)
             self.add_two_terminal(self.pick(("torsion_spring", "rotary_damper")), theta, GROUND)
         elif way == "support":
             self.constrain({y: 1}, {theta: 1})
             self.add("fixed", {"at": name}, {})
+            self.add_body(name)
         elif way == "beam":
             self.add_beam(self.pick(self.planar), name)
         else:

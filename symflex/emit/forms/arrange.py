@@ -1,4 +1,4 @@
-"""Arranging polynomials as a person would: common factors first, descending powers of s, repeated sums grouped."""
+"""Arranging polynomials as a person would: common factors first, descending powers of s, sums grouped."""
 
 from __future__ import annotations
 
@@ -215,7 +215,7 @@ def _without(part: Expression, shared: Expression) -> Expression:
 
 
 def _order_key(polynomial: fmpz_mpoly) -> tuple[tuple[int, ...], ...]:
-    """Return a key that sorts factors by declared order of their generators, independent of the engine's order."""
+    """Return a key that sorts factors by the declared order of their generators."""
     return tuple(tuple(-int(e) for e in m) for m in polynomial.monoms())
 
 

@@ -45,7 +45,7 @@ def _length(expression: Expression) -> int:
 
 
 def _same_parts(tf: TransferFunction, closed: ClosedForm) -> bool:
-    """True when the closed denominator opens to the expanded one, not to a multiple of it."""
+    """Tell whether the closed denominator opens to the expanded one, not to a multiple of it."""
     opened = closed.closure.open(closed.den)
     return tf.base == tf.ratio.ring and (opened / tf.ratio.denominator()).is_one
 

@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-Kind = Literal["constant", "parameter", "s", "inverse", "add", "multiply", "divide", "power", "negate", "apply"]
+Kind = Literal[
+    "constant", "parameter", "s", "inverse", "add", "multiply", "divide", "power", "negate", "apply"
+]
 
 
 class Depends(IntFlag):

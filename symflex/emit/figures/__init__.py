@@ -1,0 +1,82 @@
+"""Figures for a paper: vector output, column width, the same bytes on every run.
+
+A new kind is one file with a drawing function, and one line in :data:`FIGURES`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symflex.emit.figures.bode import draw_bode
+from symflex.emit.figures.drawing import Drawing
+from symflex.emit.figures.poles_zeros import draw_poles_zeros
+from symflex.emit.figures.save import FORMATS, render, save
+from symflex.emit.figures.style import paper_style
+from symflex.errors import Diagnostic, UsageError
+from symflex.errors.diagnostic import nearest
+from symflex.model.analysis import FIGURE_KINDS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.figure import Figure
+
+    from symflex.transfer import BoundTransferFunction, TransferFunction
+
+FIGURES: dict[str, Drawing] = {
+    "bode": draw_bode,
+    "poles_zeros": draw_poles_zeros,
+}
+
+__all__ = ["FIGURES", "FORMATS", "Drawing", "draw", "render", "save"]
+
+
+def draw(
+    kind: str,
+    tfs: Sequence[TransferFunction],
+    bounds: Sequence[BoundTransferFunction],
+    *,
+    band_hz: tuple[float, float] | None = None,
+    title: str | None = None,
+) -> Figure:
+    """Draw a figure of one or several transfer functions.
+
+    Parameters
+    ----------
+    kind : str
+        A key of :data:`FIGURES`.
+    tfs, bounds : sequences of equal length, at least one
+        The functions, and the same with numbers.
+    band_hz : (float, float), optional
+        Frequencies shown [Hz]. Without it a Bode plot takes the model's ``band``, or else one that shows all
+        poles and zeros; a pole-zero plot focuses on the resonances that belong together and marks the rest at
+        its border.
+    title : str, optional
+        Printed as it is, never read as mathematics.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    UsageError
+        SF208 an unknown kind; SF911 a kind that is not available yet; SF227 an empty band.
+    ModelError
+        SF402 a transfer function is identically zero.
+    """
+    if kind not in FIGURES:
+        if kind in FIGURE_KINDS:
+            hint = "available: " + ", ".join(FIGURES)
+            raise UsageError(
+                Diagnostic("SF911", f"figures of kind '{kind}' are not available yet", None, hint)
+            )
+        hint = nearest(kind, FIGURES) or "kinds: " + ", ".join(FIGURES)
+        raise UsageError(Diagnostic("SF208", f"there is no figure of kind '{kind[:64]}'", None, hint))
+    if not tfs or len(tfs) != len(bounds):
+        message = (
+            f"a figure needs as many bound as symbolic transfer functions, not {len(bounds)} and {len(tfs)}"
+        )
+        raise ValueError(message)
+    with paper_style():
+        return FIGURES[kind](tfs, bounds, band_hz=band_hz, title=title)

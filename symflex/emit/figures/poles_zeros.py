@@ -1,0 +1,182 @@
+"""Pole-zero arrays: one panel per transfer function, equal scales on both axes and in all panels."""
+
+from __future__ import annotations
+
+from math import ceil
+from typing import TYPE_CHECKING, Final
+
+from matplotlib.ticker import MaxNLocator
+
+from symflex.emit.figures.labels import label_of_tf
+from symflex.emit.figures.s_plane import Mark, View, choose_view, leaving, marks_of
+from symflex.emit.figures.style import (
+    COLOURS,
+    COLUMN_INCHES,
+    NOTE_POINTS,
+    PAGE_INCHES,
+    QUIET,
+    TITLE_POINTS,
+    TITLE_SPACING,
+    new_figure,
+    title_lines,
+)
+from symflex.roots.locate import locate
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from symflex.transfer import BoundTransferFunction, TransferFunction
+
+PANELS_IN_COLUMN: Final = 3
+PANELS_ON_PAGE: Final = 4
+LEFT, RIGHT, BOTTOM, TOP, GAP = 0.54, 0.10, 0.38, 0.20, 0.20
+LINE_INCHES: Final = 0.13
+NARROWEST, WIDEST = 0.6, 1.25
+TALLEST_INCHES: Final = 2.6
+LISTED: Final = 5
+NOTE_LINE_POINTS: Final = 7.5
+GLYPHS: Final = {"pole": "×", "zero": "○"}
+COLOUR_OF: Final = {"pole": COLOURS[1], "zero": COLOURS[0]}
+
+
+def draw_poles_zeros(
+    tfs: Sequence[TransferFunction],
+    bounds: Sequence[BoundTransferFunction],
+    *,
+    band_hz: tuple[float, float] | None = None,
+    title: str | None = None,
+) -> Figure:
+    """Draw poles (crosses) and zeros (circles); see :func:`symflex.emit.figures.draw`.
+
+    All panels show the same part of the s plane. A root outside it is named at the border where the ray from
+    the origin to it leaves the panel. A multiple root carries its multiplicity.
+    """
+    panels = [marks_of(locate(bound)) for bound in bounds]
+    count = len(panels)
+    width = COLUMN_INCHES if count <= PANELS_IN_COLUMN else PAGE_INCHES
+    columns = min(count, PANELS_IN_COLUMN if width == COLUMN_INCHES else PANELS_ON_PAGE)
+    rows = ceil(count / columns)
+    room = (width - LEFT - RIGHT - GAP * (columns - 1)) / columns
+    narrowest = min(NARROWEST, room / 1.3)
+    view = choose_view(
+        [mark for marks in panels for mark in marks],
+        None if band_hz is None else band_hz[1],
+        (narrowest, WIDEST),
+    )
+    panel_width = min(room, TALLEST_INCHES * view.ratio)
+    panel_height = panel_width / view.ratio
+    lines = title_lines(title, width)
+    above = LINE_INCHES * len(lines) + (0.04 if lines else 0)
+    height = above + rows * (TOP + panel_height + BOTTOM)
+    figure = new_figure(width, height)
+    # Panels narrower than their room stand in the middle.
+    start = LEFT + (width - LEFT - RIGHT - columns * panel_width - (columns - 1) * GAP) / 2
+    for i, (tf, marks) in enumerate(zip(tfs, panels, strict=True)):
+        row, column = divmod(i, columns)
+        x = start + column * (panel_width + GAP)
+        y = height - above - (row + 1) * (TOP + panel_height) - row * BOTTOM
+        box = (x / width, y / height, panel_width / width, panel_height / height)
+        axes = figure.add_axes(box)
+        _draw_panel(axes, marks, view, panel_width, panel_height)
+        axes.set_title(label_of_tf(tf), pad=4)
+        axes.set_xlabel(r"$\mathrm{Re}(s)$ [rad/s]", labelpad=2)
+        if column == 0:
+            axes.set_ylabel(r"$\mathrm{Im}(s)$ [rad/s]", labelpad=1)
+        else:
+            axes.tick_params(labelleft=False)
+    if lines:
+        figure.text(
+            0.5,
+            1 - 0.04 / height,
+            "\n".join(lines),
+            ha="center",
+            va="top",
+            fontsize=TITLE_POINTS,
+            linespacing=TITLE_SPACING,
+            parse_math=False,
+        )
+    return figure
+
+
+def _draw_panel(axes: Axes, marks: Sequence[Mark], view: View, width: float, height: float) -> None:
+    axes.set_xlim(*view.re)
+    axes.set_ylim(*view.im)
+    axes.set_aspect("equal", adjustable="box")
+    axes.axhline(0, color=QUIET, linewidth=0.5, zorder=1)
+    axes.axvline(0, color=QUIET, linewidth=0.5, zorder=1)
+    axes.xaxis.set_major_locator(MaxNLocator(nbins=max(2, int(width / 0.36)), steps=[1, 2, 2.5, 5, 10]))
+    axes.yaxis.set_major_locator(MaxNLocator(nbins=max(2, int(height / 0.32)), steps=[1, 2, 2.5, 5, 10]))
+    inside = [mark for mark in marks if view.shows(mark)]
+    for kind, shape, size in (("zero", "o", 4.6), ("pole", "x", 4.8)):
+        chosen = [mark.s for mark in inside if mark.kind == kind]
+        axes.plot(
+            [s.real for s in chosen],
+            [s.imag for s in chosen],
+            shape,
+            color=COLOUR_OF[kind],
+            markersize=size,
+            markeredgewidth=0.9,
+            markerfacecolor="none",
+            clip_on=False,
+            zorder=3,
+        )
+    for mark in inside:
+        if mark.multiplicity > 1:
+            axes.annotate(
+                str(mark.multiplicity),
+                (mark.s.real, mark.s.imag),
+                (3.2, 2.0),
+                textcoords="offset points",
+                color=COLOUR_OF[mark.kind],
+                fontsize=NOTE_POINTS,
+            )
+    for group in leaving(marks, view):
+        _point_outside(axes, group, view)
+
+
+def _point_outside(axes: Axes, group: Sequence[Mark], view: View) -> None:
+    """Draw an arrow to where roots outside the view lie, and name those of the upper half plane beside it."""
+    tip = view.border(group[0].s)
+    tail = tip - 0.13 * min(view.width, view.height) * group[0].s / abs(group[0].s)
+    axes.annotate(
+        "",
+        (tip.real, tip.imag),
+        (tail.real, tail.imag),
+        arrowprops={
+            "arrowstyle": "-|>",
+            "mutation_scale": 6,
+            "linewidth": 0.7,
+            "color": "black",
+            "shrinkA": 0,
+            "shrinkB": 0,
+        },
+    )
+    if group[0].s.imag < 0:
+        return
+    notes = [(f"{GLYPHS[m.kind]} {m.value}", COLOUR_OF[m.kind]) for m in group[:LISTED]]
+    if len(group) > LISTED:
+        notes.append((f"and {len(group) - LISTED} more", "black"))
+    is_sideways = abs(group[0].s.imag) * view.width < abs(group[0].s.real) * view.height
+    is_right = tip.real > 0 if is_sideways else False
+    for i, (text, colour) in enumerate(notes):
+        if is_sideways:
+            # Stacked upwards from the arrow, flush with the border.
+            offset = (-3.0 if is_right else 3.0, 4.0 + NOTE_LINE_POINTS * (len(notes) - 1 - i))
+            vertical = "bottom"
+        else:
+            # Stacked downwards to the right of the arrow.
+            offset = (5.0, -2.0 - NOTE_LINE_POINTS * i)
+            vertical = "top"
+        axes.annotate(
+            text,
+            (tip.real, tip.imag),
+            offset,
+            textcoords="offset points",
+            ha="right" if is_right else "left",
+            va=vertical,
+            fontsize=NOTE_POINTS,
+            color=colour,
+        )

@@ -1,0 +1,186 @@
+"""Which part of the s plane a pole-zero plot shows, and what it says about the rest.
+
+Input: poles and zeros. Output: a :class:`View` that holds the resonances that belong together.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan2, isclose, pi
+from typing import TYPE_CHECKING, Final, Literal
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from symflex.roots import PoleZeroMap, Root
+
+GAP_RATIO: Final = 5.0
+"""Neighbouring natural frequencies further apart than this do not belong together."""
+REAL_REACH: Final = 2.5
+"""Real roots are shown up to so many times the highest resonance shown."""
+MARGIN: Final = 0.2
+MARGIN_FOR_NOTES: Final = 0.5
+LEFT_SHARE: Final = 0.65
+SAME_DIRECTION: Final = pi / 30
+PLAIN_LIMIT: Final = 1e5
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A pole or zero at ``s`` [rad/s]."""
+
+    kind: Literal["pole", "zero"]
+    s: complex
+    multiplicity: int = 1
+
+    @property
+    def value(self) -> str:
+        r"""The root in four digits, with its conjugate, in matplotlib's mathematics.
+
+        Examples
+        --------
+        >>> Mark("zero", complex(-1989.6, 0)).value, Mark("pole", complex(0, 1516.54), 2).value
+        ('$-1990$', '$\\pm 1517\\,\\mathrm{j}$ (2)')
+        """
+        re = _number(self.s.real) if self.s.real or not self.s.imag else ""
+        im = rf"\pm {_number(abs(self.s.imag))}\,\mathrm{{j}}" if self.s.imag else ""
+        times = f" ({self.multiplicity})" if self.multiplicity > 1 else ""
+        return f"${re}{im}${times}"
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """A rectangle of the s plane [rad/s] that holds the origin, and what it shows.
+
+    Parameters
+    ----------
+    re, im : (float, float)
+        Limits.
+    shown : frozenset of complex
+        The roots that were chosen to be seen.
+    """
+
+    re: tuple[float, float]
+    im: tuple[float, float]
+    shown: frozenset[complex]
+
+    @property
+    def width(self) -> float:
+        """Extent along the real axis [rad/s]."""
+        return self.re[1] - self.re[0]
+
+    @property
+    def height(self) -> float:
+        """Extent along the imaginary axis [rad/s]."""
+        return self.im[1] - self.im[0]
+
+    @property
+    def ratio(self) -> float:
+        """Width over height."""
+        return self.width / self.height
+
+    def shows(self, mark: Mark) -> bool:
+        """Whether a root is drawn where it is, not named at the border."""
+        inside = self.re[0] <= mark.s.real <= self.re[1] and self.im[0] <= mark.s.imag <= self.im[1]
+        return inside or mark.s in self.shown
+
+    def border(self, s: complex) -> complex:
+        """Return where the ray from the origin to a point outside leaves the view."""
+        scales = []
+        if s.real:
+            scales.append(self.re[s.real > 0] / s.real)
+        if s.imag:
+            scales.append(self.im[s.imag > 0] / s.imag)
+        return s * min(scales)
+
+
+def marks_of(found: PoleZeroMap) -> tuple[Mark, ...]:
+    """Return the poles and zeros of a transfer function in double precision."""
+    poles = tuple(Mark("pole", _point(root), root.multiplicity) for root in found.poles)
+    return poles + tuple(Mark("zero", _point(root), root.multiplicity) for root in found.zeros)
+
+
+def choose_view(marks: Sequence[Mark], high_hz: float | None, ratios: tuple[float, float]) -> View:
+    """Choose the part of the s plane to show.
+
+    Parameters
+    ----------
+    marks : sequence of Mark
+        All poles and zeros of all panels.
+    high_hz : float or None
+        Show the roots up to this natural frequency [Hz]; without it, the resonances from the lowest on, as
+        far as no gap separates them, and the real roots of their size.
+    ratios : (float, float)
+        Smallest and largest width over height.
+
+    Examples
+    --------
+    >>> marks = [Mark("pole", s) for s in (-2 + 70j, -2 - 70j, -5000 + 0j)]
+    >>> view = choose_view(marks, None, (0.6, 1.8))
+    >>> view.shows(marks[0]), view.shows(marks[2]), view.re[0] > -150
+    (True, False, True)
+    """
+    points = {mark.s for mark in marks}
+    shown = _within(points, 2 * pi * high_hz) if high_hz is not None else _belonging_together(points)
+    size = max((abs(s) for s in shown), default=0.0) or 1.0
+    tallest = max((abs(s.imag) for s in shown), default=0.0)
+    outside = points - shown
+    has_notes_above = any(abs(s.imag) > abs(s.real) for s in outside)
+    half = (1 + (MARGIN_FOR_NOTES if has_notes_above else MARGIN)) * tallest or size / 2
+    left = min((s.real for s in shown), default=0.0)
+    right = max((s.real for s in shown), default=0.0)
+    margin = MARGIN_FOR_NOTES if any(abs(s.real) >= abs(s.imag) for s in outside) else MARGIN
+    left, right = min(left, 0.0) - margin * size, max(right, 0.0) + MARGIN * size
+    missing = ratios[0] * 2 * half - (right - left)
+    if missing > 0:
+        share = 0.5 if any(s.real > 0 for s in points) else LEFT_SHARE
+        left, right = left - share * missing, right + (1 - share) * missing
+    half = max(half, (right - left) / ratios[1] / 2)
+    return View((left, right), (-half, half), frozenset(shown))
+
+
+def leaving(marks: Iterable[Mark], view: View) -> list[list[Mark]]:
+    """Return the roots outside the view in groups of about one direction, the nearest first."""
+    groups: list[list[Mark]] = []
+    for mark in sorted((m for m in marks if not view.shows(m)), key=lambda m: abs(m.s)):
+        angle = atan2(mark.s.imag, mark.s.real)
+        for group in groups:
+            if isclose(angle, atan2(group[0].s.imag, group[0].s.real), abs_tol=SAME_DIRECTION):
+                group.append(mark)
+                break
+        else:
+            groups.append([mark])
+    return groups
+
+
+def _belonging_together(points: set[complex]) -> set[complex]:
+    resonant = [s for s in points if s.imag]
+    radius = _first_run([abs(s) for s in resonant or points if s])
+    reach = REAL_REACH * radius if resonant else radius
+    return {s for s in points if abs(s) <= (radius if s.imag else reach)}
+
+
+def _within(points: set[complex], radius: float) -> set[complex]:
+    return {s for s in points if abs(s) <= radius}
+
+
+def _first_run(sizes: Iterable[float]) -> float:
+    """Return the last of the sizes, in ascending order, before the first large gap; 0 when there is none."""
+    reached = 0.0
+    for size in sorted(sizes):
+        if reached and size > GAP_RATIO * reached:
+            break
+        reached = size
+    return reached
+
+
+def _point(root: Root) -> complex:
+    return complex(float(root.re.mid()), float(root.im.mid()))
+
+
+def _number(value: float) -> str:
+    text = f"{value:.0f}" if 1e3 <= abs(value) < PLAIN_LIMIT else f"{value:.4g}"  # noqa: PLR2004
+    if "e" not in text:
+        return text if abs(value) < 1e4 else rf"{text[:-3]}\,{text[-3:]}"  # noqa: PLR2004
+    mantissa, exponent = text.split("e")
+    return rf"{mantissa}\cdot 10^{{{int(exponent)}}}"

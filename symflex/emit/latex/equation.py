@@ -1,0 +1,243 @@
+r"""A transfer function as numbered display mathematics that fits the column.
+
+Input: a :class:`~symflex.transfer.TransferFunction` and one of its printed forms.
+Output: ``equation`` and ``align`` environments; they need amsmath and nothing else.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from symflex.emit.latex.expression import Style, Writer
+from symflex.emit.latex.label import labels_of, symbol
+from symflex.emit.latex.lines import break_lines
+from symflex.emit.latex.width import EM_MM, MINUS, QUAD, RELATION
+from symflex.expressions import Expression, Name, Negative, Number, names
+from symflex.kernels import LAPLACE
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from symflex.emit.forms import PrintedForm
+    from symflex.model import Input, Model, Output
+    from symflex.transfer import TransferFunction
+
+NARROWEST_MM: Final = 80.0
+"""Narrower columns are treated as this wide."""
+
+RESERVED: Final = {LAPLACE: "s", "pi": r"\pi"}
+
+_TAG: Final = 3.5
+_FRACTION_EDGES: Final = 0.6
+_ARGUMENT: Final = 1.3
+_WHERE: Final = r"\text{where}\quad "
+_WHERE_WIDTH: Final = 3.8
+_WIDEST_LEFT_SIDE: Final = 0.4
+_NUMERATORS: Final = (("N", "D"), ("P", "Q"), ("B", "A"), (r"\mathcal{N}", r"\mathcal{D}"))
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """One equation of a display: its sides, the right one in lines, and the width of the left one."""
+
+    left: str
+    left_width: float
+    right: tuple[str, ...]
+
+
+def model_labels(model: Model) -> dict[str, str]:
+    """Return the labels of a model's parameters and definitions, declared or made, no two alike."""
+    declared = [*model.parameters, *model.definitions]
+    return labels_of([(item.name, item.latex) for item in declared], RESERVED)
+
+
+def equation_label(name: str) -> str:
+    r"""Return the ``\label`` of a transfer function, in characters that every package leaves alone.
+
+    Examples
+    --------
+    >>> equation_label("V_tip/V_cmd")
+    'eq:V-tip/V-cmd'
+    """
+    return "eq:" + re.sub(r"[^A-Za-z0-9/]", lambda m: "-" if m[0] == "_" else f".{ord(m[0]):x}.", name)
+
+
+def ratio_latex(tf: TransferFunction) -> str:
+    r"""Return output over input on one line, such as ``V_{\mathrm{tip}}(s)/F(s)``."""
+    (above, _), (below, _) = _end(tf.output), _end(tf.input)
+    return f"{above}/{below}"
+
+
+def transfer_function_latex(tf: TransferFunction, form: PrintedForm, *, width_mm: float | None) -> str:
+    r"""Return a transfer function as a numbered display, with its definitions in ``where`` lines.
+
+    Parameters
+    ----------
+    tf : TransferFunction
+        What is printed.
+    form : PrintedForm
+        Its numerator, denominator and definitions.
+    width_mm : float or None
+        Width of the text, set in ten points; ``None`` never breaks a line.
+
+    Returns
+    -------
+    str
+        ``equation`` when one line suffices, else ``align`` with numerator and denominator named and broken.
+        The label is :func:`equation_label` of the name.
+    """
+    writer = Writer(_labels(tf, form))
+    width = None if width_mm is None else max(width_mm, NARROWEST_MM) / EM_MM
+    parts = [_formula(tf, form, writer, None if width is None else width - _TAG)]
+    if form.where:
+        parts.append(_where(form, writer, width))
+    return "\n".join(parts)
+
+
+def inline_latex(tf: TransferFunction, form: PrintedForm) -> str:
+    r"""Return a transfer function as one line of mathematics without delimiters, for notebooks and HTML."""
+    writer = Writer(_labels(tf, form))
+    formula = f"{_left_side(tf)[0]} = {_right_side(form, writer)[0]}"
+    if not form.where:
+        return formula
+    where = [f"{writer.label(n).latex} = {writer.piece(e).latex}" for n, e in form.where]
+    return rf"{formula},\quad \text{{where }} " + r",\; ".join(where)
+
+
+def equations_latex(rows: Sequence[tuple[str, Expression]], labels: Mapping[str, str], width_mm: float) -> str:
+    """Return unnumbered equations, aligned and broken to the width; left sides are names."""
+    width = max(width_mm, NARROWEST_MM) / EM_MM
+    return _align(_broken_rows(rows, Writer(labels), width), "align*", "")
+
+
+def _labels(tf: TransferFunction, form: PrintedForm) -> dict[str, str]:
+    labels = model_labels(tf.model)
+    return labels_of([(name, "") for name, _ in form.where if name not in labels], labels)
+
+
+def _end(end: Input | Output) -> tuple[str, float]:
+    label = symbol(end.name, {end.name: end.latex})
+    return f"{label.latex}(s)", label.width + _ARGUMENT
+
+
+def _left_side(tf: TransferFunction) -> tuple[str, float]:
+    (above, above_width), (below, below_width) = _end(tf.output), _end(tf.input)
+    return rf"\frac{{{above}}}{{{below}}}", max(above_width, below_width) + _FRACTION_EDGES
+
+
+def _signed(form: PrintedForm) -> tuple[str, Expression]:
+    num = form.num
+    return ("-", num.operand) if isinstance(num, Negative) else ("", num)
+
+
+def _is_one(expression: Expression) -> bool:
+    return isinstance(expression, Number) and expression.value == 1
+
+
+def _right_side(form: PrintedForm, writer: Writer) -> tuple[str, float]:
+    if _is_one(form.den):
+        piece = writer.piece(form.num)
+        return piece.latex, piece.width
+    sign, num = _signed(form)
+    above, below = writer.piece(num, Style.TEXT), writer.piece(form.den, Style.TEXT)
+    width = max(above.width, below.width) + _FRACTION_EDGES + (MINUS if sign else 0)
+    return rf"{sign}\frac{{{above.latex}}}{{{below.latex}}}", width
+
+
+def _formula(tf: TransferFunction, form: PrintedForm, writer: Writer, width: float | None) -> str:
+    left, left_width = _left_side(tf)
+    right, right_width = _right_side(form, writer)
+    label = rf"\label{{{equation_label(tf.name)}}}"
+    if width is None or left_width + RELATION + right_width <= width:
+        return f"\\begin{{equation}}\n  {label}\n  {left} = {right}\n\\end{{equation}}"
+    if _is_one(form.den):
+        rows = [_row(left, left_width, form.num, writer, width, left_width)]
+    else:
+        rows = _named_parts(form, writer, width, left, left_width)
+    return _align(rows, "align", label)
+
+
+def _named_parts(
+    form: PrintedForm, writer: Writer, width: float, left: str, left_width: float
+) -> list[_Row]:
+    """Return the quotient of what is short and of names for what is not, and what the names stand for."""
+    sign, num = _signed(form)
+    parts = []
+    for name, expression in zip(_free_names(form, writer), (num, form.den), strict=True):
+        piece = writer.piece(expression, Style.TEXT)
+        is_long = left_width + RELATION + MINUS + _FRACTION_EDGES + piece.width > width
+        depends = any(isinstance(n, Name) and n.name == LAPLACE for n in names(expression))
+        head = f"{name}(s)" if depends else name
+        parts.append((head if is_long else piece.latex, expression, is_long))
+    rows = [_Row(left, left_width, (rf"{sign}\frac{{{parts[0][0]}}}{{{parts[1][0]}}}",))]
+    rows += [
+        _row(head, MINUS + _ARGUMENT, expression, writer, width, left_width)
+        for head, expression, is_long in parts
+        if is_long
+    ]
+    return rows
+
+
+def _free_names(form: PrintedForm, writer: Writer) -> tuple[str, str]:
+    """Return names for numerator and denominator that no symbol of the formula bears."""
+    expressions = [form.num, form.den, *(e for _, e in form.where)]
+    used = {n.name for e in expressions for n in names(e) if isinstance(n, Name)}
+    taken = {writer.label(name).latex for name in sorted(used)}
+    free = [pair for pair in _NUMERATORS if not taken & set(pair)]
+    return free[0] if free else _NUMERATORS[-1]
+
+
+def _where(form: PrintedForm, writer: Writer, width: float | None) -> str:
+    rows = _broken_rows(form.where, writer, None if width is None else width - _WHERE_WIDTH)
+    first = rows[0]
+    rows[0] = _Row(f"{_WHERE}{first.left}", first.left_width, first.right)
+    return _align(rows, "align*", "")
+
+
+def _broken_rows(
+    equations: Sequence[tuple[str, Expression]], writer: Writer, width: float | None
+) -> list[_Row]:
+    heads = [writer.label(name) for name, _ in equations]
+    column = max(head.width for head in heads)
+    return [
+        _row(head.latex, head.width, expression, writer, width, column)
+        for head, (_, expression) in zip(heads, equations, strict=True)
+    ]
+
+
+def _row(
+    left: str, left_width: float, expression: Expression, writer: Writer, width: float | None, column: float
+) -> _Row:
+    """Return an equation with its right side broken; ``column`` is the width of the widest left side."""
+    if width is None:
+        return _Row(left, left_width, (writer.piece(expression).latex,))
+    if column > _WIDEST_LEFT_SIDE * width:
+        # A left side this wide stands in a line of its own.
+        room = width - RELATION - 2 * QUAD
+        lines = break_lines(expression, writer, room, room - QUAD)
+        return _Row(left, left_width, ("", *lines))
+    room = width - column - RELATION
+    return _Row(left, left_width, tuple(break_lines(expression, writer, room, room - QUAD)))
+
+
+def _align(rows: Sequence[_Row], environment: str, label: str) -> str:
+    """Return rows aligned at their equals signs; pages may break between lines."""
+    stands_alone = any(row.right[0] == "" for row in rows)
+    lines: list[str] = []
+    for row in rows:
+        if stands_alone:
+            whole = row.right[1:] if row.right[0] == "" else row.right
+            lines += [f"& {row.left}", rf"&\quad = {whole[0]}"]
+            continuation = whole[1:]
+        else:
+            lines.append(f"{row.left} &= {row.right[0]}")
+            continuation = row.right[1:]
+        indent = r"&\qquad " if stands_alone else r"&\quad "
+        lines += [f"{indent}{line}" for line in continuation]
+    if environment == "align":
+        lines = [f"{lines[0]} {label}", *(rf"{line} \notag" for line in lines[1:])]
+    body = " \\\\\n  ".join(lines)
+    display = f"\\begin{{{environment}}}\n  {body}\n\\end{{{environment}}}"
+    return f"\\begingroup\\allowdisplaybreaks\n{display}\n\\endgroup" if len(lines) > 1 else display

@@ -1,0 +1,359 @@
+r"""Expressions as LaTeX mathematics, written directly and with their widths.
+
+Quotients are fractions, one level of fractions within fractions, slashes below that and in exponents;
+parentheses, brackets and braces take turns outwards and grow only around something tall; factors follow each
+other without a sign except where two numbers would meet.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from fractions import Fraction
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from symflex.emit.latex.label import symbol
+from symflex.emit.latex.width import CDOT, DIGIT, MINUS, OPERATOR, SCRIPT, SLASH, THIN
+from symflex.expressions import Call, Expression, Name, Negative, Number, Power, Product, Quotient, Sum
+from symflex.expressions.format import number_text
+from symflex.kernels.functions import FUNCTIONS
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from symflex.emit.latex.label import Label
+
+
+class Shape(IntEnum):
+    """What a piece prints as; what comes earlier binds less tightly."""
+
+    SUM = 0
+    NEGATIVE = 1
+    RATIO = 2
+    PRODUCT = 3
+    FRACTION = 4
+    CALL = 5
+    POWER = 6
+    ATOM = 7
+
+
+class Style(IntEnum):
+    """How a quotient prints: at full size, within another fraction, or with a slash."""
+
+    DISPLAY = 0
+    TEXT = 1
+    INLINE = 2
+
+
+class Piece(NamedTuple):
+    """A printed subtree and what its surroundings must know."""
+
+    latex: str
+    width: float
+    shape: Shape
+    is_tall: bool = False
+    nesting: int = 0
+    is_wordy: bool = False
+    has_superscript: bool = False
+
+
+FENCES: Final = (("(", ")"), ("[", "]"), (r"\{", r"\}"))
+FENCE_WIDTH: Final = 0.5
+_TALL_FENCE_WIDTH: Final = 0.95
+_FRACTION_EDGES: Final = 0.6
+_ROOT_WIDTH: Final = 1.1
+_OPERATOR_WIDTHS: Final = {"sqrt": 1.1, "exp": 1.7, "log": 1.5, "sin": 1.4, "cos": 1.6, "tan": 1.7}
+_WIDEST_OPERATOR: Final = 2.3
+_TRIGONOMETRIC: Final = frozenset(("sin", "cos", "tan", "sinh", "cosh", "tanh"))
+_SHORT_EXPONENT: Final = 8
+
+
+def latex_expression(expression: Expression, labels: Mapping[str, str], style: Style = Style.DISPLAY) -> str:
+    r"""Return an expression as LaTeX for math mode.
+
+    Parameters
+    ----------
+    expression : Expression
+        Any width and depth.
+    labels : Mapping of str to str
+        Declared labels; other names get :func:`~symflex.emit.latex.label.label_of`.
+    style : Style, optional
+        How its quotients print.
+
+    Raises
+    ------
+    TypeError
+        For a derivative, an equation or a quantity of an element, which no transfer function holds.
+
+    Examples
+    --------
+    >>> from symflex.expressions import number, power, product_of, quotient, sum_of
+    >>> s, zeta, omega = Name("s"), Name("zeta_p1"), Name("omega_p1")
+    >>> print(latex_expression(sum_of([power(s, 2), product_of([number(2), zeta, omega, s])]), {}))
+    s^{2} + 2 \zeta_{p1} \omega_{p1} s
+    >>> print(latex_expression(quotient(number(1), product_of([Name("r"), sum_of([s, zeta])])), {"r": "r_t"}))
+    \frac{1}{r_t (s + \zeta_{p1})}
+    """
+    return Writer(labels).piece(expression, style).latex
+
+
+class Writer:
+    """Writes expressions with one set of labels.
+
+    Parameters
+    ----------
+    labels : Mapping of str to str
+        Declared labels.
+    """
+
+    def __init__(self, labels: Mapping[str, str]) -> None:
+        self._labels = labels
+        self._names: dict[str, Piece] = {}
+
+    def piece(self, expression: Expression, style: Style = Style.DISPLAY) -> Piece:
+        """Return a subtree printed in a style; see :func:`latex_expression`."""
+        done: list[Piece] = []
+        pending: list[tuple[Expression, Style, bool]] = [(expression, style, False)]
+        while pending:
+            node, where, is_ready = pending.pop()
+            if isinstance(node, Name):
+                done.append(self._name(node.name))
+                continue
+            if isinstance(node, Number):
+                done.append(_number(node.value, where))
+                continue
+            children = node.children
+            if not is_ready:
+                pending.append((node, where, True))
+                inner = _inner_styles(node, where)
+                pending.extend((c, s, False) for c, s in zip(reversed(children), reversed(inner), strict=True))
+            else:
+                pieces = done[-len(children) :]
+                del done[-len(children) :]
+                done.append(_combined(node, pieces, where))
+        return done[0]
+
+    def exponent(self, expression: Expression) -> Piece:
+        """Return a subtree as it prints in an exponent."""
+        return self.piece(expression, Style.INLINE)
+
+    def label(self, name: str) -> Label:
+        """Return the label of a name."""
+        return symbol(name, self._labels)
+
+    def _name(self, name: str) -> Piece:
+        piece = self._names.get(name)
+        if piece is None:
+            label = self.label(name)
+            shape = Shape.SUM if label.is_sum else Shape.PRODUCT if label.is_product else Shape.ATOM
+            piece = Piece(label.latex, label.width, shape, False, 0, label.is_wordy, label.has_superscript)
+            self._names[name] = piece
+        return piece
+
+
+def joined(factors: Sequence[Piece]) -> tuple[str, float]:
+    """Return factors, already fenced where they must be, side by side, and the width of the signs between."""
+    parts = [factors[0].latex]
+    extra = 0.0
+    for left, right in zip(factors, factors[1:], strict=False):
+        between, width = between_factors(left, right)
+        parts += [between, right.latex]
+        extra += width
+    return "".join(parts), extra
+
+
+def between_factors(left: Piece, right: Piece) -> tuple[str, float]:
+    """Return what stands between two factors, and its width."""
+    if right.latex[:1].isdigit() or (right.latex.startswith(r"\frac") and left.latex[-1:].isdigit()):
+        return r" \cdot ", CDOT
+    if left.is_wordy or right.is_wordy or left.shape is Shape.CALL or right.shape is Shape.CALL:
+        return r" \, ", THIN
+    return " ", 0.0
+
+
+def fenced(piece: Piece) -> Piece:
+    """Return a piece in parentheses, or in brackets or braces around those."""
+    left, right = FENCES[piece.nesting % len(FENCES)]
+    if piece.is_tall:
+        latex, width = rf"\left{left} {piece.latex} \right{right}", 2 * _TALL_FENCE_WIDTH
+    else:
+        latex, width = f"{left}{piece.latex}{right}", 2 * FENCE_WIDTH
+    return Piece(latex, piece.width + width, Shape.ATOM, piece.is_tall, piece.nesting + 1)
+
+
+def as_term(piece: Piece) -> Piece:
+    """Return a piece as it stands in a sum."""
+    return fenced(piece) if piece.shape <= Shape.NEGATIVE else piece
+
+
+def as_factor(piece: Piece) -> Piece:
+    """Return a piece as it stands in a product."""
+    return fenced(piece) if piece.shape <= Shape.RATIO else piece
+
+
+def as_base(piece: Piece) -> Piece:
+    """Return a piece as the base of a power."""
+    return piece if piece.shape is Shape.ATOM and not piece.has_superscript else fenced(piece)
+
+
+def numbers_first(factors: Sequence[Expression]) -> list[Expression]:
+    """Return factors with the plain numbers before all others, otherwise in order."""
+    return sorted(factors, key=lambda factor: not isinstance(factor, Number))
+
+
+def is_half(exponent: Expression) -> bool:
+    """Return whether an exponent makes a square root."""
+    if isinstance(exponent, Quotient):
+        return exponent == Quotient(Number(Fraction(1)), Number(Fraction(2)))
+    return exponent == Number(Fraction(1, 2))
+
+
+def is_short(expression: Expression) -> bool:
+    """Return whether an expression may stand in the exponent of e."""
+    pending, size = [expression], 0
+    while pending and size <= _SHORT_EXPONENT:
+        node = pending.pop()
+        size += 1
+        pending.extend(node.children)
+    return size <= _SHORT_EXPONENT
+
+
+def number_piece(text: str) -> Piece:
+    """Return a number as its digits, or as a decimal times a power of ten."""
+    mantissa, _, exponent = text.partition("e")
+    if exponent:
+        latex = rf"{mantissa} \cdot 10^{{{exponent}}}"
+        return Piece(latex, DIGIT * (len(mantissa) + len(exponent) + 3) + CDOT, Shape.PRODUCT)
+    return Piece(mantissa, DIGIT * len(mantissa), Shape.ATOM)
+
+
+def _number(value: Fraction, style: Style) -> Piece:
+    if value < 0:
+        return _negative(_number(-value, style))
+    text = number_text(value)
+    above, _, below = text.partition("/")
+    if not below:
+        return number_piece(text)
+    return _quotient(number_piece(above), number_piece(below), style)
+
+
+def _inner_styles(node: Expression, style: Style) -> tuple[Style, ...]:
+    match node:
+        case Quotient():
+            inner = Style.TEXT if style is Style.DISPLAY else Style.INLINE
+            return inner, inner
+        case Power():
+            return style, Style.INLINE
+        case Call(name="exp", argument=argument) if is_short(argument):
+            return (Style.INLINE,)
+        case _:
+            return (style,) * len(node.children)
+
+
+def _combined(node: Expression, pieces: Sequence[Piece], style: Style) -> Piece:
+    match node:
+        case Sum():
+            return _sum(pieces)
+        case Product():
+            order = sorted(range(len(pieces)), key=lambda i: not isinstance(node.factors[i], Number))
+            return _product([as_factor(pieces[i]) for i in order])
+        case Negative():
+            return _negative(pieces[0])
+        case Quotient():
+            return _quotient(pieces[0], pieces[1], style)
+        case Power(base=base, exponent=exponent):
+            return _power(base, exponent, pieces)
+        case Call(order=0):
+            return _call(node, pieces[0])
+        case _:
+            raise TypeError(f"no LaTeX for {type(node).__name__}")
+
+
+def _sum(pieces: Sequence[Piece]) -> Piece:
+    parts: list[str] = []
+    width, is_tall, nesting = 0.0, False, 0
+    for index, written in enumerate(pieces):
+        if written.shape is Shape.NEGATIVE:
+            # Its minus sign is the sum's own.
+            parts.append(("- " if index else "-") + written.latex[1:])
+            width += written.width + (OPERATOR - MINUS if index else 0)
+            piece = written
+        else:
+            piece = as_term(written)
+            parts.append(("+ " if index else "") + piece.latex)
+            width += piece.width + (OPERATOR if index else 0)
+        is_tall = is_tall or piece.is_tall
+        nesting = max(nesting, piece.nesting)
+    return Piece(" ".join(parts), width, Shape.SUM, is_tall, nesting)
+
+
+def _negative(operand: Piece) -> Piece:
+    piece = as_term(operand)
+    return Piece(f"-{piece.latex}", piece.width + MINUS, Shape.NEGATIVE, piece.is_tall, piece.nesting)
+
+
+def _product(factors: Sequence[Piece]) -> Piece:
+    latex, extra = joined(factors)
+    return Piece(
+        latex,
+        sum(f.width for f in factors) + extra,
+        Shape.PRODUCT,
+        any(f.is_tall for f in factors),
+        max(f.nesting for f in factors),
+        any(f.is_wordy for f in factors),
+    )
+
+
+def _quotient(above: Piece, below: Piece, style: Style) -> Piece:
+    if style is Style.INLINE:
+        numerator = above if above.shape >= Shape.PRODUCT else fenced(above)
+        denominator = below if below.shape >= Shape.CALL else fenced(below)
+        return Piece(
+            f"{numerator.latex}/{denominator.latex}",
+            numerator.width + SLASH + denominator.width,
+            Shape.RATIO,
+            numerator.is_tall or denominator.is_tall,
+            max(numerator.nesting, denominator.nesting),
+        )
+    size = 1.0 if style is Style.DISPLAY else SCRIPT
+    width = size * max(above.width, below.width) + _FRACTION_EDGES
+    return Piece(rf"\frac{{{above.latex}}}{{{below.latex}}}", width, Shape.FRACTION, is_tall=True)
+
+
+def _power(base: Expression, exponent: Expression, pieces: Sequence[Piece]) -> Piece:
+    below, above = pieces
+    if is_half(exponent):
+        return _root(below)
+    raised = f"^{{{above.latex}}}"
+    width = SCRIPT * above.width + THIN
+    if isinstance(base, Call) and base.name in _TRIGONOMETRIC and isinstance(exponent, Number):
+        # The exponent of a function stands at its name.
+        head = FUNCTIONS[base.name].latex
+        latex = f"{head}{raised}{below.latex.removeprefix(head)}"
+        return Piece(latex, below.width + width, Shape.CALL, below.is_tall, below.nesting)
+    root = as_base(below)
+    latex = f"{root.latex}{raised}"
+    return Piece(latex, root.width + width, Shape.POWER, root.is_tall, root.nesting, root.is_wordy)
+
+
+def _root(radicand: Piece) -> Piece:
+    latex = rf"\sqrt{{{radicand.latex}}}"
+    return Piece(latex, radicand.width + _ROOT_WIDTH, Shape.CALL, radicand.is_tall)
+
+
+def _call(node: Call, argument: Piece) -> Piece:
+    if node.name not in FUNCTIONS:
+        raise TypeError(f"no LaTeX for the function {node.name}")
+    if node.name == "sqrt":
+        return _root(argument)
+    if node.name == "exp" and is_short(node.argument):
+        latex = rf"\mathrm{{e}}^{{{argument.latex}}}"
+        return Piece(latex, SCRIPT * argument.width + DIGIT + THIN, Shape.POWER)
+    inside = fenced(argument)
+    width = operator_width(node.name) + inside.width
+    latex = FUNCTIONS[node.name].latex + inside.latex
+    return Piece(latex, width, Shape.CALL, inside.is_tall, inside.nesting)
+
+
+def operator_width(function: str) -> float:
+    """Return the width of a function's name."""
+    return _OPERATOR_WIDTHS.get(function, _WIDEST_OPERATOR)

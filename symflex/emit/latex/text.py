@@ -1,0 +1,124 @@
+r"""Plain text made safe for LaTeX: nothing in a title or description can reach a command.
+
+The result holds the text's own letters and only the commands written here. It is meant for text mode with
+T1 encoded fonts, which have every Latin letter of Latin-1 and Latin Extended-A that is let through.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from typing import Final
+
+from symflex.emit.latex.width import ROMAN, WIDEST
+
+# Letters and signs between the control characters are escaped one by one; an empty group after a command
+# keeps the space that follows, and one after - ' < > , ! ? ` keeps pairs of them from becoming ligatures.
+_ASCII: Final = {
+    "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%",
+    "_": r"\_", "^": r"\textasciicircum{}", "~": r"\textasciitilde{}", '"': r"\textquotedbl{}",
+    "`": r"\textasciigrave{}", "-": "-{}", "'": "'{}", "<": "<{}", ">": ">{}", ",": ",{}", "!": "!{}",
+    "?": "?{}",
+}  # fmt: skip
+
+_GREEK_SMALL: Final = dict(
+    zip(
+        "αβγδεζηθικλμνξπρςστυφχψω",
+        (
+            "alpha beta gamma delta varepsilon zeta eta theta iota kappa lambda mu nu xi pi rho varsigma sigma tau "
+            "upsilon varphi chi psi omega"
+        ).split(),
+        strict=True,
+    )
+)
+_GREEK_CAPITAL: Final = dict(
+    zip("ΓΔΘΛΞΠΣΥΦΨΩ", "Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega".split(), strict=True)
+)
+# Capitals that look like Latin ones, and the omicron.
+_GREEK_AS_LATIN: Final = dict(zip("ΑΒΕΖΗΙΚΜΝΟΡΤΧο", "ABEZHIKMNOPTXo", strict=True))
+_SYMBOLS: Final = {
+    "≤": "leq", "≥": "geq", "≠": "neq", "≈": "approx", "≡": "equiv", "∞": "infty", "√": "surd", "∂": "partial",
+    "∇": "nabla", "∑": "sum", "∏": "prod", "∫": "int", "∈": "in", "→": "to", "←": "leftarrow", "↔": "leftrightarrow",
+    "⇒": "Rightarrow", "−": "-", "⋅": "cdot", "·": "cdot", "×": "times", "÷": "div", "±": "pm", "∓": "mp",
+    "∼": "sim", "∝": "propto", "∥": "parallel", "⊥": "perp", "°": "^\\circ", "′": "'", "″": "''", "¬": "neg",
+    "µ": "mu", "ϑ": "vartheta", "ϕ": "phi", "ϵ": "epsilon", "ϱ": "varrho", "ϖ": "varpi", "Ω": "Omega", "ℓ": "ell",
+    "²": "^{2}", "³": "^{3}", "¹": "^{1}",
+}  # fmt: skip
+_MATHEMATICS: Final = _GREEK_SMALL | _GREEK_CAPITAL | _SYMBOLS
+_PUNCTUATION: Final = {
+    "\u00ad": r"\-", "\u00a0": "~", "\u202f": "~", "‐": "-{}", "‑": "-{}", "‒": "--", "–": "--", "—": "---",
+    "―": "---", "‘": "`{}", "’": "'{}", "‚": r"\quotesinglbase{}", "“": "``", "”": "''", "„": r"\quotedblbase{}",
+    "…": r"\ldots{}", "•": r"\textbullet{}", "†": r"\dag{}", "‡": r"\ddag{}", "€": r"\texteuro{}",
+    "™": r"\texttrademark{}",
+}  # fmt: skip
+# Latin Extended-A without the few letters that T1 fonts lack.
+_EXTENDED_A: Final = frozenset(map(chr, range(0x100, 0x180))) - frozenset("ĦħĸĿŀŉŦŧſ")
+
+_WORD: Final = re.compile(r"[^\s\u00a0\u202f]+")
+_LONG_WORD_EM: Final = 12.0
+_CHUNK_EM: Final = 4.0
+
+
+def escape_text(text: str) -> str:
+    r"""Return plain text as LaTeX text that prints it, whatever it holds.
+
+    White space becomes single spaces; control and formatting characters vanish; letters of other scripts are
+    written as their Latin base letter where they have one and as ``[U+4E2D]`` otherwise; a word too long for
+    a narrow column may be broken anywhere.
+
+    Examples
+    --------
+    >>> print(escape_text(r"100 % of \input{x} & k_1^2"))
+    100 \% of \textbackslash{}input\{x\} \& k\_1\textasciicircum{}2
+    >>> print(escape_text("Größe ω\n中"))
+    Größe \ensuremath{\omega} [U+4E2D]
+    """
+    return " ".join(_WORD.sub(lambda match: _word(match[0]), " ".join(text.split(" "))).split())
+
+
+def _word(word: str) -> str:
+    total = sum(ROMAN.get(c, WIDEST) for c in word)
+    if total <= _LONG_WORD_EM:
+        return "".join(map(_character, word))
+    pieces: list[str] = []
+    room = _CHUNK_EM
+    for c in word:
+        width = ROMAN.get(c, WIDEST)
+        if width > room:
+            pieces.append(r"\allowbreak{}")
+            room = _CHUNK_EM
+        pieces.append(_character(c))
+        room -= width
+    return "".join(pieces)
+
+
+def _character(c: str) -> str:
+    if c in _ASCII:
+        return _ASCII[c]
+    if " " <= c <= "~":
+        return c
+    if c in _PUNCTUATION:
+        return _PUNCTUATION[c]
+    if c in _MATHEMATICS:
+        command = _MATHEMATICS[c]
+        return rf"\ensuremath{{{'' if not command.isalpha() else chr(92)}{command}}}"
+    if c in _GREEK_AS_LATIN:
+        return _GREEK_AS_LATIN[c]
+    if "\u00a1" <= c <= "\u00ff" or c in _EXTENDED_A:
+        return c
+    return _replacement(c)
+
+
+def _replacement(c: str) -> str:
+    """Return a stand-in for a character that the fonts lack."""
+    category = unicodedata.category(c)
+    if category in ("Cc", "Cf", "Mn", "Me"):
+        return ""
+    plain = "".join(d for d in unicodedata.normalize("NFKD", c) if not unicodedata.combining(d))
+    if (
+        plain != c
+        and plain
+        and all(" " <= d <= "~" or d in _MATHEMATICS or d in _GREEK_AS_LATIN for d in plain)
+    ):
+        return "".join(map(_character, plain))
+    return f"[U+{ord(c):04X}]"

@@ -1,0 +1,259 @@
+"""From a transfer function to the programs that compute it.
+
+Input: a :class:`symflex.transfer.TransferFunction`.
+Output: a :class:`Program` per way of evaluating it: ``closed`` keeps sums such as k + b*s and definitions as
+intermediates, ``factors`` multiplies out every factor by powers of s.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from math import inf
+from typing import TYPE_CHECKING
+
+from symflex.emit.program.forge import Forge
+from symflex.emit.program.polynomials import Images, degree_of, evaluate_polynomial
+from symflex.emit.program.schedule import schedule
+from symflex.errors import BudgetError, Diagnostic
+from symflex.expressions import Call, Expression, Name, Negative, Number, Power, Product, Quotient, Sum
+from symflex.kernels import LAPLACE, Factored
+from symflex.model.linearity import integer_exponent
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from flint import fmpz_mpoly
+
+    from symflex.emit.program.nodes import Program
+    from symflex.kernels import Ring
+    from symflex.model import Model
+    from symflex.transfer import TransferFunction
+
+TERM_LIMIT = 20_000
+"""Terms a program may be made of; beyond that its text would be megabytes."""
+
+HEADROOM = 180
+"""Decades a power of s may reach in double precision (308 in all), the rest being left to the coefficients."""
+
+FAR_FROM = 1e15
+"""A far branch is made when powers of s could overflow below this abs(s) [rad/s]."""
+
+PI = "pi"
+
+
+def build_program(tf: TransferFunction, form: str | None = None) -> Program:
+    """Return the program of one form, ``closed`` or ``factors``; by default the first there is.
+
+    Raises
+    ------
+    BudgetError
+        SF503 when the program would be too large.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> G = pipeline.derive_all(pipeline.loads('''
+    ... symflex = 1
+    ... parameters = {m = "2 kg", b = "3 N*s/m"}
+    ... elements.body = {type = "mass", at = "x", m = "m"}
+    ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
+    ... inputs.F = {force = "x"}
+    ... outputs.V = "s*x"
+    ... '''))[0]
+    >>> build_program(G, "factors").parameters
+    ('m', 'b')
+    """
+    forms = available_forms(tf)
+    if not forms:
+        message = f"a program for {tf.name} would have more than {TERM_LIMIT} terms"
+        raise BudgetError(Diagnostic("SF503", message, None, "keep repeated sums in [definitions]"))
+    parameters = tuple(p.name for p in tf.parameters)
+    forge = Forge()
+    if tf.ratio.is_zero:
+        return schedule(forge, parameters, forge.constant(0), None, inf)
+    make = _closed if (form or forms[0]) == "closed" else _factors
+    near, degree = make(_Generators(forge, tf, is_far=False))
+    limit = 10.0 ** (HEADROOM // degree) if degree else inf
+    if limit >= FAR_FROM:
+        return schedule(forge, parameters, near, None, inf)
+    far, _ = make(_Generators(forge, tf, is_far=True))
+    return schedule(forge, parameters, near, far, limit)
+
+
+def available_forms(tf: TransferFunction) -> tuple[str, ...]:
+    """Return the names of the forms a transfer function can be evaluated in, the preferred one first."""
+    forms = []
+    if tf.closed is not None and not tf.ratio.is_zero and _closes_polynomially(tf):
+        closed = tf.closed
+        terms = [len(closed.num), len(closed.den), *(len(p) for _, p in closed.closure.sums)]
+        if sum(terms) <= TERM_LIMIT:
+            forms.append("closed")
+    if sum(len(f) for f, _ in tf.ratio.factors) <= TERM_LIMIT:
+        forms.append("factors")
+    return tuple(forms)
+
+
+def _closes_polynomially(tf: TransferFunction) -> bool:
+    """True when no definition in use has poles, which the closed form would divide away at run time."""
+    used = _used_definitions(tf)
+    return not any(value.is_zero or value.denominator().depends_on(LAPLACE) for _, value in used)
+
+
+def _used_definitions(tf: TransferFunction) -> Iterator[tuple[str, Factored]]:
+    if tf.closed is None:
+        return
+    closure = tf.closed.closure
+    used = _used(closure.ring, (tf.closed.num, tf.closed.den))
+    polynomials = [p for name, p in closure.sums if name in used]
+    used |= _used(closure.base, polynomials)
+    yield from ((name, value) for name, value in tf.definitions if name in used)
+
+
+def _used(ring: Ring, polynomials: Iterable[fmpz_mpoly]) -> set[str]:
+    found: set[str] = set()
+    for polynomial in polynomials:
+        if len(polynomial):
+            found |= {name for name, d in zip(ring.names, polynomial.degrees(), strict=True) if int(d)}
+    return found
+
+
+@dataclass
+class _Generators:
+    """Makes an expression for every generator, in powers of s or of 1/s."""
+
+    forge: Forge
+    tf: TransferFunction
+    is_far: bool
+    _known: dict[str, tuple[int, int]] = field(default_factory=dict)
+
+    def polynomial(self, ring: Ring, polynomial: fmpz_mpoly) -> tuple[int, int]:
+        """Return an expression and its degree in s; in the far branch of ``polynomial / s**degree``."""
+        used = _used(ring, (polynomial,))
+        pairs = [self._generator(n) if n in used or n == LAPLACE else (0, 0) for n in ring.names]
+        degrees = tuple(d for _, d in pairs)
+        images = Images(tuple(v for v, _ in pairs), degrees, ring.index[PI], self.is_far)
+        return evaluate_polynomial(self.forge, polynomial, images), degree_of(polynomial, degrees)
+
+    def product(self, value: Factored) -> tuple[int, int]:
+        """Return a product of powers of polynomials, its unit left out, and its degree in s."""
+        parts: list[int] = []
+        total = 0
+        for factor, exponent in value.factors:
+            part, degree = self.polynomial(value.ring, factor)
+            parts.append(self.forge.power(part, exponent))
+            total += degree * exponent
+        return self.forge.multiply(parts), total
+
+    def balance(self, above: tuple[int, int], below: tuple[int, int]) -> int:
+        """Return the quotient, with the power of s that the far branch divided out."""
+        (num, num_degree), (den, den_degree) = above, below
+        if self.is_far:
+            base = self.forge.s if num_degree > den_degree else self.forge.inverse
+            num = self.forge.multiply([num, self.forge.power(base, abs(num_degree - den_degree))])
+        suffix = "_far" if self.is_far else ""
+        for part, label in ((num, "num"), (den, "den")):
+            size = self.forge.signed(part)[1]
+            if self.forge.depends[size]:
+                self.forge.label(size, label + suffix)
+        return self.forge.divide(num, den)
+
+    def _generator(self, name: str) -> tuple[int, int]:
+        if name not in self._known:
+            self._known[name] = self._make(name)
+        return self._known[name]
+
+    def _make(self, name: str) -> tuple[int, int]:
+        forge, tf = self.forge, self.tf
+        if name == LAPLACE:
+            return (forge.inverse if self.is_far else forge.s), 1
+        if name == PI:
+            return forge.constant(1, 1), 0
+        if any(p.name == name for p in tf.model.parameters):
+            return forge.parameter(name), 0
+        for definition, value in tf.definitions:
+            if definition == name:
+                return self._definition(name, value)
+        for constant in tf.constants:
+            if constant.generator == name:
+                return self._constant(constant.expression), 0
+        if tf.closed is not None:
+            for label, polynomial in tf.closed.closure.sums:
+                if label == name:
+                    value, degree = self.polynomial(tf.closed.closure.base, polynomial)
+                    return self._labelled(value, label), degree
+        raise KeyError(name)
+
+    def _definition(self, name: str, value: Factored) -> tuple[int, int]:
+        above, degree = self.product(value.numerator())
+        below, _ = self.product(value.denominator())
+        unit = self.forge.divide(
+            self.forge.constant(value.unit.numerator), self.forge.constant(value.unit.denominator)
+        )
+        return self._labelled(self.forge.divide(self.forge.multiply([unit, above]), below), name), degree
+
+    def _labelled(self, value: int, name: str) -> int:
+        suffix = "_far" if self.is_far and self.forge.depends[value] else ""
+        return self.forge.label(value, name + suffix)
+
+    def _constant(self, expression: Expression) -> int:
+        """Return an expression of constants as the model writes it."""
+        forge = self.forge
+        match expression:
+            case Number(value):
+                return forge.constant(value)
+            case Name(name):
+                inner = next((e for n, e in _every_definition(self.tf.model) if n == name), None)
+                is_known = name == PI or any(p.name == name for p in self.tf.model.parameters)
+                if is_known or inner is None:
+                    return self._generator(name)[0]
+                return forge.label(self._constant(inner), name)
+            case Negative(operand):
+                return forge.negate(self._constant(operand))
+            case Sum(terms):
+                return forge.add([self._constant(t) for t in terms])
+            case Product(factors):
+                return forge.multiply([self._constant(f) for f in factors])
+            case Quotient(numerator, denominator):
+                return forge.divide(self._constant(numerator), self._constant(denominator))
+            case Power(base, exponent):
+                power = integer_exponent(exponent) or 0
+                raised = forge.power(self._constant(base), abs(power))
+                return raised if power >= 0 else forge.divide(forge.constant(1), raised)
+            case Call(name, argument):
+                return forge.apply(name, self._constant(argument))
+        message = f"unexpected expression {type(expression).__name__}"
+        raise TypeError(message)
+
+
+def _every_definition(model: Model) -> Iterator[tuple[str, Expression]]:
+    """Yield the definitions of a model and then those of the models inside its blocks."""
+    yield from ((d.name, d.expression) for d in model.definitions)
+    for block in model.blocks:
+        if block.submodel is not None:
+            yield from _every_definition(block.submodel)
+
+
+def _closed(generators: _Generators) -> tuple[int, int]:
+    """Return the nested form and the highest power of s in it."""
+    closed = generators.tf.closed
+    if closed is None:
+        message = f"{generators.tf.name} has no closed form"
+        raise ValueError(message)
+    ring = closed.closure.ring
+    above, below = generators.polynomial(ring, closed.num), generators.polynomial(ring, closed.den)
+    return generators.balance(above, below), max(above[1], below[1])
+
+
+def _factors(generators: _Generators) -> tuple[int, int]:
+    """Return the product of factors and the highest power of s in it."""
+    ratio, forge = generators.tf.ratio, generators.forge
+    varying = Factored(ratio.ring, Fraction(1), tuple(f for f in ratio.factors if int(f[0].degrees()[0])))
+    fixed = Factored(ratio.ring, Fraction(1), tuple(f for f in ratio.factors if not int(f[0].degrees()[0])))
+    gain = forge.divide(
+        forge.multiply([forge.constant(ratio.unit.numerator), generators.product(fixed.numerator())[0]]),
+        forge.multiply([forge.constant(ratio.unit.denominator), generators.product(fixed.denominator())[0]]),
+    )
+    num, num_degree = generators.product(varying.numerator())
+    den, den_degree = generators.product(varying.denominator())
+    return generators.balance((forge.multiply([gain, num]), num_degree), (den, den_degree)), max(num_degree, den_degree)

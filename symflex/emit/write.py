@@ -1,0 +1,96 @@
+"""Writing a file as a whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import secrets
+import stat
+from pathlib import Path
+
+from symflex.errors import Diagnostic, UsageError
+
+PERMISSIONS = 0o666
+
+
+def write_atomically(path: Path, data: bytes) -> None:
+    """Write a file so that at every moment its path holds the old content or the new, never a part.
+
+    The data go to a temporary file in the same folder, reach the disk, and then take the place of ``path``.
+    An existing file keeps its permissions; a new one gets those of the process's umask.
+
+    Parameters
+    ----------
+    path : Path
+        In a folder that exists; not a symbolic link, and not a folder or device.
+    data : bytes
+        The whole content.
+
+    Raises
+    ------
+    UsageError
+        SF903, with the reason; the old content, if any, is untouched and no temporary file remains.
+
+    Examples
+    --------
+    >>> write_atomically(Path("no/such/folder/a.svg"), b"")
+    Traceback (most recent call last):
+    symflex.errors.exceptions.UsageError: error[SF903]: cannot write 'no/such/folder/a.svg': ...
+    """
+    name = os.fspath(path)
+    try:
+        _write(Path(path), data)
+    except FileNotFoundError:
+        raise _unwritable(name, f"there is no folder '{os.path.dirname(name) or '.'}'") from None
+    except OSError as error:
+        raise _unwritable(name, error.strerror or "input/output error") from None
+    except ValueError:
+        raise _unwritable(name, "the name holds a character no file name can have") from None
+
+
+def _write(path: Path, data: bytes) -> None:
+    mode = _mode_of_regular_file(path)
+    temporary = path.parent / f".symflex-{secrets.token_hex(8)}.tmp"
+    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL
+    for name_of_flag in ("O_NOFOLLOW", "O_CLOEXEC", "O_BINARY"):
+        flags |= getattr(os, name_of_flag, 0)
+    descriptor = os.open(temporary, flags, PERMISSIONS)
+    try:
+        with open(descriptor, "wb") as file:
+            if mode is not None:
+                os.chmod(temporary, mode)
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)
+    _sync_folder(path.parent)
+
+
+def _mode_of_regular_file(path: Path) -> int | None:
+    """Return the permissions of the file that would be replaced, None when there is none."""
+    try:
+        mode = path.lstat().st_mode
+    except FileNotFoundError:
+        return None
+    if stat.S_ISLNK(mode):
+        raise _unwritable(os.fspath(path), "it is a symbolic link, and links are not written through")
+    if not stat.S_ISREG(mode):
+        raise _unwritable(os.fspath(path), "it is not a regular file")
+    return stat.S_IMODE(mode)
+
+
+def _sync_folder(folder: Path) -> None:
+    """Make the new name survive a power failure, where the system can do so."""
+    directory_flag = getattr(os, "O_DIRECTORY", None)
+    if directory_flag is None:
+        return
+    descriptor = os.open(folder, os.O_RDONLY | directory_flag)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def _unwritable(name: str, reason: str) -> UsageError:
+    return UsageError(Diagnostic("SF903", f"cannot write '{name}': {reason}"))

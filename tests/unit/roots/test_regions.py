@@ -1,0 +1,149 @@
+"""Roots inside, on and outside a region."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+
+from symflex.roots import (
+    Band,
+    Everything,
+    Modes,
+    PolynomialInS,
+    Position,
+    Rectangle,
+    RootProblem,
+    find_pole_zero_map,
+    find_polynomial_roots,
+)
+from tests.unit.roots.polynomials import from_roots, problem, with_pi
+
+NOTHING = problem(1)
+
+
+def rectangle(*sides):
+    return Rectangle(*(Fraction(side) for side in sides))
+
+
+def poles_in(region, polynomial, digits=20):
+    found = find_pole_zero_map("y/u", polynomial, NOTHING, region, digits)
+    return [(r.decimal(4).re, r.decimal(4).im, r.on_boundary) for r in found.poles]
+
+
+def axis_pairs(*frequencies):
+    """Undamped pairs at these angular frequencies."""
+    factors = tuple((PolynomialInS.from_integers([w * w, 0, 1]), 1) for w in frequencies)
+    return RootProblem(factors)
+
+
+def test_everything_is_inside_the_plane():
+    roots = find_polynomial_roots(problem(1, 2, 3), 10)
+    assert set(Everything().classify(roots)) == {Position.INSIDE}
+
+
+def test_a_band_selects_by_natural_frequency_in_hz():
+    # 6, 7 and 63 rad/s are 0.95, 1.11 and 10.03 Hz
+    found = poles_in(Band(Fraction(1), Fraction(10)), axis_pairs(6, 7, 63))
+    assert found == [("0", "7.000", False), ("0", "-7.000", False)]
+
+
+def test_a_root_at_a_bands_end_is_on_the_boundary():
+    polynomial = with_pi(lambda pi, one: (484 * pi**2, 0 * one, one))  # 11 Hz
+    found = poles_in(Band(Fraction(1), Fraction(11)), RootProblem(((polynomial, 1),)))
+    assert [flag for *_, flag in found] == [True, True]
+
+
+@pytest.mark.parametrize(("shift", "count"), [(1, 0), (-1, 2)])
+def test_a_root_1e_40_from_a_bands_end_is_decided(shift, count):
+    # (2 pi f)^2 with f = 11 (1 +- 1e-40) Hz
+    f = Fraction(11) * (1 + shift * Fraction(1, 10**40))
+    polynomial = with_pi(lambda pi, one: (4 * f.numerator**2 * pi**2, 0 * one, one * f.denominator**2))
+    found = poles_in(Band(Fraction(1), Fraction(11)), RootProblem(((polynomial, 1),)), digits=15)
+    assert [flag for *_, flag in found] == [False] * count
+
+
+def test_a_band_from_zero_has_the_rigid_body_inside():
+    assert poles_in(Band(Fraction(0), Fraction(1)), problem(0, 0, 1)) == [("0", "0", False)]
+
+
+def test_a_band_above_zero_leaves_the_rigid_body_out():
+    assert poles_in(Band(Fraction(1), Fraction(2)), problem(0, 0, 1)) == []
+
+
+def test_a_rectangle_is_closed_and_its_edge_exact_on_the_imaginary_axis():
+    found = poles_in(rectangle(-5, 0, -10, 10), axis_pairs(2, 20))
+    assert found == [("0", "2.000", True), ("0", "-2.000", True)]
+
+
+def test_a_rectangle_is_closed_and_its_edge_exact_on_the_real_axis():
+    found = poles_in(rectangle(-5, 0, 0, 10), problem(*from_roots([-1, -7])))
+    assert found == [("-1.000", "0", True)]
+
+
+def test_a_corner_root_is_on_the_boundary():
+    assert poles_in(rectangle(0, 1, 0, 1), problem(0, 1)) == [("0", "0", True)]
+
+
+def test_a_root_beyond_one_side_and_on_another_is_outside():
+    assert poles_in(rectangle(1, 2, 0, 1), problem(0, 1)) == []
+
+
+def test_an_irrational_root_at_no_representable_distance_is_inside():
+    # sqrt(2) against 1.4142135623730950488016887242 (rounded up in the last place)
+    edge = Fraction("1.4142135623730950488016887243")
+    assert len(poles_in(rectangle(0, edge, -1, 1), problem(-2, 0, 1), 10)) == 1
+    assert len(poles_in(rectangle(edge, 2, -1, 1), problem(-2, 0, 1), 10)) == 0
+
+
+def test_a_root_on_a_side_that_is_not_dyadic_is_on_the_boundary():
+    assert poles_in(rectangle(Fraction(1, 10), 1, -1, 1), problem(-1, 10)) == [("0.1000", "0", True)]
+
+
+def test_modes_counts_a_conjugate_pair_once():
+    found = poles_in(Modes(2), axis_pairs(1, 2, 3))
+    assert [im for _, im, _ in found] == ["1.000", "-1.000", "2.000", "-2.000"]
+
+
+def test_modes_counts_a_real_root_as_one():
+    found = poles_in(Modes(2), problem(*from_roots([-1, -2, -3])))
+    assert [re for re, *_ in found] == ["-1.000", "-2.000"]
+
+
+def test_modes_keeps_rigid_body_roots_beside_the_count():
+    factors = ((PolynomialInS.from_integers([0, 0, 4, 0, 1]), 1), (PolynomialInS.from_integers([9, 0, 1]), 1))
+    found = poles_in(Modes(1), RootProblem(factors))
+    assert found == [("0", "0", False), ("0", "2.000", False), ("0", "-2.000", False)]
+
+
+def test_modes_of_zero_keeps_the_rigid_body_only():
+    assert poles_in(Modes(0), problem(0, 0, 4, 0, 1)) == [("0", "0", False)]
+
+
+def test_modes_counts_multiplicity_and_keeps_a_multiple_root_whole():
+    found = find_pole_zero_map("y/u", problem(*from_roots([-1, -1, -1, -2])), NOTHING, Modes(2))
+    assert [root.multiplicity for root in found.poles] == [3]
+
+
+def test_roots_of_equal_frequency_across_the_limit_are_on_the_boundary():
+    found = poles_in(Modes(1), problem(-4, 0, 1))
+    assert found == [("-2.000", "0", True), ("2.000", "0", True)]
+
+
+def test_modes_applies_to_zeros_as_well():
+    found = find_pole_zero_map("y/u", axis_pairs(1, 3, 5), axis_pairs(2, 4), Modes(1))
+    assert [root.decimal(2).im for root in found.zeros] == ["2.0", "-2.0"]
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: Band(Fraction(2), Fraction(1)),
+        lambda: Band(Fraction(-1), Fraction(1)),
+        lambda: rectangle(1, 0, 0, 1),
+        lambda: Modes(-1),
+    ],
+)
+def test_impossible_regions_are_refused(make):
+    with pytest.raises(ValueError, match=r"band|rectangle|modes"):
+        make()
