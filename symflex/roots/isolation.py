@@ -65,7 +65,7 @@ def isolate(
     Raises
     ------
     UncertifiedError
-        SF402 when the bound on precision is reached without isolating discs.
+        SF404 when the bound on precision is reached without isolating discs.
 
     Examples
     --------
@@ -96,7 +96,7 @@ def isolate(
                 if polynomial.is_exact
                 else "look for constants in its coefficients that satisfy a relation"
             )
-            raise UncertifiedError(Diagnostic("SF402", message, hint=hint))
+            raise UncertifiedError(Diagnostic("SF404", message, hint=hint))
         bits = min(2 * bits, limit)
 
 

@@ -80,7 +80,7 @@ def find_polynomial_roots(
     Raises
     ------
     UncertifiedError
-        SF401 when a leading coefficient cannot be told from zero, SF402 when roots do not separate.
+        SF401 when a leading coefficient cannot be told from zero, SF404 when roots do not separate.
 
     Notes
     -----

@@ -31,7 +31,7 @@ def cancel(numerator: Factored, denominator: Factored) -> tuple[Factored, Factor
             shared = shared * Factored(ring, Fraction(1), ((factor, min(exponent, other)),))
     above = [(f, e) for f, e in quotient.factors if e > 0]
     below = [(f, -e) for f, e in quotient.factors if e < 0]
-    i = 0
+    i, changed = 0, False
     while i < len(above):
         j = 0
         while j < len(below):
@@ -43,13 +43,15 @@ def cancel(numerator: Factored, denominator: Factored) -> tuple[Factored, Factor
                 continue
             power = min(m, n)
             piece = Factored.polynomial(ring, common)
-            shared = shared * piece**power
+            shared, changed = shared * piece**power, True
             above[i : i + 1] = _pieces(f, common, m, power)
             below[j : j + 1] = _pieces(g, common, n, power)
             if i >= len(above):
                 break
             j = 0
         i += 1
+    if not changed:
+        return quotient, shared
     result = Factored.number(ring, quotient.unit)
     for f, e in above:
         result = result * Factored.polynomial(ring, f) ** e
@@ -96,8 +98,10 @@ def _leading_coefficient(ring: Ring, f: fmpz_mpoly) -> fmpz_mpoly:
     s = ring.index[LAPLACE]
     highest = degree_in(f, s)
     terms = {}
-    for monomial, coefficient in f.terms():
+    # Terms stand in lexicographic order, s first: the wanted ones lead.
+    for i in range(len(f)):
+        monomial = f.monomial(i)
         if monomial[s] != highest:
             break
-        terms[(*monomial[:s], 0, *monomial[s + 1 :])] = coefficient
+        terms[(*monomial[:s], 0, *monomial[s + 1 :])] = f.coefficient(i)
     return ring.context.from_dict(terms)

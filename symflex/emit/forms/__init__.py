@@ -25,6 +25,8 @@ FORMS: dict[str, Form] = {
     "zpk": zpk_form,
 }
 
+LARGE = 300
+"""Number of expanded terms from which only the closed form is tried: no expanded print is shorter."""
 CANDIDATES = ("definitions", "factored", "polynomial")
 """The symbolic forms among which the shortest print is the default; ties go to the first."""
 
@@ -49,7 +51,8 @@ def print_form(tf: TransferFunction, form: str | None = None, digits: int = 6) -
         SF229 when the form needs numbers and a parameter has none.
     """
     if form is None:
-        return min((FORMS[name](tf, digits) for name in CANDIDATES), key=_length)
+        tried = CANDIDATES if sum(len(f) for f, _ in tf.ratio.factors) <= LARGE else CANDIDATES[:1]
+        return min((FORMS[name](tf, digits) for name in tried), key=_length)
     if form not in FORMS:
         hint = nearest(form, FORMS) or "forms: " + ", ".join(FORMS)
         raise UsageError(Diagnostic("SF902", f"there is no form '{form[:64]}'", None, hint))

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
+GROUP_LIMIT = 2_000
+"""Number of terms up to which a polynomial is nested for print."""
 FACTOR_LIMIT = 400
 """Number of terms up to which a coefficient is factored for print."""
 
@@ -108,6 +110,8 @@ class Arranger:
 
     def grouped_by_s(self, polynomial: fmpz_mpoly) -> Expression:
         """Return the shorter of the nested print and the one by descending powers of s."""
+        if len(polynomial) > GROUP_LIMIT:
+            return self.collected(polynomial, factored=False)
         nested = self.grouped(polynomial)
         if polynomial.is_zero() or not degree_in(polynomial, 0):
             return nested

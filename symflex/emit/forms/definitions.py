@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from symflex.elimination import Closure
     from symflex.transfer import ClosedForm, TransferFunction
 
+SMALL = 200
+"""Number of terms up to which every arrangement is tried."""
 REWRITE_LIMIT = 5_000
 """Number of terms up to which an expanded polynomial is rewritten in definitions."""
 
@@ -29,6 +31,8 @@ def definitions_form(tf: TransferFunction, digits: int) -> PrintedForm:
     closed form, and the expanded polynomial rewritten in the definitions by exact division.
     """
     del digits
+    if tf.closed is not None and _is_large(tf):
+        return _with_where(tf, *_from_closure(tf, tf.closed))
     num, den = _rewritten(tf)
     if tf.closed is not None:
         closed_num, closed_den = _from_closure(tf, tf.closed)
@@ -38,6 +42,12 @@ def definitions_form(tf: TransferFunction, digits: int) -> PrintedForm:
         elif _length(closed_num) + _length(closed_den) <= _length(num) + _length(den):
             num, den = closed_num, closed_den
     return _with_where(tf, num, den)
+
+
+def _is_large(tf: TransferFunction) -> bool:
+    """Tell whether rewriting the expanded polynomials would cost more than it can shorten."""
+    terms = max(sum(len(f) for f, _ in tf.ratio.factors), 1)
+    return terms > (REWRITE_LIMIT if tf.definitions else SMALL)
 
 
 def _length(expression: Expression) -> int:

@@ -2,7 +2,7 @@
 
 from symflex.emit.program.build import available_forms, build_program
 from symflex.emit.program.evaluate import evaluate, nearest_double
-from symflex.emit.program.identifiers import identifier_part, identifiers
+from symflex.emit.program.identifiers import identifiers
 from symflex.emit.program.nodes import (
     Add,
     Apply,
@@ -20,6 +20,7 @@ from symflex.emit.program.nodes import (
     Program,
     Reference,
 )
+from symflex.emit.program.prose import inert, wrapped
 from symflex.emit.program.verify import Verification, choose_program, verify
 
 __all__ = [
@@ -43,8 +44,9 @@ __all__ = [
     "build_program",
     "choose_program",
     "evaluate",
-    "identifier_part",
     "identifiers",
+    "inert",
     "nearest_double",
     "verify",
+    "wrapped",
 ]

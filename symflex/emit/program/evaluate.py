@@ -88,8 +88,8 @@ def evaluate(program: Program, s: ArrayLike, values: Mapping[str, ArrayLike]) ->
         Of the shape that ``s`` and the parameters broadcast to. Poles and overflows are inf or nan.
     """
     point = np.asarray(s, dtype=complex)[()]
-    given = {name: np.asarray(values[name])[()] for name in program.parameters}
-    run = _Run(point, {name: v * 1.0 for name, v in given.items()})
+    given = {name: _number(values[name]) for name in program.parameters}
+    run = _Run(point, given)
     with np.errstate(all="ignore"):
         run.assign(program.constants)
         value = run.branch(program.near)
@@ -99,6 +99,11 @@ def evaluate(program: Program, s: ArrayLike, values: Mapping[str, ArrayLike]) ->
                 value = np.where(is_far, run.branch(program.far), value)
     shape = np.broadcast_shapes(np.shape(point), *(np.shape(v) for v in given.values()))
     return np.array(np.broadcast_to(value, shape), dtype=complex)
+
+
+def _number(value: ArrayLike) -> Any:  # noqa: ANN401
+    array = np.asarray(value)
+    return array.astype(complex if array.dtype.kind == "c" else float)[()]
 
 
 class _Run:

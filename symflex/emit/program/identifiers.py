@@ -6,62 +6,56 @@ import re
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Collection, Mapping
 
 _OUTSIDE = re.compile(r"[^A-Za-z0-9_]")
 _PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
-def identifiers(names: Sequence[str], reserved: Collection[str]) -> Mapping[str, str]:
-    """Return an identifier for every name: the name itself where it can be one.
+def identifiers(wanted: Mapping[str, str], reserved: Collection[str]) -> Mapping[str, str]:
+    """Return an identifier for every key: the text wanted for it where that can be one.
 
     Parameters
     ----------
-    names : sequence of str
-        Any text at all.
+    wanted : mapping of str to str
+        Any texts at all; the same text may be wanted twice.
     reserved : collection of str
         Identifiers that mean something else: keywords, and what the generated code uses.
 
     Returns
     -------
     mapping of str to str
-        Different names have different identifiers: letters, digits and underscores of ASCII, a letter first.
+        Different keys have different identifiers: letters, digits and underscores of ASCII, a letter first.
 
     Examples
     --------
-    >>> dict(identifiers(["lambda", "lambda_", "k", "2x)"], {"lambda"}))
-    {'lambda': 'lambda_2', 'lambda_': 'lambda_', 'k': 'k', '2x)': 'p_2x_'}
+    >>> dict(identifiers({"a": "lambda", "b": "lambda_", "c": "k", "d": "2x)", "e": "k"}, {"lambda"}))
+    {'a': 'lambda_2', 'b': 'lambda_', 'c': 'k', 'd': 'p_2x_', 'e': 'k_'}
     """
-    found = {n: n for n in names if _PLAIN.fullmatch(n) and n not in reserved}
-    taken = {*reserved, *found.values()}
-    for name in names:
-        if name not in found:
-            found[name] = _free(_mangled(name, reserved), taken)
-            taken.add(found[name])
-    return {name: found[name] for name in names}
+    found: dict[str, str] = {}
+    taken = set(reserved)
+    for key, text in wanted.items():
+        if _PLAIN.fullmatch(text) and text not in taken:
+            found[key] = text
+            taken.add(text)
+    for key, text in wanted.items():
+        if key not in found:
+            found[key] = _free(_mangled(text), taken)
+            taken.add(found[key])
+    return {key: found[key] for key in wanted}
 
 
-def identifier_part(name: str) -> str:
-    """Return a name with every character replaced that no identifier may have; not one to one.
-
-    Examples
-    --------
-    >>> identifier_part("x-y")
-    'x_y'
-    """
-    plain = _OUTSIDE.sub("_", name)
+def _mangled(text: str) -> str:
+    plain = _OUTSIDE.sub("_", text)
     return plain if plain[:1].isalpha() else f"p_{plain.lstrip('_')}"
 
 
-def _mangled(name: str, reserved: Collection[str]) -> str:
-    part = identifier_part(name)
-    return f"{part}_" if part in reserved else part
-
-
-def _free(wanted: str, taken: Collection[str]) -> str:
-    if wanted not in taken:
-        return wanted
-    stem, number = wanted.rstrip("_"), 2
-    while f"{stem}_{number}" in taken:
+def _free(text: str, taken: Collection[str]) -> str:
+    if text not in taken:
+        return text
+    if f"{text}_" not in taken:
+        return f"{text}_"
+    number = 2
+    while f"{text}_{number}" in taken:
         number += 1
-    return f"{stem}_{number}"
+    return f"{text}_{number}"

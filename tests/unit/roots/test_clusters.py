@@ -9,7 +9,7 @@ from flint import arb, fmpz_poly
 
 from symflex.errors import UncertifiedError
 from symflex.roots import PolynomialInS, RootProblem, find_polynomial_roots, precision
-from tests.unit.roots.polynomials import chain, from_roots, problem, problem_of, with_root_of_two
+from tests.unit.roots.polynomials import chain, from_roots, multiply, problem, problem_of, with_root_of_two
 
 TINY = Fraction(1, 10**30)
 
@@ -47,6 +47,16 @@ def test_a_pair_1e_40_off_the_real_axis_is_not_called_real():
     roots = find_polynomial_roots(problem(10**80 + 1, -2 * 10**80, 10**80), 10)
     assert [root.is_real for root in roots] == [False, False]
     assert contains(roots[0].im, Fraction(1, 10**40))
+
+
+@pytest.mark.parametrize("others", [[1], from_roots(range(1, 40))], ids=len)
+def test_two_damped_pairs_1e_30_apart_are_told_apart(others):
+    # s^2 + s + 1 and s^2 + (1 + 1e-30) s + 1: the damping ratios are 1/2 and (1 + 1e-30)/2
+    product = multiply(multiply([1, 1, 1], [1, 1 + TINY, 1]), others)
+    roots = [root for root in find_polynomial_roots(problem(*product), 10) if not root.is_real]
+    assert len(roots) == 4
+    for value in (Fraction(-1, 2), -(1 + TINY) / 2):
+        assert sum(contains(root.re, value) for root in roots) == 2
 
 
 def test_mignotte_polynomial_of_degree_100_is_separated():
@@ -139,5 +149,5 @@ def test_a_hidden_double_root_among_many_leaves_the_others_certified():
 
 
 def test_sizes_beyond_the_reach_of_doubles_are_refused_not_guessed():
-    with pytest.raises(UncertifiedError, match="SF402"):
+    with pytest.raises(UncertifiedError, match="SF404"):
         find_polynomial_roots(problem(Fraction(1, 10**400), 3, Fraction(1, 10**100), 0, 7, 5), 10)

@@ -1,0 +1,178 @@
+r"""A whole article about a model, and the fragment for a paper of one's own.
+
+The document compiles with pdflatex and only amsmath, array, booktabs, geometry, longtable and siunitx;
+lmodern and microtype are used where they are installed.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from symflex.emit.forms import Arranger
+from symflex.emit.latex.equation import equation_label, model_labels, ratio_latex, transfer_function_latex
+from symflex.emit.latex.expression import Writer
+from symflex.emit.latex.table import VALUE_DIGITS, parameter_table, pole_zero_table
+from symflex.emit.latex.text import escape_text
+from symflex.emit.latex.units import unit_latex
+from symflex.emit.latex.width import EM_MM
+from symflex.errors import Diagnostic, UsageError
+from symflex.kernels import LAPLACE
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.emit.forms import PrintedForm
+    from symflex.model import Model
+    from symflex.roots import PoleZeroMap
+    from symflex.transfer import HiddenFactor, TransferFunction
+
+TEXT_WIDTH_MM: Final = 160.0
+"""Width of the text of the document, and of fragments unless asked otherwise."""
+
+_LONGEST_HIDDEN: Final = 0.5
+
+_PREAMBLE: Final = r"""\documentclass[10pt,a4paper]{article}
+\usepackage[T1]{fontenc}
+\usepackage[utf8]{inputenc}
+\IfFileExists{lmodern.sty}{\usepackage{lmodern}}{}
+\IfFileExists{microtype.sty}{\usepackage{microtype}}{}
+\usepackage[textwidth=160mm,textheight=240mm]{geometry}
+\usepackage{amsmath}
+\usepackage{array}
+\usepackage{booktabs}
+\usepackage{longtable}
+\usepackage{siunitx}
+\sisetup{per-mode=single-symbol}
+\raggedbottom"""
+
+
+def latex_fragment(tf: TransferFunction, form: PrintedForm, *, width_mm: float = TEXT_WIDTH_MM) -> str:
+    r"""Return one transfer function for ``\input`` in a paper, with its definitions; it needs amsmath.
+
+    Parameters
+    ----------
+    tf, form : TransferFunction, PrintedForm
+        What is printed, and how.
+    width_mm : float, optional
+        Width of the column, set in ten points.
+    """
+    display = transfer_function_latex(tf, form, width_mm=width_mm)
+    return f"% {_comment(tf.name)}, {_comment(tf.quantity)}: \\eqref{{{equation_label(tf.name)}}}\n{display}\n"
+
+
+def latex_document(
+    model: Model,
+    tfs: Sequence[TransferFunction],
+    forms: Sequence[PrintedForm],
+    *,
+    pole_zero_maps: Sequence[PoleZeroMap] = (),
+) -> str:
+    r"""Return an article with the model's parameters, transfer functions, poles and zeros.
+
+    Parameters
+    ----------
+    model : Model
+        Gives title, source and parameters.
+    tfs, forms : sequence of TransferFunction, sequence of PrintedForm
+        In pairs, in the order of print.
+    pole_zero_maps : sequence of PoleZeroMap, optional
+        Each is printed after the transfer function of its name.
+
+    Returns
+    -------
+    str
+        Encoded in UTF-8 it compiles with two runs of pdflatex, without warnings.
+
+    Raises
+    ------
+    UsageError
+        SF902 when a map belongs to none of the transfer functions.
+    """
+    known = [tf.name for tf in tfs]
+    for found in pole_zero_maps:
+        if found.tf not in known:
+            message = f"poles and zeros of '{found.tf[:64]}', which is not among the transfer functions"
+            raise UsageError(Diagnostic("SF902", message))
+    parts = [
+        _PREAMBLE,
+        rf"\title{{{escape_text(model.title) or 'Transfer functions'}}}",
+        rf"\author{{{escape_text(model.source)}}}",
+        r"\date{}",
+        r"\begin{document}",
+        r"\maketitle",
+    ]
+    if model.parameters:
+        parts += [r"\section{Parameters}", _about_values(model), parameter_table(model)]
+    if tfs:
+        parts.append(r"\section{Transfer functions}")
+    for tf, form in zip(tfs, forms, strict=True):
+        parts += [_introduction(tf), transfer_function_latex(tf, form, width_mm=TEXT_WIDTH_MM)]
+        parts += _hidden_modes(tf)
+        parts += [part for found in pole_zero_maps if found.tf == tf.name for part in _roots(tf, found)]
+    parts.append(r"\end{document}")
+    return "\n\n".join(parts) + "\n"
+
+
+def _about_values(model: Model) -> str:
+    if all(p.value is None for p in model.parameters):
+        return "All parameters are symbolic; units are SI units."
+    return f"Values are in SI units, with {VALUE_DIGITS} significant digits where they are not shorter."
+
+
+def _introduction(tf: TransferFunction) -> str:
+    zeros, poles = tf.order
+    unit = f", in {unit_latex(tf.unit)}" if tf.unit and tf.unit != "1" else ""
+    counts = f"{_counted(zeros, 'zero')} and {_counted(poles, 'pole')}"
+    return f"\\subsection{{${ratio_latex(tf)}$}}\n\nThe {escape_text(tf.quantity)}{unit}, with {counts}:"
+
+
+def _counted(count: int, noun: str) -> str:
+    words = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
+    number = words[count] if count < len(words) else str(count)
+    return f"{number} {noun}{'' if count == 1 else 's'}"
+
+
+def _hidden_modes(tf: TransferFunction) -> list[str]:
+    """Return a sentence for every factor in s that cancelled."""
+    writer = Writer(model_labels(tf.model))
+    symbols = {c.generator: c.expression for c in tf.constants}
+    arranger = Arranger.plain(tf.ratio.ring, symbols)
+    return [_hidden_mode(factor, tf, arranger, writer) for factor in tf.hidden]
+
+
+def _hidden_mode(factor: HiddenFactor, tf: TransferFunction, arranger: Arranger, writer: Writer) -> str:
+    ring = tf.ratio.ring
+    if factor.polynomial == ring.generator(LAPLACE):
+        times = "" if factor.multiplicity == 1 else f" {_counted(factor.multiplicity, 'time')}"
+        what = rf"the factor $s$ cancels{times}: the motion at $s = 0$"
+    else:
+        piece = writer.piece(arranger.collected(factor.polynomial))
+        degree = int(factor.polynomial.degrees()[ring.index[LAPLACE]])
+        where = f"${piece.latex} = 0$"
+        if piece.width > _LONGEST_HIDDEN * TEXT_WIDTH_MM / EM_MM:
+            where = f"a polynomial of degree {degree} in $s$ vanishes"
+        times = "" if factor.multiplicity == 1 else f", {_counted(factor.multiplicity, 'time')} over"
+        noun = "mode" if degree == 1 else "modes"
+        what = f"the {noun} where {where} cancel{'s' if degree == 1 else ''}{times}"
+    pronoun = "it is" if "mode where" in what or "motion" in what else "they are"
+    return (
+        f"\\noindent Hidden: {what}. Between this input and this output {pronoun} uncontrollable or unobservable."
+    )
+
+
+def _roots(tf: TransferFunction, found: PoleZeroMap) -> list[str]:
+    poles, zeros = (sum(root.multiplicity for root in roots) for roots in (found.poles, found.zeros))
+    counts = f"{_counted(poles, 'pole')} and {_counted(zeros, 'zero')}"
+    sentence = f"\\noindent The table lists {counts} of ${ratio_latex(tf)}$"
+    if found.certificate.certified:
+        sentence += "; every one is enclosed to the digits printed, and the count is proved."
+    else:
+        sentence += f". They are not certified: {escape_text(found.certificate.reason or 'no reason given')}."
+    if not (found.poles or found.zeros or found.hidden):
+        return [f"\\noindent ${ratio_latex(tf)}$ has neither poles nor zeros in the region searched."]
+    return [sentence, pole_zero_table(found)]
+
+
+def _comment(text: str) -> str:
+    """Return text for one comment line."""
+    return "".join(c if c.isascii() and c.isprintable() else "?" for c in text)

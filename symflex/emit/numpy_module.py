@@ -1,0 +1,433 @@
+"""Transfer functions as one self-contained Python module that imports numpy only.
+
+Input: transfer functions and the model they come from.
+Output: a :class:`NumpyExport`, the module's text and how well each function agrees with ball arithmetic.
+"""
+
+from __future__ import annotations
+
+import keyword
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from symflex.emit.forms import print_form
+from symflex.emit.program import (
+    Add,
+    Apply,
+    Constant,
+    Divide,
+    InverseLaplace,
+    Laplace,
+    Multiply,
+    Negate,
+    Node,
+    Power,
+    Program,
+    Reference,
+    Verification,
+    choose_program,
+    identifiers,
+    inert,
+    nearest_double,
+    wrapped,
+)
+from symflex.emit.program import Parameter as ParameterNode
+from symflex.emit.program.evaluate import NUMPY_FUNCTIONS
+from symflex.expressions import Number, Quotient, format_expression
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from fractions import Fraction
+
+    from symflex.model import Model, Parameter
+    from symflex.transfer import TransferFunction
+
+WIDTH = 88
+FORMULA_LINES = 20
+FORMULA_TERMS = 2000
+LITERAL_WIDTH = 60
+MANY_STATEMENTS = 50
+
+RESERVED = frozenset({*keyword.kwlist, "np", "s", "complex", "ArrayLike", "NDArray"})
+"""Names a parameter cannot take in the generated code."""
+
+IMPORTS = """\
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+"""
+
+SUPPORT = '''\
+def _numbers(s: ArrayLike, *parameters: ArrayLike) -> tuple[NDArray[np.complex128], ...]:
+    """Return s as complex and every parameter as real or complex numbers."""
+    arrays = [np.asarray(value) for value in (s, *parameters)]
+    for array in arrays:
+        if array.dtype.kind not in "biufc":
+            message = f"numbers or arrays of numbers are wanted, not {array.dtype}"
+            raise TypeError(message)
+    types = [complex, *(complex if a.dtype.kind == "c" else float for a in arrays[1:])]
+    return tuple(a.astype(t)[()] for a, t in zip(arrays, types, strict=True))
+
+
+def _shaped(
+    value: NDArray[np.complex128], arguments: tuple[NDArray[np.complex128], ...]
+) -> complex | NDArray[np.complex128]:
+    """Return a value in the shape of all arguments together: a number if all are."""
+    shape = np.broadcast_shapes(*(np.shape(argument) for argument in arguments))
+    if not shape:
+        return complex(value)
+    return np.array(np.broadcast_to(value, shape), dtype=complex)
+'''
+
+
+@dataclass(frozen=True, slots=True)
+class NumpyExport:
+    """A generated module.
+
+    Parameters
+    ----------
+    text : str
+        The module's source.
+    verified : tuple of Verification
+        One per transfer function, in the order of the module.
+    """
+
+    text: str
+    verified: tuple[Verification, ...]
+
+
+def numpy_module(
+    tfs: Sequence[TransferFunction],
+    model: Model,
+    band_hz: tuple[Fraction, Fraction] | None = None,
+    *,
+    samples: int = 400,
+    digits: int = 2,
+) -> NumpyExport:
+    """Return a module with one function ``OUT_over_IN(s, *, parameter=default, ...)`` per transfer function.
+
+    Each function is checked against ball arithmetic before it is written, and says in its docstring what
+    came of it.
+
+    Parameters
+    ----------
+    tfs : sequence of TransferFunction
+        Of ``model``; a transfer function given twice is written once.
+    model : Model
+        Title, source and parameters.
+    band_hz : tuple of Fraction, optional
+        Where the error is measured [Hz]; by default the model's ``[analysis]`` band, else 0.1 Hz to 10 kHz.
+    samples : int
+        Number of frequencies at which it is measured, besides those around poles and zeros.
+    digits : int
+        Significant digits of the printed error.
+
+    Returns
+    -------
+    NumpyExport
+        The same text on every run. Names that cannot be Python's are altered; text of the model stands in it
+        only as inert strings.
+
+    Raises
+    ------
+    BudgetError
+        SF503 when a function's text would be too long.
+    ModelError
+        SF233 when a number does not fit in double precision.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... parameters = {m = "2 kg", b = "3 N*s/m"}
+    ... elements.body = {type = "mass", at = "x", m = "m"}
+    ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
+    ... inputs.F = {force = "x"}
+    ... outputs.V = "s*x"
+    ... ''')
+    >>> export = numpy_module(pipeline.derive_all(model), model)
+    >>> "def V_over_F(" in export.text
+    True
+    """
+    chosen = {tf.name: (tf, *choose_program(tf, band_hz, samples)) for tf in tfs}
+    names = identifiers({p.name: p.name for p in model.parameters}, RESERVED)
+    functions = identifiers(
+        {key: f"{tf.output.name}_over_{tf.input.name}" for key, (tf, _, _) in chosen.items()}, RESERVED
+    )
+    blocks = [IMPORTS, _parameter_table(model, names)]
+    for key, (tf, program, verification) in chosen.items():
+        sentence = verification.text(digits)
+        blocks.append(_Function(tf, program, functions[key], names, sentence).text())
+    blocks += [SUPPORT, _function_table(functions)]
+    verified = tuple(v for _, _, v in chosen.values())
+    header = _header(model, verified, digits)
+    body = "\n\n".join(blocks)
+    marks = _exemptions(header + body, [len(p.constants) for _, p, _ in chosen.values()])
+    return NumpyExport(header + marks + "\n" + body, verified)
+
+
+# ------------------------------------------------------------------------------------------ the module
+
+
+def _header(model: Model, verified: Sequence[Verification], digits: int) -> str:
+    lines = ["Transfer functions of a linear system as functions of numpy arrays.", ""]
+    lines += _origin(model, "")
+    lines += [*wrapped("Written by symflex. Every function evaluates OUT/IN at the Laplace variable s [rad/s].", WIDTH)]
+    if verified:
+        lines.append("")
+    for verification in verified:
+        lines += wrapped(inert(f"{verification.name}: {verification.text(digits)}"), WIDTH, "", "    ")
+    return _docstring(lines, "")
+
+
+def _origin(model: Model, indent: str) -> list[str]:
+    lines: list[str] = []
+    for word, text in (("Model", model.title), ("Source", model.source)):
+        if text.strip():
+            lines += wrapped(f"{word}: {inert(text)}", WIDTH, indent)
+    return [*lines, ""] if lines else []
+
+
+def _docstring(lines: Sequence[str], indent: str) -> str:
+    """Return lines, which hold no double quote, as a docstring; raw when a backslash is to stand for itself."""
+    text = "\n".join(line.rstrip() for line in lines)
+    return f'{indent}{"r" if chr(92) in text else ""}"""{text.lstrip()}\n{indent}"""\n'
+
+
+def _parameter_table(model: Model, names: Mapping[str, str]) -> str:
+    lines = ["PARAMETERS: dict[str, dict[str, float | str | None]] = {"]
+    for parameter in model.parameters:
+        entries = [
+            f'"value": {_default(parameter) or None}',
+            f'"unit": {_literal(parameter.unit)}',
+            f'"doc": {_literal(parameter.doc)}',
+        ]
+        one_line = f'    "{names[parameter.name]}": {{{", ".join(entries)}}},'
+        if len(one_line) <= WIDTH and "\n" not in one_line:
+            lines.append(one_line)
+        else:
+            inside = [f"        {entry}," for entry in entries]
+            lines += [f'    "{names[parameter.name]}": {{', *inside, "    },"]
+    return "\n".join([*lines, "}"] if model.parameters else [lines[0] + "}"]) + "\n"
+
+
+def _function_table(functions: Mapping[str, str]) -> str:
+    lines = [f"    {_literal(key)}: {function}," for key, function in functions.items()]
+    return "\n".join(["TRANSFER_FUNCTIONS = {", *lines, "}"]) + "\n"
+
+
+def _default(parameter: Parameter) -> str:
+    value = parameter.value
+    return "" if value is None else repr(nearest_double(value.rational, value.pi_power))
+
+
+def _literal(text: str) -> str:
+    """Return a string literal, in pieces on lines of their own when it is long; only printable characters."""
+    pieces = [text[i : i + LITERAL_WIDTH] for i in range(0, len(text), LITERAL_WIDTH)] or [""]
+    quoted = ['"' + "".join(_character(c) for c in piece) + '"' for piece in pieces]
+    if len(quoted) == 1:
+        return quoted[0]
+    return "(\n" + "".join(f"            {q}\n" for q in quoted) + "        )"
+
+
+def _character(c: str) -> str:
+    if c in '"\\':
+        return f"\\{c}"
+    return c if c.isprintable() else c.encode("unicode_escape").decode("ascii")
+
+
+def _exemptions(text: str, constants: Sequence[int]) -> str:
+    """Return the comment that tells a linter which of its naming rules a model's own names break."""
+    code = re.sub(r'r?""".*?"""', "", text, flags=re.DOTALL)
+    arguments = re.findall(r"^    (\w+): (?:ArrayLike|NDArray)", code, flags=re.MULTILINE)
+    assigned = re.findall(r"^ +(\w+) = ", code, flags=re.MULTILINE)
+    broken = {
+        "E501": any(len(line) > WIDTH for line in text.splitlines()),
+        "E741": any(name in ("l", "O", "I") for name in (*arguments, *assigned)),
+        "N802": any(name != name.lower() for name in re.findall(r"^def (\w+)", code, flags=re.MULTILINE)),
+        "N803": any(name != name.lower() for name in arguments),
+        "N806": any(name != name.lower() for name in assigned),
+        "PLR0915": any(count + 10 > MANY_STATEMENTS for count in constants),
+        "RUF001": not text.isascii(),
+        "RUF002": not text.isascii(),
+    }
+    codes = ", ".join(code for code, is_broken in broken.items() if is_broken)
+    return f"# ruff: noqa: {codes}\n" if codes else ""
+
+
+# ---------------------------------------------------------------------------------------- one function
+
+
+@dataclass(frozen=True)
+class _Function:
+    """Prints one transfer function: what a user calls, and the arithmetic behind it."""
+
+    tf: TransferFunction
+    program: Program
+    name: str
+    names: Mapping[str, str]
+    sentence: str
+
+    def text(self) -> str:
+        parameters = [(p, self.names[p.name]) for p in self.tf.parameters]
+        values = ", ".join(["s", *(name for _, name in parameters)])
+        signature = [f"def {self.name}(", "    s: ArrayLike,", *(["    *,"] if parameters else [])]
+        for parameter, name in parameters:
+            default = _default(parameter)
+            signature.append(f"    {name}: ArrayLike{f' = {default}' if default else ''},")
+        body = [
+            *_statement("arguments", f"_numbers({values})", "    "),
+            '    with np.errstate(all="ignore"):',
+            f"        return _shaped(_{self.name}(*arguments), arguments)",
+        ]
+        return "\n".join(
+            [
+                *signature,
+                ") -> complex | NDArray[np.complex128]:",
+                self._docstring().rstrip("\n"),
+                *body,
+                "",
+                "",
+                *self._kernel([name for _, name in parameters]),
+                "",
+            ]
+        )
+
+    def _kernel(self, parameters: Sequence[str]) -> list[str]:
+        """Return the private function that computes with numbers or arrays of any shape."""
+        lines = [f"def _{self.name}("]
+        lines += [f"    {name}: NDArray[np.complex128]," for name in ("s", *parameters)]
+        lines.append(") -> NDArray[np.complex128]:")
+        program, far = self.program, self.program.far
+        used = {*RESERVED, *parameters}
+        own = identifiers({n: n for n in ("value", "is_far", "inverse")}, used)
+        used |= set(own.values())
+        assignments = [*program.constants, *program.near.assignments, *(far.assignments if far else ())]
+        printer = _Printer(self.names, identifiers({a.name: a.name for a in assignments}, used), own["inverse"])
+        for assignment in (*program.constants, *program.near.assignments):
+            lines += printer.assignment(assignment.name, assignment.value, "    ")
+        if far is None:
+            return [*lines, *_statement("return", printer.print(program.near.value), "    ")]
+        lines += _statement(own["value"], printer.print(program.near.value), "    ")
+        lines.append(f"    {own['is_far']} = np.abs(s) > float({program.limit!r})")
+        lines.append(f"    if np.any({own['is_far']}):")
+        lines.append(f"        {own['inverse']} = 1.0 / s")
+        for assignment in far.assignments:
+            lines += printer.assignment(assignment.name, assignment.value, "        ")
+        whole = f"np.where({own['is_far']}, {printer.print(far.value)}, {own['value']})"
+        return [*lines, *_statement(own["value"], whole, "        "), f"    return {own['value']}"]
+
+    def _docstring(self) -> str:
+        tf = self.tf
+        unit = f" [{tf.unit}]" if tf.unit else ""
+        lines = [inert(f"{tf.quantity[:1].upper()}{tf.quantity[1:]} {tf.name}{unit}."), ""]
+        lines += [f"    {line}" if line else "" for line in _formula(tf)]
+        lines += ["", "    Parameters", "    ----------", "    s : array_like of complex"]
+        lines.append("        Laplace variable [rad/s]; it and all parameters are broadcast together.")
+        for parameter in tf.parameters:
+            name = self.names[parameter.name]
+            is_needed = parameter.value is None
+            lines.append(f"    {name} : array_like{'' if is_needed else ', optional'}")
+            described = [inert(parameter.doc).rstrip(".")] if parameter.doc.strip() else []
+            described += [f"'{inert(parameter.name)}' in the model"] if name != parameter.name else []
+            text = f"{', '.join(described) or 'parameter of the model'}"
+            text += f" [{inert(parameter.unit)}]." if parameter.unit else "."
+            lines += wrapped(text, WIDTH, "        ")
+        lines += ["", "    Returns", "    -------", "    complex or ndarray of complex"]
+        lines.append("        A number when all arguments are numbers. Not finite at poles.")
+        lines += ["", "    Notes", "    -----"]
+        lines += _origin(tf.model, "    ")
+        lines += wrapped(inert(self.sentence), WIDTH, "    ")
+        return _docstring([*lines], "    ")
+
+
+def _formula(tf: TransferFunction) -> list[str]:
+    """Return the formula in lines of text, shortened when it is long."""
+    if sum(len(f) for f, _ in tf.ratio.factors) > FORMULA_TERMS:
+        above, below = tf.order
+        return [f"A quotient of polynomials of degree {above} and {below} in s."]
+    form = print_form(tf)
+    is_whole = isinstance(form.den, Number) and form.den.value == 1
+    whole = format_expression(form.num if is_whole else Quotient(form.num, form.den))
+    width = WIDTH - 4
+    lines = wrapped(inert(f"{tf.name} = {whole}"), width, "", "    ")
+    for i, (name, expression) in enumerate(form.where):
+        word = "where" if i == 0 else "     "
+        lines += wrapped(f"{word} {inert(f'{name} = {format_expression(expression)}')}", width, "", "    ")
+    if len(lines) <= FORMULA_LINES:
+        return lines
+    kept = lines[: FORMULA_LINES - 1]
+    return [*kept, f"    ... and {len(lines) - len(kept)} lines more."]
+
+
+# ------------------------------------------------------------------------------------------ expressions
+
+_SUM, _PRODUCT, _SIGN, _POWER, _LEAF = range(5)
+
+
+@dataclass(frozen=True)
+class _Printer:
+    """Prints expressions as Python, evaluated in the order of the tree."""
+
+    parameters: Mapping[str, str]
+    locals: Mapping[str, str]
+    inverse: str
+
+    def assignment(self, name: str, value: Node, indent: str) -> list[str]:
+        return _statement(self.locals[name], self.print(value), indent)
+
+    def print(self, node: Node) -> str:
+        return self._print(node)[0]
+
+    def _print(self, node: Node) -> tuple[str, int]:
+        """Return the text and how tightly it binds."""
+        match node:
+            case Constant(value, pi_power):
+                return ("np.pi" if (value, pi_power) == (1, 1) else repr(nearest_double(value, pi_power))), _LEAF
+            case ParameterNode(name):
+                return self.parameters[name], _LEAF
+            case Reference(name):
+                return self.locals[name], _LEAF
+            case Laplace():
+                return "s", _LEAF
+            case InverseLaplace():
+                return self.inverse, _LEAF
+            case Add(terms):
+                return self._sum(terms), _SUM
+            case Multiply(factors):
+                first, *others = factors
+                return " * ".join([self._within(first, _PRODUCT), *(self._within(f, _SIGN) for f in others)]), _PRODUCT
+            case Divide(numerator, denominator):
+                return f"{self._within(numerator, _PRODUCT)} / {self._within(denominator, _SIGN)}", _PRODUCT
+            case Power(base, exponent):
+                return f"{self._within(base, _LEAF)}**{exponent}", _POWER
+            case Negate(operand):
+                return f"-{self._within(operand, _POWER)}", _SIGN
+            case Apply(function, argument):
+                return f"np.{NUMPY_FUNCTIONS[function]}({self.print(argument)})", _LEAF
+        message = f"no text for {type(node).__name__}"
+        raise TypeError(message)
+
+    def _sum(self, terms: Sequence[Node]) -> str:
+        text = self._within(terms[0], _PRODUCT)
+        for term in terms[1:]:
+            if isinstance(term, Negate):
+                text += f" - {self._within(term.operand, _PRODUCT)}"
+            else:
+                text += f" + {self._within(term, _PRODUCT)}"
+        return text
+
+    def _within(self, node: Node, tightest: int) -> str:
+        text, binding = self._print(node)
+        return text if binding >= tightest else f"({text})"
+
+
+def _statement(target: str, value: str, indent: str) -> list[str]:
+    """Return ``target = value``, or ``return value``, on as many lines as it needs."""
+    opening = f"{indent}{target} " if target == "return" else f"{indent}{target} = "
+    if len(opening) + len(value) <= WIDTH:
+        return [opening + value]
+    return [f"{opening}(", *wrapped(value, WIDTH, indent + "    "), f"{indent})"]
