@@ -8,8 +8,6 @@ from importlib import import_module
 
 import click
 
-import symflex
-
 COMMANDS: dict[str, str] = {
     "check": "Parse and resolve a specification; report every problem at once.",
     "derive": "Print transfer functions in closed form.",
@@ -64,7 +62,7 @@ class LazyGroup(click.Group):
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
     epilog="Exit codes: 0 ok, 2 usage, 3 invalid specification or data, 4 not certified, 5 budget exceeded.",
 )
-@click.version_option(symflex.__version__, prog_name="symflex")
+@click.version_option(package_name="symflex", prog_name="symflex")
 def group() -> None:
     """Derive closed-form transfer functions of flexible electromechanical systems.
 

@@ -43,6 +43,6 @@ def command(spec: str, kind: str, *, tfs: tuple[str, ...], output: str | None) -
     derived = pipeline.derive_all(model, pairs)
     bounds = [pipeline.bind(tf) for tf in derived]
     title = figure.title if figure else ""
-    save(draw(drawn, derived, bounds, band_hz=model.analysis.band, title=title or None), path)
+    save(draw(drawn, derived, bounds, title=title or None), path)
     click.echo(str(path))
     return 0

@@ -96,11 +96,11 @@ def close(equations: Equations) -> ClosedSystem:
     """Return the equations with every sum of two or more terms closed."""
     sums: dict[str, fmpz_mpoly] = {}
     forms = [r.form for r in equations.rows] + [o.form for o in equations.outputs]
-    for form in forms:
-        for _, coefficient in form.terms:
-            for factor, _ in coefficient.factors:
-                if len(factor) > 1:
-                    sums.setdefault(str(factor), factor)
+    entries = [c for form in forms for _, c in form.terms] + [o.divisor for o in equations.outputs]
+    for entry in entries:
+        for factor, _ in entry.factors:
+            if len(factor) > 1:
+                sums.setdefault(str(factor), factor)
     named = tuple((f"sum{i}", factor) for i, factor in enumerate(sums.values()))
     # A parameter may be called like a closed sum; generator names must differ.
     taken = set(equations.ring.names)

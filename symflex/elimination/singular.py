@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from random import Random
 from typing import TYPE_CHECKING
 
-from flint import nmod, nmod_mat
+from flint import nmod_mat
 
 from symflex.errors import Diagnostic, ModelError
+from symflex.kernels import PRIME, random_point, residue
 
 if TYPE_CHECKING:
-    from flint import fmpz_mpoly
-
     from symflex.equations import Equations
     from symflex.errors import Span
 
-PRIME = 2**61 - 1
-"""A Mersenne prime; a random point mod PRIME misses the generic rank with odds below 1e-12."""
 SHOWN = 6
 
 
@@ -86,38 +82,17 @@ def _listed(names: list[str]) -> str:
 
 
 def _at_random_point(equations: Equations) -> nmod_mat:
-    random = Random(20)
-    values = {name: random.randrange(1, PRIME) for name in equations.ring.names}
+    point = random_point(equations.ring.names)
     for name, value in equations.definitions:
-        image = nmod(value.unit.numerator, PRIME) / nmod(value.unit.denominator, PRIME)
-        for factor, exponent in value.factors:
-            image *= nmod(_value(factor, equations.ring.names, values), PRIME) ** exponent
-        values[name] = int(image)
+        point[name] = residue(value, point)
     columns = {v: i for i, v in enumerate(equations.unknowns)}
-    size = len(equations.rows)
-    entries = [0] * (size * len(columns))
+    entries = [0] * (len(equations.rows) * len(columns))
     for i, row in enumerate(equations.rows):
         for variable, coefficient in row.form.terms:
             if variable in columns:
-                number = coefficient.unit.numerator % PRIME
-                for factor, exponent in coefficient.factors:
-                    number = (
-                        number * pow(_value(factor, equations.ring.names, values), exponent, PRIME) % PRIME
-                    )
                 position = i * len(columns) + columns[variable]
-                entries[position] = (entries[position] + number) % PRIME
-    return nmod_mat(size, len(columns), entries, PRIME)
-
-
-def _value(polynomial: fmpz_mpoly, names: tuple[str, ...], values: dict[str, int]) -> int:
-    total = 0
-    for monomial, coefficient in polynomial.terms():
-        product = int(coefficient) % PRIME
-        for name, exponent in zip(names, monomial, strict=True):
-            if exponent:
-                product = product * pow(values[name], int(exponent), PRIME) % PRIME
-        total += product
-    return total % PRIME
+                entries[position] = (entries[position] + residue(coefficient, point)) % PRIME
+    return nmod_mat(len(equations.rows), len(columns), entries, PRIME)
 
 
 def _support(matrix: nmod_mat, size: int) -> list[int]:

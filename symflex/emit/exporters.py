@@ -12,8 +12,13 @@ from symflex.emit.numpy_module import numpy_module
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from symflex.emit.program import Verification
     from symflex.model import Model
     from symflex.transfer import TransferFunction
+
+
+ACCURACY = 1e-13
+"""Relative error of exported code above which the user is warned."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +57,18 @@ class NumpyExporter:
     def export(self, model: Model, tfs: Sequence[TransferFunction]) -> Export:
         """Return the module; accuracy that was not reached is a warning."""
         made = numpy_module(tfs, model, model.analysis.band)
-        return Export(made.text, made.warnings)
+        return Export(made.text, tuple(w for v in made.verified if (w := _shortfall(v))))
+
+
+def _shortfall(verification: Verification) -> str:
+    """Return what the user should know about an accuracy, empty when it is as it should be."""
+    name, error = verification.name, verification.error
+    if error is None:
+        return f"{name} is not verified: {verification.reason}"
+    if error <= ACCURACY:
+        return ""
+    low, high = (float(f) for f in verification.band)
+    return f"{name} is accurate to {error:.1e} only, over {low:g} Hz to {high:g} Hz"
 
 
 class LatexExporter:

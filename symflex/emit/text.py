@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 WIDTH = 80
 INDENT = "  "
+SHORTEST = 3
+"""A line is not broken before this part of its width."""
 
 
 def form_text(tf: TransferFunction, form: PrintedForm) -> str:
@@ -78,34 +80,37 @@ def _placed(line: str, width: int, *, alone: bool) -> str:
 def wrapped(expression: Expression, width: int) -> list[str]:
     """Return an expression as lines of at most ``width`` columns where it can be broken.
 
-    Lines break before a plus or minus, or before a factor, at the outermost level that fits.
+    Lines break before a plus or minus, or after a times, at the outermost level that leaves a line of
+    reasonable length.
     """
     text = format_expression(expression)
-    if len(text) <= width:
-        return [text]
+    places = _break_places(text)
     lines: list[str] = []
-    current = ""
-    for piece in _pieces(text):
-        if current and len(current) + len(piece) > width:
-            lines.append(current.rstrip())
-            current = "  "
-        current += piece
-    lines.append(current.rstrip())
-    return lines
+    start, indent = 0, ""
+    while len(text) - start > width - len(indent):
+        room = start + width - len(indent)
+        reachable = [(p, cost) for p, cost in places if start + width // SHORTEST <= p <= room]
+        if not reachable:
+            reachable = [(p, cost) for p, cost in places if p > start][:1]
+        if not reachable:
+            break
+        cut = min(reachable, key=lambda place: (place[1], -place[0]))[0]
+        lines.append(indent + text[start:cut].rstrip())
+        start, indent = cut, INDENT
+    return [*lines, indent + text[start:]]
 
 
-def _pieces(text: str) -> list[str]:
-    """Return the text cut before every `` + ``, `` - `` and after every ``*`` that joins factors."""
-    pieces: list[str] = []
-    start = 0
-    for i in range(1, len(text)):
-        at_sign = text[i] in "+-" and text[i - 1] == " " and text[i + 1 : i + 2] == " "
-        after_times = text[i - 1] == "*"
-        if at_sign or after_times:
-            pieces.append(text[start:i])
-            start = i
-    pieces.append(text[start:])
-    return pieces
+def _break_places(text: str) -> list[tuple[int, int]]:
+    """Return where a line may break, and how deep in parentheses and products that is."""
+    places: list[tuple[int, int]] = []
+    depth = 0
+    for i, character in enumerate(text):
+        depth += {"(": 1, ")": -1}.get(character, 0)
+        if character in "+-" and text[i - 1 : i] == " " and text[i + 1 : i + 2] == " ":
+            places.append((i, 2 * depth))
+        elif text[i - 1 : i] == "*":
+            places.append((i, 2 * (depth - (character == "(")) + 1))
+    return places
 
 
 def roots_text(found: PoleZeroMap, digits: int) -> str:

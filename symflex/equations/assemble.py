@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from fractions import Fraction
+from graphlib import CycleError, TopologicalSorter
 from math import lcm
 from typing import TYPE_CHECKING
 
@@ -15,8 +16,8 @@ from symflex.elements import ElementUse, LinearForm, Row, Stamp, Terminal, Varia
 from symflex.equations.equations import ConstantFunction, EquationRow, Equations, OutputRow
 from symflex.equations.evaluate import Evaluator, open_definitions
 from symflex.errors import Diagnostic, ModelError, SymflexError
-from symflex.expressions import Call, Expression, format_expression, names
-from symflex.kernels import FUNCTIONS, LAPLACE, Factored, Ring
+from symflex.expressions import Call, Expression, Name, format_expression, names
+from symflex.kernels import FUNCTIONS, LAPLACE, Factored, Ring, random_point, residue
 from symflex.model import scope_of
 from symflex.model.nodes import variable_of
 
@@ -103,7 +104,12 @@ class _Assembly:
     def run(self) -> Equations:
         """Return the finished equations."""
         scope = scope_of(self.model)
-        evaluator = Evaluator(self.ring, scope, self._blocks(), self.through, self._definitions)
+        blocks = self._blocks()
+        known = {d.name for d in self.model.definitions}
+        point = random_point([n for n in self.ring.names if n not in known])
+        evaluator = Evaluator(self.ring, scope, blocks, self.through, self._definitions, point)
+        definitions = self._define(evaluator, point)
+        self._check_blocks(blocks, point)
         nodes = {n.name: n for n in self.model.nodes}
         for node in self.model.nodes:
             for component in node.components:
@@ -124,7 +130,7 @@ class _Assembly:
         return Equations(
             self.model,
             self.ring,
-            tuple((d.name, evaluator.constant(d.expression)) for d in self.model.definitions),
+            definitions,
             self.constants,
             (*self.balance, *self.unknowns),
             tuple(Variable("input", i.name) for i in self.model.inputs),
@@ -136,12 +142,37 @@ class _Assembly:
     def _definitions(self) -> dict[str, Expression]:
         return {d.name: d.expression for d in self.model.definitions}
 
+    def _define(self, evaluator: Evaluator, point: dict[str, int]) -> tuple[tuple[str, Factored], ...]:
+        """Return the definitions' values, each placed at the random point for those after it."""
+        found = []
+        for definition in self.model.definitions:
+            try:
+                value = evaluator.constant(definition.expression)
+                point[definition.name] = residue(value, point)
+            except SymflexError as error:
+                self.problems.extend(error.diagnostics)
+            except (ZeroDivisionError, KeyError):
+                continue  # what it uses is reported where it stands
+            else:
+                found.append((definition.name, value))
+        return tuple(found)
+
+    def _check_blocks(self, blocks: Mapping[str, Factored], point: Mapping[str, int]) -> None:
+        """Note every block that divides by zero once its definitions are opened."""
+        for block in self.model.blocks:
+            try:
+                residue(blocks[block.name], point)
+            except ZeroDivisionError:
+                self.problems.append(Diagnostic("SF224", f"block '{block.name}' divides by zero", block.span))
+            except KeyError:
+                continue
+
     def _blocks(self) -> Mapping[str, Factored]:
         found: dict[str, Factored] = {}
         scope = scope_of(self.model)
         evaluator = Evaluator(self.ring, scope, found, {}, self._definitions)
         s = Factored.generator(self.ring, LAPLACE)
-        for block in self.model.blocks:
+        for block in self._ordered_blocks():
             try:
                 if block.block is not None:
                     values = {name: evaluator.constant(e) for name, e in block.values}
@@ -155,6 +186,30 @@ class _Assembly:
                 self.problems.extend(error.diagnostics)
                 found[block.name] = Factored.number(self.ring, 1)
         return found
+
+    def _ordered_blocks(self) -> list[PlacedBlock]:
+        """Return the blocks so that each uses only earlier ones, directly or through definitions.
+
+        Raises
+        ------
+        ModelError
+            SF215 when blocks refer to each other in a circle.
+        """
+        by_name = {b.name: b for b in self.model.blocks}
+        expressions = {d.name: [d.expression] for d in self.model.definitions}
+        expressions |= {b.name: [e for _, e in b.values] for b in self.model.blocks}
+        graph = {
+            name: [n.name for e in found for n in names(e) if isinstance(n, Name) and n.name in expressions]
+            for name, found in expressions.items()
+        }
+        try:
+            order = list(TopologicalSorter(graph).static_order())
+        except CycleError as error:
+            circle = error.args[1]
+            place = next((by_name[n].span for n in circle if n in by_name), None)
+            message = f"blocks refer to each other in a circle: {' -> '.join(reversed(circle))}"
+            raise ModelError(Diagnostic("SF215", message, place)) from None
+        return [by_name[name] for name in order if name in by_name]
 
     def _stamp(
         self,
@@ -246,7 +301,8 @@ class _Assembly:
             ends = [self._terminal(r, domains[source.kind], nodes).across for r in source.nodes]
             signs = [one, -one]
             if source.kind == "voltage":
-                current = Variable("through", source.name, "i")
+                # An element may bear the input's name: its own quantities are called otherwise.
+                current = Variable("through", source.name, "supplied")
                 difference = LinearForm.of(*zip(ends, signs, strict=False), (variable, -one))
                 self.unknowns.append(current)
                 self.rows.append(EquationRow(current, "constraint", difference))
@@ -276,13 +332,7 @@ class _Assembly:
         except SymflexError as error:
             self.problems.extend(error.diagnostics)
             return None
-        one = Factored.number(self.ring, 1)
-        if any(c.denominator().depends_on(LAPLACE) for _, c in form.terms):
-            # A rational expression is a filter with states of its own: give it an unknown.
-            variable = Variable("value", name, "")
-            self.unknowns.append(variable)
-            self.rows.append(EquationRow(variable, "signal", LinearForm.of((variable, -one)) + form))
-            return OutputRow(name, LinearForm.of((variable, one)), one)
+        # A filter written in an output is the output's own: as an unknown it would be a mode of all the others.
         divisor = common_denominator(self.ring, form)
         return OutputRow(name, form * divisor, divisor)
 

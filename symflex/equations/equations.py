@@ -39,7 +39,7 @@ class EquationRow:
 
 @dataclass(frozen=True, slots=True)
 class OutputRow:
-    """An output ``y = form / divisor``; the divisor is free of s."""
+    """An output ``y = form / divisor``; the divisor contains s when the output is filtered."""
 
     name: str
     form: LinearForm

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from math import isqrt
 from typing import TYPE_CHECKING
@@ -24,7 +24,7 @@ from symflex.expressions import (
     names,
     substitute,
 )
-from symflex.kernels import LAPLACE, Factored, Ring
+from symflex.kernels import LAPLACE, Factored, Ring, residue
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -51,6 +51,8 @@ class Evaluator:
         The elements' through quantities.
     definitions : mapping of str to Expression
         Opened inside the arguments of functions.
+    point : mapping of str to int
+        A random point of a prime field, with the definitions that are known by now.
     """
 
     ring: Ring
@@ -58,6 +60,7 @@ class Evaluator:
     blocks: Mapping[str, Factored]
     through: Mapping[Variable, LinearForm]
     definitions: Mapping[str, Expression]
+    point: Mapping[str, int] = field(default_factory=dict)
 
     def constant(self, expression: Expression) -> Factored:
         """Return the value of an expression without unknowns.
@@ -111,7 +114,7 @@ class Evaluator:
                 return result
             case Quotient(numerator, denominator):
                 divisor = self.constant(denominator)
-                if divisor.is_zero:
+                if self.vanishes(divisor):
                     raise ModelError(
                         Diagnostic("SF224", "division by zero", denominator.span or expression.span)
                     )
@@ -157,14 +160,31 @@ class Evaluator:
             if n == 1:
                 return value
             raise ModelError(Diagnostic("SF222", "a power of an unknown is not linear", expression.span))
-        if n < 0 and value.is_zero:
+        if n < 0 and self.vanishes(value):
             raise ModelError(Diagnostic("SF224", "division by zero", expression.span))
         return value**n
 
+    def vanishes(self, value: Factored) -> bool:
+        """Tell whether a value is zero, also where it only is with its definitions opened."""
+        if value.is_zero:
+            return True
+        used = [name for name in self.definitions if value.depends_on(name)]
+        if not used or any(name not in self.point for name in used):
+            return False
+        try:
+            return residue(value, self.point) == 0
+        except ZeroDivisionError:
+            return False  # a block that divides by zero, which is reported at the block
+
     def _call(self, expression: Call, name: str, argument: Expression) -> Factored:
         inner = self.constant(argument)
-        if inner.depends_on(LAPLACE):
+        opened = open_definitions(expression, self.definitions)
+        inside = {n.name for n in names(opened) if isinstance(n, Name)}
+        if LAPLACE in inside or inner.depends_on(LAPLACE):
             message = f"{name} of an expression in s is not available yet"
+            raise ModelError(Diagnostic("SF910", message, expression.span))
+        if block := next((n for n in self.blocks if n in inside), None):
+            message = f"{name} of a block ('{block}') is not available yet"
             raise ModelError(Diagnostic("SF910", message, expression.span))
         if name == "sqrt" and inner.is_constant and (root := exact_root(inner.unit)) is not None:
             return Factored.number(self.ring, root)
@@ -172,9 +192,7 @@ class Evaluator:
             return Factored.number(self.ring, 0)
         if inner.is_zero and name in ("cos", "cosh", "exp"):
             return Factored.number(self.ring, 1)
-        return Factored.generator(
-            self.ring, format_expression(open_definitions(expression, self.definitions))
-        )
+        return Factored.generator(self.ring, format_expression(opened))
 
 
 def open_definitions(call: Call, definitions: Mapping[str, Expression]) -> Call:

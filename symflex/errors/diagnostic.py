@@ -21,7 +21,7 @@ class Diagnostic:
     Parameters
     ----------
     code : str
-        ``SF`` and three digits; listed in :data:`symflex.errors.codes.CODES`.
+        ``SF`` and three digits; docs/error-codes.md lists them.
     message : str
         What is wrong, with the value found.
     span : Span, optional

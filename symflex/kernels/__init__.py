@@ -2,6 +2,17 @@
 
 from symflex.kernels.factored import Factored
 from symflex.kernels.functions import FUNCTIONS, ElementaryFunction
+from symflex.kernels.residue import PRIME, random_point, residue
 from symflex.kernels.ring import LAPLACE, Ring, degree_in
 
-__all__ = ["FUNCTIONS", "LAPLACE", "ElementaryFunction", "Factored", "Ring", "degree_in"]
+__all__ = [
+    "FUNCTIONS",
+    "LAPLACE",
+    "PRIME",
+    "ElementaryFunction",
+    "Factored",
+    "Ring",
+    "degree_in",
+    "random_point",
+    "residue",
+]

@@ -39,14 +39,20 @@ def read_analysis(reader: Reader, section: TableValue | None) -> Analysis:
 def _band(reader: Reader, entry: Entry) -> tuple[Fraction, Fraction] | None:
     value = entry.value
     if not isinstance(value, ArrayValue) or len(value.items) != 2:  # noqa: PLR2004
-        reader.note("SF206", 'band must be two frequencies, for instance ["0.1 Hz", "1 kHz"]', value.span)
+        hint = 'for instance ["0.1 Hz", "1 kHz"]'
+        reader.misfit("band must be an array of two frequencies", value, hint)
         return None
     limits = [_frequency(reader, item) for item in value.items]
     if limits[0] is None or limits[1] is None:
         return None
     low, high = limits[0], limits[1]
-    if not 0 < low < high:
-        reader.note("SF227", "band must be two positive frequencies, the lower one first", value.span)
+    if low >= high:
+        message = "the band does not end above where it begins"
+        reader.note("SF227", message, value.span, "write the lower frequency first")
+        return None
+    if low <= 0:
+        message = "the band does not begin above 0 Hz"
+        reader.note("SF227", message, value.items[0].span, "both frequencies must be positive")
         return None
     return low, high
 
@@ -77,7 +83,7 @@ def _count(reader: Reader, section: TableValue, key: str, limit: int) -> int | N
     value = entry.value
     if isinstance(value, NumberValue) and value.value.denominator == 1 and 0 < value.value <= limit:
         return int(value.value)
-    reader.note("SF206", f"{key} must be an integer from 1 to {limit}", value.span)
+    reader.misfit(f"{key} must be an integer from 1 to {limit}", value)
     return None
 
 
@@ -100,17 +106,25 @@ def read_figures(reader: Reader, section: TableValue | None, model: Model) -> tu
         if table is None:
             continue
         reader.keys(table, ("kind", "of", "title", "doc"), what)
-        kind = reader.plain(table, "kind", what)
-        kind_entry = table.get("kind")
-        if kind not in FIGURE_KINDS:
-            span = kind_entry.value.span if kind_entry else entry.key_span
-            hint = nearest(kind, FIGURE_KINDS) or "kinds: " + ", ".join(FIGURE_KINDS)
-            reader.note("SF208", f"{what} has no known kind", span, hint)
+        kind = _kind(reader, table, entry, what)
         of = table.get("of")
         texts = reader.strings(of, f"of of {what}") if of else ()
         chosen = tuple(tf for t in texts or () if (tf := pick_tf(reader, t, model)))
         found.append(Figure(entry.key, kind, chosen, reader.plain(table, "title", what), entry.key_span))
     return tuple(found)
+
+
+def _kind(reader: Reader, table: TableValue, entry: Entry, what: str) -> str:
+    kinds = "kinds: " + ", ".join(FIGURE_KINDS)
+    found = table.get("kind")
+    if found is None:
+        reader.note("SF214", f"{what} has no 'kind'", entry.key_span, kinds)
+        return ""
+    text = reader.string(found, f"kind of {what}")
+    if text is not None and text.value not in FIGURE_KINDS:
+        hint = nearest(text.value, FIGURE_KINDS) or kinds
+        reader.note("SF208", f"unknown kind '{text.value[:60]}' of {what}", text.span, hint)
+    return text.value if text else ""
 
 
 def read_published(reader: Reader, section: TableValue | None, model: Model) -> tuple[Published, ...]:
@@ -128,18 +142,12 @@ def read_published(reader: Reader, section: TableValue | None, model: Model) -> 
             reader.note("SF214", f"{what} has no 'expr'", entry.key_span)
             continue
         expression = reader.expression(expr.value, what)
+        where = _where(reader, table, what)
         scale = table.get("scale")
+        scaled = reader.expression(scale.value, f"scale of {what}") if scale else None
+        cited = reader.plain(table, "source", what)
         if expression is not None:
-            found.append(
-                Published(
-                    tf,
-                    expression,
-                    _where(reader, table, what),
-                    reader.expression(scale.value, f"scale of {what}") if scale else None,
-                    reader.plain(table, "source", what),
-                    entry.key_span,
-                )
-            )
+            found.append(Published(tf, expression, where, scaled, cited, entry.key_span))
     return tuple(found)
 
 

@@ -52,7 +52,7 @@ def _read_block(reader: Reader, entry: Entry, origin: Origin) -> PlacedBlock | N
     what = f"block '{entry.key}'"
     if not reader.name(entry, "a block", RESERVED):
         return None
-    table = reader.table(entry, what)
+    table = reader.table(entry, what, 'for instance { type = "integrator" }')
     if table is None:
         return None
     kind = table.get("type")

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
-from symflex.errors import Diagnostic, SpecError, Text
-from symflex.errors.diagnostic import nearest
+from symflex.errors import SpecError, Text
 from symflex.expressions import Expression, Name, names
 from symflex.model.labels import check_label
 from symflex.model.model import Assumption, Definition, ExactValue, Parameter
+from symflex.model.reading import Reader
 from symflex.model.scope import RESERVED
 from symflex.quantities import DIMENSIONLESS, Quantity, parse_unit
 from symflex.spec import NumberValue, StringValue, TableValue
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symflex.errors import Span
-    from symflex.model.reading import Reader
     from symflex.spec import Entry
 
 ASSUMPTIONS = ("positive", "nonnegative", "real")
@@ -114,8 +113,22 @@ def _quantity(reader: Reader, entry: Entry, what: str) -> tuple[Quantity | None,
     """Return (quantity, whether a unit was written)."""
     if isinstance(entry.value, NumberValue):
         return Quantity(entry.value.value, 0, 0, DIMENSIONLESS, 0, ""), False
-    quantity = reader.quantity(entry.value, what)
+    own = Reader()
+    quantity = own.quantity(entry.value, what)
+    formula = isinstance(entry.value, StringValue) and _is_formula(entry.value.text)
+    for problem in own.problems:
+        if formula and problem.code == "SF202":
+            also = "a formula of parameters belongs in [definitions]"
+            reader.problems.append(replace(problem, hint=f"{problem.hint}; {also}" if problem.hint else also))
+        else:
+            reader.problems.append(problem)
     return quantity, bool(quantity and quantity.unit)
+
+
+def _is_formula(text: Text) -> bool:
+    """Tell whether a text is an expression with names in it."""
+    expression = Reader().parsed(text)
+    return expression is not None and bool(names(expression))
 
 
 def _with_unit(
@@ -155,7 +168,8 @@ def _assumption(reader: Reader, table: TableValue | None, what: str) -> Assumpti
     if text is not None and text.value in ASSUMPTIONS:
         return cast("Assumption", text.value)
     if text is not None:
-        hint = nearest(text.value, ASSUMPTIONS) or "positive, nonnegative or real"
+        # No nearest name: 'negative' would be answered with 'nonnegative'.
+        hint = "a parameter is assumed " + ", ".join(ASSUMPTIONS[:-1]) + f" or {ASSUMPTIONS[-1]}"
         reader.note("SF208", f"unknown assumption '{text.value[:60]}'", text.span, hint)
     return "positive"
 
@@ -190,7 +204,8 @@ def read_definitions(reader: Reader, section: TableValue | None) -> tuple[Defini
             reader.keys(table, ("expr", "latex", "doc"), what)
             inner = table.get("expr")
             if inner is None:
-                reader.note("SF214", f"{what} has no 'expr'", entry.key_span)
+                hint = 'for instance { expr = "m*s^2" }'
+                reader.note("SF214", f"{what} has no 'expr'", entry.key_span, hint)
                 continue
             value = inner.value
         if isinstance(value, NumberValue | StringValue):
@@ -228,11 +243,10 @@ def _without_circles(reader: Reader, definitions: Sequence[Definition]) -> tuple
                 circle = [n for n, _ in stack]
                 circle = circle[circle.index(following) :]
                 path = " -> ".join([*circle, following])
-                reader.problems.append(
-                    Diagnostic(
-                        "SF215", f"definitions refer to each other in a circle: {path}", by_name[name].span
-                    )
-                )
+                message = f"definitions refer to each other in a circle: {path}"
+                if len(circle) == 1:
+                    message = f"definition '{following}' refers to itself"
+                reader.note("SF215", message, by_name[following].span)
                 for member in circle:
                     state[member] = "circular"
     return tuple(ordered)

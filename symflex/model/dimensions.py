@@ -29,6 +29,7 @@ from symflex.expressions import (
     Sum,
     names,
 )
+from symflex.kernels import FUNCTIONS
 from symflex.model.linearity import integer_exponent
 from symflex.quantities import DIMENSIONLESS, Dimension, unit_of
 
@@ -288,6 +289,8 @@ class DimensionSystem:
 
     def _call(self, name: str, argument: Expression) -> Measure:
         inner = self.measure(argument)
+        if name not in FUNCTIONS:
+            return Measure(open=True)
         if name == "sqrt":
             return inner.power(Fraction(1, 2))
         self._read_cycles(inner, True, argument.span)
@@ -298,6 +301,7 @@ class DimensionSystem:
                     "SF203",
                     f"the argument of {name} is in '{reduced.dimension}'; it must be a pure number",
                     argument.span,
+                    f"divide it by a value in '{reduced.dimension}'",
                 )
             )
         return Measure()

@@ -20,6 +20,7 @@ FONTS = "mathrm mathit mathbf mathsf mathcal text textrm textit operatorname bol
 SYMBOLS = "ell hbar prime infty star ast circ parallel perp ast dagger cdot times pm mp ldots".split()
 ALLOWED_COMMANDS = frozenset((*GREEK, *ACCENTS, *FONTS, *SYMBOLS))
 LABEL_LIMIT = 120
+LABEL_HINT = r"labels may use letters, digits, _ ^ { }, Greek letters, accents and \mathrm{...}"
 
 _TOKEN = re.compile(r"\\(?P<command>[A-Za-z]+)|\\(?P<space>[,;:! ])|(?P<plain>[A-Za-z0-9_^{}'+\-=/.,()| *])")
 
@@ -41,7 +42,13 @@ def check_label(label: Text) -> str:
     """
     value = label.value
     if not value or len(value) > LABEL_LIMIT:
-        raise _refused(label, 0, len(value), f"a LaTeX label has 1 to {LABEL_LIMIT} characters")
+        raise _refused(
+            label,
+            0,
+            len(value),
+            f"a LaTeX label has 1 to {LABEL_LIMIT} characters",
+            "leave the key out for the usual label" if not value else "shorten it",
+        )
     depth = position = 0
     while position < len(value):
         match = _TOKEN.match(value, position)
@@ -54,12 +61,20 @@ def check_label(label: Text) -> str:
             raise _refused(label, match.start(), match.end(), f"\\{command} is not an allowed LaTeX command")
         depth += {"{": 1, "}": -1}.get(match["plain"] or "", 0)
         if depth < 0:
-            raise _refused(label, position, position + 1, "closing brace without an opening one")
+            raise _refused(
+                label, position, position + 1, "closing brace without an opening one", "remove it or add '{'"
+            )
         position = match.end()
     if depth:
-        raise _refused(label, 0, len(value), "a brace is not closed")
+        raise _refused(label, 0, len(value), "a brace is not closed", "add '}'")
     if not _scripts_are_single(value):
-        raise _refused(label, 0, len(value), "a subscript or superscript is empty or doubled")
+        raise _refused(
+            label,
+            0,
+            len(value),
+            "a subscript or superscript is empty or doubled",
+            "put what belongs to one script into braces: k_{a,b}",
+        )
     return value
 
 
@@ -88,6 +103,5 @@ def _scripts_are_single(value: str) -> bool:
     return True
 
 
-def _refused(label: Text, start: int, end: int, message: str) -> SpecError:
-    hint = "labels may use letters, digits, _ ^ { }, Greek letters, accents and \\mathrm{...}"
+def _refused(label: Text, start: int, end: int, message: str, hint: str = LABEL_HINT) -> SpecError:
     return SpecError(Diagnostic("SF230", message, label.at(start, end), hint))

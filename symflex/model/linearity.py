@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from symflex.errors import Diagnostic, SpecError
 from symflex.errors.diagnostic import nearest
@@ -25,9 +25,16 @@ from symflex.expressions import (
 from symflex.kernels import FUNCTIONS, LAPLACE
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from symflex.errors import Span
     from symflex.model.scope import Scope
 
+Degree = Literal["constant", "linear", "unknown"]
+"""What an expression is in what varies in time; ``unknown`` when it holds a name that means nothing."""
+
 EXPONENT_LIMIT = 64
+LINEARISE = "linearise about an operating point, so that only one factor varies in time"
 
 
 def integer_exponent(exponent: Expression) -> int | None:
@@ -54,34 +61,29 @@ def check_expression(expression: Expression, scope: Scope, *, constant: bool) ->
     """
     problems: list[Diagnostic] = []
     degree = _degree(expression, scope, constant, problems)
-    if degree == "mixed" and not problems:
-        problems.append(
-            Diagnostic(
-                "SF221",
-                "the expression has a term without a node, signal or input; a linear model has none",
-                expression.span,
-            )
-        )
     if not constant and degree == "constant" and not problems and not _is_zero(expression):
-        problems.append(
-            Diagnostic(
-                "SF221",
-                "the expression contains no node, signal, element quantity or input",
-                expression.span,
-                "only signals can drive a linear model; multiply by an input",
-            )
-        )
+        problems.append(without_signal(expression.span))
     return problems
+
+
+def without_signal(span: Span | None) -> Diagnostic:
+    """Return the diagnostic of a constant that stands where something that varies in time must."""
+    return Diagnostic(
+        "SF221",
+        "this is constant: there is no node, signal, element quantity or input in it",
+        span,
+        "a linear model is driven by its inputs alone; multiply by one",
+    )
 
 
 def _is_zero(expression: Expression) -> bool:
     return isinstance(expression, Number) and expression.value == 0
 
 
-def _degree(expression: Expression, scope: Scope, constant: bool, problems: list[Diagnostic]) -> str:
-    """Return ``constant``, ``linear`` or ``mixed`` (a sum of both); note what is wrong."""
+def _degree(expression: Expression, scope: Scope, constant: bool, problems: list[Diagnostic]) -> Degree:
+    """Return the degree of an expression; note what is wrong."""
 
-    def walk(node: Expression) -> str:
+    def walk(node: Expression) -> Degree:
         return _degree(node, scope, constant, problems)
 
     match expression:
@@ -92,48 +94,73 @@ def _degree(expression: Expression, scope: Scope, constant: bool, problems: list
                 meaning = scope.lookup(expression, constant=constant)
             except SpecError as error:
                 problems.extend(error.diagnostics)
-                return "linear" if not constant else "constant"
+                return "unknown"
+            if meaning.kind == "broken":
+                return "unknown"
             return "linear" if meaning.kind in ("variable", "through") else "constant"
         case Negative(operand):
             return walk(operand)
         case Sum(terms):
-            degrees = {walk(term) for term in terms if not _is_zero(term)}
-            return degrees.pop() if len(degrees) == 1 else ("mixed" if degrees else "constant")
+            return _sum_degree([(term, walk(term)) for term in terms if not _is_zero(term)], problems)
         case Product(factors):
-            moving = [d for d in (walk(factor) for factor in factors) if d != "constant"]
-            if len(moving) > 1:
+            degrees = [walk(factor) for factor in factors]
+            if degrees.count("linear") > 1:
                 problems.append(
                     Diagnostic(
                         "SF222",
                         "a product of two quantities that vary in time is not linear",
                         expression.span,
-                        "linearise about an operating point; one factor must be constant",
+                        LINEARISE,
                     )
                 )
-            return moving[0] if moving else "constant"
+            return _strongest(degrees)
         case Quotient(numerator, denominator):
             top, bottom = walk(numerator), walk(denominator)
-            if bottom != "constant":
+            if bottom == "linear":
                 problems.append(
-                    Diagnostic("SF222", "division by a quantity that varies in time", denominator.span)
+                    Diagnostic(
+                        "SF222",
+                        "division by a quantity that varies in time is not linear",
+                        denominator.span,
+                        LINEARISE,
+                    )
                 )
             if _is_zero(denominator):
                 problems.append(Diagnostic("SF224", "division by zero", denominator.span))
-            return top
+            return _strongest([top, bottom])
         case Power(base, exponent):
             return _power_degree(expression, walk(base), exponent, problems)
         case Call():
-            return _call_degree(expression, scope, problems)
+            return _call_degree(expression, scope, constant, problems)
         case Derivative() | Equation():
-            problems.append(
-                Diagnostic("SF223", "a derivative along x may stand only in [fields]", expression.span)
-            )
-            return "constant"
+            problems.append(_derivative(expression.span))
+            return "unknown"
     message = f"unexpected expression {type(expression).__name__}"
     raise TypeError(message)
 
 
-def _power_degree(power: Power, base: str, exponent: Expression, problems: list[Diagnostic]) -> str:
+def _strongest(degrees: Iterable[Degree]) -> Degree:
+    found = set(degrees)
+    return "linear" if "linear" in found else "unknown" if "unknown" in found else "constant"
+
+
+def _sum_degree(terms: Sequence[tuple[Expression, Degree]], problems: list[Diagnostic]) -> Degree:
+    total = _strongest(degree for _, degree in terms)
+    if total == "linear":
+        problems += [
+            Diagnostic(
+                "SF221",
+                "this term is constant and the others vary in time; a linear model has no constant terms",
+                term.span,
+                "leave it out, or multiply it by an input",
+            )
+            for term, degree in terms
+            if degree == "constant"
+        ]
+    return total
+
+
+def _power_degree(power: Power, base: Degree, exponent: Expression, problems: list[Diagnostic]) -> Degree:
     value = integer_exponent(exponent)
     if value is None:
         half = isinstance(exponent, Quotient) or (
@@ -144,7 +171,7 @@ def _power_degree(power: Power, base: str, exponent: Expression, problems: list[
                 "SF225",
                 "an exponent must be an integer number",
                 exponent.span or power.span,
-                "write sqrt(x) for a square root" if half else None,
+                "write sqrt(x) for a square root" if half else "write one number, such as 2 or -1",
             )
         )
         return base
@@ -152,27 +179,27 @@ def _power_degree(power: Power, base: str, exponent: Expression, problems: list[
         problems.append(
             Diagnostic("SF103", f"exponent {value} is larger than {EXPONENT_LIMIT}", exponent.span)
         )
-    if base != "constant" and value != 1:
+    if base == "linear" and value != 1:
         problems.append(
-            Diagnostic("SF222", "a power of a quantity that varies in time is not linear", power.span)
+            Diagnostic(
+                "SF222", "a power of a quantity that varies in time is not linear", power.span, LINEARISE
+            )
         )
     return base
 
 
-def _call_degree(call: Call, scope: Scope, problems: list[Diagnostic]) -> str:
-    if call.name not in FUNCTIONS or call.order:
-        problems.append(
-            Diagnostic(
-                "SF210",
-                f"unknown function '{call.name}'",
-                call.span,
-                nearest(call.name, FUNCTIONS) or "functions: " + ", ".join(FUNCTIONS),
-            )
-        )
-        return "constant"
-    inner: list[Diagnostic] = []
-    _degree(call.argument, scope, True, inner)
-    problems.extend(inner)
+def _call_degree(call: Call, scope: Scope, constant: bool, problems: list[Diagnostic]) -> Degree:
+    if call.order:
+        problems.append(_derivative(call.span))
+        return "unknown"
+    if call.name not in FUNCTIONS:
+        problems.append(_unknown_function(call, scope))
+        return "unknown"
+    inner = _degree(call.argument, scope, constant, problems)
+    if inner == "linear":
+        message = f"{call.name} of a quantity that varies in time is not linear"
+        problems.append(Diagnostic("SF222", message, call.span, LINEARISE))
+        return "unknown"
     if any(isinstance(n, Name) and n.name == LAPLACE for n in names(call.argument)):
         problems.append(
             Diagnostic(
@@ -182,4 +209,18 @@ def _call_degree(call: Call, scope: Scope, problems: list[Diagnostic]) -> str:
                 "this version derives rational transfer functions",
             )
         )
-    return "constant"
+    return inner
+
+
+def _derivative(span: Span | None) -> Diagnostic:
+    message = "a derivative along x may stand only in [fields]"
+    return Diagnostic("SF223", message, span, "a derivative in time is written with s: s*x")
+
+
+def _unknown_function(call: Call, scope: Scope) -> Diagnostic:
+    meanings = scope.meanings.get(call.name)
+    if meanings:
+        message = f"'{call.name}' is {meanings[0].described}, not a function"
+        return Diagnostic("SF210", message, call.span, f"write '{call.name}*(...)' to multiply")
+    hint = nearest(call.name, FUNCTIONS) or "functions: " + ", ".join(FUNCTIONS)
+    return Diagnostic("SF210", f"unknown function '{call.name}'", call.span, hint)

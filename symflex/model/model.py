@@ -191,6 +191,9 @@ class Published:
 class Model:
     """Everything a specification says, resolved.
 
+    ``quotients`` holds the dimension of every output over input that is known; it may be so where neither end's
+    is, as when one is the other times a block.
+
     Raises
     ------
     SpecError, ModelError
@@ -211,6 +214,7 @@ class Model:
     figures: tuple[Figure, ...] = ()
     published: tuple[Published, ...] = ()
     signal_units: tuple[tuple[Variable, Dimension], ...] = ()
+    quotients: tuple[tuple[tuple[str, str], Dimension], ...] = ()
 
     @property
     def transfer_functions(self) -> tuple[tuple[str, str], ...]:

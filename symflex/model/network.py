@@ -7,19 +7,20 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Literal, cast
 
 from symflex.elements import ANNOUNCED, ELEMENTS, Element, Port
-from symflex.errors import SpecError, Text
+from symflex.errors import SpecError
 from symflex.errors.diagnostic import nearest
 from symflex.model.declarations import read_label
 from symflex.model.model import Input, NodeReference
 from symflex.model.nodes import Attachment, Coupling
 from symflex.model.reading import NAME, Reader, signed_number
-from symflex.quantities import parse_unit
+from symflex.model.scope import RESERVED
+from symflex.quantities import parse_unit, unit_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from symflex.elements.element import PortDomain
-    from symflex.errors import Span
+    from symflex.errors import Span, Text
     from symflex.expressions import Expression
     from symflex.quantities import Dimension
     from symflex.spec import Entry, TableValue
@@ -31,6 +32,7 @@ INPUT_DOMAINS: dict[str, PortDomain] = {
     "voltage": "electrical",
     "current": "electrical",
 }
+TYPES_HINT = "'symflex elements' lists the types"
 INPUT_UNITS = {"force": "N", "torque": "N*m", "voltage": "V", "current": "A"}
 
 
@@ -52,7 +54,6 @@ class DraftElement:
             coupling = self._coupling(port, measure) if port.domain == "any" else None
             found += [Attachment(r, port.domain, who, coupling) for r in references]
         return found
-
 
     def _coupling(self, port: Port, measure: Callable[[Expression], Dimension | None]) -> Coupling | None:
         ratio = dict(self.values).get("ratio")
@@ -97,7 +98,8 @@ class NetworkReader:
         reader, what = self.reader, f"element '{entry.key}'"
         if not reader.name(entry, "an element"):
             return None
-        table = reader.table(entry, what)
+        hint = 'for instance { type = "spring", between = ["a", "b"], k = "k" }'
+        table = reader.table(entry, what, hint)
         element = self._element_type(table, entry) if table else None
         if table is None or element is None:
             return None
@@ -126,7 +128,7 @@ class NetworkReader:
                     "SF214",
                     f"{element.type_name} '{entry.key}' lacks {parameter.name}, {parameter.doc}",
                     entry.key_span,
-                    f"a {element.type_name} takes {names}",
+                    f"{element.type_name} takes {names}",
                 )
                 expression = None
             if expression is None:
@@ -135,6 +137,10 @@ class NetworkReader:
                 given[parameter.name] = expression
                 values.append((parameter.name, expression))
         if any(references is None for _, references in nodes):
+            return None
+        if all(r.is_ground for _, references in nodes for r in references or ()):
+            message = f"{element.type_name} '{entry.key}' is attached to ground only"
+            reader.note("SF218", message, entry.key_span, "the ground does not move; name a node")
             return None
         attached = tuple((p, r) for p, r in nodes if r is not None)
         return DraftElement(entry.key, element, attached, tuple(values) if complete else (), entry.key_span)
@@ -146,7 +152,7 @@ class NetworkReader:
                 "SF214",
                 f"element '{entry.key}' has no type",
                 entry.key_span,
-                "symflex elements lists the types",
+                TYPES_HINT,
             )
             return None
         text = self.reader.string(kind, f"type of element '{entry.key}'")
@@ -162,7 +168,7 @@ class NetworkReader:
             return None
         element = ELEMENTS.get(text.value)
         if element is None:
-            hint = nearest(text.value, ELEMENTS) or "symflex elements lists the types"
+            hint = nearest(text.value, ELEMENTS) or TYPES_HINT
             self.reader.note("SF216", f"unknown element type '{text.value[:60]}'", text.span, hint)
         return element
 
@@ -179,10 +185,11 @@ class NetworkReader:
                 "SF217",
                 f"{element.type_name} '{entry.key}' lacks its port '{port.name}' ({port.doc})",
                 entry.key_span,
-                f"a {element.type_name} is attached by {ports}",
+                f"{element.type_name} is attached by {ports}",
             )
             return None
-        texts = self.reader.strings(found, what)
+        kind = "the name of a node" if port.terminals == 1 else f"an array of {port.terminals} nodes"
+        texts = self.reader.strings(found, what, kind)
         if texts is None:
             return None
         if len(texts) != port.terminals:
@@ -191,7 +198,7 @@ class NetworkReader:
                 "SF217",
                 f"{what} takes {port.terminals} {plural}, found {len(texts)}",
                 found.value.span,
-                'a port to the reference is "ground"' if len(texts) < port.terminals else None,
+                'an end that does not move is at "ground"' if len(texts) < port.terminals else None,
             )
             return None
         references = [self._reference(t, port.domain, what) for t in texts]
@@ -241,12 +248,12 @@ class NetworkReader:
 
     def _read_input(self, entry: Entry) -> DraftInput | None:
         reader, what = self.reader, f"input '{entry.key}'"
-        if not reader.name(entry, "an input", ("s", "pi", "ground")):
+        if not reader.name(entry, "an input", RESERVED):
             return None
-        table = reader.table(entry, what)
+        table = reader.table(entry, what, 'for instance { force = "x_act" }, or {} for a free signal')
         if table is None:
             return None
-        reader.keys(table, (*INPUT_DOMAINS, "signal", "unit", "latex", "doc"), what)
+        reader.keys(table, (*INPUT_DOMAINS, "unit", "latex", "doc"), what)
         label = read_label(reader, table, what)
         kinds = [e for e in table.entries if e.key in INPUT_DOMAINS]
         if len(kinds) > 1:
@@ -254,20 +261,19 @@ class NetworkReader:
             reader.note("SF217", f"{what} is given as {keys}; it can be only one", kinds[1].key_span)
             return None
         if not kinds:
-            unit = table.get("unit")
-            text = reader.string(unit, f"unit of {what}") if unit else None
-            return DraftInput(
-                Input(entry.key, "signal", (), None, "", label, entry.key_span),
-                self._unit(text) if text else "",
-            )
+            free = Input(entry.key, "signal", (), None, "", label, entry.key_span)
+            return DraftInput(free, self._unit(table, what, None))
         (place,) = kinds
         kind = cast("InputKind", place.key)
-        texts = reader.strings(place, f"{kind} of {what}")
+        self._unit(table, what, kind)
+        texts = reader.strings(place, f"{kind} of {what}", "the name of a node, or two")
         if texts is None:
             return None
         if len(texts) not in (1, 2):
             reader.note(
-                "SF217", f"{what} acts on one node, or on one with its reaction on a second", place.value.span
+                "SF217",
+                f"{what} acts on one node, or on one with its reaction on a second, found {len(texts)}",
+                place.value.span,
             )
             return None
         references = [self._reference(t, INPUT_DOMAINS[kind], what) for t in texts]
@@ -282,10 +288,21 @@ class NetworkReader:
             return None
         return DraftInput(Input(entry.key, kind, kept, None, INPUT_UNITS[kind], label, entry.key_span))
 
-    def _unit(self, text: Text) -> str:
+    def _unit(self, table: TableValue, what: str, kind: InputKind | None) -> str:
+        """Return the unit an input declares; transfer functions are per SI unit, so it must be one."""
+        entry = table.get("unit")
+        text = self.reader.string(entry, f"unit of {what}") if entry else None
+        if text is None:
+            return ""
         try:
-            parse_unit(text)
+            unit = parse_unit(text)
         except SpecError as error:
             self.reader.problems.extend(error.diagnostics)
             return ""
+        if kind is not None and unit.dimension != unit_of(INPUT_UNITS[kind]).dimension:
+            message = f"unit of {what} is '{text.value}'; a {kind} is in '{INPUT_UNITS[kind]}'"
+            self.reader.note("SF203", message, text.span)
+        elif unit.scale != 1 or unit.pi_power or unit.cycles:
+            message = f"unit of {what} is '{text.value}'; transfer functions are per SI unit"
+            self.reader.note("SF203", message, text.span, f"write '{unit.dimension}'")
         return text.value

@@ -90,14 +90,15 @@ def infer_nodes(attachments: Sequence[Attachment]) -> tuple[tuple[Node, ...], li
     nodes: dict[str, Node] = {}
     for name, claimed in claims.items():
         span = first[name].reference.span
-        definite = [d for d in DOMAINS if d in claimed]
+        definite = [d for d in claimed if d in DOMAINS]
         if "planar" in claimed:
             if "electrical" in claimed:
-                problems.append(_contradiction(name, claimed["planar"], claimed["electrical"], "electrical"))
+                one, other = (d for d in claimed if d in ("planar", "electrical"))
+                problems.append(_contradiction(name, claimed[one], claimed[other]))
             nodes[name] = Node(name, "planar", span)
             continue
         for other in definite[1:]:
-            problems.append(_contradiction(name, claimed[definite[0]], claimed[other], other))
+            problems.append(_contradiction(name, claimed[definite[0]], claimed[other]))
         if definite:
             nodes[name] = Node(name, definite[0], span)
     _spread(attachments, nodes, first)
@@ -137,12 +138,17 @@ def variable_of(reference: NodeReference, node: Node, domain: PortDomain) -> Var
     return Variable("node", node.name, component)
 
 
-def _contradiction(name: str, one: Attachment, other: Attachment, domain: str) -> Diagnostic:
-    word = "planar" if one.reference.component else one.domain
+def _contradiction(name: str, one: Attachment, other: Attachment) -> Diagnostic:
+    claims = ["planar" if a.reference.component else a.domain for a in (one, other)]
+    hint = (
+        "use two nodes and couple them, with a transformer for instance; a node that both moves and turns "
+        "is planar: name its parts with .y and .theta"
+    )
+    if "electrical" in claims:
+        hint = "use two nodes and couple them, with a dc_motor or a gyrator for instance"
     return Diagnostic(
         "SF220",
-        f"node '{name}' is {WORDS[word]} for {one.who} and {WORDS[domain]} for {other.who}",
+        f"node '{name}' is {WORDS[claims[0]]} for {one.who} and {WORDS[claims[1]]} for {other.who}",
         other.reference.span,
-        "use two nodes and couple them, with a transformer for instance; a node that both moves and turns "
-        "is planar: name its parts with .y and .theta",
+        hint,
     )

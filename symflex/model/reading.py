@@ -14,7 +14,7 @@ from symflex.quantities import Quantity, looks_like_quantity, parse_quantity
 from symflex.spec import ArrayValue, BooleanValue, NumberValue, OtherValue, StringValue, TableValue
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from symflex.errors import Span, Text
     from symflex.spec import Entry, Value
@@ -49,7 +49,7 @@ def describe(value: Value) -> str:
         case TableValue():
             return "a table"
         case _:
-            return f"a {value.kind}"
+            return value.kind if value.kind in ("inf", "nan") else f"a {value.kind}"
 
 
 @dataclass(slots=True)
@@ -58,20 +58,20 @@ class Reader:
 
     problems: list[Diagnostic] = field(default_factory=list)
 
-    def misfit(self, message: str, value: Value) -> None:
+    def misfit(self, message: str, value: Value, hint: str | None = None) -> None:
         """Note a value of the wrong kind, unless its syntax error is already reported."""
         if not (isinstance(value, OtherValue) and value.kind == "invalid"):
-            self.note("SF206", f"{message}, found {describe(value)}", value.span)
+            self.note("SF206", f"{message}, found {describe(value)}", value.span, hint)
 
     def note(self, code: str, message: str, span: Span | None, hint: str | None = None) -> None:
         """Add one problem."""
         self.problems.append(Diagnostic(code, message, span, hint))
 
-    def table(self, entry: Entry, what: str) -> TableValue | None:
+    def table(self, entry: Entry, what: str, hint: str | None = None) -> TableValue | None:
         """Return the entry's table."""
         if isinstance(entry.value, TableValue):
             return entry.value
-        self.misfit(f"{what} must be a table", entry.value)
+        self.misfit(f"{what} must be a table", entry.value, hint)
         return None
 
     def keys(self, table: TableValue, allowed: Iterable[str], what: str) -> None:
@@ -82,8 +82,8 @@ class Reader:
                 hint = nearest(entry.key, known) or "known keys: " + ", ".join(known)
                 self.note("SF207", f"unknown key '{entry.key}' in {what}", entry.key_span, hint)
 
-    def name(self, entry: Entry, what: str, reserved: Iterable[str] = ()) -> bool:
-        """Tell whether the entry's key is a name."""
+    def name(self, entry: Entry, what: str, reserved: Mapping[str, str] | None = None) -> bool:
+        """Tell whether the entry's key is a name; ``reserved`` says why some are taken."""
         if not NAME.match(entry.key):
             self.note(
                 "SF213",
@@ -92,8 +92,9 @@ class Reader:
                 "names are a letter followed by up to 63 letters, digits and underscores",
             )
             return False
-        if entry.key in reserved:
-            self.note("SF213", f"'{entry.key}' is reserved and cannot name {what}", entry.key_span)
+        if reserved and entry.key in reserved:
+            message = f"'{entry.key}' is reserved and cannot name {what}"
+            self.note("SF213", message, entry.key_span, reserved[entry.key])
             return False
         return True
 
@@ -110,14 +111,16 @@ class Reader:
         text = self.string(entry, f"{key} of {what}") if entry else None
         return text.value if text else ""
 
-    def strings(self, entry: Entry, what: str) -> tuple[Text, ...] | None:
+    def strings(
+        self, entry: Entry, what: str, kind: str = "a string or an array of strings"
+    ) -> tuple[Text, ...] | None:
         """Return the entry's array of strings; one string counts as an array of one."""
         value = entry.value
         if isinstance(value, StringValue):
             return (value.text,)
         if isinstance(value, ArrayValue) and all(isinstance(i, StringValue) for i in value.items):
             return tuple(i.text for i in value.items if isinstance(i, StringValue))
-        self.misfit(f"{what} must be a string or an array of strings", value)
+        self.misfit(f"{what} must be {kind}", value)
         return None
 
     def parsed(self, text: Text) -> Expression | None:
@@ -139,14 +142,14 @@ class Reader:
         self.misfit(f'{what} must be a number or a quantity such as "35 kN/m"', value)
         return None
 
-    def expression(self, value: Value, what: str) -> Expression | None:
-        """Return an expression, a number, or a quantity wrapped as :class:`QuantityLiteral`."""
+    def expression(self, value: Value, what: str, *, quantities: bool = True) -> Expression | None:
+        """Return an expression, a number, or, where it may stand, a quantity as :class:`QuantityLiteral`."""
         if isinstance(value, NumberValue):
             return signed_number(value.value, value.span)
         if not isinstance(value, StringValue):
             self.misfit(f"{what} must be an expression or a number", value)
             return None
-        if looks_like_quantity(value.text.value):
+        if quantities and looks_like_quantity(value.text.value):
             found = self.quantity(value, what)
             if found is None:
                 return None

@@ -12,13 +12,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symflex.elements import ACROSS_UNIT, Placing, Variable
-from symflex.errors import Diagnostic, SpecError
+from symflex.errors import Diagnostic, Span, SpecError
 from symflex.expressions import Expression, Name, names, power, product_of
 from symflex.model.analysis import read_analysis, read_figures, read_published
 from symflex.model.blocks import Origin, read_blocks
 from symflex.model.declarations import DeclaredParameter, read_definitions, read_label, read_parameters
 from symflex.model.dimensions import DimensionSystem, Measure
-from symflex.model.linearity import check_expression
+from symflex.model.linearity import check_expression, without_signal
 from symflex.model.model import (
     Definition,
     ExactValue,
@@ -33,13 +33,13 @@ from symflex.model.model import (
 )
 from symflex.model.network import DraftElement, DraftInput, NetworkReader
 from symflex.model.nodes import domain_of, infer_nodes
-from symflex.model.reading import QuantityLiteral, Reader, signed_number
+from symflex.model.reading import QuantityLiteral, Reader, describe, signed_number
 from symflex.model.scope import RESERVED, Scope, build_scope
 from symflex.quantities import DIMENSIONLESS, Dimension, Quantity, unit_of
-from symflex.spec import TableValue, parse_with_recovery
+from symflex.spec import ArrayValue, StringValue, TableValue, parse_with_recovery
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
     from symflex.errors import Source
     from symflex.spec import Entry, Spec
@@ -58,6 +58,8 @@ SECTIONS = (
     "analysis",
     "figures",
 )
+CONSEQUENCES = ("SF210", "SF218")
+"""What is noted of a name that was lost with a mistake elsewhere."""
 TOP_KEYS = ("symflex", "title", "source", "doc", *SECTIONS)
 
 
@@ -82,7 +84,7 @@ def load_model(source: Source, ancestors: tuple[Path, ...] = ()) -> Model:
         model = resolve(spec, Origin(source, own, load_model))
     except SpecError as error:
         # A name lost with an unreadable line would be reported as unknown: that is not a second mistake.
-        later = [d for d in error.diagnostics if not syntax or d.code not in ("SF210", "SF214", "SF218")]
+        later = [d for d in error.diagnostics if not syntax or d.code not in (*CONSEQUENCES, "SF214")]
         raise SpecError(*_in_order([*syntax, *later], source)) from None
     if syntax:
         raise SpecError(*syntax)
@@ -110,7 +112,7 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     outputs = _read_outputs(reader, sections["outputs"])
     _refuse_fields(reader, sections["fields"])
     inherited = _inherited_parameters(reader, declared, blocks)
-    _refuse_twins(reader, [p.name for p in (*declared, *inherited)], definitions, blocks)
+    twins = _refuse_twins(reader, [p.name for p in (*declared, *inherited)], definitions, blocks)
     measure = _constant_measure(declared, inherited, definitions)
     attachments = [a for element in network.elements for a in element.attachments(measure)]
     attachments += [a for source in network.inputs for a in source.attachments()]
@@ -127,24 +129,78 @@ def resolve(spec: Spec, origin: Origin) -> Model:
         signals,
         outputs,
     )
-    model = _finish(reader, draft)
+    model = _finish(reader, draft, _broken_names(sections, draft) | twins)
+    later = Reader()
     model = replace(
         model,
         title=reader.plain(spec.root, "title", "the specification"),
         source=reader.plain(spec.root, "source", "the specification"),
         analysis=read_analysis(reader, sections["analysis"]),
-        figures=read_figures(reader, sections["figures"], model),
-        published=read_published(reader, sections["published"], model),
+        figures=read_figures(later, sections["figures"], model),
+        published=read_published(later, sections["published"], model),
     )
-    if not model.outputs and not reader.problems:
-        reader.note("SF214", "the specification has no [outputs]", None, 'for instance: X = "x_tip"')
-    if not model.inputs and not reader.problems:
-        reader.note(
-            "SF214", "the specification has no [inputs]", None, 'for instance: F = { force = "x_act" }'
-        )
-    if reader.problems:
-        raise SpecError(*_in_order(reader.problems, spec.source))
+    # A transfer function is missing where its output or input could not be read: no second mistake.
+    whole = all(
+        len(found) == len(section.entries)
+        for found, section in ((outputs, sections["outputs"]), (network.inputs, sections["inputs"]))
+        if section
+    )
+    reader.problems += [p for p in later.problems if whole or p.code != "SF218"]
+    problems = reader.problems
+    if _lost_sections(spec):
+        problems = [p for p in problems if p.code not in CONSEQUENCES]
+    else:
+        problems += _empty_sections(spec)
+    if problems:
+        raise SpecError(*_in_order(problems, spec.source))
     return model
+
+
+def _lost_sections(spec: Spec) -> bool:
+    """Tell whether a section is misspelt or no table, so that its names are not known."""
+    return any(
+        isinstance(e.value, TableValue) != (e.key in SECTIONS)
+        for e in spec.root.entries
+        if e.key in SECTIONS or e.key not in TOP_KEYS
+    )
+
+
+def _empty_sections(spec: Spec) -> list[Diagnostic]:
+    found = []
+    for name, example in (("inputs", 'F = { force = "x_act" }'), ("outputs", 'X = "x_tip"')):
+        entry = spec.root.get(name)
+        if entry is None or (isinstance(entry.value, TableValue) and not entry.value.entries):
+            span = entry.key_span if entry else Span(spec.source, 0, 0)
+            message = f"the specification has no [{name}]"
+            found.append(Diagnostic("SF214", message, span, f"for instance: {example}"))
+    return found
+
+
+def _broken_names(sections: Mapping[str, TableValue | None], draft: _Draft) -> frozenset[str]:
+    """Return the names in declarations that could not be read: their own and those of nodes listed there."""
+    read = {
+        "parameters": {p.name for p in draft.declared},
+        "definitions": {d.name for d in draft.definitions},
+        "elements": {e.name for e in draft.elements},
+        "inputs": {d.input.name for d in draft.inputs},
+        "signals": {x.name for x in draft.signals},
+        "blocks": {b.name for b in draft.blocks},
+    }
+    broken: set[str] = set()
+    for section, names_read in read.items():
+        table = sections[section]
+        for entry in table.entries if table else ():
+            if entry.key not in names_read:
+                broken.add(entry.key)
+                if section in ("elements", "inputs") and isinstance(entry.value, TableValue):
+                    broken.update(_listed_names(entry.value))
+    return frozenset(broken)
+
+
+def _listed_names(table: TableValue) -> Iterator[str]:
+    for entry in table.entries:
+        items = entry.value.items if isinstance(entry.value, ArrayValue) else (entry.value,)
+        yield from (i.text.value.partition(".")[0] for i in items if isinstance(i, StringValue))
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,18 +238,23 @@ def _check_header(reader: Reader, spec: Spec) -> None:
         reader.note(
             "SF200",
             "the specification does not say its format version",
-            None,
+            Span(spec.source, 0, 0),
             "begin the file with: symflex = 1",
         )
         return
     literal = getattr(version.value, "value", None)
     if literal != FORMAT_VERSION or isinstance(literal, bool):
-        reader.note("SF200", "this version reads format 'symflex = 1'", version.value.span)
+        message = f"the format version is {describe(version.value)}; this program reads version 1"
+        reader.note("SF200", message, version.value.span, "write symflex = 1, without quotes")
 
 
 def _section(reader: Reader, spec: Spec, name: str) -> TableValue | None:
     entry = spec.root.get(name)
-    return reader.table(entry, f"[{name}]") if entry else None
+    if entry is None:
+        return None
+    many = isinstance(entry.value, ArrayValue)
+    hint = f"write one [{name}] with a line 'name = ...' for each of them" if many else None
+    return reader.table(entry, f"[{name}]", hint)
 
 
 def _refuse_fields(reader: Reader, section: TableValue | None) -> None:
@@ -210,7 +271,7 @@ def _read_signals(reader: Reader, section: TableValue | None) -> tuple[Signal, .
     found: list[Signal] = []
     for entry in section.entries if section else ():
         if reader.name(entry, "a signal", RESERVED):
-            expression = reader.expression(entry.value, f"signal '{entry.key}'")
+            expression = reader.expression(entry.value, f"signal '{entry.key}'", quantities=False)
             if expression is not None:
                 found.append(Signal(entry.key, expression, entry.key_span))
     return tuple(found)
@@ -233,10 +294,11 @@ def _read_output(reader: Reader, entry: Entry) -> Output | None:
         label = read_label(reader, value, what)
         inner = value.get("expr")
         if inner is None:
-            reader.note("SF214", f"{what} has no 'expr'", entry.key_span)
+            hint = 'for instance { expr = "x_tip" }'
+            reader.note("SF214", f"{what} has no 'expr'", entry.key_span, hint)
             return None
         value = inner.value
-    expression = reader.expression(value, what)
+    expression = reader.expression(value, what, quantities=False)
     return None if expression is None else Output(entry.key, expression, None, "", label, entry.key_span)
 
 
@@ -245,15 +307,18 @@ def _refuse_twins(
     parameters: Sequence[str],
     definitions: Sequence[Definition],
     blocks: Sequence[PlacedBlock],
-) -> None:
-    """Note definitions and blocks that bear the name of a parameter or of each other."""
+) -> frozenset[str]:
+    """Note and return the names that two of parameters, definitions and blocks bear."""
+    twins: set[str] = set()
     taken = dict.fromkeys(parameters, "a parameter")
     for what, group in (("a definition", definitions), ("a block", blocks)):
         for item in group:
             if item.name in taken:
                 message = f"'{item.name}' is {what} and {taken[item.name]}"
                 reader.note("SF211", message, item.span, "rename one of them")
+                twins.add(item.name)
             taken.setdefault(item.name, what)
+    return frozenset(twins)
 
 
 def _inherited_parameters(
@@ -270,23 +335,29 @@ def _inherited_parameters(
             elif known.value is not None and parameter.value is not None and known.value != parameter.value:
                 reader.note(
                     "SF226",
-                    f"parameter '{parameter.name}' of block '{block.name}' has another value than here",
+                    f"parameter '{parameter.name}' has another value in block '{block.name}' ({parameter.span})",
                     known.span if known.name in own else block.span,
                     "rename one of the two: parameters of a model block are shared by name",
                 )
     return tuple(found.values())
 
 
-def _finish(reader: Reader, draft: _Draft) -> Model:
+def _finish(reader: Reader, draft: _Draft, broken: frozenset[str]) -> Model:
     """Check names, linearity and units, and turn the draft into a model."""
     nodes = {n.name: n for n in draft.nodes}
     placed = tuple(_place(d, nodes) for d in draft.elements)
     inputs = tuple(d.input for d in draft.inputs)
     names = [*(p.name for p in draft.declared), *(p.name for p in draft.inherited)]
-    scope = build_scope(names, draft.definitions, draft.nodes, placed, draft.signals, draft.blocks, inputs)
+    scope = build_scope(
+        names, draft.definitions, draft.nodes, placed, draft.signals, draft.blocks, inputs, broken
+    )
+    unsound: set[Span | None] = set()
     for expression, constant in _all_expressions(draft):
-        reader.problems += check_expression(expression, scope, constant=constant)
-    system = _check_units(reader, draft, placed, scope)
+        problems = _check(expression, scope, constant=constant)
+        reader.problems += problems
+        if problems:
+            unsound.add(expression.span)
+    system = _check_units(reader, draft, placed, scope, unsound)
     readings = system.finish()
     reader.problems += system.problems
     implied = _implied_units(placed, draft.blocks)
@@ -318,7 +389,18 @@ def _finish(reader: Reader, draft: _Draft) -> Model:
             for o in draft.outputs
         ),
         signal_units=tuple(units.items()),
+        quotients=tuple(_quotients(draft, system)),
     )
+
+
+def _quotients(draft: _Draft, system: DimensionSystem) -> Iterator[tuple[tuple[str, str], Dimension]]:
+    for output in draft.outputs:
+        above = system.measure(output.expression)
+        for source in draft.inputs:
+            below = system.variable(Variable("input", source.input.name))
+            dimension = system.dimension(above.times(below.power(-1)))
+            if dimension is not None:
+                yield (output.name, source.input.name), dimension
 
 
 def _place(draft: DraftElement, nodes: Mapping[str, Node]) -> PlacedElement:
@@ -339,21 +421,31 @@ def _place(draft: DraftElement, nodes: Mapping[str, Node]) -> PlacedElement:
     return PlacedElement(draft.name, draft.element, attached, tuple(domains), draft.values, draft.span)
 
 
+def _check(expression: Expression, scope: Scope, *, constant: bool) -> list[Diagnostic]:
+    if not isinstance(expression, QuantityLiteral):
+        return check_expression(expression, scope, constant=constant)
+    return [] if constant or not expression.quantity.magnitude else [without_signal(expression.span)]
+
+
 def _all_expressions(draft: _Draft) -> list[tuple[Expression, bool]]:
     """Return every expression with whether it must be constant."""
     found: list[tuple[Expression, bool]] = [(d.expression, True) for d in draft.definitions]
     for use in draft.elements:
         signal = {p.name for p in use.element.parameters if p.signal}
-        found += [(e, name not in signal) for name, e in use.values if not isinstance(e, QuantityLiteral)]
-    found += [(e, True) for b in draft.blocks for _, e in b.values if not isinstance(e, QuantityLiteral)]
+        found += [(e, name not in signal) for name, e in use.values]
+    found += [(e, True) for b in draft.blocks for _, e in b.values]
     found += [(x.expression, False) for x in draft.signals]
-    found += [(x.expression, False) for x in draft.outputs]
-    return [(e, c) for e, c in found if not isinstance(e, QuantityLiteral)]
+    return found + [(x.expression, False) for x in draft.outputs]
 
 
 def _check_units(
-    reader: Reader, draft: _Draft, placed: Sequence[PlacedElement], scope: Scope
+    reader: Reader,
+    draft: _Draft,
+    placed: Sequence[PlacedElement],
+    scope: Scope,
+    unsound: Collection[Span | None],
 ) -> DimensionSystem:
+    """Measure every expression; of one that is unsound, only what disagrees within it is noted."""
     quantities = _quantities(draft.declared, draft.inherited)
     known = _known_dimensions(draft, placed)
     blocks = {b.name: _block_measure(b) for b in draft.blocks}
@@ -364,14 +456,22 @@ def _check_units(
         for name, expression in use.values:
             where = f"{name} of {use.element.type_name} '{use.name}'"
             doc = next(p.doc for p in use.element.parameters if p.name == name)
-            _require(reader, system, expression, _port_unit(use, name), where, doc)
+            if expression.span in unsound:
+                system.measure(expression)
+            else:
+                _require(reader, system, expression, _port_unit(use, name), where, doc)
     for block in draft.blocks:
         for name, expression in block.values:
             doc = next(p.doc for p in block.block.parameters if p.name == name) if block.block else ""
             where = f"{name} of block '{block.name}'"
-            _require(reader, system, expression, _block_unit(block, name), where, doc)
+            if expression.span in unsound:
+                system.measure(expression)
+            else:
+                _require(reader, system, expression, _block_unit(block, name), where, doc)
     for signal in draft.signals:
-        if not isinstance(signal.expression, QuantityLiteral):
+        if signal.expression.span in unsound:
+            system.measure(signal.expression)
+        else:
             system.equate(Variable("signal", signal.name), signal.expression)
     for definition in draft.definitions:
         system.measure(definition.expression)

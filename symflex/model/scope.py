@@ -16,14 +16,23 @@ if TYPE_CHECKING:
 
     from symflex.model.model import Definition, Input, Model, Node, PlacedBlock, PlacedElement, Signal
 
-Kind = Literal["laplace", "pi", "parameter", "definition", "block", "variable", "through"]
-CONSTANT_KINDS: frozenset[Kind] = frozenset({"laplace", "pi", "parameter", "definition", "block"})
-RESERVED = (LAPLACE, "pi", "ground")
+Kind = Literal["laplace", "pi", "parameter", "definition", "block", "variable", "through", "broken"]
+CONSTANT_KINDS: frozenset[Kind] = frozenset({"laplace", "pi", "parameter", "definition", "block", "broken"})
+RESERVED: dict[str, str] = {
+    LAPLACE: "it is the Laplace variable",
+    "pi": "it is the number pi",
+    "ground": "it is the reference node",
+}
+"""Names that have a meaning of their own, and which."""
+LISTED_NAMES = 8
 
 
 @dataclass(frozen=True, slots=True)
 class Meaning:
-    """What a name stands for; ``described`` says it in words for messages."""
+    """What a name stands for; ``described`` says it in words for messages.
+
+    A ``broken`` name stands where it is declared next to a mistake, which is reported there and only there.
+    """
 
     kind: Kind
     name: str
@@ -43,11 +52,14 @@ class Scope:
         What ``owner.name`` means.
     owners : mapping of str to tuple of str
         Names that may stand after ``owner.``.
+    broken : frozenset of str
+        Names whose declaration could not be read; they are known, and nothing more is said about them.
     """
 
     meanings: Mapping[str, tuple[Meaning, ...]]
     attributes: Mapping[tuple[str, str], Meaning]
     owners: Mapping[str, tuple[str, ...]]
+    broken: frozenset[str] = frozenset()
 
     def lookup(self, expression: Name | Attribute, *, constant: bool) -> Meaning:
         """Return the meaning of a name.
@@ -68,6 +80,8 @@ class Scope:
             return self._lookup_attribute(expression, constant=constant)
         found = self.meanings.get(expression.name, ())
         readable = [m for m in found if not constant or m.kind in CONSTANT_KINDS]
+        if expression.name in self.broken and (not found or len(readable) > 1):
+            return Meaning("broken", expression.name, "a name with a mistake")
         if len(readable) == 1:
             return readable[0]
         if len(readable) > 1:
@@ -87,24 +101,35 @@ class Scope:
                     f"'{expression.name}' is {found[0].described}; only parameters, definitions, s and pi "
                     "may stand here",
                     expression.span,
+                    VARYING_HINT,
                 )
             )
-        known = [
-            n for n, ms in self.meanings.items() if not constant or any(m.kind in CONSTANT_KINDS for m in ms)
-        ]
-        hint = nearest(expression.name, known)
-        if hint is None and expression.name in self.owners:
-            names = ", ".join(f"{expression.name}.{a}" for a in self.owners[expression.name])
-            hint = f"an element has no value of its own; it offers {names}"
+        hint = self._hint(expression.name, constant=constant)
         raise SpecError(Diagnostic("SF210", f"unknown name '{expression.name}'", expression.span, hint))
+
+    def _hint(self, name: str, *, constant: bool) -> str | None:
+        """Say what may have been meant by an unknown name."""
+        if name == "ground":
+            return "the reference node is at zero; leave it out"
+        if name in self.owners:
+            names = ", ".join(f"{name}.{a}" for a in self.owners[name])
+            return f"an element has no value of its own; it offers {names}"
+        known = [
+            n
+            for n, ms in self.meanings.items()
+            if n not in RESERVED and (not constant or any(m.kind in CONSTANT_KINDS for m in ms))
+        ]
+        return nearest_name(name, known)
 
     def _lookup_attribute(self, expression: Attribute, *, constant: bool) -> Meaning:
         text = f"{expression.owner}.{expression.name}"
         meaning = self.attributes.get((expression.owner, expression.name))
         if meaning is None:
             offered = self.owners.get(expression.owner)
+            if expression.owner in self.broken:
+                return Meaning("broken", text, "a name with a mistake")
             if offered is None:
-                hint = nearest(expression.owner, self.owners)
+                hint = nearest_name(expression.owner, list(self.owners))
                 message = f"'{text}': no element or planar node is called '{expression.owner}'"
             else:
                 hint = (
@@ -118,9 +143,28 @@ class Scope:
                     "SF212",
                     f"'{text}' is {meaning.described}; only parameters, definitions, s and pi may stand here",
                     expression.span,
+                    VARYING_HINT,
                 )
             )
         return meaning
+
+
+VARYING_HINT = "what varies in time may stand in [signals], in [outputs] and as the value of a source"
+
+
+def nearest_name(name: str, known: Sequence[str]) -> str | None:
+    """Return a hint naming the closest known name, or all of them when none is close and they are few.
+
+    Examples
+    --------
+    >>> nearest_name("K", ["m", "k"]), nearest_name("c", ["m", "k"])
+    ("did you mean 'k'?", 'known names: m, k')
+    """
+    same = [n for n in known if n.lower() == name.lower()]
+    hint = f"did you mean '{same[0]}'?" if same else nearest(name, known)
+    if hint is None and 0 < len(known) <= LISTED_NAMES:
+        return "known names: " + ", ".join(known)
+    return hint
 
 
 def build_scope(
@@ -131,6 +175,7 @@ def build_scope(
     signals: Sequence[Signal],
     blocks: Sequence[PlacedBlock],
     inputs: Sequence[Input],
+    broken: frozenset[str] = frozenset(),
 ) -> Scope:
     """Return what every name of a model means."""
     meanings: dict[str, list[Meaning]] = {
@@ -175,6 +220,7 @@ def build_scope(
         {name: tuple(found) for name, found in meanings.items()},
         attributes,
         {name: tuple(found) for name, found in owners.items()},
+        broken,
     )
 
 

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from flint import fmpz_mpoly_ctx
 
-from symflex.errors import Diagnostic, ModelError
 from symflex.roots.pole_zero_map import PoleZeroMap, find_pole_zero_map
 from symflex.roots.problem import Constant, PolynomialInS, RootProblem
 from symflex.transfer import BoundTransferFunction, coefficients_in_s
@@ -31,13 +30,11 @@ def locate(bound: BoundTransferFunction, region: Region | None = None, digits: i
     digits : int
         Correct significant digits of each root.
 
-    Raises
-    ------
-    ModelError
-        SF402 when the transfer function is identically zero.
+    Returns
+    -------
+    PoleZeroMap
+        A transfer function that is identically zero has neither poles nor zeros; all its modes are hidden.
     """
-    if bound.ratio.is_zero:
-        raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero: every point is a zero"))
     above = [(f, e) for f, e in bound.ratio.factors if e > 0]
     below = [(f, -e) for f, e in bound.ratio.factors if e < 0]
     hidden = [(f.polynomial, f.multiplicity) for f in bound.hidden]

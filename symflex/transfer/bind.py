@@ -134,7 +134,7 @@ class BoundTransferFunction:
         """
         if self.ratio.is_zero:
             return 0j
-        if not isfinite(abs(s)):
+        if not (isfinite(s.real) and isfinite(s.imag)):
             return complex(nan, nan)
         point, function = acb(s.real, s.imag), self._first
         while True:
@@ -230,12 +230,13 @@ def _read_value(parameter: Parameter, given: float | Fraction | Decimal | str) -
         angular = wanted is None or bool(wanted.radians)
         return ExactValue(*(quantity.angular() if angular else quantity.cyclic()))
     if isinstance(given, float) and isfinite(given):
-        return ExactValue(Fraction(Decimal(repr(given))))
+        # A numpy double is a float whose own repr is no number.
+        return ExactValue(Fraction(Decimal(float.__repr__(given))))
     if isinstance(given, int | Fraction) or (isinstance(given, Decimal) and given.is_finite()):
         return ExactValue(Fraction(given))
-    as_float = getattr(given, "item", None)
-    if callable(as_float):
-        return _read_value(parameter, as_float())
+    as_python = getattr(given, "item", None)
+    if callable(as_python) and getattr(given, "size", 1) == 1:
+        return _read_value(parameter, as_python())
     raise UsageError(Diagnostic("SF902", f"the value of '{parameter.name}' must be a finite number"))
 
 
@@ -266,8 +267,7 @@ def bind(
         read_values(tuple(everything.values()), {unknown[0]: given[unknown[0]]})
     exact = read_values((*used, *extra), given)
     table = dict(exact)
-    generators = [n for n in tf.ratio.ring.names[1:] if n not in everything]
-    ring = Ring((LAPLACE, *generators))
+    ring = Ring((LAPLACE, "pi", *_used_constants(tf)))
     images = _Substitution(ring, tf.ratio.ring, table)
     bound = Factored.number(ring, tf.ratio.unit)
     for factor, exponent in tf.ratio.factors:
@@ -286,6 +286,15 @@ def bind(
             HiddenFactor(f, e * known.multiplicity) for f, e in value.factors if degree_in(f, 0) and e > 0
         ]
     return BoundTransferFunction(tf, exact, ratio, tuple(hidden))
+
+
+def _used_constants(tf: TransferFunction) -> list[str]:
+    """Return the functions of constants that occur; the others may lack a value."""
+    index = tf.ratio.ring.index
+    polynomials = [*(f for f, _ in tf.ratio.factors), *(h.polynomial for h in tf.hidden)]
+    return [
+        c.generator for c in tf.constants if any(degree_in(p, index[c.generator]) for p in polynomials)
+    ]
 
 
 @dataclass(frozen=True)

@@ -98,13 +98,15 @@ class _Workshop:
         model = self._equations.model
         output = next(o for o in model.outputs if o.name == row.name)
         given = next(i for i in model.inputs if i.name == source)
-        common = num.gcd(self._den) if len(num) else self._closure.ring.constant(1)
+        # For a zero numerator the common factor is the whole denominator: every mode is hidden.
+        common = num.gcd(self._den)
         num_closed, den_closed = num / common, self._den / common
         hidden = self._hidden(self._expanded(self._closure.open(common)))
         divisor = self._closure.close(row.divisor)
         den_closed = den_closed * divisor
-        final = num_closed.gcd(den_closed) if len(num) else self._closure.ring.constant(1)
+        final = num_closed.gcd(den_closed)
         num_closed, den_closed = num_closed / final, den_closed / final
+        hidden = (*hidden, *self._hidden(self._expanded(self._closure.open(final))))
         denominator = self._expanded(self._closure.open(den_closed))
         if denominator.is_zero:
             raise explain_singular(self._equations)
@@ -119,7 +121,7 @@ class _Workshop:
             ClosedForm(self._closure, num_closed, den_closed) if cancelled.is_one else None,
             _merge_hidden((*hidden, *self._hidden(cancelled))),
             name_quantity(output, given),
-            unit_of_quotient(output, given),
+            unit_of_quotient(output, given, dict(model.quotients).get((output.name, given.name))),
             self._equations.ring,
             self._equations.definitions,
             self._equations.constants,
@@ -146,11 +148,12 @@ class _Workshop:
             raise ModelError(Diagnostic("SF215", message))
         if len(factor) == 1:
             return known[0]
-        if all(
-            len(image.factors) == 1 and image.unit == 1 and len(image.factors[0][0]) == 1 for image in known
-        ):
+        if all(_is_monomial(image) for image in known):
             zero = self._ring.constant(0)
-            plain = [zero if image is None else _as_polynomial(image) for image in images]
+            plain = [
+                image.expand() if image is not None and int(d) else zero
+                for image, d in zip(images, degrees, strict=True)
+            ]
             return Factored.polynomial(self._ring, self._ring.compose(factor, plain))
         return _compose_rational(self._ring, factor, images)
 
@@ -159,11 +162,9 @@ class _Workshop:
         return tuple(HiddenFactor(f, e) for f, e in value.factors if degree_in(f, i))
 
 
-def _as_polynomial(image: Factored) -> fmpz_mpoly:
-    """Return a definition or generator as a polynomial, zero where it is not one."""
-    if image.unit.denominator != 1 or any(e < 0 for _, e in image.factors):
-        return image.ring.constant(0)
-    return image.expand()
+def _is_monomial(image: Factored) -> bool:
+    """Tell whether a definition or generator is one product of generators."""
+    return image.unit == 1 and all(len(f) == 1 and e > 0 for f, e in image.factors)
 
 
 def _compose_rational(ring: Ring, factor: fmpz_mpoly, images: Sequence[Factored | None]) -> Factored:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symflex.quantities import DIMENSIONLESS, unit_of
+from symflex.quantities import unit_of
 
 if TYPE_CHECKING:
     from symflex.model import Input, Output
@@ -43,13 +43,39 @@ def name_quantity(output: Output, source: Input) -> str:
     return "transfer function"
 
 
-def unit_of_quotient(output: Output, source: Input) -> str:
-    """Return the SI unit of output over input, empty when one of them is unknown."""
+def unit_of_quotient(output: Output, source: Input, known: Dimension | None) -> str:
+    """Return the SI unit of output over input, empty when it is unknown.
+
+    ``known`` is the quotient's dimension, which may be known where one of the ends is not.
+    """
     if output.dimension is None or source.dimension is None:
-        return ""
-    return format_dimension(output.dimension / source.dimension)
+        return "" if known is None else str(known)
+    return quotient_of_units(str(output.dimension), str(source.dimension))
 
 
-def format_dimension(dimension: Dimension) -> str:
-    """Return the unit, ``1`` for a pure number."""
-    return "1" if dimension == DIMENSIONLESS else str(dimension)
+def quotient_of_units(above: str, below: str) -> str:
+    """Return one unit over another in the words of both, so that m/s over A is not called V/N.
+
+    Examples
+    --------
+    >>> quotient_of_units("m/s^2", "N"), quotient_of_units("V", "V"), quotient_of_units("A", "V/m")
+    ('m/(N*s^2)', '1', 'A*m/V')
+    """
+    above_up, above_down = _parts(above)
+    below_up, below_down = _parts(below)
+    up, down = [*above_up, *below_down], [*below_up, *above_down]
+    for symbol in list(up):
+        if symbol in down:
+            up.remove(symbol)
+            down.remove(symbol)
+    numerator = "*".join(up) or "1"
+    if not down:
+        return numerator
+    return f"{numerator}/{down[0]}" if len(down) == 1 else f"{numerator}/({'*'.join(down)})"
+
+
+def _parts(unit: str) -> tuple[list[str], list[str]]:
+    """Return the symbols above and below the slash of a preferred unit."""
+    above, _, below = unit.partition("/")
+    up = [symbol for symbol in above.split("*") if symbol != "1"]
+    return up, [symbol for symbol in below.strip("()").split("*") if symbol]

@@ -10,6 +10,8 @@ from symflex.expressions import Name, names
 from symflex.kernels import LAPLACE, degree_in
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from flint import fmpz_mpoly
 
     from symflex.elimination import Closure
@@ -89,22 +91,19 @@ class TransferFunction:
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
         """The parameters that occur, in declared order."""
-        ring = self.ratio.ring
-        used = {name for name in ring.names if self.ratio.depends_on(name)}
-        for constant in self.constants:
-            if constant.generator in used:
-                used |= {n.name for n in names(constant.expression) if isinstance(n, Name)}
-        return tuple(p for p in self.model.parameters if p.name in used)
+        return self._parameters_in([f for f, _ in self.ratio.factors])
 
     @cached_property
     def hidden_parameters(self) -> tuple[Parameter, ...]:
         """The parameters that occur in hidden factors, in declared order."""
-        index = self.ratio.ring.index
-        return tuple(
-            p
-            for p in self.model.parameters
-            if any(degree_in(h.polynomial, index[p.name]) for h in self.hidden)
-        )
+        return self._parameters_in([h.polynomial for h in self.hidden])
+
+    def _parameters_in(self, polynomials: Sequence[fmpz_mpoly]) -> tuple[Parameter, ...]:
+        used = {n for i, n in enumerate(self.ratio.ring.names) if any(degree_in(p, i) for p in polynomials)}
+        for constant in self.constants:
+            if constant.generator in used:
+                used |= {n.name for n in names(constant.expression) if isinstance(n, Name)}
+        return tuple(p for p in self.model.parameters if p.name in used)
 
     @property
     def order(self) -> tuple[int, int]:

@@ -12,12 +12,13 @@ from symflex.emit.figures.drawing import Drawing
 from symflex.emit.figures.poles_zeros import draw_poles_zeros
 from symflex.emit.figures.save import FORMATS, render, save
 from symflex.emit.figures.style import paper_style
-from symflex.errors import Diagnostic, UsageError
+from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.model.analysis import FIGURE_KINDS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from fractions import Fraction
 
     from matplotlib.figure import Figure
 
@@ -36,7 +37,7 @@ def draw(
     tfs: Sequence[TransferFunction],
     bounds: Sequence[BoundTransferFunction],
     *,
-    band_hz: tuple[float, float] | None = None,
+    band_hz: tuple[float | Fraction, float | Fraction] | None = None,
     title: str | None = None,
 ) -> Figure:
     """Draw a figure of one or several transfer functions.
@@ -47,7 +48,7 @@ def draw(
         A key of :data:`FIGURES`.
     tfs, bounds : sequences of equal length, at least one
         The functions, and the same with numbers.
-    band_hz : (float, float), optional
+    band_hz : (number, number), optional
         Frequencies shown [Hz]. Without it a Bode plot takes the model's ``band``, or else one that shows all
         poles and zeros; a pole-zero plot focuses on the resonances that belong together and marks the rest at
         its border.
@@ -78,5 +79,9 @@ def draw(
             f"a figure needs as many bound as symbolic transfer functions, not {len(bounds)} and {len(tfs)}"
         )
         raise ValueError(message)
+    for bound in bounds:
+        if bound.ratio.is_zero:
+            raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero: nothing to draw"))
+    band = None if band_hz is None else (float(band_hz[0]), float(band_hz[1]))
     with paper_style():
-        return FIGURES[kind](tfs, bounds, band_hz=band_hz, title=title)
+        return FIGURES[kind](tfs, bounds, band_hz=band, title=title)

@@ -47,7 +47,7 @@ def render(figure: Figure, format: str) -> bytes:
     return buffer.getvalue()
 
 
-def save(figure: Figure, path: Path, format: str) -> None:
+def save(figure: Figure, path: Path, format: str | None = None) -> None:
     """Write a figure to a file, as a whole or not at all.
 
     Parameters
@@ -56,12 +56,14 @@ def save(figure: Figure, path: Path, format: str) -> None:
         As :func:`symflex.emit.figures.draw` returns it.
     path : Path
         Replaced when it exists.
-    format : str
-        ``pdf``, ``png`` or ``svg``.
+    format : str, optional
+        ``pdf``, ``png`` or ``svg``; by default what the file's name ends in.
 
     Raises
     ------
     UsageError
         SF208 an unknown format; SF903 the file cannot be written.
     """
-    write_atomically(path, render(figure, format))
+    write_atomically(
+        path, render(figure, path.suffix.removeprefix(".").lower() if format is None else format)
+    )

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from symflex.expressions import (
     Expression,
     Name,
+    Number,
     Product,
     Sum,
     format_expression,
@@ -126,8 +127,19 @@ class Arranger:
             ((monomial, coefficient),) = rest.items()
             return product_of([number(coefficient), front, self._monomial(monomial, 1)])
         scale, rest = _pull_number(rest)
-        inner = self._split(rest)
-        return product_of([number(scale), front, inner])
+        return product_of([number(scale), front, *self._pieces(rest)])
+
+    def _pieces(self, terms: dict[tuple[int, ...], int]) -> list[Expression]:
+        """Return the factors of a sum, each nested."""
+        if 3 < len(terms) <= FACTOR_LIMIT:  # noqa: PLR2004
+            _, factors = self.ring.context.from_dict(terms).factor()
+            if len(factors) > 1 or int(factors[0][1]) > 1:
+                ordered = sorted(factors, key=lambda fe: _order_key(fe[0]))
+                positive = [(_terms(f if int(f.leading_coefficient()) > 0 else -f), int(e)) for f, e in ordered]
+                # With every factor's leading coefficient positive, the product's sign is the sum's own.
+                sign = 1 if terms[max(terms)] > 0 else -1
+                return [number(sign), *(power(self._split(f), e) for f, e in positive)]
+        return [self._split(terms)]
 
     def _split(self, terms: dict[tuple[int, ...], int]) -> Expression:
         shared = self._most_shared(terms)
@@ -200,12 +212,22 @@ def _share_sums(parts: list[Expression]) -> list[Expression]:
                 continue
             bearing = [p for p in parts if shared in _factors(p)]
             if len(bearing) > 1:
-                inner = sum_of(_share_sums([_without(p, shared) for p in bearing]))
+                inner = _share_factors(_share_sums([_without(p, shared) for p in bearing]))
                 merged = product_of([shared, inner])
                 first = parts.index(bearing[0])
                 rest = [p for p in parts if p not in bearing]
                 return _share_sums([*rest[:first], merged, *rest[first:]])
     return parts
+
+
+def _share_factors(parts: list[Expression]) -> Expression:
+    """Return the sum of the parts with every factor that all of them bear in front."""
+    common: list[Expression] = []
+    for factor in _factors(parts[0]):
+        if not isinstance(factor, Sum | Number) and all(factor in _factors(p) for p in parts):
+            common.append(factor)
+            parts = [_without(p, factor) for p in parts]
+    return product_of([*common, sum_of(parts)])
 
 
 def _factors(part: Expression) -> tuple[Expression, ...]:

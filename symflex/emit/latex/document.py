@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from symflex.roots import PoleZeroMap
     from symflex.transfer import HiddenFactor, TransferFunction
 
-TEXT_WIDTH_MM: Final = 160.0
+TEXT_WIDTH_MM: Final = 170.0
 """Width of the text of the document, and of fragments unless asked otherwise."""
 
 _LONGEST_HIDDEN: Final = 0.5
@@ -36,13 +36,13 @@ _PREAMBLE: Final = r"""\documentclass[10pt,a4paper]{article}
 \usepackage[utf8]{inputenc}
 \IfFileExists{lmodern.sty}{\usepackage{lmodern}}{}
 \IfFileExists{microtype.sty}{\usepackage{microtype}}{}
-\usepackage[textwidth=160mm,textheight=240mm]{geometry}
+\usepackage[textwidth=170mm,textheight=245mm]{geometry}
 \usepackage{amsmath}
 \usepackage{array}
 \usepackage{booktabs}
 \usepackage{longtable}
 \usepackage{siunitx}
-\sisetup{per-mode=single-symbol}
+\sisetup{per-mode=symbol}
 \raggedbottom"""
 
 
@@ -102,13 +102,19 @@ def latex_document(
         r"\maketitle",
     ]
     if model.parameters:
-        parts += [r"\section{Parameters}", _about_values(model), parameter_table(model)]
+        parts += [r"\section{Parameters}", _with_table(_about_values(model), parameter_table(model))]
     if tfs:
         parts.append(r"\section{Transfer functions}")
     for tf, form in zip(tfs, forms, strict=True):
-        parts += [_introduction(tf), transfer_function_latex(tf, form, width_mm=TEXT_WIDTH_MM)]
-        parts += _hidden_modes(tf)
-        parts += [part for found in pole_zero_maps if found.tf == tf.name for part in _roots(tf, found)]
+        display = transfer_function_latex(tf, form, width_mm=TEXT_WIDTH_MM)
+        # Without a blank line: a display belongs to the paragraph before it.
+        parts.append(f"{_introduction(tf)}\n{display}")
+        hidden = _hidden_modes(tf)
+        maps = [found for found in pole_zero_maps if found.tf == tf.name]
+        if hidden and not maps:
+            parts.append("\n".join((r"\noindent", *hidden)))
+        for found in maps:
+            parts.append("\n".join((r"\noindent", *hidden, *_roots(tf, found))))
     parts.append(r"\end{document}")
     return "\n\n".join(parts) + "\n"
 
@@ -127,7 +133,8 @@ def _introduction(tf: TransferFunction) -> str:
 
 
 def _counted(count: int, noun: str) -> str:
-    words = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
+    words = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten",
+        "eleven", "twelve")
     number = words[count] if count < len(words) else str(count)
     return f"{number} {noun}{'' if count == 1 else 's'}"
 
@@ -142,35 +149,37 @@ def _hidden_modes(tf: TransferFunction) -> list[str]:
 
 def _hidden_mode(factor: HiddenFactor, tf: TransferFunction, arranger: Arranger, writer: Writer) -> str:
     ring = tf.ratio.ring
+    degree = int(factor.polynomial.degrees()[ring.index[LAPLACE]])
+    noun, verb = ("mode", "is") if degree * factor.multiplicity == 1 else ("modes", "are")
     if factor.polynomial == ring.generator(LAPLACE):
-        times = "" if factor.multiplicity == 1 else f" {_counted(factor.multiplicity, 'time')}"
-        what = rf"the factor $s$ cancels{times}: the motion at $s = 0$"
+        what, where = "The factor $s$", rf"the {noun} at $s = 0$"
     else:
         piece = writer.piece(arranger.collected(factor.polynomial))
-        degree = int(factor.polynomial.degrees()[ring.index[LAPLACE]])
-        where = f"${piece.latex} = 0$"
         if piece.width > _LONGEST_HIDDEN * TEXT_WIDTH_MM / EM_MM:
-            where = f"a polynomial of degree {degree} in $s$ vanishes"
-        times = "" if factor.multiplicity == 1 else f", {_counted(factor.multiplicity, 'time')} over"
-        noun = "mode" if degree == 1 else "modes"
-        what = f"the {noun} where {where} cancel{'s' if degree == 1 else ''}{times}"
-    pronoun = "it is" if "mode where" in what or "motion" in what else "they are"
+            what = f"A factor of degree {degree} in $s$"
+        else:
+            what = f"The factor ${piece.latex}$"
+        where = f"the {noun} at its {'root' if degree == 1 else 'roots'}"
+    times = "" if factor.multiplicity == 1 else f" {_counted(factor.multiplicity, 'time')}"
     return (
-        f"\\noindent Hidden: {what}. Between this input and this output {pronoun} uncontrollable or unobservable."
+        f"{what} cancels between numerator and denominator{times}: {where} {verb} hidden, that is, "
+        "uncontrollable from this input or unobservable at this output."
     )
 
 
 def _roots(tf: TransferFunction, found: PoleZeroMap) -> list[str]:
-    poles, zeros = (sum(root.multiplicity for root in roots) for roots in (found.poles, found.zeros))
-    counts = f"{_counted(poles, 'pole')} and {_counted(zeros, 'zero')}"
-    sentence = f"\\noindent The table lists {counts} of ${ratio_latex(tf)}$"
-    if found.certificate.certified:
-        sentence += "; every one is enclosed to the digits printed, and the count is proved."
-    else:
-        sentence += f". They are not certified: {escape_text(found.certificate.reason or 'no reason given')}."
     if not (found.poles or found.zeros or found.hidden):
-        return [f"\\noindent ${ratio_latex(tf)}$ has neither poles nor zeros in the region searched."]
-    return [sentence, pole_zero_table(found)]
+        return [f"${ratio_latex(tf)}$ has neither poles nor zeros in the region searched."]
+    if found.certificate.certified:
+        sentence = "Every pole and zero listed is enclosed to the digits printed, and their count is proved."
+    else:
+        sentence = f"The list is not certified: {escape_text(found.certificate.reason or 'no reason given')}."
+    return [_with_table(sentence, pole_zero_table(found))]
+
+
+def _with_table(sentence: str, table: str) -> str:
+    """Return a table with the sentence above it on the same page."""
+    return f"{sentence}\n\n\\nopagebreak\\medskip\n{table}\n\\medskip"
 
 
 def _comment(text: str) -> str:

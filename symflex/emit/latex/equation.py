@@ -150,7 +150,8 @@ def _formula(tf: TransferFunction, form: PrintedForm, writer: Writer, width: flo
     left, left_width = _left_side(tf)
     right, right_width = _right_side(form, writer)
     label = rf"\label{{{equation_label(tf.name)}}}"
-    if width is None or left_width + RELATION + right_width <= width:
+    # Where only the number lacks room, it stands below the formula by itself.
+    if width is None or left_width + RELATION + right_width <= width + _TAG:
         return f"\\begin{{equation}}\n  {label}\n  {left} = {right}\n\\end{{equation}}"
     if _is_one(form.den):
         rows = [_row(left, left_width, form.num, writer, width, left_width)]

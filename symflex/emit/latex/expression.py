@@ -58,6 +58,7 @@ class Piece(NamedTuple):
 
 FENCES: Final = (("(", ")"), ("[", "]"), (r"\{", r"\}"))
 FENCE_WIDTH: Final = 0.5
+_FENCE_WIDTHS: Final = (0.39, 0.28, 0.5)
 _TALL_FENCE_WIDTH: Final = 0.95
 _FRACTION_EDGES: Final = 0.6
 _ROOT_WIDTH: Final = 1.1
@@ -165,18 +166,21 @@ def between_factors(left: Piece, right: Piece) -> tuple[str, float]:
     """Return what stands between two factors, and its width."""
     if right.latex[:1].isdigit() or (right.latex.startswith(r"\frac") and left.latex[-1:].isdigit()):
         return r" \cdot ", CDOT
-    if left.is_wordy or right.is_wordy or left.shape is Shape.CALL or right.shape is Shape.CALL:
+    if left.shape is Shape.CALL or right.shape is Shape.CALL:
+        return r" \, ", THIN
+    if (left.is_wordy or right.is_wordy) and not (left.nesting or right.nesting):
         return r" \, ", THIN
     return " ", 0.0
 
 
 def fenced(piece: Piece) -> Piece:
     """Return a piece in parentheses, or in brackets or braces around those."""
-    left, right = FENCES[piece.nesting % len(FENCES)]
+    kind = piece.nesting % len(FENCES)
+    left, right = FENCES[kind]
     if piece.is_tall:
         latex, width = rf"\left{left} {piece.latex} \right{right}", 2 * _TALL_FENCE_WIDTH
     else:
-        latex, width = f"{left}{piece.latex}{right}", 2 * FENCE_WIDTH
+        latex, width = f"{left}{piece.latex}{right}", 2 * _FENCE_WIDTHS[kind]
     return Piece(latex, piece.width + width, Shape.ATOM, piece.is_tall, piece.nesting + 1)
 
 

@@ -36,20 +36,25 @@ if TYPE_CHECKING:
     from symflex.emit.latex.expression import Piece
 
 DEEPEST_INDENT: Final = 3
-# In proportion to a line: the width from which a factor is broken rather than moved.
+# In proportion to a line: the width from which a factor is broken rather than moved, and those of what may
+# stand before and after its parentheses.
 _LONG: Final = 0.5
-_LONGEST_LEAD: Final = 8.0
-_LONGEST_TAIL: Final = 4.0
+_LONGEST_LEAD: Final = 0.25
+_LONGEST_TAIL: Final = 0.15
 _BIG_FENCES: Final = 2 * (FENCE_WIDTH + 0.25)
 
 
 class Glue(NamedTuple):
-    """What joins an item to the one before it: on the same line, or at the start of the next."""
+    """What joins an item to the one before it: on the same line, or at the start of the next.
 
-    latex: str
-    width: float
-    start: str
-    start_width: float
+    ``depth`` is how far that next line is indented.
+    """
+
+    latex: str = ""
+    width: float = 0.0
+    start: str = ""
+    start_width: float = 0.0
+    depth: int = 0
 
 
 class Edge(NamedTuple):
@@ -59,7 +64,7 @@ class Edge(NamedTuple):
     width: float = 0.0
 
 
-_NOTHING: Final = Glue("", 0.0, "", 0.0)
+_NOTHING: Final = Glue()
 _PLUS: Final = Glue(" + ", OPERATOR, "{}+ ", OPERATOR)
 _MINUS: Final = Glue(" - ", OPERATOR, "{}- ", OPERATOR)
 _SLASH: Final = Glue("/", SLASH, "{}/ ", SLASH)
@@ -122,10 +127,10 @@ class _Filler:
         bare = self._writer.piece(node)
         piece = fence(bare)
         width = left.width + piece.width + right.width
-        if self._append(glue, f"{left.latex}{piece.latex}{right.latex}", width, depth):
+        if self._append(glue, f"{left.latex}{piece.latex}{right.latex}", width):
             return
         # A slash binds less tightly than the fraction bar it replaces.
-        is_looser = isinstance(node, Quotient) and fence in (as_factor, _as_denominator)
+        is_looser = bare.shape is Shape.FRACTION and fence in (as_factor, _as_denominator)
         if piece is not bare or is_looser:
             # Fences round what is broken have one size, chosen by what they hold.
             size = r"\Big" if bare.is_tall else r"\big"
@@ -135,7 +140,7 @@ class _Filler:
             depth += 1
         self._split(glue, left, node, bare, right, depth)
 
-    def _append(self, glue: Glue, latex: str, width: float, depth: int) -> bool:
+    def _append(self, glue: Glue, latex: str, width: float) -> bool:
         """Set something unbroken if this line or the next has room for it."""
         if self._parts and glue.width + width <= self._room:
             self._parts.append(f"{glue.latex}{latex}")
@@ -145,28 +150,28 @@ class _Filler:
             self._parts.append(latex)
             self._room -= width
             return True
-        if glue.start_width + width <= self._rest(depth):
-            self._start(glue, depth)
+        if glue.start_width + width <= self._rest(glue.depth):
+            self._start(glue)
             self._parts.append(latex)
             self._room -= width
             return True
         return False
 
-    def _force(self, glue: Glue, latex: str, width: float, depth: int) -> None:
+    def _force(self, glue: Glue, latex: str, width: float) -> None:
         """Set something that cannot be broken, on a line of its own if it must be."""
-        if not self._append(glue, latex, width, depth):
-            self._start(glue, depth)
+        if not self._append(glue, latex, width):
+            self._start(glue)
             self._parts.append(latex)
             self._room -= width
 
     def _rest(self, depth: int) -> float:
         return self._others - QUAD * min(depth, DEEPEST_INDENT)
 
-    def _start(self, glue: Glue, depth: int) -> None:
+    def _start(self, glue: Glue) -> None:
         if self._parts:
             self._lines.append("".join(self._parts))
-        self._parts = [r"\quad " * min(depth, DEEPEST_INDENT) + glue.start]
-        self._room = self._rest(depth) - glue.start_width
+        self._parts = [r"\quad " * min(glue.depth, DEEPEST_INDENT) + glue.start]
+        self._room = self._rest(glue.depth) - glue.start_width
 
     def _split(self, glue: Glue, left: Edge, node: Expression, bare: Piece, right: Edge, depth: int) -> None:
         match node:
@@ -179,7 +184,7 @@ class _Filler:
                 self.place(glue, minus, operand, as_term, right, depth)
             case Quotient(numerator=above, denominator=below):
                 self.place(glue, left, above, _as_numerator, Edge(), depth)
-                self.place(_SLASH, Edge(), below, _as_denominator, right, depth)
+                self.place(_SLASH._replace(depth=depth), Edge(), below, _as_denominator, right, depth)
             case Power(base=base, exponent=exponent):
                 raised = self._raised(exponent)
                 after = Edge(f"{raised.latex}{right.latex}", raised.width + right.width)
@@ -189,18 +194,21 @@ class _Filler:
             case Number():
                 self._split_number(glue, left, node, right, depth)
             case _:
-                self._force(glue, f"{left.latex}{bare.latex}{right.latex}", bare.width, depth)
+                self._force(glue, f"{left.latex}{bare.latex}{right.latex}", left.width + bare.width + right.width)
 
     def _split_sum(
         self, glue: Glue, left: Edge, terms: tuple[Expression, ...], right: Edge, depth: int
     ) -> None:
         for index, term in enumerate(terms):
-            sign = glue if index == 0 else _PLUS
+            if index and self._writer.piece(term).width > self._rest(depth):
+                # A term of several lines begins its own.
+                self._room = 0.0
+            sign = glue if index == 0 else _PLUS._replace(depth=depth)
             before = left if index == 0 else Edge()
             after = right if index == len(terms) - 1 else Edge()
             if isinstance(term, Negative):
                 if index:
-                    sign = _MINUS
+                    sign = _MINUS._replace(depth=depth)
                 else:
                     before = Edge(f"{left.latex}-", left.width + MINUS)
                 self.place(sign, before, term.operand, as_term, after, depth)
@@ -212,11 +220,11 @@ class _Filler:
     ) -> None:
         pieces = [as_factor(self._writer.piece(factor)) for factor in factors]
         long = [i for i, piece in enumerate(pieces) if piece.width > _LONG * self._others]
-        if len(long) == 1:
+        if len(long) == 1 and factors[long[0]].children:
             # Short factors stay with the parentheses of the one that is broken.
             (k,) = long
             before, after = _beside(pieces[: k + 1]), _beside(pieces[k:], leading=True)
-            if before.width <= _LONGEST_LEAD and after.width <= _LONGEST_TAIL:
+            if before.width <= _LONGEST_LEAD * self._others and after.width <= _LONGEST_TAIL * self._others:
                 left = Edge(f"{left.latex}{before.latex}", left.width + before.width)
                 right = Edge(f"{after.latex}{right.latex}", after.width + right.width)
                 self.place(glue, left, factors[k], as_factor, right, depth)
@@ -226,7 +234,7 @@ class _Filler:
             if index:
                 between, width = between_factors(pieces[index - 1], piece)
                 start, start_width = (_DOT, CDOT) if width == CDOT else (_TIMES, TIMES)
-                sign, edge = Glue(between, width, start, start_width), Edge()
+                sign, edge = Glue(between, width, start, start_width, depth), Edge()
             self.place(sign, edge, factor, as_factor, right if index == len(factors) - 1 else Edge(), depth)
 
     def _split_call(
@@ -243,7 +251,7 @@ class _Filler:
         above, _, below = number_text(node.value).partition("/")
         if below:
             self._split_digits(glue, left, above, Edge(), depth)
-            self._split_digits(_SLASH, Edge(), below, right, depth)
+            self._split_digits(_SLASH._replace(depth=depth), Edge(), below, right, depth)
         else:
             self._split_digits(glue, left, above, right, depth)
 
@@ -252,18 +260,16 @@ class _Filler:
         edges = left.width + right.width + glue.start_width
         if "e" in text or DIGIT * len(text) + edges <= self._rest(depth):
             piece = number_piece(text)
-            self._force(
-                glue, f"{left.latex}{piece.latex}{right.latex}", left.width + piece.width + right.width, depth
-            )
+            width = left.width + piece.width + right.width
+            self._force(glue, f"{left.latex}{piece.latex}{right.latex}", width)
             return
         count = max(1, int((self._rest(depth) - edges) / DIGIT))
         for start in range(0, len(text), count):
             chunk = text[start : start + count]
             before = left if start == 0 else Edge()
             after = right if start + count >= len(text) else Edge()
-            latex = f"{before.latex}{chunk}{after.latex}"
-            self._start(glue if start == 0 else _NOTHING, depth)
-            self._parts.append(latex)
+            self._start(glue if start == 0 else Glue(depth=depth))
+            self._parts.append(f"{before.latex}{chunk}{after.latex}")
             self._room -= before.width + DIGIT * len(chunk) + after.width
 
     def _raised(self, exponent: Expression) -> Edge:

@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Final
 
 from symflex.emit.latex.equation import model_labels
-from symflex.emit.latex.text import escape_text
+from symflex.emit.latex.text import escape_text, text_width
 from symflex.emit.latex.units import quantity_latex, unit_latex
 
 if TYPE_CHECKING:
@@ -23,11 +23,12 @@ VALUE_DIGITS: Final = 7
 ROWS_PER_PAGE: Final = 40
 """A table with more rows becomes a longtable."""
 
-_SETUP: Final = r"\sisetup{per-mode=single-symbol}"
+_SETUP: Final = r"\sisetup{per-mode=symbol,group-digits=integer}"
 _PI: Final = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899")
 _LARGEST_PLAIN: Final = 5
 _SMALLEST_PLAIN: Final = -4
-_MEANING_WIDTH: Final = r"p{0.5\linewidth}"
+_LONGEST_MEANING: Final = 22.0
+_WRAPPED: Final = r"l>{\raggedright\arraybackslash}p{0.5\linewidth}l"
 
 
 def parameter_table(model: Model) -> str:
@@ -43,7 +44,8 @@ def parameter_table(model: Model) -> str:
         meaning = (escape_text(parameter.doc),) if has_meanings else ()
         rows.append((f"${labels[parameter.name]}$", *meaning, _value(parameter)))
     if has_meanings:
-        columns = rf"l>{{\raggedright\arraybackslash}}{_MEANING_WIDTH}l"
+        widest = max(text_width(p.doc) for p in model.parameters)
+        columns = "lll" if widest <= _LONGEST_MEANING else _WRAPPED
         return _table(columns, ("Symbol", "Meaning", "Value"), (rows,))
     return _table("ll", ("Symbol", "Value"), (rows,))
 
@@ -70,16 +72,16 @@ def pole_zero_table(found: PoleZeroMap, digits: int = 6) -> str:
     columns = "l" + "".join(_number_column([row[i] for row in flat]) for i in range(1, 5))
     head = (
         "",
-        r"{Re $s$ / \unit{\radian\per\second}}",
-        r"{Im $s$ / \unit{\radian\per\second}}",
-        r"{Frequency / \unit{\hertz}}",
+        r"{Re $s$ (\unit{\radian\per\second})}",
+        r"{Im $s$ (\unit{\radian\per\second})}",
+        r"{Frequency (\unit{\hertz})}",
         "{Damping ratio}",
     )
     return _table(columns, head, [group for group in rows if group])
 
 
-def decimal_text(value: Fraction, digits: int = VALUE_DIGITS) -> str:
-    """Return a rational number as a decimal, exact when that takes no more than the digits asked for.
+def decimal_text(value: Fraction, digits: int = VALUE_DIGITS, *, is_rounded: bool = False) -> str:
+    """Return a rational number as a decimal, without trailing zeros unless it is known to be rounded.
 
     Examples
     --------
@@ -94,7 +96,7 @@ def decimal_text(value: Fraction, digits: int = VALUE_DIGITS) -> str:
     if count == 10**digits:
         leading, count = leading + 1, count // 10
     text = str(count)
-    if Fraction(count) * Fraction(10) ** (leading - digits + 1) == size:
+    if Fraction(count) * Fraction(10) ** (leading - digits + 1) == size and not is_rounded:
         text = text.rstrip("0")
     if _SMALLEST_PLAIN <= leading < 0:
         return f"{sign}0.{'0' * (-leading - 1)}{text}"
@@ -154,14 +156,11 @@ def _root_cells(word: str, entry: _Entry, digits: int) -> tuple[str, ...]:
     times = rf" ($\times {root.multiplicity}$)" if root.multiplicity > 1 else ""
     damping = root.damping_ratio()
     imaginary = rf"\pm {decimals.im}" if entry.is_pair else decimals.im
-    frequency = decimal_text(Fraction(root.frequency_hz()), digits)
-    return (
-        word + times,
-        decimals.re,
-        imaginary,
-        frequency,
-        "{--}" if damping is None else decimal_text(Fraction(damping), digits),
-    )
+    ratio = "{--}"
+    if damping is not None:
+        ratio = decimal_text(Fraction(damping), digits, is_rounded=not root.is_real)
+    frequency = decimal_text(Fraction(root.frequency_hz()), digits, is_rounded=True)
+    return word + times, decimals.re, imaginary, frequency, ratio
 
 
 def _number_column(cells: Sequence[str]) -> str:
@@ -193,6 +192,6 @@ def _table(columns: str, head: Sequence[str], groups: Sequence[Sequence[Sequence
             f"{body}\n\\end{{longtable}}\n\\endgroup"
         )
     return (
-        f"\\begin{{center}}{_SETUP}\n  \\begin{{tabular}}{{{columns}}}\n    \\toprule\n    {title}\n"
-        f"    \\midrule\n{body}\n    \\bottomrule\n  \\end{{tabular}}\n\\end{{center}}"
+        f"{{\\centering{_SETUP}\n  \\begin{{tabular}}{{{columns}}}\n    \\toprule\n    {title}\n"
+        f"    \\midrule\n{body}\n    \\bottomrule\n  \\end{{tabular}}\\par}}"
     )

@@ -73,12 +73,19 @@ def escape_text(text: str) -> str:
     >>> print(escape_text("Größe ω\n中"))
     Größe \ensuremath{\omega} [U+4E2D]
     """
-    return " ".join(_WORD.sub(lambda match: _word(match[0]), " ".join(text.split(" "))).split())
+    return " ".join(_WORD.sub(lambda match: _word(match[0]), text).split())
+
+
+def text_width(text: str) -> float:
+    """Return the width of plain text in one line [em], rounded up."""
+    return sum(ROMAN.get(c, WIDEST) for c in text)
 
 
 def _word(word: str) -> str:
-    total = sum(ROMAN.get(c, WIDEST) for c in word)
-    if total <= _LONG_WORD_EM:
+    # A quote that opens a word opens a quotation.
+    if word.startswith("'"):
+        return "`{}" + _word(word[1:])
+    if text_width(word) <= _LONG_WORD_EM:
         return "".join(map(_character, word))
     pieces: list[str] = []
     room = _CHUNK_EM

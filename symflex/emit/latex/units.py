@@ -54,7 +54,7 @@ def quantity_latex(number: str, unit: str) -> str:
     known = siunitx_unit(unit)
     if known is None:
         return rf"\num{{{number}}}~{escape_text(unit)}"
-    return rf"\qty{{{number}}}{{{known}}}" if known else rf"\num{{{number}}}"
+    return rf"\qty{_option(known)}{{{number}}}{{{known}}}" if known else rf"\num{{{number}}}"
 
 
 def unit_latex(unit: str) -> str:
@@ -62,7 +62,12 @@ def unit_latex(unit: str) -> str:
     known = siunitx_unit(unit)
     if known is None:
         return escape_text(unit)
-    return rf"\unit{{{known}}}" if known else "1"
+    return rf"\unit{_option(known)}{{{known}}}" if known else "1"
+
+
+def _option(known: str) -> str:
+    """Return the option that keeps a slash from opening a unit."""
+    return "[per-mode=power]" if known.startswith(r"\per") else ""
 
 
 def _power(power: str) -> str:

@@ -1,8 +1,9 @@
 """From a transfer function to the programs that compute it.
 
 Input: a :class:`symflex.transfer.TransferFunction`.
-Output: a :class:`Program` per way of evaluating it: ``closed`` keeps sums such as k + b*s and definitions as
-intermediates, ``factors`` multiplies out every factor by powers of s.
+Output: a :class:`Program` per way of evaluating it. ``closed`` and ``nested`` keep sums such as k + b*s and
+definitions as intermediates, the first in recurrences, the second by powers of s; ``factors`` multiplies out
+every factor by powers of s.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from symflex.emit.program.forge import Forge
 from symflex.emit.program.polynomials import Images, degree_of, evaluate_polynomial
+from symflex.emit.program.recurrence import SPLIT_LIMIT, Recurrence
 from symflex.emit.program.schedule import schedule
 from symflex.errors import BudgetError, Diagnostic
 from symflex.expressions import Call, Expression, Name, Negative, Number, Power, Product, Quotient, Sum
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
     from symflex.emit.program.nodes import Program
     from symflex.kernels import Ring
     from symflex.model import Model
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import ClosedForm, TransferFunction
 
 TERM_LIMIT = 20_000
 """Terms a program may be made of; beyond that its text would be megabytes."""
@@ -72,7 +74,7 @@ def build_program(tf: TransferFunction, form: str | None = None) -> Program:
     forge = Forge()
     if tf.ratio.is_zero:
         return schedule(forge, parameters, forge.constant(0), None, inf)
-    make = _closed if (form or forms[0]) == "closed" else _factors
+    make = _MAKERS[form or forms[0]]
     near, degree = make(_Generators(forge, tf, is_far=False))
     limit = 10.0 ** (HEADROOM // degree) if degree else inf
     if limit >= FAR_FROM:
@@ -87,8 +89,10 @@ def available_forms(tf: TransferFunction) -> tuple[str, ...]:
     if tf.closed is not None and not tf.ratio.is_zero and _closes_polynomially(tf):
         closed = tf.closed
         terms = [len(closed.num), len(closed.den), *(len(p) for _, p in closed.closure.sums)]
-        if sum(terms) <= TERM_LIMIT:
+        if sum(terms) <= SPLIT_LIMIT:
             forms.append("closed")
+        if sum(terms) <= TERM_LIMIT:
+            forms.append("nested")
     if sum(len(f) for f, _ in tf.ratio.factors) <= TERM_LIMIT:
         forms.append("factors")
     return tuple(forms)
@@ -129,11 +133,18 @@ class _Generators:
 
     def polynomial(self, ring: Ring, polynomial: fmpz_mpoly) -> tuple[int, int]:
         """Return an expression and its degree in s; in the far branch of ``polynomial / s**degree``."""
-        used = _used(ring, (polynomial,))
+        images = self._images(ring, (polynomial,))
+        return evaluate_polynomial(self.forge, polynomial, images), degree_of(polynomial, images.degrees)
+
+    def recurrence(self, ring: Ring, polynomials: tuple[fmpz_mpoly, ...]) -> list[tuple[int, int]]:
+        """Return expressions that share their sub-determinants, and their degrees in s."""
+        maker = Recurrence(self.forge, ring, self._images(ring, polynomials))
+        return [maker.evaluate(polynomial) for polynomial in polynomials]
+
+    def _images(self, ring: Ring, polynomials: tuple[fmpz_mpoly, ...]) -> Images:
+        used = _used(ring, polynomials)
         pairs = [self._generator(n) if n in used or n == LAPLACE else (0, 0) for n in ring.names]
-        degrees = tuple(d for _, d in pairs)
-        images = Images(tuple(v for v, _ in pairs), degrees, ring.index[PI], self.is_far)
-        return evaluate_polynomial(self.forge, polynomial, images), degree_of(polynomial, degrees)
+        return Images(tuple(v for v, _ in pairs), tuple(d for _, d in pairs), ring.index[PI], self.is_far)
 
     def product(self, value: Factored) -> tuple[int, int]:
         """Return a product of powers of polynomials, its unit left out, and its degree in s."""
@@ -235,14 +246,25 @@ def _every_definition(model: Model) -> Iterator[tuple[str, Expression]]:
 
 
 def _closed(generators: _Generators) -> tuple[int, int]:
-    """Return the nested form and the highest power of s in it."""
-    closed = generators.tf.closed
-    if closed is None:
-        message = f"{generators.tf.name} has no closed form"
-        raise ValueError(message)
+    """Return the recurrences of the closed form and the highest power of s in them."""
+    closed = _closed_form(generators.tf)
+    above, below = generators.recurrence(closed.closure.ring, (closed.num, closed.den))
+    return generators.balance(above, below), max(above[1], below[1])
+
+
+def _nested(generators: _Generators) -> tuple[int, int]:
+    """Return the closed form nested by powers of s, and the highest power in it."""
+    closed = _closed_form(generators.tf)
     ring = closed.closure.ring
     above, below = generators.polynomial(ring, closed.num), generators.polynomial(ring, closed.den)
     return generators.balance(above, below), max(above[1], below[1])
+
+
+def _closed_form(tf: TransferFunction) -> ClosedForm:
+    if tf.closed is None:
+        message = f"{tf.name} has no closed form"
+        raise ValueError(message)
+    return tf.closed
 
 
 def _factors(generators: _Generators) -> tuple[int, int]:
@@ -256,4 +278,8 @@ def _factors(generators: _Generators) -> tuple[int, int]:
     )
     num, num_degree = generators.product(varying.numerator())
     den, den_degree = generators.product(varying.denominator())
-    return generators.balance((forge.multiply([gain, num]), num_degree), (den, den_degree)), max(num_degree, den_degree)
+    above, below = (forge.multiply([gain, num]), num_degree), (den, den_degree)
+    return generators.balance(above, below), max(num_degree, den_degree)
+
+
+_MAKERS = {"closed": _closed, "nested": _nested, "factors": _factors}

@@ -3,6 +3,8 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from fractions import Fraction
+from pathlib import Path
 
 import matplotlib
 import numpy as np
@@ -18,6 +20,7 @@ from symflex.model.labels import ACCENTS, FONTS, GREEK, SYMBOLS
 from symflex.transfer import bind
 from tests.unit.response.systems import derived, rational
 
+ROOT = Path(__file__).parents[3]
 TWO_MASSES = """
 title = "Two masses"
 elements.a = { type = "mass", at = "x", m = "1 kg" }
@@ -69,7 +72,7 @@ def python(code, **environment):
     result = subprocess.run(
         [sys.executable, "-c", code],
         env={**os.environ, **environment},
-        cwd=os.getcwd(),
+        cwd=ROOT,
         capture_output=True,
         text=True,
         check=True,
@@ -86,12 +89,12 @@ def test_every_kind_may_be_asked_for_in_a_specification():
 
 @pytest.mark.parametrize("kind", sorted(set(FIGURE_KINDS) - set(FIGURES)))
 def test_a_kind_of_the_language_without_a_drawing_is_not_available_yet(kind, tfs):
-    with pytest.raises(UsageError, match="SF911.*not available yet"):
+    with pytest.raises(UsageError, match=r"SF911.*not available yet"):
         drawn(kind, tfs)
 
 
 def test_an_unknown_kind_names_the_nearest(tfs):
-    with pytest.raises(UsageError, match="(?s)SF208.*did you mean 'bode'"):
+    with pytest.raises(UsageError, match=r"(?s)SF208.*did you mean 'bode'"):
         drawn("bodee", tfs)
 
 
@@ -166,6 +169,16 @@ def test_an_unknown_format_is_refused(tfs):
 def test_save_writes_the_format_asked_for(format, start, tfs, tmp_path):
     save(drawn("bode", tfs), tmp_path / "figure", format)
     assert (tmp_path / "figure").read_bytes().startswith(start)
+
+
+def test_the_name_of_the_file_tells_the_format(tfs, tmp_path):
+    save(drawn("bode", tfs), tmp_path / "figure.PNG")
+    assert (tmp_path / "figure.PNG").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_name_that_tells_no_format_is_refused(tfs, tmp_path):
+    with pytest.raises(UsageError, match="SF208"):
+        save(drawn("bode", tfs), tmp_path / "figure")
 
 
 def test_save_does_not_write_through_a_link(tfs, tmp_path):
@@ -252,6 +265,12 @@ def test_different_units_stand_in_the_legend(tfs):
 
 def test_the_band_is_the_model_s(tfs):
     assert drawn("bode", tfs).axes[0].get_xlim() == pytest.approx((0.2, 5))
+
+
+def test_a_band_may_be_given_in_exact_numbers(tfs):
+    assert drawn("bode", tfs, band_hz=(Fraction(1, 2), Fraction(3))).axes[0].get_xlim() == pytest.approx(
+        (0.5, 3)
+    )
 
 
 def test_a_band_asked_for_comes_first(tfs):
@@ -346,7 +365,7 @@ def test_a_root_far_away_is_named_at_the_border():
 
 
 def test_a_function_without_poles_and_zeros_has_an_empty_panel():
-    assert drawn_rational("poles_zeros", "7").axes[0].texts == []
+    assert texts(drawn_rational("poles_zeros", "7").axes[0]) == []
 
 
 def test_many_functions_take_the_page_and_several_rows(tfs):
