@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,31 +42,29 @@ class Measurement:
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """A ratio the documentation states, and the one measured now.
+    """What this run measured, and the bound it must keep.
 
     Parameters
     ----------
     text : str
-        The claim in words.
-    stated : float
-        The ratio stated.
+        What is measured, in words.
+    bound : float
+        The floor, or the ceiling when smaller is better.
     measured : float
-        The ratio of this run.
+        In this run.
     larger_is_better : bool
-        False when the claim is an upper bound.
+        False when the bound is a ceiling.
     """
 
     text: str
-    stated: float
+    bound: float
     measured: float
     larger_is_better: bool = True
 
     @property
     def holds(self) -> bool:
-        """Whether this run is within a factor of two of the claim, or better than it."""
-        if self.larger_is_better:
-            return self.measured >= self.stated / 2
-        return self.measured <= self.stated * 2
+        """Whether this run keeps the bound."""
+        return self.measured >= self.bound if self.larger_is_better else self.measured <= self.bound
 
 
 def run_snippet(task: str, way: str, code: str, limit: float) -> Measurement:
@@ -80,11 +78,14 @@ def run_snippet(task: str, way: str, code: str, limit: float) -> Measurement:
     return Measurement(task, way, float(done.stdout), limit)
 
 
-def time_command(task: str, way: str, command: Sequence[str], repeats: int) -> Measurement:
-    """Return the median wall-clock time of a command, start to end."""
-    times = []
+def time_commands(task: str, commands: Mapping[str, Sequence[str]], repeats: int) -> list[Measurement]:
+    """Return the median wall-clock time of each command, start to end; the commands take turns."""
+    times: dict[str, list[float]] = {way: [] for way in commands}
     for _ in range(repeats + 1):
-        begin = time.perf_counter()
-        subprocess.run(command, capture_output=True, check=True)
-        times.append(time.perf_counter() - begin)
-    return Measurement(task, way, statistics.median(times[1:]), float("inf"))
+        for way, command in commands.items():
+            begin = time.perf_counter()
+            subprocess.run(command, capture_output=True, check=True)
+            times[way].append(time.perf_counter() - begin)
+    return [
+        Measurement(task, way, statistics.median(taken[1:]), float("inf")) for way, taken in times.items()
+    ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from symflex.cli.report import diagnostic_json, emit_json, reporting
+from symflex.cli.report import diagnostic_json, emit_json, listed, reporting
 from symflex.errors import SymflexError
 
 
@@ -44,9 +44,11 @@ def command(spec: str, *, as_json: bool) -> int:
         )
         if group
     )
-    click.echo(f"{spec}: ok" + (f", {model.title}" if model.title else ""))
-    click.echo(f"  {counts}")
-    click.echo(f"  transfer functions: {', '.join(names)}")
+    click.echo(f"{spec}: ok")
+    if model.title:
+        click.echo(listed("", model.title.split(), " "))
+    click.echo(listed("", counts.split(), " "))
+    click.echo(listed("transfer functions: ", names))
     if symbolic:
-        click.echo(f"  symbolic (no value): {', '.join(symbolic)}")
+        click.echo(listed("symbolic (no value): ", symbolic))
     return 0

@@ -7,78 +7,135 @@ from typing import TYPE_CHECKING
 
 import click
 
-from symflex.cli.report import emit_json, reporting
+from symflex.cli.report import emit_json, reporting, terminal_width
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 
 if TYPE_CHECKING:
-    from symflex.blocks import Block
-    from symflex.elements import Element
+    from collections.abc import Sequence
+
+    from symflex.blocks import Block, BlockParameter
+    from symflex.elements import Element, ParameterPort
+
+MODEL_BLOCK = "model"
+MODEL_SIGNATURE = "model(spec, tf)"
+MODEL_SUMMARY = "A transfer function of another specification"
+MODEL_DOC = (
+    "A transfer function of another specification. Its parameters are shared by name with those of the "
+    "specification that uses it."
+)
+SIGNATURE_WIDTH = 30
+DOMAIN_WORDS = {"any": "any domain", "whole": "planar or not"}
 
 
 @click.command("elements")
 @click.argument("name", required=False)
-@click.option("--json", "as_json", is_flag=True, help="Print the library as JSON.")
+@click.option("--json", "as_json", is_flag=True, help="Print the library, or the entry NAME, as JSON.")
 @reporting
 def command(name: str | None, *, as_json: bool) -> int:
     """List the element and block library, or describe one entry NAME."""
     from symflex.blocks import BLOCKS
     from symflex.elements import ELEMENTS
 
+    if name is not None and name not in (*ELEMENTS, *BLOCKS, MODEL_BLOCK):
+        hint = nearest(name, (*ELEMENTS, *BLOCKS, MODEL_BLOCK)) or "symflex elements lists them"
+        raise UsageError(Diagnostic("SF902", f"there is no element or block '{name[:64]}'", None, hint))
+    elements = [e for e in ELEMENTS.values() if name in (None, e.type_name)]
+    blocks = [b for b in BLOCKS.values() if name in (None, b.type_name)]
     if as_json:
         emit_json(
             {
                 "schema": "symflex.elements/1",
-                "elements": [_element_json(e) for e in ELEMENTS.values()],
-                "blocks": [_block_json(b) for b in BLOCKS.values()],
+                "elements": [_element_json(e) for e in elements],
+                "blocks": [_block_json(b) for b in blocks],
             }
         )
-        return 0
-    if name is None:
+    elif name is None:
         click.echo("elements")
-        for element in ELEMENTS.values():
-            click.echo(f"  {_signature(element)}")
+        for element in elements:
+            click.echo(_entry(_signature(element.type_name, _element_keys(element)), element.summary))
         click.echo("blocks")
-        for block in BLOCKS.values():
-            click.echo(f"  {block.type_name}({', '.join(p.name for p in block.parameters)})")
-        click.echo("  model(spec, tf)")
-        return 0
-    if name in ELEMENTS:
-        _describe(ELEMENTS[name])
-    elif name in BLOCKS:
-        _describe_block(BLOCKS[name])
+        for block in blocks:
+            click.echo(_entry(_signature(block.type_name, _block_keys(block)), block.summary))
+        click.echo(_entry(MODEL_SIGNATURE, MODEL_SUMMARY))
+    elif elements:
+        _describe(elements[0])
+    elif blocks:
+        _describe_block(blocks[0])
     else:
-        known = [*ELEMENTS, *BLOCKS]
-        hint = nearest(name, known) or "symflex elements lists them"
-        raise UsageError(Diagnostic("SF902", f"there is no element or block '{name[:64]}'", None, hint))
+        _describe_model_block()
     return 0
 
 
-def _signature(element: Element) -> str:
-    names = [p.name for p in element.ports] + [p.name for p in element.parameters]
-    return f"{element.type_name}({', '.join(names)})"
+def _signature(name: str, keys: Sequence[str]) -> str:
+    return f"{name}({', '.join(keys)})"
+
+
+def _element_keys(element: Element) -> list[str]:
+    return [p.name for p in element.ports] + [p.name for p in element.parameters]
+
+
+def _block_keys(block: Block) -> list[str]:
+    return [p.name for p in block.parameters]
+
+
+def _entry(signature: str, summary: str) -> str:
+    """Return a line of the library; what does not fit beside the signature stands below it."""
+    first, margin = f"  {signature.ljust(SIGNATURE_WIDTH)}  ", " " * (SIGNATURE_WIDTH + 4)
+    if len(signature) > SIGNATURE_WIDTH:
+        first = f"  {signature}\n{margin}"
+    room = terminal_width() - len(margin)
+    return first + f"\n{margin}".join(textwrap.wrap(summary, room, break_long_words=False))
 
 
 def _describe(element: Element) -> None:
-    click.echo(_signature(element))
-    click.echo(textwrap.indent(textwrap.fill(_plain(element.__doc__), 76), "  "))
+    click.echo(_signature(element.type_name, _element_keys(element)))
+    click.echo(_paragraph(_plain(element.__doc__), "  ", "  "))
     for port in element.ports:
         nodes = "node" if port.terminals == 1 else f"{port.terminals} nodes"
-        click.echo(f"  {port.name:10} {nodes}, {port.domain}: {port.doc}")
+        default = f", default {', '.join(port.default)}" if port.default is not None else ""
+        click.echo(
+            _key(port.name, f"{nodes}, {DOMAIN_WORDS.get(port.domain, port.domain)}: {port.doc}{default}")
+        )
     for parameter in element.parameters:
-        default = f", default {parameter.default}" if parameter.default is not None else ""
-        unit = f" [{parameter.unit}]" if parameter.unit else ""
-        click.echo(f"  {parameter.name:10} {parameter.doc}{unit}{default}")
+        click.echo(_parameter(parameter))
     if element.through:
-        click.echo("  offers     " + ", ".join(f"name.{q}" for q in element.through))
+        click.echo(_key("offers", ", ".join(f"name.{q}" for q in element.through)))
 
 
 def _describe_block(block: Block) -> None:
-    click.echo(f"{block.type_name}: {block.summary}")
+    click.echo(_signature(block.type_name, _block_keys(block)))
+    click.echo(_paragraph(block.summary, "  ", "    "))
     for parameter in block.parameters:
-        default = f", default {parameter.default}" if parameter.default is not None else ""
-        unit = f" [{parameter.unit}]" if parameter.unit else ""
-        click.echo(f"  {parameter.name:10} {parameter.doc}{unit}{default}")
+        click.echo(_parameter(parameter))
+
+
+def _describe_model_block() -> None:
+    click.echo(MODEL_SIGNATURE)
+    click.echo(_paragraph(MODEL_DOC, "  ", "  "))
+    click.echo(_key("spec", "path of the other specification, relative to the one that names it"))
+    click.echo(_key("tf", "OUT/IN of that specification"))
+
+
+def _parameter(parameter: ParameterPort | BlockParameter) -> str:
+    default = f", default {parameter.default}" if parameter.default is not None else ""
+    unit = f" [{parameter.unit}]" if parameter.unit else ""
+    return _key(parameter.name, f"{parameter.doc}{unit}{default}")
+
+
+def _key(name: str, text: str) -> str:
+    return _paragraph(text, f"  {name:10} ", " " * 13)
+
+
+def _paragraph(text: str, first: str, following: str) -> str:
+    return textwrap.fill(
+        text,
+        terminal_width(),
+        initial_indent=first,
+        subsequent_indent=following,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
 
 
 def _plain(doc: str | None) -> str:
@@ -89,10 +146,17 @@ def _element_json(element: Element) -> dict[str, object]:
     return {
         "type": element.type_name,
         "summary": element.summary,
-        "ports": [{"name": p.name, "nodes": p.terminals, "domain": p.domain} for p in element.ports],
-        "parameters": [
-            {"name": p.name, "unit": p.unit, "doc": p.doc, "default": p.default} for p in element.parameters
+        "ports": [
+            {
+                "name": p.name,
+                "nodes": p.terminals,
+                "domain": p.domain,
+                "doc": p.doc,
+                "default": None if p.default is None else list(p.default),
+            }
+            for p in element.ports
         ],
+        "parameters": [_parameter_json(p) for p in element.parameters],
         "through": list(element.through),
     }
 
@@ -101,7 +165,14 @@ def _block_json(block: Block) -> dict[str, object]:
     return {
         "type": block.type_name,
         "summary": block.summary,
-        "parameters": [
-            {"name": p.name, "unit": p.unit, "doc": p.doc, "default": p.default} for p in block.parameters
-        ],
+        "parameters": [_parameter_json(p) for p in block.parameters],
+    }
+
+
+def _parameter_json(parameter: ParameterPort | BlockParameter) -> dict[str, object]:
+    return {
+        "name": parameter.name,
+        "unit": parameter.unit or None,
+        "doc": parameter.doc,
+        "default": parameter.default,
     }

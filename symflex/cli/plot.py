@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from symflex.cli.report import reporting
+from symflex.cli.report import note, reporting
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 
@@ -22,7 +22,7 @@ SUFFIXES = (".pdf", ".png", ".svg")
 def command(spec: str, kind: str, *, tfs: tuple[str, ...], output: str | None) -> int:
     """Draw KIND (bode, poles_zeros) or a figure that SPEC defines in [figures].
 
-    Without -o the figure is written beside the current folder's files as SPEC-KIND.pdf.
+    Without -o the figure is written to the current folder as SPEC_KIND.pdf.
     """
     from symflex import pipeline
     from symflex.emit.figures import FIGURES, draw, save
@@ -36,7 +36,7 @@ def command(spec: str, kind: str, *, tfs: tuple[str, ...], output: str | None) -
     drawn = figure.kind if figure else kind
     if drawn not in FIGURES:
         raise UsageError(Diagnostic("SF911", f"figures of kind '{drawn}' are not available yet"))
-    path = Path(output) if output else Path(f"{Path(spec).stem}-{kind}.pdf")
+    path = Path(output) if output else Path(f"{Path(spec).stem}_{kind}.pdf")
     if path.suffix not in SUFFIXES:
         raise UsageError(Diagnostic("SF902", f"'{path.name}' must end in .pdf, .svg or .png"))
     pairs = figure.of if figure and figure.of and not tfs else pipeline.pick_pairs(model, tfs)
@@ -44,5 +44,5 @@ def command(spec: str, kind: str, *, tfs: tuple[str, ...], output: str | None) -
     bounds = [pipeline.bind(tf) for tf in derived]
     title = figure.title if figure else ""
     save(draw(drawn, derived, bounds, title=title or None), path)
-    click.echo(str(path))
+    note(f"wrote {path}")
     return 0

@@ -13,7 +13,7 @@ import click
 from symflex.errors import Diagnostic, SymflexError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
 P = ParamSpec("P")
 
@@ -78,3 +78,14 @@ def terminal_width() -> int:
     if not sys.stdout.isatty():
         return 80
     return max(40, min(120, os.get_terminal_size(sys.stdout.fileno()).columns))
+
+
+def listed(title: str, items: Sequence[str], separator: str = ", ", indent: str = "  ") -> str:
+    """Return a title and items in lines that fit the terminal, broken between items only."""
+    width, lines = terminal_width(), [indent + title]
+    for i, item in enumerate(items):
+        piece = item + (separator if i < len(items) - 1 else "")
+        if len(lines[-1]) + len(piece.rstrip()) > width and lines[-1].strip():
+            lines.append(2 * indent)
+        lines[-1] += piece
+    return "\n".join(line.rstrip() for line in lines)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from symflex.cli.report import emit_json, note, reporting
+from symflex.cli.report import emit_json, note, reporting, terminal_width
 from symflex.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 DIGITS_LIMIT = 10_000
 
 
-@click.command("roots", context_settings={"ignore_unknown_options": True})
+@click.command("roots")
 @click.argument("spec", type=click.Path())
 @click.option("--tf", metavar="OUT/IN", help="The transfer function; the first one by default.")
 @click.option("--modes", type=click.IntRange(1), help="Only the N lowest modes, with roots at the origin.")
@@ -58,7 +58,7 @@ def command(
     if as_json:
         emit_json(found.to_json_dict())
     else:
-        click.echo(roots_text(found, shown))
+        click.echo(roots_text(found, shown, terminal_width()))
     return 0 if found.certificate.certified else 4
 
 

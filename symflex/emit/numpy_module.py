@@ -7,8 +7,8 @@ Output: a :class:`NumpyExport`, the module's text and how well each function agr
 from __future__ import annotations
 
 import keyword
-import re
 from dataclasses import dataclass
+from textwrap import TextWrapper
 from typing import TYPE_CHECKING
 
 from symflex.emit.forms import print_form
@@ -45,14 +45,15 @@ if TYPE_CHECKING:
 
 WIDTH = 88
 FORMULA_LINES = 20
-FORMULA_TERMS = 2000
+FORMULA_TERMS = 1000
 LITERAL_WIDTH = 60
-MANY_STATEMENTS = 50
 
-RESERVED = frozenset({*keyword.kwlist, "np", "s", "complex", "ArrayLike", "NDArray"})
+RESERVED = frozenset({*keyword.kwlist, "np", "s", "arguments", "complex", "ArrayLike", "NDArray"})
 """Names a parameter cannot take in the generated code."""
 
 IMPORTS = """\
+# ruff: noqa: E501, E741, N802, N803, N806, PLR0915, RUF001, RUF002, RUF100  (names and texts are the model's)
+
 from __future__ import annotations
 
 import numpy as np
@@ -60,7 +61,9 @@ from numpy.typing import ArrayLike, NDArray
 """
 
 SUPPORT = '''\
-def _numbers(s: ArrayLike, *parameters: ArrayLike) -> tuple[NDArray[np.complex128], ...]:
+def _numbers(
+    s: ArrayLike, *parameters: ArrayLike
+) -> tuple[NDArray[np.complex128], ...]:
     """Return s as complex and every parameter as real or complex numbers."""
     arrays = [np.asarray(value) for value in (s, *parameters)]
     for array in arrays:
@@ -157,16 +160,14 @@ def numpy_module(
     functions = identifiers(
         {key: f"{tf.output.name}_over_{tf.input.name}" for key, (tf, _, _) in chosen.items()}, RESERVED
     )
-    blocks = [IMPORTS, _parameter_table(model, names)]
+    blocks = [_parameter_table(model, names)]
     for key, (tf, program, verification) in chosen.items():
         sentence = verification.text(digits)
         blocks.append(_Function(tf, program, functions[key], names, sentence).text())
     blocks += [SUPPORT, _function_table(functions)]
     verified = tuple(v for _, _, v in chosen.values())
-    header = _header(model, verified, digits)
-    body = "\n\n".join(blocks)
-    marks = _exemptions(header + body, [len(p.constants) for _, p, _ in chosen.values()])
-    return NumpyExport(header + marks + "\n" + body, verified)
+    header = f"{_header(model, verified, digits)}{IMPORTS}\n"
+    return NumpyExport(header + "\n\n".join(blocks), verified)
 
 
 # ------------------------------------------------------------------------------------------ the module
@@ -175,7 +176,7 @@ def numpy_module(
 def _header(model: Model, verified: Sequence[Verification], digits: int) -> str:
     lines = ["Transfer functions of a linear system as functions of numpy arrays.", ""]
     lines += _origin(model, "")
-    lines += [*wrapped("Written by symflex. Every function evaluates OUT/IN at the Laplace variable s [rad/s].", WIDTH)]
+    lines.append("Written by symflex. Each function evaluates OUT/IN at the Laplace variable s [rad/s].")
     if verified:
         lines.append("")
     for verification in verified:
@@ -192,7 +193,7 @@ def _origin(model: Model, indent: str) -> list[str]:
 
 
 def _docstring(lines: Sequence[str], indent: str) -> str:
-    """Return lines, which hold no double quote, as a docstring; raw when a backslash is to stand for itself."""
+    """Return lines, which hold no double quote, as a docstring, raw when a backslash is in them."""
     text = "\n".join(line.rstrip() for line in lines)
     return f'{indent}{"r" if chr(92) in text else ""}"""{text.lstrip()}\n{indent}"""\n'
 
@@ -237,25 +238,6 @@ def _character(c: str) -> str:
     if c in '"\\':
         return f"\\{c}"
     return c if c.isprintable() else c.encode("unicode_escape").decode("ascii")
-
-
-def _exemptions(text: str, constants: Sequence[int]) -> str:
-    """Return the comment that tells a linter which of its naming rules a model's own names break."""
-    code = re.sub(r'r?""".*?"""', "", text, flags=re.DOTALL)
-    arguments = re.findall(r"^    (\w+): (?:ArrayLike|NDArray)", code, flags=re.MULTILINE)
-    assigned = re.findall(r"^ +(\w+) = ", code, flags=re.MULTILINE)
-    broken = {
-        "E501": any(len(line) > WIDTH for line in text.splitlines()),
-        "E741": any(name in ("l", "O", "I") for name in (*arguments, *assigned)),
-        "N802": any(name != name.lower() for name in re.findall(r"^def (\w+)", code, flags=re.MULTILINE)),
-        "N803": any(name != name.lower() for name in arguments),
-        "N806": any(name != name.lower() for name in assigned),
-        "PLR0915": any(count + 10 > MANY_STATEMENTS for count in constants),
-        "RUF001": not text.isascii(),
-        "RUF002": not text.isascii(),
-    }
-    codes = ", ".join(code for code, is_broken in broken.items() if is_broken)
-    return f"# ruff: noqa: {codes}\n" if codes else ""
 
 
 # ---------------------------------------------------------------------------------------- one function
@@ -303,16 +285,22 @@ class _Function:
         lines.append(") -> NDArray[np.complex128]:")
         program, far = self.program, self.program.far
         used = {*RESERVED, *parameters}
-        own = identifiers({n: n for n in ("value", "is_far", "inverse")}, used)
+        own = identifiers({n: n for n in ("value", "limit", "is_far", "inverse")}, used)
         used |= set(own.values())
         assignments = [*program.constants, *program.near.assignments, *(far.assignments if far else ())]
-        printer = _Printer(self.names, identifiers({a.name: a.name for a in assignments}, used), own["inverse"])
+        intermediates = identifiers({a.name: a.name for a in assignments}, used)
+        printer = _Printer(self.names, intermediates, own["inverse"])
         for assignment in (*program.constants, *program.near.assignments):
             lines += printer.assignment(assignment.name, assignment.value, "    ")
         if far is None:
-            return [*lines, *_statement("return", printer.print(program.near.value), "    ")]
+            value = printer.print(program.near.value)
+            return [
+                *lines,
+                *_statement("return", value if program.varies else f"np.asarray({value})", "    "),
+            ]
         lines += _statement(own["value"], printer.print(program.near.value), "    ")
-        lines.append(f"    {own['is_far']} = np.abs(s) > float({program.limit!r})")
+        lines.append(f"    {own['limit']} = {program.limit!r}")
+        lines.append(f"    {own['is_far']} = np.abs(s) > {own['limit']}")
         lines.append(f"    if np.any({own['is_far']}):")
         lines.append(f"        {own['inverse']} = 1.0 / s")
         for assignment in far.assignments:
@@ -341,15 +329,18 @@ class _Function:
         lines += ["", "    Notes", "    -----"]
         lines += _origin(tf.model, "    ")
         lines += wrapped(inert(self.sentence), WIDTH, "    ")
-        return _docstring([*lines], "    ")
+        return _docstring(lines, "    ")
 
 
 def _formula(tf: TransferFunction) -> list[str]:
     """Return the formula in lines of text, shortened when it is long."""
-    if sum(len(f) for f, _ in tf.ratio.factors) > FORMULA_TERMS:
-        above, below = tf.order
+    above, below = tf.order
+    if sum(len(f) for f, _ in tf.ratio.factors) <= FORMULA_TERMS:
+        form = print_form(tf)
+    elif tf.closed is not None and len(tf.closed.num) + len(tf.closed.den) <= FORMULA_TERMS:
+        form = print_form(tf, "definitions")
+    else:
         return [f"A quotient of polynomials of degree {above} and {below} in s."]
-    form = print_form(tf)
     is_whole = isinstance(form.den, Number) and form.den.value == 1
     whole = format_expression(form.num if is_whole else Quotient(form.num, form.den))
     width = WIDTH - 4
@@ -386,7 +377,8 @@ class _Printer:
         """Return the text and how tightly it binds."""
         match node:
             case Constant(value, pi_power):
-                return ("np.pi" if (value, pi_power) == (1, 1) else repr(nearest_double(value, pi_power))), _LEAF
+                is_pi = value == 1 and pi_power == 1
+                return "np.pi" if is_pi else repr(nearest_double(value, pi_power)), _LEAF
             case ParameterNode(name):
                 return self.parameters[name], _LEAF
             case Reference(name):
@@ -398,8 +390,8 @@ class _Printer:
             case Add(terms):
                 return self._sum(terms), _SUM
             case Multiply(factors):
-                first, *others = factors
-                return " * ".join([self._within(first, _PRODUCT), *(self._within(f, _SIGN) for f in others)]), _PRODUCT
+                texts = [self._within(factors[0], _PRODUCT), *(self._within(f, _SIGN) for f in factors[1:])]
+                return " * ".join(texts), _PRODUCT
             case Divide(numerator, denominator):
                 return f"{self._within(numerator, _PRODUCT)} / {self._within(denominator, _SIGN)}", _PRODUCT
             case Power(base, exponent):
@@ -430,4 +422,6 @@ def _statement(target: str, value: str, indent: str) -> list[str]:
     opening = f"{indent}{target} " if target == "return" else f"{indent}{target} = "
     if len(opening) + len(value) <= WIDTH:
         return [opening + value]
-    return [f"{opening}(", *wrapped(value, WIDTH, indent + "    "), f"{indent})"]
+    # Only between operators: an identifier longer than a line stays whole.
+    wrapper = TextWrapper(width=WIDTH - len(indent) - 4, break_long_words=False, break_on_hyphens=False)
+    return [f"{opening}(", *(f"{indent}    {line}" for line in wrapper.wrap(value)), f"{indent})"]

@@ -6,17 +6,22 @@ from typing import TYPE_CHECKING
 
 from symflex.emit.forms import PrintedForm, hidden_expressions
 from symflex.expressions import Expression, Number, Quotient, format_expression
+from symflex.roots import Band, Modes, Rectangle
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
-    from symflex.roots import PoleZeroMap, Root
+    from symflex.roots import PoleZeroMap, Region, Root
     from symflex.transfer import TransferFunction
+
+Row = tuple[str, ...]
 
 WIDTH = 80
 INDENT = "  "
-SHORTEST = 3
-"""A line is not broken before this part of its width."""
+NARROWEST = 12
+"""Columns below which breaking a line further would not help to read it."""
+SHALLOW = 8
+"""Columns up to which a broken sum stands to the right of its parenthesis."""
 
 
 def form_text(tf: TransferFunction, form: PrintedForm) -> str:
@@ -80,75 +85,200 @@ def _placed(line: str, width: int, *, alone: bool) -> str:
 def wrapped(expression: Expression, width: int) -> list[str]:
     """Return an expression as lines of at most ``width`` columns where it can be broken.
 
-    Lines break before a plus or minus, or after a times, at the outermost level that leaves a line of
-    reasonable length.
+    Sums break before a sign, products after a times, outermost first; what stands in parentheses is broken
+    only when it does not fit, and then stands to the right of its parenthesis or below it.
     """
-    text = format_expression(expression)
-    places = _break_places(text)
-    lines: list[str] = []
-    start, indent = 0, ""
-    while len(text) - start > width - len(indent):
-        room = start + width - len(indent)
-        reachable = [(p, cost) for p, cost in places if start + width // SHORTEST <= p <= room]
-        if not reachable:
-            reachable = [(p, cost) for p, cost in places if p > start][:1]
-        if not reachable:
-            break
-        cut = min(reachable, key=lambda place: (place[1], -place[0]))[0]
-        lines.append(indent + text[start:cut].rstrip())
-        start, indent = cut, INDENT
-    return [*lines, indent + text[start:]]
+    return _lay_out(format_expression(expression), width, hanging=len(INDENT))
 
 
-def _break_places(text: str) -> list[tuple[int, int]]:
-    """Return where a line may break, and how deep in parentheses and products that is."""
-    places: list[tuple[int, int]] = []
-    depth = 0
+def _lay_out(text: str, width: int, hanging: int) -> list[str]:
+    """Return ``text`` in lines; the terms of a broken sum are indented by ``hanging`` after the first."""
+    if len(text) <= width or width < NARROWEST:
+        return [text]
+    terms = _split(text, _at_sign)
+    if len(terms) > 1:
+        return _lay_out_sum(terms, width, hanging)
+    factors = _split(text, _at_factor)
+    if len(factors) > 1:
+        return _lay_out_product(factors, width)
+    group = _group(text)
+    if group is None:
+        return [text]
+    head, inner, tail = group
+    lines = _lay_out(inner, width - len(head) - len(tail), hanging=0)
+    lines[-1] += tail
+    return [head + lines[0], *(" " * len(head) + line for line in lines[1:])]
+
+
+def _group(text: str) -> tuple[str, str, str] | None:
+    """Split a factor before and after what its parentheses hold."""
+    begin, end = text.find("("), text.rfind(")")
+    return None if begin < 0 else (text[: begin + 1], text[begin + 1 : end], text[end:])
+
+
+def _lay_out_sum(terms: Sequence[str], width: int, hanging: int) -> list[str]:
+    """Put every term on a line of its own, or fill the lines when all terms are simple."""
+    simple = not any("(" in term for term in terms)
+    lines = _lay_out(terms[0], width, hanging)
+    for term in terms[1:]:
+        if simple and len(lines[-1]) + 1 + len(term) <= width:
+            lines[-1] += f" {term}"
+            continue
+        sign, rest = term[:2], term[2:]
+        first, *more = _lay_out(rest, width - hanging - len(sign), hanging)
+        margin = " " * hanging
+        lines += [margin + sign + first, *(f"{margin}{' ' * len(sign)}{line}" for line in more)]
+    return lines
+
+
+def _lay_out_product(factors: Sequence[str], width: int) -> list[str]:
+    """Fill lines with factors; a sum too long for a line stands below its parenthesis, indented."""
+    lines = [""]
+    for factor in factors:
+        column, room = len(lines[-1]), width - len(lines[-1])
+        group = _group(factor)
+        if len(factor) <= room:
+            lines[-1] += factor
+        elif column and (len(factor) <= width - 2 * len(INDENT) or group is None or len(group[0]) > room):
+            lines += [2 * INDENT + line for line in _lay_out(factor, width - 2 * len(INDENT), hanging=0)]
+        elif group is None or column + len(group[0]) <= SHALLOW:
+            first, *more = _lay_out(factor, room, hanging=0)
+            lines[-1] += first
+            lines += [" " * column + line for line in more]
+        else:
+            head, inner, tail = group
+            lines[-1] += head
+            within = _lay_out(inner, width - 2 * len(INDENT) - len(tail), hanging=0)
+            lines += [2 * INDENT + line for line in within]
+            lines[-1] += tail
+    return lines
+
+
+def _split(text: str, breaks: Callable[[str, int], bool]) -> list[str]:
+    """Return the parts of a text between the places outside parentheses where it may break."""
+    depth, start = 0, 0
+    parts: list[str] = []
     for i, character in enumerate(text):
+        if not depth and i > start and breaks(text, i):
+            parts.append(text[start:i].rstrip())
+            start = i
         depth += {"(": 1, ")": -1}.get(character, 0)
-        if character in "+-" and text[i - 1 : i] == " " and text[i + 1 : i + 2] == " ":
-            places.append((i, 2 * depth))
-        elif text[i - 1 : i] == "*":
-            places.append((i, 2 * (depth - (character == "(")) + 1))
-    return places
+    return [*parts, text[start:]]
 
 
-def roots_text(found: PoleZeroMap, digits: int) -> str:
-    """Return poles and zeros as a table of 80 columns, with the certificate."""
+def _at_sign(text: str, i: int) -> bool:
+    return text[i] in "+-" and text[i - 1] == " "
+
+
+def _at_factor(text: str, i: int) -> bool:
+    return text[i - 1] == "*" or text[i] == "/"
+
+
+def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
+    """Return poles and zeros as tables, with the certificate.
+
+    Parameters
+    ----------
+    found : PoleZeroMap
+        Roots in a region.
+    digits : int
+        Significant digits of every root.
+    width : int
+        Columns available; where a line per root is too long, its imaginary part stands below its real part.
+    """
     certificate = found.certificate
     status = "certified" if certificate.certified else f"NOT CERTIFIED: {certificate.reason}"
     lines = [f"{found.tf}   {status}: {certificate.found} of {certificate.counted} roots enclosed"]
+    if shown := _region_text(found.region):
+        lines.append(f"{INDENT}shown: {shown}")
     for title, roots in (("poles", found.poles), ("zeros", found.zeros)):
-        lines += ["", f"  {title}" + ("" if roots else "  none")]
-        lines += _root_table(roots, digits)
+        lines += ["", _counted(title, roots), *_root_table(roots, digits, width)]
     if found.hidden:
-        lines += ["", "  hidden (cancelled between numerator and denominator)"]
-        lines += _root_table([h.root for h in found.hidden], digits)
-    lines += ["", "  radius bounds the distance from the printed value to the root [rad/s]"]
+        hidden = [h.root for h in found.hidden]
+        title = _counted("hidden", hidden) + ", cancelled between numerator and denominator"
+        lines += ["", title, *_root_table(hidden, digits, width)]
+    everything = [*found.poles, *found.zeros, *(h.root for h in found.hidden)]
+    if everything:
+        lines += ["", "  radius bounds the distance from the printed value to the root [rad/s]"]
+    if any(root.on_boundary for root in everything):
+        lines.append("  | marks a root on the boundary of what was asked for")
+    if not all(root.certified for root in everything):
+        lines.append("  ? marks roots that could not be told apart, enclosed as one")
     return "\n".join(lines)
 
 
-def _root_table(roots: Sequence[Root], digits: int) -> list[str]:
+def _region_text(region: Region) -> str:
+    """Say what was asked for, nothing when it was everything."""
+    match region:
+        case Modes(count):
+            modes = "mode" if count == 1 else f"{count} modes"
+            return f"the {modes} of lowest natural frequency, and roots at 0"
+        case Band(low, high):
+            return f"natural frequencies from {float(low):g} to {float(high):g} Hz"
+        case Rectangle(re_low, re_high, im_low, im_high):
+            re = f"Re from {float(re_low):g} to {float(re_high):g}"
+            return f"{re}, Im from {float(im_low):g} to {float(im_high):g} rad/s"
+        case _:
+            return ""
+
+
+def _counted(title: str, roots: Sequence[Root]) -> str:
+    """Return a heading with the number of roots, multiplicity counted."""
+    return f"{INDENT}{title}: {sum(root.multiplicity for root in roots) or 'none'}"
+
+
+def _root_table(roots: Sequence[Root], digits: int, width: int) -> list[str]:
+    """Return a line per real root or conjugate pair, or two where one is too long."""
     if not roots:
         return []
-    rows = [("", "Re [rad/s]", "Im [rad/s]", "radius", "f [Hz]", "zeta")]
-    for root in roots:
-        if root.im < 0:
+    rows: list[Row] = _root_rows(roots, digits)
+    head: Row = ("", "Re [rad/s]", "Im [rad/s]", "radius", "f [Hz]", "zeta")
+    lines = _aligned([head, *rows])
+    if max(map(len, lines)) <= width:
+        return lines
+    stacked: list[Row] = [("", "Re, Im [rad/s]", *head[3:])]
+    for flags, re, im, *rest in rows:
+        stacked.append((flags, f"{re}  ", *rest))
+        if im != "0":
+            stacked.append(("", f"{im} j", "", "", ""))
+    lines = _aligned(stacked)
+    if max(map(len, lines)) <= width:
+        return lines
+    return [line for row in rows for line in _root_paragraph(row)][:-1]
+
+
+def _root_rows(roots: Sequence[Root], digits: int) -> list[Row]:
+    """Return flags, real and imaginary part, radius, natural frequency and damping ratio.
+
+    Both members of a conjugate pair stand in the row of the upper one.
+    """
+    printed = [root.decimal(digits) for root in roots]
+    parts = {(p.re, p.im) for p in printed}
+    rows: list[Row] = []
+    for root, p in zip(roots, printed, strict=True):
+        mirrored = (p.re, p.im.removeprefix("-") if root.im < 0 else f"-{p.im}") in parts and p.im != "0"
+        if mirrored and root.im < 0:
             continue
-        printed = root.decimal(digits)
-        pair = not root.is_real
         times = f"x{root.multiplicity}" if root.multiplicity > 1 else ""
+        flags = times + ("" if root.certified else "?") + ("|" if root.on_boundary else "")
         zeta = root.damping_ratio()
-        flags = ("" if root.certified else "?") + ("|" if root.on_boundary else "")
-        rows.append(
-            (
-                times + flags,
-                printed.re,
-                ("+-" if pair else "") + printed.im,
-                printed.radius,
-                f"{root.frequency_hz():.6g}",
-                "" if zeta is None else f"{zeta:.6g}",
-            )
-        )
+        shown_zeta = "" if zeta is None else f"{zeta:.6g}"
+        im = f"+-{p.im}" if mirrored else p.im
+        rows.append((flags, p.re, im, p.radius, f"{root.frequency_hz():.6g}", shown_zeta))
+    return rows
+
+
+def _root_paragraph(row: Row) -> list[str]:
+    """Return a root whose digits fill lines of their own."""
+    flags, re, im, radius, frequency, zeta = row
+    about = [f"radius {radius}", f"f {frequency} Hz", f"zeta {zeta}" if zeta else "", flags]
+    lines = (f"Re {re}", f"Im {im}", ", ".join(filter(None, about)))
+    return [*(2 * INDENT + line for line in lines), ""]
+
+
+def _aligned(rows: Sequence[Row]) -> list[str]:
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    return ["  " + "  ".join(c.rjust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in rows]
+    return [
+        2 * INDENT + "  ".join(c.rjust(w) for c, w in zip(row, widths, strict=True) if w).rstrip()
+        for row in rows
+    ]

@@ -98,7 +98,7 @@ def _read_values(
                 "SF214",
                 f"{block.type_name} '{entry.key}' lacks {parameter.name}, {parameter.doc}",
                 entry.key_span,
-                f"a {block.type_name} block takes {names}",
+                f"parameters of {block.type_name}: {names}",
             )
             expression = None
         if expression is None:

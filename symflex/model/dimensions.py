@@ -268,6 +268,15 @@ class DimensionSystem:
             return self._blocks.get(meaning.name, Measure(open=True))
         return self.variable(meaning.variable) if meaning.variable else Measure(open=True)
 
+    def _varies(self, expression: Expression) -> bool:
+        """Tell whether a name is a node, signal or input: a function of it is refused as not linear."""
+        if not isinstance(expression, Name | Attribute):
+            return False
+        try:
+            return self._scope.lookup(expression, constant=False).variable is not None
+        except SpecError:
+            return False
+
     def _parameter(self, name: str) -> Measure:
         quantity = self._quantities.get(name)
         if quantity is None:
@@ -289,7 +298,7 @@ class DimensionSystem:
 
     def _call(self, name: str, argument: Expression) -> Measure:
         inner = self.measure(argument)
-        if name not in FUNCTIONS:
+        if name not in FUNCTIONS or any(self._varies(n) for n in names(argument)):
             return Measure(open=True)
         if name == "sqrt":
             return inner.power(Fraction(1, 2))

@@ -189,6 +189,8 @@ def _power_degree(power: Power, base: Degree, exponent: Expression, problems: li
 
 
 def _call_degree(call: Call, scope: Scope, constant: bool, problems: list[Diagnostic]) -> Degree:
+    if call.name in scope.broken and call.name not in FUNCTIONS:
+        return "unknown"
     if call.order:
         problems.append(_derivative(call.span))
         return "unknown"

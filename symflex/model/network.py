@@ -128,7 +128,7 @@ class NetworkReader:
                     "SF214",
                     f"{element.type_name} '{entry.key}' lacks {parameter.name}, {parameter.doc}",
                     entry.key_span,
-                    f"{element.type_name} takes {names}",
+                    f"parameters of {element.type_name}: {names}",
                 )
                 expression = None
             if expression is None:
@@ -185,7 +185,7 @@ class NetworkReader:
                 "SF217",
                 f"{element.type_name} '{entry.key}' lacks its port '{port.name}' ({port.doc})",
                 entry.key_span,
-                f"{element.type_name} is attached by {ports}",
+                f"ports of {element.type_name}: {ports}",
             )
             return None
         kind = "the name of a node" if port.terminals == 1 else f"an array of {port.terminals} nodes"

@@ -112,7 +112,7 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     outputs = _read_outputs(reader, sections["outputs"])
     _refuse_fields(reader, sections["fields"])
     inherited = _inherited_parameters(reader, declared, blocks)
-    twins = _refuse_twins(reader, [p.name for p in (*declared, *inherited)], definitions, blocks)
+    twins = _refuse_twins(reader, [*(p.name for p in declared), *(p.name for p in inherited)], definitions, blocks)
     measure = _constant_measure(declared, inherited, definitions)
     attachments = [a for element in network.elements for a in element.attachments(measure)]
     attachments += [a for source in network.inputs for a in source.attachments()]
@@ -185,6 +185,7 @@ def _broken_names(sections: Mapping[str, TableValue | None], draft: _Draft) -> f
         "inputs": {d.input.name for d in draft.inputs},
         "signals": {x.name for x in draft.signals},
         "blocks": {b.name for b in draft.blocks},
+        "fields": set[str](),
     }
     broken: set[str] = set()
     for section, names_read in read.items():
@@ -245,7 +246,7 @@ def _check_header(reader: Reader, spec: Spec) -> None:
     literal = getattr(version.value, "value", None)
     if literal != FORMAT_VERSION or isinstance(literal, bool):
         message = f"the format version is {describe(version.value)}; this program reads version 1"
-        reader.note("SF200", message, version.value.span, "write symflex = 1, without quotes")
+        reader.note("SF200", message, version.value.span, "write symflex = 1")
 
 
 def _section(reader: Reader, spec: Spec, name: str) -> TableValue | None:
@@ -335,7 +336,8 @@ def _inherited_parameters(
             elif known.value is not None and parameter.value is not None and known.value != parameter.value:
                 reader.note(
                     "SF226",
-                    f"parameter '{parameter.name}' has another value in block '{block.name}' ({parameter.span})",
+                    f"parameter '{parameter.name}' has another value in block '{block.name}' "
+                    f"({parameter.span})",
                     known.span if known.name in own else block.span,
                     "rename one of the two: parameters of a model block are shared by name",
                 )
@@ -407,16 +409,14 @@ def _place(draft: DraftElement, nodes: Mapping[str, Node]) -> PlacedElement:
     domains: list[tuple[str, Placing]] = []
     for port, references in draft.nodes:
         live = next((r for r in references if not r.is_ground), None)
-        domain = port.domain
-        if domain in ("any", "whole", "planar"):
-            node = nodes[live.node] if live else None
-            if node is None:
-                domain = "translation"
-            elif domain in ("whole", "planar") and node.domain == "planar":
-                domain = "planar"
-            else:
-                domain = domain_of(live, node) if live else "translation"
-        domains.append((port.name, domain))
+        if port.domain not in ("any", "whole", "planar"):
+            domains.append((port.name, port.domain))
+        elif live is None:
+            domains.append((port.name, "translation"))
+        elif port.domain in ("whole", "planar") and nodes[live.node].domain == "planar":
+            domains.append((port.name, "planar"))
+        else:
+            domains.append((port.name, domain_of(live, nodes[live.node])))
     attached = tuple((port.name, references) for port, references in draft.nodes)
     return PlacedElement(draft.name, draft.element, attached, tuple(domains), draft.values, draft.span)
 
@@ -535,7 +535,7 @@ def _known_dimensions(draft: _Draft, placed: Sequence[PlacedElement]) -> dict[Va
     for node in draft.nodes:
         for component in node.components:
             domain = {"y": "translation", "theta": "rotation"}.get(component, node.domain)
-            known[Variable("node", node.name, component)] = unit_of(ACROSS_UNIT[domain]).dimension  # type: ignore[index]
+            known[Variable("node", node.name, component)] = unit_of(ACROSS_UNIT[domain]).dimension
     for use in placed:
         domains = dict(use.domains)
         for quantity in use.element.quantities(domains):

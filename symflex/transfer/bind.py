@@ -210,12 +210,11 @@ def read_values(
             hint = nearest(name, names) or "parameters: " + ", ".join(names)
             raise UsageError(Diagnostic("SF902", f"there is no parameter '{name[:64]}'", None, hint))
     values = [(p.name, _read_value(p, given[p.name]) if p.name in given else p.value) for p in parameters]
-    missing = [name for name, value in values if value is None]
+    missing = [p for p, (_, value) in zip(parameters, values, strict=True) if value is None]
     if missing:
-        listed = ", ".join(missing)
-        word = "parameter has" if len(missing) == 1 else "parameters have"
+        hint = "give it a value here, or to bind() in Python"
         raise ModelError(
-            Diagnostic("SF229", f"these {word} no value: {listed}", None, "give a value to bind")
+            *(Diagnostic("SF229", f"parameter '{p.name}' has no value", p.span, hint) for p in missing)
         )
     return tuple((name, value) for name, value in values if value is not None)
 

@@ -213,7 +213,8 @@ def _share_sums(parts: list[Expression]) -> list[Expression]:
             bearing = [p for p in parts if shared in _factors(p)]
             if len(bearing) > 1:
                 inner = _share_factors(_share_sums([_without(p, shared) for p in bearing]))
-                merged = product_of([shared, inner])
+                # Plain factors stand before parentheses.
+                merged = product_of(sorted([shared, *_factors(inner)], key=lambda f: isinstance(f, Sum)))
                 first = parts.index(bearing[0])
                 rest = [p for p in parts if p not in bearing]
                 return _share_sums([*rest[:first], merged, *rest[first:]])

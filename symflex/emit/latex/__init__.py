@@ -1,4 +1,4 @@
-"""LaTeX: expressions, equations that fit the column, tables, and a document that compiles without warnings."""
+"""LaTeX: expressions, equations that fit the column, tables, documents that compile without warnings."""
 
 from symflex.emit.latex.document import TEXT_WIDTH_MM, latex_document, latex_fragment
 from symflex.emit.latex.equation import equation_label, inline_latex, model_labels, transfer_function_latex

@@ -30,6 +30,7 @@ TEXT_WIDTH_MM: Final = 170.0
 """Width of the text of the document, and of fragments unless asked otherwise."""
 
 _LONGEST_HIDDEN: Final = 0.5
+_COUNTS: Final = "no one two three four five six seven eight nine ten eleven twelve".split()
 
 _PREAMBLE: Final = r"""\documentclass[10pt,a4paper]{article}
 \usepackage[T1]{fontenc}
@@ -57,7 +58,8 @@ def latex_fragment(tf: TransferFunction, form: PrintedForm, *, width_mm: float =
         Width of the column, set in ten points.
     """
     display = transfer_function_latex(tf, form, width_mm=width_mm)
-    return f"% {_comment(tf.name)}, {_comment(tf.quantity)}: \\eqref{{{equation_label(tf.name)}}}\n{display}\n"
+    head = f"% {_comment(tf.name)}, {_comment(tf.quantity)}: \\eqref{{{equation_label(tf.name)}}}"
+    return f"{head}\n{display}\n"
 
 
 def latex_document(
@@ -95,11 +97,8 @@ def latex_document(
             raise UsageError(Diagnostic("SF902", message))
     parts = [
         _PREAMBLE,
-        rf"\title{{{escape_text(model.title) or 'Transfer functions'}}}",
-        rf"\author{{{escape_text(model.source)}}}",
-        r"\date{}",
         r"\begin{document}",
-        r"\maketitle",
+        _heading(model),
     ]
     if model.parameters:
         parts += [r"\section{Parameters}", _with_table(_about_values(model), parameter_table(model))]
@@ -119,6 +118,15 @@ def latex_document(
     return "\n\n".join(parts) + "\n"
 
 
+def _heading(model: Model) -> str:
+    title = escape_text(model.title) or "Transfer functions"
+    source = escape_text(model.source)
+    lines = [r"\begin{center}", rf"{{\LARGE {title}\par}}"]
+    if source:
+        lines += [r"\medskip", source]
+    return "\n".join((*lines, r"\end{center}"))
+
+
 def _about_values(model: Model) -> str:
     if all(p.value is None for p in model.parameters):
         return "All parameters are symbolic; units are SI units."
@@ -133,9 +141,7 @@ def _introduction(tf: TransferFunction) -> str:
 
 
 def _counted(count: int, noun: str) -> str:
-    words = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten",
-        "eleven", "twelve")
-    number = words[count] if count < len(words) else str(count)
+    number = _COUNTS[count] if count < len(_COUNTS) else str(count)
     return f"{number} {noun}{'' if count == 1 else 's'}"
 
 

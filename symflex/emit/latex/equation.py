@@ -18,7 +18,7 @@ from symflex.expressions import Expression, Name, Negative, Number, names
 from symflex.kernels import LAPLACE
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from symflex.emit.forms import PrintedForm
     from symflex.model import Input, Model, Output
@@ -29,12 +29,14 @@ NARROWEST_MM: Final = 80.0
 
 RESERVED: Final = {LAPLACE: "s", "pi": r"\pi"}
 
+# TeX keeps a whole display in its memory.
+_LINES_PER_DISPLAY: Final = 300
 _TAG: Final = 3.5
 _FRACTION_EDGES: Final = 0.6
 _ARGUMENT: Final = 1.3
 _WHERE: Final = r"\text{where}\quad "
 _WHERE_WIDTH: Final = 3.8
-_WIDEST_LEFT_SIDE: Final = 0.4
+_LEAST_ROOM: Final = 14.0
 _NUMERATORS: Final = (("N", "D"), ("P", "Q"), ("B", "A"), (r"\mathcal{N}", r"\mathcal{D}"))
 
 
@@ -49,8 +51,8 @@ class _Row:
 
 def model_labels(model: Model) -> dict[str, str]:
     """Return the labels of a model's parameters and definitions, declared or made, no two alike."""
-    declared = [*model.parameters, *model.definitions]
-    return labels_of([(item.name, item.latex) for item in declared], RESERVED)
+    named = [(p.name, p.latex) for p in model.parameters] + [(d.name, d.latex) for d in model.definitions]
+    return labels_of(named, RESERVED)
 
 
 def equation_label(name: str) -> str:
@@ -106,12 +108,6 @@ def inline_latex(tf: TransferFunction, form: PrintedForm) -> str:
     return rf"{formula},\quad \text{{where }} " + r",\; ".join(where)
 
 
-def equations_latex(rows: Sequence[tuple[str, Expression]], labels: Mapping[str, str], width_mm: float) -> str:
-    """Return unnumbered equations, aligned and broken to the width; left sides are names."""
-    width = max(width_mm, NARROWEST_MM) / EM_MM
-    return _align(_broken_rows(rows, Writer(labels), width), "align*", "")
-
-
 def _labels(tf: TransferFunction, form: PrintedForm) -> dict[str, str]:
     labels = model_labels(tf.model)
     return labels_of([(name, "") for name, _ in form.where if name not in labels], labels)
@@ -160,9 +156,7 @@ def _formula(tf: TransferFunction, form: PrintedForm, writer: Writer, width: flo
     return _align(rows, "align", label)
 
 
-def _named_parts(
-    form: PrintedForm, writer: Writer, width: float, left: str, left_width: float
-) -> list[_Row]:
+def _named_parts(form: PrintedForm, writer: Writer, width: float, left: str, left_width: float) -> list[_Row]:
     """Return the quotient of what is short and of names for what is not, and what the names stand for."""
     sign, num = _signed(form)
     parts = []
@@ -214,12 +208,12 @@ def _row(
     """Return an equation with its right side broken; ``column`` is the width of the widest left side."""
     if width is None:
         return _Row(left, left_width, (writer.piece(expression).latex,))
-    if column > _WIDEST_LEFT_SIDE * width:
-        # A left side this wide stands in a line of its own.
-        room = width - RELATION - 2 * QUAD
-        lines = break_lines(expression, writer, room, room - QUAD)
-        return _Row(left, left_width, ("", *lines))
     room = width - column - RELATION
+    if room < _LEAST_ROOM:
+        # The left side stands in a line of its own.
+        room = width - RELATION - QUAD
+        lines = break_lines(expression, writer, room, room - QUAD + RELATION)
+        return _Row(left, left_width, ("", *lines))
     return _Row(left, left_width, tuple(break_lines(expression, writer, room, room - QUAD)))
 
 
@@ -239,6 +233,10 @@ def _align(rows: Sequence[_Row], environment: str, label: str) -> str:
         lines += [f"{indent}{line}" for line in continuation]
     if environment == "align":
         lines = [f"{lines[0]} {label}", *(rf"{line} \notag" for line in lines[1:])]
-    body = " \\\\\n  ".join(lines)
-    display = f"\\begin{{{environment}}}\n  {body}\n\\end{{{environment}}}"
-    return f"\\begingroup\\allowdisplaybreaks\n{display}\n\\endgroup" if len(lines) > 1 else display
+    displays = []
+    for start in range(0, len(lines), _LINES_PER_DISPLAY):
+        body = " \\\\\n  ".join(lines[start : start + _LINES_PER_DISPLAY])
+        displays.append(f"\\begin{{{environment}}}\n  {body}\n\\end{{{environment}}}")
+    if len(lines) == 1:
+        return displays[0]
+    return "\n".join((r"\begingroup\allowdisplaybreaks", *displays, r"\endgroup"))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from enum import IntEnum
 from fractions import Fraction
+from itertools import pairwise
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from symflex.emit.latex.label import symbol
@@ -125,8 +126,8 @@ class Writer:
             children = node.children
             if not is_ready:
                 pending.append((node, where, True))
-                inner = _inner_styles(node, where)
-                pending.extend((c, s, False) for c, s in zip(reversed(children), reversed(inner), strict=True))
+                inner = zip(children, _inner_styles(node, where), strict=True)
+                pending.extend((child, style, False) for child, style in reversed(list(inner)))
             else:
                 pieces = done[-len(children) :]
                 del done[-len(children) :]
@@ -155,7 +156,7 @@ def joined(factors: Sequence[Piece]) -> tuple[str, float]:
     """Return factors, already fenced where they must be, side by side, and the width of the signs between."""
     parts = [factors[0].latex]
     extra = 0.0
-    for left, right in zip(factors, factors[1:], strict=False):
+    for left, right in pairwise(factors):
         between, width = between_factors(left, right)
         parts += [between, right.latex]
         extra += width

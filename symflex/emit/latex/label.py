@@ -77,8 +77,8 @@ def label_of(name: str) -> str:
 
     Examples
     --------
-    >>> [label_of(n) for n in ("omega_p1", "k_amp", "EI", "m_1", "k_tau", "V_tip_max")]
-    ['\\omega_{p1}', 'k_{\\mathrm{amp}}', '\\mathit{EI}', 'm_{1}', 'k_{\\tau}', 'V_{\\mathrm{tip},\\mathrm{max}}']
+    >>> print(*map(label_of, ("omega_p1", "k_amp", "EI", "m_1", "k_tau", "V_tip_x")))
+    \omega_{p1} k_{\mathrm{amp}} \mathit{EI} m_{1} k_{\tau} V_{\mathrm{tip},x}
     """
     return _made(name).latex
 
@@ -107,7 +107,7 @@ def labels_of(named: Iterable[tuple[str, str]], reserved: Mapping[str, str]) -> 
     Examples
     --------
     >>> labels_of([("m_1", ""), ("m1", ""), ("k", "k_t")], {"s": "s"})
-    {'s': 's', 'm_1': 'm_{1}', 'm1': '\\mathtt{m1}', 'k': 'k_t'}
+    {'s': 's', 'k': 'k_t', 'm_1': 'm_{1}', 'm1': '\\mathtt{m1}'}
     """
     labels = dict(reserved)
     taken = set(map(_plain, labels.values()))
@@ -169,20 +169,30 @@ def _subscript(part: str) -> str:
 
 
 def _verbatim(name: str) -> Label:
-    """Return a name in typewriter, small when it is long: the label that always works and is never alike."""
-    if _NAME.fullmatch(name) and len(name) * TYPEWRITER <= WIDEST_LABEL:
+    """Return a name in typewriter, stacked and small when it is long: this label always works."""
+    if _NAME.fullmatch(name) and _typewriter_width(name.replace("_", r"\_")) <= WIDEST_LABEL:
         text = name.replace("_", r"\_")
-        return Label(rf"\mathtt{{{text}}}", len(name) * TYPEWRITER, is_wordy=True)
-    text = escape_text(name).replace(r"\allowbreak{}", "")
-    return Label(rf"\text{{\tiny\ttfamily {text}}}", len(name) * TYPEWRITER * 0.55, is_wordy=True)
+        return Label(rf"\mathtt{{{text}}}", _typewriter_width(text), is_wordy=True)
+    pieces = [escape_text(name[i : i + _STACKED]) for i in range(0, len(name), _STACKED)]
+    pieces = [piece.replace(r"\allowbreak{}", "") for piece in pieces]
+    lines = [rf"\text{{\tiny\ttfamily {piece}}}" for piece in pieces]
+    stacked = r"\\".join(lines)
+    latex = lines[0] if len(lines) == 1 else rf"\substack{{{stacked}}}"
+    return Label(latex, _STACKED * TYPEWRITER * _TINY_SIZE, is_wordy=True)
+
+
+def _typewriter_width(text: str) -> float:
+    # An underscore in mathematics is a rule, half as wide again as a letter.
+    return (len(text) - 0.5 * text.count(r"\_")) * TYPEWRITER
 
 
 @functools.lru_cache(maxsize=4096)
 def _read(latex: str) -> Label | None:
-    for match in _TINY, _TYPEWRITER:
-        if match.fullmatch(latex):
-            size = 0.55 if match is _TINY else 1.0
-            return Label(latex, len(latex) * TYPEWRITER * size, is_wordy=True)
+    if _TYPEWRITER.fullmatch(latex):
+        text = latex.removeprefix(r"\mathtt{").removesuffix("}")
+        return Label(latex, _typewriter_width(text), is_wordy=True)
+    if _SMALL.fullmatch(latex):
+        return Label(latex, _STACKED * TYPEWRITER * _TINY_SIZE, is_wordy=True)
     try:
         whole, _ = _read_list(latex, 0, ITALIC, 0)
     except _UnsoundError:
@@ -190,13 +200,26 @@ def _read(latex: str) -> Label | None:
     if not whole.atoms:
         return None
     return Label(
-        latex, whole.width, whole.is_wordy, whole.has_superscript, whole.is_sum, whole.is_product or whole.atoms > 1
+        latex,
+        whole.width,
+        whole.is_wordy,
+        whole.has_superscript,
+        whole.is_sum,
+        whole.is_product or whole.atoms > 1,
     )
 
 
-# What `_verbatim` writes, which is sound by construction.
+_STACKED: Final = 22
+"""Characters in a line of a stacked name."""
+
+_TINY_SIZE: Final = 0.55
+
+# What `_verbatim` writes of a proper name, sound by construction.
 _TYPEWRITER: Final = re.compile(r"\\mathtt\{(?:[A-Za-z0-9]|\\_)+\}")
-_TINY: Final = re.compile(r"\\text\{\\tiny\\ttfamily (?:[A-Za-z0-9]|\\_)+\}")
+_SMALL: Final = re.compile(
+    r"\\substack\{\\text\{\\tiny\\ttfamily (?:[A-Za-z0-9]|\\_)+\}"
+    r"(?:\\\\\\text\{\\tiny\\ttfamily (?:[A-Za-z0-9]|\\_)+\})+\}"
+)
 
 
 class _UnsoundError(Exception):

@@ -94,7 +94,7 @@ def break_lines(expression: Expression, writer: Writer, first: float, others: fl
     >>> from symflex.expressions import Name
     >>> letters = Sum(tuple(map(Name, "abcdef")))
     >>> break_lines(letters, Writer({}), 6.0, 6.0)
-    ['a + b + c', '{}+ d + e + f']
+    ['a + b + c + d', '{}+ e + f']
     """
     filler = _Filler(writer, first, others)
     filler.place(_NOTHING, Edge(), expression, as_is, Edge(), 0)
@@ -121,7 +121,13 @@ class _Filler:
         return [*self._lines, "".join(self._parts)]
 
     def place(
-        self, glue: Glue, left: Edge, node: Expression, fence: Callable[[Piece], Piece], right: Edge, depth: int
+        self,
+        glue: Glue,
+        left: Edge,
+        node: Expression,
+        fence: Callable[[Piece], Piece],
+        right: Edge,
+        depth: int,
     ) -> None:
         """Set one item whole, on this line or the next, or in parts."""
         bare = self._writer.piece(node)
@@ -194,7 +200,9 @@ class _Filler:
             case Number():
                 self._split_number(glue, left, node, right, depth)
             case _:
-                self._force(glue, f"{left.latex}{bare.latex}{right.latex}", left.width + bare.width + right.width)
+                self._force(
+                    glue, f"{left.latex}{bare.latex}{right.latex}", left.width + bare.width + right.width
+                )
 
     def _split_sum(
         self, glue: Glue, left: Edge, terms: tuple[Expression, ...], right: Edge, depth: int

@@ -20,14 +20,17 @@ if TYPE_CHECKING:
 VALUE_DIGITS: Final = 7
 """Significant digits of a value that is not a shorter decimal."""
 
-ROWS_PER_PAGE: Final = 40
-"""A table with more rows becomes a longtable."""
+LINES_PER_PAGE: Final = 40
+"""A table with more lines becomes a longtable."""
+
+LONGEST_MEANING: Final = 400
+"""Characters of a description that a table prints; a row must fit a page."""
 
 _SETUP: Final = r"\sisetup{per-mode=symbol,group-digits=integer}"
 _PI: Final = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899")
 _LARGEST_PLAIN: Final = 5
 _SMALLEST_PLAIN: Final = -4
-_LONGEST_MEANING: Final = 22.0
+_ONE_LINE: Final = 22.0
 _WRAPPED: Final = r"l>{\raggedright\arraybackslash}p{0.5\linewidth}l"
 
 
@@ -41,13 +44,14 @@ def parameter_table(model: Model) -> str:
     has_meanings = any(p.doc for p in model.parameters)
     rows = []
     for parameter in model.parameters:
-        meaning = (escape_text(parameter.doc),) if has_meanings else ()
+        meaning = (escape_text(_cut(parameter.doc)),) if has_meanings else ()
         rows.append((f"${labels[parameter.name]}$", *meaning, _value(parameter)))
     if has_meanings:
         widest = max(text_width(p.doc) for p in model.parameters)
-        columns = "lll" if widest <= _LONGEST_MEANING else _WRAPPED
-        return _table(columns, ("Symbol", "Meaning", "Value"), (rows,))
-    return _table("ll", ("Symbol", "Value"), (rows,))
+        columns = "lll" if widest <= _ONE_LINE else _WRAPPED
+        lines = sum(1 + int(text_width(_cut(p.doc)) / _ONE_LINE) for p in model.parameters)
+        return _table(columns, ("Symbol", "Meaning", "Value"), (rows,), lines)
+    return _table("ll", ("Symbol", "Value"), (rows,), len(rows))
 
 
 def pole_zero_table(found: PoleZeroMap, digits: int = 6) -> str:
@@ -77,7 +81,7 @@ def pole_zero_table(found: PoleZeroMap, digits: int = 6) -> str:
         r"{Frequency (\unit{\hertz})}",
         "{Damping ratio}",
     )
-    return _table(columns, head, [group for group in rows if group])
+    return _table(columns, head, [group for group in rows if group], len(flat))
 
 
 def decimal_text(value: Fraction, digits: int = VALUE_DIGITS, *, is_rounded: bool = False) -> str:
@@ -113,6 +117,10 @@ def _decimal_exponent(value: Fraction) -> int:
     while value < Fraction(10) ** estimate:
         estimate -= 1
     return estimate
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= LONGEST_MEANING else f"{text[:LONGEST_MEANING]}\u2026"
 
 
 def _value(parameter: Parameter) -> str:
@@ -179,13 +187,13 @@ def _number_column(cells: Sequence[str]) -> str:
     return f"S[table-format={'+' if signed else ''}{max(whole, 1)}.{places}{power}]"
 
 
-def _table(columns: str, head: Sequence[str], groups: Sequence[Sequence[Sequence[str]]]) -> str:
+def _table(columns: str, head: Sequence[str], groups: Sequence[Sequence[Sequence[str]]], lines: int) -> str:
     """Return a table of groups of rows with a rule between them."""
     title = " & ".join(head) + r" \\"
     body = "\n    \\midrule\n".join(
         "\n".join(f"    {' & '.join(row)} \\\\" for row in group) for group in groups if group
     )
-    if sum(map(len, groups)) > ROWS_PER_PAGE:
+    if lines > LINES_PER_PAGE:
         return (
             f"\\begingroup{_SETUP}\n\\begin{{longtable}}{{{columns}}}\n    \\toprule\n    {title}\n"
             "    \\midrule\n    \\endhead\n    \\bottomrule\n    \\endfoot\n"

@@ -10,7 +10,7 @@ import re
 import unicodedata
 from typing import Final
 
-from symflex.emit.latex.width import ROMAN, WIDEST
+from symflex.emit.latex.width import DIGIT, ROMAN, WIDEST
 
 # Letters and signs between the control characters are escaped one by one; an empty group after a command
 # keeps the space that follows, and one after - ' < > , ! ? ` keeps pairs of them from becoming ligatures.
@@ -25,8 +25,8 @@ _GREEK_SMALL: Final = dict(
     zip(
         "αβγδεζηθικλμνξπρςστυφχψω",
         (
-            "alpha beta gamma delta varepsilon zeta eta theta iota kappa lambda mu nu xi pi rho varsigma sigma tau "
-            "upsilon varphi chi psi omega"
+            "alpha beta gamma delta varepsilon zeta eta theta iota kappa lambda mu nu xi pi rho varsigma "
+            "sigma tau upsilon varphi chi psi omega"
         ).split(),
         strict=True,
     )
@@ -37,17 +37,20 @@ _GREEK_CAPITAL: Final = dict(
 # Capitals that look like Latin ones, and the omicron.
 _GREEK_AS_LATIN: Final = dict(zip("ΑΒΕΖΗΙΚΜΝΟΡΤΧο", "ABEZHIKMNOPTXo", strict=True))
 _SYMBOLS: Final = {
-    "≤": "leq", "≥": "geq", "≠": "neq", "≈": "approx", "≡": "equiv", "∞": "infty", "√": "surd", "∂": "partial",
-    "∇": "nabla", "∑": "sum", "∏": "prod", "∫": "int", "∈": "in", "→": "to", "←": "leftarrow", "↔": "leftrightarrow",
-    "⇒": "Rightarrow", "−": "-", "⋅": "cdot", "·": "cdot", "×": "times", "÷": "div", "±": "pm", "∓": "mp",
+    "≤": "leq", "≥": "geq", "≠": "neq", "≈": "approx", "≡": "equiv", "∞": "infty", "√": "surd",
+    "∂": "partial", "∇": "nabla", "∑": "sum", "∏": "prod", "∫": "int", "∈": "in", "→": "to",
+    "←": "leftarrow", "↔": "leftrightarrow", "⇒": "Rightarrow", "−": "-",
+    "⋅": "cdot", "·": "cdot", "×": "times", "÷": "div", "±": "pm", "∓": "mp",
     "∼": "sim", "∝": "propto", "∥": "parallel", "⊥": "perp", "°": "^\\circ", "′": "'", "″": "''", "¬": "neg",
-    "µ": "mu", "ϑ": "vartheta", "ϕ": "phi", "ϵ": "epsilon", "ϱ": "varrho", "ϖ": "varpi", "Ω": "Omega", "ℓ": "ell",
+    "µ": "mu", "ϑ": "vartheta", "ϕ": "phi", "ϵ": "epsilon", "ϱ": "varrho", "ϖ": "varpi",
+    "Ω": "Omega", "ℓ": "ell",
     "²": "^{2}", "³": "^{3}", "¹": "^{1}",
 }  # fmt: skip
 _MATHEMATICS: Final = _GREEK_SMALL | _GREEK_CAPITAL | _SYMBOLS
 _PUNCTUATION: Final = {
     "\u00ad": r"\-", "\u00a0": "~", "\u202f": "~", "‐": "-{}", "‑": "-{}", "‒": "--", "–": "--", "—": "---",
-    "―": "---", "‘": "`{}", "’": "'{}", "‚": r"\quotesinglbase{}", "“": "``", "”": "''", "„": r"\quotedblbase{}",
+    "―": "---", "‘": "`{}", "’": "'{}", "‚": r"\quotesinglbase{}", "“": "``",
+    "”": "''", "„": r"\quotedblbase{}",
     "…": r"\ldots{}", "•": r"\textbullet{}", "†": r"\dag{}", "‡": r"\ddag{}", "€": r"\texteuro{}",
     "™": r"\texttrademark{}",
 }  # fmt: skip
@@ -55,6 +58,7 @@ _PUNCTUATION: Final = {
 _EXTENDED_A: Final = frozenset(map(chr, range(0x100, 0x180))) - frozenset("ĦħĸĿŀŉŦŧſ")
 
 _WORD: Final = re.compile(r"[^\s\u00a0\u202f]+")
+_LAST_LATIN: Final = 0x17F
 _LONG_WORD_EM: Final = 12.0
 _CHUNK_EM: Final = 4.0
 
@@ -78,7 +82,11 @@ def escape_text(text: str) -> str:
 
 def text_width(text: str) -> float:
     """Return the width of plain text in one line [em], rounded up."""
-    return sum(ROMAN.get(c, WIDEST) for c in text)
+    return sum(map(_width, text))
+
+
+def _width(c: str) -> float:
+    return ROMAN.get(c) or max(WIDEST, DIGIT * len(_replacement(c)) * 1.2 if ord(c) > _LAST_LATIN else 0.0)
 
 
 def _word(word: str) -> str:
@@ -90,7 +98,7 @@ def _word(word: str) -> str:
     pieces: list[str] = []
     room = _CHUNK_EM
     for c in word:
-        width = ROMAN.get(c, WIDEST)
+        width = _width(c)
         if width > room:
             pieces.append(r"\allowbreak{}")
             room = _CHUNK_EM

@@ -9,10 +9,11 @@ from symflex.emit.latex.text import escape_text
 
 _SYMBOLS: Final = {
     "kg": r"\kilogram", "m": r"\metre", "s": r"\second", "A": r"\ampere", "K": r"\kelvin", "mol": r"\mole",
-    "cd": r"\candela", "rad": r"\radian", "sr": r"\steradian", "Hz": r"\hertz", "N": r"\newton", "Pa": r"\pascal",
-    "J": r"\joule", "W": r"\watt", "C": r"\coulomb", "V": r"\volt", "F": r"\farad", "Ohm": r"\ohm", "ohm": r"\ohm",
-    "S": r"\siemens", "Wb": r"\weber", "T": r"\tesla", "H": r"\henry", "g": r"\gram", "lm": r"\lumen",
-    "lx": r"\lux", "bar": r"\bar", "l": r"\litre", "L": r"\litre", "min": r"\minute", "h": r"\hour",
+    "cd": r"\candela", "rad": r"\radian", "sr": r"\steradian", "Hz": r"\hertz", "N": r"\newton",
+    "Pa": r"\pascal", "J": r"\joule", "W": r"\watt", "C": r"\coulomb", "V": r"\volt", "F": r"\farad",
+    "Ohm": r"\ohm", "ohm": r"\ohm", "S": r"\siemens", "Wb": r"\weber", "T": r"\tesla", "H": r"\henry",
+    "g": r"\gram", "lm": r"\lumen", "lx": r"\lux", "bar": r"\bar", "l": r"\litre", "L": r"\litre",
+    "min": r"\minute", "h": r"\hour",
     "deg": r"\degree", "t": r"\tonne",
 }  # fmt: skip
 _PREFIXES: Final = {

@@ -11,7 +11,7 @@ from string import digits, punctuation
 from typing import Final
 
 SCRIPT: Final = 0.9
-"""Width of a subscript or superscript, and of a fraction in a fraction, in proportion to the line's own size."""
+"""Width of a subscript, a superscript or a fraction in a fraction, in proportion to the full size."""
 
 EM_MM: Final = 10 * 25.4 / 72.27
 """One em of a ten point font [mm]."""

@@ -21,7 +21,7 @@ from symflex.emit.program.nodes import (
     Reference,
 )
 from symflex.emit.program.prose import inert, wrapped
-from symflex.emit.program.verify import Verification, choose_program, verify
+from symflex.emit.program.verify import References, Verification, choose_program
 
 __all__ = [
     "Add",
@@ -39,6 +39,7 @@ __all__ = [
     "Power",
     "Program",
     "Reference",
+    "References",
     "Verification",
     "available_forms",
     "build_program",
@@ -47,6 +48,5 @@ __all__ = [
     "identifiers",
     "inert",
     "nearest_double",
-    "verify",
     "wrapped",
 ]

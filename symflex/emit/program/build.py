@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from symflex.emit.program.forge import Forge
 from symflex.emit.program.polynomials import Images, degree_of, evaluate_polynomial
-from symflex.emit.program.recurrence import SPLIT_LIMIT, Recurrence
+from symflex.emit.program.recurrence import express, plan_recurrences
 from symflex.emit.program.schedule import schedule
 from symflex.errors import BudgetError, Diagnostic
 from symflex.expressions import Call, Expression, Name, Negative, Number, Power, Product, Quotient, Sum
@@ -23,7 +23,7 @@ from symflex.kernels import LAPLACE, Factored
 from symflex.model.linearity import integer_exponent
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from flint import fmpz_mpoly
 
@@ -36,7 +36,7 @@ TERM_LIMIT = 20_000
 """Terms a program may be made of; beyond that its text would be megabytes."""
 
 HEADROOM = 180
-"""Decades a power of s may reach in double precision (308 in all), the rest being left to the coefficients."""
+"""Decades a power of s may reach in double precision (308 in all); the rest is left to the coefficients."""
 
 FAR_FROM = 1e15
 """A far branch is made when powers of s could overflow below this abs(s) [rad/s]."""
@@ -74,7 +74,7 @@ def build_program(tf: TransferFunction, form: str | None = None) -> Program:
     forge = Forge()
     if tf.ratio.is_zero:
         return schedule(forge, parameters, forge.constant(0), None, inf)
-    make = _MAKERS[form or forms[0]]
+    make = _maker(tf, form or forms[0])
     near, degree = make(_Generators(forge, tf, is_far=False))
     limit = 10.0 ** (HEADROOM // degree) if degree else inf
     if limit >= FAR_FROM:
@@ -89,17 +89,15 @@ def available_forms(tf: TransferFunction) -> tuple[str, ...]:
     if tf.closed is not None and not tf.ratio.is_zero and _closes_polynomially(tf):
         closed = tf.closed
         terms = [len(closed.num), len(closed.den), *(len(p) for _, p in closed.closure.sums)]
-        if sum(terms) <= SPLIT_LIMIT:
-            forms.append("closed")
         if sum(terms) <= TERM_LIMIT:
-            forms.append("nested")
+            forms += ["closed", "nested"]
     if sum(len(f) for f, _ in tf.ratio.factors) <= TERM_LIMIT:
         forms.append("factors")
     return tuple(forms)
 
 
 def _closes_polynomially(tf: TransferFunction) -> bool:
-    """True when no definition in use has poles, which the closed form would divide away at run time."""
+    """Tell whether no definition in use has poles, which the closed form would divide away at run time."""
     used = _used_definitions(tf)
     return not any(value.is_zero or value.denominator().depends_on(LAPLACE) for _, value in used)
 
@@ -133,15 +131,11 @@ class _Generators:
 
     def polynomial(self, ring: Ring, polynomial: fmpz_mpoly) -> tuple[int, int]:
         """Return an expression and its degree in s; in the far branch of ``polynomial / s**degree``."""
-        images = self._images(ring, (polynomial,))
+        images = self.images(ring, (polynomial,))
         return evaluate_polynomial(self.forge, polynomial, images), degree_of(polynomial, images.degrees)
 
-    def recurrence(self, ring: Ring, polynomials: tuple[fmpz_mpoly, ...]) -> list[tuple[int, int]]:
-        """Return expressions that share their sub-determinants, and their degrees in s."""
-        maker = Recurrence(self.forge, ring, self._images(ring, polynomials))
-        return [maker.evaluate(polynomial) for polynomial in polynomials]
-
-    def _images(self, ring: Ring, polynomials: tuple[fmpz_mpoly, ...]) -> Images:
+    def images(self, ring: Ring, polynomials: Iterable[fmpz_mpoly]) -> Images:
+        """Return what stands for a ring's generators, for those in use."""
         used = _used(ring, polynomials)
         pairs = [self._generator(n) if n in used or n == LAPLACE else (0, 0) for n in ring.names]
         return Images(tuple(v for v, _ in pairs), tuple(d for _, d in pairs), ring.index[PI], self.is_far)
@@ -191,8 +185,8 @@ class _Generators:
         if tf.closed is not None:
             for label, polynomial in tf.closed.closure.sums:
                 if label == name:
-                    value, degree = self.polynomial(tf.closed.closure.base, polynomial)
-                    return self._labelled(value, label), degree
+                    total, degree = self.polynomial(tf.closed.closure.base, polynomial)
+                    return self._labelled(total, label), degree
         raise KeyError(name)
 
     def _definition(self, name: str, value: Factored) -> tuple[int, int]:
@@ -245,18 +239,20 @@ def _every_definition(model: Model) -> Iterator[tuple[str, Expression]]:
             yield from _every_definition(block.submodel)
 
 
-def _closed(generators: _Generators) -> tuple[int, int]:
-    """Return the recurrences of the closed form and the highest power of s in them."""
-    closed = _closed_form(generators.tf)
-    above, below = generators.recurrence(closed.closure.ring, (closed.num, closed.den))
-    return generators.balance(above, below), max(above[1], below[1])
+def _maker(tf: TransferFunction, form: str) -> Callable[[_Generators], tuple[int, int]]:
+    """Return what makes the value of a form, and the highest power of s in it, for either branch."""
+    if form == "factors":
+        return _factors
+    closed = _closed_form(tf)
+    ring, polynomials = closed.closure.ring, (closed.num, closed.den)
+    if form == "nested":
+        return lambda g: _quotient(g, [g.polynomial(ring, p) for p in polynomials])
+    plan = plan_recurrences(ring, polynomials)
+    return lambda g: _quotient(g, express(g.forge, plan, g.images(ring, polynomials)))
 
 
-def _nested(generators: _Generators) -> tuple[int, int]:
-    """Return the closed form nested by powers of s, and the highest power in it."""
-    closed = _closed_form(generators.tf)
-    ring = closed.closure.ring
-    above, below = generators.polynomial(ring, closed.num), generators.polynomial(ring, closed.den)
+def _quotient(generators: _Generators, parts: Sequence[tuple[int, int]]) -> tuple[int, int]:
+    above, below = parts
     return generators.balance(above, below), max(above[1], below[1])
 
 
@@ -279,7 +275,4 @@ def _factors(generators: _Generators) -> tuple[int, int]:
     num, num_degree = generators.product(varying.numerator())
     den, den_degree = generators.product(varying.denominator())
     above, below = (forge.multiply([gain, num]), num_degree), (den, den_degree)
-    return generators.balance(above, below), max(num_degree, den_degree)
-
-
-_MAKERS = {"closed": _closed, "nested": _nested, "factors": _factors}
+    return _quotient(generators, (above, below))

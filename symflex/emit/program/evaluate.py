@@ -137,7 +137,10 @@ class _Run:
             case Add(terms):
                 total = self._value(terms[0])
                 for term in terms[1:]:
-                    total = total - self._value(term.operand) if isinstance(term, Negate) else total + self._value(term)
+                    if isinstance(term, Negate):
+                        total = total - self._value(term.operand)
+                    else:
+                        total = total + self._value(term)
                 return total
             case Multiply(factors):
                 product = self._value(factors[0])

@@ -1,4 +1,4 @@
-"""The workbench on which programs are made: every expression exists once, so that shared parts are found at once.
+"""The workbench on which programs are made: every expression exists once, so that shared parts are shared.
 
 Expressions are numbers of rows in a table whose operands stand before them; nothing here recurs, however deep
 a polynomial nests.
@@ -81,7 +81,7 @@ class Forge:
         return self._make(Row("inverse"))
 
     def is_number(self, x: int, value: int) -> bool:
-        """True when ``x`` is the given non-negative integer."""
+        """Tell whether ``x`` is the given non-negative integer."""
         row = self.rows[x]
         return row.kind == "constant" and row.payload == value and row.pi_power == 0
 

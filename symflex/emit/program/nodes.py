@@ -133,7 +133,7 @@ class Apply(Node):
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """A named intermediate value; the name is unique in its program, and no identifier of any language yet."""
+    """A named intermediate value; the name is unique in its program, and not yet an identifier."""
 
     name: str
     value: Node
@@ -173,10 +173,25 @@ class Program:
     limit: float
 
     @property
+    def varies(self) -> bool:
+        """False when the value does not depend on s."""
+        return bool(self.near.assignments) or _contains_laplace(self.near.value)
+
+    @property
     def size(self) -> int:
         """The number of operations that depend on s: what an array of frequencies pays for, per element."""
         roots = [*(a.value for a in self.near.assignments), self.near.value]
         return sum(_operations(root) for root in roots)
+
+
+def _contains_laplace(root: Node) -> bool:
+    pending = [root]
+    while pending:
+        node = pending.pop()
+        if isinstance(node, Laplace):
+            return True
+        pending += node.children
+    return False
 
 
 def _operations(root: Node) -> int:

@@ -7,9 +7,8 @@ Output: an expression on the forge.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
-
-from symflex.emit.program.forge import Depends
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -77,7 +76,7 @@ def _collect(forge: Forge, terms: Mapping[Monomial, int], values: Sequence[int])
         parts.setdefault(monomial[0], {})[(0, *monomial[1:])] = coefficient
     exponents = sorted(parts, reverse=True)
     result = _nest(forge, parts[exponents[0]], values)
-    for higher, lower in zip(exponents, exponents[1:], strict=False):
+    for higher, lower in pairwise(exponents):
         raised = forge.power(values[0], higher - lower)
         result = forge.add([forge.multiply([result, raised]), _nest(forge, parts[lower], values)])
     return forge.multiply([result, forge.power(values[0], exponents[-1])])
@@ -116,8 +115,3 @@ def _nest(forge: Forge, terms: Mapping[Monomial, int], values: Sequence[int]) ->
         rest = {m: k for m, k in rest.items() if not m[i]}
         summands.append(_nest(forge, inside, values))
     return forge.multiply([*outside, forge.add(summands)])
-
-
-def varies(forge: Forge, x: int) -> bool:
-    """True when an expression depends on s."""
-    return forge.depends[x] != Depends.PARAMETERS

@@ -10,16 +10,16 @@ _OPERATOR = re.compile(r"[^*/]+[*/]*|[*/]+")
 
 
 def inert(text: str) -> str:
-    """Return text on one line that can neither end a docstring nor start a doctest or directive in it.
+    r"""Return text on one line that can neither end a docstring nor start a doctest or directive in it.
 
     Line ends become spaces, double quotes single ones, characters that do not print their code points,
     and the marks at which doctest and reStructuredText begin to obey are pulled apart.
 
     Examples
     --------
-    >>> inert("mass of\\n the \\u202e body")
+    >>> inert("mass of\n the \u202e body")
     'mass of the <U+202E> body'
-    >>> inert('a' + '\\"' * 3 + '>' * 3 + ' b')
+    >>> inert('a' + '"' * 3 + '>' * 3 + ' b')
     "a'''> > > b"
     """
     line = " ".join(text.split())

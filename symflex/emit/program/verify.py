@@ -12,11 +12,11 @@ from math import inf, isfinite, pi, tau
 from typing import TYPE_CHECKING
 
 import numpy as np
-from flint import acb, ctx
+from flint import acb, arb, ctx
 
 from symflex.emit.program.build import available_forms, build_program
 from symflex.emit.program.evaluate import evaluate, nearest_double
-from symflex.errors import ModelError
+from symflex.errors import BudgetError, ModelError
 from symflex.transfer import bind
 
 if TYPE_CHECKING:
@@ -40,6 +40,14 @@ REACH = np.logspace(-9, 12, 85)
 SIMILAR = 2.0
 """Forms whose errors differ by less than this factor count as equally accurate; the faster one is taken."""
 
+MUCH_LONGER = 2
+"""How many times the operations of the shortest form recurrences may take when nothing can be measured."""
+
+LONG = 500
+"""Terms from which coefficients of powers of s are not expanded if another form is accurate."""
+
+ACCURATE = 1e-14
+
 FIRST_BITS = 128
 LAST_BITS = 4096
 ENOUGH_BITS = 64
@@ -54,7 +62,7 @@ class Verification:
     name : str
         ``OUT/IN``.
     form : str
-        The form evaluated: ``closed`` or ``factors``.
+        The form evaluated: ``closed``, ``nested`` or ``factors``.
     error : float or None
         The worst ``|dG| / (|G| (1 + |s G'/G|))`` on the imaginary axis: the relative error beyond what one
         rounding of ``s`` would cause. ``None`` when it was not measured.
@@ -107,7 +115,8 @@ def choose_program(
 ) -> tuple[Program, Verification]:
     """Return the program of the form with the smallest measured error, and the measurement.
 
-    Without values for all parameters nothing can be measured and the first form is taken.
+    Without values for all parameters nothing can be measured; recurrences are taken unless another form is
+    much shorter.
 
     Parameters
     ----------
@@ -121,66 +130,56 @@ def choose_program(
     Raises
     ------
     BudgetError
-        SF503 when the program would be too large.
+        SF503 when every program would be too large.
+    ModelError
+        SF233 when a number does not fit in double precision.
     """
     band = band_hz or tf.model.analysis.band or DEFAULT_BAND
     forms = available_forms(tf)
-    first = forms[0] if forms else ""
     missing = [p.name for p in tf.parameters if p.value is None]
     if missing:
-        reason = "no values for " + ", ".join(missing)
-        return build_program(tf), Verification(tf.name, first, None, band, 0, reason)
+        return _unmeasured(tf, forms, band, "no values for " + ", ".join(missing))
     try:
         bound = bind(tf)
-        bound.enclosed(FIRST_BITS)
-    except ModelError as error:
-        return build_program(tf), Verification(tf.name, first, None, band, 0, error.diagnostics[0].message)
-    candidates = []
-    for form in forms or (first,):
-        program = build_program(tf, form or None)
-        measured = verify(program, bound, band, samples)
-        keeps = _keeps_its_value(program, bound)
-        candidates.append((program, Verification(tf.name, form, measured.error, band, measured.samples), keeps))
-    reaching = [c for c in candidates if c[2]] or candidates
-    best = min(_error(v) for _, v, _ in reaching)
-    similar = [c for c in reaching if _error(c[1]) <= SIMILAR * best]
-    program, verification, _ = min(similar, key=lambda c: (c[0].size, _error(c[1])))
-    return program, verification
+        references = References(bound, band, samples)
+    except ModelError as problem:
+        return _unmeasured(tf, forms, band, problem.diagnostics[0].message)
+    is_long = sum(len(f) for f, _ in tf.ratio.factors) > LONG
+    candidates: list[tuple[Program, str, float]] = []
+    for form in forms:
+        if form == "factors" and is_long and any(error < ACCURATE for _, _, error in candidates):
+            continue
+        if (program := _program(tf, form)) is not None:
+            candidates.append((program, form, references.worst_error(program)))
+    if not candidates:
+        program = build_program(tf)
+        candidates.append((program, "", references.worst_error(program)))
+    reaching = [c for c in candidates if keeps_its_value(c[0], bound)] or candidates
+    best = min(error for _, _, error in reaching)
+    similar = [c for c in reaching if c[2] <= SIMILAR * best]
+    program, form, error = min(similar, key=lambda c: (c[0].size, c[2]))
+    return program, Verification(tf.name, form, error, band, len(references.s))
 
 
-def _error(verification: Verification) -> float:
-    return inf if verification.error is None else verification.error
+def _program(tf: TransferFunction, form: str) -> Program | None:
+    """Return the program of a form, ``None`` when it is too large."""
+    try:
+        return build_program(tf, form)
+    except BudgetError:
+        return None
 
 
-def verify(
-    program: Program,
-    bound: BoundTransferFunction,
-    band_hz: tuple[Fraction, Fraction] = DEFAULT_BAND,
-    samples: int = SAMPLES,
-) -> Verification:
-    """Measure a program's error on the imaginary axis.
-
-    Parameters
-    ----------
-    program : Program
-        Of ``bound.source``.
-    bound : BoundTransferFunction
-        With the declared values; the program gets the doubles nearest to them.
-    band_hz : tuple of Fraction
-        [Hz].
-    samples : int
-        Number of frequencies, besides those around poles and zeros.
-    """
-    enclosures = _Enclosures(bound)
-    frequencies = sample_frequencies(bound, band_hz, samples)
-    s = 1j * (tau * frequencies)
-    computed = evaluate(program, s, _doubles(bound))
-    worst, measured = 0.0, 0
-    for point, value in zip(s, computed, strict=True):
-        error = enclosures.relative_error(complex(point), complex(value))
-        if error is not None:
-            worst, measured = max(worst, error), measured + 1
-    return Verification(bound.name, "", worst, band_hz, measured)
+def _unmeasured(
+    tf: TransferFunction, forms: Sequence[str], band: tuple[Fraction, Fraction], reason: str
+) -> tuple[Program, Verification]:
+    # Expanded coefficients of a model without numbers would be pages long.
+    compact = [form for form in forms if form != "factors"] or forms
+    programs = [(form, program) for form in compact if (program := _program(tf, form)) is not None]
+    if not programs:
+        return build_program(tf), Verification(tf.name, "", None, band, 0, reason)
+    shortest = min(program.size for _, program in programs)
+    form, program = next((f, p) for f, p in programs if p.size <= MUCH_LONGER * shortest)
+    return program, Verification(tf.name, form, None, band, 0, reason)
 
 
 def sample_frequencies(
@@ -208,47 +207,82 @@ def _roots(coefficients: Sequence[acb]) -> NDArray[np.complex128]:
     return np.asarray(np.roots(scaled[::-1]), dtype=complex)
 
 
-class _Enclosures:
-    """A bound transfer function in balls, at as many bits as a sample needs."""
+class References:
+    """Enclosures of a bound transfer function at frequencies over a band.
 
-    def __init__(self, bound: BoundTransferFunction) -> None:
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        With the declared values.
+    band_hz : tuple of Fraction
+        [Hz].
+    samples : int
+        Number of frequencies, besides those around poles and zeros.
+    """
+
+    def __init__(
+        self, bound: BoundTransferFunction, band_hz: tuple[Fraction, Fraction], samples: int = SAMPLES
+    ) -> None:
         self._bound = bound
         self._known: dict[int, EnclosedTransferFunction] = {}
+        points = 1j * (tau * sample_frequencies(bound, band_hz, samples))
+        found = [(s, self._reference(complex(s))) for s in points]
+        self._references = [reference for _, reference in found if reference is not None]
+        self.s = np.array([s for s, reference in found if reference is not None], dtype=complex)
 
-    def at(self, bits: int) -> EnclosedTransferFunction:
+    def worst_error(self, program: Program) -> float:
+        """Return a bound of the error at all frequencies, for a program that gets the nearest doubles."""
+        values = evaluate(program, self.s, doubles(self._bound))
+        errors = (r.error_of(complex(v)) for r, v in zip(self._references, values, strict=True))
+        return max(errors, default=0.0)
+
+    def _reference(self, s: complex) -> _Reference | None:
+        """Return the value at ``s``, or ``None`` at a pole or zero."""
+        point = acb(s.real, s.imag)
+        if self._bound.ratio.is_zero:
+            return _Reference(acb(0), FIRST_BITS, acb(1).abs_lower())
+        bits = FIRST_BITS
+        while bits <= LAST_BITS:
+            function = self._at(bits)
+            value, slope = function(point), function.logarithmic_derivative(point)
+            if value.is_finite() and slope.is_finite() and value.rel_accuracy_bits() >= ENOUGH_BITS:
+                with ctx.workprec(bits):
+                    return _Reference(value, bits, value.abs_lower() * (1 + (point * slope).abs_lower()))
+            bits *= 2
+        return None
+
+    def _at(self, bits: int) -> EnclosedTransferFunction:
         if bits not in self._known:
             self._known[bits] = self._bound.enclosed(bits)
         return self._known[bits]
 
-    def relative_error(self, s: complex, value: complex) -> float | None:
-        """Return a bound of the error of ``value``, or ``None`` at a pole or zero."""
-        if self._bound.ratio.is_zero:
-            return 0.0 if value == 0 else inf
-        point = acb(s.real, s.imag)
-        bits = FIRST_BITS
-        while bits <= LAST_BITS:
-            function = self.at(bits)
-            exact, slope = function(point), function.logarithmic_derivative(point)
-            if exact.is_finite() and slope.is_finite() and exact.rel_accuracy_bits() >= ENOUGH_BITS:
-                if not isfinite(value.real) or not isfinite(value.imag):
-                    return inf
-                with ctx.workprec(bits):
-                    distance = (acb(value.real, value.imag) - exact).abs_upper()
-                    scale = exact.abs_lower() * (1 + (point * slope).abs_lower())
-                    return float((distance / scale).upper())
-            bits *= 2
-        return None
+
+@dataclass(frozen=True, slots=True)
+class _Reference:
+    """A value in a ball, and the size that its errors are measured by."""
+
+    value: acb
+    bits: int
+    size: arb
+
+    def error_of(self, computed: complex) -> float:
+        if not isfinite(computed.real) or not isfinite(computed.imag):
+            return inf
+        with ctx.workprec(self.bits):
+            distance = (acb(computed.real, computed.imag) - self.value).abs_upper()
+            return float((distance / self.size).upper())
 
 
-def _keeps_its_value(program: Program, bound: BoundTransferFunction) -> bool:
-    """True when the program is finite, and not spuriously zero, from 1e-9 to 1e12 rad/s."""
-    values = evaluate(program, 1j * REACH, _doubles(bound))
-    if bound.ratio.is_zero or (np.isfinite(values) & (values != 0)).all():
+def keeps_its_value(program: Program, bound: BoundTransferFunction) -> bool:
+    """Tell whether a program is finite, and not spuriously zero, from 1e-9 to 1e12 rad/s."""
+    values = evaluate(program, 1j * REACH, doubles(bound))
+    keeps = np.isfinite(values) & (values != 0)
+    if bound.ratio.is_zero or keeps.all():
         return True
-    expected = np.array([bound(complex(s)) for s in 1j * REACH])
-    agree = (np.isfinite(values) & (values != 0)) | ~np.isfinite(expected) | (expected == 0)
-    return bool(agree.all())
+    expected = np.array([bound(complex(s)) for s in 1j * REACH[~keeps]])
+    return bool((~np.isfinite(expected) | (expected == 0)).all())
 
 
-def _doubles(bound: BoundTransferFunction) -> dict[str, float]:
+def doubles(bound: BoundTransferFunction) -> dict[str, float]:
+    """Return the double nearest to every parameter's value."""
     return {name: nearest_double(value.rational, value.pi_power) for name, value in bound.values}

@@ -1,0 +1,78 @@
+"""The smallest model in which every element and block of the registries does something."""
+
+from __future__ import annotations
+
+HEADER = "symflex = 1\n"
+OTHER = {"translation": "spring", "rotation": "torsion_spring", "electrical": "resistor"}
+VALUE = {"translation": "k", "rotation": "k", "electrical": "R"}
+DRIVE = {"translation": "force", "rotation": "torque", "electrical": "current"}
+
+MODELS = {
+    "mass": ("x", "force", 'at = "x", m = "p"'),
+    "inertia": ("x", "torque", 'at = "x", J = "p"'),
+    "spring": ("x", "force", 'between = ["x", "ground"], k = "p"'),
+    "damper": ("x", "force", 'between = ["x", "ground"], b = "p"'),
+    "torsion_spring": ("x", "torque", 'between = ["x", "ground"], k = "p"'),
+    "rotary_damper": ("x", "torque", 'between = ["x", "ground"], b = "p"'),
+    "resistor": ("x", "current", 'between = ["x", "ground"], R = "p"'),
+    "inductor": ("x", "current", 'between = ["x", "ground"], L = "p"'),
+    "capacitor": ("x", "current", 'between = ["x", "ground"], C = "p"'),
+    "force_source": ("x", None, 'at = "x", f = "p*U"'),
+    "torque_source": ("x", None, 'at = "x", tau = "p*U"'),
+    "current_source": ("x", None, 'at = "x", i = "p*U"'),
+    "voltage_source": ("x", None, 'at = "x", v = "p*U"'),
+    "rigid_body": ("x", "force", 'at = "x", m = "p", J = "q", cg = "q"'),
+    "rigid_link": ("x", "force", 'between = ["base", "x"], length = "p"'),
+    "massless_beam": ("x", "force", 'between = ["base", "x"], EI = "p", l = "q"'),
+    "fixed": ("x", "force", 'at = "y"'),
+    "slider": ("x", "force", 'at = "x"'),
+    "pin": ("x.theta", "torque", 'at = "x"'),
+    "dc_motor": ("x", "torque", 'terminals = ["v", "ground"], shaft = "x", R = "p", k_t = "q"'),
+    "transformer": ("x", "force", 'from = "x", to = "y", ratio = "p"'),
+    "gyrator": ("x", "force", 'from = "x", to = "y", ratio = "p"'),
+}
+REST = {
+    "force_source": 'load = { type = "spring", between = ["x", "ground"], k = "q" }',
+    "torque_source": 'load = { type = "torsion_spring", between = ["x", "ground"], k = "q" }',
+    "current_source": 'load = { type = "resistor", between = ["x", "ground"], R = "q" }',
+    "voltage_source": 'load = { type = "resistor", between = ["x", "ground"], R = "q" }',
+    "rigid_link": 'body = { type = "rigid_body", at = "base", m = "p", J = "q" }',
+    "massless_beam": 'wall = { type = "fixed", at = "base" }',
+    "fixed": 'part = { type = "spring", between = ["x", "y"], k = "p" }',
+    "slider": 'body = { type = "rigid_body", at = "x", m = "p" }',
+    "pin": 'body = { type = "rigid_body", at = "x", m = "p", J = "q", cg = "q" }',
+    "dc_motor": 'load = { type = "resistor", between = ["v", "ground"], R = "q" }',
+    "transformer": 'load = { type = "spring", between = ["y", "ground"], k = "q" }',
+    "gyrator": 'load = { type = "spring", between = ["y", "ground"], k = "q" }',
+}
+
+BLOCK_VALUES = {
+    "resonance": 'omega_p = "p", zeta_p = 0.1, omega_z = "q", zeta_z = 0.2',
+    "tf": 'num = "p", den = "1 + q*s"',
+    "integrator": "",
+    "lead_lag": 'T_1 = "p", T_2 = "q"',
+    "pid": 'k_p = "p", k_i = "q"',
+}
+
+
+def element_model(kind: str) -> str:
+    """Return the text of the smallest model with one element of this kind."""
+    node, drive, ports = MODELS[kind]
+    source = f'{{ {drive} = "{node}" }}' if drive else "{}"
+    return (
+        HEADER
+        + "[parameters]\np = 3\nq = 5\n[elements]\n"
+        + f'part_1 = {{ type = "{kind}", {ports} }}\n{REST.get(kind, "")}\n'
+        + f'[inputs]\nU = {source}\n[outputs]\nX = "{node}"\n'
+    )
+
+
+def block_model(kind: str) -> str:
+    """Return the text of the smallest model with one block of this kind."""
+    values = BLOCK_VALUES[kind]
+    comma = ", " if values else ""
+    return (
+        HEADER
+        + "[parameters]\np = 3\nq = 5\n[blocks]\n"
+        + f'G = {{ type = "{kind}"{comma}{values} }}\n[inputs]\nU = {{}}\n[outputs]\nX = "G*U"\n'
+    )

@@ -1,0 +1,168 @@
+"""Every form of random networks and of models with definitions reads back to the same rational function."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+
+from symflex import pipeline
+from symflex.emit.forms import FORMS, hidden_expressions, print_form
+from symflex.expressions import format_expression
+from symflex.kernels import degree_in
+from tests.contract.exact import Point, read, value_of
+from tests.property.networks import networks, to_toml
+
+SYMBOLIC = tuple(name for name in FORMS if name != "zpk")
+
+
+def quiet(examples):
+    return settings(
+        max_examples=examples,
+        deadline=None,
+        database=None,
+        derandomize=True,
+        suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+    )
+
+
+def ratio_at(tf, point):
+    """Return the derived function's exact value, factor by factor."""
+    names = tf.ratio.ring.names
+    total = tf.ratio.unit
+    for factor, exponent in tf.ratio.factors:
+        value = sum(int(c) * _power_product(names, monomial, point) for monomial, c in factor.terms())
+        total *= value**exponent
+    return total
+
+
+def _power_product(names, monomial, point):
+    product = 1
+    for name, exponent in zip(names, monomial, strict=True):
+        if exponent:
+            product *= point[name] ** int(exponent)
+    return product
+
+
+def reread(form, point):
+    """Return the exact value of what a form prints, its where list substituted."""
+    for name, expression in form.where:
+        point.values[name] = value_of(read(format_expression(expression)), point)
+    num, den = (value_of(read(format_expression(e)), point) for e in (form.num, form.den))
+    return num / den
+
+
+def assert_every_form_agrees(tf):
+    for name in (*SYMBOLIC, None):
+        form = print_form(tf, name)
+        for part in (form.num, form.den, *(e for _, e in form.where)):
+            assert read(format_expression(part)) == part
+        point = Point(7)
+        assert reread(form, point) == ratio_at(tf, point)
+
+
+def assert_lowest_terms(tf):
+    numerator = [f for f, e in tf.ratio.factors if e > 0]
+    denominator = [f for f, e in tf.ratio.factors if e < 0]
+    assert all(f.gcd(g).is_constant() for f in numerator for g in denominator)
+
+
+@given(network=networks())
+@quiet(120)
+def test_every_form_of_a_random_network_reads_back_to_the_derived_function(network):
+    for tf in pipeline.derive_all(pipeline.loads(to_toml(network))):
+        assert_every_form_agrees(tf)
+
+
+@given(network=networks())
+@quiet(120)
+def test_a_random_network_s_function_is_in_lowest_terms(network):
+    for tf in pipeline.derive_all(pipeline.loads(to_toml(network))):
+        assert_lowest_terms(tf)
+
+
+@given(network=networks())
+@quiet(60)
+def test_a_hidden_factor_contains_s_and_divides_neither_numerator_nor_denominator_by_itself(network):
+    for tf in pipeline.derive_all(pipeline.loads(to_toml(network))):
+        for factor in tf.hidden:
+            assert degree_in(factor.polynomial, 0) > 0
+            assert factor.multiplicity > 0
+        for expression, _ in hidden_expressions(tf):
+            assert read(format_expression(expression)) == expression
+
+
+DEFINED = {
+    "an impedance": """
+[parameters]
+m = {}
+b = {}
+k = {}
+[definitions]
+Z = "m*s + b"
+[elements]
+M = { type = "mass", at = "x", m = "m" }
+B = { type = "damper", between = ["x", "ground"], b = "b" }
+K = { type = "spring", between = ["x", "y"], k = "k" }
+N = { type = "mass", at = "y", m = "3*m" }
+""",
+    "definitions of definitions": """
+[parameters]
+m = {}
+b = {}
+k = {}
+[definitions]
+k_e = "k*d/(k + d)"
+d = "2*b*s + k"
+Z = "m*s^2 + k_e"
+[elements]
+M = { type = "mass", at = "x", m = "m" }
+K = { type = "spring", between = ["x", "y"], k = "k_e + d" }
+B = { type = "spring", between = ["y", "ground"], k = "Z" }
+""",
+    "a reciprocal": """
+[parameters]
+m = {}
+c = {}
+k = {}
+[definitions]
+q = "1/c"
+r = "q*k/2 - k"
+[elements]
+M = { type = "mass", at = "x", m = "m" }
+K = { type = "spring", between = ["x", "y"], k = "q + k" }
+B = { type = "spring", between = ["y", "ground"], k = "r*q" }
+""",
+    "a definition of zero": """
+[parameters]
+m = {}
+b = {}
+k = {}
+[definitions]
+off = "k - k"
+[elements]
+M = { type = "mass", at = "x", m = "m" }
+B = { type = "damper", between = ["x", "y"], b = "b + off" }
+K = { type = "spring", between = ["y", "ground"], k = "k + off*b" }
+""",
+    "functions of constants": """
+[parameters]
+m = {}
+b = {}
+k = {}
+[definitions]
+omega = "sqrt(k/m)"
+[elements]
+M = { type = "mass", at = "x", m = "m" }
+B = { type = "damper", between = ["x", "y"], b = "2*m*omega*cos(pi/5)" }
+K = { type = "spring", between = ["y", "ground"], k = "pi^2*m*omega^2 + k" }
+""",
+}
+
+
+@pytest.mark.parametrize("name", DEFINED)
+def test_every_form_of_a_model_with_definitions_reads_back_to_the_derived_function(name):
+    text = "symflex = 1\n" + DEFINED[name]
+    text += '[inputs]\nF = { force = "x" }\n[outputs]\nX = "x"\nV = "s*y"\nW = "(x - y)/(k + 1)"\n'
+    for tf in pipeline.derive_all(pipeline.loads(text)):
+        assert_every_form_agrees(tf)
+        assert_lowest_terms(tf)

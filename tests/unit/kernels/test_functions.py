@@ -1,0 +1,53 @@
+"""Elementary functions enclose their values; the random point tells zero from nonzero."""
+
+from __future__ import annotations
+
+import math
+
+import mpmath
+import pytest
+from flint import arb, ctx
+
+from symflex.expressions import FUNCTIONS as READABLE
+from symflex.kernels import FUNCTIONS, PRIME, Factored, Ring, random_point, residue
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+@pytest.mark.parametrize("x", ["0.3", "1", "2.75"])
+def test_a_function_encloses_what_mpmath_computes(name, x):
+    with mpmath.workdps(60), ctx.workprec(200):
+        ball = FUNCTIONS[name].evaluate(arb(x))
+        expected = arb(mpmath.nstr(getattr(mpmath, name)(mpmath.mpf(x)), 58))
+        assert abs(ball - expected) < arb("1e-55")
+
+
+def test_the_functions_that_can_be_read_are_those_that_can_be_evaluated():
+    assert set(READABLE) == set(FUNCTIONS)
+
+
+def test_the_logarithm_of_a_negative_number_is_not_finite():
+    assert not FUNCTIONS["log"].evaluate(arb(-1)).is_finite()
+
+
+def test_the_residue_is_the_value_modulo_the_prime():
+    ring = Ring(("s", "a", "b"))
+    s, a, b = (Factored.generator(ring, n) for n in ring.names)
+    value = (a * s + b) ** 3 / (a - b) * 7 / 3
+    point = {"s": 11, "a": 5, "b": 2}
+    expected = (57**3 * 7) * pow(3 * 3, -1, PRIME) % PRIME
+    assert residue(value, point) == expected
+
+
+def test_the_residue_at_a_pole_is_refused():
+    ring = Ring(("s", "a"))
+    with pytest.raises(ZeroDivisionError):
+        residue(1 / (Factored.generator(ring, "a") - 2), {"s": 1, "a": 2})
+
+
+def test_the_random_point_is_the_same_in_every_run():
+    assert random_point(("s", "a")) == random_point(("s", "a"))
+
+
+def test_the_prime_is_a_mersenne_prime():
+    assert math.log2(PRIME + 1) == 61
+    assert pow(3, PRIME - 1, PRIME) == 1

@@ -1,0 +1,64 @@
+"""The exact ring refuses what would be too large, and its generators stay apart."""
+
+from __future__ import annotations
+
+import pytest
+
+from symflex.errors import BudgetError
+from symflex.kernels import Ring, degree_in
+from symflex.kernels.ring import DEGREE_LIMIT, check_expansion
+
+
+def test_a_generator_that_is_no_identifier_is_not_confused_with_a_parameter_of_any_name():
+    names = ("s", "x1", "x2", "sqrt(k*m)", "x3", "x4", "sum0!", "x6")
+    ring = Ring(names)
+    assert len({str(ring.generator(n)) for n in names}) == len(names)
+
+
+def test_the_index_is_the_declared_order():
+    assert dict(Ring(("s", "m", "b")).index) == {"s": 0, "m": 1, "b": 2}
+
+
+def test_rings_of_equal_names_are_equal():
+    assert Ring(("s", "m")) == Ring(("s", "m"))
+
+
+def test_compose_replaces_every_generator():
+    inner, outer = Ring(("s", "a")), Ring(("s", "m", "k"))
+    s, m, k = (outer.generator(n) for n in ("s", "m", "k"))
+    polynomial = inner.generator("a") ** 2 + inner.generator("s")
+    assert outer.compose(polynomial, [s, m + k]) == m**2 + 2 * m * k + k**2 + s
+
+
+def test_compose_refuses_a_result_of_millions_of_terms():
+    inner = Ring(("s", "a"))
+    outer = Ring(("s", *(f"p{i}" for i in range(40))))
+    long = sum((outer.generator(f"p{i}") for i in range(40)), outer.constant(0))
+    with pytest.raises(BudgetError) as caught:
+        outer.compose(inner.generator("a") ** 20, [outer.generator("s"), long])
+    assert caught.value.diagnostics[0].code == "SF501"
+
+
+def test_compose_refuses_a_degree_beyond_the_limit():
+    ring = Ring(("s", "a"))
+    high = ring.generator("s") ** (DEGREE_LIMIT // 10)
+    with pytest.raises(BudgetError):
+        check_expansion(ring.generator("a") ** 11, [ring.generator("s"), high])
+
+
+def test_a_substitution_of_monomials_is_never_refused_for_its_terms():
+    ring = Ring(("s", "a", "b"))
+    s, a, b = (ring.generator(n) for n in ("s", "a", "b"))
+    dense = (s + a + b + 1) ** 12
+    assert ring.compose(dense, [a, b, s]) == dense
+
+
+def test_the_degree_of_zero_is_zero():
+    ring = Ring(("s", "a"))
+    assert degree_in(ring.constant(0), 0) == 0
+
+
+def test_the_degree_is_that_in_the_generator_asked_for():
+    ring = Ring(("s", "a"))
+    polynomial = ring.generator("s") ** 3 * ring.generator("a") + ring.generator("a") ** 5
+    assert (degree_in(polynomial, 0), degree_in(polynomial, 1)) == (3, 5)
