@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.blocks import BLOCKS
-from symflex.cli import main
+from symflex.cli import group
 from symflex.elements import ELEMENTS
+from symflex.quantities.units import PLAIN_UNITS, PREFIXABLE_UNITS, PREFIXES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -41,15 +42,34 @@ def blocks() -> str:
 
 def commands() -> str:
     """Return one section per command, in the order of ``symflex --help``."""
-    with click.Context(main, info_name="symflex") as context:
-        return "\n\n".join(_command(name, command, context) for name, command in main.commands.items())
+    with click.Context(group, info_name="symflex") as context:
+        found = ((name, group.get_command(context, name)) for name in group.list_commands(context))
+        return "\n\n".join(_command(name, command, context) for name, command in found if command)
+
+
+def units() -> str:
+    """Return the symbols of units and prefixes."""
+    rows = [
+        ("with a prefix", PREFIXABLE_UNITS),
+        ("without", PLAIN_UNITS),
+        ("prefixes", PREFIXES),
+    ]
+    lines = [f"| {what} | {' '.join(f'`{name}`' for name in names)} |" for what, names in rows]
+    return "\n".join(["| | symbols |", "|---|---|", *lines])
 
 
 def _element(name: str, element: Element) -> str:
     rows = [*map(_port_row, element.ports), *map(_parameter_row, element.parameters)]
     quantities = ", ".join(f"`{name}.{quantity}`" for quantity in element.through)
-    through = [f"Through quantities, for an element named `{name}`: {quantities}."] if quantities else []
-    return "\n\n".join([f"### `{name}`", f"{element.summary}.", _table(rows), *through])
+    through = [f"Offers, for an element named `{name}`: {quantities}."] if quantities else []
+    about = " ".join((element.__doc__ or "").replace("``", "`").split())
+    return "\n\n".join([f"### `{name}`", _escaped(about), _table(rows), *through])
+
+
+def _escaped(text: str) -> str:
+    """Keep the stars of formulas outside code from being read as emphasis."""
+    parts = text.split("`")
+    return "`".join(part if i % 2 else part.replace("*", r"\*") for i, part in enumerate(parts))
 
 
 def _block(name: str, block: Block) -> str:
@@ -87,4 +107,9 @@ def _parameter_row(parameter: ParameterPort | BlockParameter) -> tuple[str, ...]
     return f"`{parameter.name}`", unit, parameter.doc, default
 
 
-PARTS: dict[str, Callable[[], str]] = {"elements": elements, "blocks": blocks, "commands": commands}
+PARTS: dict[str, Callable[[], str]] = {
+    "elements": elements,
+    "blocks": blocks,
+    "commands": commands,
+    "units": units,
+}

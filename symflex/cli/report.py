@@ -29,7 +29,7 @@ def reporting(command: Callable[P, int | None]) -> Callable[P, int]:
             show_error(error)
             return error.exit_code
         except MemoryError:
-            show_error(SymflexError(Diagnostic("SF503", "out of memory")))
+            show_error(SymflexError(Diagnostic("SF504", "out of memory")))
             return 5
 
     return run

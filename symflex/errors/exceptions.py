@@ -17,8 +17,8 @@ class SymflexError(Exception):
 
     Examples
     --------
-    >>> str(SymflexError(Diagnostic("SF900", "no such file")))
-    'error[SF900]: no such file'
+    >>> str(SymflexError(Diagnostic("SF901", "no such file")))
+    'error[SF901]: no such file'
     """
 
     exit_code: ClassVar[int] = 3

@@ -28,7 +28,7 @@ def read(text: str) -> Expression:
 
 
 class Point:
-    """A random rational value for every name, and for every function of constants by its text."""
+    """A random whole number for every name, and for every function of constants by its text."""
 
     def __init__(self, seed, **values):
         self._random = Random(seed)
@@ -37,7 +37,7 @@ class Point:
     def __getitem__(self, name: str) -> Fraction:
         """Return the value of a name, drawn when it is first asked for."""
         if name not in self.values:
-            self.values[name] = Fraction(self._random.randrange(1, 400), self._random.randrange(1, 60))
+            self.values[name] = Fraction(self._random.randrange(2, 1000))
         return self.values[name]
 
 

@@ -67,21 +67,21 @@ def assert_lowest_terms(tf):
 
 
 @given(network=networks())
-@quiet(120)
+@quiet(40)
 def test_every_form_of_a_random_network_reads_back_to_the_derived_function(network):
     for tf in pipeline.derive_all(pipeline.loads(to_toml(network))):
         assert_every_form_agrees(tf)
 
 
 @given(network=networks())
-@quiet(120)
+@quiet(40)
 def test_a_random_network_s_function_is_in_lowest_terms(network):
     for tf in pipeline.derive_all(pipeline.loads(to_toml(network))):
         assert_lowest_terms(tf)
 
 
 @given(network=networks())
-@quiet(60)
+@quiet(40)
 def test_a_hidden_factor_contains_s_and_divides_neither_numerator_nor_denominator_by_itself(network):
     for tf in pipeline.derive_all(pipeline.loads(to_toml(network))):
         for factor in tf.hidden:
