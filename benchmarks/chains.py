@@ -12,7 +12,7 @@ from benchmarks.measure import Claim, Measurement, run_snippet
 
 SIZES = (2, 4, 6, 8)
 
-FLOORS = {6: 8.0, 8: 17.0}
+FLOORS = {6: 2.5, 8: 6.8}
 """Per size, how many times as fast as the fastest way in sympy: half of what docs/benchmarks.md reports."""
 CEILINGS = {6: 0.020, 8: 0.300}
 """Per size, seconds the derivation may take."""

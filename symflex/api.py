@@ -351,8 +351,12 @@ class Root:
 
     @property
     def value(self) -> mpmath.mpc:
-        """The midpoint of the enclosure [rad/s]."""
-        return mpmath.mpc(self.re, self.im)
+        """The midpoint of the enclosure [rad/s], with all its digits whatever the working precision.
+
+        Arithmetic with it rounds to ``mpmath.mp.dps`` digits, as mpmath does; see ``mpmath.workdps``.
+        """
+        # mpmath.mpc(re, im) would round to the working precision.
+        return mpmath.mp.make_mpc((self.re._mpf_, self.im._mpf_))
 
     @property
     def radius(self) -> mpmath.mpf:

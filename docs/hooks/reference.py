@@ -50,9 +50,9 @@ def commands() -> str:
 def units() -> str:
     """Return the symbols of units and prefixes."""
     rows = [
-        ("with a prefix", PREFIXABLE_UNITS),
-        ("without", PLAIN_UNITS),
-        ("prefixes", PREFIXES),
+        ("with a prefix", list(PREFIXABLE_UNITS)),
+        ("without", list(PLAIN_UNITS)),
+        ("prefixes", list(PREFIXES)),
     ]
     lines = [f"| {what} | {' '.join(f'`{name}`' for name in names)} |" for what, names in rows]
     return "\n".join(["| | symbols |", "|---|---|", *lines])

@@ -6,6 +6,7 @@ import click
 
 from symflex.cli.report import diagnostic_json, emit_json, listed, reporting
 from symflex.errors import SymflexError
+from symflex.errors.diagnostic import printable
 
 
 @click.command("check")
@@ -44,9 +45,9 @@ def command(spec: str, *, as_json: bool) -> int:
         )
         if group
     )
-    click.echo(f"{spec}: ok")
+    click.echo(f"{printable(spec)}: ok")
     if model.title:
-        click.echo(listed("", model.title.split(), " "))
+        click.echo(listed("", printable(model.title).split(), " "))
     click.echo(listed("", counts.split(), " "))
     click.echo(listed("transfer functions: ", names))
     if symbolic:

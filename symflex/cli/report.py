@@ -19,7 +19,7 @@ P = ParamSpec("P")
 
 
 def reporting(command: Callable[P, int | None]) -> Callable[P, int]:
-    """Turn a :class:`SymflexError` into its message on stderr and its exit code."""
+    """Turn a :class:`SymflexError` into its message on stderr and its exit code; a closed pipe is none."""
 
     @wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> int:
@@ -31,6 +31,10 @@ def reporting(command: Callable[P, int | None]) -> Callable[P, int]:
         except MemoryError:
             show_error(SymflexError(Diagnostic("SF504", "out of memory")))
             return 5
+        except BrokenPipeError:
+            # The reader of a pipe went away; nothing is left to tell it, neither now nor at exit.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            return 0
 
     return run
 
@@ -56,8 +60,9 @@ def note(message: str) -> None:
 
 
 def emit_json(document: Mapping[str, object]) -> None:
-    """Print a document as JSON to stdout."""
-    click.echo(json.dumps(document, indent=2, ensure_ascii=False))
+    """Print a document as JSON to stdout; what could drive a terminal is escaped."""
+    text = json.dumps(document, indent=2, ensure_ascii=False)
+    click.echo("".join(c if c.isprintable() or c == "\n" else json.dumps(c)[1:-1] for c in text))
 
 
 def diagnostic_json(diagnostic: Diagnostic) -> dict[str, object]:

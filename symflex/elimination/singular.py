@@ -43,11 +43,12 @@ def explain_singular(equations: Equations) -> ModelError:
         problems.append(Diagnostic("SF302", message, _place(equations, owners[-1]), "remove one of them"))
     elif nodes:
         names = _listed([f"'{v}'" for v in nodes])
-        verb, hold = ("floats", "it") if len(nodes) == 1 else ("float", "them")
+        alone = len(nodes) == 1
+        what, verb, hold = ("node", "it floats", "it") if alone else ("nodes", "they float", "them")
         problems.append(
             Diagnostic(
                 "SF301",
-                f"nothing determines node {names}: {'it' if len(nodes) == 1 else 'they'} {verb}",
+                f"nothing determines {what} {names}: {verb}",
                 _place(equations, nodes[0].owner),
                 f"connect {hold} to ground or give {hold} a mass",
             )

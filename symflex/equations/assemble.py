@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 from symflex.elements import ElementUse, LinearForm, Row, Stamp, Terminal, Variable
 from symflex.equations.equations import ConstantFunction, EquationRow, Equations, OutputRow
-from symflex.equations.evaluate import Evaluator, open_definitions
-from symflex.errors import Diagnostic, ModelError, SymflexError
+from symflex.equations.evaluate import Evaluator, Opener
+from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
 from symflex.expressions import Call, Expression, Name, format_expression, names
 from symflex.kernels import FUNCTIONS, LAPLACE, Factored, Ring, random_point, residue
 from symflex.model import scope_of
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from symflex.model import Model, NodeReference, PlacedBlock, PlacedElement
 
 PI = "pi"
+GENERATOR_LIMIT = 1_000
+UNKNOWN_LIMIT = 2_500
 
 
 def assemble(model: Model, nested: Callable[[PlacedBlock, Ring], Factored] | None = None) -> Equations:
@@ -44,8 +46,16 @@ def assemble(model: Model, nested: Callable[[PlacedBlock, Ring], Factored] | Non
     ------
     ModelError
         SF224 division by zero, SF910 a function of s; with positions, all at once.
+    BudgetError
+        SF502 when there are more names or more unknowns than can be computed with exactly.
     """
     constants = _constant_functions(model)
+    count = len(model.parameters) + len(model.definitions) + len(constants)
+    if count > GENERATOR_LIMIT:
+        message = (
+            f"{count} parameters, definitions and functions of them; at most {GENERATOR_LIMIT} are carried"
+        )
+        raise _too_large(message, "write numbers in place of parameters that need no name")
     ring = Ring(
         (
             LAPLACE,
@@ -58,14 +68,18 @@ def assemble(model: Model, nested: Callable[[PlacedBlock, Ring], Factored] | Non
     return _Assembly(model, ring, constants, nested).run()
 
 
+def _too_large(message: str, hint: str) -> BudgetError:
+    return BudgetError(Diagnostic("SF502", f"the closed form is too large: {message}", None, hint))
+
+
 def _constant_functions(model: Model) -> tuple[ConstantFunction, ...]:
     found: dict[str, ConstantFunction] = {}
     for part in _with_submodels(model):
-        definitions = {d.name: d.expression for d in part.definitions}
+        opener = Opener({d.name: d.expression for d in part.definitions})
         for expression in _expressions(part):
             for call in reversed(names(expression)):
                 if isinstance(call, Call) and call.name in FUNCTIONS:
-                    opened = open_definitions(call, definitions)
+                    opened = opener.open(call)
                     text = format_expression(opened)
                     found.setdefault(text, ConstantFunction(text, opened))
     return tuple(found.values())
@@ -127,6 +141,9 @@ class _Assembly:
         outputs = [self._output(o.name, o.expression, evaluator) for o in self.model.outputs]
         if self.problems:
             raise ModelError(*self.problems)
+        count = len(self.balance) + len(self.unknowns)
+        if count > UNKNOWN_LIMIT:
+            raise _too_large(f"{count} unknowns; at most {UNKNOWN_LIMIT} are solved for", "split the model")
         return Equations(
             self.model,
             self.ring,
@@ -332,7 +349,7 @@ class _Assembly:
         except SymflexError as error:
             self.problems.extend(error.diagnostics)
             return None
-        # A filter written in an output is the output's own: as an unknown it would be a mode of all the others.
+        # A filter in an output is the output's own: as an unknown it would be a mode of all the others.
         divisor = common_denominator(self.ring, form)
         return OutputRow(name, form * divisor, divisor)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property
 from math import isqrt
 from typing import TYPE_CHECKING
 
@@ -32,7 +33,8 @@ if TYPE_CHECKING:
     from symflex.model import Scope
 
 
-OPENED_LIMIT = 500
+OPENED_PARTS = 1_000
+OPENED_DEPTH = 200
 
 
 @dataclass(frozen=True)
@@ -61,6 +63,11 @@ class Evaluator:
     through: Mapping[Variable, LinearForm]
     definitions: Mapping[str, Expression]
     point: Mapping[str, int] = field(default_factory=dict)
+
+    @cached_property
+    def opener(self) -> Opener:
+        """Opens the definitions inside the arguments of functions."""
+        return Opener(self.definitions)
 
     def constant(self, expression: Expression) -> Factored:
         """Return the value of an expression without unknowns.
@@ -178,7 +185,7 @@ class Evaluator:
 
     def _call(self, expression: Call, name: str, argument: Expression) -> Factored:
         inner = self.constant(argument)
-        opened = open_definitions(expression, self.definitions)
+        opened = self.opener.open(expression)
         inside = {n.name for n in names(opened) if isinstance(n, Name)}
         if LAPLACE in inside or inner.depends_on(LAPLACE):
             message = f"{name} of an expression in s is not available yet"
@@ -195,26 +202,72 @@ class Evaluator:
         return Factored.generator(self.ring, format_expression(opened))
 
 
-def open_definitions(call: Call, definitions: Mapping[str, Expression]) -> Call:
-    """Return a function call whose argument contains no definition.
+@dataclass(frozen=True)
+class Opener:
+    """Puts definitions into the arguments of functions.
 
-    Raises
-    ------
-    ModelError
-        SF103 when the opened argument would be unreasonably long.
+    Parameters
+    ----------
+    definitions : mapping of str to Expression
+        Each uses only earlier ones.
     """
-    opened: Expression = call
-    while any(isinstance(n, Name) and n.name in definitions for n in names(opened)):
-        opened = substitute(opened, definitions)
-        if len(names(opened)) > OPENED_LIMIT:
+
+    definitions: Mapping[str, Expression]
+    _opened: dict[str, Expression] = field(default_factory=dict, repr=False)
+
+    def open(self, call: Call) -> Call:
+        """Return a function call whose argument contains no definition.
+
+        Raises
+        ------
+        ModelError
+            SF103 when the opened argument would be unreasonably large.
+        """
+        used = set(self._used(call))
+        for name in reversed(tuple(self.definitions)):
+            if name in used and name not in self._opened:
+                used.update(self._used(self.definitions[name]))
+        for name, expression in self.definitions.items():
+            if name in used and name not in self._opened:
+                self._opened[name] = self._substituted(expression, call)
+        opened = self._substituted(call, call)
+        if not isinstance(opened, Call):
+            message = "a call stays a call"
+            raise TypeError(message)
+        return opened
+
+    def _used(self, expression: Expression) -> list[str]:
+        return [n.name for n in names(expression) if isinstance(n, Name) and n.name in self.definitions]
+
+    def _substituted(self, expression: Expression, call: Call) -> Expression:
+        parts, depth = extent(expression)
+        inner = [extent(self._opened[name]) for name in self._used(expression)]
+        parts += sum(count for count, _ in inner)
+        depth += max((levels for _, levels in inner), default=0)
+        if parts > OPENED_PARTS or depth > OPENED_DEPTH:
             message = (
-                f"the argument of {call.name} has more than {OPENED_LIMIT} names with its definitions opened"
+                f"the argument of {call.name} is too large with its definitions opened: more than "
+                f"{OPENED_PARTS} parts or {OPENED_DEPTH} levels"
             )
             raise ModelError(Diagnostic("SF103", message, call.span))
-    if not isinstance(opened, Call):
-        message = "a call stays a call"
-        raise TypeError(message)
-    return opened
+        return substitute(expression, self._opened) if inner else expression
+
+
+def extent(expression: Expression) -> tuple[int, int]:
+    """Return how many parts a tree has, and how many levels.
+
+    Examples
+    --------
+    >>> extent(Sum((Name("x"), Negative(Name("y")))))
+    (4, 3)
+    """
+    parts, deepest, pending = 0, 0, [(expression, 1)]
+    while pending:
+        node, level = pending.pop()
+        parts += 1
+        deepest = max(deepest, level)
+        pending += [(child, level + 1) for child in node.children]
+    return parts, deepest
 
 
 def exact_root(value: Fraction) -> Fraction | None:

@@ -43,7 +43,9 @@ class Ring:
     context: fmpz_mpoly_ctx = field(init=False, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        internal = [name if name.isascii() and name.isidentifier() else f"_{i}" for i, name in enumerate(self.names)]
+        internal = [
+            name if name.isascii() and name.isidentifier() else f"_{i}" for i, name in enumerate(self.names)
+        ]
         object.__setattr__(self, "context", fmpz_mpoly_ctx.get(internal, Ordering.lex))
 
     @cached_property

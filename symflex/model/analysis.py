@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from symflex.errors.diagnostic import nearest
 from symflex.model.model import Analysis, Figure, Published
+from symflex.model.scope import COMPARED_NAMES, LISTED_NAMES
 from symflex.quantities import unit_of
 from symflex.spec import ArrayValue, NumberValue, TableValue
 
 if TYPE_CHECKING:
-    from symflex.errors import Span, Text
+    from collections.abc import Mapping
+
+    from symflex.errors import Span
     from symflex.expressions import Expression
     from symflex.model.model import Model
     from symflex.model.reading import Reader
@@ -87,19 +91,26 @@ def _count(reader: Reader, section: TableValue, key: str, limit: int) -> int | N
     return None
 
 
-def pick_tf(reader: Reader, text: Text, model: Model) -> tuple[str, str] | None:
-    """Return the (output, input) pair that "OUT/IN" names."""
-    available = ["/".join(tf) for tf in model.transfer_functions]
-    if text.value in available:
-        return model.transfer_functions[available.index(text.value)]
-    hint = nearest(text.value, available) or "available: " + ", ".join(available[:8])
-    reader.note("SF218", f"there is no transfer function '{text.value[:80]}'", text.span, hint)
-    return None
+def named_pairs(model: Model) -> dict[str, tuple[str, str]]:
+    """Return every (output, input) pair by its name "OUT/IN"."""
+    return {"/".join(pair): pair for pair in model.transfer_functions}
+
+
+def pick_tf(
+    reader: Reader, name: str, span: Span, known: Mapping[str, tuple[str, str]], where: str = ""
+) -> tuple[str, str] | None:
+    """Return the (output, input) pair that "OUT/IN" names; ``where`` says of which model."""
+    if name not in known:
+        close = nearest(name, known) if len(known) <= COMPARED_NAMES else None
+        hint = close or "available: " + ", ".join(islice(known, LISTED_NAMES))
+        reader.note("SF218", f"there is no transfer function '{name[:80]}'{where}", span, hint)
+    return known.get(name)
 
 
 def read_figures(reader: Reader, section: TableValue | None, model: Model) -> tuple[Figure, ...]:
     """Return the figures asked for."""
     found: list[Figure] = []
+    known = named_pairs(model) if section else {}
     for entry in section.entries if section else ():
         what = f"figure '{entry.key}'"
         table = reader.table(entry, what) if reader.name(entry, "a figure") else None
@@ -109,7 +120,7 @@ def read_figures(reader: Reader, section: TableValue | None, model: Model) -> tu
         kind = _kind(reader, table, entry, what)
         of = table.get("of")
         texts = reader.strings(of, f"of of {what}") if of else ()
-        chosen = tuple(tf for t in texts or () if (tf := pick_tf(reader, t, model)))
+        chosen = tuple(tf for t in texts or () if (tf := pick_tf(reader, t.value, t.span, known)))
         found.append(Figure(entry.key, kind, chosen, reader.plain(table, "title", what), entry.key_span))
     return tuple(found)
 
@@ -130,9 +141,10 @@ def _kind(reader: Reader, table: TableValue, entry: Entry, what: str) -> str:
 def read_published(reader: Reader, section: TableValue | None, model: Model) -> tuple[Published, ...]:
     """Return the printed formulas; their names are checked when they are compared."""
     found: list[Published] = []
+    known = named_pairs(model) if section else {}
     for entry in section.entries if section else ():
         what = f"published '{entry.key[:80]}'"
-        tf = _published_tf(reader, entry.key, entry.key_span, model)
+        tf = pick_tf(reader, entry.key, entry.key_span, known)
         table = reader.table(entry, what)
         if table is None or tf is None:
             continue
@@ -149,14 +161,6 @@ def read_published(reader: Reader, section: TableValue | None, model: Model) -> 
         if expression is not None:
             found.append(Published(tf, expression, where, scaled, cited, entry.key_span))
     return tuple(found)
-
-
-def _published_tf(reader: Reader, key: str, span: Span, model: Model) -> tuple[str, str] | None:
-    available = {"/".join(tf): tf for tf in model.transfer_functions}
-    if key not in available:
-        hint = nearest(key, available) or "available: " + ", ".join(list(available)[:8])
-        reader.note("SF218", f"there is no transfer function '{key[:80]}'", span, hint)
-    return available.get(key)
 
 
 def _where(reader: Reader, table: TableValue, what: str) -> tuple[tuple[str, Expression], ...]:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symflex.blocks import ANNOUNCED, BLOCKS, MODEL_BLOCK
-from symflex.errors import Diagnostic, SymflexError
+from symflex.errors import SymflexError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import Expression, Name, Number, power, product_of, sum_of
 from symflex.kernels import LAPLACE
+from symflex.model.analysis import named_pairs, pick_tf
+from symflex.model.linearity import EXPONENT_LIMIT
 from symflex.model.model import PlacedBlock
 from symflex.model.reading import signed_number
 from symflex.model.scope import RESERVED
@@ -27,11 +29,31 @@ if TYPE_CHECKING:
     from symflex.spec import Entry, TableValue, Value
 
 NESTING_LIMIT = 8
+BLOCK_LIMIT = 100
+
+
+@dataclass(slots=True)
+class Loads:
+    """What one run has read for ``model`` blocks: a file is read once, and the number of blocks is bounded.
+
+    Parameters
+    ----------
+    models : dict of Path to Model
+        By file, those that were resolved.
+    failed : set of Path
+        Files with mistakes, which are reported where they are first read.
+    blocks : dict of Path to int
+        By file, how many ``model`` blocks it holds, counted with those inside them.
+    """
+
+    models: dict[Path, Model] = field(default_factory=dict)
+    failed: set[Path] = field(default_factory=set)
+    blocks: dict[Path, int] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Where a specification stands, and which ones led to it.
+    """Where a specification stands, which ones led to it, and what was read on the way.
 
     ``resolve`` turns a source into a model; it is passed down so that a nested specification
     is resolved exactly as the outer one.
@@ -39,7 +61,8 @@ class Origin:
 
     source: Source
     ancestors: tuple[Path, ...]
-    resolve: Callable[[Source, tuple[Path, ...]], Model]
+    loads: Loads
+    resolve: Callable[[Source, tuple[Path, ...], Loads], Model]
 
 
 def read_blocks(reader: Reader, section: TableValue | None, origin: Origin) -> tuple[PlacedBlock, ...]:
@@ -115,6 +138,10 @@ def _value(reader: Reader, value: Value, where: str, *, coefficients: bool) -> E
     if not value.items:
         reader.note("SF206", f"{where} is an empty list of coefficients", value.span)
         return None
+    if len(value.items) > EXPONENT_LIMIT + 1:
+        message = f"{where} has {len(value.items)} coefficients; at most {EXPONENT_LIMIT + 1} are allowed"
+        reader.note("SF103", message, value.span)
+        return None
     parts = [reader.expression(item, where) for item in value.items]
     terms = [
         product_of([part, power(Name(LAPLACE), Number(Fraction(degree)))])
@@ -142,7 +169,8 @@ def _read_model_block(reader: Reader, entry: Entry, table: TableValue, origin: O
     submodel = _load(reader, path_text, origin)
     if submodel is None:
         return None
-    tf = _pick(reader, tf_text, submodel)
+    where = f" in '{path_text.value}'"
+    tf = pick_tf(reader, tf_text.value, tf_text.span, named_pairs(submodel), where)
     return None if tf is None else PlacedBlock(entry.key, None, (), submodel, tf, entry.key_span)
 
 
@@ -150,7 +178,12 @@ def _load(reader: Reader, path_text: Text, origin: Origin) -> Model | None:
     if "\0" in path_text.value:
         reader.note("SF901", "a path cannot contain a NUL character", path_text.span)
         return None
-    path = (Path(origin.source.name).parent / path_text.value).resolve()
+    shown = Path(origin.source.name).parent / path_text.value
+    try:
+        path = shown.resolve()
+    except (OSError, RuntimeError):  # a circle of symbolic links
+        reader.note("SF901", f"cannot read '{path_text.value}': the path leads in a circle", path_text.span)
+        return None
     if path in origin.ancestors:
         circle = " -> ".join(p.name for p in (*origin.ancestors, path))
         reader.note("SF215", f"specifications refer to each other in a circle: {circle}", path_text.span)
@@ -158,24 +191,16 @@ def _load(reader: Reader, path_text: Text, origin: Origin) -> Model | None:
     if len(origin.ancestors) >= NESTING_LIMIT:
         reader.note("SF103", f"model blocks are nested deeper than {NESTING_LIMIT}", path_text.span)
         return None
-    shown = Path(origin.source.name).parent / path_text.value
-    try:
-        return origin.resolve(read(shown), (*origin.ancestors, path))
-    except SymflexError as error:
-        for diagnostic in error.diagnostics:
-            if diagnostic.span is None:
-                reader.problems.append(
-                    Diagnostic(diagnostic.code, diagnostic.message, path_text.span, diagnostic.hint)
-                )
-            else:
-                reader.problems.append(diagnostic)
+    loads, own = origin.loads, origin.ancestors[-1]
+    if path not in loads.models and path not in loads.failed:
+        try:
+            loads.models[path] = origin.resolve(read(shown), (*origin.ancestors, path), loads)
+        except SymflexError as error:
+            loads.failed.add(path)
+            reader.take(d if d.span else replace(d, span=path_text.span) for d in error.diagnostics)
+    loads.blocks[own] = loads.blocks.get(own, 0) + 1 + loads.blocks.get(path, 0)
+    if loads.blocks[own] > BLOCK_LIMIT:
+        message = f"more than {BLOCK_LIMIT} model blocks, counted with those inside model blocks"
+        reader.note("SF103", message, path_text.span)
         return None
-
-
-def _pick(reader: Reader, text: Text, submodel: Model) -> tuple[str, str] | None:
-    available = ["/".join(tf) for tf in submodel.transfer_functions]
-    if text.value in available:
-        return submodel.transfer_functions[available.index(text.value)]
-    hint = nearest(text.value, available) or "available: " + ", ".join(available[:8])
-    reader.note("SF218", f"the specification has no transfer function '{text.value[:80]}'", text.span, hint)
-    return None
+    return loads.models.get(path)

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from symflex.errors import Span
     from symflex.spec import Entry
 
+SHOWN_CIRCLE = 8
 ASSUMPTIONS = ("positive", "nonnegative", "real")
 PARAMETER_KEYS = ("value", "unit", "doc", "latex", "assume")
 
@@ -69,7 +70,7 @@ def read_label(reader: Reader, table: TableValue, what: str) -> str:
     try:
         return check_label(text)
     except SpecError as error:
-        reader.problems.extend(error.diagnostics)
+        reader.take(error.diagnostics)
         return ""
 
 
@@ -117,11 +118,12 @@ def _quantity(reader: Reader, entry: Entry, what: str) -> tuple[Quantity | None,
     quantity = own.quantity(entry.value, what)
     formula = isinstance(entry.value, StringValue) and _is_formula(entry.value.text)
     for problem in own.problems:
-        if formula and problem.code == "SF202":
-            also = "a formula of parameters belongs in [definitions]"
-            reader.problems.append(replace(problem, hint=f"{problem.hint}; {also}" if problem.hint else also))
-        else:
-            reader.problems.append(problem)
+        also = (
+            "a formula of parameters belongs in [definitions]"
+            if formula and problem.code == "SF202"
+            else None
+        )
+        reader.take((replace(problem, hint="; ".join(filter(None, (problem.hint, also))) or None),))
     return quantity, bool(quantity and quantity.unit)
 
 
@@ -140,7 +142,7 @@ def _with_unit(
     try:
         unit = parse_unit(text)
     except SpecError as error:
-        reader.problems.extend(error.diagnostics)
+        reader.take(error.diagnostics)
         return quantity, ""
     if quantity is None:
         return None, str(unit.dimension)
@@ -242,7 +244,8 @@ def _without_circles(reader: Reader, definitions: Sequence[Definition]) -> tuple
             elif state[following] == "open":
                 circle = [n for n, _ in stack]
                 circle = circle[circle.index(following) :]
-                path = " -> ".join([*circle, following])
+                shown = circle if len(circle) <= SHOWN_CIRCLE else [*circle[: SHOWN_CIRCLE - 1], "..."]
+                path = " -> ".join([*shown, following])
                 message = f"definitions refer to each other in a circle: {path}"
                 if len(circle) == 1:
                     message = f"definition '{following}' refers to itself"

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symflex.errors import Diagnostic, SpecError
+from symflex.errors import Diagnostic
 from symflex.expressions import (
     Attribute,
     Call,
@@ -41,8 +41,11 @@ if TYPE_CHECKING:
     from symflex.model.scope import Scope
     from symflex.quantities import Quantity
 
+    Solution = tuple[tuple[tuple[Variable, Fraction], ...], Dimension]
+
 PER_SECOND = unit_of("1/s").dimension
 SECOND = unit_of("s").dimension
+EXTREME_EXPONENT = 10**6
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +90,12 @@ class Measure:
             self.pis + other.pis,
             self.cyclic | other.cyclic,
         )
+
+    @property
+    def is_extreme(self) -> bool:
+        """Tell whether an exponent is larger than any meant in earnest."""
+        exponents = (*self.dimension.exponents, *(e for _, e in self.unknowns), self.cycles, self.pis)
+        return any(max(abs(e.numerator), e.denominator) > EXTREME_EXPONENT for e in exponents)
 
     def power(self, exponent: Fraction | int) -> Measure:
         """Return the measure of a power."""
@@ -138,7 +147,7 @@ class DimensionSystem:
         self._definitions = definitions
         self._known = dict(known)
         self._blocks = block_measures
-        self._solved: dict[Variable, tuple[tuple[tuple[Variable, Fraction], ...], Dimension]] = {}
+        self._solved: dict[Variable, Solution] = {}
         self._readings: dict[str, list[Reading]] = {}
         self._defined: dict[str, Measure] = {}
         self.problems: list[Diagnostic] = []
@@ -249,13 +258,9 @@ class DimensionSystem:
                 return Measure(open=True)
 
     def _name(self, expression: Name | Attribute) -> Measure:
-        try:
-            meaning = self._scope.lookup(expression, constant=False)
-        except SpecError:
-            try:
-                meaning = self._scope.lookup(expression, constant=True)
-            except SpecError:
-                return Measure(open=True)
+        meaning = self._scope.find(expression)
+        if meaning is None:
+            return Measure(open=True)
         if meaning.kind == "laplace":
             return Measure(PER_SECOND)
         if meaning.kind == "pi":
@@ -272,10 +277,8 @@ class DimensionSystem:
         """Tell whether a name is a node, signal or input: a function of it is refused as not linear."""
         if not isinstance(expression, Name | Attribute):
             return False
-        try:
-            return self._scope.lookup(expression, constant=False).variable is not None
-        except SpecError:
-            return False
+        meaning = self._scope.find(expression)
+        return meaning is not None and meaning.variable is not None
 
     def _parameter(self, name: str) -> Measure:
         quantity = self._quantities.get(name)
@@ -288,7 +291,8 @@ class DimensionSystem:
     def _definition(self, name: str) -> Measure:
         if name not in self._defined:
             self._defined[name] = Measure(open=True)
-            self._defined[name] = self.measure(self._definitions[name])
+            measure = self.measure(self._definitions[name])
+            self._defined[name] = Measure(open=True) if measure.is_extreme else measure
         return self._defined[name]
 
     def variable(self, variable: Variable) -> Measure:
@@ -330,6 +334,8 @@ class DimensionSystem:
         for term, measure in closed:
             if term is first_term:
                 continue
+            if (measure.dimension, measure.unknowns) == (first.dimension, first.unknowns):
+                continue
             loose = measure.literal or first.literal
             if not self._learn(self._reduce(measure.times(first.power(-1))), only_check=loose) and not loose:
                 here = self._reduce(measure).dimension
@@ -368,7 +374,7 @@ class DimensionSystem:
         for variable in list(unknowns):
             if variable in self._solved:
                 exponent = unknowns.pop(variable)
-                others, known = self._solved[variable]
+                others, known = self._solution(variable)
                 dimension = dimension * known**exponent
                 for other, weight in others:
                     unknowns[other] = unknowns.get(other, Fraction(0)) + weight * exponent
@@ -378,23 +384,34 @@ class DimensionSystem:
         """Take ``measure = dimensionless`` as an equation; False when it contradicts what is known."""
         if not measure.unknowns:
             return measure.dimension == DIMENSIONLESS
-        if only_check:
+        if only_check or measure.is_extreme:
             return True
         (variable, exponent), *rest = measure.unknowns
         others = tuple((v, -e / exponent) for v, e in rest)
         known = measure.dimension ** (-1 / exponent)
         self._solved[variable] = (others, known)
-        for solved, (terms, dimension) in list(self._solved.items()):
-            weight = dict(terms).get(variable)
-            if weight is not None:
-                merged = {v: e for v, e in terms if v != variable}
+        return True
+
+    def _solution(self, variable: Variable) -> Solution:
+        """Return a solved variable in unsolved ones; what is found on the way is kept for chains."""
+        waiting = [variable]
+        while waiting:
+            terms, dimension = self._solved[waiting[-1]]
+            stale = [v for v, _ in terms if v in self._solved and self._is_stale(v)]
+            if stale:
+                waiting += stale
+                continue
+            merged: dict[Variable, Fraction] = {}
+            for v, weight in terms:
+                others, known = self._solved.get(v, (((v, Fraction(1)),), DIMENSIONLESS))
+                dimension = dimension * known**weight
                 for other, e in others:
                     merged[other] = merged.get(other, Fraction(0)) + e * weight
-                self._solved[solved] = (
-                    tuple((v, e) for v, e in merged.items() if e),
-                    dimension * known**weight,
-                )
-        return True
+            self._solved[waiting.pop()] = (tuple((v, e) for v, e in merged.items() if e), dimension)
+        return self._solved[variable]
+
+    def _is_stale(self, variable: Variable) -> bool:
+        return any(v in self._solved for v, _ in self._solved[variable][0])
 
     def _declaration(self, expression: Expression) -> str | None:
         if isinstance(expression, Name):

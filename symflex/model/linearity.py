@@ -34,6 +34,7 @@ Degree = Literal["constant", "linear", "unknown"]
 """What an expression is in what varies in time; ``unknown`` when it holds a name that means nothing."""
 
 EXPONENT_LIMIT = 64
+SHOWN_PROBLEMS = 20
 LINEARISE = "linearise about an operating point, so that only one factor varies in time"
 
 
@@ -90,6 +91,8 @@ def _degree(expression: Expression, scope: Scope, constant: bool, problems: list
         case Number():
             return "constant"
         case Name() | Attribute():
+            if len(problems) >= SHOWN_PROBLEMS:
+                return "unknown"
             try:
                 meaning = scope.lookup(expression, constant=constant)
             except SpecError as error:

@@ -297,7 +297,7 @@ class NetworkReader:
         try:
             unit = parse_unit(text)
         except SpecError as error:
-            self.reader.problems.extend(error.diagnostics)
+            self.reader.take(error.diagnostics)
             return ""
         if kind is not None and unit.dimension != unit_of(INPUT_UNITS[kind]).dimension:
             message = f"unit of {what} is '{text.value}'; a {kind} is in '{INPUT_UNITS[kind]}'"

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from symflex.spec import Entry, Value
 
 SHOWN = 40
+MAX_PROBLEMS = 100
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}\Z")
 
 
@@ -58,6 +59,19 @@ class Reader:
 
     problems: list[Diagnostic] = field(default_factory=list)
 
+    def take(self, diagnostics: Iterable[Diagnostic]) -> None:
+        """Add problems found elsewhere.
+
+        Raises
+        ------
+        SpecError
+            With what was found so far, when that is more than anybody would read.
+        """
+        self.problems.extend(diagnostics)
+        if len(self.problems) > MAX_PROBLEMS:
+            message = f"more than {MAX_PROBLEMS} problems; these are the ones found first"
+            raise SpecError(*self.problems[:MAX_PROBLEMS], Diagnostic("SF103", message))
+
     def misfit(self, message: str, value: Value, hint: str | None = None) -> None:
         """Note a value of the wrong kind, unless its syntax error is already reported."""
         if not (isinstance(value, OtherValue) and value.kind == "invalid"):
@@ -65,7 +79,7 @@ class Reader:
 
     def note(self, code: str, message: str, span: Span | None, hint: str | None = None) -> None:
         """Add one problem."""
-        self.problems.append(Diagnostic(code, message, span, hint))
+        self.take((Diagnostic(code, message, span, hint),))
 
     def table(self, entry: Entry, what: str, hint: str | None = None) -> TableValue | None:
         """Return the entry's table."""
@@ -128,7 +142,7 @@ class Reader:
         try:
             return parse(text)
         except SpecError as error:
-            self.problems.extend(error.diagnostics)
+            self.take(error.diagnostics)
             return None
 
     def quantity(self, value: Value, what: str) -> Quantity | None:
@@ -137,7 +151,7 @@ class Reader:
             try:
                 return parse_quantity(value.text)
             except SpecError as error:
-                self.problems.extend(error.diagnostics)
+                self.take(error.diagnostics)
                 return None
         self.misfit(f'{what} must be a number or a quantity such as "35 kN/m"', value)
         return None

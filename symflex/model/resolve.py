@@ -15,7 +15,7 @@ from symflex.elements import ACROSS_UNIT, Placing, Variable
 from symflex.errors import Diagnostic, Span, SpecError
 from symflex.expressions import Expression, Name, names, power, product_of
 from symflex.model.analysis import read_analysis, read_figures, read_published
-from symflex.model.blocks import Origin, read_blocks
+from symflex.model.blocks import Loads, Origin, read_blocks
 from symflex.model.declarations import DeclaredParameter, read_definitions, read_label, read_parameters
 from symflex.model.dimensions import DimensionSystem, Measure
 from symflex.model.linearity import check_expression, without_signal
@@ -58,12 +58,13 @@ SECTIONS = (
     "analysis",
     "figures",
 )
+MAX_PAIRS = 10_000
 CONSEQUENCES = ("SF210", "SF218")
 """What is noted of a name that was lost with a mistake elsewhere."""
 TOP_KEYS = ("symflex", "title", "source", "doc", *SECTIONS)
 
 
-def load_model(source: Source, ancestors: tuple[Path, ...] = ()) -> Model:
+def load_model(source: Source, ancestors: tuple[Path, ...] = (), loads: Loads | None = None) -> Model:
     """Parse and resolve a text, reporting syntax and meaning errors together.
 
     Parameters
@@ -72,6 +73,8 @@ def load_model(source: Source, ancestors: tuple[Path, ...] = ()) -> Model:
         The text; ``model`` blocks are found relative to ``source.name``.
     ancestors : tuple of Path
         The files whose ``model`` blocks led here.
+    loads : Loads, optional
+        What was read for ``model`` blocks so far.
 
     Raises
     ------
@@ -81,7 +84,7 @@ def load_model(source: Source, ancestors: tuple[Path, ...] = ()) -> Model:
     spec, syntax = parse_with_recovery(source)
     own = ancestors or (Path(source.name).resolve(),)
     try:
-        model = resolve(spec, Origin(source, own, load_model))
+        model = resolve(spec, Origin(source, own, loads or Loads(), load_model))
     except SpecError as error:
         # A name lost with an unreadable line would be reported as unknown: that is not a second mistake.
         later = [d for d in error.diagnostics if not syntax or d.code not in (*CONSEQUENCES, "SF214")]
@@ -110,14 +113,17 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     blocks = read_blocks(reader, sections["blocks"], origin)
     signals = _read_signals(reader, sections["signals"])
     outputs = _read_outputs(reader, sections["outputs"])
+    _check_count(reader, spec, outputs, network.inputs)
     _refuse_fields(reader, sections["fields"])
     inherited = _inherited_parameters(reader, declared, blocks)
-    twins = _refuse_twins(reader, [*(p.name for p in declared), *(p.name for p in inherited)], definitions, blocks)
+    twins = _refuse_twins(
+        reader, [*(p.name for p in declared), *(p.name for p in inherited)], definitions, blocks
+    )
     measure = _constant_measure(declared, inherited, definitions)
     attachments = [a for element in network.elements for a in element.attachments(measure)]
     attachments += [a for source in network.inputs for a in source.attachments()]
     nodes, contradictions = infer_nodes(attachments)
-    reader.problems += contradictions
+    reader.take(contradictions)
     draft = _Draft(
         declared,
         inherited,
@@ -145,7 +151,7 @@ def resolve(spec: Spec, origin: Origin) -> Model:
         for found, section in ((outputs, sections["outputs"]), (network.inputs, sections["inputs"]))
         if section
     )
-    reader.problems += [p for p in later.problems if whole or p.code != "SF218"]
+    reader.take([p for p in later.problems if whole or p.code != "SF218"])
     problems = reader.problems
     if _lost_sections(spec):
         problems = [p for p in problems if p.code not in CONSEQUENCES]
@@ -154,6 +160,17 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     if problems:
         raise SpecError(*_in_order(problems, spec.source))
     return model
+
+
+def _check_count(reader: Reader, spec: Spec, outputs: Sequence[Output], inputs: Sequence[DraftInput]) -> None:
+    """Stop at a model with more transfer functions than can be listed."""
+    entry = spec.root.get("outputs")
+    if entry is not None and len(outputs) * len(inputs) > MAX_PAIRS:
+        message = (
+            f"{len(outputs)} outputs and {len(inputs)} inputs make {len(outputs) * len(inputs)} transfer "
+            f"functions; at most {MAX_PAIRS} are allowed"
+        )
+        raise SpecError(*reader.problems, Diagnostic("SF103", message, entry.key_span))
 
 
 def _lost_sections(spec: Spec) -> bool:
@@ -356,12 +373,12 @@ def _finish(reader: Reader, draft: _Draft, broken: frozenset[str]) -> Model:
     unsound: set[Span | None] = set()
     for expression, constant in _all_expressions(draft):
         problems = _check(expression, scope, constant=constant)
-        reader.problems += problems
+        reader.take(problems)
         if problems:
             unsound.add(expression.span)
     system = _check_units(reader, draft, placed, scope, unsound)
     readings = system.finish()
-    reader.problems += system.problems
+    reader.take(system.problems)
     implied = _implied_units(placed, draft.blocks)
     parameters = [
         p.resolve(angular=readings.get(p.name, True), implied_unit=implied.get(p.name, ""))
@@ -409,14 +426,17 @@ def _place(draft: DraftElement, nodes: Mapping[str, Node]) -> PlacedElement:
     domains: list[tuple[str, Placing]] = []
     for port, references in draft.nodes:
         live = next((r for r in references if not r.is_ground), None)
-        if port.domain not in ("any", "whole", "planar"):
-            domains.append((port.name, port.domain))
-        elif live is None:
-            domains.append((port.name, "translation"))
-        elif port.domain in ("whole", "planar") and nodes[live.node].domain == "planar":
-            domains.append((port.name, "planar"))
-        else:
-            domains.append((port.name, domain_of(live, nodes[live.node])))
+        domain: Placing
+        match port.domain:
+            case "translation" | "rotation" | "electrical":
+                domain = port.domain
+            case _ if live is None:
+                domain = "translation"
+            case "whole" | "planar" if nodes[live.node].domain == "planar":
+                domain = "planar"
+            case _:
+                domain = domain_of(live, nodes[live.node])
+        domains.append((port.name, domain))
     attached = tuple((port.name, references) for port, references in draft.nodes)
     return PlacedElement(draft.name, draft.element, attached, tuple(domains), draft.values, draft.span)
 

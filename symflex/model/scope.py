@@ -25,6 +25,7 @@ RESERVED: dict[str, str] = {
 }
 """Names that have a meaning of their own, and which."""
 LISTED_NAMES = 8
+COMPARED_NAMES = 500
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +61,14 @@ class Scope:
     attributes: Mapping[tuple[str, str], Meaning]
     owners: Mapping[str, tuple[str, ...]]
     broken: frozenset[str] = frozenset()
+
+    def find(self, expression: Name | Attribute) -> Meaning | None:
+        """Return the only meaning of a name, among constants when it has others too, or ``None``."""
+        if isinstance(expression, Attribute):
+            return self.attributes.get((expression.owner, expression.name))
+        found = self.meanings.get(expression.name, ())
+        constants = [m for m in found if m.kind in CONSTANT_KINDS]
+        return found[0] if len(found) == 1 else constants[0] if len(constants) == 1 else None
 
     def lookup(self, expression: Name | Attribute, *, constant: bool) -> Meaning:
         """Return the meaning of a name.
@@ -161,6 +170,8 @@ def nearest_name(name: str, known: Sequence[str]) -> str | None:
     ("did you mean 'k'?", 'known names: m, k')
     """
     same = [n for n in known if n.lower() == name.lower()]
+    if len(known) > COMPARED_NAMES:
+        known = [n for n in known if n[:1].lower() == name[:1].lower()][:COMPARED_NAMES]
     hint = f"did you mean '{same[0]}'?" if same else nearest(name, known)
     if hint is None and 0 < len(known) <= LISTED_NAMES:
         return "known names: " + ", ".join(known)

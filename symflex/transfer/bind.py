@@ -268,7 +268,8 @@ def bind(
     table = dict(exact)
     ring = Ring((LAPLACE, "pi", *_used_constants(tf)))
     images = _Substitution(ring, tf.ratio.ring, table)
-    bound = Factored.number(ring, tf.ratio.unit)
+    # Kept apart, so that factors which these values make equal are still seen to cancel.
+    above, below = Factored.number(ring, tf.ratio.unit), Factored.number(ring, 1)
     for factor, exponent in tf.ratio.factors:
         value = images.apply(factor)
         if value.is_zero and exponent < 0:
@@ -276,8 +277,11 @@ def bind(
             raise ModelError(
                 Diagnostic("SF231", message, None, "a rigid or massless limit has its own equations")
             )
-        bound = bound * value**exponent
-    ratio, shared = cancel(bound.numerator(), bound.denominator())
+        if exponent > 0:
+            above = above * value**exponent
+        else:
+            below = below * value**-exponent
+    ratio, shared = cancel(above, below)
     hidden = [HiddenFactor(f, e) for f, e in shared.factors if degree_in(f, 0)]
     for known in tf.hidden:
         value = images.apply(known.polynomial)
@@ -291,9 +295,7 @@ def _used_constants(tf: TransferFunction) -> list[str]:
     """Return the functions of constants that occur; the others may lack a value."""
     index = tf.ratio.ring.index
     polynomials = [*(f for f, _ in tf.ratio.factors), *(h.polynomial for h in tf.hidden)]
-    return [
-        c.generator for c in tf.constants if any(degree_in(p, index[c.generator]) for p in polynomials)
-    ]
+    return [c.generator for c in tf.constants if any(degree_in(p, index[c.generator]) for p in polynomials)]
 
 
 @dataclass(frozen=True)

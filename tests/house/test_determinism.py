@@ -22,12 +22,13 @@ COMMANDS = (
 CODE = """
 import sys
 from click.testing import CliRunner
-from symflex.cli import main
+from symflex.cli import group
 path, *commands = sys.argv[1:]
 for command in commands:
     name, *options = command.split()
-    result = CliRunner().invoke(main, [name, path, *options])
-    print("====", command, result.exit_code)
+    result = CliRunner().invoke(group, [name, path, *options], standalone_mode=False)
+    assert result.exception is None, result.exception
+    print("====", command, result.return_value)
     print(result.output)
 """
 

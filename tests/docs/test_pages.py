@@ -64,7 +64,7 @@ def test_every_session_on_a_page_shows_what_the_program_prints(block, reader):
     for session in re.split(r"^\$ ", block.text, flags=re.MULTILINE)[1:]:
         command, _, expected = session.partition("\n")
         done = symflex_output(shlex.split(command)[1:], folder)
-        printed = done.stdout + done.stderr
+        printed = done.stderr + done.stdout  # notes come before results
         if not doctest.OutputChecker().check_output(expected, printed, doctest.ELLIPSIS):
             pytest.fail(f"{block}: `{command}` prints\n{printed}", pytrace=False)
 

@@ -1,0 +1,99 @@
+"""The diffs of docs/extending.md apply to this version, and what they add works."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+from tests.house.repository import ROOT, blocks
+
+DIFFS = [block for block in blocks(ROOT / "docs" / "extending.md") if block.language == "diff"]
+MODEL = """
+symflex = 1
+parameters = { m = "2 kg", B = "1 kg", k = "12 N/m", T = "0.5 s" }
+inputs     = { F = { force = "x" } }
+outputs    = { X = "x", Y = "P*x" }
+blocks     = { P = { type = "low_pass", T = "T" } }
+
+[elements]
+body   = { type = "mass",    at = "x", m = "m" }
+side   = { type = "inerter", between = ["x", "ground"], B = "B" }
+spring = { type = "spring",  between = ["x", "ground"], k = "k" }
+"""
+ROOTS = """
+from symflex.roots import ROOT_FINDERS, Everything, RootProblem
+found = ROOT_FINDERS["eigenvalues"].find(RootProblem.from_rationals([25, 6, 1]), Everything(), 10)
+print([(root.decimal(3).re, root.decimal(3).im, root.certified) for root in found])
+"""
+pytestmark = pytest.mark.needs_tool("git")
+
+
+@pytest.fixture(scope="module")
+def extended(tmp_path_factory):
+    """A copy of the package with every diff of the page applied."""
+    folder = tmp_path_factory.mktemp("extended")
+    for name in ("symflex", "tests"):
+        shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+    patch = "".join(block.text for block in DIFFS)
+    subprocess.run(["git", "apply", "-"], cwd=folder, input=patch, text=True, check=True, capture_output=True)
+    (folder / "model.toml").write_text(MODEL, encoding="utf-8")
+    return folder
+
+
+def python(folder, *arguments):
+    environment = {"PYTHONPATH": str(folder), "NO_COLOR": "1"}
+    command = [sys.executable, *arguments]
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def derived(folder, form):
+    text = python(folder, "-m", "symflex", "derive", "model.toml", "--json", "--form", form)
+    return {entry["tf"]: (entry["num"], entry["den"]) for entry in json.loads(text)["transfer_functions"]}
+
+
+def test_there_are_diffs():
+    assert len(DIFFS) > 5
+
+
+def test_an_inerter_adds_to_the_mass(extended):
+    assert derived(extended, "polynomial")["X/F"] == ("1", "(m + B)*s^2 + k")
+
+
+def test_the_low_pass_multiplies_the_displacement(extended):
+    assert derived(extended, "factored")["Y/F"] == ("1", "(T*s + 1)*((m + B)*s^2 + k)")
+
+
+def test_the_new_form_has_unit_constant_term(extended):
+    assert derived(extended, "unit_constant")["X/F"] == ("1/k", "(m + B)/k*s^2 + 1")
+
+
+def test_the_new_target_writes_a_module_that_runs(extended):
+    text = python(extended, "-m", "symflex", "export", "model.toml", "--to", "sympy")
+    (extended / "exported.py").write_text(text, encoding="utf-8")
+    code = "from exported import *; num, den = TRANSFER_FUNCTIONS['X/F']; print(degree(den, Symbol('s')))"
+    assert python(extended, "-c", code).strip() == "2"
+
+
+def test_the_new_root_finder_proves_its_roots(extended):
+    # s^2 + 6 s + 25 = (s + 3)^2 + 4^2
+    assert python(extended, "-c", ROOTS).strip() == "[('-3.00', '4.00', True), ('-3.00', '-4.00', True)]"
+
+
+def test_the_contract_tests_pass_with_the_additions(extended):
+    options = [
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        "-p",
+        "no:xdist",
+        "--import-mode=importlib",
+        "-k",
+        "inerter or low_pass",
+    ]
+    python(extended, "-m", "pytest", *options, "tests/contract")

@@ -1,0 +1,78 @@
+"""Every block is the transfer function its summary states."""
+
+from __future__ import annotations
+
+import pytest
+import sympy
+
+import symflex
+
+s, p, q, u, v = sympy.symbols("s p q u v")
+HEADER = "symflex = 1\n[parameters]\np = {}\nq = {}\nu = {}\nv = {}\n[blocks]\n"
+ENDING = '\n[inputs]\nU = {}\n[outputs]\nX = "G*U"\n'
+
+BLOCKS = {
+    'type = "resonance", omega_p = "p", zeta_p = "u", omega_z = "q", zeta_z = "v"': (p / q) ** 2
+    * (s**2 + 2 * v * q * s + q**2)
+    / (s**2 + 2 * u * p * s + p**2),
+    'type = "tf", num = "p*s + 1", den = "q*s^2 + u"': (p * s + 1) / (q * s**2 + u),
+    'type = "tf", num = ["p", 0, 1], den = ["q", "u"]': (p * s**2 + 1) / (q * s + u),
+    'type = "tf", num = "p"': p,
+    'type = "integrator"': 1 / s,
+    'type = "integrator", k = "p"': p / s,
+    'type = "lead_lag", T_1 = "p", T_2 = "q"': (1 + p * s) / (1 + q * s),
+    'type = "lead_lag", k = "u", T_1 = "p", T_2 = "q"': u * (1 + p * s) / (1 + q * s),
+    'type = "pid", k_p = "p"': p,
+    'type = "pid", k_p = "p", k_i = "q", k_d = "u"': p + q / s + u * s,
+    'type = "pid", k_p = "p", k_i = "q", k_d = "u", T_f = "v"': p + q / s + u * s / (1 + v * s),
+}
+
+
+def quotient(text):
+    G = symflex.loads(text).transfer_function("X", "U")
+    return (G.num / G.den).xreplace({x: sympy.Symbol(x.name) for x in (G.num / G.den).free_symbols})
+
+
+@pytest.mark.parametrize("block", BLOCKS)
+def test_a_block_is_its_formula(block):
+    found = quotient(f"{HEADER}G = {{ {block} }}{ENDING}")
+    assert sympy.cancel(found - BLOCKS[block]) == 0
+
+
+def test_a_resonance_has_unit_gain_at_low_frequency():
+    block = 'type = "resonance", omega_p = "p", zeta_p = "u", omega_z = "q", zeta_z = "v"'
+    assert quotient(f"{HEADER}G = {{ {block} }}{ENDING}").subs(s, 0) == 1
+
+
+def test_a_block_may_use_one_declared_after_it():
+    text = f'{HEADER}G = {{ type = "tf", num = "H" }}\nH = {{ type = "integrator" }}{ENDING}'
+    assert sympy.cancel(quotient(text) - 1 / s) == 0
+
+
+@pytest.mark.parametrize(
+    "blocks",
+    [
+        'G = { type = "tf", num = "G" }',
+        'G = { type = "tf", num = "H" }\nH = { type = "tf", num = "G" }',
+    ],
+)
+def test_blocks_in_a_circle_are_refused(blocks):
+    with pytest.raises(symflex.SymflexError) as caught:
+        symflex.loads(f"{HEADER}{blocks}{ENDING}").transfer_function("X", "U")
+    assert [d.code for d in caught.value.diagnostics] == ["SF215"]
+
+
+def test_a_block_and_a_definition_in_a_circle_are_refused():
+    text = f'{HEADER}G = {{ type = "tf", num = "Z" }}\n[definitions]\nZ = "2*G"{ENDING}'
+    with pytest.raises(symflex.SymflexError) as caught:
+        symflex.loads(text).transfer_function("X", "U")
+    assert [d.code for d in caught.value.diagnostics] == ["SF215"]
+
+
+@pytest.mark.parametrize("den", ["p - p", "Z"])
+def test_a_block_that_divides_by_zero_is_refused_at_its_place(den):
+    text = f'{HEADER}G = {{ type = "tf", num = "1", den = "{den}" }}\n[definitions]\nZ = "q - q"{ENDING}'
+    with pytest.raises(symflex.SymflexError) as caught:
+        symflex.loads(text).transfer_function("X", "U")
+    (problem,) = caught.value.diagnostics
+    assert (problem.code, problem.span.line) == ("SF224", 8)

@@ -1,0 +1,5 @@
+"""The shell all tests of this folder use."""
+
+from tests.unit.cli.commands import shell
+
+__all__ = ["shell"]

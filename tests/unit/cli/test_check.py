@@ -1,0 +1,66 @@
+from __future__ import annotations
+
+import pytest
+
+from tests.unit.cli.commands import DERIVATIONS
+
+
+def test_a_good_specification_is_summed_up_on_stdout(shell):
+    done = shell("check", "x.toml")
+    assert (done.code, done.err) == (0, "")
+    assert done.out.splitlines() == [
+        "x.toml: ok",
+        "  Mass on a spring",
+        "  2 parameters, 1 node, 2 elements",
+        "  transfer functions: X/F, V/F",
+    ]
+
+
+def test_parameters_without_value_are_named(shell):
+    assert "symbolic (no value): m" in shell("check", "symbolic.toml").out
+
+
+def test_every_problem_is_reported_on_stderr_with_its_place(shell):
+    done = shell("check", "wrong.toml")
+    assert (done.code, done.out) == (3, "")
+    assert "wrong.toml:6:29: error[SF210]" in done.err
+    assert "error[SF203]" in done.err
+
+
+def test_json_of_a_good_specification(shell):
+    assert shell("check", "x.toml", "--json").json == {
+        "schema": "symflex.check/1",
+        "ok": True,
+        "problems": [],
+        "transfer_functions": ["X/F", "V/F"],
+    }
+
+
+def test_json_of_a_wrong_specification_lists_the_problems_on_stdout(shell):
+    done = shell("check", "wrong.toml", "--json")
+    assert (done.code, done.err, done.json["ok"]) == (3, "", False)
+    problem = next(p for p in done.json["problems"] if p["code"] == "SF210")
+    assert {k: problem[k] for k in ("file", "line", "column")} == {
+        "file": "wrong.toml",
+        "line": 6,
+        "column": 29,
+    }
+    assert set(problem) == {"code", "message", "file", "line", "column", "hint"}
+
+
+def test_a_model_that_cannot_be_solved_is_refused(shell):
+    done = shell("check", "floating.toml")
+    assert done.code == 3
+    assert "error[SF301]: nothing determines node 'x'" in done.err
+
+
+def test_json_of_a_file_that_does_not_exist_names_no_place(shell):
+    done = shell("check", "nowhere.toml", "--json")
+    assert done.code == 2
+    assert done.json["problems"][0]["code"] == "SF901"
+    assert done.json["problems"][0]["line"] is None
+
+
+@pytest.mark.parametrize("path", DERIVATIONS, ids=lambda p: p.stem)
+def test_every_derivation_passes(shell, path):
+    assert shell("check", path).code == 0

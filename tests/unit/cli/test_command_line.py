@@ -1,0 +1,156 @@
+"""What holds for all commands: exit codes, streams, width, colour, pipes."""
+
+from __future__ import annotations
+
+import os
+import pty
+import re
+import subprocess
+import sys
+
+import pytest
+
+from symflex import __version__, pipeline
+from symflex.cli import COMMANDS
+from symflex.cli.report import listed
+from symflex.elements import ELEMENTS
+from symflex.errors import BudgetError, Diagnostic
+from tests.unit.cli.commands import DERIVATIONS, ROOT, TWO_MASS
+
+SPEC_COMMANDS = (("check",), ("derive",), ("roots",), ("plot", "bode"), ("export", "--to", "numpy"))
+UNBREAKABLE = re.compile(r"^ *\S*$")
+
+
+def with_spec(command, spec):
+    return (command[0], spec, *command[1:])
+
+
+def subprocess_environment(**more):
+    return {**os.environ, "PYTHONPATH": str(ROOT), **more}
+
+
+@pytest.mark.parametrize("command", SPEC_COMMANDS, ids=" ".join)
+def test_a_file_that_cannot_be_read_is_a_usage_error(shell, command):
+    done = shell(*with_spec(command, "nowhere.toml"))
+    assert (done.code, done.out) == (2, "")
+    assert "error[SF901]" in done.err
+
+
+@pytest.mark.parametrize("command", SPEC_COMMANDS, ids=" ".join)
+def test_a_wrong_specification_ends_with_code_3_and_prints_nothing_to_stdout(shell, command):
+    done = shell(*with_spec(command, "wrong.toml"))
+    assert (done.code, done.out) == (3, "")
+
+
+@pytest.mark.parametrize("command", SPEC_COMMANDS[1:], ids=" ".join)
+def test_a_model_that_cannot_be_solved_ends_with_code_3(shell, command):
+    assert shell(*with_spec(command, "floating.toml")).code == 3
+
+
+def test_an_exceeded_budget_ends_with_code_5(shell, monkeypatch):
+    def too_large(*_):
+        raise BudgetError(Diagnostic("SF501", "too large, for this test"))
+
+    monkeypatch.setattr(pipeline, "derive_all", too_large)
+    done = shell("derive", "x.toml")
+    assert (done.code, done.err) == (5, "error[SF501]: too large, for this test\n")
+
+
+def test_exhausted_memory_ends_with_code_5(shell, monkeypatch):
+    def exhausted(*_):
+        raise MemoryError
+
+    monkeypatch.setattr(pipeline, "derive_all", exhausted)
+    done = shell("derive", "x.toml")
+    assert (done.code, done.err) == (5, "error[SF504]: out of memory\n")
+
+
+@pytest.mark.parametrize(
+    "arguments", [("derve",), ("derive",), ("derive", "x.toml", "--wrong"), ("--wrong",)]
+)
+def test_a_command_used_wrongly_ends_with_code_2(shell, arguments):
+    done = shell(*arguments)
+    assert (done.code, done.out) == (2, "")
+
+
+def test_a_misspelt_command_is_answered_with_the_right_one(shell):
+    assert "Did you mean 'derive'?" in shell("derve").err
+
+
+def test_without_a_command_the_help_is_shown(shell):
+    done = shell()
+    assert "Commands:" in done.out + done.err
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_has_help_in_80_columns(shell, command):
+    done = shell(command, "--help")
+    assert done.code == 0
+    assert max(map(len, done.out.splitlines())) <= 80
+
+
+def test_the_version_is_the_packages(shell):
+    assert shell("--version").out == f"symflex, version {__version__}\n"
+
+
+@pytest.mark.parametrize("path", DERIVATIONS, ids=lambda p: p.stem)
+@pytest.mark.parametrize(
+    "command", [("check",), ("derive",), ("roots",), ("roots", "--digits", "15")], ids=" ".join
+)
+def test_output_keeps_to_80_columns(shell, command, path):
+    out = shell(*with_spec(command, path)).out
+    assert [line for line in out.splitlines() if len(line) > 80 and not UNBREAKABLE.match(line)] == []
+
+
+@pytest.mark.parametrize("name", [None, *ELEMENTS])
+def test_the_library_keeps_to_80_columns(shell, name):
+    out = shell("elements", *([name] if name else [])).out
+    assert max(map(len, out.splitlines())) <= 80
+
+
+def test_a_long_list_is_broken_between_its_items_only():
+    text = listed("names: ", [f"OUT_{i}/IN" for i in range(40)])
+    assert max(map(len, text.splitlines())) <= 80
+    assert " ".join(text.split()) == "names: " + ", ".join(f"OUT_{i}/IN" for i in range(40))
+
+
+def test_an_error_is_not_coloured_where_there_is_no_terminal(shell):
+    assert "\x1b" not in shell("check", "wrong.toml").err
+
+
+def error_on_a_terminal(folder, **environment):
+    """Return what ``symflex check wrong.toml`` writes to stderr when that is a terminal."""
+    control, terminal = pty.openpty()
+    variables = {k: v for k, v in subprocess_environment(**environment).items() if v}
+    command = [sys.executable, "-m", "symflex", "check", "wrong.toml"]
+    subprocess.run(
+        command, cwd=folder, env=variables, stderr=terminal, stdout=subprocess.DEVNULL, check=False
+    )
+    os.close(terminal)
+    written = os.read(control, 100_000)
+    os.close(control)
+    return written
+
+
+def test_an_error_is_coloured_on_a_terminal(shell):
+    assert b"\x1b[31m" in error_on_a_terminal(shell.folder, NO_COLOR="")
+
+
+def test_no_color_is_respected_on_a_terminal(shell):
+    assert b"\x1b" not in error_on_a_terminal(shell.folder, NO_COLOR="1")
+
+
+def test_a_reader_that_goes_away_is_no_error():
+    command = [sys.executable, "-m", "symflex", "derive", str(TWO_MASS)]
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = subprocess.run(
+        command, env=subprocess_environment(), stdout=writing, stderr=subprocess.PIPE, text=True, check=False
+    )
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_control_characters_of_a_file_do_not_reach_the_terminal(shell):
+    (shell.folder / "evil.toml").write_text('symflex = 1\n[parameters]\nm = "2 \\u001b[31mkg"\n')
+    assert "\x1b" not in shell("check", "evil.toml").err

@@ -1,0 +1,46 @@
+from __future__ import annotations
+
+import pytest
+
+from symflex.blocks import BLOCKS
+from symflex.elements import ELEMENTS
+
+ENTRIES = [*ELEMENTS, *BLOCKS, "model"]
+
+
+def test_the_list_names_every_element_and_block(shell):
+    listed = {
+        line.split("(")[0].strip() for line in shell("elements").out.splitlines() if line[2:3].isalpha()
+    }
+    assert set(ENTRIES) <= listed
+
+
+@pytest.mark.parametrize("name", ENTRIES)
+def test_every_entry_is_described_with_all_its_keys(shell, name):
+    done = shell("elements", name)
+    assert done.code == 0
+    keys = done.out.split(")")[0].split("(")[1].split(", ")
+    lines = done.out.splitlines()
+    assert all(any(line.startswith(f"  {key} ") for line in lines) for key in keys)
+
+
+def test_json_lists_the_library(shell):
+    document = shell("elements", "--json").json
+    assert document["schema"] == "symflex.elements/1"
+    assert [e["type"] for e in document["elements"]] == list(ELEMENTS)
+    assert [b["type"] for b in document["blocks"]] == list(BLOCKS)
+
+
+def test_json_of_an_entry_has_the_documented_keys(shell):
+    document = shell("elements", "dc_motor", "--json").json
+    (motor,) = document["elements"]
+    assert document["blocks"] == []
+    assert set(motor) == {"type", "summary", "ports", "parameters", "through"}
+    assert set(motor["ports"][0]) == {"name", "nodes", "domain", "doc", "default"}
+    assert set(motor["parameters"][0]) == {"name", "unit", "doc", "default"}
+
+
+def test_an_unknown_entry_is_a_usage_error_with_a_hint(shell):
+    done = shell("elements", "sprnig")
+    assert (done.code, done.out) == (2, "")
+    assert "did you mean 'spring'?" in done.err

@@ -1,0 +1,118 @@
+from __future__ import annotations
+
+import pytest
+
+ROOT_KEYS = {
+    "re", "im", "radius", "multiplicity", "frequency_hz", "damping_ratio", "on_imaginary_axis", "is_real",
+    "certified", "boundary",
+}  # fmt: skip
+
+
+def test_the_first_transfer_function_is_shown_and_the_others_named_on_stderr(shell):
+    done = shell("roots", "x.toml")
+    assert done.out.startswith("X/F   certified: 2 of 2 roots enclosed\n")
+    assert done.err == "showing X/F; choose with --tf: V/F\n"
+
+
+def test_text_shows_a_conjugate_pair_on_one_line(shell):
+    lines = shell("roots", "x.toml", "--tf", "X/F", "--digits", "4").out.splitlines()
+    # sqrt(18/2) = 3 rad/s, and 3/(2 pi) = 0.477465 Hz
+    assert [line.split() for line in lines if "+-" in line] == [["0", "+-3.000", "0", "0.477465", "0"]]
+
+
+def test_text_says_when_there_are_no_zeros(shell):
+    assert "  zeros: none" in shell("roots", "x.toml", "--tf", "X/F").out.splitlines()
+
+
+def test_json_has_the_documented_keys(shell):
+    done = shell("roots", "x.toml", "--tf", "V/F", "--json")
+    assert (done.code, done.err) == (0, "")
+    document = done.json
+    assert set(document) == {
+        "schema", "tf", "region", "certified", "poles", "zeros", "hidden", "certificate",
+    }  # fmt: skip
+    assert document["schema"] == "symflex.roots/1"
+    assert set(document["certificate"]) == {"engine", "counted", "found", "reason"}
+    assert all(set(root) == ROOT_KEYS for root in document["poles"] + document["zeros"])
+
+
+def test_json_lists_both_members_of_a_pair_as_decimal_strings(shell):
+    poles = shell("roots", "x.toml", "--tf", "X/F", "--digits", "5", "--json").json["poles"]
+    assert [(p["re"], p["im"]) for p in poles] == [("0", "3.0000"), ("0", "-3.0000")]
+
+
+def test_the_digits_of_the_specification_are_the_default(shell):
+    text = (shell.folder / "x.toml").read_text() + "[analysis]\ndigits = 7\n"
+    (shell.folder / "seven.toml").write_text(text)
+    assert shell("roots", "seven.toml", "--json").json["poles"][0]["im"] == "3.000000"
+
+
+def test_modes_asks_for_the_lowest(shell):
+    assert shell("roots", "x.toml", "--modes", "1", "--json").json["region"] == {"kind": "modes", "count": 1}
+
+
+@pytest.mark.parametrize(("low", "high", "count"), [("0.1", "1", 2), ("1", "2", 0), ("100 mHz", "1 kHz", 2)])
+def test_a_band_is_in_hertz_or_carries_a_unit(shell, low, high, count):
+    assert len(shell("roots", "x.toml", "--band", low, high, "--json").json["poles"]) == count
+
+
+def test_a_rectangle_may_have_negative_sides_and_hold_one_of_a_pair(shell):
+    poles = shell("roots", "x.toml", "--region", "-1", "1", "-5", "-1", "--json").json["poles"]
+    assert [p["im"][:2] for p in poles] == ["-3"]
+
+
+def test_one_of_a_pair_is_printed_with_its_sign(shell):
+    out = shell("roots", "x.toml", "--region", "-1", "1", "-5", "-1", "--digits", "3").out
+    assert [line.split()[1] for line in out.splitlines() if "-3" in line] == ["-3.00"]
+
+
+def test_a_root_on_the_boundary_is_marked_and_the_mark_explained(shell):
+    out = shell("roots", "x.toml", "--region", "0", "1", "-5", "5").out
+    assert "| marks a root on the boundary" in out
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ("--modes", "1", "--band", "1", "2"),
+        ("--band", "2", "1"),
+        ("--band", "1 m", "2 m"),
+        ("--region", "1", "0", "0", "1"),
+        ("--modes", "0"),
+        ("--digits", "0"),
+        ("--tf", "X"),
+        ("--mods", "1"),
+    ],
+    ids=" ".join,
+)
+def test_options_that_make_no_sense_are_usage_errors(shell, options):
+    done = shell("roots", "x.toml", *options)
+    assert (done.code, done.out) == (2, "")
+
+
+def test_a_misspelt_option_is_answered_with_the_right_one(shell):
+    assert "--modes" in shell("roots", "x.toml", "--mods", "1").err
+
+
+def test_what_is_not_certified_ends_with_code_4(shell, monkeypatch):
+    from dataclasses import replace
+
+    from symflex import pipeline
+
+    find = pipeline.roots
+
+    def doubtful(*arguments):
+        found = find(*arguments)
+        return replace(found, certificate=replace(found.certificate, certified=False, reason="for this test"))
+
+    monkeypatch.setattr(pipeline, "roots", doubtful)
+    done = shell("roots", "x.toml")
+    assert done.code == 4
+    assert "NOT CERTIFIED: for this test" in done.out
+
+
+def test_a_transfer_function_that_is_zero_has_only_hidden_modes(shell):
+    (shell.folder / "zero.toml").write_text((shell.folder / "x.toml").read_text().replace('"s*x"', '"0*x"'))
+    document = shell("roots", "zero.toml", "--tf", "V/F", "--json").json
+    assert (document["poles"], document["zeros"]) == ([], [])
+    assert [root["im"][:2] for root in document["hidden"]] == ["3.", "-3"]

@@ -1,0 +1,188 @@
+"""Nodes take their domain from what touches them; nested models, analysis and figures are read."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+
+from symflex import pipeline
+from symflex.errors import SpecError
+
+HEADER = "symflex = 1\n"
+MOVING = '[inputs]\nF = { force = "x" }\n[outputs]\nX = "x"\n'
+
+
+def domains(elements, rest=MOVING):
+    model = pipeline.loads(f"{HEADER}[parameters]\np = 1\n[elements]\n{elements}\n{rest}")
+    return {n.name: n.domain for n in model.nodes}
+
+
+def codes(text):
+    with pytest.raises(SpecError) as caught:
+        pipeline.loads(text)
+    return [d.code for d in caught.value.diagnostics]
+
+
+def test_a_node_of_a_mass_translates():
+    assert domains('M = { type = "mass", at = "x", m = "p" }') == {"x": "translation"}
+
+
+def test_a_node_a_planar_element_touches_is_planar():
+    elements = 'M = { type = "mass", at = "x", m = "p" }\nB = { type = "rigid_body", at = "x", m = "p" }'
+    assert domains(elements) == {"x": "planar"}
+
+
+def test_a_node_named_with_theta_is_planar():
+    elements = (
+        'M = { type = "mass", at = "x", m = "p" }\n'
+        'T = { type = "torsion_spring", between = ["x.theta", "ground"], k = "p" }'
+    )
+    assert domains(elements) == {"x": "planar"}
+
+
+def test_a_translational_element_at_a_planar_node_acts_on_y_and_a_rotational_one_on_theta():
+    text = f"""{HEADER}[parameters]
+m = 2
+J = 3
+k = 5
+t = 7
+[elements]
+B = {{ type = "rigid_body", at = "p", m = "m", J = "J" }}
+K = {{ type = "spring", between = ["p", "ground"], k = "k" }}
+T = {{ type = "torsion_spring", between = ["p", "ground"], k = "t" }}
+[inputs]
+F = {{ force = "p" }}
+M = {{ torque = "p" }}
+[outputs]
+Y = "p"
+Q = "p.theta"
+"""
+    values = {tf.name: pipeline.bind(tf)(1 + 0j) for tf in pipeline.derive_all(pipeline.loads(text))}
+    assert values == {
+        "Y/F": pytest.approx(1 / 7),
+        "Y/M": 0,
+        "Q/F": 0,
+        "Q/M": pytest.approx(1 / 10),
+    }
+
+
+def test_a_node_used_in_two_domains_is_refused():
+    elements = (
+        '[elements]\nM = { type = "mass", at = "x", m = 1 }\nJ = { type = "inertia", at = "x", J = 1 }\n'
+    )
+    assert codes(HEADER + elements + MOVING) == ["SF220"]
+
+
+def test_elements_nodes_outputs_and_inputs_may_share_a_name():
+    text = f'{HEADER}[elements]\nx = {{ type = "mass", at = "x", m = 1 }}\n'
+    (tf,) = pipeline.derive_all(pipeline.loads(text + '[inputs]\nF = { force = "x" }\n[outputs]\nx = "x"\n'))
+    assert pipeline.bind(tf)(1 + 0j) == 1
+
+
+def test_a_name_that_can_be_read_two_ways_is_refused():
+    text = f'{HEADER}[parameters]\nx = 1\n[elements]\nM = {{ type = "mass", at = "x", m = 1 }}\n'
+    assert set(codes(text + MOVING)) == {"SF211"}
+
+
+# -------------------------------------------------------------------------------------- nested models
+
+INNER = """symflex = 1
+[parameters]
+m = "3 kg"
+inner_only = "2 N/m"
+[elements]
+M = { type = "mass", at = "x", m = "m" }
+K = { type = "spring", between = ["x", "ground"], k = "inner_only" }
+[inputs]
+F = { force = "x" }
+[outputs]
+X = "x"
+"""
+
+
+def nested(tmp_path, outer, folder="parts"):
+    (tmp_path / folder).mkdir()
+    (tmp_path / folder / "inner.toml").write_text(INNER, "utf-8")
+    path = tmp_path / "outer.toml"
+    path.write_text(outer, "utf-8")
+    return path
+
+
+OUTER = (
+    HEADER
+    + '{parameters}[blocks]\nG = {{ type = "model", spec = "parts/inner.toml", tf = "X/F" }}\n'
+    + '[inputs]\nu = {{}}\n[outputs]\nY = "G*u"\n'
+)
+
+
+def test_a_nested_model_is_found_relative_to_the_outer_file_and_brings_its_parameters(tmp_path):
+    model = pipeline.load(nested(tmp_path, OUTER.format(parameters="")))
+    assert [p.name for p in model.parameters] == ["m", "inner_only"]
+    (tf,) = pipeline.derive_all(model)
+    assert pipeline.bind(tf)(1 + 0j) == pytest.approx(1 / 5)
+
+
+def test_a_parameter_of_equal_value_is_shared(tmp_path):
+    path = nested(tmp_path, OUTER.format(parameters='[parameters]\nm = "3000 g"\n'))
+    assert [p.name for p in pipeline.load(path).parameters] == ["m", "inner_only"]
+
+
+def test_a_parameter_of_another_value_is_refused(tmp_path):
+    path = nested(tmp_path, OUTER.format(parameters='[parameters]\nm = "4 kg"\n'))
+    with pytest.raises(SpecError) as caught:
+        pipeline.load(path)
+    assert [d.code for d in caught.value.diagnostics] == ["SF226"]
+
+
+def test_a_definition_called_like_an_inner_parameter_is_refused(tmp_path):
+    text = OUTER.format(parameters='[parameters]\nk = 2\n[definitions]\nm = "2*k"\n')
+    with pytest.raises(SpecError) as caught:
+        pipeline.load(nested(tmp_path, text))
+    assert [d.code for d in caught.value.diagnostics] == ["SF211"]
+
+
+def test_a_model_that_nests_itself_is_refused(tmp_path):
+    path = tmp_path / "self.toml"
+    path.write_text(OUTER.format(parameters="").replace("parts/inner", "self"), "utf-8")
+    with pytest.raises(SpecError) as caught:
+        pipeline.load(path)
+    assert [d.code for d in caught.value.diagnostics] == ["SF215"]
+
+
+# --------------------------------------------------------------------------------- analysis and figures
+
+MASS = f'{HEADER}[elements]\nM = {{ type = "mass", at = "x", m = 1 }}\n{MOVING}'
+
+
+def test_the_band_is_in_hertz():
+    model = pipeline.loads(MASS + '[analysis]\nband = ["60 rpm", "1 kHz"]\nmodes = 5\ndigits = 30\n')
+    assert model.analysis.band == (Fraction(1), Fraction(1000))
+    assert (model.analysis.modes, model.analysis.digits) == (5, 30)
+
+
+@pytest.mark.parametrize(
+    ("band", "code"),
+    [
+        ('["1 kHz", "1 Hz"]', "SF227"),
+        ('["0 Hz", "1 Hz"]', "SF227"),
+        ('["1 Hz"]', "SF206"),
+        ('["1 m", "2 Hz"]', "SF203"),
+    ],
+)
+def test_a_band_that_is_none_is_refused(band, code):
+    assert codes(MASS + f"[analysis]\nband = {band}\n") == [code]
+
+
+@pytest.mark.parametrize("key", ["modes = 0", "modes = -1", "modes = 1.5", 'digits = "3"', "digits = 100000"])
+def test_a_count_that_is_none_is_refused(key):
+    assert codes(MASS + f"[analysis]\n{key}\n") == ["SF206"]
+
+
+def test_a_figure_names_its_kind_and_functions():
+    (figure,) = pipeline.loads(MASS + '[figures.one]\nkind = "bode"\nof = ["X/F"]\n').figures
+    assert (figure.name, figure.kind, figure.of) == ("one", "bode", (("X", "F"),))
+
+
+def test_a_figure_of_a_function_that_is_not_there_is_refused():
+    assert codes(MASS + '[figures.one]\nkind = "bode"\nof = ["Y/F"]\n') == ["SF218"]

@@ -1,0 +1,333 @@
+"""What a Python user touches."""
+
+from __future__ import annotations
+
+import math
+from decimal import Decimal
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+import sympy
+
+import symflex
+from symflex.emit.forms import FORMS
+
+TABLES = {
+    "parameters": {
+        "m_1": "60 kg",
+        "m_2": "20 kg",
+        "k": {"value": "95 kN/m", "doc": "drive"},
+        "b": "40 N*s/m",
+    },
+    "definitions": {"Z": "b*s + k"},
+    "elements": {
+        "act": {"type": "mass", "at": "x_act", "m": "m_1"},
+        "tip": {"type": "mass", "at": "x_tip", "m": "m_2"},
+        "drive": {"type": "spring", "between": ["x_act", "x_tip"], "k": "k"},
+        "loss": {"type": "damper", "between": ["x_act", "x_tip"], "b": "b"},
+    },
+    "inputs": {"F": {"force": "x_act"}},
+    "outputs": {"X_act": "x_act", "V_tip": "s*x_tip", "None": "0*x_act"},
+    "analysis": {"band": ["0.1 Hz", "100 Hz"]},
+    "title": "Two masses",
+    "source": "for the tests",
+}
+TEXT = """
+symflex = 1
+title = "Two masses"
+source = "for the tests"
+[parameters]
+m_1 = "60 kg"
+m_2 = "20 kg"
+k = { value = "95 kN/m", doc = "drive" }
+b = "40 N*s/m"
+[definitions]
+Z = "b*s + k"
+[elements]
+act = { type = "mass", at = "x_act", m = "m_1" }
+tip = { type = "mass", at = "x_tip", m = "m_2" }
+drive = { type = "spring", between = ["x_act", "x_tip"], k = "k" }
+loss = { type = "damper", between = ["x_act", "x_tip"], b = "b" }
+[inputs]
+F = { force = "x_act" }
+[outputs]
+X_act = "x_act"
+V_tip = "s*x_tip"
+None = "0*x_act"
+[analysis]
+band = ["0.1 Hz", "100 Hz"]
+"""
+M_1, M_2, K, B = 60, 20, 95_000, 40
+
+
+@pytest.fixture(scope="module")
+def model():
+    return symflex.loads(TEXT)
+
+
+@pytest.fixture(scope="module")
+def colocated(model):
+    return model.transfer_function("X_act", "F")
+
+
+@pytest.fixture(scope="module")
+def tip(model):
+    return model.transfer_function("V_tip", "F")
+
+
+@pytest.fixture(scope="module")
+def nothing(model):
+    return model.transfer_function("None", "F")
+
+
+def receptance(s):
+    """X_act/F of two masses by hand: Newton's law for each, eliminating x_tip."""
+    w = B * s + K
+    return (M_2 * s**2 + w) / (s**2 * (M_1 * M_2 * s**2 + w * (M_1 + M_2)))
+
+
+def test_a_model_built_in_python_equals_the_one_loaded_from_text(model):
+    assert symflex.Model(**TABLES) == model
+
+
+def test_a_model_loaded_from_a_file_equals_the_one_loaded_from_text(model, tmp_path):
+    (tmp_path / "two.toml").write_text(TEXT)
+    assert symflex.load(tmp_path / "two.toml") == symflex.load(str(tmp_path / "two.toml")) == model
+
+
+def test_a_model_says_what_it_holds(model):
+    assert model.title == "Two masses"
+    assert [p.name for p in model.parameters] == ["m_1", "m_2", "k", "b"]
+    assert (model.inputs, model.outputs) == (("F",), ("X_act", "V_tip", "None"))
+
+
+def test_every_problem_of_a_wrong_model_is_in_the_exception():
+    with pytest.raises(symflex.SymflexError) as caught:
+        symflex.Model(
+            elements={"a": {"type": "mas", "at": "x"}, "b": {"type": "spring"}},
+            inputs={"F": {"force": "x"}},
+            outputs={"X": "x"},
+        )
+    assert {d.code for d in caught.value.diagnostics} >= {"SF216", "SF217"}
+
+
+def test_all_transfer_functions_are_those_of_outputs_over_inputs(model):
+    assert [G.name for G in model.transfer_functions()] == ["X_act/F", "V_tip/F", "None/F"]
+
+
+def test_an_unknown_transfer_function_is_a_usage_error(model):
+    with pytest.raises(symflex.SymflexError, match="SF902"):
+        model.transfer_function("X_act", "G")
+
+
+def test_quantity_and_unit(colocated, tip):
+    assert (colocated.quantity, colocated.unit) == ("receptance", "m/N")
+    assert (tip.quantity, tip.unit) == ("mobility", "m/(N*s)")
+
+
+def test_num_over_den_is_the_function_derived_by_hand(colocated):
+    values = {"m_1": M_1, "m_2": M_2, "k": K, "b": B}
+    where = dict(colocated.where)
+    s = sympy.Symbol("s")
+    value = colocated.expr.subs(where).subs(
+        {x: values[x.name] for x in (colocated.expr.subs(where)).free_symbols - {s}}
+    )
+    assert sympy.cancel(value - receptance(s)) == 0
+    assert sympy.cancel(colocated.num / colocated.den - colocated.expr) == 0
+
+
+def test_parameters_are_positive_symbols(colocated):
+    assert next(x for x in colocated.expr.free_symbols if x.name == "m_1").is_positive
+
+
+@pytest.mark.parametrize("name", [name for name in FORMS if name != "zpk"])
+def test_every_form_is_the_same_function(colocated, name):
+    form = colocated.form(name)
+    assert form.name == name
+    assert sympy.cancel((form.expr - colocated.expr).subs(dict(form.where)).subs(dict(colocated.where))) == 0
+
+
+def test_the_definitions_form_keeps_definitions_closed(colocated):
+    form = colocated.form("definitions")
+    s, b, k = sympy.Symbol("s"), *sympy.symbols("b k", positive=True)
+    assert [(str(name), meaning) for name, meaning in form.where] == [("Z", b * s + k)]
+    assert not {b, k} & form.expr.free_symbols
+    assert str(form).endswith("\n  where Z = b*s + k")
+
+
+def test_the_zpk_form_has_the_asked_digits(colocated):
+    # leading coefficients: m_2/(m_1*m_2) = 1/60
+    assert sympy.LC(colocated.form("zpk", 4).num, sympy.Symbol("s")) == sympy.Rational("0.01667")
+
+
+def test_an_unknown_form_is_a_usage_error(colocated):
+    with pytest.raises(symflex.SymflexError, match="did you mean 'factored'"):
+        colocated.form("factord")
+
+
+def test_what_cancelled_is_a_sympy_expression(tip, colocated):
+    assert tip.hidden == ((sympy.Symbol("s"), 1),)
+    assert colocated.hidden == ()
+
+
+def test_latex_has_no_display_of_its_own_and_the_notebook_adds_it(colocated):
+    assert colocated._repr_latex_() == f"$\\displaystyle {colocated.latex()}$"
+    assert colocated.form("monic")._repr_latex_() == f"$\\displaystyle {colocated.latex('monic')}$"
+    assert r"\frac{X_{\mathrm{act}}(s)}{F(s)}" in colocated.latex()
+
+
+def test_the_json_dictionary_is_what_the_command_line_lists(tip):
+    assert tip.to_json_dict("polynomial")["den"] == "m_1*m_2*s^3 + b*(m_1 + m_2)*s^2 + k*(m_1 + m_2)*s"
+
+
+@pytest.mark.parametrize("s", [1j, 50j, -3 + 2j, 1.5])
+def test_a_bound_function_evaluates_at_a_number(colocated, s):
+    value = colocated.bind()(s)
+    assert isinstance(value, complex)
+    assert value == pytest.approx(receptance(s), rel=1e-13)
+
+
+def test_a_bound_function_evaluates_over_an_array_of_any_shape(colocated):
+    s = 1j * np.arange(1.0, 7.0).reshape(2, 3)
+    np.testing.assert_allclose(colocated.bind()(s), receptance(s), rtol=1e-13)
+
+
+@pytest.mark.parametrize(
+    "k", [120_000, 120_000.0, Fraction(120_000), Decimal(120_000), "120 kN/m", "120000", np.float64(1.2e5)]
+)
+def test_a_value_may_be_any_number_or_a_quantity(colocated, k):
+    assert colocated.bind(k=k).bound.values == colocated.bind(k=120_000).bound.values
+
+
+def test_bound_values_replace_the_declared_ones(tip):
+    # undamped: omega^2 = k (1/m_1 + 1/m_2)
+    poles = tip.bind(b=0, k="30 N/m", m_1=2, m_2=3).poles()
+    assert [complex(p) for p in poles] == [0, 5j, -5j]
+
+
+@pytest.mark.parametrize(
+    ("values", "code"), [({"q": 1}, "SF902"), ({"k": "1 kg"}, "SF203"), ({"k": math.nan}, "SF902")], ids=str
+)
+def test_a_value_that_does_not_fit_is_a_usage_error(colocated, values, code):
+    with pytest.raises(symflex.SymflexError, match=code):
+        colocated.bind(**values)
+
+
+def test_poles_come_in_both_members_with_exact_zeros(colocated):
+    # m_1 m_2 s^2 + (m_1 + m_2)(b s + k): s = -4/3 +- j sqrt(19000/3 - 16/9)
+    origin, upper, lower = colocated.bind().poles(digits=30)
+    assert (origin.value, origin.multiplicity, origin.is_real, origin.on_imaginary_axis) == (0, 2, True, True)
+    with mpmath.workdps(40):
+        assert lower.im == -upper.im
+        exact = mpmath.mpc(-mpmath.mpf(4) / 3, mpmath.sqrt(mpmath.mpf(19000) / 3 - mpmath.mpf(16) / 9))
+        assert abs(upper.value - exact) <= upper.radius < mpmath.mpf(10) ** -27
+
+
+def test_roots_are_mpmath_numbers(colocated):
+    root = colocated.bind().zeros()[0]
+    assert isinstance(root.re, mpmath.mpf)
+    assert isinstance(root.value, mpmath.mpc)
+    assert isinstance(root.radius, mpmath.mpf)
+    assert isinstance(complex(root), complex)
+    assert root.certified
+
+
+def test_a_value_keeps_its_digits_whatever_the_working_precision(colocated):
+    value = colocated.bind().poles(digits=40)[1].value
+    with mpmath.workdps(50):
+        assert abs(value.real + mpmath.mpf(4) / 3) < mpmath.mpf(10) ** -39
+
+
+def test_a_zero_has_frequency_and_damping(colocated):
+    # m_2 s^2 + b s + k
+    (upper, _) = colocated.bind().zeros()
+    assert upper.frequency_hz == pytest.approx(math.sqrt(K / M_2) / (2 * math.pi))
+    assert upper.damping_ratio == pytest.approx(B / (2 * math.sqrt(K * M_2)))
+    assert not upper.is_real
+
+
+def test_modes_keeps_the_roots_at_the_origin_and_the_lowest_mode(colocated):
+    assert [p.multiplicity for p in colocated.bind().poles(modes=1)] == [2, 1, 1]
+
+
+def test_a_band_keeps_natural_frequencies_in_hertz(colocated):
+    bound = colocated.bind()
+    # the mode is at sqrt(95000/15)/(2 pi) = 12.666 Hz
+    assert [len(bound.poles(band=band)) for band in ((12.6, 12.7), (12.7, 20))] == [2, 0]
+
+
+def test_modes_and_band_together_are_a_usage_error(colocated):
+    with pytest.raises(symflex.SymflexError, match="SF902"):
+        colocated.bind().poles(1, band=(1, 2))
+
+
+def test_the_static_gain_is_the_limit(model, colocated, tip):
+    assert colocated.bind().dcgain() == math.inf
+    assert tip.bind().dcgain() == math.inf
+    spring = symflex.Model(
+        parameters={"k": "4 N/m", "m": "1 kg"},
+        elements={
+            "m": {"type": "mass", "at": "x", "m": "m"},
+            "k": {"type": "spring", "between": ["x", "ground"], "k": "k"},
+        },
+        inputs={"F": {"force": "x"}},
+        outputs={"X": "x", "V": "s*x"},
+    )
+    assert spring.transfer_function("X", "F").bind().dcgain() == 0.25
+    assert spring.transfer_function("V", "F").bind().dcgain() == 0
+
+
+def test_a_frequency_response_is_the_function_on_the_axis(colocated):
+    omega = np.geomspace(0.1, 1e3, 40)
+    response = colocated.bind().frequency_response(omega)
+    np.testing.assert_allclose(response.values, receptance(1j * omega), rtol=1e-12)
+    np.testing.assert_array_equal(response.omega, omega)
+    assert response.unit == "m/N"
+
+
+def test_the_pole_zero_map_has_the_hidden_modes_and_a_certificate(tip):
+    found = tip.bind().pole_zero_map(digits=20)
+    assert [h.root.is_zero for h in found.hidden] == [True]
+    assert found.certificate.certified
+    # three poles, one zero, one hidden
+    assert (found.certificate.counted, found.certificate.found) == (5, 5)
+
+
+def test_the_zero_transfer_function_has_no_poles_and_no_zeros(nothing):
+    bound = nothing.bind()
+    assert (nothing.expr, bound.poles(), bound.zeros(), bound.dcgain(), bound(1j)) == (0, (), (), 0, 0)
+
+
+def test_all_modes_of_the_zero_transfer_function_are_hidden(nothing, colocated):
+    hidden = [complex(symflex.Root(h.root)) for h in nothing.bind().pole_zero_map().hidden]
+    assert sorted(hidden, key=lambda z: (z.real, z.imag)) == sorted(
+        (complex(p) for p in colocated.bind().poles()), key=lambda z: (z.real, z.imag)
+    )
+
+
+def test_the_zero_transfer_function_has_a_response_of_zeros(nothing):
+    np.testing.assert_array_equal(nothing.bind().frequency_response([1.0, 2.0]).values, [0, 0])
+
+
+def test_the_exported_numpy_module_agrees(model):
+    space = {}
+    exec(compile(model.export_numpy(), "exported", "exec"), space)  # noqa: S102
+    s = 1j * np.geomspace(0.1, 1e3, 20)
+    np.testing.assert_allclose(space["X_act_over_F"](s), receptance(s), rtol=1e-13)
+
+
+def test_the_exported_latex_is_a_document(model):
+    text = model.export_latex()
+    assert text.index(r"\documentclass") < text.index(r"\begin{document}") < text.index(r"\end{document}")
+
+
+def test_every_public_name_can_be_imported_and_documents_itself():
+    for name in symflex.__all__:
+        assert getattr(symflex, name).__doc__
+
+
+def test_a_name_that_does_not_exist_is_an_attribute_error():
+    with pytest.raises(AttributeError, match="no attribute 'lod'"):
+        symflex.lod  # noqa: B018

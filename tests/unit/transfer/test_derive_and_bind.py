@@ -1,0 +1,419 @@
+"""Transfer functions in lowest terms, what cancelled, and their exact values with numbers."""
+
+from __future__ import annotations
+
+import math
+from decimal import Decimal
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+from flint import acb, arb, ctx
+
+from symflex import pipeline
+from symflex.errors import ModelError, SpecError, UsageError
+from symflex.kernels import Factored, Ring
+from symflex.transfer.cancel import cancel
+
+HEADER = "symflex = 1\n[parameters]\n"
+SYMMETRIC = (
+    HEADER
+    + """m = "2 kg"
+k = "3 N/m"
+c = "5 N/m"
+[elements]
+M_1 = { type = "mass", at = "x", m = "m" }
+M_2 = { type = "mass", at = "y", m = "m" }
+K_1 = { type = "spring", between = ["x", "ground"], k = "k" }
+K_2 = { type = "spring", between = ["y", "ground"], k = "k" }
+C = { type = "spring", between = ["x", "y"], k = "c" }
+[inputs]
+F = { force = "x" }
+[signals]
+both = "F_0"
+[elements.P_1]
+type = "force_source"
+at = "x"
+f = "both"
+[elements.P_2]
+type = "force_source"
+at = "y"
+f = "both"
+[inputs.F_0]
+[outputs]
+X = "x"
+SUM = "x + y"
+DIFF = "x - y"
+"""
+)
+
+
+def derive(text, output, source):
+    return pipeline.derive(pipeline.assemble(pipeline.loads(text)), output, source)
+
+
+def hidden(tf):
+    return sorted((str(h.polynomial), h.multiplicity) for h in tf.hidden)
+
+
+def as_text(ratio):
+    return f"({ratio.numerator().expand()})/({ratio.denominator().expand()})"
+
+
+# ------------------------------------------------------------------------------------ what is cancelled
+
+
+def test_a_symmetric_structure_pushed_symmetrically_hides_the_antisymmetric_mode():
+    # m s^2 x = F - k x in unison; out of phase m s^2 + k + 2 c.
+    tf = derive(SYMMETRIC, "X", "F_0")
+    assert as_text(tf.ratio) == "(1)/(s^2*m + k)"
+    assert hidden(tf) == [("s^2*m + k + 2*c", 1)]
+
+
+def test_the_sum_of_both_motions_does_not_observe_the_antisymmetric_mode():
+    tf = derive(SYMMETRIC, "SUM", "F")
+    assert as_text(tf.ratio) == "(1)/(s^2*m + k)"
+    assert hidden(tf) == [("s^2*m + k + 2*c", 1)]
+
+
+def test_the_difference_under_symmetric_push_is_zero():
+    assert derive(SYMMETRIC, "DIFF", "F_0").ratio.is_zero
+
+
+def test_one_mass_driven_alone_hides_nothing():
+    tf = derive(SYMMETRIC, "X", "F")
+    assert (tf.order, hidden(tf)) == ((2, 4), [])
+
+
+def test_a_disconnected_subsystem_is_hidden_as_a_whole():
+    text = SYMMETRIC.replace('C = { type = "spring", between = ["x", "y"], k = "c" }\n', "")
+    tf = derive(text, "X", "F")
+    assert (as_text(tf.ratio), hidden(tf)) == ("(1)/(s^2*m + k)", [("s^2*m + k", 1)])
+
+
+def test_the_values_of_hidden_parameters_are_needed_to_bind_too():
+    text = SYMMETRIC.replace('C = { type = "spring", between = ["x", "y"], k = "c" }\n', "")
+    text = text.replace('K_2 = { type = "spring", between = ["y", "ground"], k = "k" }', "").replace(
+        'M_2 = { type = "mass", at = "y", m = "m" }',
+        'M_2 = { type = "mass", at = "y", m = "3*sqrt(c*m)*m/c" }\n'
+        'K_2 = { type = "spring", between = ["y", "ground"], k = "sqrt(c)*c" }',
+    )
+    tf = derive(text.replace('m = "2 kg"', "m = 2").replace("5 N/m", "5").replace("3 N/m", "3"), "X", "F")
+    bound = pipeline.bind(tf)
+    assert [p.name for p in tf.hidden_parameters] == ["m", "c"]
+    assert len(bound.hidden) == 1
+    assert bound(0j) == pytest.approx(1 / 3)
+
+
+CONTROLLER = (
+    HEADER
+    + """J = "2 kg*m^2"
+b = "6 N*m*s/rad"
+k = "1 N*m*s/rad"
+[elements]
+rotor = { type = "inertia", at = "z", J = "J" }
+loss = { type = "rotary_damper", between = ["z", "ground"], b = "b" }
+drive = { type = "torque_source", at = "z", tau = "CONTROL" }
+[inputs]
+r = { unit = "rad/s" }
+[outputs]
+W = "s*z"
+"""
+)
+
+
+def test_a_controller_s_zero_that_cancels_a_plant_s_pole_is_hidden():
+    tf = derive(CONTROLLER.replace("CONTROL", "k*(J*s + b)/s*r/b").replace("rad/s", "rad/s^2"), "W", "r")
+    assert tf.order == (0, 1)
+    # W = s*z of a rotor whose angle is an integral: that s cancels too.
+    assert ("s*J + b", 1) in hidden(tf)
+
+
+def test_a_controller_s_zero_near_a_plant_s_pole_hides_nothing_of_it():
+    tf = derive(CONTROLLER.replace("CONTROL", "k*(J*s + 2*b)/s*r/b").replace("rad/s", "rad/s^2"), "W", "r")
+    assert not any("J" in text for text, _ in hidden(tf))
+
+
+def test_a_cancellation_by_value_is_reported_when_the_values_are_bound():
+    # With J = 2, b = 6 and k = 1 the pole -b/J is -3, and so is the controller's zero -6 k/J.
+    tf = derive(CONTROLLER.replace("CONTROL", "k*(s + 3*k/J*2)/s*r"), "W", "r")
+    assert [str(h.polynomial) for h in pipeline.bind(tf).hidden if str(h.polynomial) != "s"] == ["s + 3"]
+    assert not any(str(h.polynomial) != "s" for h in pipeline.bind(tf, {"k": 2}).hidden)
+
+
+def test_a_value_of_zero_that_cancels_a_power_of_s_reports_it():
+    # s*x of a free mass: s/(m s^2), where one s cancels only when k is zero.
+    assert [str(h.polynomial) for h in bound("V", k=0).hidden] == ["s"]
+
+
+FILTERED = (
+    HEADER
+    + """m = "1 kg"
+k = "2 N/m"
+b = "3 N*s/m"
+T = "1 s"
+[elements]
+M = { type = "mass", at = "x", m = "m" }
+K = { type = "spring", between = ["x", "ground"], k = "k" }
+B = { type = "damper", between = ["x", "ground"], b = "b" }
+[inputs]
+F = { force = "x" }
+[outputs]
+X = "x"
+Y = "x/(1 + T*s)"
+Z = "(k + b*s + m*s^2)*x/(1 + T*s)"
+S = "x/(k + b/T)"
+"""
+)
+
+
+def test_the_filter_of_one_output_is_no_mode_of_another():
+    assert hidden(derive(FILTERED, "X", "F")) == []
+
+
+def test_a_filtered_output_has_the_filter_s_pole():
+    tf = derive(FILTERED, "Y", "F")
+    assert as_text(tf.ratio) == as_text_of("1", "(m*s^2 + b*s + k)*(T*s + 1)", tf.ratio.ring)
+    assert hidden(tf) == []
+
+
+def as_text_of(num, den, ring):
+    values = {n: ring.generator(n) for n in ring.names}
+    m, b, k, T, s = (values[n] for n in ("m", "b", "k", "T", "s"))
+    table = {"1": ring.constant(1), "(m*s^2 + b*s + k)*(T*s + 1)": (m * s**2 + b * s + k) * (T * s + 1)}
+    return f"({table[num]})/({table[den]})"
+
+
+def test_an_output_that_inverts_the_plant_hides_the_plant_s_modes():
+    tf = derive(FILTERED, "Z", "F")
+    assert (tf.order, hidden(tf)) == ((0, 1), [("s^2*m + s*b + k", 1)])
+
+
+def test_an_output_may_be_divided_by_a_sum_of_parameters():
+    assert pipeline.bind(derive(FILTERED, "S", "F"))(0j) == pytest.approx(1 / 2 / 5, rel=1e-15)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_cancel_leaves_coprime_parts_and_the_same_quotient(seed):
+    ring = Ring(("s", "a", "b"))
+    s, a, b = (Factored.generator(ring, n) for n in ring.names)
+    pool = [s + a, s * a + b, s**2 + a * s + b, a + b, s - b, a, s]
+    pick = [pool[(seed * 3 + i * i) % len(pool)] for i in range(4)]
+
+    def opened(value):
+        return Factored.polynomial(ring, value.expand())
+
+    num, den = opened(pick[0] * pick[1] * pick[2] ** 2), opened(pick[1] * pick[3] * pick[2])
+    ratio, shared = cancel(num, den)
+    above, below = ratio.numerator().expand(), ratio.denominator().expand()
+    assert above.gcd(below).is_constant()
+    assert above * den.expand() == below * num.expand()
+    assert (shared * ratio.denominator()).expand() in (den.expand(), -den.expand())
+
+
+# -------------------------------------------------------------------------------------------- binding
+
+OSCILLATOR = (
+    HEADER
+    + """m = "2 kg"
+k = "8 N/m"
+b = { value = "0 N*s/m", assume = "nonnegative" }
+q = "4 1/m"
+[elements]
+M = { type = "mass", at = "x", m = "m" }
+K = { type = "spring", between = ["x", "ground"], k = "k" }
+B = { type = "damper", between = ["x", "ground"], b = "b" }
+[inputs]
+F = { force = "x" }
+[outputs]
+X = "x"
+V = "s*x"
+I = "x/s"
+R = "sqrt(q)*x"
+"""
+)
+
+
+def bound(output="X", **values):
+    return pipeline.bind(derive(OSCILLATOR, output, "F"), values)
+
+
+@pytest.mark.parametrize(
+    ("given", "exact"),
+    [
+        (3, Fraction(3)),
+        (0.1, Fraction(1, 10)),
+        (np.float64(0.1), Fraction(1, 10)),
+        (np.float32(0.5), Fraction(1, 2)),
+        (np.int64(7), Fraction(7)),
+        (np.array([0.25]), Fraction(1, 4)),
+        (1e-30, Fraction(1, 10**30)),
+        (Fraction(1, 3), Fraction(1, 3)),
+        (Decimal("0.7"), Fraction(7, 10)),
+        ("0.7 N/mm", Fraction(700)),
+        ("12", Fraction(12)),
+    ],
+)
+def test_a_value_given_is_taken_exactly(given, exact):
+    assert dict(bound(k=given).values)["k"].rational == exact
+
+
+@pytest.mark.parametrize(
+    "given",
+    [math.nan, math.inf, -math.inf, 1j, None, "", np.array([1.0, 2.0]), np.float64("nan"), Decimal("NaN")],
+)
+def test_what_is_no_finite_number_is_refused(given):
+    with pytest.raises((UsageError, SpecError)):
+        bound(k=given)
+
+
+def test_a_value_in_a_wrong_unit_is_refused():
+    with pytest.raises(UsageError) as caught:
+        bound(k="3 N")
+    assert caught.value.diagnostics[0].code == "SF203"
+
+
+def test_an_unknown_parameter_is_refused_with_a_suggestion():
+    with pytest.raises(UsageError) as caught:
+        pipeline.bind(derive(CONTROLLER.replace("CONTROL", "k*r"), "W", "r"), {"JJ": 3})
+    assert caught.value.diagnostics[0].code == "SF902"
+
+
+def test_a_missing_value_is_named():
+    text = OSCILLATOR.replace('m = "2 kg"', "m = {}").replace('k = "8 N/m"', "k = {}")
+    with pytest.raises(ModelError) as caught:
+        pipeline.bind(derive(text, "X", "F"))
+    assert {d.code for d in caught.value.diagnostics} == {"SF229"}
+    assert all(any(f"{n}" in d.message for d in caught.value.diagnostics) for n in ("m", "k"))
+
+
+def test_a_parameter_that_does_not_occur_needs_no_value():
+    text = OSCILLATOR.replace('q = "4 1/m"', "q = {}")
+    assert pipeline.bind(derive(text, "X", "F"))(0j) == 0.125
+
+
+def test_a_function_of_a_parameter_that_does_not_occur_is_not_evaluated():
+    text = OSCILLATOR.replace('q = "4 1/m"', 'q = { value = "-4 1/m", assume = "real" }')
+    assert pipeline.bind(derive(text, "X", "F"))(0j) == 0.125
+    with pytest.raises(ModelError) as caught:
+        pipeline.bind(derive(text, "R", "F"))(0j)
+    assert caught.value.diagnostics[0].code == "SF228"
+
+
+def test_values_for_which_the_denominator_vanishes_are_refused():
+    with pytest.raises(ModelError) as caught:
+        bound(m=0, k=0)
+    assert caught.value.diagnostics[0].code == "SF231"
+
+
+def test_a_value_of_zero_lowers_the_order():
+    assert bound(m=0, b=1).ratio.denominator().expand().degrees()[0] == 1
+
+
+# ----------------------------------------------------------------------------------------- evaluation
+
+
+@pytest.mark.parametrize(
+    "s",
+    [
+        0j,
+        1.7j,
+        2j * (1 + 1e-15),
+        2j + 1e-17,
+        1e-200 + 1e-180j,
+        1e150 + 1e150j,
+        -3e-8 + 2j,
+        5e-324j,
+        1.3e154j,
+    ],
+)
+def test_a_value_is_right_to_the_last_bits_also_close_to_a_pole(s):
+    with mpmath.workdps(400):
+        at = mpmath.mpc(s.real, s.imag)
+        expected = complex(1 / (2 * at * at + 8))
+    found = bound()(s)
+    assert abs(found - expected) <= 4e-16 * abs(expected)
+
+
+def test_a_value_at_a_pole_is_infinite():
+    value = bound()(2j)
+    assert math.isinf(value.real)
+
+
+def test_a_value_at_a_zero_is_zero():
+    assert bound("V")(0j) == 0
+
+
+@pytest.mark.parametrize("s", [1e308 + 1.7e308j, 1.7e308 + 0j, -1e308j])
+def test_a_value_at_the_largest_doubles_is_tiny_not_an_error(s):
+    assert abs(bound()(s)) == 0
+
+
+@pytest.mark.parametrize("s", [complex(math.inf, 0), complex(0, math.nan)])
+def test_a_value_at_no_number_is_no_number(s):
+    assert math.isnan(bound()(s).real)
+
+
+def test_massive_cancellation_costs_no_digits():
+    # (s + 1)^2 - s^2 - 2 s - 1 + 1/10^40 over 1: every double is lost, the balls are not.
+    text = f"""{HEADER}e = "1e-40"
+T = "1 s"
+[inputs]
+U = {{}}
+[outputs]
+Y = "((T*s + 1)^2 - T^2*s^2 - 2*T*s*(1 - e) - 1 + e)*U"
+"""
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    assert pipeline.bind(tf)(3 + 0j) == pytest.approx(7e-40, rel=1e-15)
+
+
+def test_pi_and_square_roots_are_enclosed_not_rounded():
+    text = f"""{HEADER}a = 2
+[inputs]
+U = {{}}
+[outputs]
+Y = "(pi - sqrt(a)*2221441469079183/1000000000000000)*U"
+"""
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    with mpmath.workdps(60):
+        expected = mpmath.pi - mpmath.sqrt(2) * mpmath.mpf(2221441469079183) / 10**15
+    assert pipeline.bind(tf)(0j).real == pytest.approx(float(expected), rel=1e-15)
+
+
+@pytest.mark.parametrize(("output", "limit"), [("X", 0.125), ("V", 0.0), ("I", math.inf), ("R", 0.25)])
+def test_the_limit_at_zero(output, limit):
+    assert bound(output).limit_at_zero() == limit
+
+
+def test_a_negative_integral_has_the_limit_minus_infinity():
+    text = OSCILLATOR.replace('I = "x/s"', 'I = "-x/s"')
+    assert pipeline.bind(derive(text, "I", "F")).limit_at_zero() == -math.inf
+
+
+def test_the_logarithmic_derivative_is_that_of_the_formula():
+    # G = 1/(2 s^2 + 8): G'/G = -4 s/(2 s^2 + 8), at s = 1 exactly -0.4.
+    with ctx.workprec(100):
+        ball = bound().enclosed(100).logarithmic_derivative(acb(1))
+        assert abs(ball * 5 + 2) < arb("1e-28")
+
+
+@pytest.mark.parametrize(
+    ("output", "quantity", "unit"),
+    [("X", "receptance", "m/N"), ("V", "mobility", "m/(N*s)")],
+)
+def test_a_function_bears_its_name_and_unit(output, quantity, unit):
+    tf = derive(OSCILLATOR, output, "F")
+    assert (tf.quantity, tf.unit) == (quantity, unit)
+
+
+def test_the_parameters_of_a_function_stand_in_declared_order_and_only_when_they_occur():
+    assert [p.name for p in derive(OSCILLATOR, "R", "F").parameters] == ["m", "k", "b", "q"]
+    assert [p.name for p in derive(OSCILLATOR, "X", "F").parameters] == ["m", "k", "b"]
+
+
+def test_a_shared_elimination_gives_what_each_alone_gives():
+    model = pipeline.loads(OSCILLATOR)
+    together = [as_text(tf.ratio) for tf in pipeline.derive_all(model)]
+    alone = [as_text(derive(OSCILLATOR, o, i).ratio) for o, i in model.transfer_functions]
+    assert together == alone
