@@ -5,6 +5,7 @@ A page asks for a part with a comment on a line of its own, ``<!-- reference: el
 
 from __future__ import annotations
 
+import inspect
 import re
 import textwrap
 from typing import TYPE_CHECKING
@@ -82,7 +83,7 @@ def _command(name: str, command: click.Command, parent: click.Context) -> str:
     formatter = context.make_formatter()
     command.format_options(context, formatter)
     options = textwrap.dedent(formatter.getvalue().partition("\n")[2])
-    about = textwrap.dedent(command.help or "").replace("\b\n", "")
+    about = inspect.cleandoc(command.help or "").replace("\b\n", "")
     return "\n\n".join([f"## `symflex {name}`", _text(usage), about, _text(options)])
 
 

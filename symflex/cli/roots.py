@@ -47,6 +47,7 @@ def command(
     from symflex import pipeline
     from symflex.emit.text import roots_text
 
+    chosen = _region(modes, band, region)
     model = pipeline.load(spec)
     pairs = pipeline.pick_pairs(model, [tf] if tf else [])
     if tf is None and len(pairs) > 1:
@@ -54,7 +55,7 @@ def command(
         note(f"showing {'/'.join(pairs[0])}; choose with --tf: {others}")
     derived = pipeline.derive_all(model, pairs[:1])[0]
     shown = digits or model.analysis.digits or 15
-    found = pipeline.roots(pipeline.bind(derived), _region(modes, band, region), shown)
+    found = pipeline.roots(pipeline.bind(derived), chosen, shown)
     if as_json:
         emit_json(found.to_json_dict())
     else:
@@ -72,27 +73,34 @@ def _region(
     if modes is not None:
         return Modes(modes)
     if band is not None:
-        low, high = (_number(text, "--band") for text in band)
+        low, high = (_limit(text, "--band", "0.1 or '1 kHz'", hertz=True) for text in band)
         if not 0 <= low < high:
             raise UsageError(Diagnostic("SF902", "--band takes two frequencies in Hz, the lower one first"))
         return Band(low, high)
     if region is not None:
-        re_low, re_high, im_low, im_high = (_number(text, "--region") for text in region)
+        re_low, re_high, im_low, im_high = (
+            _limit(text, "--region", "-10 or '3 rad/s'", hertz=False) for text in region
+        )
         if re_low > re_high or im_low > im_high:
             raise UsageError(Diagnostic("SF902", "--region takes RE0 <= RE1 and IM0 <= IM1"))
         return Rectangle(re_low, re_high, im_low, im_high)
     return None
 
 
-def _number(text: str, option: str) -> Fraction:
-    """Return a number; a quantity is accepted where its unit counts per second."""
-    from symflex.errors import Source, Span, Text
-    from symflex.quantities import parse_quantity, unit_of
+def _limit(text: str, option: str, example: str, *, hertz: bool) -> Fraction:
+    """Return a limit in Hz, or in rad/s, from a number or a quantity that counts per second."""
+    from symflex.errors import Source, Span, SpecError, Text
+    from symflex.model.analysis import PER_SECOND, PI_NEARLY, in_limits
+    from symflex.quantities import parse_quantity
 
-    quantity = parse_quantity(Text(text, Span(Source(option, text), 0, len(text))))
-    if quantity.unit and quantity.dimension != unit_of("1/s").dimension:
-        raise UsageError(Diagnostic("SF203", f"{option} takes frequencies, found '{quantity.unit}'"))
-    number, pi_power = quantity.cyclic()
-    if pi_power:
-        raise UsageError(Diagnostic("SF902", f"{option} takes plain numbers, found '{text[:60]}'"))
-    return number
+    wrong = UsageError(Diagnostic("SF902", f"{option} takes numbers such as {example}, found '{text[:60]}'"))
+    try:
+        quantity = parse_quantity(Text(text, Span(Source(option, text), 0, len(text))))
+    except SpecError:
+        raise wrong from None
+    if quantity.unit and quantity.dimension != PER_SECOND:
+        raise wrong
+    number = in_limits(quantity)
+    if not quantity.unit or bool(quantity.cycles) == hertz:
+        return number
+    return number / (2 * PI_NEARLY) if hertz else number * 2 * PI_NEARLY

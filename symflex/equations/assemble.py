@@ -140,7 +140,8 @@ class _Assembly:
             self._equal(Variable("signal", signal.name), signal.expression, evaluator)
         outputs = [self._output(o.name, o.expression, evaluator) for o in self.model.outputs]
         if self.problems:
-            raise ModelError(*self.problems)
+            too_large = all(d.code.startswith("SF5") for d in self.problems)
+            raise (BudgetError if too_large else ModelError)(*self.problems)
         count = len(self.balance) + len(self.unknowns)
         if count > UNKNOWN_LIMIT:
             raise _too_large(f"{count} unknowns; at most {UNKNOWN_LIMIT} are solved for", "split the model")

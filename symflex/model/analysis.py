@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from symflex.expressions import Expression
     from symflex.model.model import Model
     from symflex.model.reading import Reader
+    from symflex.quantities import Quantity
     from symflex.spec import Entry, Value
 
 FIGURE_KINDS = ("bode", "poles_zeros", "nyquist", "locus", "modes", "step")
@@ -71,13 +72,18 @@ def _frequency(reader: Reader, value: Value) -> Fraction | None:
     if quantity.unit and quantity.dimension != PER_SECOND:
         reader.note("SF203", f"a frequency is in 'Hz', found '{quantity.unit}'", value.span)
         return None
-    number, pi_power = quantity.cyclic()
-    turns_per_radian = Fraction(1) if quantity.cycles or not quantity.unit else 1 / (2 * PI_NEARLY)
-    return number * PI_NEARLY**pi_power * turns_per_radian
+    number = in_limits(quantity)
+    return number if quantity.cycles or not quantity.unit else number / (2 * PI_NEARLY)
 
 
 PI_NEARLY = Fraction(314159265358979323846264338328, 10**29)
 """The limits of a plot or search band need no exact pi."""
+
+
+def in_limits(quantity: Quantity) -> Fraction:
+    """Return the limit of a band or region that a quantity gives, in SI units and cycles."""
+    number, pi_power = quantity.cyclic()
+    return number * PI_NEARLY**pi_power
 
 
 def _count(reader: Reader, section: TableValue, key: str, limit: int) -> int | None:

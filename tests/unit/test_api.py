@@ -220,7 +220,7 @@ def test_poles_come_in_both_members_with_exact_zeros(colocated):
     origin, upper, lower = colocated.bind().poles(digits=30)
     assert (origin.value, origin.multiplicity, origin.is_real, origin.on_imaginary_axis) == (0, 2, True, True)
     with mpmath.workdps(40):
-        assert lower.im == -upper.im
+        assert lower.im + upper.im == 0
         exact = mpmath.mpc(-mpmath.mpf(4) / 3, mpmath.sqrt(mpmath.mpf(19000) / 3 - mpmath.mpf(16) / 9))
         assert abs(upper.value - exact) <= upper.radius < mpmath.mpf(10) ** -27
 

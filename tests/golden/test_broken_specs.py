@@ -1,0 +1,71 @@
+"""Specifications with mistakes, and what an engineer is told about them.
+
+Each ``broken/NAME.toml`` holds one kind of mistake, or several; ``broken/NAME.txt`` holds the exit code and the
+whole output of ``symflex check NAME.toml``, judged message by message: does it name what is wrong with the
+value found, and say what to do?
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from symflex.cli import run
+
+BROKEN = Path(__file__).parent / "broken"
+NAMES = sorted(path.stem for path in BROKEN.glob("*.toml"))
+HEADLINE = re.compile(r"^(?P<place>[\w/]+\.toml:\d+:\d+): error\[SF\d{3}\]: .+$")
+PLACE = re.compile(r":(\d+):(\d+)$")
+
+
+def headlines(name):
+    lines = (BROKEN / f"{name}.txt").read_text(encoding="utf-8").splitlines()
+    return [line for line in lines if "error[SF" in line]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_broken_specification_is_refused_in_the_expected_words(name, monkeypatch, capsys):
+    monkeypatch.chdir(BROKEN)
+    code = run(["check", f"{name}.toml"])
+    printed = capsys.readouterr()
+    expected = (BROKEN / f"{name}.txt").read_text(encoding="utf-8")
+    assert f"exit {code}\n{printed.out}{printed.err}" == expected
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_message_points_at_a_place_in_a_file(name):
+    assert [line for line in headlines(name) if not HEADLINE.match(line)] == []
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_problems_of_a_file_are_in_the_order_of_its_text(name):
+    own = [HEADLINE.match(line)["place"] for line in headlines(name) if line.startswith(f"{name}.toml:")]
+    places = [tuple(map(int, PLACE.search(place).groups())) for place in own]
+    assert places == sorted(places)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_broken_specification_is_accepted(name):
+    first = (BROKEN / f"{name}.txt").read_text(encoding="utf-8").partition("\n")[0]
+    assert first == "exit 3"
+
+
+def test_every_expectation_has_its_specification():
+    assert sorted(path.stem for path in BROKEN.glob("*.txt")) == NAMES
+
+
+def test_syntax_errors_and_meaning_errors_are_reported_together():
+    codes = {re.search(r"SF\d", line)[0] for line in headlines("syntax_and_meaning_together")}
+    assert codes == {"SF1", "SF2"}
+
+
+def test_the_same_mistake_is_reported_as_json_with_its_place(monkeypatch, capsys):
+    monkeypatch.chdir(BROKEN)
+    code = run(["check", "--json", "unknown_unit.toml"])
+    (problem,) = json.loads(capsys.readouterr().out)["problems"]
+    # m = "2 kgg" stands in line 4; its unit begins in column 8.
+    found = (code, problem["code"], problem["file"], problem["line"], problem["column"], problem["hint"])
+    assert found == (3, "SF201", "unknown_unit.toml", 4, 8, "did you mean 'kg'?")
