@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from symflex.errors import BudgetError, Diagnostic
-from symflex.kernels.ring import TERM_LIMIT, Ring
+from symflex.kernels import Ring
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from symflex.elimination.closing import SparseRow
 
 MINOR_LIMIT = 200_000
+MEMORY_LIMIT = 200_000_000
+"""Bytes all minors may take together; a term takes about one for each generator, and eight."""
 ROW_LIMIT = 700
 
 
@@ -42,7 +44,7 @@ class Minors:
     ring: Ring
     rows: tuple[SparseRow, ...]
     _known: dict[int, fmpz_mpoly] = field(default_factory=dict)
-    _terms: int = 0
+    _bytes: int = 0
 
     def __post_init__(self) -> None:
         if len(self.rows) > ROW_LIMIT:
@@ -64,10 +66,13 @@ class Minors:
         if known is None:
             known = self._expand(self.rows[row], row + 1, columns)
             self._known[columns] = known
-            self._terms += len(known)
-            if len(self._known) > MINOR_LIMIT or self._terms > TERM_LIMIT:
+            self._bytes += self._size(known)
+            if len(self._known) > MINOR_LIMIT or self._bytes > MEMORY_LIMIT:
                 raise _too_large("the determinant has too many minors or terms")
         return known
+
+    def _size(self, polynomial: fmpz_mpoly) -> int:
+        return len(polynomial) * (len(self.ring.names) + 8)
 
     def _expand(self, entries: SparseRow, below: int, columns: int) -> fmpz_mpoly:
         total = self.ring.constant(0)
@@ -81,6 +86,8 @@ class Minors:
             term = entries[column] * minor
             odd = (columns & (bit - 1)).bit_count() & 1
             total = total - term if odd else total + term
+            if self._size(total) > MEMORY_LIMIT:
+                raise _too_large("a minor has too many terms")
         return total
 
 

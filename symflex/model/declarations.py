@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import TYPE_CHECKING, cast
 
 from symflex.errors import SpecError, Text
@@ -11,7 +12,7 @@ from symflex.model.labels import check_label
 from symflex.model.model import Assumption, Definition, ExactValue, Parameter
 from symflex.model.reading import Reader
 from symflex.model.scope import RESERVED
-from symflex.quantities import DIMENSIONLESS, Quantity, parse_unit
+from symflex.quantities import DIMENSIONLESS, Quantity, parse_unit, unit_of
 from symflex.spec import NumberValue, StringValue, TableValue
 
 if TYPE_CHECKING:
@@ -46,8 +47,14 @@ class DeclaredParameter:
         if self.has_unit and self.quantity is not None:
             unit = implied_unit or _unit_text(self.quantity, angular=angular)
         elif self.unit_text:
-            unit = self.unit_text
+            unit = _unit_text(one_of(self.unit_text), angular=angular)
         return Parameter(self.name, value, unit, self.assume, self.latex, self.doc, self.span)
+
+
+def one_of(unit_text: str) -> Quantity:
+    """Return the SI unit of the same kind as a unit, with its cycles and radians."""
+    unit = unit_of(unit_text)
+    return Quantity(Fraction(1), 0, unit.cycles, unit.dimension, unit.radians, unit_text)
 
 
 def _unit_text(quantity: Quantity, *, angular: bool) -> str:
@@ -145,7 +152,7 @@ def _with_unit(
         reader.take(error.diagnostics)
         return quantity, ""
     if quantity is None:
-        return None, str(unit.dimension)
+        return None, text.value
     if quantity.unit:
         reader.note(
             "SF202", f"{what} has a unit in its value and a 'unit' key", text.span, "remove one of them"

@@ -11,9 +11,9 @@ if TYPE_CHECKING:
     from symflex.errors import Text
 
 GREEK = (
-    "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu xi pi varpi "
-    "rho varrho sigma varsigma tau upsilon phi varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon "
-    "Phi Psi Omega"
+    "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu xi pi "
+    "varpi rho varrho sigma varsigma tau upsilon phi varphi chi psi omega Gamma Delta Theta Lambda Xi Pi "
+    "Sigma Upsilon Phi Psi Omega"
 ).split()
 ACCENTS = "dot ddot bar hat tilde vec check breve acute grave overline underline".split()
 FONTS = "mathrm mathit mathbf mathsf mathcal text textrm textit operatorname boldsymbol".split()

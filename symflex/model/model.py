@@ -191,8 +191,8 @@ class Published:
 class Model:
     """Everything a specification says, resolved.
 
-    ``quotients`` holds the dimension of every output over input that is known; it may be so where neither end's
-    is, as when one is the other times a block.
+    ``quotients`` holds the dimension of every output over input that is known; it may be so where neither
+    end's is, as when one is the other times a block.
 
     Raises
     ------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
 from symflex.elements import Variable
@@ -107,18 +108,21 @@ def infer_nodes(attachments: Sequence[Attachment]) -> tuple[tuple[Node, ...], li
 
 def _spread(attachments: Sequence[Attachment], nodes: dict[str, Node], first: dict[str, Attachment]) -> None:
     """Give nodes that only couplings touch a domain that suits the ratio's unit (translation at last)."""
-    changed = True
-    while changed:
-        changed = False
-        for attachment in attachments:
-            name, coupling = attachment.reference.node, attachment.coupling
-            if attachment.reference.is_ground or name in nodes or coupling is None:
-                continue
-            if coupling.partner.node not in nodes:
-                continue
-            domain = coupling.suggested(domain_of(coupling.partner, nodes[coupling.partner.node]))
-            nodes[name] = Node(name, domain, first[name].reference.span)
-            changed = True
+    waiting: dict[str, list[int]] = {}
+    for i, attachment in enumerate(attachments):
+        if attachment.coupling is not None and not attachment.reference.is_ground:
+            waiting.setdefault(attachment.coupling.partner.node, []).append(i)
+    ready = [i for node in nodes for i in waiting.get(node, ())]
+    heapify(ready)
+    while ready:
+        attachment = attachments[heappop(ready)]
+        name, coupling = attachment.reference.node, attachment.coupling
+        if coupling is None or name in nodes:
+            continue
+        domain = coupling.suggested(domain_of(coupling.partner, nodes[coupling.partner.node]))
+        nodes[name] = Node(name, domain, first[name].reference.span)
+        for i in waiting.get(name, ()):
+            heappush(ready, i)
     for name, attachment in first.items():
         nodes.setdefault(name, Node(name, "translation", attachment.reference.span))
 

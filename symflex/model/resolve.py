@@ -16,7 +16,13 @@ from symflex.errors import Diagnostic, Span, SpecError
 from symflex.expressions import Expression, Name, names, power, product_of
 from symflex.model.analysis import read_analysis, read_figures, read_published
 from symflex.model.blocks import Loads, Origin, read_blocks
-from symflex.model.declarations import DeclaredParameter, read_definitions, read_label, read_parameters
+from symflex.model.declarations import (
+    DeclaredParameter,
+    one_of,
+    read_definitions,
+    read_label,
+    read_parameters,
+)
 from symflex.model.dimensions import DimensionSystem, Measure
 from symflex.model.linearity import check_expression, without_signal
 from symflex.model.model import (
@@ -508,8 +514,7 @@ def _quantities(
     for p in declared:
         found[p.name] = p.quantity if p.has_unit else None
         if p.quantity is None and p.unit_text:
-            unit = unit_of(p.unit_text)
-            found[p.name] = Quantity(Fraction(1), 0, unit.cycles, unit.dimension, unit.radians, p.unit_text)
+            found[p.name] = one_of(p.unit_text)
     for parameter in inherited:
         found[parameter.name] = _in_si(parameter)
     return found

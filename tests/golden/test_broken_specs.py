@@ -1,8 +1,8 @@
 """Specifications with mistakes, and what an engineer is told about them.
 
-Each ``broken/NAME.toml`` holds one kind of mistake, or several; ``broken/NAME.txt`` holds the exit code and the
-whole output of ``symflex check NAME.toml``, judged message by message: does it name what is wrong with the
-value found, and say what to do?
+Each ``broken/NAME.toml`` holds one kind of mistake, or several; ``broken/NAME.txt`` holds the exit code and
+the whole output of ``symflex check NAME.toml``, judged message by message: does it name what is wrong with
+the value found, and say what to do?
 """
 
 from __future__ import annotations
