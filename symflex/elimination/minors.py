@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from symflex.errors import BudgetError, Diagnostic
-from symflex.kernels import Ring
+from symflex.kernels import MEMORY_LIMIT, Ring
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly
@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from symflex.elimination.closing import SparseRow
 
 MINOR_LIMIT = 200_000
-MEMORY_LIMIT = 200_000_000
-"""Bytes all minors may take together; a term takes about one for each generator, and eight."""
 ROW_LIMIT = 700
 
 
@@ -66,13 +64,10 @@ class Minors:
         if known is None:
             known = self._expand(self.rows[row], row + 1, columns)
             self._known[columns] = known
-            self._bytes += self._size(known)
+            self._bytes += self.ring.bytes_of(len(known))
             if len(self._known) > MINOR_LIMIT or self._bytes > MEMORY_LIMIT:
                 raise _too_large("the determinant has too many minors or terms")
         return known
-
-    def _size(self, polynomial: fmpz_mpoly) -> int:
-        return len(polynomial) * (len(self.ring.names) + 8)
 
     def _expand(self, entries: SparseRow, below: int, columns: int) -> fmpz_mpoly:
         total = self.ring.constant(0)
@@ -83,11 +78,12 @@ class Minors:
             minor = self._minor(below, columns & ~bit)
             if minor.is_zero():
                 continue
+            # Refused before it is made: the engine does not survive running out of memory.
+            if self.ring.bytes_of(len(total) + len(entries[column]) * len(minor)) > MEMORY_LIMIT:
+                raise _too_large("a minor has too many terms")
             term = entries[column] * minor
             odd = (columns & (bit - 1)).bit_count() & 1
             total = total - term if odd else total + term
-            if self._size(total) > MEMORY_LIMIT:
-                raise _too_large("a minor has too many terms")
         return total
 
 

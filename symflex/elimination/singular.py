@@ -58,9 +58,9 @@ def explain_singular(equations: Equations) -> ModelError:
         problems.append(
             Diagnostic(
                 "SF303",
-                f"the loop through {names} is algebraic and has no solution, or any",
+                f"the loop through {names} is algebraic and has no unique solution: its gain is exactly one",
                 _place(equations, loops[0].about.owner),
-                "its gain is exactly one; put a dynamic element or another gain into the loop",
+                "put a dynamic element or another gain into the loop",
             )
         )
     if not problems:

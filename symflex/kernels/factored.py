@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from flint import fmpz
 
 from symflex.errors import BudgetError, Diagnostic
-from symflex.kernels.ring import DEGREE_LIMIT, TERM_LIMIT, Ring, degree_in
+from symflex.kernels.ring import DEGREE_LIMIT, MEMORY_LIMIT, TERM_LIMIT, Ring, degree_in
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -192,15 +192,15 @@ class Factored:
         if unit.denominator != 1 or any(e < 0 for _, e in self.factors):
             message = "only a polynomial with integer coefficients can be expanded"
             raise ValueError(message)
-        terms = 1
+        terms, most = 1, min(TERM_LIMIT, MEMORY_LIMIT // self.ring.bytes_of(1))
         for factor, exponent in self.factors:
             terms *= comb(len(factor) + exponent - 1, exponent) if len(factor) > 1 else 1
             degree = exponent * max(map(int, factor.degrees()))
-            if terms > TERM_LIMIT or degree > DEGREE_LIMIT:
+            if terms > most or degree > DEGREE_LIMIT:
                 raise BudgetError(
                     Diagnostic(
                         "SF501",
-                        f"an expanded product would exceed {TERM_LIMIT} terms or degree {DEGREE_LIMIT}",
+                        f"an expanded product would exceed {most} terms or degree {DEGREE_LIMIT}",
                         None,
                         "keep repeated sums in [definitions]",
                     )

@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 LAPLACE = "s"
 TERM_LIMIT = 3_000_000
 DEGREE_LIMIT = 20_000
+MEMORY_LIMIT = 100_000_000
+"""Bytes an expansion or elimination may take."""
+COEFFICIENT_BYTES = 8
 
 
 @dataclass(frozen=True)
@@ -57,6 +60,10 @@ class Ring:
         """Return the generator called ``name``."""
         return self.context.gen(self.index[name])
 
+    def bytes_of(self, terms: int) -> int:
+        """Return about how much memory a polynomial takes: a byte per exponent, and its coefficients."""
+        return terms * (len(self.names) + COEFFICIENT_BYTES)
+
     def constant(self, value: int) -> fmpz_mpoly:
         """Return an integer as a polynomial."""
         return self.context.constant(value)
@@ -69,12 +76,12 @@ class Ring:
         BudgetError
             SF501 when the result could exceed the size limit.
         """
-        check_expansion(polynomial, images)
+        check_expansion(self, polynomial, images)
         return polynomial.compose(*images, ctx=self.context)
 
 
-def check_expansion(polynomial: fmpz_mpoly, images: Sequence[fmpz_mpoly]) -> None:
-    """Refuse a substitution whose result could be too large.
+def check_expansion(ring: Ring, polynomial: fmpz_mpoly, images: Sequence[fmpz_mpoly]) -> None:
+    """Refuse a substitution whose result in ``ring`` could be too large.
 
     Raises
     ------
@@ -85,7 +92,7 @@ def check_expansion(polynomial: fmpz_mpoly, images: Sequence[fmpz_mpoly]) -> Non
     degrees = [int(image.total_degree()) if len(image) else 0 for image in images]
     if max(lengths, default=0) <= 1 and polynomial.total_degree() * max(degrees, default=0) <= DEGREE_LIMIT:
         return
-    terms = 0
+    terms, most = 0, min(TERM_LIMIT, MEMORY_LIMIT // ring.bytes_of(1))
     for monomial in polynomial.monoms():
         product, degree = 1, 0
         for i, exponent in enumerate(monomial):
@@ -95,10 +102,10 @@ def check_expansion(polynomial: fmpz_mpoly, images: Sequence[fmpz_mpoly]) -> Non
                 if length > 1:
                     product *= comb(length + exponent - 1, exponent)
         terms += product
-        if terms > TERM_LIMIT or degree > DEGREE_LIMIT:
+        if terms > most or degree > DEGREE_LIMIT:
             message = (
-                f"the expanded form would exceed {TERM_LIMIT} terms"
-                if terms > TERM_LIMIT
+                f"the expanded form would exceed {most} terms"
+                if terms > most
                 else f"the expanded form would exceed degree {DEGREE_LIMIT}"
             )
             raise BudgetError(Diagnostic("SF501", message, None, "keep repeated sums in [definitions]"))

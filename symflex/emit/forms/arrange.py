@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
-GROUP_LIMIT = 2_000
+GROUP_LIMIT = 5_000
 """Number of terms up to which a polynomial is nested for print."""
 FACTOR_LIMIT = 400
 """Number of terms up to which a coefficient is factored for print."""
@@ -107,14 +107,14 @@ class Arranger:
         """Return a polynomial nested by its most shared generators."""
         if polynomial.is_zero():
             return number(0)
+        if len(polynomial) > GROUP_LIMIT:
+            return self.collected(polynomial, factored=False)
         return self._group(_terms(polynomial))
 
     def grouped_by_s(self, polynomial: fmpz_mpoly) -> Expression:
         """Return the shorter of the nested print and the one by descending powers of s."""
-        if len(polynomial) > GROUP_LIMIT:
-            return self.collected(polynomial, factored=False)
         nested = self.grouped(polynomial)
-        if polynomial.is_zero() or not degree_in(polynomial, 0):
+        if len(polynomial) > GROUP_LIMIT or not degree_in(polynomial, 0):
             return nested
         collected = self.collected(polynomial)
         longer = len(format_expression(collected)) > len(format_expression(nested))

@@ -115,7 +115,6 @@ def test_an_angular_frequency_in_radians_per_second_is_taken_as_it_is():
     assert value_of(with_output('"7 rad/s"', "U/(s + f)"), "f") == ExactValue(Fraction(7), 0)
 
 
-@pytest.mark.xfail(reason="a unit key without a value forgets the radian", strict=False)
 def test_a_symbolic_angular_frequency_bound_in_hertz_is_angular():
     text = with_output('{ unit = "rad/s" }', "U/(s + f)")
     (tf,) = pipeline.derive_all(resolve(text))
