@@ -31,6 +31,7 @@ from symflex.expressions import (
 )
 from symflex.kernels import FUNCTIONS
 from symflex.model.linearity import integer_exponent
+from symflex.model.reading import QuantityLiteral
 from symflex.quantities import DIMENSIONLESS, Dimension, unit_of
 
 if TYPE_CHECKING:
@@ -236,6 +237,8 @@ class DimensionSystem:
         match expression:
             case Number():
                 return Measure(literal=True)
+            case QuantityLiteral(quantity):
+                return Measure(quantity.dimension)
             case Name() | Attribute():
                 return self._name(expression)
             case Negative(operand):
@@ -268,7 +271,7 @@ class DimensionSystem:
         if meaning.kind == "parameter":
             return self._parameter(meaning.name)
         if meaning.kind == "definition":
-            return self._definition(meaning.name)
+            return self.definition(meaning.name)
         if meaning.kind == "block":
             return self._blocks.get(meaning.name, Measure(open=True))
         return self.variable(meaning.variable) if meaning.variable else Measure(open=True)
@@ -288,11 +291,16 @@ class DimensionSystem:
             return Measure(quantity.dimension)
         return Measure(quantity.dimension, cycles=Fraction(quantity.cycles), cyclic=frozenset({name}))
 
-    def _definition(self, name: str) -> Measure:
+    def definition(self, name: str) -> Measure:
+        """Return what a definition is measured in; a bare number fits any unit, as it does in its place."""
         if name not in self._defined:
             self._defined[name] = Measure(open=True)
-            measure = self.measure(self._definitions[name])
-            self._defined[name] = Measure(open=True) if measure.is_extreme else measure
+            expression = self._definitions[name]
+            measure = self.measure(expression)
+            fits_any = measure.is_extreme or (
+                not names(expression) and not isinstance(expression, QuantityLiteral)
+            )
+            self._defined[name] = Measure(open=True) if fits_any else measure
         return self._defined[name]
 
     def variable(self, variable: Variable) -> Measure:

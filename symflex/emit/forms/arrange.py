@@ -135,7 +135,9 @@ class Arranger:
             _, factors = self.ring.context.from_dict(terms).factor()
             if len(factors) > 1 or int(factors[0][1]) > 1:
                 ordered = sorted(factors, key=lambda fe: _order_key(fe[0]))
-                positive = [(_terms(f if int(f.leading_coefficient()) > 0 else -f), int(e)) for f, e in ordered]
+                positive = [
+                    (_terms(f if int(f.leading_coefficient()) > 0 else -f), int(e)) for f, e in ordered
+                ]
                 # With every factor's leading coefficient positive, the product's sign is the sum's own.
                 sign = 1 if terms[max(terms)] > 0 else -1
                 return [number(sign), *(power(self._split(f), e) for f, e in positive)]

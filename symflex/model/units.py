@@ -1,0 +1,230 @@
+"""Checking units: what is demanded of expressions, and what follows for parameters, inputs and outputs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from symflex.elements import ACROSS_UNIT, Variable
+from symflex.errors import Span
+from symflex.expressions import Expression, Name, names, power, product_of
+from symflex.model.declarations import (
+    DeclaredParameter,
+    one_of,
+)
+from symflex.model.dimensions import DimensionSystem, Measure
+from symflex.model.model import (
+    Definition,
+    ExactValue,
+    Input,
+    Output,
+    Parameter,
+    PlacedBlock,
+    PlacedElement,
+)
+from symflex.model.reading import QuantityLiteral, Reader, signed_number
+from symflex.model.scope import Scope, build_scope
+from symflex.quantities import DIMENSIONLESS, Dimension, Quantity, unit_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterator, Sequence
+
+    from symflex.model.draft import Draft
+
+
+def check_units(
+    reader: Reader,
+    draft: Draft,
+    placed: Sequence[PlacedElement],
+    scope: Scope,
+    unsound: Collection[Span | None],
+) -> DimensionSystem:
+    """Measure every expression; of one that is unsound, only what disagrees within it is noted."""
+    quantities = declared_quantities(draft.declared, draft.inherited)
+    known = _known_dimensions(draft, placed)
+    blocks = {b.name: _block_measure(b) for b in draft.blocks}
+    system = DimensionSystem(
+        scope, quantities, {d.name: d.expression for d in draft.definitions}, known, blocks
+    )
+    for definition in draft.definitions:
+        # In this order each one finds those it uses already measured, however long the chain.
+        system.definition(definition.name)
+    for use in placed:
+        for name, expression in use.values:
+            where = f"{name} of {use.element.type_name} '{use.name}'"
+            doc = next(p.doc for p in use.element.parameters if p.name == name)
+            if expression.span in unsound:
+                system.measure(expression)
+            else:
+                _require(reader, system, expression, port_unit(use, name), where, doc)
+    for block in draft.blocks:
+        for name, expression in block.values:
+            doc = next(p.doc for p in block.block.parameters if p.name == name) if block.block else ""
+            where = f"{name} of block '{block.name}'"
+            if expression.span in unsound:
+                system.measure(expression)
+            else:
+                _require(reader, system, expression, block_unit(block, name), where, doc)
+    for signal in draft.signals:
+        if signal.expression.span in unsound:
+            system.measure(signal.expression)
+        else:
+            system.equate(Variable("signal", signal.name), signal.expression)
+    for output in draft.outputs:
+        system.measure(output.expression)
+    return system
+
+
+def declared_quantities(
+    declared: Sequence[DeclaredParameter], inherited: Sequence[Parameter]
+) -> dict[str, Quantity | None]:
+    """Return what every parameter is measured in, ``None`` where no unit was written."""
+    found: dict[str, Quantity | None] = {}
+    for p in declared:
+        found[p.name] = p.quantity if p.has_unit else None
+        if p.quantity is None and p.unit_text:
+            found[p.name] = one_of(p.unit_text)
+    for parameter in inherited:
+        found[parameter.name] = _in_si(parameter)
+    return found
+
+
+def constant_measure(
+    declared: Sequence[DeclaredParameter], inherited: Sequence[Parameter], definitions: Sequence[Definition]
+) -> Callable[[Expression], Dimension | None]:
+    """Return a function that tells the dimension of an expression of parameters, ``None`` when it is open."""
+    quantities = declared_quantities(declared, inherited)
+    scope = build_scope([*quantities], definitions, (), (), (), (), ())
+    system = DimensionSystem(scope, quantities, {d.name: d.expression for d in definitions}, {}, {})
+
+    def measure(expression: Expression) -> Dimension | None:
+        if isinstance(expression, QuantityLiteral):
+            return expression.quantity.dimension
+        return system.dimension(system.measure(expression)) if names(expression) else None
+
+    return measure
+
+
+def _in_si(parameter: Parameter) -> Quantity | None:
+    """Return a quantity of a resolved parameter's unit, ``None`` when it has none."""
+    if not parameter.unit:
+        return None
+    unit = unit_of(parameter.unit)
+    return Quantity(Fraction(1), 0, 0, unit.dimension, unit.radians, parameter.unit)
+
+
+def _require(
+    reader: Reader, system: DimensionSystem, expression: Expression, unit: str, what: str, doc: str
+) -> None:
+    if not isinstance(expression, QuantityLiteral):
+        system.require(expression, unit, what, doc)
+        return
+    found = expression.quantity
+    if unit and found.dimension != unit_of(unit).dimension:
+        reader.note("SF203", f"{what} is in '{found.unit}'; {doc} is in '{unit}'", expression.span)
+
+
+def _known_dimensions(draft: Draft, placed: Sequence[PlacedElement]) -> dict[Variable, Dimension]:
+    known: dict[Variable, Dimension] = {}
+    for node in draft.nodes:
+        for component in node.components:
+            domain = {"y": "translation", "theta": "rotation"}.get(component, node.domain)
+            known[Variable("node", node.name, component)] = unit_of(ACROSS_UNIT[domain]).dimension
+    for use in placed:
+        domains = dict(use.domains)
+        for quantity in use.element.quantities(domains):
+            unit = use.element.unit_of(quantity, domains)
+            known[Variable("through", use.name, quantity)] = unit_of(unit).dimension
+    for source in draft.inputs:
+        unit = source.input.unit or source.unit_text
+        if unit:
+            known[Variable("input", source.input.name)] = unit_of(unit).dimension
+    return known
+
+
+def _block_measure(block: PlacedBlock) -> Measure:
+    if block.submodel is not None and block.tf is not None:
+        output = next(o for o in block.submodel.outputs if o.name == block.tf[0])
+        source = next(i for i in block.submodel.inputs if i.name == block.tf[1])
+        if output.dimension is None or source.dimension is None:
+            return Measure(open=True)
+        return Measure(output.dimension / source.dimension)
+    if block.block is not None and block.block.type_name == "resonance":
+        return Measure(DIMENSIONLESS)
+    return Measure(open=True)
+
+
+def measured_variables(draft: Draft) -> list[Variable]:
+    """Return the signals and inputs, whose dimensions are found by solving."""
+    return [
+        *(Variable("signal", x.name) for x in draft.signals),
+        *(Variable("input", d.input.name) for d in draft.inputs),
+    ]
+
+
+def measured_input(source: Input, system: DimensionSystem) -> Input:
+    """Return the input with the dimension and unit found for it."""
+    variable = Variable("input", source.name)
+    dimension = system.dimension(system.variable(variable))
+    unit = source.unit or ("" if dimension is None else str(dimension))
+    return replace(source, dimension=dimension, unit=unit)
+
+
+def output_dimension(output: Output, system: DimensionSystem) -> Dimension | None:
+    """Return what an output is measured in, when that is known."""
+    return system.dimension(system.measure(output.expression))
+
+
+def quotients(draft: Draft, system: DimensionSystem) -> Iterator[tuple[tuple[str, str], Dimension]]:
+    """Yield every output over input whose dimension is known."""
+    for output in draft.outputs:
+        above = system.measure(output.expression)
+        for source in draft.inputs:
+            below = system.variable(Variable("input", source.input.name))
+            dimension = system.dimension(above.times(below.power(-1)))
+            if dimension is not None:
+                yield (output.name, source.input.name), dimension
+
+
+def implied_units(placed: Sequence[PlacedElement], blocks: Sequence[PlacedBlock]) -> dict[str, str]:
+    """Return the units that ports give to parameters standing there alone."""
+    implied: dict[str, str] = {}
+    for use in placed:
+        for name, expression in use.values:
+            unit = port_unit(use, name)
+            if isinstance(expression, Name) and unit:
+                implied.setdefault(expression.name, "1" if unit.startswith("(") else unit)
+    for block in blocks:
+        for name, expression in block.values:
+            unit = block_unit(block, name)
+            if isinstance(expression, Name) and unit:
+                implied.setdefault(expression.name, unit)
+    return implied
+
+
+def port_unit(use: PlacedElement, name: str) -> str:
+    """Return the SI unit of an element's parameter where it is placed."""
+    return use.element.unit_of(name, dict(use.domains))
+
+
+def block_unit(block: PlacedBlock, name: str) -> str:
+    """Return the SI unit of a block's parameter, empty when any fits."""
+    return next((p.unit for p in block.block.parameters if p.name == name), "") if block.block else ""
+
+
+def lower(expression: Expression, unit: str = "") -> Expression:
+    """Replace a quantity by the number it is in SI units."""
+    if not isinstance(expression, QuantityLiteral):
+        return expression
+    angular = not unit or bool(unit_of(unit).radians) or expression.quantity.cycles > 0
+    value = ExactValue(*(expression.quantity.angular() if angular else expression.quantity.cyclic()))
+    return exact_expression(value)
+
+
+def exact_expression(value: ExactValue) -> Expression:
+    """Return ``rational * pi**n`` as an expression."""
+    number = signed_number(value.rational)
+    if not value.pi_power:
+        return number
+    return product_of([number, power(Name("pi"), signed_number(Fraction(value.pi_power)))])
