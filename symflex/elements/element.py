@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from symflex.kernels import Factored
 
@@ -60,12 +60,18 @@ class LinearForm:
         """Return the combination of the given terms; the reference (``None``) contributes nothing."""
         return LinearForm(tuple((v, c) for v, c in terms if v is not None and not c.is_zero))
 
-    def __add__(self, other: LinearForm) -> LinearForm:
-        merged: dict[Variable, Factored] = dict(self.terms)
-        for variable, coefficient in other.terms:
-            known = merged.get(variable)
-            merged[variable] = coefficient if known is None else known + coefficient
+    @staticmethod
+    def total(forms: Iterable[LinearForm]) -> LinearForm:
+        """Return the sum of the forms, with one term per variable."""
+        merged: dict[Variable, Factored] = {}
+        for form in forms:
+            for variable, coefficient in form.terms:
+                known = merged.get(variable)
+                merged[variable] = coefficient if known is None else known + coefficient
         return LinearForm(tuple((v, c) for v, c in merged.items() if not c.is_zero))
+
+    def __add__(self, other: LinearForm) -> LinearForm:
+        return LinearForm.total((self, other))
 
     def __mul__(self, scale: Factored) -> LinearForm:
         return LinearForm(tuple((v, c * scale) for v, c in self.terms if not scale.is_zero))

@@ -154,10 +154,7 @@ class Evaluator:
             return total
         if constants:
             raise ModelError(Diagnostic("SF221", "the sum has a term without an unknown", expression.span))
-        form = LinearForm()
-        for part in forms:
-            form = form + part
-        return form
+        return LinearForm.total(forms)
 
     def _power(self, expression: Power, base: Expression, exponent: Expression) -> Factored | LinearForm:
         value = self._evaluate(base)

@@ -42,14 +42,22 @@ class Dimension:
 
     def __mul__(self, other: Dimension) -> Dimension:
         """Return the dimension of a product."""
+        if other is DIMENSIONLESS:
+            return self
+        if self is DIMENSIONLESS:
+            return other
         return Dimension(*(a + b for a, b in zip(self.exponents, other.exponents, strict=True)))
 
     def __truediv__(self, other: Dimension) -> Dimension:
         """Return the dimension of a quotient."""
+        if other is DIMENSIONLESS:
+            return self
         return Dimension(*(a - b for a, b in zip(self.exponents, other.exponents, strict=True)))
 
     def __pow__(self, exponent: Fraction | int) -> Dimension:
         """Return the dimension of a power; the exponent is rational."""
+        if self is DIMENSIONLESS:
+            return self
         return Dimension(*(a * Fraction(exponent) for a in self.exponents))
 
     def __str__(self) -> str:
