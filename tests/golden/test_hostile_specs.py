@@ -1,6 +1,7 @@
 """Specifications written to harm: each ends soon, in little memory, with a documented exit code.
 
-Every case runs in a process of its own that may use 512 MB of address space and 10 s of processor time.
+Every case runs in a process of its own that may use 512 MB of address space and 20 s of processor time; texts
+that are refused at sight (towers of powers, deep nesting) get 2 s, the start of the program included.
 Nothing a specification says may run: no payload succeeds in making the file ``canary``. Nothing it says may
 drive a terminal: all output is printable. There is never a traceback.
 """
@@ -11,6 +12,7 @@ import json
 import os
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -23,13 +25,13 @@ HANG = 300  # seconds after which a process that uses no processor time is taken
 DOCUMENTED = {0, 2, 3, 5}
 
 
-def limit():
+def limit(seconds):
     resource.setrlimit(resource.RLIMIT_AS, (512 * MEGABYTE, 512 * MEGABYTE))
-    resource.setrlimit(resource.RLIMIT_CPU, (10, 10))
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
-def symflex(folder, *arguments):
+def symflex(folder, *arguments, seconds=20):
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONDONTWRITEBYTECODE": "1", "NO_COLOR": "1"}
     finished = subprocess.run(
         [sys.executable, "-m", "symflex", *arguments],
@@ -37,7 +39,7 @@ def symflex(folder, *arguments):
         env=environment,
         capture_output=True,
         stdin=subprocess.DEVNULL,
-        preexec_fn=limit,
+        preexec_fn=partial(limit, seconds),
         timeout=HANG,
         check=False,
     )
@@ -50,9 +52,9 @@ def symflex(folder, *arguments):
     return finished.returncode, printed
 
 
-def check(folder, text):
+def check(folder, text, seconds=20):
     (Path(folder) / "spec.toml").write_bytes(text if isinstance(text, bytes) else text.encode())
-    return symflex(folder, "check", "spec.toml")
+    return symflex(folder, "check", "spec.toml", seconds=seconds)
 
 
 def model(
@@ -118,9 +120,11 @@ EXPRESSIONS = {
 }
 
 
-@pytest.mark.parametrize("expression", EXPRESSIONS.values(), ids=EXPRESSIONS)
-def test_a_hostile_expression_is_answered(expression, tmp_path):
-    check(tmp_path, model(expression))
+@pytest.mark.parametrize(("name", "expression"), EXPRESSIONS.items(), ids=EXPRESSIONS)
+def test_a_hostile_expression_is_answered(name, expression, tmp_path):
+    at_sight = name.startswith(("a tower", "a hundred thousand"))
+    code, _ = check(tmp_path, model(expression), seconds=2 if at_sight else 20)
+    assert code == 3 or not at_sight
 
 
 def test_a_sum_of_eight_to_the_64th_plus_one_is_refused_as_too_large(tmp_path):
@@ -286,7 +290,7 @@ TOML = {
 
 @pytest.mark.parametrize("text", TOML.values(), ids=TOML)
 def test_hostile_toml_is_refused(text, tmp_path):
-    code, _ = check(tmp_path, f"symflex = 1\n{text}\n")
+    code, _ = check(tmp_path, f"symflex = 1\n{text}\n", seconds=2)
     assert code == 3
 
 
