@@ -1,4 +1,4 @@
-"""``python -m benchmarks``: print all ratios; with ``--check``, fail when a bound is missed."""
+"""``python -m benchmarks``: print all ratios; with ``--check``, fail when one misses its bound."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from symflex import __version__
 def main(arguments: list[str] | None = None) -> int:
     """Run all benchmarks and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
-    parser.add_argument("--check", action="store_true", help="fail when a bound is missed")
+    parser.add_argument("--check", action="store_true", help="fail when a ratio misses its bound")
     parser.add_argument("--limit", type=float, default=60.0, help="seconds each way may take (default: 60)")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write all numbers to a file as well")
     asked = parser.parse_args(arguments)
@@ -31,7 +31,7 @@ def main(arguments: list[str] | None = None) -> int:
     print(_markdown(measurements, claims))
     if asked.json:
         asked.json.write_text(_json(measurements, claims), encoding="utf-8")
-    return 1 if asked.check and not all(claim.holds for claim in claims) else 0
+    return 1 if asked.check and not all(claim.holds for claim in claims if claim.is_ratio) else 0
 
 
 def _markdown(measurements: list[Measurement], claims: list[Claim]) -> str:

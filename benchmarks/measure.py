@@ -54,12 +54,15 @@ class Claim:
         In this run.
     larger_is_better : bool
         False when the bound is a ceiling.
+    is_ratio : bool
+        False for a time in itself, which depends on the machine: it is printed and not enforced.
     """
 
     text: str
     bound: float
     measured: float
     larger_is_better: bool = True
+    is_ratio: bool = True
 
     @property
     def holds(self) -> bool:

@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from random import Random
 from typing import TYPE_CHECKING
 
-from symflex.kernels import LAPLACE, Factored, Ring, degree_in
+from symflex.kernels import Factored
+from symflex.transfer.coprimality import Images
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
-LARGE = 40
-"""Number of terms from which a proof of coprimality at a point is tried before a multivariate gcd."""
 
-
-def cancel(numerator: Factored, denominator: Factored) -> tuple[Factored, Factored]:
+def cancel(
+    numerator: Factored, denominator: Factored, images: Images | None = None
+) -> tuple[Factored, Factored]:
     """Return numerator/denominator in lowest terms, and the common factor that was found.
 
     Both may be rational; equal factors cancel at once, the others pairwise by exact greatest common divisors.
+    ``images`` may be shared by calls over one ring, so that an image is made once.
     """
     ring = numerator.ring
     quotient = numerator / denominator
@@ -31,14 +31,14 @@ def cancel(numerator: Factored, denominator: Factored) -> tuple[Factored, Factor
             shared = shared * Factored(ring, Fraction(1), ((factor, min(exponent, other)),))
     above = [(f, e) for f, e in quotient.factors if e > 0]
     below = [(f, -e) for f, e in quotient.factors if e < 0]
+    images = images or Images(ring)
     i, changed = 0, False
     while i < len(above):
         j = 0
         while j < len(below):
             f, m = above[i]
             g, n = below[j]
-            common = ring.constant(1) if coprime_by_image(ring, f, g) else f.gcd(g)
-            if common.is_constant():
+            if images.prove_coprime(f, g) or (common := f.gcd(g)).is_constant():
                 j += 1
                 continue
             power = min(m, n)
@@ -67,41 +67,3 @@ def _pieces(
     rest = factor / common
     pieces = [(rest, exponent), (common, exponent - power)]
     return [(f, e) for f, e in pieces if e > 0 and not f.is_constant()]
-
-
-def coprime_by_image(ring: Ring, f: fmpz_mpoly, g: fmpz_mpoly) -> bool:
-    """Tell whether two large polynomials are proved coprime cheaply; False decides nothing.
-
-    A common factor that contains s would survive setting all other generators to integers, as long as
-    neither degree in s drops; a common factor without s divides every coefficient of both, also their
-    leading ones. Neither exists when the images are coprime and so are the leading coefficients.
-    """
-    if min(len(f), len(g)) < LARGE:
-        return False
-    s = ring.index[LAPLACE]
-    if not degree_in(f, s) or not degree_in(g, s):
-        return False
-    if not _leading_coefficient(ring, f).gcd(_leading_coefficient(ring, g)).is_constant():
-        return False
-    random = Random(1)
-    line = Ring((LAPLACE,))
-    point = [line.constant(random.randrange(2**20, 2**21)) for _ in ring.names]
-    point[s] = line.generator(LAPLACE)
-    image_f, image_g = (h.compose(*point, ctx=line.context) for h in (f, g))
-    if degree_in(image_f, 0) != degree_in(f, s) or degree_in(image_g, 0) != degree_in(g, s):
-        return False
-    return bool(image_f.gcd(image_g).is_constant())
-
-
-def _leading_coefficient(ring: Ring, f: fmpz_mpoly) -> fmpz_mpoly:
-    """Return the coefficient of the highest power of s, a polynomial in the other generators."""
-    s = ring.index[LAPLACE]
-    highest = degree_in(f, s)
-    terms = {}
-    # Terms stand in lexicographic order, s first: the wanted ones lead.
-    for i in range(len(f)):
-        monomial = f.monomial(i)
-        if monomial[s] != highest:
-            break
-        terms[(*monomial[:s], 0, *monomial[s + 1 :])] = f.coefficient(i)
-    return ring.context.from_dict(terms)

@@ -13,6 +13,7 @@ from symflex.elimination import Minors, close, eliminate_unit_pivots, expansion_
 from symflex.errors import Diagnostic, ModelError
 from symflex.kernels import LAPLACE, Factored, Ring, degree_in
 from symflex.transfer.cancel import cancel
+from symflex.transfer.coprimality import Images
 from symflex.transfer.quantity import name_quantity, unit_of_quotient
 from symflex.transfer.transfer_function import ClosedForm, HiddenFactor, TransferFunction
 
@@ -89,6 +90,8 @@ class _Workshop:
                 *(c.generator for c in equations.constants),
             )
         )
+        self._images = Images(self._ring)
+        self._denominators: list[tuple[fmpz_mpoly, Factored]] = []
         self._definitions: dict[str, Factored] = {}
         for name, value in equations.definitions:
             self._definitions[name] = self._expanded(value)
@@ -107,13 +110,13 @@ class _Workshop:
         final = num_closed.gcd(den_closed)
         num_closed, den_closed = num_closed / final, den_closed / final
         hidden = (*hidden, *self._hidden(self._expanded(self._closure.open(final))))
-        denominator = self._expanded(self._closure.open(den_closed))
+        denominator = self._opened_denominator(den_closed)
         if denominator.is_zero:
             raise explain_singular(self._equations)
         if denominator.unit < 0:
             num_closed, den_closed, denominator = -num_closed, -den_closed, -denominator
         numerator = self._expanded(self._closure.open(num_closed))
-        ratio, cancelled = cancel(numerator, denominator)
+        ratio, cancelled = cancel(numerator, denominator, self._images)
         return TransferFunction(
             output,
             given,
@@ -127,6 +130,15 @@ class _Workshop:
             self._equations.constants,
             model,
         )
+
+    def _opened_denominator(self, closed: fmpz_mpoly) -> Factored:
+        """Return a closed denominator over the parameters; most pairs share one."""
+        for known, opened in self._denominators:
+            if known == closed:
+                return opened
+        opened = self._expanded(self._closure.open(closed))
+        self._denominators.append((closed, opened))
+        return opened
 
     def _expanded(self, value: Factored) -> Factored:
         """Return a value over the equations' ring with its definitions opened."""

@@ -74,6 +74,16 @@ def test_the_exported_functions_agree_with_the_dense_tableau(numpy_functions, ne
             assert_close(functions[f"{output}/{source}"](at), reference(network, output, source, at))
 
 
+@pytest.mark.slow
+@given(network=networks())
+@quiet(1500)
+def test_many_more_exported_functions_agree_with_the_dense_tableau(numpy_functions, network):
+    functions = numpy_functions(to_toml(network))
+    for output, source in pairs(network):
+        for at in POINTS:
+            assert_close(functions[f"{output}/{source}"](at), reference(network, output, source, at))
+
+
 @given(network=networks())
 @quiet(100)
 def test_an_exported_function_broadcasts_over_s(numpy_functions, network):
