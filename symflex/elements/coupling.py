@@ -112,8 +112,8 @@ class Gyrator(Element):
         flow_from = self._flow(use, "from", source, drawn)
         flow_to = self._flow(use, "to", target, delivered)
         rows = (
-            Row(drawn, LinearForm.of((effort_from, denominator)) + flow_to * (-numerator)),
-            Row(delivered, LinearForm.of((effort_to, denominator)) + flow_from * (-numerator)),
+            Row(drawn, LinearForm.of((effort_from, denominator)) + flow_to * (-numerator), "constraint"),
+            Row(delivered, LinearForm.of((effort_to, denominator)) + flow_from * (-numerator), "constraint"),
         )
         return Stamp(
             unknowns=(drawn, delivered),

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from symflex.elements import ElementUse, LinearForm, Row, Stamp, Terminal, Variable
 from symflex.equations.equations import ConstantFunction, EquationRow, Equations, OutputRow
 from symflex.equations.evaluate import Evaluator, Opener
+from symflex.equations.realisation import written_denominator
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
 from symflex.expressions import Call, Expression, Name, format_expression, names
 from symflex.kernels import FUNCTIONS, LAPLACE, Factored, Ring, random_point, residue
@@ -340,9 +341,9 @@ class _Assembly:
         except SymflexError as error:
             self.problems.extend(error.diagnostics)
             return
-        minus = Factored.number(self.ring, -1)
+        row = LinearForm.of((variable, Factored.number(self.ring, -1))) + form
         self.unknowns.append(variable)
-        self.rows.append(EquationRow(variable, "signal", LinearForm.of((variable, minus)) + form))
+        self.rows.append(EquationRow(variable, "signal", row * self._cancelled(expression, form, evaluator)))
 
     def _output(self, name: str, expression: Expression, evaluator: Evaluator) -> OutputRow | None:
         try:
@@ -351,8 +352,17 @@ class _Assembly:
             self.problems.extend(error.diagnostics)
             return None
         # A filter in an output is the output's own: as an unknown it would be a mode of all the others.
-        divisor = common_denominator(self.ring, form)
+        divisor = common_denominator(self.ring, form) * self._cancelled(expression, form, evaluator)
         return OutputRow(name, form * divisor, divisor)
+
+    def _cancelled(self, expression: Expression, form: LinearForm, evaluator: Evaluator) -> Factored:
+        """Return the poles that cancelled within an expression: they stay modes of the model."""
+        written = written_denominator(expression, evaluator)
+        left = common_denominator(self.ring, form)
+        exponents = [
+            (f, e - min(e, next((x for g, x in left.factors if g == f), 0))) for f, e in written.factors
+        ]
+        return Factored(self.ring, Fraction(1), tuple((f, e) for f, e in exponents if e))
 
 
 def _side_by_side(left: LinearForm, right: LinearForm) -> LinearForm:

@@ -94,6 +94,10 @@ class Evaluator:
             return LinearForm()
         raise ModelError(Diagnostic("SF221", "the expression has a term without an unknown", expression.span))
 
+    def is_block(self, expression: Name) -> bool:
+        """Tell whether a name is read as a block."""
+        return self.scope.lookup(expression, constant=False).kind == "block"
+
     def _value(self, expression: Expression) -> Factored | LinearForm:
         try:
             return self._evaluate(expression)

@@ -17,6 +17,7 @@ from symflex.model.linearity import EXPONENT_LIMIT
 from symflex.model.model import PlacedBlock
 from symflex.model.reading import signed_number
 from symflex.model.scope import RESERVED
+from symflex.model.units import lower
 from symflex.spec import ArrayValue, read
 
 if TYPE_CHECKING:
@@ -142,7 +143,8 @@ def _value(reader: Reader, value: Value, where: str, *, coefficients: bool) -> E
         message = f"{where} has {len(value.items)} coefficients; at most {EXPONENT_LIMIT + 1} are allowed"
         reader.note("SF103", message, value.span)
         return None
-    parts = [reader.expression(item, where) for item in value.items]
+    found = [reader.expression(item, where) for item in value.items]
+    parts = [None if part is None else lower(part) for part in found]
     terms = [
         product_of([part, power(Name(LAPLACE), Number(Fraction(degree)))])
         for degree, part in zip(range(len(parts) - 1, -1, -1), parts, strict=True)

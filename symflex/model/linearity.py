@@ -73,7 +73,7 @@ def without_signal(span: Span | None) -> Diagnostic:
         "SF221",
         "this is constant: there is no node, signal, element quantity or input in it",
         span,
-        "a linear model is driven by its inputs alone; multiply by one",
+        "a linear model is driven by its inputs alone; multiply by an input",
     )
 
 

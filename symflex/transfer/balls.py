@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+from math import prod
 from typing import TYPE_CHECKING
 
 from flint import arb, fmpq
@@ -23,12 +25,47 @@ from symflex.kernels import FUNCTIONS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-    from fractions import Fraction
+
+    from symflex.model import ExactValue
 
 
 def ball(value: Fraction) -> arb:
     """Return a rational number as a ball at the current precision."""
     return arb(fmpq(value.numerator, value.denominator))
+
+
+def rational_value(expression: Expression, values: Mapping[str, ExactValue]) -> Fraction | None:
+    """Return the exact value of an expression of rational numbers, ``None`` when it is anything else.
+
+    Examples
+    --------
+    >>> from symflex.expressions import Number, Quotient
+    >>> rational_value(Quotient(Number(Fraction(8)), Number(Fraction(6))), {})
+    Fraction(4, 3)
+    """
+    match expression:
+        case Number(value):
+            return value
+        case Name(name):
+            known = values.get(name)
+            return known.rational if known is not None and known.pi_power == 0 else None
+        case Negative(operand):
+            inner = rational_value(operand, values)
+            return None if inner is None else -inner
+        case Sum(terms) | Product(terms):
+            parts = [rational_value(t, values) for t in terms]
+            known_parts = [p for p in parts if p is not None]
+            if len(known_parts) < len(parts):
+                return None
+            return (
+                sum(known_parts, Fraction(0))
+                if isinstance(expression, Sum)
+                else prod(known_parts, start=Fraction(1))
+            )
+        case Quotient(numerator, denominator):
+            above, below = rational_value(numerator, values), rational_value(denominator, values)
+            return above / below if above is not None and below else None
+    return None
 
 
 def enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> arb:

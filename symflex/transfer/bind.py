@@ -20,7 +20,7 @@ from symflex.errors.diagnostic import nearest
 from symflex.kernels import LAPLACE, Factored, Ring, degree_in
 from symflex.model import ExactValue
 from symflex.quantities import parse_quantity, unit_of
-from symflex.transfer.balls import ball, enclose
+from symflex.transfer.balls import ball, enclose, rational_value
 from symflex.transfer.cancel import cancel
 from symflex.transfer.transfer_function import HiddenFactor, TransferFunction
 
@@ -210,6 +210,8 @@ def read_values(
             hint = nearest(name, names) or "parameters: " + ", ".join(names)
             raise UsageError(Diagnostic("SF902", f"there is no parameter '{name[:64]}'", None, hint))
     values = [(p.name, _read_value(p, given[p.name]) if p.name in given else p.value) for p in parameters]
+    for parameter, (_, value) in zip(parameters, values, strict=True):
+        _check_sign(parameter, value)
     missing = [p for p, (_, value) in zip(parameters, values, strict=True) if value is None]
     if missing:
         hint = "give it a value here, or to bind() in Python"
@@ -217,6 +219,15 @@ def read_values(
             *(Diagnostic("SF229", f"parameter '{p.name}' has no value", p.span, hint) for p in missing)
         )
     return tuple((name, value) for name, value in values if value is not None)
+
+
+def _check_sign(parameter: Parameter, value: ExactValue | None) -> None:
+    if value is None or parameter.assume == "real":
+        return
+    # Zero is let through: leaving an effect out is what binding is often for.
+    if value.rational < 0:
+        message = f"parameter '{parameter.name}' is negative, but is assumed {parameter.assume}"
+        raise UsageError(Diagnostic("SF209", message, None, 'say assume = "real" in the model'))
 
 
 def _read_value(parameter: Parameter, given: float | Fraction | Decimal | str) -> ExactValue:
@@ -267,7 +278,14 @@ def bind(
     exact = read_values((*used, *extra), given)
     table = dict(exact)
     ring = Ring((LAPLACE, "pi", *_used_constants(tf)))
-    images = _Substitution(ring, tf.ratio.ring, table)
+    squares = {
+        ring.index[c.generator]: square
+        for c in tf.constants
+        if c.generator in ring.index
+        and c.expression.name == "sqrt"
+        and (square := rational_value(c.expression.argument, table)) is not None
+    }
+    images = _Substitution(ring, tf.ratio.ring, table, squares)
     # Kept apart, so that factors which these values make equal are still seen to cancel.
     above, below = Factored.number(ring, tf.ratio.unit), Factored.number(ring, 1)
     for factor, exponent in tf.ratio.factors:
@@ -300,17 +318,28 @@ def _used_constants(tf: TransferFunction) -> list[str]:
 
 @dataclass(frozen=True)
 class _Substitution:
-    """Puts exact values in place of parameters."""
+    """Puts exact values in place of parameters.
+
+    ``squares`` holds the squares of generators that are square roots of rational numbers, so that
+    ``sqrt(k/m)^2`` is what it is and can cancel.
+    """
 
     ring: Ring
     source: Ring
     values: Mapping[str, ExactValue]
+    squares: Mapping[int, Fraction]
 
     def apply(self, polynomial: fmpz_mpoly) -> Factored:
         """Return the polynomial over s, pi and functions of constants."""
         names = self.source.names
         targets = [self.ring.index.get(n) for n in names]
         pi = self.ring.index["pi"]
+        # Only where every power is even: an odd one keeps (s + sqrt(k))^2 a visible square.
+        even = {
+            target
+            for i, target in enumerate(targets)
+            if target in self.squares and all(int(m[i]) % 2 == 0 for m in polynomial.monoms())
+        }
         powers: dict[tuple[str, int], Fraction] = {}
         collected: dict[tuple[int, ...], Fraction] = {}
         for monomial, coefficient in polynomial.terms():
@@ -321,6 +350,9 @@ class _Substitution:
                 if not e:
                     continue
                 if target is not None:
+                    if target in even:
+                        number *= self.squares[target] ** (e // 2)
+                        continue
                     exponents[target] += e
                     continue
                 value = self.values[name]
