@@ -58,6 +58,11 @@ __all__ = [
 ]
 
 
+def __dir__() -> list[str]:
+    """List the public names, imported or not."""
+    return list(__all__)
+
+
 def __getattr__(name: str) -> object:
     """Import a public name when it is first used: the command line starts without numpy and SymPy."""
     if name in _HOME:

@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 Number = int | float | Fraction | Decimal | str
 Table = Mapping[str, object]
+SHOWN_DIGITS = 12
+SHOWN_PAIRS = 6
 
 
 @dataclass(frozen=True, init=False)
@@ -105,6 +107,11 @@ class Model:
         model = object.__new__(Model)
         object.__setattr__(model, "resolved", resolved)
         return model
+
+    def __repr__(self) -> str:
+        names = ", ".join("/".join(pair) for pair in self.resolved.transfer_functions[:SHOWN_PAIRS])
+        more = ", ..." if len(self.resolved.transfer_functions) > SHOWN_PAIRS else ""
+        return f"<Model {self.title or 'without title'}: {names}{more}>"
 
     @property
     def title(self) -> str:
@@ -226,6 +233,9 @@ class Form:
 
         return inline_latex(self.source, self.printed)
 
+    def __repr__(self) -> str:
+        return f"<Form {self.name} of {self.source.name}>"
+
     def _repr_latex_(self) -> str:
         return f"$\\displaystyle {self.latex()}$"
 
@@ -320,6 +330,10 @@ class TransferFunction:
         """
         return BoundTransferFunction(pipeline.bind(self.exact, values))
 
+    def __repr__(self) -> str:
+        zeros, poles = self.exact.order
+        return f"<TransferFunction {self.name}: {self.quantity}, {zeros} zeros, {poles} poles>"
+
     def _repr_latex_(self) -> str:
         return self._shortest._repr_latex_()
 
@@ -395,6 +409,11 @@ class Root:
         """``-re/abs(s)``, None at the origin."""
         return self.certified_root.damping_ratio()
 
+    def __repr__(self) -> str:
+        printed = self.certified_root.decimal(SHOWN_DIGITS)
+        times = f", {self.multiplicity} times" if self.multiplicity > 1 else ""
+        return f"<Root {printed.re}, {printed.im} j{times}, radius {printed.radius}>"
+
     def __complex__(self) -> complex:
         return complex(self.re, self.im)
 
@@ -415,6 +434,9 @@ class BoundTransferFunction:
     def name(self) -> str:
         """``OUT/IN``."""
         return self.bound.name
+
+    def __repr__(self) -> str:
+        return f"<BoundTransferFunction {self.name}>"
 
     def __call__(self, s: ArrayLike) -> complex | NDArray[np.complex128]:
         """Return the value at s [rad/s], a number or an array, to double precision."""

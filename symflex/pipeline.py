@@ -19,7 +19,7 @@ from symflex.elimination import explain_singular, is_singular
 from symflex.errors import Diagnostic, Source, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.kernels import Factored
-from symflex.model import Model, load_model
+from symflex.model import Model, load_model, with_numbers
 from symflex.roots.locate import locate
 
 if TYPE_CHECKING:
@@ -87,6 +87,19 @@ def derive_all(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> 
     return transfer_room.derive_all(
         assemble(model), model.transfer_functions if pairs is None else tuple(pairs)
     )
+
+
+def derive_bound(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[BoundTransferFunction, ...]:
+    """Return transfer functions with the declared values, derived with numbers from the start.
+
+    What needs no symbols, such as poles and zeros, reaches far larger models this way.
+
+    Raises
+    ------
+    ModelError
+        SF229 when a parameter that occurs has no value.
+    """
+    return tuple(bind(tf) for tf in derive_all(with_numbers(model), pairs))
 
 
 def pick_pairs(model: Model, names: Sequence[str]) -> tuple[tuple[str, str], ...]:

@@ -40,9 +40,13 @@ def command(spec: str, kind: str, *, tfs: tuple[str, ...], output: str | None) -
     if path.suffix not in SUFFIXES:
         raise UsageError(Diagnostic("SF902", f"'{path.name}' must end in .pdf, .svg or .png"))
     pairs = figure.of if figure and figure.of and not tfs else pipeline.pick_pairs(model, tfs)
-    derived = pipeline.derive_all(model, pairs)
-    bounds = [pipeline.bind(tf) for tf in derived]
+    bounds = pipeline.derive_bound(model, pairs)
+    if not tfs and not figure:
+        for bound in bounds:
+            if bound.ratio.is_zero:
+                note(f"{bound.name} is identically zero and is left out")
+        bounds = tuple(bound for bound in bounds if not bound.ratio.is_zero) or bounds
     title = figure.title if figure else ""
-    save(draw(drawn, derived, bounds, title=title or None), path)
+    save(draw(drawn, [bound.source for bound in bounds], bounds, title=title or None), path)
     note(f"wrote {path}")
     return 0

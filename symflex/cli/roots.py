@@ -53,9 +53,9 @@ def command(
     if tf is None and len(pairs) > 1:
         others = ", ".join("/".join(pair) for pair in pairs[1:])
         note(f"showing {'/'.join(pairs[0])}; choose with --tf: {others}")
-    derived = pipeline.derive_all(model, pairs[:1])[0]
     shown = digits or model.analysis.digits or 15
-    found = pipeline.roots(pipeline.bind(derived), chosen, shown)
+    (bound,) = pipeline.derive_bound(model, pairs[:1])
+    found = pipeline.roots(bound, chosen, shown)
     if as_json:
         emit_json(found.to_json_dict())
     else:

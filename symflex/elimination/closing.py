@@ -11,7 +11,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from symflex.kernels import Factored, Ring
+from symflex.kernels import LAPLACE, Factored, Ring
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -55,13 +55,15 @@ class Closure:
         """Return a polynomial entry with its sums closed."""
         result = self.ring.constant(int(value.unit))
         for factor, exponent in value.factors:
-            image = (
-                self._closed[str(factor)]
-                if len(factor) > 1
-                else self.ring.context.gen(factor.degrees().index(1))
-            )
-            result = result * image**exponent
+            result = result * self._image(factor) ** exponent
         return result
+
+    def _image(self, factor: fmpz_mpoly) -> fmpz_mpoly:
+        closed = self._closed.get(str(factor)) if len(factor) > 1 else None
+        return self._embed(factor) if closed is None else closed
+
+    def _embed(self, factor: fmpz_mpoly) -> fmpz_mpoly:
+        return factor.compose(*self.ring.context.gens()[: len(self.base.names)], ctx=self.ring.context)
 
     def open(self, polynomial: fmpz_mpoly) -> Factored:
         """Return a closed polynomial over ``base``; factors that stand in front stay factored."""
@@ -92,6 +94,12 @@ class ClosedSystem:
     outputs: tuple[SparseRow, ...]
 
 
+def _is_symbolic(ring: Ring, factor: fmpz_mpoly) -> bool:
+    """Tell whether a factor is a sum with a parameter in it; a sum of numbers and s stays open."""
+    numeric = {ring.index[LAPLACE], ring.index["pi"]}
+    return len(factor) > 1 and any(int(d) and i not in numeric for i, d in enumerate(factor.degrees()))
+
+
 def close(equations: Equations) -> ClosedSystem:
     """Return the equations with every sum of two or more terms closed."""
     sums: dict[str, fmpz_mpoly] = {}
@@ -99,7 +107,7 @@ def close(equations: Equations) -> ClosedSystem:
     entries = [c for form in forms for _, c in form.terms] + [o.divisor for o in equations.outputs]
     for entry in entries:
         for factor, _ in entry.factors:
-            if len(factor) > 1:
+            if _is_symbolic(equations.ring, factor):
                 sums.setdefault(str(factor), factor)
     named = tuple((f"sum{i}", factor) for i, factor in enumerate(sums.values()))
     # A parameter may be called like a closed sum; generator names must differ.

@@ -16,6 +16,7 @@ from symflex.model.model import (
     Published,
     Signal,
 )
+from symflex.model.numbers import with_numbers
 from symflex.model.resolve import load_model, resolve
 from symflex.model.scope import Scope, scope_of
 
@@ -38,4 +39,5 @@ __all__ = [
     "load_model",
     "resolve",
     "scope_of",
+    "with_numbers",
 ]

@@ -1,0 +1,47 @@
+"""The same model with numbers in place of its valued parameters, for what needs no symbols."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from symflex.expressions import substitute
+from symflex.model.units import exact_expression
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from symflex.expressions import Expression
+    from symflex.model.model import Model
+
+Values = tuple[tuple[str, "Expression"], ...]
+
+
+def with_numbers(model: Model) -> Model:
+    """Return a model whose valued parameters are replaced by exact numbers; the others stay symbolic.
+
+    Its transfer functions, bound, are those of the model; deriving them costs no symbols.
+    """
+    numbers = {p.name: exact_expression(p.value) for p in model.parameters if p.value is not None}
+
+    def values(given: Values, numbers: Mapping[str, Expression] = numbers) -> Values:
+        return tuple((name, substitute(e, numbers)) for name, e in given)
+
+    return replace(
+        model,
+        parameters=tuple(p for p in model.parameters if p.value is None),
+        definitions=tuple(
+            replace(d, expression=substitute(d.expression, numbers)) for d in model.definitions
+        ),
+        elements=tuple(replace(e, values=values(e.values)) for e in model.elements),
+        signals=tuple(replace(x, expression=substitute(x.expression, numbers)) for x in model.signals),
+        blocks=tuple(
+            replace(
+                b,
+                values=values(b.values),
+                submodel=None if b.submodel is None else with_numbers(b.submodel),
+            )
+            for b in model.blocks
+        ),
+        outputs=tuple(replace(o, expression=substitute(o.expression, numbers)) for o in model.outputs),
+    )

@@ -1,0 +1,62 @@
+from __future__ import annotations
+
+import pytest
+
+from symflex import pipeline
+
+BLOCKS = """
+C = { type = "tf", num = "s - 1", den = "s + 1" }
+P = { type = "tf", num = 1, den = "s - 1" }
+A = { type = "tf", num = "s + 1", den = "s + 2" }
+B = { type = "tf", num = "s + 2", den = "s + 3" }
+"""
+
+
+def hidden(output="y", signals="", expression="y"):
+    text = f"""symflex = 1
+[blocks]{BLOCKS}
+[signals]
+{signals}
+[inputs]
+r = {{}}
+[outputs]
+{output} = "{expression}"
+"""
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    return tf, sorted((str(h.polynomial), h.multiplicity) for h in tf.hidden)
+
+
+# The unstable pole at s = 1 cancels against the controller's zero: an internally unstable loop (any text on
+# internal stability, for instance Zhou & Doyle 1998, section 5.3).
+@pytest.mark.parametrize(
+    "signals",
+    ['y = "C*P*(r - y)"', 'y = "P*C*(r - y)"', 'y = "(r - y)*C*P"', 'u = "C*(r - y)"\ny = "P*u"'],
+)
+def test_an_unstable_pole_cancelled_in_a_loop_is_hidden_however_the_loop_is_written(signals):
+    tf, found = hidden(signals=signals)
+    assert tf.order == (0, 1)
+    assert ("s - 1", 1) in found
+
+
+def test_a_pole_cancelled_between_two_blocks_of_one_product_is_hidden():
+    tf, found = hidden(signals='y = "A*B*r"')
+    assert tf.order == (1, 1)
+    assert found == [("s + 2", 1)]
+
+
+def test_a_pole_cancelled_in_an_output_is_hidden_there():
+    tf, found = hidden(signals='x = "r"', expression="(s - 1)*P*x")
+    assert tf.order == (0, 0)
+    assert found == [("s - 1", 1)]
+
+
+def test_terms_of_a_sum_share_their_poles():
+    tf, found = hidden(signals='y = "P*r + P*A*r"')
+    assert tf.order == (1, 2)
+    assert found == []
+
+
+def test_what_does_not_cancel_hides_nothing():
+    tf, found = hidden(signals='y = "A*r/(s + 5)^2"')
+    assert tf.order == (1, 3)
+    assert found == []
