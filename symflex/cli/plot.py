@@ -26,10 +26,11 @@ def command(spec: str, kind: str, *, tfs: tuple[str, ...], output: str | None) -
     """
     from symflex import pipeline
     from symflex.emit.figures import FIGURES, draw, save
+    from symflex.model.analysis import FIGURE_KINDS
 
     model = pipeline.load(spec)
     figure = next((f for f in model.figures if f.name == kind), None)
-    if figure is None and kind not in FIGURES:
+    if figure is None and kind not in (*FIGURES, *FIGURE_KINDS):
         names = [*FIGURES, *(f.name for f in model.figures)]
         hint = nearest(kind, names) or "choose from: " + ", ".join(names)
         raise UsageError(Diagnostic("SF902", f"there is no figure '{kind[:64]}'", None, hint))
