@@ -25,8 +25,8 @@ from symflex.model.nodes import variable_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from symflex.elements import Branch, Injection
-    from symflex.model import Model, NodeReference, PlacedBlock, PlacedElement
+    from symflex.elements import Branch, Injection, Placing
+    from symflex.model import Model, Node, NodeReference, PlacedBlock, PlacedElement
 
 PI = "pi"
 GENERATOR_LIMIT = 1_000
@@ -234,7 +234,7 @@ class _Assembly:
         self,
         use: PlacedElement,
         evaluator: Evaluator,
-        nodes: Mapping[str, object],
+        nodes: Mapping[str, Node],
         values: list[tuple[Variable, Expression]],
     ) -> Stamp | None:
         signal_ports = {p.name for p in use.element.parameters if p.signal}
@@ -260,14 +260,14 @@ class _Assembly:
         return use.element.stamp(ElementUse(use.name, s, terminals, dict(use.domains), constants, forms))
 
     @staticmethod
-    def _terminal(reference: NodeReference, domain: str, nodes: Mapping[str, object]) -> Terminal:
+    def _terminal(reference: NodeReference, domain: Placing, nodes: Mapping[str, Node]) -> Terminal:
         if reference.is_ground:
             return Terminal()
         node = nodes[reference.node]
         if domain == "planar":
             name = reference.node
             return Terminal(None, Variable("node", name, "y"), Variable("node", name, "theta"))
-        return Terminal(variable_of(reference, node, domain))  # type: ignore[arg-type]
+        return Terminal(variable_of(reference, node, domain))
 
     def _take(self, use: PlacedElement, stamp: Stamp) -> None:
         for branch in stamp.branches:
@@ -305,9 +305,9 @@ class _Assembly:
                     balance[here] = _side_by_side(balance[here], out)
         return [EquationRow(node, "balance", form) for node, form in balance.items()]
 
-    def _take_inputs(self, nodes: Mapping[str, object]) -> None:
+    def _take_inputs(self, nodes: Mapping[str, Node]) -> None:
         one = Factored.number(self.ring, 1)
-        domains = {
+        domains: dict[str, Placing] = {
             "force": "translation",
             "torque": "rotation",
             "voltage": "electrical",

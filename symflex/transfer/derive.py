@@ -183,9 +183,9 @@ def _compose_rational(ring: Ring, factor: fmpz_mpoly, images: Sequence[Factored 
     """Return ``factor`` with rational functions in place of its generators."""
     degrees = [int(d) for d in factor.degrees()]
     denominators = {
-        i: images[i].denominator()  # type: ignore[union-attr]
-        for i, d in enumerate(degrees)
-        if d and images[i] is not None
+        i: image.denominator()
+        for i, (d, image) in enumerate(zip(degrees, images, strict=True))
+        if d and image is not None
     }
     total = ring.constant(0)
     for monomial, coefficient in factor.terms():
