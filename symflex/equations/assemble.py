@@ -7,15 +7,14 @@ Output: :class:`Equations`; every element has left its stamp, parallel branches 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from fractions import Fraction
 from graphlib import CycleError, TopologicalSorter
 from math import lcm
 from typing import TYPE_CHECKING
 
-from symflex.elements import ElementUse, LinearForm, Row, Stamp, Terminal, Variable
+from symflex.elements import ElementUse, LinearForm, Stamp, Terminal, Variable
 from symflex.equations.equations import ConstantFunction, EquationRow, Equations, OutputRow
 from symflex.equations.evaluate import Evaluator, Opener
-from symflex.equations.realisation import written_denominator
+from symflex.equations.realisation import least_common_multiple, written_denominator
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
 from symflex.expressions import Call, Expression, Name, format_expression, names
 from symflex.kernels import FUNCTIONS, LAPLACE, Factored, Ring, random_point, residue
@@ -275,13 +274,9 @@ class _Assembly:
         for injection in stamp.injections:
             self._inject(injection)
         self.unknowns += stamp.unknowns
-        self.rows += [self._element_row(row) for row in stamp.rows]
+        self.rows += [EquationRow(row.about, row.role, row.form) for row in stamp.rows]
         for quantity, form in stamp.through:
             self.through[Variable("through", use.name, quantity)] = form
-
-    @staticmethod
-    def _element_row(row: Row) -> EquationRow:
-        return EquationRow(row.about, row.role, row.form)
 
     def _add_branch(self, branch: Branch) -> None:
         key = (branch.a, branch.b)
@@ -357,12 +352,8 @@ class _Assembly:
 
     def _cancelled(self, expression: Expression, form: LinearForm, evaluator: Evaluator) -> Factored:
         """Return the poles that cancelled within an expression: they stay modes of the model."""
-        written = written_denominator(expression, evaluator)
         left = common_denominator(self.ring, form)
-        exponents = [
-            (f, e - min(e, next((x for g, x in left.factors if g == f), 0))) for f, e in written.factors
-        ]
-        return Factored(self.ring, Fraction(1), tuple((f, e) for f, e in exponents if e))
+        return least_common_multiple(left, (written_denominator(expression, evaluator),)) / left
 
 
 def _side_by_side(left: LinearForm, right: LinearForm) -> LinearForm:
@@ -372,10 +363,5 @@ def _side_by_side(left: LinearForm, right: LinearForm) -> LinearForm:
 
 def common_denominator(ring: Ring, form: LinearForm) -> Factored:
     """Return the least common multiple of the coefficients' denominators."""
-    result = Factored.number(ring, lcm(*(c.unit.denominator for _, c in form.terms)))
-    for _, coefficient in form.terms:
-        for factor, exponent in coefficient.factors:
-            have = next((e for f, e in result.factors if f == factor), 0)
-            if -exponent > have:
-                result = result * Factored(ring, Fraction(1), ((factor, -exponent - have),))
-    return result
+    numbers = Factored.number(ring, lcm(*(c.unit.denominator for _, c in form.terms)))
+    return least_common_multiple(numbers, (c.denominator() for _, c in form.terms))

@@ -55,14 +55,14 @@ def written_denominator(expression: Expression, evaluator: Evaluator) -> Factore
     return one
 
 
-def least_common_multiple(one: Factored, values: Iterable[Factored]) -> Factored:
-    """Return the least common multiple of products of irreducible factors."""
-    result = one
+def least_common_multiple(start: Factored, values: Iterable[Factored]) -> Factored:
+    """Return the least multiple of ``start`` with the factors of every value, whose numbers are ignored."""
+    result = start
     for value in values:
         for factor, exponent in value.factors:
             have = next((e for f, e in result.factors if f == factor), 0)
             if exponent > have:
-                result = result * Factored(one.ring, Fraction(1), ((factor, exponent - have),))
+                result = result * Factored(start.ring, Fraction(1), ((factor, exponent - have),))
     return result
 
 
