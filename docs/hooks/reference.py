@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from symflex.blocks import Block, BlockParameter
-    from symflex.elements import Element, ParameterPort, Port
+    from symflex.elements import Choice, Element, ParameterPort, Port
 
 PLACE = re.compile(r"^<!-- reference: (\w+) -->$", re.MULTILINE)
 
@@ -60,7 +60,11 @@ def units() -> str:
 
 
 def _element(name: str, element: Element) -> str:
-    rows = [*map(_port_row, element.ports), *map(_parameter_row, element.parameters)]
+    rows = [
+        *map(_port_row, element.ports),
+        *map(_element_parameter_row, element.parameters),
+        *map(_choice_row, element.choices),
+    ]
     quantities = ", ".join(f"`{name}.{quantity}`" for quantity in element.through)
     through = [f"Offers, for an element named `{name}`: {quantities}."] if quantities else []
     about = " ".join((element.__doc__ or "").replace("``", "`").split())
@@ -106,6 +110,17 @@ def _parameter_row(parameter: ParameterPort | BlockParameter) -> tuple[str, ...]
     unit = f"`{parameter.unit}`" if parameter.unit else "inferred"
     default = "required" if parameter.default is None else f"`{parameter.default}`"
     return f"`{parameter.name}`", unit, parameter.doc, default
+
+
+def _element_parameter_row(parameter: ParameterPort) -> tuple[str, ...]:
+    name, unit, doc, default = _parameter_row(parameter)
+    only = f" (only with {' or '.join(parameter.only)})" if parameter.only else ""
+    return name, unit, doc + only, default
+
+
+def _choice_row(choice: Choice) -> tuple[str, ...]:
+    words = ", ".join(f'`"{value}"`' for value in choice.values)
+    return f"`{choice.name}`", words, choice.doc, f'`"{choice.default}"`'
 
 
 PARTS: dict[str, Callable[[], str]] = {

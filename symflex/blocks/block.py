@@ -23,11 +23,16 @@ class BlockParameter:
 
 
 class Block(ABC):
-    """Base of every block. Subclasses are final, stateless and registered in ``BLOCKS``."""
+    """Base of every block. Subclasses are final, stateless and registered in ``BLOCKS``.
+
+    A block with ``kernel_time``, the name of one of its parameters, is ``exp(-s*T)`` of that time; it has a
+    generator of its own in the equations, which never call its ``transfer``.
+    """
 
     type_name: ClassVar[str]
     summary: ClassVar[str]
     parameters: ClassVar[tuple[BlockParameter, ...]]
+    kernel_time: ClassVar[str] = ""
 
     @abstractmethod
     def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:

@@ -1,4 +1,4 @@
-"""The rational blocks of the specification language."""
+"""The blocks of the specification language."""
 
 from __future__ import annotations
 
@@ -96,3 +96,20 @@ class Pid(Block):
         """Return the controller's transfer function."""
         derivative = values["k_d"] * s / (values["T_f"] * s + 1)
         return values["k_p"] + values["k_i"] / s + derivative
+
+
+class Delay(Block):
+    """A dead time T [s], the factor ``exp(-s*T)``.
+
+    It is not rational: the equations see its ``kernel_time`` and carry it as a generator of its own.
+    """
+
+    type_name = "delay"
+    summary = "exp(-s T)"
+    parameters = (BlockParameter("T", "s", "a dead time"),)
+    kernel_time = "T"
+
+    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
+        """Return the rational factor beside the kernel, which is one; never called by the equations."""
+        del values
+        return s**0

@@ -42,6 +42,7 @@ def command(spec: str, *, as_json: bool) -> int:
             (model.elements, "element"),
             (model.signals, "signal"),
             (model.blocks, "block"),
+            (model.fields, "field"),
         )
         if group
     )

@@ -72,7 +72,10 @@ def _signature(name: str, keys: Sequence[str]) -> str:
 
 
 def _element_keys(element: Element) -> list[str]:
-    return [p.name for p in element.ports] + [p.name for p in element.parameters]
+    """Return the keys of an element's table: those that must be given, then choices and options."""
+    required = [p.name for p in element.parameters if p.default is None and not p.only]
+    options = [p.name for p in element.parameters if p.name not in required]
+    return [*(p.name for p in element.ports), *required, *(c.name for c in element.choices), *options]
 
 
 def _block_keys(block: Block) -> list[str]:
@@ -98,7 +101,10 @@ def _describe(element: Element) -> None:
             _key(port.name, f"{nodes}, {DOMAIN_WORDS.get(port.domain, port.domain)}: {port.doc}{default}")
         )
     for parameter in element.parameters:
-        click.echo(_parameter(parameter))
+        click.echo(_parameter(parameter, _only(parameter)))
+    for choice in element.choices:
+        words = ", ".join(f'"{v}"' + " (default)" * (v == choice.default) for v in choice.values)
+        click.echo(_key(choice.name, f"{choice.doc}: {words}"))
     if element.through:
         click.echo(_key("offers", ", ".join(f"name.{q}" for q in element.through)))
 
@@ -117,10 +123,14 @@ def _describe_model_block() -> None:
     click.echo(_key("tf", "OUT/IN of that specification"))
 
 
-def _parameter(parameter: ParameterPort | BlockParameter) -> str:
+def _parameter(parameter: ParameterPort | BlockParameter, only: str = "") -> str:
     default = f", default {parameter.default}" if parameter.default is not None else ""
     unit = f" [{parameter.unit}]" if parameter.unit else ""
-    return _key(parameter.name, f"{parameter.doc}{unit}{default}")
+    return _key(parameter.name, f"{parameter.doc}{unit}{default}{only}")
+
+
+def _only(parameter: ParameterPort) -> str:
+    return f", only with {' or '.join(parameter.only)}" if parameter.only else ""
 
 
 def _key(name: str, text: str) -> str:
@@ -156,7 +166,11 @@ def _element_json(element: Element) -> dict[str, object]:
             }
             for p in element.ports
         ],
-        "parameters": [_parameter_json(p) for p in element.parameters],
+        "parameters": [_parameter_json(p) | {"only": list(p.only)} for p in element.parameters],
+        "choices": [
+            {"name": c.name, "values": list(c.values), "default": c.default, "doc": c.doc}
+            for c in element.choices
+        ],
         "through": list(element.through),
     }
 

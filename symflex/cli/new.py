@@ -16,6 +16,8 @@ TEMPLATES: dict[str, str] = {
     "two_mass": "two masses joined by a flexible transmission",
     "motor_axis": "current-controlled motor, ball screw and carriage",
     "bending_beam": "sliding mass, massless beam and rigid tip body",
+    "sliding_beam": "sliding-free bending beam, written as a boundary-value problem",
+    "flexible_arm": "current-controlled motor, screw, carriage, flexible arm and gripper",
 }
 
 

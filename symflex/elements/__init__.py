@@ -1,5 +1,6 @@
 """The element library. A new element is one file and one line in ``ELEMENTS``."""
 
+from symflex.elements.beam import Beam
 from symflex.elements.capacitor import Capacitor
 from symflex.elements.constraint import Fixed, Pin, Slider
 from symflex.elements.coupling import Gyrator, Transformer
@@ -10,6 +11,7 @@ from symflex.elements.element import (
     THROUGH_NAME,
     THROUGH_UNIT,
     Branch,
+    Choice,
     Domain,
     Element,
     ElementUse,
@@ -25,12 +27,16 @@ from symflex.elements.element import (
 )
 from symflex.elements.impedance import Inductor, Resistor
 from symflex.elements.inertia import Inertia
+from symflex.elements.line import LineElement
 from symflex.elements.mass import Mass
 from symflex.elements.massless_beam import MasslessBeam
 from symflex.elements.rigid import RigidBody, RigidLink
+from symflex.elements.rod import Rod
 from symflex.elements.rotary_damper import RotaryDamper
+from symflex.elements.shaft import Shaft
 from symflex.elements.source import CurrentSource, ForceSource, TorqueSource, VoltageSource
 from symflex.elements.spring import Spring
+from symflex.elements.string import String
 from symflex.elements.torsion_spring import TorsionSpring
 
 ELEMENTS: dict[str, Element] = {
@@ -47,6 +53,10 @@ ELEMENTS: dict[str, Element] = {
         RigidBody(),
         RigidLink(),
         MasslessBeam(),
+        Beam(),
+        Rod(),
+        Shaft(),
+        String(),
         Fixed(),
         Slider(),
         Pin(),
@@ -61,20 +71,18 @@ ELEMENTS: dict[str, Element] = {
     )
 }
 
-ANNOUNCED = ("beam", "rod", "shaft", "string")
-"""Element types of the specification language that a later version will bring."""
-
 __all__ = [
     "ACROSS_UNIT",
-    "ANNOUNCED",
     "ELEMENTS",
     "THROUGH_NAME",
     "THROUGH_UNIT",
     "Branch",
+    "Choice",
     "Domain",
     "Element",
     "ElementUse",
     "Injection",
+    "LineElement",
     "LinearForm",
     "ParameterPort",
     "Placing",

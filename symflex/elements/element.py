@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Collection, Iterable, Mapping
 
     from symflex.kernels import Factored
 
@@ -34,14 +34,15 @@ class Variable:
     kind : str
         ``node`` (displacement [m], angle [rad] or voltage [V]), ``through`` (force [N],
         torque [N m] or current [A] of an element), ``signal``, ``value`` (an auxiliary
-        unknown that carries a rational expression) or ``input``.
+        unknown that carries a rational expression), ``field`` (an unknown function of x, or
+        one of the constants that fix it) or ``input``.
     owner : str
-        Name of the node, element, signal, output or input.
+        Name of the node, element, signal, output, field's unknown or input.
     component : str
         ``y`` or ``theta`` of a planar node; the quantity's name for a through variable.
     """
 
-    kind: Literal["node", "through", "signal", "value", "input"]
+    kind: Literal["node", "through", "signal", "value", "field", "input"]
     owner: str
     component: str = ""
 
@@ -163,6 +164,8 @@ class ParameterPort:
         The expression used when the key is missing; ``None`` makes the key required.
     signal : bool
         True when the value may be an expression of signals, inputs and nodes.
+    only : tuple of str
+        Values of the element's choices with which the key may be given; empty when with all of them.
     """
 
     name: str
@@ -170,6 +173,33 @@ class ParameterPort:
     doc: str
     default: str | None = None
     signal: bool = False
+    only: tuple[str, ...] = ()
+
+    def applies(self, chosen: Collection[str]) -> bool:
+        """Tell whether the key may be given with the chosen values."""
+        return not self.only or any(value in self.only for value in chosen)
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """A key that takes one of a few words, such as the theory of a beam.
+
+    Parameters
+    ----------
+    name : str
+        The key.
+    values : tuple of str
+        What it may say.
+    default : str
+        What holds when the key is missing.
+    doc : str
+        What it decides, in the words of an error message: "a theory".
+    """
+
+    name: str
+    values: tuple[str, ...]
+    default: str
+    doc: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,6 +232,11 @@ class ElementUse:
         Constant parameters (they may depend on s).
     forms : mapping of str to LinearForm
         Values that are expressions of signals.
+    choices : mapping of str to str
+        What was chosen, the theory of a beam for instance.
+    transmission : tuple of tuple of Factored
+        Of a distributed element, row by row, the matrix that takes its state from the first end to the
+        second; empty for others.
     """
 
     name: str
@@ -210,6 +245,8 @@ class ElementUse:
     domains: Mapping[str, Placing]
     values: Mapping[str, Factored]
     forms: Mapping[str, LinearForm] = field(default_factory=dict)
+    choices: Mapping[str, str] = field(default_factory=dict)
+    transmission: tuple[tuple[Factored, ...], ...] = ()
 
     @property
     def one(self) -> Factored:
@@ -232,6 +269,7 @@ class Element(ABC):
     summary: ClassVar[str]
     ports: ClassVar[tuple[Port, ...]]
     parameters: ClassVar[tuple[ParameterPort, ...]] = ()
+    choices: ClassVar[tuple[Choice, ...]] = ()
     through: ClassVar[tuple[str, ...]] = ()
 
     def unit_of(self, quantity: str, domains: Mapping[str, Placing]) -> str:

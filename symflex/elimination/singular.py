@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
+from random import Random
 from typing import TYPE_CHECKING
 
 from flint import nmod_mat
 
 from symflex.errors import Diagnostic, ModelError
+from symflex.expressions import format_expression
 from symflex.kernels import PRIME, random_point, residue
+from symflex.kernels.origin import find_point
+from symflex.kernels.taylor import TaylorField, random_values
 
 if TYPE_CHECKING:
-    from symflex.equations import Equations
+    from collections.abc import Callable, Mapping, Sequence
+
+    from flint import nmod_poly
+
+    from symflex.equations import EquationRow, Equations
     from symflex.errors import Span
+    from symflex.kernels import Factored, Propagation
 
 SHOWN = 6
 
@@ -41,6 +50,8 @@ def explain_singular(equations: Equations) -> ModelError:
             else f"the constraint of {names} repeats what is already imposed"
         )
         problems.append(Diagnostic("SF302", message, _place(equations, owners[-1]), "remove one of them"))
+    elif conditions := [r for r in rows if r.role == "condition"]:
+        problems += _dependent_conditions(equations, conditions)
     elif nodes:
         names = _listed([f"'{v}'" for v in nodes])
         alone = len(nodes) == 1
@@ -70,6 +81,24 @@ def explain_singular(equations: Equations) -> ModelError:
     return ModelError(*problems)
 
 
+def _dependent_conditions(equations: Equations, rows: list[EquationRow]) -> list[Diagnostic]:
+    """Say which conditions of fields follow from one another."""
+    fields = {f.name: f for f in equations.model.fields}
+    found = [(r.about.owner, int(r.about.component.split()[-1])) for r in rows]
+    conditions = [fields[name].conditions[number - 1] for name, number in found]
+    texts = [f"'{format_expression(c)}'" for c in conditions]
+    names = _listed([f"'{n}'" for n in dict.fromkeys(name for name, _ in found)])
+    message = (
+        f"the conditions {_listed(texts)} of field {names} repeat or contradict each other: "
+        "the state is not determined"
+        if len(texts) > 1
+        else f"the condition {texts[0]} of field {names} always holds: one is missing in its place"
+    )
+    return [
+        Diagnostic("SF302", message, conditions[-1].span, "replace one of them by an independent condition")
+    ]
+
+
 def _listed(names: list[str]) -> str:
     if len(names) > SHOWN:
         names = [*names[:SHOWN], f"{len(names) - SHOWN} more"]
@@ -83,17 +112,61 @@ def _listed(names: list[str]) -> str:
 
 
 def _at_random_point(equations: Equations) -> nmod_mat:
+    """Return A(s) at a random point, where wavenumbers and kernels satisfy their relations."""
+    if equations.propagation is not None:
+        field, values = _point_of_kernels(equations, equations.propagation)
+        return _matrix(equations, field.prime, lambda c: _number(field, c, equations.ring.names, values))
     point = random_point(equations.ring.names)
     for name, value in equations.definitions:
         point[name] = residue(value, point)
+    return _matrix(equations, PRIME, lambda coefficient: residue(coefficient, point))
+
+
+def _matrix(equations: Equations, prime: int, value: Callable[[Factored], int]) -> nmod_mat:
     columns = {v: i for i, v in enumerate(equations.unknowns)}
     entries = [0] * (len(equations.rows) * len(columns))
     for i, row in enumerate(equations.rows):
         for variable, coefficient in row.form.terms:
             if variable in columns:
                 position = i * len(columns) + columns[variable]
-                entries[position] = (entries[position] + residue(coefficient, point)) % PRIME
-    return nmod_mat(len(equations.rows), len(columns), entries, PRIME)
+                entries[position] = (entries[position] + value(coefficient)) % prime
+    return nmod_mat(len(equations.rows), len(columns), entries, prime)
+
+
+def _number(
+    field: TaylorField, value: Factored, names: Sequence[str], values: Mapping[str, nmod_poly]
+) -> int:
+    found = field.rational(value, names, values)
+    return 0 if found is None else int(found[0])
+
+
+def _point_of_kernels(
+    equations: Equations, propagation: Propagation
+) -> tuple[TaylorField, dict[str, nmod_poly]]:
+    ring = propagation.kernel_ring
+
+    def define(values: dict[str, nmod_poly], field: TaylorField) -> bool:
+        for name, value in equations.definitions:
+            found = field.rational(value, equations.ring.names, values)
+            if found is None:
+                return False
+            values[name] = found
+        return True
+
+    def prepare(values: dict[str, nmod_poly], field: TaylorField) -> bool:
+        values.update({p.generator: field.constant(0) for p in propagation.propagators})
+        return define(values, field)
+
+    found = find_point(ring, propagation.table, 1, prepare)
+    if found is None:
+        field = TaylorField(1)
+        values = random_values(equations.ring.names, Random(3), field)
+        define(values, field)
+        return field, values
+    field, values = found
+    for p in propagation.propagators:
+        values[p.generator] = field.polynomial(p.image, ring.names, values)
+    return field, values
 
 
 def _support(matrix: nmod_mat, size: int) -> list[int]:

@@ -12,6 +12,8 @@ from math import lcm
 from typing import TYPE_CHECKING
 
 from symflex.elements import ElementUse, LinearForm, Stamp, Terminal, Variable
+from symflex.elements.line import LineElement
+from symflex.equations.distributed import survey
 from symflex.equations.equations import ConstantFunction, EquationRow, Equations, OutputRow
 from symflex.equations.evaluate import Evaluator, Opener
 from symflex.equations.realisation import least_common_multiple, written_denominator
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
     from symflex.elements import Branch, Injection, Placing
+    from symflex.equations.distributed import Distributed, FieldSolution
     from symflex.model import Model, Node, NodeReference, PlacedBlock, PlacedElement
 
 PI = "pi"
@@ -65,7 +68,9 @@ def assemble(model: Model, nested: Callable[[PlacedBlock, Ring], Factored] | Non
             *(c.generator for c in constants),
         )
     )
-    return _Assembly(model, ring, constants, nested).run()
+    distributed = _Assembly(model, ring, constants, nested).survey()
+    whole = ring if distributed is None else distributed.propagation.ring
+    return _Assembly(model, whole, constants, nested, distributed).run()
 
 
 def _too_large(message: str, hint: str) -> BudgetError:
@@ -98,6 +103,8 @@ def _expressions(model: Model) -> Iterable[Expression]:
         yield from (e for _, e in values)
     yield from (x.expression for x in model.signals)
     yield from (x.expression for x in model.outputs)
+    for found in model.fields:
+        yield from (found.start, found.end, *found.equations, *found.conditions)
 
 
 @dataclass
@@ -108,6 +115,7 @@ class _Assembly:
     ring: Ring
     constants: tuple[ConstantFunction, ...]
     nested: Callable[[PlacedBlock, Ring], Factored] | None
+    distributed: Distributed | None = None
     problems: list[Diagnostic] = field(default_factory=list)
     branches: dict[tuple[Variable | None, Variable | None], Factored] = field(default_factory=dict)
     balance: dict[Variable, LinearForm] = field(default_factory=dict)
@@ -115,13 +123,30 @@ class _Assembly:
     rows: list[EquationRow] = field(default_factory=list)
     through: dict[Variable, LinearForm] = field(default_factory=dict)
 
-    def run(self) -> Equations:
-        """Return the finished equations."""
-        scope = scope_of(self.model)
-        blocks = self._blocks()
+    def survey(self) -> Distributed | None:
+        """Return the model's distributed parts; this assembly is over the ring without kernels."""
+        lines = any(isinstance(use.element, LineElement) for use in self.model.elements)
+        delays = any(b.block is not None and b.block.kernel_time for b in self.model.blocks)
+        if not (lines or delays or self.model.fields):
+            return None
+        evaluator, _ = self._evaluator(self._blocks())
+        if self.problems:
+            raise ModelError(*self.problems)
+        return survey(self.model, evaluator, _expressions(self.model))
+
+    def _evaluator(self, blocks: Mapping[str, Factored]) -> tuple[Evaluator, dict[str, int]]:
         known = {d.name for d in self.model.definitions}
         point = random_point([n for n in self.ring.names if n not in known])
-        evaluator = Evaluator(self.ring, scope, blocks, self.through, self._definitions, point)
+        fields = {u for f in self.model.fields for u in f.unknowns}
+        value = None if self.distributed is None else self.distributed.value
+        scope = scope_of(self.model)
+        definitions = self._definitions
+        return Evaluator(self.ring, scope, blocks, self.through, definitions, point, fields, value), point
+
+    def run(self) -> Equations:
+        """Return the finished equations."""
+        blocks = self._blocks()
+        evaluator, point = self._evaluator(blocks)
         definitions = self._define(evaluator, point)
         self._check_blocks(blocks, point)
         nodes = {n.name: n for n in self.model.nodes}
@@ -138,6 +163,8 @@ class _Assembly:
             self._equal(variable, expression, evaluator)
         for signal in self.model.signals:
             self._equal(Variable("signal", signal.name), signal.expression, evaluator)
+        for solution in self._solutions():
+            self._impose(solution, evaluator)
         outputs = [self._output(o.name, o.expression, evaluator) for o in self.model.outputs]
         if self.problems:
             too_large = all(d.code.startswith("SF5") for d in self.problems)
@@ -154,7 +181,37 @@ class _Assembly:
             tuple(Variable("input", i.name) for i in self.model.inputs),
             tuple(self._polynomial(row) for row in (*self._balances(), *self.rows)),
             tuple(o for o in outputs if o is not None),
+            None if self.distributed is None else self.distributed.propagation,
+            None if self.distributed is None else self._cleared(),
         )
+
+    def _cleared(self) -> Factored:
+        """Return the product of the denominators in rows of line elements and conditions."""
+        transmissions = {} if self.distributed is None else self.distributed.transmissions
+        product = Factored.number(self.ring, 1)
+        for row in self.rows:
+            if row.role == "condition" or (row.about.kind == "through" and row.about.owner in transmissions):
+                product = product * common_denominator(self.ring, row.form)
+        return product
+
+    def _solutions(self) -> Iterable[FieldSolution]:
+        """Return the fields' solutions, each once."""
+        if self.distributed is None:
+            return ()
+        return {s.field.name: s for s in self.distributed.solutions.values()}.values()
+
+    def _impose(self, solution: FieldSolution, evaluator: Evaluator) -> None:
+        """Take a field's state at its start as unknowns, and its conditions as rows."""
+        self.unknowns += solution.initial
+        for i, condition in enumerate(solution.field.conditions):
+            try:
+                left, right = (evaluator.linear(e) for e in (condition.left, condition.right))
+            except SymflexError as error:
+                self.problems.extend(error.diagnostics)
+                continue
+            form = left + right * Factored.number(self.ring, -1)
+            about = Variable("field", solution.field.name, f"condition {i + 1}")
+            self.rows.append(EquationRow(about, "condition", form))
 
     @property
     def _definitions(self) -> dict[str, Expression]:
@@ -186,11 +243,15 @@ class _Assembly:
                 continue
 
     def _blocks(self) -> Mapping[str, Factored]:
-        found: dict[str, Factored] = {}
+        found: dict[str, Factored] = {} if self.distributed is None else dict(self.distributed.delays)
         scope = scope_of(self.model)
         evaluator = Evaluator(self.ring, scope, found, {}, self._definitions)
         s = Factored.generator(self.ring, LAPLACE)
         for block in self._ordered_blocks():
+            if block.name in found:
+                continue
+            if self.distributed is None and block.name in self._delayed:
+                continue  # over the ring without kernels there is no value for it
             try:
                 if block.block is not None:
                     values = {name: evaluator.constant(e) for name, e in block.values}
@@ -203,6 +264,16 @@ class _Assembly:
             except SymflexError as error:
                 self.problems.extend(error.diagnostics)
                 found[block.name] = Factored.number(self.ring, 1)
+        return found
+
+    @property
+    def _delayed(self) -> set[str]:
+        """The delay blocks, and the blocks made of them."""
+        found = {b.name for b in self.model.blocks if b.block is not None and b.block.kernel_time}
+        for block in self._ordered_blocks():
+            used = {n.name for _, e in block.values for n in names(e) if isinstance(n, Name)}
+            if used & found:
+                found.add(block.name)
         return found
 
     def _ordered_blocks(self) -> list[PlacedBlock]:
@@ -256,7 +327,19 @@ class _Assembly:
             for port, references in use.nodes
         }
         s = Factored.generator(self.ring, LAPLACE)
-        return use.element.stamp(ElementUse(use.name, s, terminals, dict(use.domains), constants, forms))
+        transmissions = {} if self.distributed is None else self.distributed.transmissions
+        return use.element.stamp(
+            ElementUse(
+                use.name,
+                s,
+                terminals,
+                dict(use.domains),
+                constants,
+                forms,
+                dict(use.choices),
+                transmissions.get(use.name, ()),
+            )
+        )
 
     @staticmethod
     def _terminal(reference: NodeReference, domain: Placing, nodes: Mapping[str, Node]) -> Terminal:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     from symflex.elements import LinearForm, Variable
     from symflex.expressions import Call
-    from symflex.kernels import Factored, Ring
+    from symflex.kernels import Factored, Propagation, Ring
     from symflex.model import Model
 
-Role = Literal["balance", "law", "constraint", "signal"]
+Role = Literal["balance", "law", "constraint", "signal", "condition"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +27,9 @@ class ConstantFunction:
 
 @dataclass(frozen=True, slots=True)
 class EquationRow:
-    """One polynomial row ``form = 0``: a node's balance, or an element's, constraint's or signal's law.
+    """One polynomial row ``form = 0``.
+
+    A node's balance, an element's, constraint's or signal's law, or a field's condition.
 
     A variable may occur several times in ``form``, once per branch that meets it.
     """
@@ -66,6 +68,8 @@ class Equations:
         As many as unknowns.
     outputs : tuple of OutputRow
         The names of y and their forms.
+    propagation : Propagation or None
+        What the generators of distributed parts are; ``ring`` is its ring then.
     """
 
     model: Model
@@ -76,3 +80,5 @@ class Equations:
     inputs: tuple[Variable, ...]
     rows: tuple[EquationRow, ...]
     outputs: tuple[OutputRow, ...]
+    propagation: Propagation | None = None
+    cleared: Factored | None = None

@@ -28,7 +28,7 @@ from symflex.expressions import (
 from symflex.kernels import LAPLACE, Factored, Ring, residue
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Collection, Mapping
 
     from symflex.model import Scope
 
@@ -55,6 +55,10 @@ class Evaluator:
         Opened inside the arguments of functions.
     point : mapping of str to int
         A random point of a prime field, with the definitions that are known by now.
+    fields : collection of str
+        The unknowns of fields.
+    field_value : callable, optional
+        Returns a field's unknown, or a derivative of it, at the point a call names.
     """
 
     ring: Ring
@@ -63,6 +67,13 @@ class Evaluator:
     through: Mapping[Variable, LinearForm]
     definitions: Mapping[str, Expression]
     point: Mapping[str, int] = field(default_factory=dict)
+    fields: Collection[str] = ()
+    field_value: Callable[[Call], LinearForm] | None = None
+
+    @property
+    def s(self) -> Factored:
+        """The Laplace variable."""
+        return Factored.generator(self.ring, LAPLACE)
 
     @cached_property
     def opener(self) -> Opener:
@@ -132,6 +143,8 @@ class Evaluator:
                 return _scale(self._evaluate(numerator), divisor**-1)
             case Power(base, exponent):
                 return self._power(expression, base, exponent)
+            case Call(name) if name in self.fields and self.field_value is not None:
+                return self.field_value(expression)
             case Call(name, argument):
                 return self._call(expression, name, argument)
         message = f"unexpected expression {type(expression).__name__}"

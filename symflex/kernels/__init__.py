@@ -1,7 +1,9 @@
 """The exact ring, factored rational functions over it, and the functions that may appear as generators."""
 
+from symflex.kernels.dispersion import NO_KERNELS, Dispersion, Kernel, KernelTable
 from symflex.kernels.factored import Factored
 from symflex.kernels.functions import FUNCTIONS, ElementaryFunction
+from symflex.kernels.propagators import Propagation, Propagator, propagate
 from symflex.kernels.residue import PRIME, random_point, residue
 from symflex.kernels.ring import LAPLACE, MEMORY_LIMIT, Ring, degree_in
 
@@ -9,11 +11,18 @@ __all__ = [
     "FUNCTIONS",
     "LAPLACE",
     "MEMORY_LIMIT",
+    "NO_KERNELS",
     "PRIME",
+    "Dispersion",
     "ElementaryFunction",
     "Factored",
+    "Kernel",
+    "KernelTable",
+    "Propagation",
+    "Propagator",
     "Ring",
     "degree_in",
+    "propagate",
     "random_point",
     "residue",
 ]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from symflex.errors.diagnostic import nearest
 from symflex.model.model import Analysis, Figure, Published
-from symflex.model.scope import COMPARED_NAMES, LISTED_NAMES
+from symflex.model.scope import COMPARED_NAMES, LISTED_NAMES, RESERVED
 from symflex.quantities import unit_of
 from symflex.spec import ArrayValue, NumberValue, TableValue
 
@@ -159,10 +159,10 @@ def read_published(reader: Reader, section: TableValue | None, model: Model) -> 
         if expr is None:
             reader.note("SF214", f"{what} has no 'expr'", entry.key_span)
             continue
-        expression = reader.expression(expr.value, what)
+        expression = reader.expression(expr.value, what, quantities=False)
         where = _where(reader, table, what)
         scale = table.get("scale")
-        scaled = reader.expression(scale.value, f"scale of {what}") if scale else None
+        scaled = reader.expression(scale.value, f"scale of {what}", quantities=False) if scale else None
         cited = reader.plain(table, "source", what)
         if expression is not None:
             found.append(Published(tf, expression, where, scaled, cited, entry.key_span))
@@ -174,8 +174,8 @@ def _where(reader: Reader, table: TableValue, what: str) -> tuple[tuple[str, Exp
     inner = reader.table(entry, f"where of {what}") if entry else None
     found = []
     for item in inner.entries if inner else ():
-        if reader.name(item, "an abbreviation"):
-            expression = reader.expression(item.value, f"'{item.key}' of {what}")
+        if reader.name(item, "an abbreviation", RESERVED):
+            expression = reader.expression(item.value, f"'{item.key}' of {what}", quantities=False)
             if expression is not None:
                 found.append((item.key, expression))
     return tuple(found)

@@ -7,7 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from symflex.blocks import ANNOUNCED, BLOCKS, MODEL_BLOCK
+from symflex.blocks import BLOCKS, MODEL_BLOCK
 from symflex.errors import SymflexError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import Expression, Name, Number, power, product_of, sum_of
@@ -15,7 +15,7 @@ from symflex.kernels import LAPLACE
 from symflex.model.analysis import named_pairs, pick_tf
 from symflex.model.linearity import EXPONENT_LIMIT
 from symflex.model.model import PlacedBlock
-from symflex.model.reading import signed_number
+from symflex.model.reading import literal_value, signed_number
 from symflex.model.scope import RESERVED
 from symflex.model.units import lower
 from symflex.spec import ArrayValue, read
@@ -87,9 +87,6 @@ def _read_block(reader: Reader, entry: Entry, origin: Origin) -> PlacedBlock | N
     text = reader.string(kind, f"type of {what}")
     if text is None:
         return None
-    if text.value in ANNOUNCED:
-        reader.note("SF911", f"block type '{text.value}' is not available yet", text.span)
-        return None
     if text.value == MODEL_BLOCK:
         return _read_model_block(reader, entry, table, origin)
     block = BLOCKS.get(text.value)
@@ -114,6 +111,11 @@ def _read_values(
         found = table.get(parameter.name)
         if found is not None:
             expression = _value(reader, found.value, where, coefficients=block.type_name == "tf")
+            value = None if expression is None else literal_value(expression)
+            if parameter.name == block.kernel_time and value is not None and value < 0:
+                message = f"{where} is negative; a delay cannot look ahead"
+                reader.note("SF209", message, found.value.span)
+                expression = None
         elif parameter.default is not None:
             expression = signed_number(Fraction(parameter.default))
         else:

@@ -15,10 +15,13 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from symflex.elements import Variable
 from symflex.errors import Diagnostic
 from symflex.expressions import (
     Attribute,
     Call,
+    Derivative,
+    Equation,
     Expression,
     Name,
     Negative,
@@ -28,6 +31,7 @@ from symflex.expressions import (
     Quotient,
     Sum,
     names,
+    substitute,
 )
 from symflex.kernels import FUNCTIONS
 from symflex.model.linearity import integer_exponent
@@ -35,9 +39,8 @@ from symflex.model.reading import QuantityLiteral
 from symflex.quantities import DIMENSIONLESS, Dimension, unit_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
-    from symflex.elements import Variable
     from symflex.errors import Span
     from symflex.model.scope import Scope
     from symflex.quantities import Quantity
@@ -151,6 +154,8 @@ class DimensionSystem:
         self._solved: dict[Variable, Solution] = {}
         self._readings: dict[str, list[Reading]] = {}
         self._defined: dict[str, Measure] = {}
+        self._axes: dict[str, Measure] = {}
+        self._sound_points: set[tuple[str, Expression]] = set()
         self.problems: list[Diagnostic] = []
 
     def require(self, expression: Expression, unit: str, what: str, a_what: str) -> None:
@@ -202,6 +207,24 @@ class DimensionSystem:
                     expression.span,
                 )
             )
+
+    def place_field(self, unknowns: Sequence[str], ends: Sequence[Expression]) -> None:
+        """Take x of a field to be measured as its ends are; a bare number may stand for any unit."""
+        measured = [e for e in ends if names(e) or isinstance(e, QuantityLiteral)]
+        axis = Measure(open=True)
+        if measured:
+            before = len(self.problems)
+            axis = self.measure(measured[0] if len(measured) == 1 else Sum(tuple(measured)))
+            if len(self.problems) > before:
+                axis = Measure(open=True)
+        self._axes.update(dict.fromkeys(unknowns, axis))
+
+    def balance(self, equation: Equation, unknowns: Sequence[str] = ()) -> None:
+        """Demand that all terms of an equation are measured alike; bare ``unknowns`` are those of a field."""
+        whole = substitute(equation, {name: Derivative(name, 0) for name in unknowns})
+        terms = [t for side in whole.children for t in (side.terms if isinstance(side, Sum) else (side,))]
+        measure = self._sum(Sum(tuple(terms), span=equation.span), tuple(terms))
+        self._read_cycles(measure, None, equation.span)
 
     def dimension(self, measure: Measure) -> Dimension | None:
         """Return the dimension when it is known by now."""
@@ -255,10 +278,36 @@ class DimensionSystem:
                 return self.measure(base).power(value) if value is not None else Measure(open=True)
             case Sum(terms):
                 return self._sum(expression, terms)
+            case Call(name, argument, order) if name in self._axes:
+                self._at_point(name, argument)
+                return self._field(name, order)
+            case Derivative(name, order) if name in self._axes:
+                return self._field(name, order)
             case Call(name, argument):
                 return self._call(name, argument)
             case _:
                 return Measure(open=True)
+
+    def _field(self, name: str, order: int) -> Measure:
+        """Return what a field's unknown, differentiated along x, is measured in."""
+        unknown = self.variable(Variable("field", name))
+        return unknown.times(self._axes[name].power(-order)) if order else unknown
+
+    def _at_point(self, name: str, place: Expression) -> None:
+        """Note a point that is not measured as x is."""
+        if (name, place) in self._sound_points:
+            return
+        measure = self.measure(place)
+        self._read_cycles(measure, None, place.span)
+        axis = self._axes[name]
+        if measure.open or axis.open or not names(place) or any(self._varies(n) for n in names(place)):
+            return
+        if not self._learn(self._reduce(measure.times(axis.power(-1)))):
+            found, wanted = self._reduce(measure).dimension, self._reduce(axis).dimension
+            message = f"the point is in '{found}'; the domain of '{name}' is in '{wanted}'"
+            self.problems.append(Diagnostic("SF203", message, place.span))
+            return
+        self._sound_points.add((name, place))
 
     def _name(self, expression: Name | Attribute) -> Measure:
         meaning = self._scope.find(expression)

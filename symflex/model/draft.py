@@ -10,6 +10,7 @@ from symflex.model.declarations import (
 )
 from symflex.model.model import (
     Definition,
+    Field,
     Node,
     Output,
     Parameter,
@@ -20,7 +21,9 @@ from symflex.model.network import DraftElement, DraftInput
 from symflex.spec import ArrayValue, StringValue, TableValue
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from symflex.spec import Entry
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +39,7 @@ class Draft:
     blocks: tuple[PlacedBlock, ...]
     signals: tuple[Signal, ...]
     outputs: tuple[Output, ...]
+    fields: tuple[Field, ...] = ()
 
 
 def broken_names(sections: Mapping[str, TableValue | None], draft: Draft) -> frozenset[str]:
@@ -47,7 +51,7 @@ def broken_names(sections: Mapping[str, TableValue | None], draft: Draft) -> fro
         "inputs": {d.input.name for d in draft.inputs},
         "signals": {x.name for x in draft.signals},
         "blocks": {b.name for b in draft.blocks},
-        "fields": set[str](),
+        "fields": {f.name for f in draft.fields},
     }
     broken: set[str] = set()
     for section, names_read in read.items():
@@ -55,12 +59,16 @@ def broken_names(sections: Mapping[str, TableValue | None], draft: Draft) -> fro
         for entry in table.entries if table else ():
             if entry.key not in names_read:
                 broken.add(entry.key)
-                if section in ("elements", "inputs") and isinstance(entry.value, TableValue):
-                    broken.update(_listed_names(entry.value))
+                if not isinstance(entry.value, TableValue):
+                    continue
+                if section in ("elements", "inputs"):
+                    broken.update(_listed_names(entry.value.entries))
+                if section == "fields":
+                    broken.update(_listed_names(e for e in entry.value.entries if e.key == "unknowns"))
     return frozenset(broken)
 
 
-def _listed_names(table: TableValue) -> Iterator[str]:
-    for entry in table.entries:
+def _listed_names(entries: Iterable[Entry]) -> Iterator[str]:
+    for entry in entries:
         items = entry.value.items if isinstance(entry.value, ArrayValue) else (entry.value,)
         yield from (i.text.value.partition(".")[0] for i in items if isinstance(i, StringValue))

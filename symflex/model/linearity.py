@@ -23,6 +23,7 @@ from symflex.expressions import (
     names,
 )
 from symflex.kernels import FUNCTIONS, LAPLACE
+from symflex.model.scope import outside, without_point
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -35,6 +36,9 @@ Degree = Literal["constant", "linear", "unknown"]
 
 EXPONENT_LIMIT = 64
 SHOWN_PROBLEMS = 20
+ORDER_LIMIT = 24
+"""Of a derivative at a point; what is beyond the field's own order follows from its equations."""
+FUNCTION_HINT = "functions of s enter through [fields], through distributed elements, and as delays"
 LINEARISE = "linearise about an operating point, so that only one factor varies in time"
 
 
@@ -64,6 +68,23 @@ def check_expression(expression: Expression, scope: Scope, *, constant: bool) ->
     degree = _degree(expression, scope, constant, problems)
     if not constant and degree == "constant" and not problems and not _is_zero(expression):
         problems.append(without_signal(expression.span))
+    return problems
+
+
+def check_equation(equation: Equation, scope: Scope) -> list[Diagnostic]:
+    """Return everything wrong with an equation or condition of a field apart from its units.
+
+    Parameters
+    ----------
+    equation : Equation
+        As parsed.
+    scope : Scope
+        The model's names; :meth:`Scope.within` the field for one of its equations.
+    """
+    problems: list[Diagnostic] = []
+    sides = (equation.left, equation.right)
+    terms = [t for side in sides for t in (side.terms if isinstance(side, Sum) else (side,))]
+    _degree(Sum(tuple(terms), span=equation.span), scope, False, problems)
     return problems
 
 
@@ -135,9 +156,8 @@ def _degree(expression: Expression, scope: Scope, constant: bool, problems: list
             return _power_degree(expression, walk(base), exponent, problems)
         case Call():
             return _call_degree(expression, scope, constant, problems)
-        case Derivative() | Equation():
-            problems.append(_derivative(expression.span))
-            return "unknown"
+        case Derivative():
+            return _derivative_degree(expression, scope, problems)
     message = f"unexpected expression {type(expression).__name__}"
     raise TypeError(message)
 
@@ -194,6 +214,8 @@ def _power_degree(power: Power, base: Degree, exponent: Expression, problems: li
 def _call_degree(call: Call, scope: Scope, constant: bool, problems: list[Diagnostic]) -> Degree:
     if call.name in scope.broken and call.name not in FUNCTIONS:
         return "unknown"
+    if call.name in scope.unknowns and call.name not in FUNCTIONS:
+        return _value_degree(call, scope, constant, problems)
     if call.order:
         problems.append(_derivative(call.span))
         return "unknown"
@@ -211,14 +233,53 @@ def _call_degree(call: Call, scope: Scope, constant: bool, problems: list[Diagno
                 "SF910",
                 f"{call.name} of an expression in s is not available yet",
                 call.span,
-                "this version derives rational transfer functions",
+                'exp(-s*T) is the block { type = "delay", T = "T" }' if call.name == "exp" else FUNCTION_HINT,
             )
         )
     return inner
 
 
+def _value_degree(call: Call, scope: Scope, constant: bool, problems: list[Diagnostic]) -> Degree:
+    """Return the degree of a field at a point."""
+    written = f"{call.name}{chr(39) * call.order}(...)"
+    if scope.inside:
+        message = f"{written} is the value at one point; the equations of a field hold at every x"
+        hint = "write the unknown bare here; what holds at a point belongs in the conditions"
+        problems.append(Diagnostic("SF241", message, call.span, hint))
+        return "unknown"
+    if constant:
+        message = f"{written} varies in time; only parameters, definitions, s and pi may stand here"
+        problems.append(Diagnostic("SF212", message, call.span))
+        return "unknown"
+    if call.order > ORDER_LIMIT:
+        message = f"a derivative of order {call.order}; at most {ORDER_LIMIT} is allowed"
+        problems.append(Diagnostic("SF103", message, call.span))
+    _degree(call.argument, scope, True, problems)
+    return "linear"
+
+
+def _derivative_degree(derivative: Derivative, scope: Scope, problems: list[Diagnostic]) -> Degree:
+    """Return the degree of a field differentiated along x and not evaluated."""
+    name, span = derivative.name, derivative.span
+    if name in scope.inside:
+        return "linear"
+    if name in scope.unknowns:
+        written = name + "'" * derivative.order
+        described = f"a derivative of an unknown of field '{scope.unknowns[name]}'"
+        problem = outside(written, described, span) if scope.inside else without_point(name, written, span)
+    elif name in scope.broken:
+        return "unknown"
+    elif scope.inside:
+        hint = nearest(name, scope.inside) or "its unknowns: " + ", ".join(sorted(scope.inside))
+        problem = Diagnostic("SF210", f"'{name}' is not an unknown of this field", span, hint)
+    else:
+        problem = _derivative(span)
+    problems.append(problem)
+    return "unknown"
+
+
 def _derivative(span: Span | None) -> Diagnostic:
-    message = "a derivative along x may stand only in [fields]"
+    message = "a derivative along x may be taken only of an unknown of [fields]"
     return Diagnostic("SF223", message, span, "a derivative in time is written with s: s*x")
 
 

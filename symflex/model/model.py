@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
+from symflex.elements import LineElement
 from symflex.quantities import Dimension
 
 if TYPE_CHECKING:
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from symflex.blocks import Block as BlockType
     from symflex.elements import Element, Placing, Variable
     from symflex.errors import Span
-    from symflex.expressions import Expression
+    from symflex.expressions import Equation, Expression
 
 Assumption = Literal["positive", "nonnegative", "real"]
 
@@ -104,6 +105,39 @@ class PlacedElement:
     domains: tuple[tuple[str, Placing], ...]
     values: tuple[tuple[str, Expression], ...]
     span: Span | None = field(default=None, compare=False, repr=False)
+    choices: tuple[tuple[str, str], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """A boundary-value problem along x, Laplace-transformed in time.
+
+    Parameters
+    ----------
+    name : str
+        As declared.
+    unknowns : tuple of str
+        The functions of x it determines.
+    start, end : Expression
+        Where x begins and ends [the length's unit]; constants without s.
+    equations : tuple of Equation
+        One for each unknown, which stands as ``Name("w")`` or, differentiated k times along x, as
+        ``Derivative("w", k)``; linear, with coefficients constant in x.
+    conditions : tuple of Equation
+        As many as the order in x; an unknown of any field stands as ``Call("w", point, order)``.
+    latex, doc : str
+        Label and description; empty when not given.
+    """
+
+    name: str
+    unknowns: tuple[str, ...]
+    start: Expression
+    end: Expression
+    equations: tuple[Equation, ...]
+    conditions: tuple[Equation, ...]
+    span: Span | None = field(default=None, compare=False, repr=False)
+    latex: str = ""
+    doc: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,6 +240,7 @@ class Model:
     elements: tuple[PlacedElement, ...] = ()
     signals: tuple[Signal, ...] = ()
     blocks: tuple[PlacedBlock, ...] = ()
+    fields: tuple[Field, ...] = ()
     inputs: tuple[Input, ...] = ()
     outputs: tuple[Output, ...] = ()
     title: str = ""
@@ -215,6 +250,19 @@ class Model:
     published: tuple[Published, ...] = ()
     signal_units: tuple[tuple[Variable, Dimension], ...] = ()
     quotients: tuple[tuple[tuple[str, str], Dimension], ...] = ()
+
+    @property
+    def is_distributed(self) -> bool:
+        """True when something in it extends along x or delays: its transfer functions are not rational."""
+        return (
+            bool(self.fields)
+            or any(isinstance(use.element, LineElement) for use in self.elements)
+            or any(
+                (b.block is not None and bool(b.block.kernel_time))
+                or (b.submodel is not None and b.submodel.is_distributed)
+                for b in self.blocks
+            )
+        )
 
     @property
     def transfer_functions(self) -> tuple[tuple[str, str], ...]:

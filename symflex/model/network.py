@@ -6,18 +6,18 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Literal, cast
 
-from symflex.elements import ANNOUNCED, ELEMENTS, Element, Port
+from symflex.elements import ELEMENTS, Element, LineElement, Port
 from symflex.errors import SpecError
 from symflex.errors.diagnostic import nearest
 from symflex.model.declarations import read_label
 from symflex.model.model import Input, NodeReference
 from symflex.model.nodes import Attachment, Coupling
-from symflex.model.reading import NAME, Reader, signed_number
+from symflex.model.reading import NAME, Reader, literal_value, signed_number
 from symflex.model.scope import RESERVED
 from symflex.quantities import parse_unit, unit_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from symflex.elements.element import PortDomain
     from symflex.errors import Span, Text
@@ -45,6 +45,7 @@ class DraftElement:
     nodes: tuple[tuple[Port, tuple[NodeReference, ...]], ...]
     values: tuple[tuple[str, Expression], ...]
     span: Span
+    choices: tuple[tuple[str, str], ...] = ()
 
     def attachments(self, measure: Callable[[Expression], Dimension | None]) -> list[Attachment]:
         """Return what this element says about its nodes; ``measure`` tells a constant's dimension."""
@@ -103,39 +104,12 @@ class NetworkReader:
         element = self._element_type(table, entry) if table else None
         if table is None or element is None:
             return None
-        reader.keys(
-            table,
-            ("type", *(p.name for p in element.ports), *(p.name for p in element.parameters), "doc"),
-            f"{element.type_name} '{entry.key}'",
-        )
+        keys = [p.name for p in element.ports] + [p.name for p in element.parameters]
+        keys += [c.name for c in element.choices]
+        reader.keys(table, ("type", *keys, "doc"), f"{element.type_name} '{entry.key}'")
         nodes = [(port, self._references(table, port, entry, element)) for port in element.ports]
-        values: list[tuple[str, Expression]] = []
-        complete = True
-        given: dict[str, Expression] = {}
-        for parameter in element.parameters:
-            where = f"{parameter.name} of {element.type_name} '{entry.key}'"
-            found = table.get(parameter.name)
-            if found is not None:
-                expression = reader.expression(found.value, where)
-            elif parameter.default is not None:
-                like = any(p.name == parameter.default for p in element.parameters)
-                expression = (
-                    given.get(parameter.default) if like else signed_number(Fraction(parameter.default))
-                )
-            else:
-                names = ", ".join(p.name for p in element.parameters)
-                reader.note(
-                    "SF214",
-                    f"{element.type_name} '{entry.key}' lacks {parameter.name}, {parameter.doc}",
-                    entry.key_span,
-                    f"parameters of {element.type_name}: {names}",
-                )
-                expression = None
-            if expression is None:
-                complete = False
-            else:
-                given[parameter.name] = expression
-                values.append((parameter.name, expression))
+        choices = self._choices(table, entry, element)
+        values = None if choices is None else self._values(table, entry, element, dict(choices))
         if any(references is None for _, references in nodes):
             return None
         if all(r.is_ground for _, references in nodes for r in references or ()):
@@ -143,7 +117,79 @@ class NetworkReader:
             reader.note("SF218", message, entry.key_span, "the ground does not move; name a node")
             return None
         attached = tuple((p, r) for p, r in nodes if r is not None)
-        return DraftElement(entry.key, element, attached, tuple(values) if complete else (), entry.key_span)
+        return DraftElement(entry.key, element, attached, values or (), entry.key_span, choices or ())
+
+    def _choices(
+        self, table: TableValue, entry: Entry, element: Element
+    ) -> tuple[tuple[str, str], ...] | None:
+        """Return what was chosen for every choice; ``None`` when a word is unknown."""
+        found: list[tuple[str, str]] = []
+        for choice in element.choices:
+            given = table.get(choice.name)
+            what = f"{choice.name} of {element.type_name} '{entry.key}'"
+            text = self.reader.string(given, what) if given else None
+            if given is None:
+                found.append((choice.name, choice.default))
+            elif text is not None and text.value in choice.values:
+                found.append((choice.name, text.value))
+            elif text is not None:
+                hint = nearest(text.value, choice.values) or "known: " + ", ".join(choice.values)
+                who = f"{element.type_name} '{entry.key}'"
+                message = f"unknown {choice.name} '{text.value[:60]}' of {who}"
+                self.reader.note("SF208", message, text.span, hint)
+        return tuple(found) if len(found) == len(element.choices) else None
+
+    def _values(
+        self, table: TableValue, entry: Entry, element: Element, choices: Mapping[str, str]
+    ) -> tuple[tuple[str, Expression], ...] | None:
+        """Return an expression for every parameter that goes with the choices; ``None`` when one is wrong."""
+        reader, who = self.reader, f"{element.type_name} '{entry.key}'"
+        given: dict[str, Expression] = {}
+        complete = True
+        for parameter in element.parameters:
+            expression: Expression | None = None
+            found, applies = table.get(parameter.name), parameter.applies(choices.values())
+            if found is not None and not applies:
+                chosen = ", ".join(f'{name} = "{value}"' for name, value in choices.items())
+                others = " or ".join(f'"{value}"' for value in parameter.only)
+                reader.note(
+                    "SF247",
+                    f"{parameter.name} of {who} does not go with {chosen}",
+                    found.key_span,
+                    f"it goes with {others}",
+                )
+            elif found is not None:
+                expression = reader.expression(found.value, f"{parameter.name} of {who}")
+                if isinstance(element, LineElement) and parameter.name == element.length:
+                    expression = self._length(expression, f"{parameter.name} of {who}")
+            elif parameter.default is not None:
+                like = any(p.name == parameter.default for p in element.parameters)
+                expression = (
+                    given.get(parameter.default) if like else signed_number(Fraction(parameter.default))
+                )
+            elif applies:
+                names = ", ".join(p.name for p in element.parameters if p.applies(choices.values()))
+                reader.note(
+                    "SF214",
+                    f"{who} lacks {parameter.name}, {parameter.doc}",
+                    entry.key_span,
+                    f"parameters of {element.type_name}: {names}",
+                )
+            else:
+                continue
+            if expression is None:
+                complete = False
+            else:
+                given[parameter.name] = expression
+        return tuple(given.items()) if complete else None
+
+    def _length(self, expression: Expression | None, what: str) -> Expression | None:
+        value = None if expression is None else literal_value(expression)
+        if expression is None or value is None or value > 0:
+            return expression
+        shown = "0" if value == 0 else "negative"
+        self.reader.note("SF209", f"{what} is {shown}; a length is positive", expression.span)
+        return None
 
     def _element_type(self, table: TableValue, entry: Entry) -> Element | None:
         kind = table.get("type")
@@ -157,14 +203,6 @@ class NetworkReader:
             return None
         text = self.reader.string(kind, f"type of element '{entry.key}'")
         if text is None:
-            return None
-        if text.value in ANNOUNCED:
-            self.reader.note(
-                "SF911",
-                f"element type '{text.value}' is not available yet",
-                text.span,
-                "this version derives networks of lumped elements",
-            )
             return None
         element = ELEMENTS.get(text.value)
         if element is None:

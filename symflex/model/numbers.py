@@ -20,8 +20,12 @@ Values = tuple[tuple[str, "Expression"], ...]
 def with_numbers(model: Model) -> Model:
     """Return a model whose valued parameters are replaced by exact numbers; the others stay symbolic.
 
-    Its transfer functions, bound, are those of the model; deriving them costs no symbols.
+    Its transfer functions, bound, are those of the model; deriving them costs no symbols. A distributed model
+    is returned as it is.
     """
+    if model.is_distributed:
+        # Wavenumbers and kernels are named by their parameters; values are put in when they are bound.
+        return model
     numbers = {p.name: exact_expression(p.value) for p in model.parameters if p.value is not None}
 
     def values(given: Values, numbers: Mapping[str, Expression] = numbers) -> Values:

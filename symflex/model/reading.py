@@ -177,3 +177,17 @@ def signed_number(value: Fraction, span: Span | None = None) -> Expression:
     if value < 0:
         return Negative(Number(-value, span=span), span=span)
     return Number(Fraction(value), span=span)
+
+
+def literal_value(expression: Expression) -> Fraction | None:
+    """Return the number an expression is when it is only that, in the unit it was written in."""
+    match expression:
+        case Number(value):
+            return value
+        case QuantityLiteral(quantity):
+            return quantity.magnitude
+        case Negative(operand):
+            inner = literal_value(operand)
+            return None if inner is None else -inner
+        case _:
+            return None

@@ -10,17 +10,25 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from symflex.elements import Placing
+from symflex.elements import LineElement, Placing
 from symflex.errors import Diagnostic, Span, SpecError
 from symflex.expressions import Expression
-from symflex.model.analysis import read_analysis, read_figures, read_published
+from symflex.model.analysis import PI_NEARLY, read_analysis, read_figures, read_published
 from symflex.model.blocks import Loads, Origin, read_blocks
+from symflex.model.boundary import (
+    Surroundings,
+    check_fields,
+    check_points,
+    depends_on_s,
+    varying_constants,
+)
 from symflex.model.declarations import (
     DeclaredParameter,
     read_definitions,
     read_parameters,
 )
 from symflex.model.draft import Draft, broken_names
+from symflex.model.fields import read_fields
 from symflex.model.linearity import check_expression, without_signal
 from symflex.model.model import (
     Definition,
@@ -33,6 +41,7 @@ from symflex.model.model import (
 )
 from symflex.model.network import DraftElement, DraftInput, NetworkReader
 from symflex.model.nodes import domain_of, infer_nodes
+from symflex.model.points import Line
 from symflex.model.reading import QuantityLiteral, Reader, describe
 from symflex.model.scope import Scope, build_scope
 from symflex.model.signals import read_outputs, read_signals
@@ -51,7 +60,7 @@ from symflex.model.units import (
 from symflex.spec import ArrayValue, TableValue, parse_with_recovery
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Iterator, Mapping, Sequence
 
     from symflex.errors import Source
     from symflex.spec import Spec
@@ -126,11 +135,13 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     signals = read_signals(reader, sections["signals"])
     outputs = read_outputs(reader, sections["outputs"])
     _check_count(reader, spec, outputs, network.inputs)
-    _refuse_fields(reader, sections["fields"])
     inherited = _inherited_parameters(reader, declared, blocks)
     twins = _refuse_twins(
         reader, [*(p.name for p in declared), *(p.name for p in inherited)], definitions, blocks
     )
+    taken = {p.name for p in declared} | {p.name for p in inherited}
+    taken |= {d.name for d in definitions} | {b.name for b in blocks}
+    fields = read_fields(reader, sections["fields"], taken)
     measure = constant_measure(declared, inherited, definitions)
     attachments = [a for element in network.elements for a in element.attachments(measure)]
     attachments += [a for source in network.inputs for a in source.attachments()]
@@ -146,6 +157,7 @@ def resolve(spec: Spec, origin: Origin) -> Model:
         blocks,
         signals,
         outputs,
+        fields,
     )
     model = _finish(reader, draft, broken_names(sections, draft) | twins)
     later = Reader()
@@ -244,16 +256,6 @@ def _section(reader: Reader, spec: Spec, name: str) -> TableValue | None:
     return reader.table(entry, f"[{name}]", hint)
 
 
-def _refuse_fields(reader: Reader, section: TableValue | None) -> None:
-    for entry in section.entries if section else ():
-        reader.note(
-            "SF911",
-            f"field '{entry.key[:64]}': boundary-value problems are not available yet",
-            entry.key_span,
-            "this version derives networks of lumped elements",
-        )
-
-
 def _refuse_twins(
     reader: Reader,
     parameters: Sequence[str],
@@ -302,7 +304,15 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> Model:
     inputs = tuple(d.input for d in draft.inputs)
     names = [*(p.name for p in draft.declared), *(p.name for p in draft.inherited)]
     scope = build_scope(
-        names, draft.definitions, draft.nodes, placed, draft.signals, draft.blocks, inputs, broken
+        names,
+        draft.definitions,
+        draft.nodes,
+        placed,
+        draft.signals,
+        draft.blocks,
+        inputs,
+        broken,
+        draft.fields,
     )
     unsound: set[Span | None] = set()
     for expression, constant in _all_expressions(draft):
@@ -310,9 +320,15 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> Model:
         reader.take(problems)
         if problems:
             unsound.add(expression.span)
-    system = check_units(reader, draft, placed, scope, unsound)
+    around = _surroundings(draft, scope)
+    _check_lengths(reader, draft, around, unsound)
+    before = len(reader.problems)
+    fields_placed = check_fields(reader, draft.fields, around)
+    unsound |= _unsound_equations(draft, reader.problems[before:])
+    system = check_units(reader, draft, placed, scope, unsound, fields_placed)
     readings = system.finish()
     reader.take(system.problems)
+    _check_points(reader, draft, around, fields_placed)
     implied = implied_units(placed, draft.blocks)
     parameters = [
         p.resolve(angular=readings.get(p.name, True), implied_unit=implied.get(p.name, ""))
@@ -331,6 +347,7 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> Model:
             replace(b, values=tuple((n, lower(v, block_unit(b, n))) for n, v in b.values))
             for b in draft.blocks
         ),
+        fields=tuple(replace(f, start=lower(f.start), end=lower(f.end)) for f in draft.fields),
         inputs=tuple(measured_input(i, system) for i in inputs),
         outputs=tuple(
             replace(
@@ -362,7 +379,64 @@ def _place(draft: DraftElement, nodes: Mapping[str, Node]) -> PlacedElement:
                 domain = domain_of(live, nodes[live.node])
         domains.append((port.name, domain))
     attached = tuple((port.name, references) for port, references in draft.nodes)
-    return PlacedElement(draft.name, draft.element, attached, tuple(domains), draft.values, draft.span)
+    return PlacedElement(
+        draft.name, draft.element, attached, tuple(domains), draft.values, draft.span, draft.choices
+    )
+
+
+def _surroundings(draft: Draft, scope: Scope) -> Surroundings:
+    """Return what places along x are made of."""
+    parameters = [p.resolve(angular=True, implied_unit="") for p in draft.declared]
+    parameters += draft.inherited
+    definitions = {d.name: d.expression for d in draft.definitions} if draft.fields else {}
+    line = Line(
+        definitions,
+        frozenset(p.name for p in parameters if p.assume == "positive"),
+        frozenset(p.name for p in parameters if p.assume == "nonnegative"),
+        {p.name: p.value.rational * PI_NEARLY**p.value.pi_power for p in parameters if p.value},
+    )
+    return Surroundings(scope, definitions, varying_constants(draft.definitions, draft.blocks), line)
+
+
+def _check_lengths(reader: Reader, draft: Draft, around: Surroundings, unsound: set[Span | None]) -> None:
+    """Note lengths and delays that depend on s; their places are added to the unsound ones."""
+    for what, expression in _lengths(draft):
+        if depends_on_s(expression, around.varying):
+            reader.note("SF249", f"{what} cannot depend on s", expression.span)
+            unsound.add(expression.span)
+
+
+def _unsound_equations(draft: Draft, problems: Sequence[Diagnostic]) -> set[Span | None]:
+    """Return the places of the fields' equations and conditions that hold a problem."""
+    wrong = [p.span for p in problems if p.span]
+    equations = [e for f in draft.fields for e in (*f.equations, *f.conditions)]
+    return {e.span for e in equations if e.span and any(_covers(e.span, s) for s in wrong)}
+
+
+def _check_points(reader: Reader, draft: Draft, around: Surroundings, placed: Collection[str]) -> None:
+    fields = [f for f in draft.fields if f.name in placed]
+    expressions: list[Expression] = [c for f in draft.fields for c in f.conditions]
+    expressions += [e for e, constant in _all_expressions(draft) if not constant]
+    for expression in expressions if fields else ():
+        check_points(reader, expression, fields, around)
+
+
+def _covers(outer: Span, inner: Span) -> bool:
+    return outer.source is inner.source and outer.start <= inner.start and inner.end <= outer.end
+
+
+def _lengths(draft: Draft) -> Iterator[tuple[str, Expression]]:
+    """Yield the lengths of distributed elements and the times of delays."""
+    for use in draft.elements:
+        if isinstance(use.element, LineElement):
+            for name, expression in use.values:
+                if name == use.element.length:
+                    yield f"{name} of {use.element.type_name} '{use.name}'", expression
+    for block in draft.blocks:
+        if block.block is not None and block.block.kernel_time:
+            for name, expression in block.values:
+                if name == block.block.kernel_time:
+                    yield f"{name} of {block.block.type_name} '{block.name}'", expression
 
 
 def _check(expression: Expression, scope: Scope, *, constant: bool) -> list[Diagnostic]:

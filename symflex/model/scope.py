@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
 from symflex.elements import Variable
@@ -12,9 +12,10 @@ from symflex.expressions import Attribute, Name
 from symflex.kernels import LAPLACE
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
-    from symflex.model.model import Definition, Input, Model, Node, PlacedBlock, PlacedElement, Signal
+    from symflex.errors import Span
+    from symflex.model.model import Definition, Field, Input, Model, Node, PlacedBlock, PlacedElement, Signal
 
 Kind = Literal["laplace", "pi", "parameter", "definition", "block", "variable", "through", "broken"]
 CONSTANT_KINDS: frozenset[Kind] = frozenset({"laplace", "pi", "parameter", "definition", "block", "broken"})
@@ -55,12 +56,22 @@ class Scope:
         Names that may stand after ``owner.``.
     broken : frozenset of str
         Names whose declaration could not be read; they are known, and nothing more is said about them.
+    unknowns : mapping of str to str
+        The unknowns of all fields, each with its field; they are written with a point, ``w(l)``.
+    inside : frozenset of str
+        In the equations of a field its own unknowns, which stand there bare; empty elsewhere.
     """
 
     meanings: Mapping[str, tuple[Meaning, ...]]
     attributes: Mapping[tuple[str, str], Meaning]
     owners: Mapping[str, tuple[str, ...]]
     broken: frozenset[str] = frozenset()
+    unknowns: Mapping[str, str] = field(default_factory=dict)
+    inside: frozenset[str] = frozenset()
+
+    def within(self, unknowns: Iterable[str]) -> Scope:
+        """Return the scope of the equations of the field with these unknowns."""
+        return replace(self, inside=frozenset(unknowns))
 
     def find(self, expression: Name | Attribute) -> Meaning | None:
         """Return the only meaning of a name, among constants when it has others too, or ``None``."""
@@ -83,11 +94,17 @@ class Scope:
         Raises
         ------
         SpecError
-            SF210 unknown, SF211 ambiguous, SF212 not allowed here.
+            SF210 unknown, SF211 ambiguous, SF212 not allowed here, SF241 a field without a point,
+            SF245 not allowed in the equations of a field.
         """
         if isinstance(expression, Attribute):
             return self._lookup_attribute(expression, constant=constant)
+        if expression.name in self.inside:
+            variable = Variable("field", expression.name)
+            return Meaning("variable", expression.name, f"the unknown '{expression.name}'", variable)
         found = self.meanings.get(expression.name, ())
+        if self.inside:
+            found = self._along(expression, found)
         readable = [m for m in found if not constant or m.kind in CONSTANT_KINDS]
         if expression.name in self.broken and (not found or len(readable) > 1):
             return Meaning("broken", expression.name, "a name with a mistake")
@@ -113,11 +130,25 @@ class Scope:
                     VARYING_HINT,
                 )
             )
+        if expression.name in self.unknowns:
+            raise SpecError(without_point(expression.name, expression.name, expression.span))
         hint = self._hint(expression.name, constant=constant)
         raise SpecError(Diagnostic("SF210", f"unknown name '{expression.name}'", expression.span, hint))
 
+    def _along(self, expression: Name, found: tuple[Meaning, ...]) -> tuple[Meaning, ...]:
+        """Return the meanings that may stand in the equations of a field."""
+        kept = tuple(m for m in found if m.variable is None or m.variable.kind in ("signal", "input"))
+        if found and not kept:
+            raise SpecError(outside(expression.name, found[0].described, expression.span))
+        if not found and expression.name in self.unknowns:
+            described = f"an unknown of field '{self.unknowns[expression.name]}'"
+            raise SpecError(outside(expression.name, described, expression.span))
+        return kept
+
     def _hint(self, name: str, *, constant: bool) -> str | None:
         """Say what may have been meant by an unknown name."""
+        if name == "x" and self.inside:
+            return "the coefficients of a field are constant along x; split the domain where they change"
         if name == "ground":
             return "the reference node is at zero; leave it out"
         if name in self.owners:
@@ -128,7 +159,7 @@ class Scope:
             for n, ms in self.meanings.items()
             if n not in RESERVED and (not constant or any(m.kind in CONSTANT_KINDS for m in ms))
         ]
-        return nearest_name(name, known)
+        return nearest_name(name, [*known, *self.inside])
 
     def _lookup_attribute(self, expression: Attribute, *, constant: bool) -> Meaning:
         text = f"{expression.owner}.{expression.name}"
@@ -146,6 +177,8 @@ class Scope:
                 )
                 message = f"'{expression.owner}' has no quantity '{expression.name}'"
             raise SpecError(Diagnostic("SF210", message, expression.span, hint))
+        if self.inside:
+            raise SpecError(outside(text, meaning.described, expression.span))
         if constant:
             raise SpecError(
                 Diagnostic(
@@ -156,6 +189,25 @@ class Scope:
                 )
             )
         return meaning
+
+
+def without_point(name: str, written: str, span: Span | None) -> Diagnostic:
+    """Return the diagnostic of a field that stands without a point where it needs one."""
+    # No quotes here and below: they would be read as primes.
+    message = f"{written} varies along x; only its value at a point may stand here"
+    primes = written.removeprefix(name)
+    return Diagnostic("SF241", message, span, f"evaluate it at a point: {name}{primes}(0)")
+
+
+def outside(written: str, described: str, span: Span | None) -> Diagnostic:
+    """Return the diagnostic of what may not stand in the equations of a field."""
+    return Diagnostic(
+        "SF245",
+        f"'{written}' is {described}; the equations of a field hold its own unknowns, parameters, inputs and "
+        "signals",
+        span,
+        "what acts at a point belongs in the conditions; a load along x is an input or a signal",
+    )
 
 
 VARYING_HINT = "what varies in time may stand in [signals], in [outputs] and as the value of a source"
@@ -187,6 +239,7 @@ def build_scope(
     blocks: Sequence[PlacedBlock],
     inputs: Sequence[Input],
     broken: frozenset[str] = frozenset(),
+    fields: Sequence[Field] = (),
 ) -> Scope:
     """Return what every name of a model means."""
     meanings: dict[str, list[Meaning]] = {
@@ -232,6 +285,7 @@ def build_scope(
         attributes,
         {name: tuple(found) for name, found in owners.items()},
         broken,
+        {unknown: f.name for f in fields for unknown in f.unknowns},
     )
 
 
@@ -245,4 +299,5 @@ def scope_of(model: Model) -> Scope:
         model.signals,
         model.blocks,
         model.inputs,
+        fields=model.fields,
     )

@@ -39,8 +39,12 @@ def check_units(
     placed: Sequence[PlacedElement],
     scope: Scope,
     unsound: Collection[Span | None],
+    fields_placed: Collection[str],
 ) -> DimensionSystem:
-    """Measure every expression; of one that is unsound, only what disagrees within it is noted."""
+    """Measure every expression; of one that is unsound, only what disagrees within it is noted.
+
+    Fields that are not ``fields_placed`` have no sound domain, and x is measured in any unit there.
+    """
     quantities = declared_quantities(draft.declared, draft.inherited)
     known = _known_dimensions(draft, placed)
     blocks = {b.name: _block_measure(b) for b in draft.blocks}
@@ -66,6 +70,7 @@ def check_units(
                 system.measure(expression)
             else:
                 _require(reader, system, expression, block_unit(block, name), where, doc)
+    _check_fields(draft, system, unsound, fields_placed)
     for signal in draft.signals:
         if signal.expression.span in unsound:
             system.measure(signal.expression)
@@ -74,6 +79,22 @@ def check_units(
     for output in draft.outputs:
         system.measure(output.expression)
     return system
+
+
+def _check_fields(
+    draft: Draft, system: DimensionSystem, unsound: Collection[Span | None], placed: Collection[str]
+) -> None:
+    """Compare the terms of every equation and condition of a field."""
+    for field in draft.fields:
+        ends = (field.start, field.end) if field.name in placed else ()
+        system.place_field(field.unknowns, ends)
+    for field in draft.fields:
+        for equation in field.equations:
+            if equation.span not in unsound:
+                system.balance(equation, field.unknowns)
+        for condition in field.conditions:
+            if condition.span not in unsound:
+                system.balance(condition)
 
 
 def declared_quantities(
@@ -150,14 +171,15 @@ def _block_measure(block: PlacedBlock) -> Measure:
         if output.dimension is None or source.dimension is None:
             return Measure(open=True)
         return Measure(output.dimension / source.dimension)
-    if block.block is not None and block.block.type_name == "resonance":
+    if block.block is not None and (block.block.type_name == "resonance" or block.block.kernel_time):
         return Measure(DIMENSIONLESS)
     return Measure(open=True)
 
 
 def measured_variables(draft: Draft) -> list[Variable]:
-    """Return the signals and inputs, whose dimensions are found by solving."""
+    """Return the signals, inputs and unknowns of fields, whose dimensions are found by solving."""
     return [
+        *(Variable("field", name) for f in draft.fields for name in f.unknowns),
         *(Variable("signal", x.name) for x in draft.signals),
         *(Variable("input", d.input.name) for d in draft.inputs),
     ]

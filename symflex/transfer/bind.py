@@ -13,15 +13,17 @@ from functools import cached_property
 from math import inf, isfinite, lcm, nan
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_poly, arb, ctx
+from flint import acb, acb_poly, acb_series, arb, ctx
 
 from symflex.errors import Diagnostic, ModelError, Source, Span, Text, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.kernels import LAPLACE, Factored, Ring, degree_in
+from symflex.kernels import LAPLACE, NO_KERNELS, Factored, KernelTable, Ring, degree_in
 from symflex.model import ExactValue
 from symflex.quantities import parse_quantity, unit_of
 from symflex.transfer.balls import ball, enclose, rational_value
 from symflex.transfer.cancel import cancel
+from symflex.transfer.distributed import embedded_table
+from symflex.transfer.enclose_kernels import KernelValues, expansion
 from symflex.transfer.transfer_function import HiddenFactor, TransferFunction
 
 if TYPE_CHECKING:
@@ -35,6 +37,8 @@ if TYPE_CHECKING:
 FIRST_BITS = 96
 LAST_BITS = 6144
 DOUBLE_BITS = 54
+NEAR_ZERO = (200, 220)
+"""Negative powers of two, in rad/s, between which the behaviour at s = 0 is read off."""
 
 
 @dataclass(frozen=True)
@@ -73,6 +77,45 @@ class EnclosedTransferFunction:
 
 
 @dataclass(frozen=True)
+class EnclosedDistributed:
+    """A bound transfer function with kernels, evaluated in balls at one precision.
+
+    Parameters
+    ----------
+    bits : int
+        The precision everything is computed at.
+    ratio : Factored
+        Over the ring of kernels; or any other function over it.
+    kernels : KernelValues
+        The values of its generators.
+    """
+
+    bits: int
+    ratio: Factored
+    kernels: KernelValues
+
+    def __call__(self, s: acb) -> acb:
+        """Return a ball that contains the value at ``s``; not finite where a wavenumber is zero."""
+        with ctx.workprec(self.bits):
+            value = self.kernels.value(self.ratio, self.kernels.at(s))
+            return value if isinstance(value, acb) else value[0]
+
+    def logarithmic_derivative(self, s: acb) -> acb:
+        """Return a ball around ``G'(s)/G(s)``."""
+        with ctx.workprec(self.bits):
+            values = self.kernels.at(expansion(s))
+            total = acb(0)
+            for factor, exponent in self.ratio.factors:
+                series = self.kernels.polynomial(factor, values)
+                if isinstance(series, acb_series):
+                    total = total + exponent * series[1] / series[0]
+            return total
+
+
+Enclosed = EnclosedTransferFunction | EnclosedDistributed
+
+
+@dataclass(frozen=True)
 class BoundTransferFunction:
     """A transfer function with numbers.
 
@@ -86,12 +129,34 @@ class BoundTransferFunction:
         Over a ring with generators s, pi and the functions of constants.
     hidden : tuple of HiddenFactor
         Factors cancelled symbolically or by these values, over the same ring.
+    kernels : KernelTable
+        For a distributed system, the wavenumbers and kernels, which are generators of the ring after the
+        constants.
+    parts : tuple of Factored, optional
+        Numerator and denominator of a distributed system, each entire in s; see :attr:`num`.
     """
 
     source: TransferFunction
     values: tuple[tuple[str, ExactValue], ...]
     ratio: Factored
     hidden: tuple[HiddenFactor, ...]
+    kernels: KernelTable = NO_KERNELS
+    parts: tuple[Factored, Factored] | None = None
+
+    @property
+    def is_distributed(self) -> bool:
+        """True when the function is transcendental."""
+        return bool(self.kernels)
+
+    @property
+    def num(self) -> Factored:
+        """The numerator, entire in s, as :attr:`TransferFunction.num` with these values."""
+        return self.ratio.numerator() if self.parts is None else self.parts[0]
+
+    @property
+    def den(self) -> Factored:
+        """The denominator, entire in s."""
+        return self.ratio.denominator() if self.parts is None else self.parts[1]
 
     @property
     def name(self) -> str:
@@ -105,10 +170,12 @@ class BoundTransferFunction:
         known: dict[str, Callable[[], arb]] = {"pi": arb.pi}
         for constant in self.source.constants:
             known[constant.generator] = _later(constant.expression, values)
-        return tuple((name, known[name]) for name in self.ratio.ring.names[1:])
+        return tuple((name, known[name]) for name in self.ratio.ring.names[1:] if name in known)
 
-    def enclosed(self, bits: int) -> EnclosedTransferFunction:
+    def enclosed(self, bits: int) -> Enclosed:
         """Return the function with ball coefficients of the given precision."""
+        if self.kernels:
+            return self.enclosed_part(self.ratio, bits)
         with ctx.workprec(bits):
             values = [evaluate() for _, evaluate in self.constants]
             factors = tuple(
@@ -117,13 +184,19 @@ class BoundTransferFunction:
             )
             return EnclosedTransferFunction(bits, acb(ball(self.ratio.unit)), factors)
 
+    def enclosed_part(self, part: Factored, bits: int) -> EnclosedDistributed:
+        """Return a function over the ring of kernels, such as :attr:`num`, evaluated in balls."""
+        with ctx.workprec(bits):
+            values = {name: evaluate() for name, evaluate in self.constants}
+        return EnclosedDistributed(bits, part, KernelValues(self.ratio.ring.names, self.kernels, values))
+
     @cached_property
     def constant_ring(self) -> Ring:
         """The ring of the coefficients of powers of s."""
         return Ring(self.ratio.ring.names[1:])
 
     @cached_property
-    def _first(self) -> EnclosedTransferFunction:
+    def _first(self) -> Enclosed:
         return self.enclosed(FIRST_BITS)
 
     def __call__(self, s: complex) -> complex:
@@ -136,6 +209,9 @@ class BoundTransferFunction:
             return 0j
         if not (isfinite(s.real) and isfinite(s.imag)):
             return complex(nan, nan)
+        if self.kernels and s == 0:
+            limit = self.limit_at_zero()
+            return complex(limit) if isfinite(limit) else complex(inf, nan)
         point, function = acb(s.real, s.imag), self._first
         while True:
             value = function(point)
@@ -150,6 +226,8 @@ class BoundTransferFunction:
         """Return the limit for s -> 0 from the right: 0, a finite gain, or a signed infinity."""
         if self.ratio.is_zero:
             return 0.0
+        if self.kernels:
+            return self._limit_at_zero_of_kernels()
         s = self.ratio.ring.context.gen(0)
         order = next((e for f, e in self.ratio.factors if f == s), 0)
         if order > 0:
@@ -160,6 +238,30 @@ class BoundTransferFunction:
         )
         value = finite(0j).real
         return value if order == 0 else inf if value > 0 else -inf
+
+    def _limit_at_zero_of_kernels(self) -> float:
+        """Return the limit from two values close to zero, where it goes like an integer power of s."""
+        near, nearer = (self._at_power_of_two(-e) for e in NEAR_ZERO)
+        if near is None or nearer is None:
+            return nan
+        with ctx.workprec(LAST_BITS):
+            ratio = abs(nearer / near).log() / arb(2).log() / (NEAR_ZERO[0] - NEAR_ZERO[1])
+            order = round(float(ratio.mid()))
+            value = float(nearer.real.mid()) if order == 0 else 0.0
+            if order < 0:
+                return inf if nearer.real > 0 else -inf
+            return value
+
+    def _at_power_of_two(self, exponent: int) -> acb | None:
+        """Return a ball around the value at ``2^exponent``, ``None`` when it is not found."""
+        bits = FIRST_BITS * 8
+        while bits <= LAST_BITS:
+            with ctx.workprec(bits):
+                value = self.enclosed(bits)(acb(arb(2) ** exponent))
+                if value.is_finite() and value.rel_accuracy_bits() >= DOUBLE_BITS:
+                    return value
+            bits *= 2
+        return None
 
 
 def _enclosure(value: ExactValue) -> Callable[[], arb]:
@@ -277,7 +379,7 @@ def bind(
         read_values(tuple(everything.values()), {unknown[0]: given[unknown[0]]})
     exact = read_values((*used, *extra), given)
     table = dict(exact)
-    ring = Ring((LAPLACE, "pi", *_used_constants(tf)))
+    ring = Ring((LAPLACE, "pi", *_used_constants(tf), *tf.kernels.generators))
     squares = {
         ring.index[c.generator]: square
         for c in tf.constants
@@ -300,19 +402,33 @@ def bind(
         else:
             below = below * value**-exponent
     ratio, shared = cancel(above, below)
-    hidden = [HiddenFactor(f, e) for f, e in shared.factors if degree_in(f, 0)]
+    varying = [0, *(ring.index[k.generator] for k in tf.kernels.kernels)]
+    hidden = [HiddenFactor(f, e) for f, e in shared.factors if any(degree_in(f, i) for i in varying)]
     for known in tf.hidden:
         value = images.apply(known.polynomial)
         hidden += [
-            HiddenFactor(f, e * known.multiplicity) for f, e in value.factors if degree_in(f, 0) and e > 0
+            HiddenFactor(f, e * known.multiplicity)
+            for f, e in value.factors
+            if e > 0 and any(degree_in(f, i) for i in varying)
         ]
-    return BoundTransferFunction(tf, exact, ratio, tuple(hidden))
+    if not tf.kernels:
+        return BoundTransferFunction(tf, exact, ratio, tuple(hidden))
+    kernels = _bound_table(tf.kernels, images)
+    parts = (images.apply_factored(tf.num), images.apply_factored(tf.den))
+    return BoundTransferFunction(tf, exact, ratio, tuple(hidden), kernels, parts)
+
+
+def _bound_table(table: KernelTable, images: _Substitution) -> KernelTable:
+    """Return the table with values in its coefficients and lengths."""
+    values = [v for d in table.dispersions for v in (*d.characteristic, d.shift)]
+    values += [k.length for k in table.kernels]
+    return embedded_table(table, [(v, images.apply_factored(v)) for v in values])
 
 
 def _used_constants(tf: TransferFunction) -> list[str]:
     """Return the functions of constants that occur; the others may lack a value."""
     index = tf.ratio.ring.index
-    polynomials = [*(f for f, _ in tf.ratio.factors), *(h.polynomial for h in tf.hidden)]
+    polynomials = [*(f for f, _ in tf.all_factors), *(h.polynomial for h in tf.hidden)]
     return [c.generator for c in tf.constants if any(degree_in(p, index[c.generator]) for p in polynomials)]
 
 
@@ -364,6 +480,25 @@ class _Substitution:
             place = tuple(exponents)
             collected[place] = collected.get(place, Fraction(0)) + number
         return self._clear(collected, pi)
+
+    def apply_factored(self, value: Factored) -> Factored:
+        """Return a rational function over s, pi and functions of constants.
+
+        Raises
+        ------
+        ModelError
+            SF231 when its denominator vanishes for these values.
+        """
+        result = Factored.number(self.ring, value.unit)
+        for factor, exponent in value.factors:
+            image = self.apply(factor)
+            if image.is_zero and exponent < 0:
+                message = "a denominator is zero for these values"
+                raise ModelError(
+                    Diagnostic("SF231", message, None, "a rigid or massless limit has its own equations")
+                )
+            result = result * image**exponent
+        return result
 
     def _clear(self, collected: dict[tuple[int, ...], Fraction], pi: int) -> Factored:
         terms = {m: c for m, c in collected.items() if c}

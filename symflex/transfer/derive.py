@@ -6,14 +6,15 @@ Output: :class:`TransferFunction` for every pair asked for, reduced exactly.
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symflex.elimination import Minors, close, eliminate_unit_pivots, expansion_order, explain_singular
 from symflex.errors import Diagnostic, ModelError
-from symflex.kernels import LAPLACE, Factored, Ring, degree_in
+from symflex.kernels import LAPLACE, NO_KERNELS, Factored, KernelTable, Ring, degree_in
 from symflex.transfer.cancel import cancel
+from symflex.transfer.compose import compose_rational
 from symflex.transfer.coprimality import Images
+from symflex.transfer.distributed import KernelReduction, embedded_table
 from symflex.transfer.quantity import name_quantity, unit_of_quotient
 from symflex.transfer.transfer_function import ClosedForm, HiddenFactor, TransferFunction
 
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 
     from symflex.elimination import Closure
     from symflex.equations import Equations, OutputRow
+    from symflex.kernels import Propagation
+    from symflex.model import Input, Output
 
 
 def derive(equations: Equations, output: str, source: str) -> TransferFunction:
@@ -82,19 +85,35 @@ class _Workshop:
         self._closure = closure
         self._den = den
         model = equations.model
-        self._ring = Ring(
-            (
-                LAPLACE,
-                *(p.name for p in model.parameters),
-                "pi",
-                *(c.generator for c in equations.constants),
-            )
+        plain = (
+            LAPLACE,
+            *(p.name for p in model.parameters),
+            "pi",
+            *(c.generator for c in equations.constants),
         )
+        propagation = equations.propagation
+        self._plain = Ring(plain)
+        self._ring = self._plain if propagation is None else Ring((*plain, *propagation.table.generators))
         self._images = Images(self._ring)
         self._denominators: list[tuple[fmpz_mpoly, Factored]] = []
         self._definitions: dict[str, Factored] = {}
         for name, value in equations.definitions:
             self._definitions[name] = self._expanded(value)
+        self._reduction = None if propagation is None else self._kernel_reduction(propagation)
+
+    def _kernel_reduction(self, propagation: Propagation) -> KernelReduction:
+        """Return how quotients of kernels are reduced, with definitions opened everywhere."""
+        for p in propagation.propagators:
+            names = propagation.kernel_ring.names
+            images = [self._definitions[n] if n in self._definitions else self._generator(n) for n in names]
+            self._definitions[p.generator] = compose_rational(self._ring, p.image, images)
+        table = propagation.table
+        values = [v for d in table.dispersions for v in (*d.characteristic, d.shift)]
+        values += [k.length for k in table.kernels]
+        opened = [(v, self._expanded(propagation.embed(v))) for v in values]
+        self._cleared = self._expanded(self._equations.cleared or Factored.number(propagation.ring, 1))
+        parameters = [p.name for p in self._equations.model.parameters]
+        return KernelReduction(self._ring, embedded_table(table, opened), parameters)
 
     def finish(self, row: OutputRow, source: str, num: fmpz_mpoly) -> TransferFunction:
         """Return the reduced transfer function ``num / den / divisor``."""
@@ -104,13 +123,15 @@ class _Workshop:
         # For a zero numerator the common factor is the whole denominator: every mode is hidden.
         common = num.gcd(self._den)
         num_closed, den_closed = num / common, self._den / common
-        hidden = self._hidden(self._expanded(self._closure.open(common)))
+        shared = self._expanded(self._closure.open(common))
         divisor = self._closure.close(row.divisor)
         den_closed = den_closed * divisor
         final = num_closed.gcd(den_closed)
         num_closed, den_closed = num_closed / final, den_closed / final
-        hidden = (*hidden, *self._hidden(self._expanded(self._closure.open(final))))
+        shared = shared * self._expanded(self._closure.open(final))
         denominator = self._opened_denominator(den_closed)
+        if self._reduction is not None:
+            return self._finish_distributed(output, given, num_closed, denominator, shared)
         if denominator.is_zero:
             raise explain_singular(self._equations)
         if denominator.unit < 0:
@@ -122,7 +143,7 @@ class _Workshop:
             given,
             ratio,
             ClosedForm(self._closure, num_closed, den_closed) if cancelled.is_one else None,
-            _merge_hidden((*hidden, *self._hidden(cancelled))),
+            self._hidden(shared * cancelled),
             name_quantity(output, given),
             unit_of_quotient(output, given, dict(model.quotients).get((output.name, given.name))),
             self._equations.ring,
@@ -130,6 +151,64 @@ class _Workshop:
             self._equations.constants,
             model,
         )
+
+    def _finish_distributed(
+        self,
+        output: Output,
+        given: Input,
+        num: fmpz_mpoly,
+        denominator: Factored,
+        hidden: Factored,
+    ) -> TransferFunction:
+        """Return the transfer function of a distributed system, with the kernels' relations used."""
+        reduction = self._reduction
+        numerator = self._expanded(self._closure.open(num))
+        reduced = (
+            None
+            if reduction is None or denominator.is_zero
+            else reduction.reduce(numerator, denominator, hidden / self._cleared)
+        )
+        if reduction is None or reduced is None:
+            raise explain_singular(self._equations)
+        above, below, table = reduced.num, reduced.den, reduced.table
+        if below.unit < 0:
+            above, below = -above, -below
+        cancelled = reduced.shared
+        ratio = above / below
+        if not any(reduction.has_kernels(f) for f, _ in ratio.factors):
+            table = NO_KERNELS
+            ratio, above, below, cancelled = (
+                self._without_kernels(v) for v in (ratio, above, below, cancelled)
+            )
+        model = self._equations.model
+        return TransferFunction(
+            output,
+            given,
+            ratio,
+            None,
+            self._hidden(cancelled, table),
+            name_quantity(output, given),
+            unit_of_quotient(output, given, dict(model.quotients).get((output.name, given.name))),
+            self._equations.ring,
+            self._equations.definitions,
+            self._equations.constants,
+            model,
+            table,
+            (above, below) if table else None,
+        )
+
+    def _without_kernels(self, value: Factored) -> Factored:
+        """Return the factors that hold no kernel or wavenumber, over the ring without them."""
+        gens = self._plain.context.gens()
+        zero = self._plain.constant(0)
+        images = [gens[i] if i < len(gens) else zero for i in range(len(self._ring.names))]
+        count = len(gens)
+        result = Factored.number(self._plain, value.unit)
+        for factor, exponent in value.factors:
+            if not any(int(d) for d in factor.degrees()[count:]):
+                plain = Factored.polynomial(self._plain, factor.compose(*images, ctx=self._plain.context))
+                result = result * plain**exponent
+        return result
 
     def _opened_denominator(self, closed: fmpz_mpoly) -> Factored:
         """Return a closed denominator over the parameters; most pairs share one."""
@@ -160,55 +239,12 @@ class _Workshop:
             raise ModelError(Diagnostic("SF215", message))
         if len(factor) == 1:
             return known[0]
-        if all(_is_monomial(image) for image in known):
-            zero = self._ring.constant(0)
-            plain = [
-                image.expand() if image is not None and int(d) else zero
-                for image, d in zip(images, degrees, strict=True)
-            ]
-            return Factored.polynomial(self._ring, self._ring.compose(factor, plain))
-        return _compose_rational(self._ring, factor, images)
+        return compose_rational(self._ring, factor, images)
 
-    def _hidden(self, value: Factored) -> tuple[HiddenFactor, ...]:
-        i = self._ring.index[LAPLACE]
-        return tuple(HiddenFactor(f, e) for f, e in value.factors if degree_in(f, i))
-
-
-def _is_monomial(image: Factored) -> bool:
-    """Tell whether a definition or generator is one product of generators."""
-    return image.unit == 1 and all(len(f) == 1 and e > 0 for f, e in image.factors)
-
-
-def _compose_rational(ring: Ring, factor: fmpz_mpoly, images: Sequence[Factored | None]) -> Factored:
-    """Return ``factor`` with rational functions in place of its generators."""
-    degrees = [int(d) for d in factor.degrees()]
-    denominators = {
-        i: image.denominator()
-        for i, (d, image) in enumerate(zip(degrees, images, strict=True))
-        if d and image is not None
-    }
-    total = ring.constant(0)
-    for monomial, coefficient in factor.terms():
-        term = Factored.number(ring, Fraction(int(coefficient)))
-        for i, exponent in enumerate(monomial):
-            image = images[i]
-            if degrees[i] and image is not None:
-                below = denominators[i]
-                term = term * (image * below) ** int(exponent) * below ** (degrees[i] - int(exponent))
-        total = total + term.expand()
-    scale = Factored.number(ring, 1)
-    for i, below in denominators.items():
-        scale = scale * below ** degrees[i]
-    return Factored.polynomial(ring, total) / scale
-
-
-def _merge_hidden(factors: Sequence[HiddenFactor]) -> tuple[HiddenFactor, ...]:
-    merged: list[HiddenFactor] = []
-    for factor in factors:
-        for i, known in enumerate(merged):
-            if known.polynomial == factor.polynomial:
-                merged[i] = HiddenFactor(known.polynomial, known.multiplicity + factor.multiplicity)
-                break
-        else:
-            merged.append(factor)
-    return tuple(merged)
+    def _hidden(self, value: Factored, table: KernelTable = NO_KERNELS) -> tuple[HiddenFactor, ...]:
+        """Return the factors that depend on s, directly or through a kernel."""
+        ring = value.ring
+        varying = [ring.index[name] for name in (LAPLACE, *(k.generator for k in table.kernels))]
+        return tuple(
+            HiddenFactor(f, e) for f, e in value.factors if e > 0 and any(degree_in(f, i) for i in varying)
+        )

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symflex.expressions import Name, names
-from symflex.kernels import LAPLACE, degree_in
+from symflex.kernels import LAPLACE, NO_KERNELS, KernelTable, degree_in
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -69,6 +69,10 @@ class TransferFunction:
         What function generators such as ``sqrt(k*m)`` stand for.
     model : Model
         Where it comes from.
+    kernels : KernelTable
+        What the wavenumbers and kernels in the ring are; empty for a lumped system.
+    parts : tuple of Factored, optional
+        Numerator and denominator of a distributed system, each entire in s; see :attr:`num` and :attr:`den`.
     """
 
     output: Output
@@ -82,6 +86,27 @@ class TransferFunction:
     definitions: tuple[tuple[str, Factored], ...]
     constants: tuple[ConstantFunction, ...]
     model: Model
+    kernels: KernelTable = NO_KERNELS
+    parts: tuple[Factored, Factored] | None = None
+
+    @property
+    def num(self) -> Factored:
+        """The numerator, entire in s.
+
+        For a distributed system it may bear negative powers of wavenumbers and of differences of their
+        squares; the kernels vanish where these do.
+        """
+        return self.ratio.numerator() if self.parts is None else self.parts[0]
+
+    @property
+    def den(self) -> Factored:
+        """The denominator, entire in s; see :attr:`num`."""
+        return self.ratio.denominator() if self.parts is None else self.parts[1]
+
+    @property
+    def is_distributed(self) -> bool:
+        """True when the function is transcendental: it holds kernels besides s."""
+        return bool(self.kernels)
 
     @property
     def name(self) -> str:
@@ -91,7 +116,14 @@ class TransferFunction:
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
         """The parameters that occur, in declared order."""
-        return self._parameters_in([f for f, _ in self.ratio.factors])
+        return self._parameters_in([f for f, _ in self.all_factors])
+
+    @property
+    def all_factors(self) -> tuple[tuple[fmpz_mpoly, int], ...]:
+        """The factors of the ratio and of everything its wavenumbers and kernels are made of."""
+        laws = [v for d in self.kernels.dispersions for v in (*d.characteristic, d.shift)]
+        within = (*laws, *(k.length for k in self.kernels.kernels))
+        return (*self.ratio.factors, *(f for v in within for f in v.factors))
 
     @cached_property
     def hidden_parameters(self) -> tuple[Parameter, ...]:

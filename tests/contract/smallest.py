@@ -7,6 +7,8 @@ OTHER = {"translation": "spring", "rotation": "torsion_spring", "electrical": "r
 VALUE = {"translation": "k", "rotation": "k", "electrical": "R"}
 DRIVE = {"translation": "force", "rotation": "torque", "electrical": "current"}
 
+LINE = 'rho = "q", A = "q", l = "q"'
+
 MODELS = {
     "mass": ("x", "force", 'at = "x", m = "p"'),
     "inertia": ("x", "torque", 'at = "x", J = "p"'),
@@ -24,6 +26,10 @@ MODELS = {
     "rigid_body": ("x", "force", 'at = "x", m = "p", J = "q", cg = "q"'),
     "rigid_link": ("x", "force", 'between = ["base", "x"], length = "p"'),
     "massless_beam": ("x", "force", 'between = ["base", "x"], EI = "p", l = "q"'),
+    "beam": ("x", "force", f'between = ["base", "x"], E = "p", I = "q", {LINE}'),
+    "rod": ("x", "force", f'between = ["ground", "x"], E = "p", {LINE}'),
+    "shaft": ("x", "torque", 'between = ["ground", "x"], G = "p", J = "q", rho = "q", l = "q"'),
+    "string": ("x", "force", f'between = ["ground", "x"], N = "p", {LINE}'),
     "fixed": ("x", "force", 'at = "y"'),
     "slider": ("x", "force", 'at = "x"'),
     "pin": ("x.theta", "torque", 'at = "x"'),
@@ -38,6 +44,7 @@ REST = {
     "voltage_source": 'load = { type = "resistor", between = ["x", "ground"], R = "q" }',
     "rigid_link": 'body = { type = "rigid_body", at = "base", m = "p", J = "q" }',
     "massless_beam": 'wall = { type = "fixed", at = "base" }',
+    "beam": 'wall = { type = "fixed", at = "base" }',
     "fixed": 'part = { type = "spring", between = ["x", "y"], k = "p" }',
     "slider": 'body = { type = "rigid_body", at = "x", m = "p" }',
     "pin": 'body = { type = "rigid_body", at = "x", m = "p", J = "q", cg = "q" }',
@@ -52,6 +59,7 @@ BLOCK_VALUES = {
     "integrator": "",
     "lead_lag": 'T_1 = "p", T_2 = "q"',
     "pid": 'k_p = "p", k_i = "q"',
+    "delay": 'T = "p"',
 }
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import copy
+from dataclasses import replace
+from itertools import product
 
 import pytest
 
@@ -10,16 +12,16 @@ from symflex import pipeline
 from symflex.cli import run
 from symflex.elements import (
     ACROSS_UNIT,
-    ANNOUNCED,
     ELEMENTS,
     THROUGH_NAME,
     THROUGH_UNIT,
     ElementUse,
     LinearForm,
+    LineElement,
     Terminal,
     Variable,
 )
-from symflex.errors import SpecError
+from symflex.fields import FIELDS
 from symflex.kernels import Factored, Ring
 from symflex.quantities import unit_of
 from tests.contract.smallest import MODELS, element_model
@@ -51,7 +53,11 @@ def use_of(element, any_domain="translation"):
     values = {x.name: p + i for i, x in enumerate(element.parameters) if not x.signal}
     signal = LinearForm.of((Variable("signal", "u"), p))
     forms = {x.name: signal for x in element.parameters if x.signal}
-    return ElementUse("part", Factored.generator(RING, "s"), terminals, domains, values, forms)
+    s = Factored.generator(RING, "s")
+    choices = {c.name: c.default for c in element.choices}
+    size = len(element.ends) + len(element.through) if isinstance(element, LineElement) else 0
+    transmission = tuple(tuple(p + 7 * i + j for j in range(size)) for i in range(size))
+    return ElementUse("part", s, terminals, domains, values, forms, choices, transmission)
 
 
 def shown(stamp):
@@ -112,6 +118,19 @@ def test_a_default_is_a_number_or_an_earlier_parameter(kind):
         default = parameter.default
         assert default is None or default in earlier or float(default) == 0
         earlier.append(parameter.name)
+
+
+@EVERY
+def test_its_choices_are_documented_and_their_default_is_one_of_them(kind):
+    for choice in ELEMENTS[kind].choices:
+        assert choice.doc.startswith(("a ", "an "))
+        assert choice.default in choice.values
+
+
+@EVERY
+def test_a_parameter_goes_only_with_words_that_can_be_chosen(kind):
+    words = {v for c in ELEMENTS[kind].choices for v in c.values}
+    assert all(set(p.only) <= words for p in ELEMENTS[kind].parameters)
 
 
 @EVERY
@@ -181,31 +200,80 @@ def test_the_command_line_lists_it_with_every_key(kind, capsys):
     assert run(["elements"]) == 0
     line = next(x for x in capsys.readouterr().out.splitlines() if x.strip().startswith(f"{kind}("))
     element = ELEMENTS[kind]
-    assert all(p.name in line for p in (*element.ports, *element.parameters))
+    assert all(p.name in line for p in (*element.ports, *element.parameters, *element.choices))
+    assert len(line) <= 80
 
 
 @EVERY
 def test_the_command_line_describes_it(kind, capsys):
     assert run(["elements", kind]) == 0
     described = capsys.readouterr().out
-    for item in (*ELEMENTS[kind].ports, *ELEMENTS[kind].parameters):
+    for item in (*ELEMENTS[kind].ports, *ELEMENTS[kind].parameters, *ELEMENTS[kind].choices):
         assert item.name in described
+    assert all(word in described for choice in ELEMENTS[kind].choices for word in choice.values)
+
+
+LINES = pytest.mark.parametrize("kind", [k for k, e in ELEMENTS.items() if isinstance(e, LineElement)])
+
+
+def chosen(element):
+    """Return every combination of an element's choices."""
+    return [
+        dict(zip([c.name for c in element.choices], words, strict=True))
+        for words in product(*(c.values for c in element.choices))
+    ]
+
+
+@LINES
+def test_a_line_element_has_its_length_among_its_parameters_in_metres(kind):
+    element = ELEMENTS[kind]
+    assert [p.unit for p in element.parameters if p.name == element.length] == ["m"]
+
+
+@LINES
+def test_a_line_element_s_theories_are_registered_and_of_its_state(kind):
+    element = ELEMENTS[kind]
+    for choices in chosen(element):
+        words = choices.values()
+        values = {
+            p.name: Factored.generator(RING, "p")
+            for p in element.parameters
+            if p.applies(words) or p.default is not None
+        }
+        system = FIELDS[element.theory(choices)](Factored.generator(RING, "s"), values)
+        assert len(system.states) == len(element.ends) + len(element.through)
+        assert system.states[len(element.ends) :] == element.through
+
+
+@LINES
+def test_a_line_element_that_transmits_its_state_unchanged_is_a_rigid_and_massless_joint(kind):
+    element = ELEMENTS[kind]
+    use = use_of(element)
+    size = len(use.transmission)
+    zero, one = use.one * 0, use.one
+    unit = tuple(tuple(one if i == j else zero for j in range(size)) for i in range(size))
+    stamp = element.stamp(replace(use, transmission=unit))
+    laws = [{str(v): c.unit for v, c in row.form.terms} for row in stamp.rows]
+    across = {"f": "y", "tau": "theta"} if "planar" in use.domains.values() else {}
+    for name, law in zip((*element.through, *element.through), laws, strict=True):
+        dot = f".{across[name]}" if across else ""
+        # The ends move alike; what is delivered at one end is taken at the other.
+        assert law in ({f"n2{dot}": 1, f"n1{dot}": -1}, {f"part.{name}": -1, f"part.{name}_a": -1})
+
+
+@LINES
+def test_a_line_element_at_ground_has_no_across_there(kind):
+    element = ELEMENTS[kind]
+    use = use_of(element)
+    (port,) = use.terminals
+    grounded = replace(use, terminals={port: (Terminal(), use.terminals[port][1])})
+    stamp = element.stamp(grounded)
+    assert not any(str(v).startswith("n1") for row in stamp.rows for v, _ in row.form.terms)
+    assert len(stamp.rows) == len(stamp.unknowns)
 
 
 def test_every_element_has_a_smallest_model():
     assert set(MODELS) == set(ELEMENTS)
-
-
-def test_no_announced_element_is_there_already():
-    assert not set(ANNOUNCED) & set(ELEMENTS)
-
-
-@pytest.mark.parametrize("kind", ANNOUNCED)
-def test_an_announced_element_is_said_to_be_not_available_yet(kind):
-    text = f'symflex = 1\n[elements]\ne = {{ type = "{kind}" }}\n[inputs]\nU = {{}}\n[outputs]\nX = "U"\n'
-    with pytest.raises(SpecError) as caught:
-        pipeline.loads(text)
-    assert [d.code for d in caught.value.diagnostics] == ["SF911"]
 
 
 @pytest.mark.parametrize("domain", ACROSS_UNIT)

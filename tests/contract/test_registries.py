@@ -8,11 +8,11 @@ import mpmath
 import pytest
 
 from symflex import pipeline
-from symflex.blocks import ANNOUNCED, BLOCKS, MODEL_BLOCK
+from symflex.blocks import BLOCKS, MODEL_BLOCK
 from symflex.cli import run
 from symflex.emit.exporters import EXPORTERS
 from symflex.emit.forms import CANDIDATES, FORMS, print_form
-from symflex.errors import SpecError, UsageError
+from symflex.errors import UsageError
 from symflex.expressions import PROGRAM_LIMITS, format_expression
 from symflex.kernels import FUNCTIONS, Factored, Ring
 from symflex.quantities import unit_of
@@ -80,16 +80,15 @@ def test_every_block_has_a_smallest_model():
     assert set(BLOCK_VALUES) == set(BLOCKS)
 
 
-def test_the_model_block_and_announced_blocks_are_no_blocks_of_the_registry():
-    assert not {MODEL_BLOCK, *ANNOUNCED} & set(BLOCKS)
+def test_the_model_block_is_no_block_of_the_registry():
+    assert MODEL_BLOCK not in BLOCKS
 
 
-@pytest.mark.parametrize("kind", ANNOUNCED)
-def test_an_announced_block_is_said_to_be_not_available_yet(kind):
-    text = f'symflex = 1\n[blocks]\nD = {{ type = "{kind}" }}\n[inputs]\nU = {{}}\n[outputs]\nX = "U"\n'
-    with pytest.raises(SpecError) as caught:
-        pipeline.loads(text)
-    assert [d.code for d in caught.value.diagnostics] == ["SF911"]
+@pytest.mark.parametrize("kind", BLOCKS)
+def test_the_time_of_a_delay_is_one_of_its_parameters_in_seconds(kind):
+    block = BLOCKS[kind]
+    times = {p.name: p.unit for p in block.parameters}
+    assert not block.kernel_time or times[block.kernel_time] == "s"
 
 
 # ----------------------------------------------------------------------------------------------- forms

@@ -35,9 +35,9 @@ def test_json_of_an_entry_has_the_documented_keys(shell):
     document = shell("elements", "dc_motor", "--json").json
     (motor,) = document["elements"]
     assert document["blocks"] == []
-    assert set(motor) == {"type", "summary", "ports", "parameters", "through"}
+    assert set(motor) == {"type", "summary", "ports", "parameters", "choices", "through"}
     assert set(motor["ports"][0]) == {"name", "nodes", "domain", "doc", "default"}
-    assert set(motor["parameters"][0]) == {"name", "unit", "doc", "default"}
+    assert set(motor["parameters"][0]) == {"name", "unit", "doc", "default", "only"}
 
 
 def test_an_unknown_entry_is_a_usage_error_with_a_hint(shell):

@@ -1,0 +1,333 @@
+"""The distributed parts of a model: which kernels they need, and their transfer matrices.
+
+Input: a model and an evaluator over the ring without kernels.
+Output: a :class:`Distributed`, with the ring that has generators for every fundamental function that occurs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import factorial
+from typing import TYPE_CHECKING
+
+from symflex.elements import LinearForm, Variable
+from symflex.elements.line import LineElement
+from symflex.equations.coefficients import read_equation
+from symflex.errors import Diagnostic, ModelError, SymflexError
+from symflex.expressions import Call, Expression, names
+from symflex.fields import FIELDS, Component, FieldSystem, components, first_order
+from symflex.kernels import Dispersion, Factored, propagate
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from symflex.equations.evaluate import Evaluator
+    from symflex.fields import Matrix
+    from symflex.kernels import Propagation
+    from symflex.model import Field, Model, PlacedElement
+
+POLYNOMIAL = -1
+"""The dispersion of field equations all of whose exponents are zero: their solutions need no kernel."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Medium:
+    """A field's equations with the dispersion of every uncoupled part."""
+
+    system: FieldSystem
+    parts: tuple[tuple[Component, int], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class FieldSolution:
+    """The general solution of one field: its state at any point in terms of its state at the start.
+
+    Parameters
+    ----------
+    field : Field
+        As resolved.
+    medium : Medium
+        Its equations.
+    inputs : tuple of Variable
+        What loads it all along.
+    origin : Factored
+        Where x begins, over the ring without kernels.
+    """
+
+    field: Field
+    medium: Medium
+    inputs: tuple[Variable, ...]
+    origin: Factored
+
+    @property
+    def initial(self) -> tuple[Variable, ...]:
+        """The unknowns: the state at the start."""
+        return tuple(Variable("field", self.field.name, name) for name in self.medium.system.states)
+
+    def value(self, unknown: str, order: int, length: Factored, propagation: Propagation) -> LinearForm:
+        """Return a derivative of an unknown at a distance from the start."""
+        states = self.medium.system.states
+        highest = max(k for k in range(order + 1) if unknown + "'" * k in states)
+        zero = Factored.number(propagation.ring, 0)
+        row = [zero + int(state == unknown + "'" * highest) for state in states]
+        matrix = [[propagation.embed(x) for x in line] for line in self.medium.system.matrix]
+        loads = [[propagation.embed(x) for x in column] for column in self.medium.system.loads]
+        direct = [zero for _ in self.inputs]
+        for _ in range(order - highest):
+            direct = [_dot(row, column, zero) for column in loads]
+            row = [_dot(row, [line[j] for line in matrix], zero) for j in range(len(states))]
+        transfer = transfer_matrix(self.medium, length, propagation)
+        terms = [
+            (variable, _dot(row, [line[j] for line in transfer], zero))
+            for j, variable in enumerate(self.initial)
+        ]
+        if self.inputs and not length.is_zero:
+            driven = _driven(self.medium, length, propagation)
+            direct = [d + _dot(row, column, zero) for d, column in zip(direct, driven, strict=True)]
+        terms += list(zip(self.inputs, direct, strict=True))
+        return LinearForm.total(LinearForm.of(term) for term in terms)
+
+
+def _dot(left: Iterable[Factored], right: Iterable[Factored], zero: Factored) -> Factored:
+    total = zero
+    for a, b in zip(left, right, strict=True):
+        if not (a.is_zero or b.is_zero):
+            total = total + a * b
+    return total
+
+
+@dataclass(frozen=True, eq=False)
+class Distributed:
+    """Everything the equations need of a model's distributed parts.
+
+    Parameters
+    ----------
+    propagation : Propagation
+        The rings and generators.
+    transmissions : mapping of str to Matrix
+        Per line element, the transfer matrix of its length.
+    delays : mapping of str to Factored
+        Per delay block, ``exp(-s*T)``.
+    solutions : mapping of str to FieldSolution
+        Per unknown of a field, the solution of its field.
+    evaluator : Evaluator
+        Over the ring without kernels, for points.
+    """
+
+    propagation: Propagation
+    transmissions: Mapping[str, Matrix]
+    delays: Mapping[str, Factored]
+    solutions: Mapping[str, FieldSolution]
+    evaluator: Evaluator
+
+    def value(self, call: Call) -> LinearForm:
+        """Return a field's unknown, or a derivative of it, at the point a call names."""
+        solution = self.solutions[call.name]
+        length = self.evaluator.constant(call.argument) - solution.origin
+        return solution.value(call.name, call.order, length, self.propagation)
+
+
+class _Demands:
+    """Collects dispersions, each once, with the lengths it is needed at."""
+
+    def __init__(self) -> None:
+        self.keys: dict[tuple[str, ...], int] = {}
+        self.demands: list[tuple[Dispersion, list[Factored]]] = []
+
+    def medium(self, name: str, system: FieldSystem) -> Medium:
+        """Return the system with the numbers of its dispersions."""
+        parts = []
+        for part in components(system):
+            law = part.characteristic
+            if law.kind == "polynomial":
+                parts.append((part, POLYNOMIAL))
+                continue
+            dispersion = Dispersion(name, law.kind, law.coefficients, law.shift)  # type: ignore[arg-type]
+            parts.append((part, self._number((law.kind, *law.key), dispersion)))
+        return Medium(system, tuple(parts))
+
+    def delay(self, name: str, s: Factored, time: Factored) -> int:
+        """Return the number of the dispersion all delays share."""
+        number = self._number(("delay",), Dispersion(name, "exponential", (), s))
+        self.demands[number][1].append(time)
+        return number
+
+    def need(self, medium: Medium, length: Factored) -> None:
+        """Note a length a medium is needed at."""
+        for _, number in medium.parts:
+            if number != POLYNOMIAL:
+                self.demands[number][1].append(length)
+
+    def _number(self, key: tuple[str, ...], dispersion: Dispersion) -> int:
+        if key not in self.keys:
+            self.keys[key] = len(self.demands)
+            self.demands.append((dispersion, []))
+        return self.keys[key]
+
+
+def survey(model: Model, evaluator: Evaluator, expressions: Iterable[Expression]) -> Distributed | None:
+    """Return the distributed parts of a model, ``None`` when it has none.
+
+    Parameters
+    ----------
+    model : Model
+        Resolved.
+    evaluator : Evaluator
+        Over the ring without kernels, with the rational blocks.
+    expressions : iterable of Expression
+        Everything in which a field may be evaluated at a point.
+
+    Raises
+    ------
+    ModelError
+        SF305 when the highest derivatives of a field are not determined, and what evaluation raises.
+    """
+    demands = _Demands()
+    problems: list[Diagnostic] = []
+    lines: list[tuple[str, Medium, Factored]] = []
+    delays: list[tuple[str, int, Factored]] = []
+    solutions: dict[str, FieldSolution] = {}
+    s = Factored.generator(evaluator.ring, "s")
+    try:
+        for use in model.elements:
+            if isinstance(use.element, LineElement):
+                medium, length = _line(use, evaluator, demands, s)
+                demands.need(medium, length)
+                lines.append((use.name, medium, length))
+        for block in model.blocks:
+            if block.block is not None and block.block.kernel_time:
+                time = evaluator.constant(dict(block.values)[block.block.kernel_time])
+                delays.append((block.name, demands.delay(block.name, s, time), time))
+        for field in model.fields:
+            solution = _solution(field, evaluator, demands)
+            solutions.update(dict.fromkeys(field.unknowns, solution))
+        for call in (c for e in expressions for c in names(e) if isinstance(c, Call)):
+            if call.name in solutions:
+                solution = solutions[call.name]
+                demands.need(solution.medium, evaluator.constant(call.argument) - solution.origin)
+    except SymflexError as error:
+        problems.extend(error.diagnostics)
+    if problems:
+        raise ModelError(*problems)
+    if not (lines or delays or solutions):
+        return None
+    propagation = propagate(evaluator.ring, demands.demands)
+    one = Factored.number(propagation.ring, 1)
+    return Distributed(
+        propagation,
+        {name: transfer_matrix(medium, length, propagation) for name, medium, length in lines},
+        {
+            name: one if time.is_zero else propagation.fundamental(number, time)[0]
+            for name, number, time in delays
+        },
+        solutions,
+        evaluator,
+    )
+
+
+def _line(
+    use: PlacedElement, evaluator: Evaluator, demands: _Demands, s: Factored
+) -> tuple[Medium, Factored]:
+    element = use.element
+    if not isinstance(element, LineElement):
+        message = f"'{use.name}' is no line element"
+        raise TypeError(message)
+    values = {name: evaluator.constant(e) for name, e in use.values}
+    zero = s * 0
+    for parameter in element.parameters:
+        values.setdefault(parameter.name, zero)
+    chosen = {c.name: c.default for c in element.choices} | dict(use.choices)
+    system = FIELDS[element.theory(chosen)](s, values)
+    return demands.medium(use.name, system), values[element.length]
+
+
+def _solution(field: Field, evaluator: Evaluator, demands: _Demands) -> FieldSolution:
+    equations = [read_equation(e, field.unknowns, evaluator) for e in field.equations]
+    inputs = tuple(dict.fromkeys(v for e in equations for v in e.loads))
+    zero = Factored.number(evaluator.ring, 0)
+    by_name = {str(v): v for v in inputs}
+    system = first_order(field.unknowns, list(by_name), [e.named() for e in equations], zero)
+    if system is None:
+        raise ModelError(
+            Diagnostic(
+                "SF305",
+                f"the equations of field '{field.name}' do not determine the highest derivatives of "
+                + " and ".join(field.unknowns),
+                field.span,
+                "eliminate an unknown by hand, or differentiate an equation",
+            )
+        )
+    medium = demands.medium(field.name, system)
+    return FieldSolution(field, medium, inputs, evaluator.constant(field.start))
+
+
+def _fundamental(
+    part: Component, number: int, length: Factored, propagation: Propagation
+) -> tuple[Factored, ...]:
+    """Return ``h, ..., h^(n-1)`` of a part at a length."""
+    n = len(part.states)
+    if number != POLYNOMIAL:
+        return propagation.fundamental(number, length)
+    x = propagation.embed(length)
+    return tuple(_monomial(x, n - 1 - k) for k in range(n))
+
+
+def _monomial(x: Factored, power: int) -> Factored:
+    if power == 0:
+        return x * 0 + 1
+    return x * 0 if x.is_zero else x**power * Fraction(1, factorial(power))
+
+
+def transfer_matrix(medium: Medium, length: Factored, propagation: Propagation) -> Matrix:
+    """Return ``exp(A length)`` over the ring of propagators."""
+    zero = Factored.number(propagation.ring, 0)
+    size = len(medium.system.states)
+    entries = [[zero] * size for _ in range(size)]
+    for part, number in medium.parts:
+        h = _fundamental(part, number, length, propagation)
+        for i, row in enumerate(part.states):
+            for j, column in enumerate(part.states):
+                total = zero
+                for k, b in enumerate(part.adjugate):
+                    if not b[i][j].is_zero:
+                        total = total + h[k] * propagation.embed(b[i][j])
+                entries[row][column] = total
+    return tuple(map(tuple, entries))
+
+
+def _driven(medium: Medium, length: Factored, propagation: Propagation) -> list[list[Factored]]:
+    """Return, per load, the state at a distance from the start that a unit of it causes from rest.
+
+    ``integral of h`` follows from the integral of the characteristic equation.
+    """
+    zero = Factored.number(propagation.ring, 0)
+    one = zero + 1
+    columns = [[zero] * len(medium.system.states) for _ in medium.system.loads]
+    for part, number in medium.parts:
+        n = len(part.states)
+        if all(load[i].is_zero for load in medium.system.loads for i in part.states):
+            continue
+        h = _fundamental(part, number, length, propagation)
+        if number == POLYNOMIAL:
+            integral = _monomial(propagation.embed(length), n)
+        elif part.coefficients[0].is_zero:
+            message = (
+                "a uniform load on a field that has a solution constant in x is not available; "
+                "let the load enter the conditions"
+            )
+            raise ModelError(Diagnostic("SF910", message))
+        else:
+            rest = one - h[n - 1]
+            for k in range(1, n):
+                rest = rest - propagation.embed(part.coefficients[k]) * h[k - 1]
+            integral = rest / propagation.embed(part.coefficients[0])
+        integrals = (integral, *h[: n - 1])
+        for load, column in zip(medium.system.loads, columns, strict=True):
+            b = [propagation.embed(load[i]) for i in part.states]
+            for i, row in enumerate(part.states):
+                for k, matrix in enumerate(part.adjugate):
+                    weight = _dot([propagation.embed(x) for x in matrix[i]], b, zero)
+                    if not weight.is_zero:
+                        column[row] = column[row] + integrals[k] * weight
+    return columns

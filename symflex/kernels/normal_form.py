@@ -1,0 +1,180 @@
+"""Normal form of polynomials in wavenumbers and kernels: equal functions become equal polynomials.
+
+The relations ``sinh^2 = cosh^2 - 1``, ``sin^2 = 1 - cos^2`` and the dispersion relations of the wavenumbers
+have coprime leading monomials, so replacing these leaves one form of every residue class (Cox, Little &
+O'Shea 2015, chapter 2, sections 6 and 9).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from symflex.kernels.factored import Factored
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from flint import fmpz_mpoly
+
+    from symflex.kernels.dispersion import Dispersion, KernelTable
+    from symflex.kernels.ring import Ring
+
+
+def split(ring: Ring, polynomial: fmpz_mpoly, index: int) -> dict[int, fmpz_mpoly]:
+    """Return the coefficient of every power of one generator, over the same ring."""
+    parts: dict[int, dict[tuple[int, ...], int]] = {}
+    for monomial, coefficient in polynomial.terms():
+        exponents = [int(e) for e in monomial]
+        power, exponents[index] = exponents[index], 0
+        parts.setdefault(power, {})[tuple(exponents)] = int(coefficient)
+    return {power: ring.context.from_dict(terms) for power, terms in parts.items()}
+
+
+@dataclass(frozen=True, eq=False)
+class NormalForm:
+    """Reduces modulo the relations of one table.
+
+    Parameters
+    ----------
+    ring : Ring
+        Where the table's generators and the dispersions' coefficients live.
+    table : KernelTable
+        Wavenumbers and kernels.
+    """
+
+    ring: Ring
+    table: KernelTable
+
+    @cached_property
+    def _squares(self) -> tuple[tuple[int, fmpz_mpoly], ...]:
+        """Positions of sinh and sin with what their squares are."""
+        found = []
+        by_key = {(k.function, k.wavenumber, id(k.length)): k for k in self.table.kernels}
+        for kernel in self.table.kernels:
+            partner = {"sinh": "cosh", "sin": "cos"}.get(kernel.function)
+            if partner is None:
+                continue
+            even = by_key[partner, kernel.wavenumber, id(kernel.length)]  # type: ignore[index]
+            c = self.ring.generator(even.generator)
+            square = c * c - 1 if partner == "cosh" else 1 - c * c
+            found.append((self.ring.index[kernel.generator], square))
+        return tuple(found)
+
+    def reduce(self, polynomial: fmpz_mpoly, *, pairs: bool = True) -> Factored:
+        """Return a polynomial in normal form; its denominators come from the dispersion relations.
+
+        Without ``pairs``, the relations between two wavenumbers of one dispersion are left unused.
+        """
+        for index, square in self._squares:
+            polynomial = self._powers(polynomial, index, 2, square)
+        result = Factored.number(self.ring, 1)
+        for dispersion in self.table.dispersions:
+            if dispersion.kind == "pair" and not pairs:
+                continue
+            polynomial, below = self._disperse(polynomial, dispersion)
+            result = result / below
+        return Factored.polynomial(self.ring, polynomial) * result
+
+    def reduce_factored(self, value: Factored, *, pairs: bool = True) -> Factored:
+        """Return a product with every factor, and its powers of wavenumbers, in normal form."""
+        result = Factored.number(self.ring, value.unit)
+        for factor, exponent in value.factors:
+            result = result * self.reduce(factor, pairs=pairs) ** exponent
+        return self.balance(result)
+
+    def balance(self, value: Factored) -> Factored:
+        """Return a product with the powers of single wavenumbers between 0 and their relation's degree."""
+        for dispersion in self.table.dispersions:
+            degree = {"wave": 2, "bending": 4}.get(dispersion.kind)
+            if degree is None:
+                continue
+            generator = self.ring.generator(dispersion.wavenumbers[0])
+            exponent = next((e for f, e in value.factors if f == generator), 0)
+            times = exponent // degree
+            if times:
+                power = Factored.generator(self.ring, dispersion.wavenumbers[0]) ** (-degree * times)
+                value = value * power * self.power_of(dispersion) ** times
+        return value
+
+    def power_of(self, dispersion: Dispersion) -> Factored:
+        """Return ``gamma^2`` or ``mu^4`` as a rational function of s."""
+        c0 = dispersion.characteristic[0]
+        return -c0 if dispersion.kind == "wave" else c0 / 4
+
+    def _powers(self, polynomial: fmpz_mpoly, index: int, degree: int, image: fmpz_mpoly) -> fmpz_mpoly:
+        """Return the polynomial with ``x^degree`` replaced."""
+        if int(polynomial.degrees()[index]) < degree:
+            return polynomial
+        x = self.ring.context.gen(index)
+        total = self.ring.constant(0)
+        for power, part in split(self.ring, polynomial, index).items():
+            total = total + part * x ** (power % degree) * image ** (power // degree)
+        return total
+
+    def _disperse(self, polynomial: fmpz_mpoly, dispersion: Dispersion) -> tuple[fmpz_mpoly, Factored]:
+        """Return a multiple of the polynomial in normal form, and the factor it was multiplied by."""
+        one = Factored.number(self.ring, 1)
+        match dispersion.kind:
+            case "wave" | "bending":
+                degree = 2 if dispersion.kind == "wave" else 4
+                index = self.ring.index[dispersion.wavenumbers[0]]
+                return self._rational_powers(polynomial, index, degree, self.power_of(dispersion))
+            case "pair":
+                return self._pair(polynomial, dispersion)
+        return polynomial, one
+
+    def _rational_powers(
+        self, polynomial: fmpz_mpoly, index: int, degree: int, image: Factored
+    ) -> tuple[fmpz_mpoly, Factored]:
+        highest = int(polynomial.degrees()[index]) // degree
+        if not highest:
+            return polynomial, Factored.number(self.ring, 1)
+        above, below = image.numerator().expand(), image.denominator().expand()
+        x = self.ring.context.gen(index)
+        total = self.ring.constant(0)
+        for power, part in split(self.ring, polynomial, index).items():
+            times = power // degree
+            total = total + part * x ** (power % degree) * above**times * below ** (highest - times)
+        return total, image.denominator() ** highest
+
+    def _pair(self, polynomial: fmpz_mpoly, dispersion: Dispersion) -> tuple[fmpz_mpoly, Factored]:
+        """Use ``lambda_1^2 = -c_2 - lambda_2^2``, then ``lambda_2^4 = -c_2 lambda_2^2 - c_0``."""
+        c0, c2 = dispersion.characteristic[0], dispersion.characteristic[2]
+        below = _common_multiple(c0.denominator(), c2.denominator())
+        d = below.expand()
+        n0, n2 = (c0 * below).expand(), (c2 * below).expand()
+        first, second = (self.ring.index[w] for w in dispersion.wavenumbers)
+        y = self.ring.context.gen(second)
+        scale = Factored.number(self.ring, 1)
+        highest = int(polynomial.degrees()[first]) // 2
+        if highest:
+            x = self.ring.context.gen(first)
+            image = -n2 - d * y * y
+            total = self.ring.constant(0)
+            for power, part in split(self.ring, polynomial, first).items():
+                total = total + part * x ** (power % 2) * image ** (power // 2) * d ** (highest - power // 2)
+            polynomial, scale = total, scale * below**highest
+        while (degree := int(polynomial.degrees()[second])) >= 4:  # noqa: PLR2004
+            total = self.ring.constant(0)
+            for power, part in split(self.ring, polynomial, second).items():
+                if power == degree:
+                    total = total - part * (n2 * y ** (power - 2) + n0 * y ** (power - 4))
+                else:
+                    total = total + part * y**power * d
+            polynomial, scale = total, scale * below
+        return polynomial, scale
+
+
+def _common_multiple(left: Factored, right: Factored) -> Factored:
+    """Return a common multiple of two products."""
+    result = left
+    exponents: Mapping[str, int] = {str(f): e for f, e in left.factors}
+    for factor, exponent in right.factors:
+        missing = exponent - exponents.get(str(factor), 0)
+        if missing > 0:
+            result = result * Factored(left.ring, result.unit**0, ((factor, missing),))
+    if result.unit % right.unit:
+        result = result * right.unit
+    return result

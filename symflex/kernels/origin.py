@@ -1,0 +1,146 @@
+"""The order of zeros at s = 0, where wavenumbers are branched and kernels cancel.
+
+With ``s = e^4`` every wavenumber is a power series in e.
+"""
+
+from __future__ import annotations
+
+from random import Random
+from typing import TYPE_CHECKING
+
+from symflex.kernels.taylor import BASE, PRIMES, TaylorField, random_values
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from flint import nmod_poly
+
+    from symflex.kernels.dispersion import Dispersion, KernelTable
+    from symflex.kernels.factored import Factored
+    from symflex.kernels.ring import Ring
+
+BRANCHES = 4
+TERMS = 80
+TRIALS = 40
+"""Values of the parameters that are tried in each field."""
+
+
+class Origin:
+    """Orders at s = 0 of functions over one ring.
+
+    Parameters
+    ----------
+    ring : Ring
+        s first; with the table's generators.
+    table : KernelTable
+        Wavenumbers and kernels; general dispersions are not covered.
+    """
+
+    def __init__(self, ring: Ring, table: KernelTable) -> None:
+        self.ring = ring
+        self._found = _find_point(ring, table)
+
+    def order(self, value: Factored) -> int | None:
+        """Return the order of the zero (negative: of the pole) at s = 0, ``None`` when it is not found."""
+        if self._found is None:
+            return None
+        field, values = self._found
+        total = 0
+        for factor, exponent in value.factors:
+            first = field.order(field.polynomial(factor, self.ring.names, values))
+            if first is None:
+                return None
+            total += first * exponent
+        return total // BRANCHES if total % BRANCHES == 0 else None
+
+
+def _find_point(ring: Ring, table: KernelTable) -> tuple[TaylorField, dict[str, nmod_poly]] | None:
+    """Return series for all generators near s = 0."""
+    if any(d.kind == "general" for d in table.dispersions):
+        return None
+
+    def prepare(values: dict[str, nmod_poly], field: TaylorField) -> bool:
+        values[ring.names[0]] = field.power(BRANCHES)
+        return True
+
+    return find_point(ring, table, TERMS, prepare)
+
+
+def find_point(
+    ring: Ring,
+    table: KernelTable,
+    terms: int,
+    prepare: Callable[[dict[str, nmod_poly], TaylorField], bool],
+) -> tuple[TaylorField, dict[str, nmod_poly]] | None:
+    """Return values for all generators that satisfy every relation, in a field where the wavenumbers exist.
+
+    Parameters
+    ----------
+    ring : Ring
+        With the table's generators.
+    table : KernelTable
+        Kernels of general dispersions get random values.
+    terms : int
+        Length of the series; one for numbers.
+    prepare : callable
+        Sets values that are not random; False asks for other random ones.
+    """
+    random = Random(11)
+    for prime in PRIMES:
+        field = TaylorField(terms, prime)
+        for _ in range(TRIALS):
+            values = random_values(ring.names, random, field)
+            if prepare(values, field) and all(_place(d, ring, values, field) for d in table.dispersions):
+                found = _with_kernels(ring, table, values, field)
+                return None if found is None else (field, found)
+    return None
+
+
+def _with_kernels(
+    ring: Ring, table: KernelTable, values: dict[str, nmod_poly], field: TaylorField
+) -> dict[str, nmod_poly] | None:
+    starts: dict[tuple[str, int], int] = {}
+    for kernel in table.kernels:
+        if kernel.function == "fundamental":
+            continue
+        length = field.rational(kernel.length, ring.names, values)
+        shift = field.rational(kernel.dispersion.shift, ring.names, values)
+        if length is None or shift is None:
+            return None
+        key = (kernel.wavenumber, id(kernel.length))
+        start = starts.setdefault(key, pow(BASE, 1001 + 2 * len(starts), field.prime))
+        rate = values[kernel.wavenumber] if kernel.wavenumber else -shift
+        circular = kernel.function in ("cos", "sin")
+        even, odd = field.even_odd(field.times(rate, length), start, circular=circular)
+        if kernel.function == "exp":
+            values[kernel.generator] = even + odd
+        else:
+            values[kernel.generator] = even if kernel.function in ("cosh", "cos") else odd
+    return values
+
+
+def _place(law: Dispersion, ring: Ring, values: dict[str, nmod_poly], field: TaylorField) -> bool:
+    """Put the wavenumbers' series into the values; False where a root does not exist."""
+    found = [field.rational(x, ring.names, values) for x in law.characteristic]
+    c = [x for x in found if x is not None]
+    if len(c) < len(found):
+        return False
+    roots: list[nmod_poly | None] = []
+    match law.kind:
+        case "wave":
+            roots = [field.root(-c[0])]
+        case "bending":
+            square = field.root(c[0] * pow(4, -1, field.prime))
+            roots = [None if square is None else field.root(square)]
+        case "pair":
+            middle = -c[2] * pow(2, -1, field.prime)
+            root = field.root(field.times(middle, middle) - c[0])
+            if root is not None:
+                roots = [field.root(middle + root), field.root(middle - root)]
+    if len(roots) < len(law.wavenumbers):
+        return False
+    for name, series in zip(law.wavenumbers, roots, strict=True):
+        if series is None:
+            return False
+        values[name] = series
+    return True

@@ -1,0 +1,391 @@
+"""Whether boundary-value problems are well posed, as far as their text tells.
+
+Input: the fields as read, and what the model's names mean.
+Output: what is wrong with domains, equations, points and the number of conditions. Fields whose conditions
+name each other's unknowns are one problem, and their orders and conditions are counted together.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from symflex.expressions import Call, Derivative, Name, Negative, Sum, format_expression, names
+from symflex.kernels import LAPLACE
+from symflex.model.independence import RandomPoint, repetitions
+from symflex.model.linearity import check_equation, check_expression
+from symflex.model.reading import QuantityLiteral
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from symflex.errors import Span
+    from symflex.expressions import Equation, Expression
+    from symflex.model.model import Definition, Field, PlacedBlock
+    from symflex.model.points import Line
+    from symflex.model.reading import Reader
+    from symflex.model.scope import Scope
+
+ORDER_LIMIT = 12
+SHOWN_NAMES = 6
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What the fields of a model stand among.
+
+    Parameters
+    ----------
+    scope : Scope
+        What names mean.
+    definitions : mapping of str to Expression
+        Each uses only earlier ones.
+    varying : frozenset of str
+        Names of constants that depend on s: definitions and blocks.
+    line : Line
+        Where points lie.
+    """
+
+    scope: Scope
+    definitions: Mapping[str, Expression]
+    varying: frozenset[str]
+    line: Line
+
+
+@dataclass(frozen=True, slots=True)
+class _Condition:
+    """A condition with its field, and the fields and places whose values it holds."""
+
+    field: Field
+    equation: Equation
+    calls: tuple[Call, ...]
+
+
+def varying_constants(definitions: Sequence[Definition], blocks: Sequence[PlacedBlock]) -> frozenset[str]:
+    """Return the names of constants that depend on s; the definitions stand in order of use."""
+    varying = {b.name for b in blocks}
+    for definition in definitions:
+        if any(isinstance(n, Name) and n.name in {*varying, LAPLACE} for n in names(definition.expression)):
+            varying.add(definition.name)
+    return frozenset(varying)
+
+
+def depends_on_s(expression: Expression, varying: frozenset[str]) -> bool:
+    """Tell whether an expression of constants depends on s."""
+    return any(isinstance(n, Name) and (n.name == LAPLACE or n.name in varying) for n in names(expression))
+
+
+def check_fields(reader: Reader, fields: Sequence[Field], around: Surroundings) -> frozenset[str]:
+    """Note everything wrong with the fields apart from units and from points (:func:`check_points`).
+
+    Returns
+    -------
+    frozenset of str
+        Names of the fields whose domain is sound.
+    """
+    orders: dict[str, int] = {}
+    placed: set[str] = set()
+    for field in fields:
+        if _check_domain(reader, field, around):
+            placed.add(field.name)
+        order = _check_equations(reader, field, around.scope)
+        if order is not None:
+            orders[field.name] = order
+    conditions: list[_Condition] = []
+    sound = len(orders) == len(placed) == len(fields)
+    for field in fields:
+        for equation in field.conditions:
+            problems = check_equation(equation, around.scope)
+            reader.take(problems)
+            calls = tuple(_values_at_points(equation, around.scope))
+            if not problems and not calls:
+                reader.note(
+                    "SF248",
+                    f"this condition of field '{field.name}' holds no value of a field",
+                    equation.span,
+                    f"for instance {field.unknowns[0]}(0) = 0",
+                )
+            sound = sound and bool(calls) and not problems
+            conditions.append(_Condition(field, equation, calls))
+    if sound and not around.scope.broken:
+        _check_counts(reader, fields, orders, conditions, around)
+    return frozenset(placed)
+
+
+def check_points(
+    reader: Reader, expression: Expression, fields: Sequence[Field], around: Surroundings
+) -> None:
+    """Note every point of an expression that depends on s or lies outside the domain of its field.
+
+    What is wrong with it otherwise was noted before, and it is passed over.
+    """
+    owners = {unknown: field for field in fields for unknown in field.unknowns}
+    noted = {p.span for p in reader.problems}
+    inside: set[tuple[str, Expression]] = set()
+    for call in _values_at_points(expression, around.scope):
+        field, place = owners.get(call.name), call.argument
+        if field is None or (field.name, place) in inside or place.span in noted:
+            continue
+        if depends_on_s(place, around.varying):
+            reader.note("SF249", "a point along x cannot depend on s", place.span)
+            continue
+        sides = ((field.start, "before the start", -1), (field.end, "beyond the end", 1))
+        wrong = [
+            (end, word) for end, word, sign in sides if around.line.sign(_difference(place, end)) == sign
+        ]
+        for end, word in wrong:
+            reader.note(
+                "SF240",
+                f"the point {_named(place, around.line)} lies {word} of the domain of field "
+                f"'{field.name}', {_named(end, around.line)}",
+                place.span,
+            )
+        if not wrong:
+            inside.add((field.name, place))
+
+
+def _values_at_points(expression: Expression, scope: Scope) -> Iterator[Call]:
+    yield from (n for n in names(expression) if isinstance(n, Call) and n.name in scope.unknowns)
+
+
+def _difference(left: Expression, right: Expression) -> Expression:
+    return Sum((left, Negative(right)))
+
+
+def _written(place: Expression) -> str:
+    if isinstance(place, QuantityLiteral):
+        return place.span.text if place.span else place.quantity.unit
+    return format_expression(place)
+
+
+def _named(place: Expression, line: Line) -> str:
+    """Return a place as written, with its value when it has one that differs from what is written."""
+    value, text = line.value(place), _written(place)
+    shown = "" if value is None else f"{float(value):.6g}"
+    return f"'{text}'" if value is None or shown == text else f"'{text}' ({shown})"
+
+
+def _check_domain(reader: Reader, field: Field, around: Surroundings) -> bool:
+    good = True
+    for end in (field.start, field.end):
+        if isinstance(end, QuantityLiteral):
+            continue
+        problems = check_expression(end, around.scope, constant=True)
+        reader.take(problems)
+        good = good and not problems
+        if not problems and depends_on_s(end, around.varying):
+            reader.note("SF249", f"the domain of field '{field.name}' cannot depend on s", end.span)
+            good = False
+    sign = around.line.sign(_difference(field.end, field.start)) if good else None
+    if sign is not None and sign <= 0:
+        word = "where it begins" if sign == 0 else "before it begins"
+        ends = " to ".join(_named(e, around.line) for e in (field.start, field.end))
+        message = f"the domain of field '{field.name}' ends {word}: {ends}"
+        reader.note("SF240", message, field.end.span or field.span, "write the smaller end first")
+        good = False
+    return good
+
+
+def _check_equations(reader: Reader, field: Field, scope: Scope) -> int | None:
+    """Return the order in x of a field's equations, ``None`` when something is wrong with them."""
+    inside = scope.within(field.unknowns)
+    problems = [p for e in field.equations for p in check_equation(e, inside)]
+    reader.take(problems)
+    if problems:
+        return None
+    found = [_orders(e, field.unknowns) for e in field.equations]
+    for equation, orders in zip(field.equations, found, strict=True):
+        if not orders:
+            wanted = ", ".join(field.unknowns)
+            message = f"this equation of field '{field.name}' holds none of its unknowns ({wanted})"
+            reader.note("SF242", message, equation.span)
+            return None
+    for unknown in field.unknowns:
+        if not any(unknown in orders for orders in found):
+            message = f"the unknown '{unknown}' of field '{field.name}' stands in none of its equations"
+            reader.note("SF242", message, field.span)
+            return None
+    highest = {u: max(orders.get(u, 0) for orders in found) for u in field.unknowns}
+    order = sum(highest.values())
+    if order == 0:
+        message = f"the equations of field '{field.name}' hold no derivative along x"
+        reader.note("SF242", message, field.equations[0].span, f"write it with primes: {field.unknowns[0]}''")
+        return None
+    if order > ORDER_LIMIT:
+        message = f"field '{field.name}' is of order {order} in x; at most {ORDER_LIMIT} is allowed"
+        reader.note("SF103", message, field.equations[0].span)
+        return None
+    if not _can_be_solved(found, highest):
+        leading = " and ".join(u + "'" * k for u, k in highest.items())
+        message = f"the equations of field '{field.name}' do not determine its highest derivatives, {leading}"
+        hint = "each must follow from an equation of its own; put one equation into another until it does"
+        reader.note("SF242", message, field.equations[0].span, hint)
+        return None
+    return order
+
+
+def _orders(equation: Equation, unknowns: Sequence[str]) -> dict[str, int]:
+    """Return the highest derivative of every unknown in an equation."""
+    found: dict[str, int] = {}
+    for node in names(equation):
+        if isinstance(node, Name | Derivative) and node.name in unknowns:
+            order = node.order if isinstance(node, Derivative) else 0
+            found[node.name] = max(order, found.get(node.name, 0))
+    return found
+
+
+def _can_be_solved(found: Sequence[Mapping[str, int]], highest: Mapping[str, int]) -> bool:
+    """Tell whether every unknown's highest derivative can be given an equation of its own that holds it."""
+    chosen: dict[int, str] = {}
+
+    def place(unknown: str, tried: set[int]) -> bool:
+        for i, orders in enumerate(found):
+            if orders.get(unknown) == highest[unknown] and i not in tried:
+                tried.add(i)
+                if i not in chosen or place(chosen[i], tried):
+                    chosen[i] = unknown
+                    return True
+        return False
+
+    return all(place(unknown, set()) for unknown in highest)
+
+
+def _check_counts(
+    reader: Reader,
+    fields: Sequence[Field],
+    orders: Mapping[str, int],
+    conditions: Sequence[_Condition],
+    around: Surroundings,
+) -> None:
+    """Note repeated conditions, and too few or too many of them, for every group of joined fields."""
+    owners = {unknown: field.name for field in fields for unknown in field.unknowns}
+    joined = _joined([f.name for f in fields], [{owners[call.name] for call in c.calls} for c in conditions])
+    point = RandomPoint(around.scope, around.definitions)
+    for group in joined:
+        members = [f for f in fields if f.name in group]
+        own = [c for c in conditions if owners[c.calls[0].name] in group]
+        try:
+            _check_group(reader, members, orders, own, point)
+        except ZeroDivisionError:
+            continue  # reported where the equations are assembled
+
+
+def _joined(group_names: Sequence[str], links: Sequence[set[str]]) -> list[set[str]]:
+    """Return the groups of names that links connect, in order."""
+    groups: list[set[str]] = [{n} for n in group_names]
+    for link in links:
+        touched = [g for g in groups if g & link]
+        merged = set[str]().union(*touched)
+        groups = [merged if g is touched[0] else g for g in groups if g is touched[0] or g not in touched]
+    return groups
+
+
+def _check_group(
+    reader: Reader,
+    members: Sequence[Field],
+    orders: Mapping[str, int],
+    conditions: Sequence[_Condition],
+    point: RandomPoint,
+) -> None:
+    order = sum(orders[f.name] for f in members)
+    repeated = repetitions([point.condition(c.equation) for c in conditions])
+    dropped = {r.condition for r in repeated}
+    kept = [c for i, c in enumerate(conditions) if i not in dropped]
+    places = _Places(members, orders, kept, point)
+    missing = order - len(kept)
+    for repetition in repeated:
+        lines = sorted({_line(conditions[i].equation.span) for i in repetition.others})
+        texts = " and ".join(f"'{_text(conditions[i].equation)}'" for i in repetition.others)
+        where = f" (line {', '.join(map(str, lines))})" if lines and lines[0] else ""
+        if repetition.contradicts:
+            message = f"this condition contradicts {texts}{where}"
+        elif repetition.others:
+            message = f"this condition repeats {texts}{where}"
+        else:
+            message = "this condition says nothing: what it holds cancels"
+        hint = "keep one of them" if repetition.contradicts else "remove it"
+        if missing > 0:
+            hint = f"another condition is needed in its place{places.likely()}"
+        reader.note("SF244", message, conditions[repetition.condition].equation.span, hint)
+    if missing == 0 or (repeated and missing > 0):
+        return
+    shown = [f"'{f.name}'" for f in members[:SHOWN_NAMES]] + ["..."][: len(members) > SHOWN_NAMES]
+    who = f"field {shown[0]} has" if len(members) == 1 else f"fields {', '.join(shown)} together have"
+    count = "1 condition" if len(kept) == 1 else f"{len(kept)} conditions"
+    spans = [c.equation.span for c in kept]
+    number = abs(missing)
+    amount = "one is" if number == 1 else f"{number} are"
+    if missing > 0:
+        message = f"{who} {count} for order {order} in x: {amount} missing{places.likely()}"
+        reader.note("SF243", message, members[0].span, places.summary())
+    else:
+        message = f"{who} {count} for order {order} in x: {amount} too many{places.likely(surplus=True)}"
+        reader.note("SF243", message, spans[order], places.summary())
+
+
+def _line(span: Span | None) -> int:
+    return span.line if span else 0
+
+
+def _text(equation: Equation) -> str:
+    return equation.span.text if equation.span else format_expression(equation)
+
+
+class _Places:
+    """How many conditions stand at each place along x, and how many are usual there.
+
+    An end of a field of even order usually has half as many; where fields are joined, the ends add up.
+    """
+
+    def __init__(
+        self,
+        members: Sequence[Field],
+        orders: Mapping[str, int],
+        conditions: Sequence[_Condition],
+        point: RandomPoint,
+    ) -> None:
+        owners = {unknown: field.name for field in members for unknown in field.unknowns}
+        labels: dict[tuple[str, int], str] = {}
+        usual: dict[tuple[str, int], int] = {}
+        for field in members:
+            for end in (field.start, field.end):
+                key = (field.name, point.constant(end))
+                labels[key] = _written(end)
+                usual[key] = orders[field.name] // 2
+        self._guess = all(orders[f.name] % 2 == 0 for f in members)
+        touched: list[list[tuple[str, int]]] = []
+        for condition in conditions:
+            keys = [(owners[c.name], point.constant(c.argument)) for c in condition.calls]
+            for key, call in zip(keys, condition.calls, strict=True):
+                labels.setdefault(key, _written(call.argument))
+            touched.append(keys)
+        names_of = {key: f"{field} {at}" for key in labels for field, at in [key]}
+        # A condition within one field counts at its first place; one between two fields joins their places.
+        links = [
+            {names_of[k] for k in keys} if len({k[0] for k in keys}) > 1 else {names_of[keys[0]]}
+            for keys in touched
+        ]
+        groups = _joined(list(names_of.values()), links)
+        self._rows: list[tuple[str, int, int]] = []
+        for group in groups:
+            inside = [k for k in labels if names_of[k] in group]
+            texts = dict.fromkeys(labels[k] for k in inside)
+            if len(members) > 1 and len(inside) == 1:
+                texts = {f"{labels[inside[0]]} of '{inside[0][0]}'": None}
+            count = sum(1 for link in links if link & group)
+            self._rows.append((" = ".join(texts), count, sum(usual.get(k, 0) for k in inside)))
+
+    def likely(self, *, surplus: bool = False) -> str:
+        """Return ", likely at l" when there is a place that has too few (or too many)."""
+        found = [text for text, count, usual in self._rows if (count > usual if surplus else count < usual)]
+        if not self._guess or not found or len(found) == len(self._rows) > 1:
+            return ""
+        return f", likely at {' and '.join(found)}"
+
+    def summary(self) -> str:
+        """Return how many conditions there are at each place."""
+        parts = []
+        for text, count, usual in self._rows:
+            of = f" of {usual}" if self._guess and usual and usual != count else ""
+            parts.append(f"{count}{of} at {text}")
+        return "conditions: " + ", ".join(parts)

@@ -1,0 +1,196 @@
+"""Reading boundary-value problems along x; what they say is checked in :mod:`symflex.model.boundary`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symflex.errors import SpecError, Text
+from symflex.expressions import FUNCTIONS, Equation, Expression, parse_equation
+from symflex.model.declarations import read_label
+from symflex.model.model import Field
+from symflex.model.reading import NAME
+from symflex.model.scope import RESERVED
+from symflex.spec import ArrayValue
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+    from symflex.model.reading import Reader
+    from symflex.spec import Entry, TableValue
+
+FIELD_LIMIT = 100
+UNKNOWN_LIMIT = 12
+CONDITION_LIMIT = 200
+KEYS = ("domain", "unknowns", "equation", "equations", "conditions", "latex", "doc")
+EXAMPLE = """for instance: domain = ["0", "l"], equation = "E*A*u'' = rho*A*s^2*u", conditions = [...]"""
+
+
+def read_fields(reader: Reader, section: TableValue | None, taken: Collection[str]) -> tuple[Field, ...]:
+    """Return the fields in order.
+
+    Parameters
+    ----------
+    reader : Reader
+        Takes what is wrong.
+    section : TableValue, optional
+        ``[fields]``.
+    taken : collection of str
+        Names of parameters, definitions and blocks, which no unknown may bear.
+    """
+    found: list[Field] = []
+    owners: dict[str, str] = {}
+    for i, entry in enumerate(section.entries if section else ()):
+        if i >= FIELD_LIMIT:
+            count = len(section.entries) if section else 0
+            reader.note("SF103", f"{count} fields; at most {FIELD_LIMIT} are allowed", entry.key_span)
+            break
+        field = _read_field(reader, entry, taken, owners)
+        if field is not None:
+            found.append(field)
+    return tuple(found)
+
+
+def _read_field(reader: Reader, entry: Entry, taken: Collection[str], owners: dict[str, str]) -> Field | None:
+    what = f"field '{entry.key[:64]}'"
+    if not reader.name(entry, "a field"):
+        return None
+    table = reader.table(entry, what, EXAMPLE)
+    if table is None:
+        return None
+    reader.keys(table, KEYS, what)
+    unknowns = _unknowns(reader, entry, table, taken, owners)
+    domain = _domain(reader, entry, table)
+    equations = _equations(reader, entry, table)
+    conditions = _conditions(reader, entry, table)
+    label, doc = read_label(reader, table, what), reader.plain(table, "doc", what)
+    if unknowns is None or domain is None or equations is None or conditions is None:
+        return None
+    if len(equations) != len(unknowns):
+        one, other = _counted(len(equations), "equation"), _counted(len(unknowns), "unknown")
+        reader.note(
+            "SF242",
+            f"{what} has {one} for {other}",
+            equations[-1].span if equations else entry.key_span,
+            "name what the equations determine: " + 'unknowns = ["w", "phi"]'
+            if len(equations) > len(unknowns)
+            else "each unknown needs an equation",
+        )
+        return None
+    return Field(entry.key, unknowns, *domain, equations, conditions, entry.key_span, label, doc)
+
+
+def _unknowns(
+    reader: Reader, entry: Entry, table: TableValue, taken: Collection[str], owners: dict[str, str]
+) -> tuple[str, ...] | None:
+    """Return the names of the functions of x; ``owners`` keeps which field has which."""
+    what, given = f"field '{entry.key}'", table.get("unknowns")
+    if given is None:
+        texts: tuple[Text, ...] | None = (Text(entry.key, entry.key_span),)
+    else:
+        texts = reader.strings(given, f"unknowns of {what}", "an array of names")
+    if texts is None:
+        return None
+    place = given.value.span if given else entry.key_span
+    if not texts:
+        reader.note("SF242", f"{what} has no unknowns", place, "leave the key out to name one as the field")
+        return None
+    if len(texts) > UNKNOWN_LIMIT:
+        reader.note("SF103", f"{what} has {len(texts)} unknowns; at most {UNKNOWN_LIMIT} are allowed", place)
+        return None
+    good = True
+    for text in texts:
+        problem = _name_problem(text.value, taken, owners)
+        if problem is not None:
+            code, message, hint = problem
+            reader.note(code, message, text.span, hint)
+            good = False
+        owners.setdefault(text.value, entry.key)
+    return tuple(t.value for t in texts) if good else None
+
+
+def _name_problem(
+    name: str, taken: Collection[str], owners: dict[str, str]
+) -> tuple[str, str, str | None] | None:
+    """Return what is wrong with the name of an unknown: code, message and hint."""
+    if not NAME.match(name):
+        hint = "names are a letter followed by up to 63 letters, digits and underscores"
+        return "SF213", f"'{name[:80]}' is not a name for an unknown", hint
+    if name in RESERVED:
+        return "SF213", f"'{name}' is reserved and cannot name an unknown", RESERVED[name]
+    if name in FUNCTIONS:
+        return "SF213", f"'{name}' is a function and cannot name an unknown", None
+    if name in taken:
+        message = f"'{name}' is an unknown and a parameter, definition or block"
+        return "SF211", message, "rename one of them"
+    if name in owners:
+        message = f"'{name}' is an unknown of field '{owners[name]}' already"
+        return "SF211", message, 'name the unknowns of each field: unknowns = ["w_2"]'
+    return None
+
+
+def _domain(reader: Reader, entry: Entry, table: TableValue) -> tuple[Expression, Expression] | None:
+    what, given = f"domain of field '{entry.key}'", table.get("domain")
+    if given is None:
+        message = f"field '{entry.key}' has no domain"
+        reader.note("SF214", message, entry.key_span, 'for instance domain = ["0", "l"]')
+        return None
+    value = given.value
+    if not isinstance(value, ArrayValue) or len(value.items) != 2:  # noqa: PLR2004
+        reader.misfit(f"{what} must be an array of its two ends", value, 'for instance ["0", "l"]')
+        return None
+    start, end = (reader.expression(item, what) for item in value.items)
+    return None if start is None or end is None else (start, end)
+
+
+def _equations(reader: Reader, entry: Entry, table: TableValue) -> tuple[Equation, ...] | None:
+    what = f"field '{entry.key}'"
+    one, many = table.get("equation"), table.get("equations")
+    if one is not None and many is not None:
+        message = f"{what} is given by 'equation' and by 'equations'"
+        reader.note("SF242", message, many.key_span, "write all of them under 'equations'")
+        return None
+    given = one or many
+    if given is None:
+        reader.note("SF214", f"{what} has no equation", entry.key_span, EXAMPLE)
+        return None
+    texts: tuple[Text, ...] | None
+    if one is not None:
+        text = reader.string(one, f"equation of {what}")
+        texts = None if text is None else (text,)
+    else:
+        texts = reader.strings(given, f"equations of {what}", "an array of equations")
+    if texts is not None and len(texts) > UNKNOWN_LIMIT:
+        message = f"{what} has {len(texts)} equations; at most {UNKNOWN_LIMIT} are allowed"
+        reader.note("SF103", message, given.value.span)
+        return None
+    return _parsed(reader, texts)
+
+
+def _conditions(reader: Reader, entry: Entry, table: TableValue) -> tuple[Equation, ...] | None:
+    given = table.get("conditions")
+    if given is None:
+        message = f"field '{entry.key}' has no conditions"
+        hint = "as many as its order in x; write conditions = [] when another field holds them"
+        reader.note("SF214", message, entry.key_span, hint)
+        return None
+    texts = reader.strings(given, f"conditions of field '{entry.key}'", "an array of equations")
+    if texts is not None and len(texts) > CONDITION_LIMIT:
+        message = f"field '{entry.key}' has {len(texts)} conditions; at most {CONDITION_LIMIT} are allowed"
+        reader.note("SF103", message, given.value.span)
+        return None
+    return _parsed(reader, texts)
+
+
+def _parsed(reader: Reader, texts: tuple[Text, ...] | None) -> tuple[Equation, ...] | None:
+    """Return the equations that texts hold, ``None`` when one cannot be read."""
+    found: list[Equation] = []
+    for text in texts or ():
+        try:
+            found.append(parse_equation(text))
+        except SpecError as error:
+            reader.take(error.diagnostics)
+    return tuple(found) if texts is not None and len(found) == len(texts) else None
+
+
+def _counted(count: int, word: str) -> str:
+    return f"{count} {word}{'' if count == 1 else 's'}"

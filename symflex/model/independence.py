@@ -1,0 +1,192 @@
+"""Whether conditions repeat or contradict one another, told from their trees alone.
+
+Every condition is a linear form in the fields' values at points and in what drives them. Its coefficients are
+compared at a random point of a prime field, where equal ones are equal and different ones differ, almost
+surely. Conditions that only the differential equations tie together are found later, with the equations.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from random import Random
+from typing import TYPE_CHECKING
+
+from symflex.errors import SpecError
+from symflex.expressions import (
+    Attribute,
+    Call,
+    Equation,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+)
+from symflex.kernels import PRIME
+from symflex.model.linearity import integer_exponent
+from symflex.model.scope import CONSTANT_KINDS, Scope
+from symflex.model.units import lower
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from symflex.elements import Variable
+
+Place = tuple[str, int, int]
+"""An unknown, its point modulo the prime, and the order of the derivative."""
+Form = dict["Place | Variable | None", int]
+"""A linear form; ``None`` is the constant one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Repetition:
+    """A condition whose left side follows from those of ``others``; all by their numbers.
+
+    ``contradicts`` is true when its right side does not follow as well.
+    """
+
+    condition: int
+    others: tuple[int, ...]
+    contradicts: bool
+
+
+@dataclass(frozen=True)
+class RandomPoint:
+    """Expressions of one model at a random point of a prime field, the same in every run."""
+
+    scope: Scope
+    definitions: Mapping[str, Expression]
+    _opened: dict[str, int] = field(default_factory=dict, repr=False)
+
+    def __post_init__(self) -> None:
+        """Open the definitions in order, so that a long chain is not followed at once."""
+        for name, expression in self.definitions.items():
+            try:
+                self._opened[name] = self.constant(expression)
+            except (ZeroDivisionError, SpecError):
+                self._opened[name] = _random(name)  # what is wrong with it is reported there
+
+    def constant(self, expression: Expression) -> int:
+        """Return the value of an expression without unknowns.
+
+        Raises
+        ------
+        ZeroDivisionError
+            When it divides by zero.
+        """
+        return self.form(expression).get(None, 0)
+
+    def form(self, expression: Expression) -> Form:
+        """Return a linear expression as a form.
+
+        Raises
+        ------
+        ZeroDivisionError
+            When it divides by zero.
+        """
+        match lower(expression):
+            case Number(value):
+                return _scaled({None: value.numerator}, _inverse(value.denominator))
+            case Name() | Attribute() as name:
+                return self._name(name)
+            case Negative(operand):
+                return _scaled(self.form(operand), -1)
+            case Sum(terms):
+                return _total([self.form(t) for t in terms])
+            case Product(factors):
+                result: Form = {None: 1}
+                for other in map(self.form, factors):
+                    varies = other.keys() - {None}
+                    one, factor = (other, result) if varies else (result, other)
+                    result = _scaled(one, factor.get(None, 0))
+                return result
+            case Quotient(numerator, denominator):
+                return _scaled(self.form(numerator), _inverse(self.constant(denominator)))
+            case Power(base, exponent):
+                return self._power(self.form(base), integer_exponent(exponent) or 0)
+            case Call(name, argument, order):
+                at = self.constant(argument)
+                if name in self.scope.unknowns:
+                    return {(name, at, order): 1}
+                return {None: _random(f"{name}({at})")}
+        message = f"unexpected expression {type(expression).__name__}"
+        raise TypeError(message)
+
+    def condition(self, equation: Equation) -> Form:
+        """Return left minus right."""
+        return _total([self.form(equation.left), _scaled(self.form(equation.right), -1)])
+
+    def _name(self, expression: Name | Attribute) -> Form:
+        meaning = self.scope.lookup(expression, constant=False)
+        if meaning.variable is not None and meaning.kind not in CONSTANT_KINDS:
+            return {meaning.variable: 1}
+        if meaning.kind != "definition":
+            return {None: _random(meaning.name)}
+        return {None: self._opened[meaning.name]}
+
+    @staticmethod
+    def _power(base: Form, exponent: int) -> Form:
+        if exponent == 1:
+            return base
+        value = base.get(None, 0)
+        return {None: pow(value if exponent > 0 else _inverse(value), abs(exponent), PRIME)}
+
+
+def repetitions(forms: Sequence[Form]) -> list[Repetition]:
+    """Return every condition that repeats or contradicts earlier ones.
+
+    One with a right side that holds more than inputs is passed over: nodes and signals may meet it.
+    """
+    found: list[Repetition] = []
+    reduced: list[tuple[Place, Form, dict[int, int]]] = []
+    for number, form in enumerate(forms):
+        rest: Form = dict(form)
+        origin: dict[int, int] = {number: 1}
+        for pivot, row, made_of in reduced:
+            factor = rest.get(pivot, 0)
+            if factor:
+                rest = _total([rest, _scaled(row, -factor)])
+                origin = _combined(origin, made_of, -factor)
+        pivot_here = next((k for k in rest if isinstance(k, tuple)), None)
+        if pivot_here is not None:
+            inverse = _inverse(rest[pivot_here])
+            reduced.append((pivot_here, _scaled(rest, inverse), _combined({}, origin, inverse)))
+            continue
+        left = [k for k in rest if k is not None and not isinstance(k, tuple)]
+        if all(v.kind == "input" for v in left):
+            others = tuple(sorted(i for i in origin if i != number))
+            found.append(Repetition(number, others, bool(rest)))
+    return found
+
+
+def _combined(left: Mapping[int, int], right: Mapping[int, int], factor: int) -> dict[int, int]:
+    total = dict(left)
+    for key, value in right.items():
+        total[key] = (total.get(key, 0) + factor * value) % PRIME
+    return {k: v for k, v in total.items() if v}
+
+
+def _total(forms: Sequence[Form]) -> Form:
+    total: Form = {}
+    for form in forms:
+        for key, value in form.items():
+            total[key] = (total.get(key, 0) + value) % PRIME
+    return {k: v for k, v in total.items() if v}
+
+
+def _scaled(form: Form, factor: int) -> Form:
+    return {k: v for k, c in form.items() if (v := c * factor % PRIME)}
+
+
+def _inverse(value: int) -> int:
+    if value % PRIME == 0:
+        message = "division by zero"
+        raise ZeroDivisionError(message)
+    return pow(value, -1, PRIME)
+
+
+def _random(text: str) -> int:
+    return Random(text).randrange(1, PRIME)

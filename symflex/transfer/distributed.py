@@ -1,0 +1,398 @@
+"""Lowest terms of transfer functions with kernels: common factors cancelled, both parts entire.
+
+Input: numerator and denominator over the ring of wavenumbers and kernels.
+Output: a :class:`Reduced`; what cancelled is kept, as hidden modes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from symflex.kernels import Dispersion, Factored, KernelTable, Ring, degree_in
+from symflex.kernels.exponentials import Exponentials
+from symflex.kernels.normal_form import NormalForm
+from symflex.kernels.origin import Origin
+from symflex.kernels.vanishing import Vanishing
+from symflex.transfer.cancel import cancel
+from symflex.transfer.compose import compose_rational
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from flint import fmpz_mpoly
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reduced:
+    """A quotient in lowest terms.
+
+    Parameters
+    ----------
+    num, den : Factored
+        Entire in s; they may bear negative powers of wavenumbers, whose poles kernels cancel.
+    shared : Factored
+        The common factor that was cancelled.
+    table : KernelTable
+        What the generators are; its base lengths may be half the given ones.
+    """
+
+    num: Factored
+    den: Factored
+    shared: Factored
+    table: KernelTable
+
+
+class KernelReduction:
+    """Reduces quotients over one ring of kernels.
+
+    Parameters
+    ----------
+    ring : Ring
+        s, parameters, pi, functions of constants, wavenumbers, kernels.
+    table : KernelTable
+        Over the same ring.
+    parameters : sequence of str
+        Which generators are parameters: one may be expressed by a wavenumber while common factors are sought.
+    """
+
+    def __init__(self, ring: Ring, table: KernelTable, parameters: Sequence[str]) -> None:
+        self.ring = ring
+        self.table = table
+        self.normal = NormalForm(ring, table)
+        self.coordinates = Exponentials(ring, table)
+        self.solved = _solve_relations(ring, table, parameters)
+        self._kernels = [ring.index[k.generator] for k in table.kernels]
+
+    def has_kernels(self, factor: fmpz_mpoly) -> bool:
+        """Tell whether a polynomial over the ring contains a kernel."""
+        degrees = factor.degrees()
+        return any(int(degrees[i]) for i in self._kernels)
+
+    def _has_waves(self, factor: fmpz_mpoly) -> bool:
+        degrees = factor.degrees()
+        return any(int(degrees[self.ring.index[w]]) for w in self.table.wavenumbers)
+
+    def reduce(self, num: Factored, den: Factored, cancelled: Factored) -> Reduced | None:
+        """Return a quotient in lowest terms, ``None`` when the denominator is zero by the kernels' relations.
+
+        Parameters
+        ----------
+        num, den : Factored
+            Over the ring.
+        cancelled : Factored
+            The common factor that was cancelled before, over what rows were multiplied by to clear
+            denominators.
+        """
+        above, below = self.normal.reduce_factored(num), self.normal.reduce_factored(den)
+        if below.is_zero:
+            return None
+        if above.is_zero:
+            one = Factored.number(self.ring, 1)
+            return Reduced(
+                above, one, self._modes(self.normal.reduce_factored(below * cancelled)), self.table
+            )
+        quotient, shared = cancel(self._free(above), self._free(below))
+        before = self._free(cancelled)
+        shared, _ = cancel((shared * before).numerator(), before.denominator())
+        quotient, shared = self._split_contents(quotient), self._split_contents(shared)
+        table, back = self._restorer([quotient, shared.numerator()])
+        ratio = self._shortest(back(quotient))
+        num, den = self._entire(ratio, table)
+        return Reduced(num, den, self._modes(self._shortest(back(shared.numerator()))), table)
+
+    def _split_contents(self, value: Factored) -> Factored:
+        """Return a value over the coordinates with every factor free of kernels set apart."""
+        result = Factored.number(value.ring, value.unit)
+        for factor, exponent in value.factors:
+            content, rest = self.coordinates.split(factor)
+            result = result * Factored.polynomial(value.ring, content) ** exponent
+            result = result * Factored.polynomial(value.ring, rest) ** exponent
+        return result
+
+    def _shortest(self, value: Factored) -> Factored:
+        """Return a value with every factor in normal form, or with pairs of wavenumbers left as they are.
+
+        With the parameters the wavenumbers determine expressed by them both are unique; fewer terms decide.
+        """
+        pairs = any(d.kind == "pair" for d in self.table.dispersions)
+        result = Factored.number(self.ring, value.unit)
+        for factor, exponent in value.factors:
+            found = [self.normal.reduce(factor, pairs=False)]
+            if pairs:
+                found.append(self.normal.reduce(factor))
+            result = result * min(found, key=_terms) ** exponent
+        return self.normal.balance(result)
+
+    def _modes(self, value: Factored) -> Factored:
+        """Return the factors that are modes.
+
+        Powers of s are not, nor are factors that come of expressing the equations in wavenumbers, nor the
+        poles of the field equations, where their solutions have essential singularities.
+        """
+        singular = {
+            str(f)
+            for d in self.table.dispersions
+            for c in d.characteristic
+            for f, _ in c.denominator().factors
+        }
+        return value.filter(
+            lambda f: (
+                self.has_kernels(f)
+                or (
+                    len(f) > 1 and str(f) not in singular and bool(degree_in(f, 0)) and not self._has_waves(f)
+                )
+            )
+        )
+
+    def _free(self, value: Factored) -> Factored:
+        """Return a value in exponentials; parameters that wavenumbers determine are expressed by them."""
+        for name, formula in self.solved:
+            value = value.map_factors(self.ring, lambda f, n=name, g=formula: _substitute(self.ring, f, n, g))  # type: ignore[misc]
+        return value.map_factors(self.coordinates.coordinates, self.coordinates.transform)
+
+    def _restorer(self, values: Sequence[Factored]) -> tuple[KernelTable, _Restorer]:
+        """Return how to come back from exponentials, with half angles where nothing else will do."""
+        plain = _Restorer(self.coordinates, self.coordinates, ())
+        odd = {i for v in values for i in plain.odd_angles(v)}
+        if not odd:
+            return self.table, plain
+        angles = self.coordinates.angles
+        lengths = {id(angles[i].even.length) for i in odd}
+        table = self.coordinates.halved([a.even for a in angles if id(a.even.length) in lengths])
+        doubled = tuple(i for i, a in enumerate(angles) if id(a.even.length) in lengths)
+        return table, _Restorer(self.coordinates, Exponentials(self.ring, table), doubled)
+
+    def _entire(self, ratio: Factored, table: KernelTable) -> tuple[Factored, Factored]:
+        """Split a quotient into entire parts that are not both zero where a wavenumber is."""
+        vanishing = Vanishing(self.ring, table, self.solved)
+        one = Factored.number(self.ring, 1)
+        above, below = [one], [one]
+        rest = Factored.number(self.ring, ratio.unit)
+        splits = {id(d): self._split(d) for d in table.dispersions if d.kind == "pair"}
+        for factor, exponent in ratio.factors:
+            if not self.has_kernels(factor):
+                rest = rest * Factored(self.ring, Fraction(1), ((factor, exponent),))
+                continue
+            orders = self._orders(vanishing, factor, table, splits)
+            piece = Factored(self.ring, Fraction(1), ((factor, abs(exponent)),))
+            (above if exponent > 0 else below).append(piece / orders ** abs(exponent))
+            rest = rest * orders**exponent
+        rest = self._whole(rest, table, splits)
+        num, den = rest.numerator(), rest.denominator()
+        for piece in above:
+            num = num * piece
+        for piece in below:
+            den = den * piece
+        return self._apart_at_origin(num, den, table)
+
+    def _apart_at_origin(self, num: Factored, den: Factored, table: KernelTable) -> tuple[Factored, Factored]:
+        """Return both without the power of s that divides both, as entire functions."""
+        origin = Origin(self.ring, table)
+        orders = origin.order(num), origin.order(den)
+        if orders[0] is None or orders[1] is None:
+            return num, den
+        common = Factored.generator(self.ring, "s") ** -min(orders[0], orders[1])
+        return num * common, den * common
+
+    def _split(self, dispersion: Dispersion) -> Factored:
+        first, second = (Factored.generator(self.ring, w) for w in dispersion.wavenumbers)
+        return first**2 - second**2
+
+    def _orders(
+        self, vanishing: Vanishing, factor: fmpz_mpoly, table: KernelTable, splits: dict[int, Factored]
+    ) -> Factored:
+        """Return the powers of wavenumbers, and of their differences, that a factor vanishes like."""
+        result = Factored.number(self.ring, 1)
+        degrees = factor.degrees()
+        for dispersion in table.dispersions:
+            used = [k for k in table.kernels_of(dispersion) if int(degrees[self.ring.index[k.generator]])]
+            if not used:
+                continue
+            if dispersion.kind in ("wave", "bending"):
+                (name,) = dispersion.wavenumbers
+                result = result * Factored.generator(self.ring, name) ** (
+                    vanishing.at_zero(factor, name) or 0
+                )
+            elif dispersion.kind == "pair":
+                first, second = (Factored.generator(self.ring, w) for w in dispersion.wavenumbers)
+                at_zero = vanishing.at_zero_of_pair(factor, dispersion) or 0
+                meeting = vanishing.at_confluence(factor, dispersion) or 0
+                result = result * (first * second) ** at_zero * splits[id(dispersion)] ** meeting
+        return result
+
+    def _whole(self, rest: Factored, table: KernelTable, splits: dict[int, Factored]) -> Factored:
+        """Return a product of wavenumber powers as a rational function of s."""
+        rest = self.normal.balance(rest)
+        for dispersion in table.dispersions:
+            if dispersion.kind != "pair":
+                continue
+            c0, c2 = dispersion.characteristic[0], dispersion.characteristic[2]
+            first, second = (self.ring.generator(w) for w in dispersion.wavenumbers)
+            exponents = {str(f): e for f, e in rest.factors}
+            power = exponents.get(str(first), 0)
+            if power and power == exponents.get(str(second), 0) and power % 2 == 0:
+                one, other = (Factored.generator(self.ring, w) for w in dispersion.wavenumbers)
+                rest = rest / (one * other) ** power * c0 ** (power // 2)
+            split = splits[id(dispersion)]
+            ((polynomial, _),) = split.factors
+            meeting = exponents.get(str(polynomial), 0)
+            if meeting and meeting % 2 == 0:
+                rest = rest / split**meeting * (c2**2 - c0 * 4) ** (meeting // 2)
+        return rest
+
+
+def _terms(value: Factored) -> int:
+    return sum(len(f) - 1 for f, _ in value.factors)
+
+
+def _solve_relations(
+    ring: Ring, table: KernelTable, parameters: Sequence[str]
+) -> tuple[tuple[str, Factored], ...]:
+    """Return parameters as rational functions of wavenumbers and the rest, one per dispersion relation.
+
+    Each relation is linear in most of the parameters it holds, such as a density.
+    """
+    solved: list[tuple[str, Factored]] = []
+    for relation in (r for d in table.dispersions for r in _relations(ring, d)):
+        value = relation
+        for name, formula in solved:
+            value = value.map_factors(ring, lambda f, n=name, g=formula: _substitute(ring, f, n, g))  # type: ignore[misc]
+        polynomial = value.numerator().expand() if not value.is_zero else ring.constant(0)
+        for name in parameters:
+            index = ring.index[name]
+            if any(n == name for n, _ in solved) or degree_in(polynomial, index) != 1:
+                continue
+            x = ring.context.gen(index)
+            zero = _at_zero(ring, polynomial, index)
+            slope = (polynomial - zero) / x
+            formula = -Factored.polynomial(ring, zero) / Factored.polynomial(ring, slope)
+            if formula.is_zero:
+                continue
+            solved.append((name, formula))
+            break
+    return tuple(solved)
+
+
+def _at_zero(ring: Ring, polynomial: fmpz_mpoly, index: int) -> fmpz_mpoly:
+    terms = {tuple(map(int, m)): int(c) for m, c in polynomial.terms() if not m[index]}
+    return ring.context.from_dict(terms)
+
+
+def _relations(ring: Ring, dispersion: Dispersion) -> list[Factored]:
+    waves = [Factored.generator(ring, w) for w in dispersion.wavenumbers]
+    c = dispersion.characteristic
+    match dispersion.kind:
+        case "wave":
+            return [waves[0] ** 2 + c[0]]
+        case "bending":
+            return [waves[0] ** 4 * 4 - c[0]]
+        case "pair":
+            return [waves[0] ** 2 + waves[1] ** 2 + c[2], (waves[0] * waves[1]) ** 2 - c[0]]
+    return []
+
+
+def _substitute(ring: Ring, factor: fmpz_mpoly, name: str, formula: Factored) -> Factored:
+    """Return a polynomial with a rational function in place of a generator."""
+    index = ring.index[name]
+    if not degree_in(factor, index):
+        return Factored.polynomial(ring, factor)
+    images = [formula if n == name else Factored.generator(ring, n) for n in ring.names]
+    return compose_rational(ring, factor, images)
+
+
+@dataclass(frozen=True, eq=False)
+class _Restorer:
+    """The way back from exponentials to kernels.
+
+    Parameters
+    ----------
+    source : Exponentials
+        The coordinates.
+    target : Exponentials
+        The same, or with some angles halved.
+    doubled : tuple of int
+        Which angles of ``source`` are twice those of ``target``.
+    """
+
+    source: Exponentials
+    target: Exponentials
+    doubled: tuple[int, ...]
+
+    def odd_angles(self, value: Factored) -> set[int]:
+        """Return the angles in which numerator or denominator are odd even as a whole."""
+        found: set[int] = set()
+        for _, parity in self._grouped(value):
+            found |= {i for i, p in enumerate(parity) if p}
+        return found
+
+    def _grouped(self, value: Factored) -> list[tuple[Factored, tuple[int, ...]]]:
+        """Return the factors, those of odd degree multiplied together, with what parity is left."""
+        groups: list[tuple[Factored, tuple[int, ...]]] = []
+        for side in (1, -1):
+            odd = Factored.number(value.ring, 1)
+            total = [0] * len(self.source.angles)
+            for factor, exponent in value.factors:
+                if exponent * side < 0 or self._is_exponential(factor):
+                    continue
+                parity = self.source.parity(factor)
+                if any(parity):
+                    odd = odd * Factored(value.ring, Fraction(1), ((factor, abs(exponent)),))
+                    total = [(t + p * abs(exponent)) % 2 for t, p in zip(total, parity, strict=True)]
+                else:
+                    groups.append((Factored(value.ring, Fraction(1), ((factor, exponent),)), parity))
+            if not odd.is_one:
+                whole = Factored(value.ring, Fraction(1), ((odd.expand(), side),))
+                groups.append((whole, tuple(total)))
+        return groups
+
+    def _is_exponential(self, factor: fmpz_mpoly) -> bool:
+        ring = self.source.coordinates
+        return any(
+            factor == ring.generator(a.coordinates[0]) for a in self.source.angles if a.kind == "hyperbolic"
+        )
+
+    def __call__(self, value: Factored) -> Factored:
+        """Return the value in kernels; powers of exponentials balance out."""
+        result = Factored.number(self.target.ring, value.unit)
+        for group, _ in self._grouped(value):
+            ((polynomial, exponent),) = group.factors
+            if self.doubled:
+                polynomial = self._double(polynomial)
+            restored, _ = self.target.restore(polynomial)
+            result = result * restored**exponent
+        return result
+
+    def _double(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
+        ring = self.source.coordinates
+        images = dict(zip(ring.names, ring.context.gens(), strict=True))
+        for i in self.doubled:
+            angle = self.source.angles[i]
+            if angle.kind == "hyperbolic":
+                e = ring.generator(angle.coordinates[0])
+                images[angle.coordinates[0]] = e * e
+            else:
+                t, u = (ring.generator(c) for c in angle.coordinates)
+                images[angle.coordinates[0]] = 2 * t * u
+                images[angle.coordinates[1]] = u * u - t * t
+        return polynomial.compose(*images.values(), ctx=ring.context)
+
+
+def embedded_table(table: KernelTable, image: Sequence[tuple[Factored, Factored]]) -> KernelTable:
+    """Return a table with its values replaced, by identity."""
+    found = {id(old): new for old, new in image}
+
+    def of(value: Factored) -> Factored:
+        return found[id(value)]
+
+    dispersions = {
+        id(d): replace(d, characteristic=tuple(of(c) for c in d.characteristic), shift=of(d.shift))
+        for d in table.dispersions
+    }
+    lengths = {id(k.length): of(k.length) for k in table.kernels}
+    kernels = tuple(
+        replace(k, dispersion=dispersions[id(k.dispersion)], length=lengths[id(k.length)])
+        for k in table.kernels
+    )
+    return KernelTable(tuple(dispersions.values()), kernels)

@@ -1,0 +1,92 @@
+"""Distributed elements against textbook statics and the closed forms of rods, shafts and strings."""
+
+from __future__ import annotations
+
+import cmath
+
+import pytest
+
+from symflex import pipeline
+
+VALUES = {"E": 2, "I": 3, "rho": 5, "A": 7, "l": 2, "G": 4, "J": 3, "N": 3, "kappa": 0.5}
+PARAMETERS = "".join(f"{name} = {value}\n" for name, value in VALUES.items())
+BEAM = 'arm = {{ type = "beam", between = ["a", "b"], E = "E", I = "I", rho = "rho", A = "A", l = "l"{} }}\n'
+FIXED = 'wall = {{ type = "fixed", at = "{}" }}\n'
+SHEAR = ', theory = "timoshenko", kappa = "kappa", G = "G"'
+SLOW = 1e-5
+
+
+def response(elements, source, output, s=SLOW):
+    text = f"symflex = 1\n[parameters]\n{PARAMETERS}[elements]\n{elements}"
+    text += f'[inputs]\nU = {source}\n[outputs]\nX = "{output}"\n'
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    return complex(pipeline.bind(tf)(s))
+
+
+STATICS = {
+    # Timoshenko & Gere 1972, deflections of a cantilever: P l^3/(3 EI), P l^2/(2 EI), M l/(EI).
+    "tip deflection under a force": (FIXED.format("a"), '{ force = "b" }', "b", 8 / 18),
+    "tip slope under a force": (FIXED.format("a"), '{ force = "b" }', "b.theta", 4 / 12),
+    "tip slope under a moment": (FIXED.format("a"), '{ torque = "b.theta" }', "b.theta", 2 / 6),
+    # Held at the far end, the slope at the loaded one is opposite.
+    "slope of a beam held at x = l": (FIXED.format("b"), '{ force = "a" }', "a.theta", -4 / 12),
+    # What the beam delivers at its tip balances the force there.
+    "force at the second end": (FIXED.format("a"), '{ force = "b" }', "arm.f", -1),
+    "moment at the second end": (FIXED.format("b"), '{ force = "a" }', "arm.tau", -2),
+    "reaction of the wall": (FIXED.format("a"), '{ force = "b" }', "wall.f", -1),
+}
+
+
+@pytest.mark.parametrize("case", STATICS)
+def test_a_beam_at_rest_is_a_cantilever_of_the_textbook(case):
+    rest, source, output, expected = STATICS[case]
+    assert response(BEAM.format("") + rest, source, output) == pytest.approx(expected, rel=1e-7)
+
+
+def test_a_timoshenko_beam_at_rest_also_shears():
+    # P l^3/(3 EI) + P l/(kappa G A), Timoshenko 1921.
+    found = response(BEAM.format(SHEAR) + FIXED.format("a"), '{ force = "b" }', "b")
+    assert found == pytest.approx(8 / 18 + 2 / (0.5 * 4 * 7), rel=1e-7)
+
+
+def test_an_axial_force_stiffens_a_beam_in_tension():
+    # P (k l - tanh(k l))/(k N) with k^2 = N/(EI), Timoshenko & Gere 1961, Theory of Elastic Stability.
+    k = (3 / 6) ** 0.5
+    expected = (k * 2 - cmath.tanh(k * 2)) / (k * 3)
+    found = response(BEAM.format(', N = "N"') + FIXED.format("a"), '{ force = "b" }', "b")
+    assert found == pytest.approx(expected, rel=1e-7)
+
+
+WAVES = {
+    # type: (values, source, stiffness times length, inertia per length)
+    "rod": ('E = "E", A = "A"', "force", 14, 35),
+    "shaft": ('G = "G", J = "J"', "torque", 12, 15),
+    "string": ('N = "N", A = "A"', "force", 3, 35),
+}
+
+
+@pytest.mark.parametrize("kind", WAVES)
+@pytest.mark.parametrize("ends", ['"ground", "b"', '"b", "ground"'])
+@pytest.mark.parametrize("s", [1.3j, 0.4 - 0.2j])
+def test_a_held_wave_guide_answers_with_a_hyperbolic_tangent(kind, ends, s):
+    # u(l)/F = tanh(g l)/(K g), g = s sqrt(m/K): Graff 1975, section 2.
+    values, drive, stiffness, inertia = WAVES[kind]
+    part = f'part = {{ type = "{kind}", between = [{ends}], {values}, rho = "rho", l = "l" }}\n'
+    g = s * (inertia / stiffness) ** 0.5
+    found = response(part, f'{{ {drive} = "b" }}', "b", s)
+    assert found == pytest.approx(cmath.tanh(2 * g) / (stiffness * g), rel=1e-12)
+
+
+def test_a_kelvin_voigt_rod_on_a_foundation_answers_with_a_hyperbolic_tangent():
+    s, stiffness = 0.3 + 1j, 14 * (1 + 0.1 * (0.3 + 1j))
+    g = ((35 * s**2 + 0.2 * s + 0.7) / stiffness) ** 0.5
+    part = 'part = { type = "rod", between = ["ground", "b"], E = "E", A = "A", rho = "rho", l = "l"'
+    found = response(part + ", eta = 0.1, c_f = 0.2, k_f = 0.7 }\n", '{ force = "b" }', "b", s)
+    assert found == pytest.approx(cmath.tanh(2 * g) / (stiffness * g), rel=1e-12)
+
+
+def test_a_delay_is_an_exponential():
+    text = 'symflex = 1\n[blocks]\nD = { type = "delay", T = 0.25 }\n'
+    text += '[inputs]\nU = {}\n[outputs]\nX = "3*D*U"\n'
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    assert complex(pipeline.bind(tf)(2 + 1j)) == pytest.approx(3 * cmath.exp(-0.25 * (2 + 1j)), rel=1e-14)
