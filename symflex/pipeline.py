@@ -12,11 +12,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from symflex import audit as audit_room
 from symflex import equations as equations_room
 from symflex import spec as spec_room
 from symflex import transfer as transfer_room
 from symflex.elimination import explain_singular, is_singular
-from symflex.errors import Diagnostic, Source, UsageError
+from symflex.errors import Diagnostic, ModelError, Source, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.kernels import Factored
 from symflex.model import Model, load_model, with_numbers
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from decimal import Decimal
     from fractions import Fraction
 
+    from symflex.audit import Audit
     from symflex.equations import Equations
     from symflex.kernels import Ring
     from symflex.model import PlacedBlock
@@ -66,7 +68,12 @@ def _nested_transfer(block: PlacedBlock, ring: Ring) -> Factored:
     if block.submodel is None or block.tf is None:
         message = f"block '{block.name}' holds no model"
         raise ValueError(message)
-    inner = derive(assemble(block.submodel), *block.tf).ratio
+    tf = derive(assemble(block.submodel), *block.tf)
+    if tf.is_distributed:
+        message = f"block '{block.name}' stands for a distributed system, whose kernels cannot be taken over"
+        hint = "bring its elements and fields into this file"
+        raise ModelError(Diagnostic("SF910", message, block.span, hint))
+    inner = tf.ratio
     images = [ring.generator(name) for name in inner.ring.names]
     return inner.map_factors(ring, lambda factor: Factored.polynomial(ring, ring.compose(factor, images)))
 
@@ -128,3 +135,25 @@ def bind(
 def roots(bound: BoundTransferFunction, region: Region | None = None, digits: int = 15) -> PoleZeroMap:
     """Return poles, zeros and hidden modes, proved; see :func:`symflex.roots.locate.locate`."""
     return locate(bound, region, digits)
+
+
+def audit(model: Model, names: Sequence[str] = ()) -> tuple[Audit, ...]:
+    """Return what is found about the model's printed formulas, those named "OUT/IN" or all.
+
+    Raises
+    ------
+    UsageError
+        SF902 for a name without a printed formula.
+    SpecError
+        With every problem of all formulas, each at its place.
+    """
+    printed = {"/".join(p.tf): p for p in model.published}
+    for name in names:
+        if name not in printed:
+            hint = nearest(name, printed) or "published: " + ", ".join(list(printed)[:8])
+            raise UsageError(Diagnostic("SF902", f"nothing is published for '{name[:100]}'", None, hint))
+    chosen = tuple(printed[name] for name in names) if names else model.published
+    for published in chosen:
+        audit_room.formula_of(published, model)
+    derived = derive_all(model, tuple(p.tf for p in chosen)) if chosen else ()
+    return tuple(audit_room.judge(tf, p) for tf, p in zip(derived, chosen, strict=True))

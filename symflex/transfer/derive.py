@@ -173,7 +173,8 @@ class _Workshop:
         above, below, table = reduced.num, reduced.den, reduced.table
         if below.unit < 0:
             above, below = -above, -below
-        cancelled = reduced.shared
+        determinant = self._expanded(self._closure.open(self._den)) / self._cleared
+        cancelled = reduced.shared * reduction.hidden_at_origin(determinant, reduced)
         ratio = above / below
         if not any(reduction.has_kernels(f) for f, _ in ratio.factors):
             table = NO_KERNELS

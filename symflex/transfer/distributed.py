@@ -102,6 +102,17 @@ class KernelReduction:
         num, den = self._entire(ratio, table)
         return Reduced(num, den, self._modes(self._shortest(back(shared.numerator()))), table)
 
+    def hidden_at_origin(self, determinant: Factored, reduced: Reduced) -> Factored:
+        """Return the power of s that the determinant has beyond the denominator: rigid-body modes out of sight."""
+        one = Factored.number(self.ring, 1)
+        if reduced.num.is_zero:
+            return one
+        whole = Origin(self.ring, self.table).order(determinant)
+        left = Origin(self.ring, reduced.table).order(reduced.den)
+        if whole is None or left is None or whole <= left:
+            return one
+        return Factored.generator(self.ring, "s") ** (whole - left)
+
     def _split_contents(self, value: Factored) -> Factored:
         """Return a value over the coordinates with every factor free of kernels set apart."""
         result = Factored.number(value.ring, value.unit)
@@ -129,22 +140,21 @@ class KernelReduction:
         """Return the factors that are modes.
 
         Powers of s are not, nor are factors that come of expressing the equations in wavenumbers, nor the
-        poles of the field equations, where their solutions have essential singularities.
+        poles of the field equations, where their solutions have essential singularities; exponentials have
+        no zeros.
         """
-        singular = {
-            str(f)
-            for d in self.table.dispersions
-            for c in d.characteristic
-            for f, _ in c.denominator().factors
-        }
-        return value.filter(
-            lambda f: (
-                self.has_kernels(f)
-                or (
-                    len(f) > 1 and str(f) not in singular and bool(degree_in(f, 0)) and not self._has_waves(f)
-                )
-            )
-        )
+        singular = [
+            f for d in self.table.dispersions for c in d.characteristic for f, _ in c.denominator().factors
+        ]
+        decays = [self.ring.generator(k.generator) for k in self.table.kernels if k.function == "exp"]
+
+        def is_mode(factor: fmpz_mpoly) -> bool:
+            if self.has_kernels(factor):
+                return factor not in decays
+            varies = len(factor) > 1 and degree_in(factor, 0) > 0
+            return varies and factor not in singular and not self._has_waves(factor)
+
+        return value.filter(is_mode)
 
     def _free(self, value: Factored) -> Factored:
         """Return a value in exponentials; parameters that wavenumbers determine are expressed by them."""

@@ -1,0 +1,348 @@
+"""Distributed transfer functions in lowest terms, against closed forms from books and statics."""
+
+from __future__ import annotations
+
+import mpmath as mp
+import pytest
+from flint import acb, ctx
+
+from symflex import pipeline
+from symflex.errors import ModelError
+from symflex.kernels import degree_in
+from symflex.kernels.origin import Origin
+
+HEAD = """
+symflex = 1
+[parameters]
+E = "70 GPa"
+I = "1e-8 m^4"
+rho = "2700 kg/m^3"
+A = "1e-4 m^2"
+l = "1.25 m"
+m = "0.2 kg"
+b = "3 N*s/m"
+k = "1e4 N/m"
+N = "100 N"
+T_d = "1e-3 s"
+D_0 = "1 m^2/s"
+v_0 = "2 m/s"
+"""
+BEAM = 'type = "beam", E = "E", I = "I", rho = "rho", A = "A"'
+EI, RHO_A, LENGTH = mp.mpf(700), mp.mpf("0.27"), mp.mpf("1.25")
+POINTS = [mp.mpc(*x) for x in ((3, 40), (-2, 700), (55, 0), (0, 0.125), (-20, 10000))]
+
+
+def functions(body):
+    return {t.name: t for t in pipeline.derive_all(pipeline.loads(HEAD + body))}
+
+
+def field(equation, conditions, outputs, name="w"):
+    listed = ", ".join(f'"{c}"' for c in conditions)
+    return functions(
+        f"""
+[fields.{name}]
+domain = ["0", "l"]
+equation = "{equation}"
+conditions = [{listed}]
+[inputs]
+F = {{}}
+[outputs]
+{outputs}
+"""
+    )
+
+
+def q_of(s, length=LENGTH):
+    return length * mp.sqrt(s / (2 * mp.sqrt(EI / RHO_A)))
+
+
+def agrees(tf, formula):
+    bound = pipeline.bind(tf)
+    for s in POINTS:
+        wanted = complex(formula(s))
+        assert abs(bound(complex(s)) - wanted) <= 1e-13 * abs(wanted)
+
+
+SLIDING = functions(
+    f"""
+[elements]
+arm = {{ {BEAM}, between = ["p", "q"], l = "l" }}
+slide = {{ type = "slider", at = "p" }}
+[inputs]
+F = {{ force = "p" }}
+[outputs]
+V_act = "s*p"
+V_tip = "s*q"
+"""
+)
+
+
+def test_the_sliding_free_beam_has_the_published_colocated_function_corrected():
+    def formula(s):
+        q = q_of(s)
+        p = s / mp.sqrt(EI / RHO_A)
+        w = mp.exp(-2 * q)
+        si, co = mp.exp(-q) * mp.sin(q), mp.exp(-q) * mp.cos(q)
+        top = w**2 + 2 * si**2 + 6 * co**2 + 1
+        return -mp.sqrt(2 / p) / 2 * top / (w**2 - 4 * co * si - 1) / (RHO_A * mp.sqrt(EI / RHO_A))
+
+    with mp.workdps(40):
+        agrees(SLIDING["V_act/F"], formula)
+
+
+def test_the_sliding_free_beam_has_the_published_tip_function():
+    def formula(s):
+        q = q_of(s)
+        p = s / mp.sqrt(EI / RHO_A)
+        w = mp.exp(-2 * q)
+        si, co = mp.exp(-q) * mp.sin(q), mp.exp(-q) * mp.cos(q)
+        return -2 * mp.sqrt(2 / p) * co * (w + 1) / (w**2 - 4 * co * si - 1) / (RHO_A * mp.sqrt(EI / RHO_A))
+
+    with mp.workdps(40):
+        agrees(SLIDING["V_tip/F"], formula)
+
+
+def test_element_and_field_give_the_same_function():
+    tf = field(
+        "E*I*w'''' + rho*A*s^2*w = 0",
+        ["w'(0) = 0", "E*I*w'''(0) = F", "w''(l) = 0", "w'''(l) = 0"],
+        'V_act = "s*w(0)"\nV_tip = "s*w(l)"',
+    )
+    for name, known in SLIDING.items():
+        assert (tf[name].ratio / known.ratio).is_one
+
+
+def test_a_free_beam_has_a_double_pole_at_the_origin_and_its_velocity_a_simple_one():
+    tf = SLIDING["V_act/F"]
+    origin = Origin(tf.ratio.ring, tf.kernels)
+    assert (origin.order(tf.num), origin.order(tf.den)) == (0, 1)
+
+
+def test_the_rigid_body_position_is_hidden_from_the_velocity():
+    assert [(str(h.polynomial), h.multiplicity) for h in SLIDING["V_act/F"].hidden] == [("s", 1)]
+
+
+@pytest.mark.parametrize(
+    ("where", "fixed", "wanted"),
+    [
+        ("q", 'f = { type = "fixed", at = "p" }', LENGTH**3 / (3 * EI)),
+        ("q.theta", 'f = { type = "fixed", at = "p" }', LENGTH**2 / (2 * EI)),
+        (
+            "q",
+            'f = { type = "slider", at = "p" }\nk = { type = "spring", between = ["p", "ground"], k = "k" }',
+            LENGTH**3 / (3 * EI) + mp.mpf("1e-4"),
+        ),
+    ],
+)
+def test_the_static_limit_is_that_of_the_tables(where, fixed, wanted):
+    tf = functions(
+        f"""
+[elements]
+arm = {{ {BEAM}, between = ["p", "q"], l = "l" }}
+{fixed}
+[inputs]
+F = {{ force = "q" }}
+[outputs]
+X = "{where}"
+"""
+    )["X/F"]
+    assert abs(pipeline.bind(tf).limit_at_zero() / float(wanted) - 1) < 1e-13
+
+
+def test_a_uniform_load_bends_a_clamped_beam_by_q_l4_over_384_ei():
+    tf = field(
+        "E*I*w'''' + rho*A*s^2*w = F",
+        ["w(0) = 0", "w'(0) = 0", "w(l) = 0", "w'(l) = 0"],
+        'X = "w(l/2)"',
+    )["X/F"]
+    assert abs(pipeline.bind(tf)(0j).real / float(LENGTH**4 / (384 * EI)) - 1) < 1e-13
+
+
+def test_a_beam_driven_in_its_middle_hides_its_antisymmetric_modes():
+    tf = functions(
+        f"""
+[elements]
+left = {{ {BEAM}, between = ["p", "q"], l = "l" }}
+right = {{ {BEAM}, between = ["q", "r"], l = "l" }}
+[inputs]
+F = {{ force = "q" }}
+[outputs]
+X = "q"
+"""
+    )["X/F"]
+    # Free-free beam of length 2l: its antisymmetric modes are those of a pinned-free beam of length l.
+    transcendental = [h for h in tf.hidden if len(h.polynomial) > 1]
+    assert len(transcendental) == 1
+    with mp.workdps(30):
+        x = mp.findroot(lambda x: mp.tan(x) - mp.tanh(x), 3.93)
+        # lambda l = x, lambda^4 = -4 mu^4: q = mu l = x (1 + j)/2.
+        q = x * mp.mpc(1, 1) / 2
+        values = dict(
+            zip(("cosh", "sinh", "cos", "sin"), (mp.cosh(q), mp.sinh(q), mp.cos(q), mp.sin(q)), strict=True)
+        )
+        names = {k.generator: k.function for k in tf.kernels.kernels}
+        total = mp.mpf(0)
+        for monomial, c in transcendental[0].polynomial.terms():
+            term = mp.mpf(int(c))
+            for name, e in zip(tf.ratio.ring.names, monomial, strict=True):
+                if int(e):
+                    term *= values[names[name]] ** int(e)
+            total += term
+        assert abs(total) < 1e-25
+
+
+def test_a_rod_driven_in_its_middle_loses_a_trigonometric_factor():
+    tf = functions(
+        """
+[elements]
+left = { type = "rod", E = "E", A = "A", rho = "rho", l = "l", between = ["p", "q"] }
+right = { type = "rod", E = "E", A = "A", rho = "rho", l = "l", between = ["q", "r"] }
+[inputs]
+F = { force = "q" }
+[outputs]
+X = "q"
+"""
+    )["X/F"]
+
+    def formula(s):
+        c = mp.sqrt(mp.mpf("70e9") / 2700)
+        return 1 / (2 * mp.mpf("1e-4") * mp.mpf("70e9") * (s / c) * mp.tanh(s * LENGTH / c))
+
+    agrees(tf, formula)
+    polynomials = [f for f, _ in tf.ratio.factors]
+    assert max(len(f) for f in polynomials) == 1
+
+
+def test_a_common_half_angle_factor_is_cancelled():
+    """The reaction of a fixed string under a uniform load is tanh(gamma l/2)/gamma: (cosh - 1)/sinh."""
+    tf = field("N*w'' - rho*A*s^2*w = F", ["w(0) = 0", "w(l) = 0"], 'V = "N*w\'(0)"')["V/F"]
+
+    def formula(s):
+        g = s * mp.sqrt(RHO_A / 100)
+        return -mp.tanh(g * LENGTH / 2) / g
+
+    agrees(tf, formula)
+    assert [str(k.length) for k in tf.kernels.kernels] == ["1/2*l", "1/2*l"]
+    assert len(tf.hidden) == 1
+
+
+def test_a_delay_is_one_generator():
+    tf = functions(
+        """
+[blocks]
+D = { type = "delay", T = "T_d" }
+[elements]
+car = { type = "mass", at = "x", m = "m" }
+drag = { type = "damper", between = ["x", "ground"], b = "b" }
+push = { type = "force_source", at = "x", f = "k*D*(r - x)" }
+[inputs]
+r = {}
+[outputs]
+X = "x"
+"""
+    )["X/r"]
+
+    def formula(s):
+        d = 10**4 * mp.exp(-s / 1000)
+        return d / (mp.mpf("0.2") * s**2 + 3 * s + d)
+
+    agrees(tf, formula)
+
+
+def test_a_drift_becomes_an_exponential_and_hyperbolic_functions():
+    tf = field("D_0*w'' - v_0*w' = s*w", ["w(0) = F", "w'(l) = 0"], 'X = "w(l)"')["X/F"]
+
+    def formula(s):
+        root = mp.sqrt(4 + 4 * s) / 2
+        a, c = 1 + root, 1 - root
+        return (a - c) * mp.exp((a + c) * LENGTH) / (a * mp.exp(a * LENGTH) - c * mp.exp(c * LENGTH))
+
+    agrees(tf, formula)
+
+
+def test_without_inertia_there_is_no_kernel():
+    tf = field(
+        "E*I*w'''' = 0", ["w(0) = 0", "w'(0) = 0", "w''(l) = 0", "E*I*w'''(l) = m*s^2*w(l) - F"], 'X = "w(l)"'
+    )["X/F"]
+    assert not tf.is_distributed
+    agrees(tf, lambda s: 1 / (3 * EI / LENGTH**3 + s**2 / 5))
+
+
+def test_what_a_beam_does_not_touch_stays_rational():
+    tf = functions(
+        f"""
+[elements]
+arm = {{ {BEAM}, between = ["p", "q"], l = "l" }}
+f = {{ type = "fixed", at = "p" }}
+car = {{ type = "mass", at = "x", m = "m" }}
+rope = {{ type = "spring", between = ["x", "ground"], k = "k" }}
+[inputs]
+F = {{ force = "x" }}
+[outputs]
+X = "x"
+"""
+    )["X/F"]
+    assert not tf.is_distributed
+    agrees(tf, lambda s: 1 / (10**4 + s**2 / 5))
+
+
+def test_an_output_that_feels_nothing_is_zero():
+    tf = functions(
+        f"""
+[elements]
+left = {{ {BEAM}, between = ["p", "q"], l = "l" }}
+right = {{ {BEAM}, between = ["q", "r"], l = "l" }}
+f = {{ type = "fixed", at = "p" }}
+g = {{ type = "fixed", at = "r" }}
+[inputs]
+M = {{ torque = "q" }}
+[outputs]
+X = "q"
+"""
+    )["X/M"]
+    assert tf.ratio.is_zero
+
+
+def test_conditions_that_follow_from_the_equation_are_named():
+    with pytest.raises(ModelError) as caught:
+        field(
+            "E*I*w'''' + rho*A*s^2*w = 0",
+            ["w(0) = 0", "w'(0) = 0", "w''(0) = 0", "E*I*w''''(0) = F"],
+            'X = "w(l)"',
+        )
+    (problem,) = caught.value.diagnostics
+    assert problem.code == "SF302"
+    assert "w''''(0)" in problem.message
+
+
+@pytest.mark.parametrize(
+    "equation",
+    [
+        "E*I*w'''' + rho*A*s^2*w = 0",
+        "E*I*w'''' - N*w'' + rho*A*s^2*w = 0",
+        "E*I*w'''' - N*w''*(1 + s*T_d) + k*w' + rho*A*s^2*w = 0",
+    ],
+    ids=["bending", "pair", "general"],
+)
+def test_the_logarithmic_derivative_is_that_of_the_function(equation):
+    tf = field(equation, ["w(0) = 0", "w'(0) = 0", "E*I*w''(l) = 0", "E*I*w'''(l) = F"], 'X = "w(l)"')["X/F"]
+    enclosed = pipeline.bind(tf).enclosed(400)
+    with ctx.workprec(400):
+        s, step = acb(3, 40), acb(2) ** -120
+        wanted = (enclosed(s + step) - enclosed(s - step)) / (2 * step * enclosed(s))
+        found = enclosed.logarithmic_derivative(s)
+        assert abs(found - wanted).abs_upper() < abs(wanted).abs_lower() * 2.0**-150
+
+
+def test_numerator_and_denominator_are_finite_where_a_wavenumber_is_small():
+    tf = SLIDING["V_tip/F"]
+    bound = pipeline.bind(tf)
+    for part in (bound.num, bound.den):
+        near = bound.enclosed_part(part, 600)(acb(2) ** -100)
+        assert near.is_finite()
+
+
+def test_the_laplace_variable_alone_is_not_a_kernel():
+    tf = SLIDING["V_act/F"]
+    kernels = [tf.ratio.ring.index[k.generator] for k in tf.kernels.kernels]
+    assert any(degree_in(f, i) for f, _ in tf.ratio.factors for i in kernels)
