@@ -6,7 +6,7 @@ Output: a :class:`Distributed`, with the ring that has generators for every fund
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import factorial
 from typing import TYPE_CHECKING
@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from symflex.elements import LinearForm, Variable
 from symflex.elements.line import LineElement
 from symflex.equations.coefficients import read_equation
-from symflex.errors import Diagnostic, ModelError, SymflexError
+from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
 from symflex.expressions import Call, Expression, names
 from symflex.fields import FIELDS, Component, FieldSystem, components, first_order
 from symflex.kernels import Dispersion, Factored, propagate
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from symflex.equations.evaluate import Evaluator
+    from symflex.errors import Span
     from symflex.fields import Matrix
     from symflex.kernels import Propagation
     from symflex.model import Field, Model, PlacedElement
@@ -135,10 +136,14 @@ class _Demands:
         self.keys: dict[tuple[str, ...], int] = {}
         self.demands: list[tuple[Dispersion, list[Factored]]] = []
 
-    def medium(self, name: str, system: FieldSystem) -> Medium:
+    def medium(self, name: str, system: FieldSystem, span: Span | None) -> Medium:
         """Return the system with the numbers of its dispersions."""
         parts = []
-        for part in components(system):
+        try:
+            found = components(system)
+        except BudgetError as error:
+            raise BudgetError(*(replace(d, span=span) for d in error.diagnostics)) from None
+        for part in found:
             law = part.characteristic
             if law.kind == "polynomial":
                 parts.append((part, POLYNOMIAL))
@@ -209,7 +214,7 @@ def survey(model: Model, evaluator: Evaluator, expressions: Iterable[Expression]
     except SymflexError as error:
         problems.extend(error.diagnostics)
     if problems:
-        raise ModelError(*problems)
+        raise (BudgetError if all(d.code.startswith("SF5") for d in problems) else ModelError)(*problems)
     if not (lines or delays or solutions):
         return None
     propagation = propagate(evaluator.ring, demands.demands)
@@ -239,7 +244,7 @@ def _line(
         values.setdefault(parameter.name, zero)
     chosen = {c.name: c.default for c in element.choices} | dict(use.choices)
     system = FIELDS[element.theory(chosen)](s, values)
-    return demands.medium(use.name, system), values[element.length]
+    return demands.medium(use.name, system, use.span), values[element.length]
 
 
 def _solution(field: Field, evaluator: Evaluator, demands: _Demands) -> FieldSolution:
@@ -258,7 +263,7 @@ def _solution(field: Field, evaluator: Evaluator, demands: _Demands) -> FieldSol
                 "eliminate an unknown by hand, or differentiate an equation",
             )
         )
-    medium = demands.medium(field.name, system)
+    medium = demands.medium(field.name, system, field.span)
     return FieldSolution(field, medium, inputs, evaluator.constant(field.start))
 
 

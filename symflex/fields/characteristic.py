@@ -13,6 +13,7 @@ from fractions import Fraction
 from math import comb
 from typing import TYPE_CHECKING
 
+from symflex.errors import BudgetError, Diagnostic
 from symflex.kernels.dispersion import DispersionKind
 
 if TYPE_CHECKING:
@@ -20,6 +21,10 @@ if TYPE_CHECKING:
 
     from symflex.fields.system import FieldSystem, Matrix
     from symflex.kernels import Factored
+
+
+TERM_LIMIT = 5_000
+"""Terms of the adjugate up to which field equations are solved in closed form."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,7 +105,13 @@ def _coupled(matrix: Matrix) -> list[tuple[int, ...]]:
 
 
 def faddeev_leverrier(matrix: Matrix) -> tuple[tuple[Factored, ...], tuple[Matrix, ...]]:
-    """Return ``c_0, ..., c_(n-1)`` and ``B_0, ..., B_(n-1)`` (Faddeev & Faddeeva 1963, section 47)."""
+    """Return ``c_0, ..., c_(n-1)`` and ``B_0, ..., B_(n-1)`` (Faddeev & Faddeeva 1963, section 47).
+
+    Raises
+    ------
+    BudgetError
+        SF501 when densely coupled equations grow beyond what a closed form can hold.
+    """
     n = len(matrix)
     zero = matrix[0][0] * 0
     identity = tuple(tuple(zero + int(i == j) for j in range(n)) for i in range(n))
@@ -119,7 +130,17 @@ def faddeev_leverrier(matrix: Matrix) -> tuple[tuple[Factored, ...], tuple[Matri
                 tuple(product[i][j] + c if i == j else product[i][j] for j in range(n)) for i in range(n)
             )
             adjugate.append(b)
+            _check_size(b)
     return tuple(reversed(descending)), tuple(reversed(adjugate))
+
+
+def _check_size(matrix: Matrix) -> None:
+    terms = sum(len(f) for row in matrix for value in row for f, _ in value.factors)
+    if terms > TERM_LIMIT:
+        message = f"the characteristic polynomial of the field equations needs more than {TERM_LIMIT} terms"
+        raise BudgetError(
+            Diagnostic("SF501", message, None, "put numbers in place of symbols, or uncouple them")
+        )
 
 
 def _product(left: Matrix, right: Matrix) -> Matrix:

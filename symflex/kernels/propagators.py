@@ -74,6 +74,8 @@ class Propagation:
         Per dispersion, the lengths asked for.
     propagators : tuple of Propagator
         In the order of their generators.
+    coordinates : tuple of tuple of tuple of int
+        Per dispersion and length, its multiples of the kernels' base lengths.
     """
 
     base: Ring
@@ -82,6 +84,7 @@ class Propagation:
     table: KernelTable
     lengths: tuple[tuple[Factored, ...], ...]
     propagators: tuple[Propagator, ...]
+    coordinates: tuple[tuple[tuple[int, ...], ...], ...] = ()
 
     def embed(self, value: Factored) -> Factored:
         """Return a value of the base ring over ``ring``."""
@@ -180,7 +183,15 @@ def propagate(base: Ring, demands: Sequence[tuple[Dispersion, Sequence[Factored]
     kernel_ring = Ring((*base.names, *table.generators))
     propagators = tuple(p for shape in shapes for p in shape.propagators(kernel_ring))
     ring = Ring((*base.names, *table.wavenumbers, *(p.generator for p in propagators)))
-    return Propagation(base, ring, kernel_ring, table, tuple(s.lengths for s in shapes), propagators)
+    return Propagation(
+        base,
+        ring,
+        kernel_ring,
+        table,
+        tuple(s.lengths for s in shapes),
+        propagators,
+        tuple(s.coordinates for s in shapes),
+    )
 
 
 class _Shape:

@@ -113,7 +113,7 @@ class _Workshop:
         opened = [(v, self._expanded(propagation.embed(v))) for v in values]
         self._cleared = self._expanded(self._equations.cleared or Factored.number(propagation.ring, 1))
         parameters = [p.name for p in self._equations.model.parameters]
-        return KernelReduction(self._ring, embedded_table(table, opened), parameters)
+        return KernelReduction(self._ring, embedded_table(table, opened), parameters, propagation.coordinates)
 
     def finish(self, row: OutputRow, source: str, num: fmpz_mpoly) -> TransferFunction:
         """Return the reduced transfer function ``num / den / divisor``."""

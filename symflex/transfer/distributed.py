@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from symflex.kernels import Dispersion, Factored, KernelTable, Ring, degree_in
 from symflex.kernels.exponentials import Exponentials
+from symflex.kernels.multiple_angles import lift
 from symflex.kernels.normal_form import NormalForm
 from symflex.kernels.origin import Origin
 from symflex.kernels.vanishing import Vanishing
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from flint import fmpz_mpoly
+
+    from symflex.kernels.exponentials import Angle
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,10 +58,19 @@ class KernelReduction:
         Over the same ring.
     parameters : sequence of str
         Which generators are parameters: one may be expressed by a wavenumber while common factors are sought.
+    coordinates : sequence
+        Per dispersion and length that was asked for, its multiples of the table's base lengths.
     """
 
-    def __init__(self, ring: Ring, table: KernelTable, parameters: Sequence[str]) -> None:
+    def __init__(
+        self,
+        ring: Ring,
+        table: KernelTable,
+        parameters: Sequence[str],
+        coordinates: Sequence[Sequence[Sequence[int]]] = (),
+    ) -> None:
         self.ring = ring
+        self._multiples = _multiples(table, coordinates)
         self.table = table
         self.normal = NormalForm(ring, table)
         self.coordinates = Exponentials(ring, table)
@@ -99,8 +111,44 @@ class KernelReduction:
         quotient, shared = self._split_contents(quotient), self._split_contents(shared)
         table, back = self._restorer([quotient, shared.numerator()])
         ratio = self._shortest(back(quotient))
+        modes = self._modes(self._shortest(back(shared.numerator())))
+        if table is self.table:
+            ratio, modes, table = self._lifted(ratio, modes)
         num, den = self._entire(ratio, table)
-        return Reduced(num, den, self._modes(self._shortest(back(shared.numerator()))), table)
+        return Reduced(num, den, modes, table)
+
+    def _lifted(self, ratio: Factored, modes: Factored) -> tuple[Factored, Factored, KernelTable]:
+        """Return the values in kernels of longer lengths that were asked for, where these suffice."""
+        table = self.table
+        for length, multiples in self._multiples:
+            angles = [a for a in self.coordinates.angles if id(a.even.length) == length]
+            for n in multiples:
+                found = [self._lift(v, angles, n) for v in (ratio, modes)]
+                if found[0] is not None and found[1] is not None:
+                    ratio, modes = found[0], found[1]
+                    longer = {id(a.even.length): a.even.length * n for a in angles}
+                    table = KernelTable(
+                        table.dispersions,
+                        tuple(replace(k, length=longer.get(id(k.length), k.length)) for k in table.kernels),
+                    )
+                    break
+        return ratio, modes, table
+
+    def _lift(self, value: Factored, angles: Sequence[Angle], n: int) -> Factored | None:
+        result = Factored.number(self.ring, value.unit)
+        for factor, exponent in value.factors:
+            images = Factored.polynomial(self.ring, factor)
+            if self.has_kernels(factor):
+                for angle in angles:
+                    lifted = Factored.number(self.ring, images.unit)
+                    for polynomial, power in images.factors:
+                        image = lift(self.ring, polynomial, angle, n)
+                        if image is None:
+                            return None
+                        lifted = lifted * image**power
+                    images = lifted
+            result = result * images**exponent
+        return result
 
     def hidden_at_origin(self, determinant: Factored, reduced: Reduced) -> Factored:
         """Return the power of s that the determinant has beyond the denominator: rigid-body modes out of sight."""
@@ -251,6 +299,22 @@ class KernelReduction:
             if meeting and meeting % 2 == 0:
                 rest = rest / split**meeting * (c2**2 - c0 * 4) ** (meeting // 2)
         return rest
+
+
+def _multiples(
+    table: KernelTable, coordinates: Sequence[Sequence[Sequence[int]]]
+) -> tuple[tuple[int, tuple[int, ...]], ...]:
+    """Return per base length (by identity) the multiples of it alone that were asked for, longest first."""
+    found: list[tuple[int, tuple[int, ...]]] = []
+    for dispersion, wanted in zip(table.dispersions, coordinates, strict=False):
+        if dispersion.kind == "general" or not dispersion.shift.is_zero:
+            continue
+        lengths = list({id(k.length): None for k in table.kernels_of(dispersion)})
+        for i, length in enumerate(lengths):
+            alone = {abs(c[i]) for c in wanted if not any(x for j, x in enumerate(c) if j != i)}
+            if multiples := sorted((n for n in alone if n > 1), reverse=True):
+                found.append((length, tuple(multiples)))
+    return tuple(found)
 
 
 def _terms(value: Factored) -> int:

@@ -9,6 +9,7 @@ import pytest
 
 from symflex.kernels import Dispersion, Factored, Ring, propagate
 from symflex.kernels.exponentials import Exponentials
+from symflex.kernels.multiple_angles import lift
 from symflex.kernels.normal_form import NormalForm
 from symflex.kernels.origin import Origin
 from symflex.kernels.taylor import PRIMES, TaylorField, square_root
@@ -230,3 +231,31 @@ def test_series_roots_square_back():
     assert (
         field.times(root, root) == series.truncate(12) or field.order(field.times(root, root) - series) >= 10
     )
+
+
+@pytest.mark.parametrize("kind", ["hyperbolic", "circular"])
+@pytest.mark.parametrize("n", [2, 3, 4])
+def test_what_holds_only_multiples_of_an_angle_is_rewritten_in_the_multiple(kind, n):
+    found = propagation("bending", (L,))
+    ring = found.kernel_ring
+    angle = next(a for a in Exponentials(ring, found.table).angles if a.kind == kind)
+    c, s = ring.generator(angle.even.generator), ring.generator(angle.odd.generator)
+    even, odd = ring.constant(1), ring.constant(0)
+    sign = 1 if kind == "hyperbolic" else -1
+    for _ in range(n):
+        even, odd = even * c + sign * (odd * s), odd * c + even * s
+    normal = NormalForm(ring, embedded(found))
+    polynomial = normal.reduce(3 * even**2 - 2 * even * odd + 5 * odd + 7)
+    ((plain, _),) = polynomial.factors
+    lifted = lift(ring, plain, angle, n)
+    assert lifted is not None
+    assert (lifted * polynomial.unit - normal.reduce(3 * c**2 - 2 * c * s + 5 * s + 7)).is_zero
+
+
+def test_what_holds_other_multiples_is_not():
+    found = propagation("wave", (L,))
+    ring = found.kernel_ring
+    (angle,) = Exponentials(ring, found.table).angles
+    c, s = ring.generator(angle.even.generator), ring.generator(angle.odd.generator)
+    assert lift(ring, c**2 + s, angle, 2) is None
+    assert lift(ring, c**2 + c, angle, 3) is None
