@@ -1,7 +1,7 @@
 """Kernels of a length rewritten in kernels of a multiple of it, where only multiples occur.
 
-``cos^k`` and ``sin cos^k`` are sums of ``cos(i x)`` and ``sin(i x)``; where every i is a multiple of n, the angle
-``n x`` serves. Hyperbolic functions follow the same rules.
+``cos^k`` and ``sin cos^k`` are sums of ``cos(i x)`` and ``sin(i x)``; where every i is a multiple of n, the
+angle ``n x`` serves. Hyperbolic functions follow the same rules.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ def lift(ring: Ring, polynomial: fmpz_mpoly, angle: Angle, n: int) -> Factored |
 
 
 def _harmonics(k: int, odd: int) -> list[tuple[int, int, int]]:
-    """Return ``2^k cos^k`` or ``2^k sin cos^k`` as (multiple, odd or even, weight); both kinds of functions alike.
+    """Return ``2^k cos^k`` or ``2^k sin cos^k`` as (multiple, odd or even, weight).
 
     ``2^k cos^k x = sum_j C(k, j) cos((k - 2j) x)``; times ``sin x``, ``sin x cos(i x)`` is half of
     ``sin((i + 1) x) - sin((i - 1) x)``.

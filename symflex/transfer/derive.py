@@ -120,6 +120,7 @@ class _Workshop:
         model = self._equations.model
         output = next(o for o in model.outputs if o.name == row.name)
         given = next(i for i in model.inputs if i.name == source)
+        known = dict(model.quotients).get((output.name, given.name))
         # For a zero numerator the common factor is the whole denominator: every mode is hidden.
         common = num.gcd(self._den)
         num_closed, den_closed = num / common, self._den / common
@@ -144,8 +145,8 @@ class _Workshop:
             ratio,
             ClosedForm(self._closure, num_closed, den_closed) if cancelled.is_one else None,
             self._hidden(shared * cancelled),
-            name_quantity(output, given),
-            unit_of_quotient(output, given, dict(model.quotients).get((output.name, given.name))),
+            name_quantity(output, given, known),
+            unit_of_quotient(output, given, known),
             self._equations.ring,
             self._equations.definitions,
             self._equations.constants,
@@ -182,14 +183,15 @@ class _Workshop:
                 self._without_kernels(v) for v in (ratio, above, below, cancelled)
             )
         model = self._equations.model
+        known = dict(model.quotients).get((output.name, given.name))
         return TransferFunction(
             output,
             given,
             ratio,
             None,
             self._hidden(cancelled, table),
-            name_quantity(output, given),
-            unit_of_quotient(output, given, dict(model.quotients).get((output.name, given.name))),
+            name_quantity(output, given, known),
+            unit_of_quotient(output, given, known),
             self._equations.ring,
             self._equations.definitions,
             self._equations.constants,

@@ -151,7 +151,7 @@ class KernelReduction:
         return result
 
     def hidden_at_origin(self, determinant: Factored, reduced: Reduced) -> Factored:
-        """Return the power of s that the determinant has beyond the denominator: rigid-body modes out of sight."""
+        """Return the power of s that only the determinant has: rigid-body modes out of sight."""
         one = Factored.number(self.ring, 1)
         if reduced.num.is_zero:
             return one

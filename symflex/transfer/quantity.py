@@ -14,6 +14,10 @@ _MOTION = {
     "translation": {"m": "receptance", "m/s": "mobility", "m/s^2": "accelerance"},
     "rotation": {"rad": "receptance", "rad/s": "mobility", "rad/s^2": "accelerance"},
 }
+_EFFORTS = tuple(unit_of(unit).dimension for unit in ("N", "N*m"))
+"""What a free signal may be that loads a field: a force or a torque."""
+_FLEXIBILITIES = (("m/N", "receptance"), ("m/(N*s)", "mobility"), ("m/(N*s^2)", "accelerance"))
+NAMELESS = "transfer function"
 _RATIOS = {
     ("V", "V"): "voltage gain",
     ("A", "A"): "current gain",
@@ -24,15 +28,16 @@ _RATIOS = {
 }
 
 
-def name_quantity(output: Output, source: Input) -> str:
+def name_quantity(output: Output, source: Input, known: Dimension | None = None) -> str:
     """Return the field's name for output over input, ``transfer function`` when there is none.
 
     Receptance, mobility and accelerance are displacement, velocity and acceleration per force or torque
-    (Ewins 2000, table 1.1).
+    (Ewins 2000, table 1.1). ``known`` is the quotient's dimension: a field's equations are homogeneous, and
+    tell no more.
     """
     if output.dimension is None or source.dimension is None:
-        return "transfer function"
-    if source.kind in ("force", "torque"):
+        return next((name for unit, name in _FLEXIBILITIES if known == unit_of(unit).dimension), NAMELESS)
+    if source.kind in ("force", "torque") or source.dimension in _EFFORTS:
         motions = _MOTION["translation"] | _MOTION["rotation"]
         for unit, name in motions.items():
             if output.dimension == unit_of(unit).dimension:
@@ -40,7 +45,7 @@ def name_quantity(output: Output, source: Input) -> str:
     for (above, below), name in _RATIOS.items():
         if output.dimension == unit_of(above).dimension and source.dimension == unit_of(below).dimension:
             return name
-    return "transfer function"
+    return NAMELESS
 
 
 def unit_of_quotient(output: Output, source: Input, known: Dimension | None) -> str:
