@@ -17,7 +17,7 @@ from symflex import equations as equations_room
 from symflex import spec as spec_room
 from symflex import transfer as transfer_room
 from symflex.elimination import explain_singular, is_singular
-from symflex.errors import Diagnostic, ModelError, Source, UsageError
+from symflex.errors import Diagnostic, ModelError, Source, SpecError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.kernels import Factored
 from symflex.model import Model, load_model, with_numbers
@@ -153,7 +153,13 @@ def audit(model: Model, names: Sequence[str] = ()) -> tuple[Audit, ...]:
             hint = nearest(name, printed) or "published: " + ", ".join(list(printed)[:8])
             raise UsageError(Diagnostic("SF902", f"nothing is published for '{name[:100]}'", None, hint))
     chosen = tuple(printed[name] for name in names) if names else model.published
+    problems: list[Diagnostic] = []
     for published in chosen:
-        audit_room.formula_of(published, model)
+        try:
+            audit_room.formula_of(published, model)
+        except SpecError as error:
+            problems += error.diagnostics
+    if problems:
+        raise SpecError(*problems)
     derived = derive_all(model, tuple(p.tf for p in chosen)) if chosen else ()
     return tuple(audit_room.judge(tf, p) for tf, p in zip(derived, chosen, strict=True))

@@ -14,6 +14,7 @@ COMMANDS: dict[str, str] = {
     "roots": "Print poles and zeros with proved enclosures.",
     "plot": "Draw a Bode plot or pole-zero array.",
     "export": "Write numeric code or LaTeX.",
+    "audit": "Compare printed formulas with derived ones.",
     "new": "Write a specification to start from.",
     "elements": "List the element and block library.",
 }

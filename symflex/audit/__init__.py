@@ -1,0 +1,23 @@
+"""Printed formulas against derived functions: proved equal, or where they differ.
+
+Input: a derived :class:`~symflex.transfer.TransferFunction` and a :class:`~symflex.model.Published` formula.
+Output: an :class:`Audit`.
+"""
+
+from symflex.audit.corrections import Change, Correction
+from symflex.audit.judge import Audit, judge
+from symflex.audit.laws import LawCheck
+from symflex.audit.numeric import Comparison, Deviation
+from symflex.audit.reading import Formula, formula_of
+
+__all__ = [
+    "Audit",
+    "Change",
+    "Comparison",
+    "Correction",
+    "Deviation",
+    "Formula",
+    "LawCheck",
+    "formula_of",
+    "judge",
+]

@@ -1,0 +1,432 @@
+"""The smallest change that makes a printed formula right.
+
+One part of the formula after the other is taken as unknown. Where the formula is linear in it, the value
+that makes printed and derived function equal is exact; the change is small when that value is the part times
+a number, the part with another exponent, another symbol, or a sum of the same terms.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import chain
+from typing import TYPE_CHECKING
+
+from symflex.audit.field import GrowError, UnreadError
+from symflex.audit.notation import in_symbols, monomial_expression, solve_linear, symbols_of
+from symflex.audit.reading import Formula, Reading, read
+from symflex.errors import BudgetError, SpecError
+from symflex.expressions import (
+    Call,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+    number,
+    product_of,
+    quotient,
+    sum_of,
+)
+from symflex.kernels import Factored
+from symflex.kernels.normal_form import split
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from symflex.transfer import TransferFunction
+
+MOST_PARTS = 150
+MOST_TERMS = 1000
+MOST_WORK = 20_000
+"""Number of terms in all values that parts would need."""
+EXPONENTS = tuple(Fraction(n, 2) for n in (2, 4, -2, 1, 6, -1, 8, -4, 3, 0, -3, -6))
+FACTORS = (Fraction(2), Fraction(1, 2), Fraction(-1), Fraction(4), Fraction(1, 4))
+FUNCTION_SWAPS = ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp")
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """One part that is printed differently from what was derived.
+
+    Parameters
+    ----------
+    place : str
+        ``numerator``, ``denominator``, ``factor``, ``scale``, or ``line NAME``.
+    printed, derived : Expression
+        The part; number 0 for a term that is not printed.
+    """
+
+    place: str
+    printed: Expression
+    derived: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Correction:
+    """The derived function in the printed formula's own symbols.
+
+    Parameters
+    ----------
+    changes : tuple of Change
+        All there is to change.
+    expression : Expression
+        The corrected formula.
+    scale : Expression or None
+        The corrected scale.
+    lines : tuple of (str, Expression)
+        The corrected ``where`` lines.
+    """
+
+    changes: tuple[Change, ...]
+    expression: Expression
+    scale: Expression | None
+    lines: tuple[tuple[str, Expression], ...]
+
+
+def find_correction(reading: Reading, tf: TransferFunction) -> Correction | None:
+    """Return the smallest change found that makes the formula right; it is proved to do so."""
+    if sum(len(f) for f, _ in (*reading.derived.factors, *reading.printed.factors)) > MOST_TERMS:
+        return None
+    for found in chain(_in_expression(reading), _both_sums(reading), _in_lines(reading)):
+        corrected = Formula(found.expression, found.scale, found.lines, reading.formula.parameters)
+        try:
+            again = read(corrected, tf)
+        except (UnreadError, SpecError, BudgetError):
+            continue
+        if again.field.equal(again.printed, again.derived):
+            return found
+    return None
+
+
+def _in_expression(reading: Reading) -> Iterator[Correction]:
+    formula = reading.formula
+    parts = [(p, place) for p, place in _parts(formula.expression) if p is not formula.expression]
+    if formula.scale is not None:
+        parts += [(p, "scale") for p, _ in _parts(formula.scale)]
+    wanted, work = [], 0
+    for part, place in parts[:MOST_PARTS]:
+        if work > MOST_WORK:
+            break
+        try:
+            value = _needed(reading, part)
+        except (UnreadError, GrowError, BudgetError, SpecError, ZeroDivisionError):
+            continue
+        if value is not None:
+            wanted.append((part, place, value))
+            work += sum(len(f) for f, _ in value.factors)
+    for rule in (_times_number, _other_exponent, _other_symbol, _times_monomial, _other_terms, _more_terms):
+        for part, place, value in wanted:
+            try:
+                yield from rule(reading, part, place, value)
+            except (UnreadError, GrowError, BudgetError, ZeroDivisionError):
+                continue
+
+
+def _parts(expression: Expression) -> Iterator[tuple[Expression, str]]:
+    """Yield every part with where it stands, outer ones first."""
+    pending = [(expression, "numerator")]
+    while pending:
+        node, place = pending.pop()
+        yield node, place
+        match node:
+            case Quotient(above, below):
+                other = "denominator" if place == "numerator" else "numerator"
+                pending += [(below, other), (above, place)]
+            case Power(base, _):
+                pending.append((base, place))
+            case _:
+                pending += [(child, place) for child in reversed(node.children)]
+
+
+def _needed(reading: Reading, part: Expression) -> Factored | None:
+    """Return the value of a part with which printed and derived function would be equal."""
+    formula, field = reading.formula, reading.field
+    gap = reading.value(formula.whole, part) - reading.derived
+    index = field.ring.index["?"]
+    polynomial = field.number(1)
+    for factor, exponent in gap.factors:
+        if exponent > 0 and int(factor.degrees()[index]):
+            polynomial = polynomial * Factored.polynomial(field.ring, factor) ** exponent
+    expanded = field.reduce(polynomial.expand())
+    if not len(expanded) or int(expanded.degrees()[index]) != 1:
+        return None
+    powers = split(field.ring, expanded, index)
+    zero = field.ring.constant(0)
+    constant = Factored.polynomial(field.ring, powers.get(0, zero))
+    return None if constant.is_zero else -constant / Factored.polynomial(field.ring, powers[1])
+
+
+def _corrected(
+    reading: Reading, part: Expression, new: Expression, changes: tuple[Change, ...]
+) -> Correction:
+    formula = reading.formula
+    expression = _replaced(formula.expression, part, new)
+    scale = None if formula.scale is None else _replaced(formula.scale, part, new)
+    return Correction(changes, expression, scale, formula.lines)
+
+
+def _times_number(reading: Reading, part: Expression, place: str, value: Factored) -> Iterator[Correction]:
+    """Yield the part times a rational number: a coefficient, sign or factor."""
+    ratio = reading.field.constant_ratio(value, reading.value(part))
+    if ratio is not None and ratio.is_constant:
+        new = _times(ratio.unit, part)
+        yield _corrected(reading, part, new, (Change(place, part, new),))
+
+
+def _times(ratio: Fraction, part: Expression) -> Expression:
+    """Return a part times a number, a fraction rather than a decimal."""
+    product = product_of([number(ratio), part])
+    sign, size = (-1, product.operand) if isinstance(product, Negative) else (1, product)
+    if (
+        isinstance(size, Product)
+        and isinstance(size.factors[0], Number)
+        and size.factors[0].value.denominator != 1
+    ):
+        value = size.factors[0].value
+        above = product_of([number(sign * value.numerator), *size.factors[1:]])
+        return quotient(above, number(value.denominator))
+    return product
+
+
+def _times_monomial(reading: Reading, part: Expression, place: str, value: Factored) -> Iterator[Correction]:
+    """Yield the part times powers of s and the parameters."""
+    ratio = reading.field.constant_ratio(value, reading.value(part))
+    factor = None if ratio is None else monomial_expression(reading.field, ratio)
+    if factor is not None:
+        new = quotient(product_of([_above(factor), part]), _below(factor))
+        yield _corrected(reading, part, new, (Change(place, part, new),))
+
+
+def _other_exponent(reading: Reading, part: Expression, place: str, value: Factored) -> Iterator[Correction]:
+    """Yield the part with another exponent."""
+    base, known = (part.base, part.exponent) if isinstance(part, Power) else (part, Number(Fraction(1)))
+    if not isinstance(base, Name | Call | Sum):
+        return
+    inner = reading.value(base)
+    for exponent in EXPONENTS:
+        if number(exponent) == known:
+            continue
+        try:
+            power = reading.field.power(inner, exponent)
+        except (UnreadError, GrowError):
+            continue
+        if reading.field.equal(power, value):
+            new = base if exponent == 1 else number(1) if exponent == 0 else Power(base, _exponent(exponent))
+            yield _corrected(reading, part, new, (Change(place, part, new),))
+
+
+def _exponent(value: Fraction) -> Expression:
+    return (
+        number(value)
+        if value.denominator == 1
+        else quotient(number(value.numerator), number(value.denominator))
+    )
+
+
+def _other_symbol(reading: Reading, part: Expression, place: str, value: Factored) -> Iterator[Correction]:
+    """Yield another name, or another function of the same argument."""
+    others: list[Expression] = []
+    if isinstance(part, Name):
+        others = [
+            Name(n) for n in (*reading.lines, "s", *sorted(reading.formula.parameters)) if n != part.name
+        ]
+    elif isinstance(part, Call):
+        others = [Call(f, part.argument) for f in FUNCTION_SWAPS if f != part.name]
+    for other in others:
+        if reading.field.equal(reading.value(other), value):
+            yield _corrected(reading, part, other, (Change(place, part, other),))
+
+
+def _other_terms(reading: Reading, part: Expression, place: str, value: Factored) -> Iterator[Correction]:
+    """Yield a sum of the same terms with other coefficients, and another number in front of all."""
+    if not isinstance(part, Sum):
+        return
+    coefficients = solve_linear(reading.field, value, [reading.value(t) for t in part.terms])
+    if coefficients is None:
+        return
+    common = _shared(reading, part, coefficients)
+    changes, terms = [], []
+    for term, coefficient in zip(part.terms, coefficients, strict=True):
+        new = _times(coefficient / common, term)
+        terms.append(new)
+        if coefficient != common:
+            changes.append(Change(place, term, new))
+    corrected = _corrected(reading, part, sum_of(terms), ())
+    expression = corrected.expression
+    if common != 1:
+        expression, before, after = _scaled(expression, common if place == "numerator" else 1 / common)
+        changes.insert(0, Change("factor", before, after))
+    yield Correction(tuple(changes), expression, corrected.scale, corrected.lines)
+
+
+def _shared(reading: Reading, part: Sum, coefficients: tuple[Fraction, ...]) -> Fraction:
+    """Return the number most coefficients share, one where the formula is not proportional to the sum."""
+    without = reading.value(reading.formula.whole, part)
+    index = reading.field.ring.index["?"]
+    holding = [(f, e) for f, e in without.factors if int(f.degrees()[index])]
+    if len(holding) != 1 or len(holding[0][0]) > 1 or abs(holding[0][1]) != 1:
+        return Fraction(1)
+    nonzero = [c for c in coefficients if c]
+    common, times = Counter(nonzero).most_common(1)[0]
+    return common if times > 1 and nonzero.count(Fraction(1)) < times else Fraction(1)
+
+
+def _scaled(expression: Expression, ratio: Fraction) -> tuple[Expression, Expression, Expression]:
+    """Return an expression times a number, and the number in front of it before and after."""
+    front, above, below = _numbers_in_front(expression)
+    before, after = _rational(front), _rational(front * ratio)
+    top = product_of([number(-1 if front * ratio < 0 else 1), _joined(abs(front * ratio), above)])
+    return (top if below is None else quotient(top, below)), before, after
+
+
+def _joined(coefficient: Fraction, factors: list[Expression]) -> Expression:
+    """Return a product with a positive number in front, written as a fraction rather than a decimal."""
+    if coefficient == 1 and factors:
+        return product_of(factors)
+    return Product((_rational(coefficient), *factors)) if factors else _rational(coefficient)
+
+
+def _rational(value: Fraction) -> Expression:
+    return quotient(number(value.numerator), number(value.denominator))
+
+
+def _numbers_in_front(expression: Expression) -> tuple[Fraction, list[Expression], Expression | None]:
+    """Return the number a formula begins with, the other factors, and what stands below them."""
+    front = Fraction(1)
+    factors: list[Expression] = []
+    below: Expression | None = None
+    pending = [expression]
+    while pending:
+        node = pending.pop()
+        match node:
+            case Negative(operand):
+                front = -front
+                pending.append(operand)
+            case Number(value):
+                front *= value
+            case Product(inner):
+                pending.extend(reversed(inner))
+            case Quotient(Number(n), Number(d)):
+                front *= n / d
+            case Quotient(above, under) if below is None and not factors and not pending:
+                below = under
+                pending.append(above)
+            case _:
+                factors.append(node)
+    return front, factors, below
+
+
+def _both_sums(reading: Reading) -> Iterator[Correction]:
+    """Yield sums above and below the bar, both with other coefficients."""
+    field, formula = reading.field, reading.formula
+    sums = [(p, place) for p, place in _parts(formula.expression) if isinstance(p, Sum)]
+    for above in (p for p, place in sums if place == "numerator"):
+        for below in (p for p, place in sums if place == "denominator"):
+            rest = reading.printed / reading.value(above) * reading.value(below)
+            uppers = [rest * reading.value(t) for t in above.terms]
+            lowers = [reading.derived * reading.value(t) for t in below.terms]
+            for i, reference in enumerate(lowers):
+                others = [-v for j, v in enumerate(lowers) if j != i]
+                solved = solve_linear(field, reference, [*uppers, *others])
+                if solved is None:
+                    continue
+                tops, bottoms = solved[: len(uppers)], list(solved[len(uppers) :])
+                bottoms.insert(i, Fraction(1))
+                yield _with_sums(reading, (above, tops), (below, tuple(bottoms)))
+                break
+
+
+def _with_sums(
+    reading: Reading, upper: tuple[Sum, tuple[Fraction, ...]], lower: tuple[Sum, tuple[Fraction, ...]]
+) -> Correction:
+    expression, changes, ratio = reading.formula.expression, [], Fraction(1)
+    for (part, coefficients), place in ((upper, "numerator"), (lower, "denominator")):
+        common = Counter(c for c in coefficients if c).most_common(1)[0][0]
+        ratio = ratio * common if place == "numerator" else ratio / common
+        terms = []
+        for term, coefficient in zip(part.terms, coefficients, strict=True):
+            terms.append(_times(coefficient / common, term))
+            if coefficient != common:
+                changes.append(Change(place, term, terms[-1]))
+        expression = _replaced(expression, part, sum_of(terms))
+    if ratio != 1:
+        expression, before, after = _scaled(expression, ratio)
+        changes.insert(0, Change("factor", before, after))
+    return Correction(tuple(changes), expression, reading.formula.scale, reading.formula.lines)
+
+
+def _more_terms(reading: Reading, part: Expression, place: str, value: Factored) -> Iterator[Correction]:
+    """Yield terms that are not printed."""
+    if not isinstance(part, Sum):
+        return
+    field = reading.field
+    missing = field.reduced(value - reading.value(part))
+    term = monomial_expression(field, missing)
+    if term is None:
+        term = in_symbols(field, missing, symbols_of(reading))
+    if term is not None:
+        new = sum_of([*part.terms, term])
+        yield _corrected(reading, part, new, (Change(place, number(0), term),))
+
+
+def _in_lines(reading: Reading) -> Iterator[Correction]:
+    """Yield a line of the formula times a number, or its square or square root."""
+    formula = reading.formula
+    for i, (name, expression) in enumerate(formula.lines):
+        new_lines: list[Expression] = [_times(f, expression) for f in FACTORS]
+        new_lines += [Call("sqrt", expression), Power(expression, number(2))]
+        for new in new_lines:
+            lines = (*formula.lines[:i], (name, new), *formula.lines[i + 1 :])
+            change = Change(f"line {name}", expression, new)
+            yield Correction((change,), formula.expression, formula.scale, lines)
+
+
+def _replaced(expression: Expression, part: Expression, new: Expression) -> Expression:
+    """Return the expression with the very node ``part`` replaced."""
+    if expression is part:
+        return new
+    if not expression.children:
+        return expression
+    children = [_replaced(c, part, new) for c in expression.children]
+    if all(a is b for a, b in zip(children, expression.children, strict=True)):
+        return expression
+    match expression:
+        case Sum():
+            return sum_of(children)
+        case Product():
+            return product_of(children) if _is_one(new) else Product(tuple(_flat(children)))
+        case Negative():
+            inner = children[0]
+            return inner.operand if isinstance(inner, Negative) else Negative(inner)
+        case Quotient():
+            return children[0] if _is_one(children[1]) else Quotient(children[0], children[1])
+        case Power():
+            return Power(children[0], children[1])
+        case Call(name):
+            return Call(name, children[0])
+    message = f"unexpected expression {type(expression).__name__}"
+    raise TypeError(message)
+
+
+def _flat(children: list[Expression]) -> list[Expression]:
+    flat: list[Expression] = []
+    for child in children:
+        flat.extend(child.factors if isinstance(child, Product) else [child])
+    return flat
+
+
+def _is_one(expression: Expression) -> bool:
+    return isinstance(expression, Number) and expression.value == 1
+
+
+def _above(expression: Expression) -> Expression:
+    return expression.numerator if isinstance(expression, Quotient) else expression
+
+
+def _below(expression: Expression) -> Expression:
+    return expression.denominator if isinstance(expression, Quotient) else number(1)

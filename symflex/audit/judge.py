@@ -1,0 +1,165 @@
+"""One printed formula against one derived function: the verdict and everything that supports it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from symflex.audit.corrections import Change, Correction, find_correction
+from symflex.audit.field import UnreadError
+from symflex.audit.laws import LawCheck, check_laws
+from symflex.audit.notation import derived_in_symbols, monomial_expression
+from symflex.audit.numeric import Comparison, Deviation, Numbers, compare, largest_deviation, numbers_of
+from symflex.audit.reading import Formula, Reading, formula_of, read
+from symflex.errors import BudgetError
+
+if TYPE_CHECKING:
+    from symflex.expressions import Expression
+    from symflex.model import Published
+    from symflex.transfer import TransferFunction
+
+Verdict = Literal["equal", "differs", "agrees", "undecided"]
+
+
+@dataclass(frozen=True)
+class Audit:
+    """What was found about one printed formula.
+
+    Parameters
+    ----------
+    tf : TransferFunction
+        The derived function.
+    published : Published
+        What was printed.
+    formula : Formula
+        The same with its lines in order.
+    verdict : str
+        ``equal``: proved. ``differs``: proved. ``agrees``: to 50 digits at all points, not proved.
+        ``undecided``: none of these.
+    unread : str
+        Why the formula could not be read exactly; empty when it was.
+    ratio : Expression or None
+        Printed over derived, where that is a number times powers of s and the parameters.
+    correction : Correction or None
+        The smallest change found that makes the formula right.
+    derived : Expression or None
+        The derived function in the print's symbols, where that is possible and no correction says so.
+    comparison : Comparison or None
+        What numbers say; ``None`` where a proof needs none.
+    deviation : Deviation or None
+        On the frequency axis; ``None`` when equal, or where parameters have no value.
+    laws : tuple of LawCheck
+        Structural laws.
+    """
+
+    tf: TransferFunction
+    published: Published
+    formula: Formula
+    verdict: Verdict
+    unread: str = ""
+    ratio: Expression | None = None
+    correction: Correction | None = None
+    derived: Expression | None = None
+    comparison: Comparison | None = None
+    deviation: Deviation | None = None
+    laws: tuple[LawCheck, ...] = ()
+
+    @property
+    def is_certified(self) -> bool:
+        """True when the verdict is proved."""
+        return self.verdict in ("equal", "differs")
+
+    @property
+    def changes(self) -> tuple[Change, ...]:
+        """What would make the formula right."""
+        return () if self.correction is None else self.correction.changes
+
+
+def judge(tf: TransferFunction, published: Published) -> Audit:
+    """Compare a printed formula with the derived function.
+
+    Parameters
+    ----------
+    tf : TransferFunction
+        Derived, of the output and input the formula is about.
+    published : Published
+        What was printed.
+
+    Raises
+    ------
+    SpecError
+        SF210 an unknown name, SF212 a name that may not stand in a formula, SF215 lines in a circle, SF224 a
+        division by zero, SF225 an exponent that is no number.
+
+    Examples
+    --------
+    >>> from symflex.errors import Source
+    >>> from symflex.model import load_model
+    >>> from symflex.equations import assemble
+    >>> from symflex.transfer import derive
+    >>> text = '''
+    ... symflex = 1
+    ... [parameters]
+    ... m = "2 kg"
+    ... k = "8 N/m"
+    ... [elements]
+    ... body = { type = "mass", at = "x", m = "m" }
+    ... spring = { type = "spring", between = ["x", "ground"], k = "k" }
+    ... [inputs]
+    ... F = { force = "x" }
+    ... [outputs]
+    ... X = "x"
+    ... [published."X/F"]
+    ... expr = "1/(m*s^2 - k)"
+    ... '''
+    >>> model = load_model(Source("oscillator.toml", text))
+    >>> found = judge(derive(assemble(model), "X", "F"), model.published[0])
+    >>> found.verdict, [(c.place, c.printed.operand.name) for c in found.changes]
+    ('differs', [('denominator', 'k')])
+    """
+    formula = formula_of(published, tf.model)
+    unread, reading = "", None
+    try:
+        reading = read(formula, tf)
+        if reading.field.equal(reading.printed, reading.derived):
+            return Audit(tf, published, formula, "equal")
+    except UnreadError as reason:
+        unread = str(reason)
+    except BudgetError:
+        unread, reading = "it expands beyond the limits of size", None
+    numbers = numbers_of(formula, tf, tf.model)
+    found = compare(numbers)
+    if not found.differs:
+        verdict: Verdict = "agrees" if found.agreed else "undecided"
+        unread = unread or "its roots or functions may satisfy a relation that was not found"
+        return Audit(tf, published, formula, verdict, unread, comparison=found)
+    return _difference(Audit(tf, published, formula, "differs", unread, comparison=found), reading, numbers)
+
+
+def _difference(audit: Audit, reading: Reading | None, numbers: Numbers) -> Audit:
+    measured = None if numbers.invented else numbers
+    ratio, correction, derived = None, None, None
+    vanishes = reading is not None and any(map(reading.field.is_zero, (reading.printed, reading.derived)))
+    if reading is not None and not vanishes:
+        try:
+            constant = reading.field.constant_ratio(reading.printed, reading.derived)
+            ratio = None if constant is None else monomial_expression(reading.field, constant)
+            if ratio is None:
+                correction = find_correction(reading, audit.tf)
+            if ratio is None and correction is None:
+                derived = derived_in_symbols(reading)
+        except BudgetError:  # what is not found within the limits is not reported
+            reading = None
+    return Audit(
+        audit.tf,
+        audit.published,
+        audit.formula,
+        audit.verdict,
+        audit.unread,
+        ratio,
+        correction,
+        derived,
+        audit.comparison,
+        None if measured is None or vanishes else largest_deviation(measured),
+        () if vanishes else check_laws(reading, measured),
+    )

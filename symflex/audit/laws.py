@@ -1,0 +1,297 @@
+"""Laws every right formula obeys, and which of them a printed one violates.
+
+The poles of a transfer function are those of the system; a function's behaviour as s tends to zero is the
+static gain or the rigid-body motion; a lossless system answers in phase or in quadrature; where input and
+output are colocated, zeros and poles alternate on the imaginary axis (Foster 1924) and none is double.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from math import pi
+from typing import TYPE_CHECKING, Literal
+
+from flint import acb, arb, ctx
+
+from symflex.audit.factors import LowestTerms, full_angles, lowest_terms
+from symflex.audit.limits import behaviour_at_zero
+from symflex.audit.notation import factor_expression, monomial_expression, polynomial_expression
+from symflex.expressions import (
+    Expression,
+    format_expression,
+    quotient,
+)
+from symflex.kernels import LAPLACE, Factored
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.audit.numeric import Numbers
+    from symflex.audit.reading import Reading
+
+How = Literal["proved", "measured"]
+AXIS_POINTS = 800
+AXIS_BITS = 256
+HALVINGS = 30
+LONGEST_TEXT = 80
+PROBES = 5
+
+
+@dataclass(frozen=True, slots=True)
+class LawCheck:
+    """One law, and whether the printed formula keeps it.
+
+    Parameters
+    ----------
+    law : str
+        ``poles``, ``double zeros``, ``limit at zero``, ``lossless phase``, ``interlacing``.
+    kept : bool
+        Whether the printed formula keeps it.
+    how : str
+        ``proved`` or ``measured``.
+    detail : str
+        In words.
+    """
+
+    law: str
+    kept: bool
+    how: How
+    detail: str
+
+
+def check_laws(reading: Reading | None, numbers: Numbers | None) -> tuple[LawCheck, ...]:
+    """Return every law that could be checked.
+
+    Parameters
+    ----------
+    reading : Reading or None
+        Both functions exactly, ``None`` when they could not be read.
+    numbers : Numbers or None
+        Both with the model's own values, ``None`` where a parameter has none.
+    """
+    found: list[LawCheck | None] = []
+    if reading is not None:
+        printed, derived = (lowest_terms(reading.field, v) for v in (reading.printed, reading.derived))
+        if printed is not None and derived is not None:
+            found += [_poles(reading, printed, derived), _double_zeros(reading, printed, derived)]
+        found.append(_limit(reading))
+    if numbers is not None:
+        found += [_phase(numbers), _interlacing(numbers)]
+    return tuple(check for check in found if check is not None)
+
+
+# ------------------------------------------------------------------------------------- exactly, by factors
+
+
+def _poles(reading: Reading, printed: LowestTerms, derived: LowestTerms) -> LawCheck:
+    extra = _without(printed.poles, derived.poles)
+    missing = _without(derived.poles, printed.poles)
+    if not extra and not missing:
+        detail = "the denominators vanish at the same s, equally often"
+        return LawCheck("poles", True, "proved", detail)
+    parts = []
+    if extra:
+        parts.append(f"poles that are none of the system's{_where_zero(reading, printed, extra)}")
+    if missing:
+        parts.append(f"poles of the system are missing{_where_zero(reading, derived, missing)}")
+    return LawCheck("poles", False, "proved", "; ".join(parts))
+
+
+def _where_zero(reading: Reading, terms: LowestTerms, factors: Sequence[tuple[fmpz_mpoly, int]]) -> str:
+    text = _shown(reading, terms, factors)
+    return f", where {text} = 0" if text else ""
+
+
+def _double_zeros(reading: Reading, printed: LowestTerms, derived: LowestTerms) -> LawCheck | None:
+    double = [(f, e) for f, e in printed.zeros if e > 1 and (f, e) not in derived.zeros]
+    if not double:
+        return LawCheck(
+            "double zeros", True, "proved", "the numerator has no repeated factor the derived one lacks"
+        )
+    shown = [(_shown(reading, printed, [(f, 1)]), e) for f, e in double]
+    texts = [f"({text})^{e}" if text else f"one of multiplicity {e}" for text, e in shown]
+    return LawCheck(
+        "double zeros", False, "proved", f"the numerator has a repeated factor, {' and '.join(texts)}"
+    )
+
+
+def _without(
+    left: Sequence[tuple[fmpz_mpoly, int]], right: Sequence[tuple[fmpz_mpoly, int]]
+) -> list[tuple[fmpz_mpoly, int]]:
+    found = []
+    for factor, times in left:
+        other = next((e for f, e in right if f == factor), 0)
+        if times > other:
+            found.append((factor, times - other))
+    return found
+
+
+def _shown(reading: Reading, terms: LowestTerms, factors: Sequence[tuple[fmpz_mpoly, int]]) -> str:
+    """Return a product of factors in the printed symbols, up to one without zeros; nothing if long."""
+    product = terms.ring.constant(1)
+    for factor, times in factors:
+        product = product * factor**times
+    value = full_angles(reading.field, terms.ring, product)
+    expression = None if value is None else factor_expression(reading, value)
+    text = "" if expression is None else format_expression(expression)
+    return text if len(text) <= LONGEST_TEXT else ""
+
+
+def _limit(reading: Reading) -> LawCheck | None:
+    found = behaviour_at_zero(reading.field, reading.printed / reading.derived)
+    if found is None:
+        return None
+    coefficient, order = found
+    law = "limit at zero"
+    if order == 0 and reading.field.equal(coefficient, reading.field.number(1)):
+        return LawCheck(law, True, "proved", "printed/derived tends to 1 as s tends to 0")
+    varying = coefficient * Factored.generator(reading.field.ring, LAPLACE) ** int(
+        order * reading.field.ground.order
+    )
+    behaviour = _expression_of(reading, varying)
+    shown = "" if behaviour is None else format_expression(behaviour)
+    if not 0 < len(shown) <= LONGEST_TEXT:
+        return LawCheck(law, False, "proved", "printed/derived does not tend to 1 as s tends to 0")
+    return LawCheck(law, False, "proved", f"printed/derived behaves as {shown} as s tends to 0")
+
+
+def _expression_of(reading: Reading, value: Factored) -> Expression | None:
+    found = monomial_expression(reading.field, value)
+    if found is not None:
+        return found
+    above = polynomial_expression(reading.field, value.numerator())
+    below = polynomial_expression(reading.field, value.denominator())
+    return None if above is None or below is None else quotient(above, below)
+
+
+# ------------------------------------------------------------------------------------- on the imaginary axis
+
+
+def _phase(numbers: Numbers) -> LawCheck | None:
+    """Check that a lossless system's printed answer is in phase or in quadrature."""
+    for omega in _probes(numbers.band):
+        values = numbers.both_at((Fraction(0), omega))
+        if values is None:
+            return None
+        printed, derived = values
+        with ctx.workprec(AXIS_BITS):
+            if not (_is_quadrature(derived) or _is_in_phase(derived)):
+                return None
+            if not (printed.real.contains(0) or printed.imag.contains(0) or _is_axial(printed)):
+                angle = float((printed.log().imag * 180 / arb.pi()).mid())
+                detail = (
+                    "a lossless system answers in phase or in quadrature; "
+                    f"the printed formula at {float(omega):g} rad/s with {angle:.4g} deg"
+                )
+                return LawCheck("lossless phase", False, "proved", detail)
+    return LawCheck("lossless phase", True, "measured", f"in phase or in quadrature at {PROBES} frequencies")
+
+
+def _probes(band: tuple[Fraction, Fraction]) -> list[Fraction]:
+    """Return a few angular frequencies spread over a band [rad/s]."""
+    low, high = (2 * pi * float(limit) for limit in band)
+    return [Fraction(f"{low * (high / low) ** ((i + 0.5) / PROBES):.3g}") for i in range(PROBES)]
+
+
+def _is_axial(value: acb) -> bool:
+    return _is_in_phase(value) or _is_quadrature(value)
+
+
+def _is_in_phase(value: acb) -> bool:
+    return bool(abs(value.imag).upper() < abs(value.real).lower() * arb(2) ** -100)
+
+
+def _is_quadrature(value: acb) -> bool:
+    return bool(abs(value.real).upper() < abs(value.imag).lower() * arb(2) ** -100)
+
+
+@dataclass(frozen=True, slots=True)
+class _Event:
+    kind: Literal["pole", "zero"]
+    frequency: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Value:
+    """A real or imaginary value: its sign and the logarithm of its size."""
+
+    frequency: float
+    is_positive: bool
+    size: float
+
+
+def _interlacing(numbers: Numbers) -> LawCheck | None:
+    """Check that poles and zeros alternate on the imaginary axis where those of the derived function do."""
+    derived = _events(numbers.derived_at, numbers.band)
+    if derived is None or not _alternate(derived) or len(derived) < 3:  # noqa: PLR2004
+        return None
+    law, printed = "interlacing", _events(numbers.printed_at, numbers.band)
+    if printed is not None and _alternate(printed):
+        return LawCheck(law, True, "measured", "zeros and poles alternate on the j omega axis over the band")
+    zeros = [e.frequency for e in derived if e.kind == "zero"]
+    right = (
+        "colocated zeros and poles alternate on the j omega axis; "
+        f"{_zeros(len(zeros))} of the derived function in the band, the first at {zeros[0]:.4g} Hz"
+    )
+    if printed is None:
+        return LawCheck(
+            law, False, "measured", f"{right}; the printed one is complex there and does not change sign"
+        )
+    own = sum(e.kind == "zero" for e in printed)
+    return LawCheck(
+        law, False, "measured", f"{right}; {_zeros(own)} of the printed one, not one between two poles"
+    )
+
+
+def _zeros(count: int) -> str:
+    return "1 zero" if count == 1 else f"{count} zeros"
+
+
+def _alternate(events: Sequence[_Event]) -> bool:
+    return all(a.kind != b.kind for a, b in pairwise(events))
+
+
+def _events(function: Callable[[acb, int], acb], band: tuple[Fraction, Fraction]) -> list[_Event] | None:
+    """Return sign changes of a lossless function on the imaginary axis, ``None`` where it is not lossless."""
+    low, high = float(band[0]), float(band[1])
+    grid = [low * (high / low) ** (i / (AXIS_POINTS - 1)) for i in range(AXIS_POINTS)]
+    component: str | None = None
+
+    def at(frequency: float) -> _Value | None:
+        nonlocal component
+        with ctx.workprec(AXIS_BITS):
+            value = function(acb(0, arb(frequency) * 2 * arb.pi()), AXIS_BITS)
+            if not value.is_finite():
+                return None
+            if component is None:
+                component = "real" if _is_in_phase(value) else "imag" if _is_quadrature(value) else ""
+            if not component or not _is_axial(value):
+                return None
+            part = value.real if component == "real" else value.imag
+            return (
+                None if part.contains(0) else _Value(frequency, bool(part > 0), float(abs(part).log().mid()))
+            )
+
+    values = [at(frequency) for frequency in grid]
+    found = []
+    for left, right in pairwise(values):
+        if left is None or right is None:
+            return None
+        if left.is_positive != right.is_positive:
+            found.append(_settled(at, left, right))
+    return found
+
+
+def _settled(at: Callable[[float], _Value | None], left: _Value, right: _Value) -> _Event:
+    """Return whether a sign change is a zero or a pole, by bisection."""
+    start = min(left.size, right.size)
+    for _ in range(HALVINGS):
+        middle = at((left.frequency + right.frequency) / 2)
+        if middle is None:
+            break
+        left, right = (middle, right) if middle.is_positive == left.is_positive else (left, middle)
+    return _Event("zero" if min(left.size, right.size) < start else "pole", left.frequency)

@@ -1,0 +1,273 @@
+"""From an element of the field back to an expression, in the printed formula's own symbols where possible."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import combinations_with_replacement
+from math import lcm
+from typing import TYPE_CHECKING
+
+from flint import fmpq, fmpq_mat
+
+from symflex.audit.factors import full_angles, lowest_terms
+from symflex.audit.field import HOLE, UNIT
+from symflex.expressions import (
+    Call,
+    Expression,
+    Name,
+    Negative,
+    Power,
+    Sum,
+    negative,
+    number,
+    power,
+    product_of,
+    quotient,
+    sum_of,
+)
+from symflex.kernels import Factored
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.audit.field import Field
+    from symflex.audit.reading import Reading
+
+MOST_DEGREE = 4
+MOST_SYMBOLS = 6
+MOST_MONOMIALS = 80
+MOST_SHIFTS = 40
+SQUARE = 2
+
+
+@dataclass(frozen=True, eq=False)
+class Symbol:
+    """A name or function call of the print whose value holds functions of s."""
+
+    expression: Expression
+    value: Factored
+
+
+def symbols_of(reading: Reading) -> tuple[Symbol, ...]:
+    """Return the transcendental symbols of the printed expression, in order of appearance."""
+    found: dict[Expression, Symbol] = {}
+    pending = [reading.formula.expression]
+    while pending:
+        node = pending.pop()
+        is_symbol = (isinstance(node, Name) and node.name in reading.lines) or isinstance(node, Call)
+        if is_symbol and node not in found:
+            value = reading.value(node)
+            if reading.field.depends_on_functions(value):
+                found[node] = Symbol(node, value)
+                continue
+        pending.extend(reversed(node.children))
+    return tuple(found.values())
+
+
+def in_symbols(field: Field, value: Factored, symbols: Sequence[Symbol]) -> Expression | None:
+    """Return a value as a sum of products of symbols with rational coefficients, ``None`` when it is none.
+
+    The lowest degree that will do is used.
+    """
+    if not symbols or len(symbols) > MOST_SYMBOLS:
+        return None
+    monomials: list[tuple[tuple[int, ...], Factored]] = []
+    for degree in range(MOST_DEGREE + 1):
+        for chosen in combinations_with_replacement(range(len(symbols)), degree):
+            product = field.number(1)
+            for i in chosen:
+                product = product * symbols[i].value
+            monomials.append((chosen, product))
+        if len(monomials) > MOST_MONOMIALS:
+            return None
+        coefficients = solve_linear(field, value, [m for _, m in monomials])
+        if coefficients is not None:
+            return sum_of(
+                product_of([number(c), *_powers([symbols[i].expression for i in chosen])])
+                for c, (chosen, _) in reversed(list(zip(coefficients, monomials, strict=True)))
+                if c
+            )
+    return None
+
+
+def _powers(factors: Sequence[Expression]) -> list[Expression]:
+    found: dict[Expression, int] = {}
+    for factor in factors:
+        found[factor] = found.get(factor, 0) + 1
+    return [power(f, n) if n > 1 else f for f, n in found.items()]
+
+
+def solve_linear(field: Field, value: Factored, parts: Sequence[Factored]) -> tuple[Fraction, ...] | None:
+    """Return rational coefficients with which the parts add up to the value, ``None`` when there are none.
+
+    Where several will do, later parts are left out.
+    """
+    everything = [*parts, value]
+    common = field.number(1)
+    for v in everything:
+        missing = (v * common).denominator()
+        common = common * missing
+    rows: dict[tuple[int, ...], dict[int, int]] = {}
+    scale = lcm(*(v.unit.denominator for v in everything))
+    for j, v in enumerate(everything):
+        polynomial = field.reduce((v * common * scale).expand())
+        for monomial, coefficient in polynomial.terms():
+            rows.setdefault(tuple(int(e) for e in monomial), {})[j] = int(coefficient)
+    count = len(everything)
+    if not rows:
+        return tuple(Fraction(0) for _ in parts)
+    matrix = fmpq_mat(len(rows), count, [fmpq(row.get(j, 0)) for row in rows.values() for j in range(count)])
+    reduced, rank = matrix.rref()
+    solution = [Fraction(0)] * len(parts)
+    for i in range(rank):
+        pivot = next(j for j in range(count) if reduced[i, j] != 0)
+        if pivot == count - 1:
+            return None
+        x = reduced[i, count - 1]
+        solution[pivot] = Fraction(int(x.p), int(x.q))
+    return tuple(solution)
+
+
+def monomial_expression(field: Field, value: Factored) -> Expression | None:
+    """Return a number times powers of s and the parameters; ``None`` for anything else."""
+    exponents: dict[str, Fraction] = {}
+    order, coefficient = field.ground.order, value.unit
+    for factor, exponent in value.factors:
+        if len(factor) > 1:
+            return None
+        name = field.ring.names[next(i for i, e in enumerate(factor.monoms()[0]) if e)]
+        if name.startswith(("exp(", "cos(", "sin(", "sum(", UNIT, HOLE)):
+            return None
+        if name.startswith("root("):
+            whole, rest = divmod(exponent, order)
+            coefficient *= Fraction(int(name[5:-1])) ** whole
+            if rest:
+                exponents[name[5:-1]] = Fraction(rest, order)
+        else:
+            step = order if name in field.ground.rootable else 1
+            exponents[name] = Fraction(exponent, step)
+    return powers_expression(coefficient, exponents)
+
+
+def powers_expression(coefficient: Fraction, exponents: dict[str, Fraction]) -> Expression:
+    """Return a number times powers of names; half powers stand together under one root."""
+    groups: dict[tuple[bool, int], list[Expression]] = {}
+    for name, exponent in exponents.items():
+        base: Expression = number(int(name)) if name.isdigit() else Name(name)
+        times, root = abs(exponent.numerator), exponent.denominator
+        groups.setdefault((exponent > 0, root), []).append(power(base, times) if times != 1 else base)
+    above: list[Expression] = [number(coefficient.numerator)]
+    below: list[Expression] = [number(coefficient.denominator)]
+    for root in sorted({root for _, root in groups}):
+        up, down = groups.get((True, root), []), groups.get((False, root), [])
+        if root == 1:
+            above, below = [*above, *up], [*below, *down]
+            continue
+        radicand = quotient(product_of(up), product_of(down))
+        is_square = root == SQUARE
+        above.append(
+            Call("sqrt", radicand) if is_square else Power(radicand, quotient(number(1), number(root)))
+        )
+    return quotient(product_of(above), product_of(below))
+
+
+def factor_expression(reading: Reading, value: Factored) -> Expression | None:
+    """Return a value, up to a factor without zeros, in the printed symbols or with functions of s."""
+    field = reading.field
+    symbols = symbols_of(reading)
+    found = _in_symbols(field, value, symbols)
+    if found is None:
+        return polynomial_expression(field, value)
+    return _negated(found[0]) if _begins_negative(found[0]) else found[0]
+
+
+def _begins_negative(expression: Expression) -> bool:
+    return isinstance(expression.terms[0] if isinstance(expression, Sum) else expression, Negative)
+
+
+def _negated(expression: Expression) -> Expression:
+    terms = expression.terms if isinstance(expression, Sum) else (expression,)
+    return sum_of(negative(term) for term in terms)
+
+
+def _shifts(field: Field, value: Factored) -> list[Factored]:
+    """Return powers of the exponentials by which a value may be divided."""
+    highest = [0] * len(field.ground.waves)
+    for factor, exponent in value.factors:
+        for i in range(len(highest)):
+            places = [field.ring.index[f"{f}({i})"] for f in ("exp", "cos", "sin")]
+            highest[i] += exponent * sum(int(factor.degrees()[place]) for place in places)
+    shifts = [field.number(1)]
+    for i, degree in enumerate(highest):
+        e = Factored.generator(field.ring, f"exp({i})")
+        shifts = [s * e**-n for s in shifts for n in range(abs(degree) + 1)]
+    return shifts[:MOST_SHIFTS]
+
+
+def polynomial_expression(field: Field, value: Factored) -> Expression | None:
+    """Return a polynomial with its functions written out, ``None`` when it has a denominator."""
+    if any(e < 0 for _, e in value.factors):
+        return None
+    terms = []
+    for monomial, coefficient in (value / value.unit).expand().terms():
+        plain = field.number(int(coefficient) * value.unit.numerator)
+        functions: list[Expression] = []
+        for i, (name, exponent) in enumerate(zip(field.ring.names, monomial, strict=True)):
+            if not int(exponent):
+                continue
+            if name.startswith(("exp(", "cos(", "sin(")):
+                functions.append(_function(field, name, int(exponent)))
+            else:
+                plain = plain * Factored.polynomial(field.ring, field.ring.context.gen(i)) ** int(exponent)
+        factor = monomial_expression(field, plain)
+        if factor is None:
+            return None
+        terms.append(product_of([factor, *functions]))
+    return sum_of(terms)
+
+
+def _function(field: Field, name: str, exponent: int) -> Expression:
+    wave = field.ground.waves[int(name[4:-1])]
+    exponents = {
+        n.removeprefix("root(").removesuffix(")"): e for n, e in wave.key if not n.startswith("sum(")
+    }
+    if name.startswith("exp("):
+        return Call("exp", powers_expression(wave.unit * exponent, exponents))
+    call = Call(name[:3], powers_expression(wave.unit, exponents))
+    return call if exponent == 1 else power(call, exponent)
+
+
+def derived_in_symbols(reading: Reading) -> Expression | None:
+    """Return the derived function in the symbols of the print, ``None`` where that does not work out."""
+    field = reading.field
+    symbols, terms = symbols_of(reading), lowest_terms(field, reading.derived)
+    if terms is None or not symbols:
+        return None
+    parts = []
+    for factors in (terms.zeros, terms.poles):
+        product = terms.ring.constant(1)
+        for factor, times in factors:
+            product = product * factor**times
+        value = full_angles(field, terms.ring, product)
+        found = None if value is None else _in_symbols(field, value, symbols)
+        if found is None:
+            return None
+        parts.append(found)
+    (above, num), (below, den) = parts
+    if _begins_negative(below):
+        below, den = _negated(below), -den
+    ratio = field.constant_ratio(reading.derived, num / den)
+    front = None if ratio is None else monomial_expression(field, ratio)
+    return None if front is None else product_of([front, quotient(above, below)])
+
+
+def _in_symbols(
+    field: Field, value: Factored, symbols: Sequence[Symbol]
+) -> tuple[Expression, Factored] | None:
+    """Return a value, up to powers of exponentials, in symbols."""
+    for shift in _shifts(field, value):
+        found = in_symbols(field, value * shift, symbols)
+        if found is not None:
+            return found, value * shift
+    return None

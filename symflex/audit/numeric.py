@@ -1,0 +1,300 @@
+"""Printed formula and derived function with numbers, in ball arithmetic.
+
+A ball that excludes equality proves a difference; balls that agree prove nothing, and are labelled so.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from flint import acb, arb, ctx
+
+from symflex.expressions import Call, Expression, Name, Negative, Number, Power, Product, Quotient, Sum
+from symflex.kernels import LAPLACE
+from symflex.model import ExactValue
+from symflex.transfer import bind
+from symflex.transfer.balls import ball, rational_value
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from symflex.audit.reading import Formula
+    from symflex.model import Model
+    from symflex.transfer import BoundTransferFunction, TransferFunction
+
+POINTS = 40
+DIGITS = 50
+BITS_PER_DIGIT = 4
+FIRST_BITS = 256
+LAST_BITS = 8192
+DOUBLE_BITS = 53
+GRID_POINTS = 300
+REFINEMENTS = 14
+STEPS = 12
+MOST_PEAKS = 12
+UNBOUNDED = 180
+"""Decibels no finite deviation reaches; degrees do not exceed it."""
+NEGLIGIBLE = 1e-9
+DEFAULT_BAND = (Fraction(1, 10), Fraction(1000))
+_DIRECTIONS = ((4, 3, 5), (3, -4, 5), (12, 5, 13), (5, 12, 13), (15, -8, 17), (8, 15, 17), (24, -7, 25))
+"""Pythagorean triples: exact points of the right half plane, where all roots are the principal ones."""
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """Both functions with numbers.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        The derived function.
+    formula : Formula
+        The printed one.
+    values : mapping of str to ExactValue
+        Of all parameters.
+    invented : tuple of (str, ExactValue)
+        Those that the model gives no value: used to tell functions apart, not to measure them.
+    band : tuple of Fraction
+        Where they are compared [Hz].
+    """
+
+    bound: BoundTransferFunction
+    formula: Formula
+    values: Mapping[str, ExactValue]
+    invented: tuple[tuple[str, ExactValue], ...]
+    band: tuple[Fraction, Fraction]
+    _enclosed: dict[int, Callable[[acb], acb]] = field(default_factory=dict, repr=False, compare=False)
+
+    def derived_at(self, s: acb, bits: int) -> acb:
+        """Return the derived function's value on a ball."""
+        if bits not in self._enclosed:
+            self._enclosed[bits] = self.bound.enclosed(bits)
+        with ctx.workprec(bits):
+            return self._enclosed[bits](s)
+
+    def printed_at(self, s: acb, bits: int) -> acb:
+        """Return the printed formula's value on a ball."""
+        with ctx.workprec(bits):
+            known: dict[str, acb] = {LAPLACE: s, "pi": acb(arb.pi())}
+            for name, value in self.values.items():
+                known[name] = acb(ball(value.rational) * arb.pi() ** value.pi_power)
+            for name, expression in self.formula.lines:
+                known[name] = _value(expression, known)
+            return _value(self.formula.whole, known)
+
+    def ratio_at(self, frequency: float) -> tuple[float, float] | None:
+        """Return printed over derived [dB, deg] at a frequency [Hz], ``None`` where it has no value."""
+        with ctx.workprec(FIRST_BITS):
+            s = acb(0, arb(frequency) * 2 * arb.pi())
+            ratio = self.printed_at(s, FIRST_BITS) / self.derived_at(s, FIRST_BITS)
+            if not ratio.is_finite() or ratio.contains(0) or ratio.rel_accuracy_bits() <= DOUBLE_BITS:
+                return None
+            # In balls, since neither value need be within reach of a double.
+            decibels, angle = 20 * abs(ratio).log() / arb(10).log(), ratio.arg() * 180 / arb.pi()
+            return float(decibels.mid()), float(angle.mid())
+
+    def both_at(self, s: tuple[Fraction, Fraction], digits: int = DIGITS) -> tuple[acb, acb] | None:
+        """Return both values to the given digits, ``None`` when they have none there."""
+        bits = FIRST_BITS
+        while bits <= LAST_BITS:
+            with ctx.workprec(bits):
+                point = acb(ball(s[0]), ball(s[1]))
+            printed, derived = self.printed_at(point, bits), self.derived_at(point, bits)
+            if _are_accurate(printed, derived, BITS_PER_DIGIT * digits):
+                return printed, derived
+            bits *= 2
+        return None
+
+
+def _are_accurate(printed: acb, derived: acb, bits: int) -> bool:
+    """Tell whether both values are known to so many bits of their own or of the derived one."""
+    if not (printed.is_finite() and derived.is_finite()) or derived.rel_accuracy_bits() < bits:
+        return False
+    width = abs(printed - acb(printed.mid())).upper()
+    return printed.rel_accuracy_bits() >= bits or bool(width <= abs(derived).lower() * arb(2) ** -bits)
+
+
+def numbers_of(formula: Formula, tf: TransferFunction, model: Model) -> Numbers:
+    """Return both functions with the model's values, and invented ones where it has none."""
+    missing = [p for p in model.parameters if p.value is None]
+    invented = tuple((p.name, ExactValue(Fraction(7 + 3 * i, 5 + 2 * i))) for i, p in enumerate(missing))
+    bound = bind(tf, {name: value.rational for name, value in invented})
+    values = {p.name: p.value for p in model.parameters if p.value is not None} | dict(invented)
+    return Numbers(bound, formula, values, invented, model.analysis.band or DEFAULT_BAND)
+
+
+def comparison_points(band: tuple[Fraction, Fraction]) -> tuple[tuple[Fraction, Fraction], ...]:
+    """Return the complex frequencies [rad/s] at which functions are compared."""
+    low, high = float(band[0]) * 6.3, float(band[1]) * 6.3
+    found = []
+    for i in range(POINTS):
+        radius = Fraction(f"{low * (high / low) ** (i / (POINTS - 1)):.3g}")
+        # On the positive real axis no root has two readings, so these come first.
+        re, im, over = (1, 0, 1) if i % 4 == 0 else _DIRECTIONS[i % len(_DIRECTIONS)]
+        found.append((radius * re / over, radius * im / over))
+    return tuple(sorted(found, key=lambda s: s[1] != 0))
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """What the points say.
+
+    Parameters
+    ----------
+    differs : bool
+        Proved by a ball that excludes equality.
+    agreed : int
+        Points at which they agree to 50 digits.
+    point : tuple of Fraction or None
+        Where they differ [rad/s].
+    printed, derived : complex or None
+        Values there.
+    gap : float
+        Their distance there over the size of the derived one.
+    """
+
+    differs: bool
+    agreed: int
+    point: tuple[Fraction, Fraction] | None = None
+    printed: complex | None = None
+    derived: complex | None = None
+    gap: float = 0.0
+
+
+def compare(numbers: Numbers) -> Comparison:
+    """Compare both functions at the test points."""
+    agreed = 0
+    for s in comparison_points(numbers.band):
+        values = numbers.both_at(s)
+        if values is None:
+            continue
+        printed, derived = values
+        with ctx.workprec(LAST_BITS):
+            gap = printed - derived
+            if not gap.contains(0):
+                size = float((abs(gap) / abs(derived)).mid()) if derived != 0 else 1.0
+                return Comparison(True, agreed, s, complex(printed), complex(derived), size)
+            small = abs(gap).upper() <= abs(derived).lower() * arb(10) ** -DIGITS or (
+                printed == 0 and derived == 0
+            )
+        agreed += bool(small)
+    return Comparison(False, agreed)
+
+
+def _value(expression: Expression, known: Mapping[str, acb]) -> acb:
+    match expression:
+        case Number(value):
+            return acb(ball(value))
+        case Name(name):
+            return known[name]
+        case Negative(operand):
+            return -_value(operand, known)
+        case Sum(terms):
+            return sum((_value(t, known) for t in terms), acb(0))
+        case Product(factors):
+            product = acb(1)
+            for factor in factors:
+                product = product * _value(factor, known)
+            return product
+        case Quotient(numerator, denominator):
+            return _value(numerator, known) / _value(denominator, known)
+        case Power(base, exponent):
+            power = rational_value(exponent, {}) or Fraction(0)
+            inner = _value(base, known)
+            return inner ** int(power) if power.denominator == 1 else inner ** acb(ball(power))
+        case Call(name, argument):
+            return _FUNCTIONS[name](_value(argument, known))
+    message = f"unexpected expression {type(expression).__name__}"
+    raise TypeError(message)
+
+
+_FUNCTIONS = {
+    "sqrt": acb.sqrt,
+    "exp": acb.exp,
+    "log": acb.log,
+    "sin": acb.sin,
+    "cos": acb.cos,
+    "tan": acb.tan,
+    "sinh": acb.sinh,
+    "cosh": acb.cosh,
+    "tanh": acb.tanh,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Deviation:
+    """Largest deviations of the printed from the derived frequency response.
+
+    Parameters
+    ----------
+    magnitude_db, magnitude_hz : float
+        Printed over derived in dB, and where.
+    unbounded : bool
+        The magnitude grows without end there: one of the functions has a zero or pole the other lacks.
+    phase_deg, phase_hz : float
+        Printed minus derived, between -180 and 180, and where.
+    band : tuple of Fraction
+        Searched [Hz].
+    """
+
+    magnitude_db: float
+    magnitude_hz: float
+    unbounded: bool
+    phase_deg: float
+    phase_hz: float
+    band: tuple[Fraction, Fraction]
+
+
+def largest_deviation(numbers: Numbers) -> Deviation | None:
+    """Return the largest deviations on a grid, each refined around where it is found."""
+    low, high = float(numbers.band[0]), float(numbers.band[1])
+    grid = [low * (high / low) ** (i / (GRID_POINTS - 1)) for i in range(GRID_POINTS)]
+    grid[-1] = high
+    values = [numbers.ratio_at(frequency) for frequency in grid]
+    magnitude = _largest(numbers, grid, values, 0)
+    angle = _largest(numbers, grid, values, 1)
+    if magnitude is None or angle is None:
+        return None
+    unbounded = abs(magnitude[0]) > UNBOUNDED
+    return Deviation(magnitude[0], magnitude[1], unbounded, angle[0], angle[1], numbers.band)
+
+
+def _largest(
+    numbers: Numbers,
+    grid: Sequence[float],
+    values: Sequence[tuple[float, float] | None],
+    which: int,
+) -> tuple[float, float] | None:
+    """Return the largest magnitude (0) or angle (1), or the first without bound, and where it is."""
+    sizes = [0.0 if z is None else abs(z[which]) for z in values]
+    last = len(grid) - 1
+    peaks = [
+        i
+        for i in range(len(grid))
+        if sizes[i] > 0 and (i == 0 or sizes[i] > sizes[i - 1]) and (i == last or sizes[i] >= sizes[i + 1])
+    ]
+    highest = sorted(sorted(peaks, key=lambda i: -sizes[i])[:MOST_PEAKS])
+    best: tuple[float, float] | None = None
+    for i in highest:
+        found = _refined(numbers, (grid[max(i - 1, 0)], grid[i], grid[min(i + 1, last)]), which)
+        if found is not None and (best is None or abs(found[0]) > abs(best[0]) + NEGLIGIBLE):
+            best = found
+        if best is not None and abs(best[0]) > UNBOUNDED:
+            break
+    return best
+
+
+def _refined(numbers: Numbers, bracket: tuple[float, float, float], which: int) -> tuple[float, float] | None:
+    left, middle, right = bracket
+    best: tuple[float, float] | None = None
+    for _ in range(REFINEMENTS):
+        grid = sorted({middle, *(left + (right - left) * k / STEPS for k in range(STEPS + 1))})
+        measured = [(z[which], f) for f in grid if (z := numbers.ratio_at(f)) is not None]
+        if not measured:
+            return best
+        best = max(measured, key=lambda m: abs(m[0]))
+        i = grid.index(best[1])
+        left, middle, right = grid[max(i - 1, 0)], best[1], grid[min(i + 1, len(grid) - 1)]
+    return best

@@ -1,0 +1,355 @@
+"""From a printed formula, or a derived function, to an element of the exact field."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from symflex.audit.field import Field, GrowError, UnreadError, ground_of
+from symflex.errors import BudgetError, Diagnostic, SpecError
+from symflex.errors.diagnostic import nearest
+from symflex.expressions import (
+    FUNCTIONS,
+    Attribute,
+    Call,
+    Derivative,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+    names,
+)
+from symflex.kernels import LAPLACE, Factored
+from symflex.transfer.balls import rational_value
+from symflex.transfer.compose import compose_rational
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from symflex.audit.field import Ground
+    from symflex.kernels import Dispersion, Kernel
+    from symflex.model import Model, Published
+    from symflex.transfer import TransferFunction
+
+MOST_GROWTHS = 200
+
+
+@dataclass(frozen=True)
+class Formula:
+    """A printed formula whose names are all known.
+
+    Parameters
+    ----------
+    expression : Expression
+        As printed.
+    scale : Expression or None
+        What the print leaves out.
+    lines : tuple of (str, Expression)
+        The ``where`` lines and the model's definitions that occur, each after those it uses.
+    parameters : frozenset of str
+        The model's parameters.
+    """
+
+    expression: Expression
+    scale: Expression | None
+    lines: tuple[tuple[str, Expression], ...]
+    parameters: frozenset[str]
+
+    @property
+    def whole(self) -> Expression:
+        """The printed expression times the scale."""
+        return self.expression if self.scale is None else Product((self.expression, self.scale))
+
+
+def formula_of(published: Published, model: Model) -> Formula:
+    """Return a printed formula with its lines in order.
+
+    Raises
+    ------
+    SpecError
+        SF210 an unknown name or function, SF212 a name that may not stand here, SF215 lines that use each
+        other in a circle, SF225 an exponent that is no number: every problem at once, each at its place.
+    """
+    where = dict(published.where)
+    definitions = {d.name: d.expression for d in model.definitions if d.name not in where}
+    known = {**definitions, **where}
+    parameters = frozenset(p.name for p in model.parameters)
+    problems: list[Diagnostic] = []
+    roots = [published.expression, *([published.scale] if published.scale is not None else [])]
+    for expression in (*roots, *where.values()):
+        problems += _problems(expression, known, parameters, model)
+    if problems:
+        raise SpecError(*problems)
+    return Formula(published.expression, published.scale, tuple(_in_order(roots, known)), parameters)
+
+
+def _problems(
+    expression: Expression, known: Mapping[str, Expression], parameters: frozenset[str], model: Model
+) -> list[Diagnostic]:
+    found = []
+    for node in names(expression):
+        if isinstance(node, Attribute | Derivative) or (isinstance(node, Call) and node.order):
+            message = "only s, pi, parameters, definitions and 'where' names may stand in a printed formula"
+            found.append(Diagnostic("SF212", message, node.span))
+        elif isinstance(node, Call) and node.name not in FUNCTIONS:
+            hint = nearest(node.name, FUNCTIONS) or "a product needs '*'"
+            found.append(Diagnostic("SF210", f"unknown function '{node.name[:64]}'", node.span, hint))
+        elif isinstance(node, Name) and node.name not in known and node.name not in parameters:
+            if node.name not in (LAPLACE, "pi"):
+                found.append(_unknown(node, {*known, *parameters, LAPLACE, "pi"}, model))
+    pending = [expression]
+    while pending:
+        part = pending.pop()
+        pending.extend(part.children)
+        if isinstance(part, Power) and rational_value(part.exponent, {}) is None:
+            message = "an exponent in a printed formula is a rational number"
+            found.append(Diagnostic("SF225", message, part.exponent.span or part.span))
+    return found
+
+
+def _unknown(node: Name, readable: set[str], model: Model) -> Diagnostic:
+    others = {
+        **{n.name: "a node" for n in model.nodes},
+        **{b.name: "a block" for b in model.blocks},
+        **{x.name: "a signal" for x in model.signals},
+        **{o.name: "an output" for o in model.outputs},
+        **{i.name: "an input" for i in model.inputs},
+    }
+    if node.name in others:
+        message = f"'{node.name}' is {others[node.name]}; a printed formula holds s and constants only"
+        return Diagnostic(
+            "SF212", message, node.span, "define it in 'where' if the print means something else"
+        )
+    hint = nearest(node.name, readable) or "define it in 'where'"
+    return Diagnostic("SF210", f"unknown name '{node.name[:64]}' in a printed formula", node.span, hint)
+
+
+def _in_order(roots: Sequence[Expression], known: Mapping[str, Expression]) -> list[tuple[str, Expression]]:
+    """Return the lines that occur, each after those it uses."""
+    done: dict[str, Expression] = {}
+    open_names: list[str] = []
+    pending = [(n, False) for r in reversed(roots) for n in reversed(_used(r, known))]
+    while pending:
+        name, is_ready = pending.pop()
+        if name in done:
+            continue
+        if is_ready:
+            open_names.pop()
+            done[name] = known[name]
+            continue
+        if name in open_names:
+            circle = " -> ".join((*open_names[open_names.index(name) :], name))
+            message = f"lines of a printed formula use each other in a circle: {circle}"
+            raise SpecError(Diagnostic("SF215", message, known[name].span))
+        open_names.append(name)
+        pending.append((name, True))
+        pending += [(n, False) for n in reversed(_used(known[name], known))]
+    return list(done.items())
+
+
+def _used(expression: Expression, known: Mapping[str, Expression]) -> list[str]:
+    return [n.name for n in names(expression) if isinstance(n, Name) and n.name in known]
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """A printed formula and a derived function over one field.
+
+    Parameters
+    ----------
+    field : Field
+        Where both live.
+    formula : Formula
+        The printed one.
+    lines : mapping of str to Factored
+        Values of its lines.
+    printed, derived : Factored
+        Values of both.
+    """
+
+    field: Field
+    formula: Formula
+    lines: Mapping[str, Factored]
+    printed: Factored
+    derived: Factored
+
+    def value(self, expression: Expression, hole: Expression | None = None) -> Factored:
+        """Return the value of an expression of the formula, with ``hole`` (the very node) left open."""
+        return _Reader(self.field, self.lines, hole).value(expression)
+
+
+def read(formula: Formula, tf: TransferFunction) -> Reading:
+    """Return both functions over the smallest field that holds them.
+
+    Raises
+    ------
+    UnreadError
+        When one of them is in no field of this kind.
+    SpecError
+        SF224 when the formula divides by zero.
+    BudgetError
+        SF501 when an expansion would become too large.
+    """
+    ground = ground_of([(p.name, p.assume != "real") for p in tf.model.parameters])
+
+    def attempt(field: Field) -> Reading:
+        lines = formula_lines(field, formula)
+        printed = _Reader(field, lines).value(formula.whole)
+        return Reading(field, formula, lines, printed, derived_value(field, tf))
+
+    return _grown(ground, attempt)
+
+
+def _grown(ground: Ground, attempt: Callable[[Field], Reading]) -> Reading:
+    for _ in range(MOST_GROWTHS):
+        try:
+            return attempt(Field(ground))
+        except GrowError as more:
+            ground = more.ground
+    message = "it has too many different roots and functions"
+    raise UnreadError(message)
+
+
+def formula_lines(field: Field, formula: Formula) -> dict[str, Factored]:
+    """Return the values of a formula's lines."""
+    lines: dict[str, Factored] = {}
+    for name, expression in formula.lines:
+        lines[name] = _Reader(field, lines).value(expression)
+    return lines
+
+
+@dataclass(frozen=True)
+class _Reader:
+    """Evaluates one expression."""
+
+    field: Field
+    lines: Mapping[str, Factored]
+    hole: Expression | None = None
+
+    def value(self, expression: Expression) -> Factored:
+        try:
+            return self._value(expression)
+        except BudgetError as error:
+            raise BudgetError(
+                *(
+                    d if d.span else Diagnostic(d.code, d.message, expression.span, d.hint)
+                    for d in error.diagnostics
+                )
+            ) from None
+
+    def _value(self, expression: Expression) -> Factored:
+        if expression is self.hole:
+            return self.field.hole
+        match expression:
+            case Number(value):
+                return self.field.number(value)
+            case Name(name):
+                known = self.lines.get(name)
+                return self.field.name(name) if known is None else known
+            case Negative(operand):
+                return -self._value(operand)
+            case Sum(terms):
+                total = self.field.number(0)
+                for term in terms:
+                    total = total + self._value(term)
+                return total
+            case Product(factors):
+                product = self.field.number(1)
+                for factor in factors:
+                    product = product * self._value(factor)
+                return product
+            case Quotient(numerator, denominator):
+                divisor = self._value(denominator)
+                if self.field.is_zero(divisor):
+                    raise _division(denominator, expression)
+                return self._value(numerator) / divisor
+            case Power(base, exponent):
+                power = rational_value(exponent, {}) or Fraction(0)
+                inner = self._value(base)
+                if power < 0 and self.field.is_zero(inner):
+                    raise _division(base, expression)
+                return self.field.power(inner, power)
+            case Call(name, argument):
+                return self._call(expression, name, self._value(argument))
+        message = f"unexpected expression {type(expression).__name__}"
+        raise TypeError(message)
+
+    def _call(self, expression: Call, name: str, argument: Factored) -> Factored:
+        try:
+            return self.field.function(name, self.field.reduced(argument))
+        except ZeroDivisionError:
+            raise _division(expression, expression) from None
+
+
+def _division(part: Expression, whole: Expression) -> SpecError:
+    return SpecError(Diagnostic("SF224", "a printed formula divides by zero", part.span or whole.span))
+
+
+def derived_value(field: Field, tf: TransferFunction) -> Factored:
+    """Return a derived transfer function over the field.
+
+    Raises
+    ------
+    UnreadError, GrowError
+        As :class:`~symflex.audit.field.Field`.
+    """
+    ring, table = tf.ratio.ring, tf.kernels
+    images: dict[str, Factored] = {}
+    for name in field.ground.names:
+        images[name] = field.name(name)
+    for constant in tf.constants:
+        if tf.ratio.depends_on(constant.generator):
+            images[constant.generator] = _Reader(field, {}).value(constant.expression)
+
+    def image(factor_names: Sequence[str], value: Factored) -> Factored:
+        chosen = [images.get(n) for n in factor_names]
+        result = field.number(value.unit)
+        for factor, exponent in value.factors:
+            result = result * compose_rational(field.ring, factor, chosen) ** exponent
+        return result
+
+    for dispersion in table.dispersions:
+        images.update(_wavenumbers(field, dispersion, lambda v: image(ring.names, v)))
+    for kernel in table.kernels:
+        if tf.ratio.depends_on(kernel.generator):
+            images[kernel.generator] = _kernel(field, kernel, images, lambda v: image(ring.names, v))
+    return image(ring.names, tf.ratio)
+
+
+def _wavenumbers(
+    field: Field, dispersion: Dispersion, image: Callable[[Factored], Factored]
+) -> dict[str, Factored]:
+    match dispersion.kind:
+        case "bending":
+            power, root = image(dispersion.characteristic[0]) / 4, Fraction(1, 4)
+        case "wave":
+            power, root = -image(dispersion.characteristic[0]), Fraction(1, 2)
+        case "pair":
+            middle, half = -image(dispersion.characteristic[2]) / 2, Fraction(1, 2)
+            apart = field.power(field.reduced(middle * middle - image(dispersion.characteristic[0])), half)
+            squares = (field.reduced(middle + apart), field.reduced(middle - apart))
+            roots = (field.power(square, half) for square in squares)
+            return dict(zip(dispersion.wavenumbers, roots, strict=True))
+        case "exponential":
+            return {}
+        case _:
+            message = "the derived function has wavenumbers without a closed form"
+            raise UnreadError(message)
+    return {dispersion.wavenumbers[0]: field.power(power, root)}
+
+
+def _kernel(
+    field: Field, kernel: Kernel, images: Mapping[str, Factored], image: Callable[[Factored], Factored]
+) -> Factored:
+    length = image(kernel.length)
+    if kernel.function == "exp":
+        return field.function("exp", -image(kernel.dispersion.shift) * length)
+    if kernel.function == "fundamental":
+        message = "the derived function has kernels without a closed form"
+        raise UnreadError(message)
+    return field.function(kernel.function, images[kernel.wavenumber] * length)

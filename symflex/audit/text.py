@@ -1,0 +1,211 @@
+"""An audit as plain text for a terminal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symflex.emit.forms import print_form
+from symflex.emit.text import WIDTH, wrapped
+from symflex.expressions import Expression, format_expression, quotient
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.audit.judge import Audit
+
+INDENT = "  "
+NOTHING = 1e-30
+NEGLIGIBLE = 1e-6
+"""Decibels or degrees below which a deviation is rounding."""
+VERDICTS = {
+    "equal": "proved equal to the derived function",
+    "differs": "DIFFERS from the derived function: proved",
+    "agrees": "agrees with the derived function to 50 digits at 40 points: NOT PROVED",
+    "undecided": "NOT DECIDED: no value of it can be compared",
+}
+
+
+def audit_text(audit: Audit, width: int = WIDTH) -> str:
+    """Return an audit as lines of at most ``width`` columns where they can be broken."""
+    verdict = VERDICTS[audit.verdict]
+    if audit.verdict == "agrees" and audit.comparison is not None:
+        verdict = (
+            f"agrees with the derived function to 50 digits at {audit.comparison.agreed} points: NOT PROVED"
+        )
+    lines = [f"{audit.tf.name}   {verdict}"]
+    if audit.published.source:
+        lines += _filled(f"printed in: {audit.published.source}", width, INDENT)
+    if audit.unread:
+        label = "not read exactly" if audit.verdict == "differs" else "reason"
+        lines += _filled(f"{label}: {audit.unread}", width, INDENT)
+    if audit.verdict == "differs":
+        lines += _difference(audit, width)
+    return "\n".join(lines)
+
+
+def _difference(audit: Audit, width: int) -> list[str]:
+    changes, correction = audit.changes, audit.correction
+    lines = [
+        "",
+        INDENT + "printed",
+        *_marked(audit.published.expression, [(c.place, c.printed) for c in changes], width),
+    ]
+    lines += _where(audit.formula.lines, audit.published.scale, width)
+    lines.append("")
+    if audit.ratio is not None:
+        lines += _filled(
+            f"The printed formula is {_times(audit.ratio)} the derived function (proved).", width, INDENT
+        )
+    elif correction is not None:
+        lines.append(INDENT + "derived, in the same symbols")
+        lines += _marked(correction.expression, [(c.place, c.derived) for c in changes], width)
+        if correction.lines != audit.formula.lines or correction.scale != audit.published.scale:
+            lines += _where(correction.lines, correction.scale, width)
+        lines += ["", *_changes(audit), ""]
+        these = "this change" if len(changes) == 1 else "these changes"
+        lines += _filled(f"With {these} the printed formula is right (proved).", width, INDENT)
+    else:
+        lines += [*_derived(audit, width), ""]
+        lines.append(INDENT + "No small change was found that makes the printed formula right.")
+    lines += ["", *_numbers(audit, width)]
+    if audit.laws:
+        lines += ["", INDENT + "laws"]
+        for law in audit.laws:
+            head = f"{2 * INDENT}{'kept' if law.kept else 'VIOLATED':<10}"
+            lines += _filled(f"{law.law} ({law.how}): {law.detail}", width, head, " " * len(head))
+    return lines
+
+
+def _derived(audit: Audit, width: int) -> list[str]:
+    """Return the derived function where no small change to the print gives it."""
+    if audit.derived is not None:
+        return [INDENT + "derived, in the same symbols", *_marked(audit.derived, [], width)]
+    form = print_form(audit.tf)
+    return [
+        INDENT + "derived",
+        *_marked(quotient(form.num, form.den), [], width),
+        *_where(form.where, None, width),
+    ]
+
+
+def _times(ratio: Expression) -> str:
+    text = format_expression(ratio)
+    return "minus" if text == "-1" else f"{text} times"
+
+
+def _marked(expression: Expression, parts: Sequence[tuple[str, Expression]], width: int) -> list[str]:
+    """Return an expression in lines, with the parts that differ underlined where they can be told."""
+    lines = wrapped(expression, width - 2 * len(INDENT))
+    found = []
+    for i, line in enumerate(lines):
+        found.append(2 * INDENT + line)
+        marks = [" "] * len(line)
+        for place, part in parts:
+            text = format_expression(part)
+            if place == "factor":
+                if i == 0 and line.startswith(text):
+                    marks[: len(text)] = "^" * len(text)
+                continue
+            # A minus that joins the term to a sum is set off by a space.
+            for shown in (text, f"- {text.removeprefix('-')}") if text.startswith("-") else (text,):
+                if sum(len(_places(other, shown)) for other in lines) == 1 and (
+                    places := _places(line, shown)
+                ):
+                    marks[places[0] : places[0] + len(shown)] = "^" * len(shown)
+        if "^" in marks:
+            found.append((2 * INDENT + "".join(marks)).rstrip())
+    return found
+
+
+def _places(line: str, text: str) -> list[int]:
+    """Return where a part stands in a line by itself."""
+    found, start = [], line.find(text)
+    while start >= 0:
+        before, after = line[:start][-1:], line[start + len(text) :][:1]
+        if not (before.isalnum() or before in ("_", ".", "^") or after.isalnum() or after in ("_", ".", "^")):
+            found.append(start)
+        start = line.find(text, start + 1)
+    return found
+
+
+def _where(lines: Sequence[tuple[str, Expression]], scale: Expression | None, width: int) -> list[str]:
+    found = []
+    if scale is not None:
+        found += [2 * INDENT + line for line in _hanging("times ", scale, width - 2 * len(INDENT))]
+    for i, (name, expression) in enumerate(lines):
+        head = f"{'where' if i == 0 else '':<6}{name} = "
+        found += [2 * INDENT + line for line in _hanging(head, expression, width - 2 * len(INDENT))]
+    return found
+
+
+def _hanging(head: str, expression: Expression, width: int) -> list[str]:
+    first, *more = wrapped(expression, width - len(head))
+    return [head + first, *(" " * len(head) + line for line in more)]
+
+
+def _changes(audit: Audit) -> list[str]:
+    rows = [("", "printed", "derived")]
+    rows += [(c.place, format_expression(c.printed), format_expression(c.derived)) for c in audit.changes]
+    widths = [max(len(row[i]) for row in rows) for i in range(3)]
+    return [
+        2 * INDENT + "  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    ]
+
+
+def _numbers(audit: Audit, width: int) -> list[str]:
+    lines: list[str] = []
+    comparison, deviation = audit.comparison, audit.deviation
+    if comparison is not None and comparison.point is not None and comparison.derived is not None:
+        s = complex(*map(float, comparison.point))
+        printed, derived = _complex(comparison.printed), _complex(comparison.derived)
+        apart = f", apart by {comparison.gap:.2g} of it" if printed == derived else ""
+        text = f"at s = {_complex(s)} rad/s: printed {printed}, derived {derived}{apart} (proved)"
+        lines += _filled(text, width, INDENT)
+    if deviation is not None:
+        low, high = (f"{float(f):g}" for f in deviation.band)
+        parts = []
+        if deviation.unbounded:
+            parts.append(f"without bound at {deviation.magnitude_hz:.4g} Hz")
+        elif abs(deviation.magnitude_db) >= NEGLIGIBLE:
+            parts.append(f"{deviation.magnitude_db:+.4g} dB at {deviation.magnitude_hz:.4g} Hz")
+        if abs(deviation.phase_deg) >= NEGLIGIBLE:
+            parts.append(f"{deviation.phase_deg:+.4g} deg at {deviation.phase_hz:.4g} Hz")
+        shown = ", ".join(parts) or "none"
+        lines += _filled(f"largest deviation from {low} to {high} Hz (measured): {shown}", width, INDENT)
+    return lines
+
+
+def _complex(value: complex | None) -> str:
+    if value is None:
+        return "none"
+    if abs(value.imag) <= NOTHING * abs(value.real):
+        return f"{value.real:.6g}"
+    if abs(value.real) <= NOTHING * abs(value.imag):
+        return f"{value.imag:.6g}j"
+    return f"{value.real:.6g}{value.imag:+.6g}j"
+
+
+def _filled(text: str, width: int, head: str, margin: str | None = None) -> list[str]:
+    """Return words in lines of at most ``width`` columns; what stands in parentheses is kept together."""
+    margin = head if margin is None else margin
+    lines, line, empty = [], head, True
+    for word in _words(text, width - len(margin)):
+        if not empty and len(line) + 1 + len(word) > width:
+            lines.append(line)
+            line, empty = margin, True
+        line += word if empty else f" {word}"
+        empty = False
+    return [*lines, line]
+
+
+def _words(text: str, longest: int) -> list[str]:
+    words: list[str] = []
+    depth = 0
+    for word in text.split(" "):
+        if depth and len(words[-1]) + 1 + len(word) <= longest:
+            words[-1] += f" {word}"
+        else:
+            words.append(word)
+        depth += word.count("(") - word.count(")")
+    return words
