@@ -1,0 +1,182 @@
+"""Theories that tend to each other do so at the order that they should."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import math
+
+import pytest
+
+import symflex
+
+# --------------------------------------------------------------- a chain of masses and springs, and its rod
+
+# A steel rod of 1 m and 480 mm^2: E A = 9.6e7 N and rho A l = 3.768 kg; c = sqrt(E/rho) = 5048 m/s.
+STIFFNESS, MASS, SOUND = 9.6e7, 3.768, 5047.545
+
+ROD = """
+symflex = 1
+parameters = { E = "200 GPa", rho = "7850 kg/m^3", A = "480 mm^2", l = "1 m" }
+elements.bar = { type = "rod", between = ["x_0", "x_end"], E = "E", A = "A", rho = "rho", l = "l" }
+inputs.F = { force = "x_0" }
+outputs = { near = "x_0", far = "x_end" }
+"""
+
+
+@functools.cache
+def rod(output):
+    return symflex.loads(ROD).transfer_function(output, "F").bind()
+
+
+@functools.cache
+def chain(n, output):
+    """Return the rod cut into n springs, half of each one's mass at either end of it."""
+    nodes = ["x_0", *(f"x_{i}" for i in range(1, n)), "x_end"]
+    lines = ["symflex = 1", "[elements]"]
+    for i, node in enumerate(nodes):
+        share = 0.5 if i in {0, n} else 1.0
+        lines.append(f'm_{i} = {{ type = "mass", at = "{node}", m = "{share * MASS / n!r} kg" }}')
+    for i in range(n):
+        ends = f'["{nodes[i]}", "{nodes[i + 1]}"]'
+        lines.append(f'k_{i} = {{ type = "spring", between = {ends}, k = "{STIFFNESS * n!r} N/m" }}')
+    lines += ["[inputs]", 'F = { force = "x_0" }', "[outputs]", 'near = "x_0"', 'far = "x_end"']
+    return symflex.loads("\n".join(lines)).transfer_function(output, "F").bind()
+
+
+def error(n, output, s):
+    return abs(complex(chain(n, output)(s)) / complex(rod(output)(s)) - 1)
+
+
+# Up to about the first mode of the free rod, s l/c = j pi; four elements do not resolve the second.
+AT = {
+    "on the imaginary axis": 1.1j * SOUND,
+    "decaying": (-0.4 + 0.8j) * SOUND,
+    "growing": (0.9 + 0.3j) * SOUND,
+    "real": 0.7 * SOUND,
+}
+
+
+@pytest.mark.parametrize("output", ["near", "far"])
+@pytest.mark.parametrize("n", [4, 8, 16])
+@pytest.mark.parametrize("where", tuple(AT))
+def test_a_chain_of_masses_tends_to_the_rod_at_second_order(where, n, output):
+    s = AT[where]
+    order = math.log2(error(n, output, s) / error(2 * n, output, s))
+    assert order == pytest.approx(2, abs=0.1)
+
+
+def test_thirty_two_masses_are_close_to_the_rod():
+    assert error(32, "far", AT["on the imaginary axis"]) < 1e-3
+
+
+# ------------------------------------------------------------------------------------------ theories of beams
+
+# A beam ten times as long as deep.
+PARAMETERS = """
+symflex = 1
+[parameters]
+E = "70 GPa"
+I = "67500 mm^4"
+rho = "2700 kg/m^3"
+A = "900 mm^2"
+l = "0.3 m"
+G = "26 GPa"
+kappa = 0.85
+[inputs]
+F = { force = "tip" }
+[outputs]
+y = "tip"
+theta = "tip.theta"
+[elements]
+"""
+SLOW = 1500.0
+"""About half of the first natural frequency [rad/s]; E I = 4725 N m^2, rho A = 2.43 kg/m."""
+PLACES = (SLOW * 1j, 3 * SLOW * 1j, SLOW * (2 + 1j), SLOW * (-1 + 4j))
+
+
+@functools.cache
+def theory(name, output):
+    shear = ', kappa = "kappa", G = "G"' if name == "timoshenko" else ""
+    beam = (
+        f'arm = {{ type = "beam", theory = "{name}", between = ["ground", "tip"],'
+        f' E = "E", I = "I", rho = "rho", A = "A", l = "l"{shear} }}'
+    )
+    return symflex.loads(PARAMETERS + beam).transfer_function(output, "F")
+
+
+def distance(first, second, s):
+    return abs(complex(first(s)) / complex(second(s)) - 1)
+
+
+def orders(errors):
+    return [math.log2(a / b) for a, b in itertools.pairwise(errors)]
+
+
+@pytest.mark.parametrize("output", ["y", "theta"])
+@pytest.mark.parametrize("s", PLACES)
+def test_a_timoshenko_beam_tends_to_euler_and_bernoulli_at_first_order(s, output):
+    # E I stays; rho I falls and kappa G A grows together.
+    plain = theory("euler-bernoulli", output).bind()
+    errors = [
+        distance(theory("timoshenko", output).bind(E=70e9 * g, I=6.75e-8 / g, G=26e9 * g), plain, s)
+        for g in (256, 512, 1024, 2048)
+    ]
+    assert orders(errors) == pytest.approx([1, 1, 1], abs=0.02)
+
+
+@pytest.mark.parametrize("output", ["y", "theta"])
+@pytest.mark.parametrize("s", PLACES)
+def test_a_timoshenko_beam_tends_to_rayleigh_at_first_order_in_the_shear_flexibility(s, output):
+    rayleigh = theory("rayleigh", output).bind()
+    errors = [
+        distance(theory("timoshenko", output).bind(G=26e9 * g), rayleigh, s) for g in (256, 512, 1024, 2048)
+    ]
+    assert orders(errors) == pytest.approx([1, 1, 1], abs=0.02)
+
+
+@pytest.mark.parametrize("output", ["y", "theta"])
+@pytest.mark.parametrize("s", PLACES)
+def test_a_rayleigh_beam_tends_to_euler_and_bernoulli_at_first_order_in_the_rotary_inertia(s, output):
+    plain = theory("euler-bernoulli", output).bind()
+    errors = [
+        distance(theory("rayleigh", output).bind(E=70e9 * g, I=6.75e-8 / g), plain, s)
+        for g in (256, 512, 1024, 2048)
+    ]
+    assert orders(errors) == pytest.approx([1, 1, 1], abs=0.02)
+
+
+# -------------------------------------------------------------------------------------- a stiffened string
+
+STRING = """
+symflex = 1
+[parameters]
+N = "180 N"
+rho = "7850 kg/m^3"
+A = "1.2 mm^2"
+l = "0.65 m"
+E = "200 GPa"
+I = "1e-6 mm^4"
+[inputs]
+F = { force = "q" }
+[outputs]
+y = "q"
+[elements]
+"""
+
+
+def held(kind, more):
+    part = f'rho = "rho", A = "A", N = "N", l = "l/2"{more}'
+    return symflex.loads(
+        STRING
+        + f'left = {{ type = "{kind}", between = ["ground", "q"], {part} }}\n'
+        + f'right = {{ type = "{kind}", between = ["q", "ground"], {part} }}\n'
+    ).transfer_function("y", "F")
+
+
+def test_a_beam_in_tension_tends_to_the_string_as_the_square_root_of_its_stiffness():
+    # Bending matters within sqrt(E I/N) of the ends, so the error is of first order in that length.
+    beam = held("beam", ', E = "E", I = "I"')
+    string = held("string", "").bind()
+    errors = [distance(beam.bind(I=1e-18 / 4**k), string, 500j) for k in range(4)]
+    assert orders(errors) == pytest.approx([1, 1, 1], abs=0.05)
