@@ -36,14 +36,14 @@ class Vanishing:
         With the table's generators.
     table : KernelTable
         Wavenumbers and kernels.
-    solved : sequence of (str, Factored)
+    solutions : sequence of sequence of (str, Factored)
         Parameters in terms of the wavenumbers and the others, from the dispersion relations, in the order in
-        which they can be evaluated.
+        which they can be evaluated; one that is finite where the order is asked for is used.
     """
 
     ring: Ring
     table: KernelTable
-    solved: Sequence[tuple[str, Factored]]
+    solutions: Sequence[Sequence[tuple[str, Factored]]]
 
     def at_zero(self, polynomial: fmpz_mpoly, wavenumber: str) -> int | None:
         """Return the order in a wavenumber at zero, s and the parameters being independent of it."""
@@ -59,22 +59,25 @@ class Vanishing:
         return self._order(polynomial, dispersion.wavenumbers[0], "")
 
     def _order(self, polynomial: fmpz_mpoly, moving: str, meeting: str | None) -> int | None:
-        for terms in TERMS:
-            field = TaylorField(terms)
-            values = self._values(field, moving, meeting)
-            if values is None:
-                return None
-            order = field.order(field.polynomial(polynomial, self.ring.names, values))
-            if order is not None:
-                return order
+        for solved in self.solutions:
+            for terms in TERMS:
+                field = TaylorField(terms)
+                values = self._values(field, moving, meeting, solved)
+                if values is None:
+                    break
+                order = field.order(field.polynomial(polynomial, self.ring.names, values))
+                if order is not None:
+                    return order
         return None
 
-    def _values(self, field: TaylorField, moving: str, meeting: str | None) -> dict[str, nmod_poly] | None:
+    def _values(
+        self, field: TaylorField, moving: str, meeting: str | None, solved: Sequence[tuple[str, Factored]]
+    ) -> dict[str, nmod_poly] | None:
         names = self.ring.names
         values = random_values(names, Random(20), field)
         values[moving] = field.power(1, int(values[meeting][0]) if meeting else 0)
         if meeting is not None:
-            for name, formula in self.solved:
+            for name, formula in solved:
                 found = field.rational(formula, names, values)
                 if found is None:
                     return None

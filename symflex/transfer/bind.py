@@ -37,8 +37,8 @@ if TYPE_CHECKING:
 FIRST_BITS = 96
 LAST_BITS = 6144
 DOUBLE_BITS = 54
-NEAR_ZERO = (200, 220)
-"""Negative powers of two, in rad/s, between which the behaviour at s = 0 is read off."""
+NEAR = (200, 220)
+"""Negative powers of two between which the behaviour at a point is read off, where kernels are no numbers."""
 
 
 @dataclass(frozen=True)
@@ -209,14 +209,13 @@ class BoundTransferFunction:
             return 0j
         if not (isfinite(s.real) and isfinite(s.imag)):
             return complex(nan, nan)
-        if self.kernels and s == 0:
-            limit = self.limit_at_zero()
-            return complex(limit) if isfinite(limit) else complex(inf, nan)
         point, function = acb(s.real, s.imag), self._first
         while True:
             value = function(point)
             if value.is_finite() and value.rel_accuracy_bits() >= DOUBLE_BITS:
                 return complex(float(value.real.mid()), float(value.imag.mid()))
+            if self.kernels and not value.is_finite():
+                return self._limit_at(s)
             if function.bits >= LAST_BITS:
                 break
             function = self.enclosed(2 * function.bits)
@@ -241,23 +240,36 @@ class BoundTransferFunction:
 
     def _limit_at_zero_of_kernels(self) -> float:
         """Return the limit from two values close to zero, where it goes like an integer power of s."""
-        near, nearer = (self._at_power_of_two(-e) for e in NEAR_ZERO)
-        if near is None or nearer is None:
+        order, value = self._order_near(0j)
+        if value is None:
             return nan
-        with ctx.workprec(LAST_BITS):
-            ratio = abs(nearer / near).log() / arb(2).log() / (NEAR_ZERO[0] - NEAR_ZERO[1])
-            order = round(float(ratio.mid()))
-            value = float(nearer.real.mid()) if order == 0 else 0.0
-            if order < 0:
-                return inf if nearer.real > 0 else -inf
-            return value
+        if order < 0:
+            return inf if value.real > 0 else -inf
+        return float(value.real.mid()) if order == 0 else 0.0
 
-    def _at_power_of_two(self, exponent: int) -> acb | None:
-        """Return a ball around the value at ``2^exponent``, ``None`` when it is not found."""
+    def _limit_at(self, s: complex) -> complex:
+        """Return the value where wavenumbers vanish or meet, and kernels are no numbers, by continuity."""
+        order, value = self._order_near(s)
+        if value is None or order < 0:
+            return complex(inf, nan)
+        return 0j if order > 0 else complex(float(value.real.mid()), float(value.imag.mid()))
+
+    def _order_near(self, s: complex) -> tuple[int, acb | None]:
+        """Return the order of the zero (negative: of the pole) at ``s``, and a value close by."""
+        near, nearer = (self._beside(s, -e) for e in NEAR)
+        if near is None or nearer is None:
+            return 0, None
+        with ctx.workprec(LAST_BITS):
+            ratio = abs(nearer / near).log() / arb(2).log() / (NEAR[0] - NEAR[1])
+            return round(float(ratio.mid())), nearer
+
+    def _beside(self, s: complex, exponent: int) -> acb | None:
+        """Return a ball around the value at ``s + 2^exponent``, ``None`` when it is not found."""
         bits = FIRST_BITS * 8
         while bits <= LAST_BITS:
             with ctx.workprec(bits):
-                value = self.enclosed(bits)(acb(arb(2) ** exponent))
+                point = acb(s.real, s.imag) + (arb(2) ** exponent) * max(abs(s), 1.0)
+                value = self.enclosed(bits)(point)
                 if value.is_finite() and value.rel_accuracy_bits() >= DOUBLE_BITS:
                     return value
             bits *= 2

@@ -10,21 +10,25 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symflex.kernels import Dispersion, Factored, KernelTable, Ring, degree_in
+from symflex.errors import BudgetError, Diagnostic
+from symflex.kernels import MEMORY_LIMIT, Dispersion, Factored, KernelTable, Ring, degree_in
 from symflex.kernels.exponentials import Exponentials
 from symflex.kernels.multiple_angles import lift
-from symflex.kernels.normal_form import NormalForm
+from symflex.kernels.normal_form import NormalForm, split
 from symflex.kernels.origin import Origin
 from symflex.kernels.vanishing import Vanishing
 from symflex.transfer.cancel import cancel
-from symflex.transfer.compose import compose_rational
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from flint import fmpz_mpoly
 
     from symflex.kernels.exponentials import Angle
+
+
+WAYS = 12
+"""Number of ways to solve the dispersion relations that are tried when orders of vanishing are looked for."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -75,6 +79,10 @@ class KernelReduction:
         self.normal = NormalForm(ring, table)
         self.coordinates = Exponentials(ring, table)
         self.solved = _solve_relations(ring, table, parameters)
+        # A later formula holds no parameter of an earlier one, so the last is evaluated first.
+        self._solutions = tuple(s[::-1] for s in _solve_in_many_ways(ring, table, parameters)) or ((),)
+        relations = sum(len(_relations(ring, d)) for d in table.dispersions)
+        self._is_solved = len(self.solved) == relations
         self._kernels = [ring.index[k.generator] for k in table.kernels]
 
     def has_kernels(self, factor: fmpz_mpoly) -> bool:
@@ -97,15 +105,15 @@ class KernelReduction:
             The common factor that was cancelled before, over what rows were multiplied by to clear
             denominators.
         """
-        above, below = self.normal.reduce_factored(num), self.normal.reduce_factored(den)
+        # Where parameters follow from the wavenumbers, that alone makes equal functions equal.
+        pairs = not self._is_solved
+        above, below = (self._free(self.normal.reduce_factored(v, pairs=pairs)) for v in (num, den))
         if below.is_zero:
             return None
         if above.is_zero:
-            one = Factored.number(self.ring, 1)
-            return Reduced(
-                above, one, self._modes(self.normal.reduce_factored(below * cancelled)), self.table
-            )
-        quotient, shared = cancel(self._free(above), self._free(below))
+            one, modes = Factored.number(self.ring, 1), self.normal.reduce_factored(den * cancelled)
+            return Reduced(one * 0, one, self._modes(modes), self.table)
+        quotient, shared = cancel(above, below)
         before = self._free(cancelled)
         shared, _ = cancel((shared * before).numerator(), before.denominator())
         quotient, shared = self._split_contents(quotient), self._split_contents(shared)
@@ -166,8 +174,10 @@ class KernelReduction:
         result = Factored.number(value.ring, value.unit)
         for factor, exponent in value.factors:
             content, rest = self.coordinates.split(factor)
-            result = result * Factored.polynomial(value.ring, content) ** exponent
-            result = result * Factored.polynomial(value.ring, rest) ** exponent
+            number, pieces = content.factor()
+            result = result * Fraction(int(number)) ** exponent
+            for piece, power in (*pieces, (rest, 1)):
+                result = result * Factored.polynomial(value.ring, piece) ** (exponent * int(power))
         return result
 
     def _shortest(self, value: Factored) -> Factored:
@@ -199,10 +209,14 @@ class KernelReduction:
         def is_mode(factor: fmpz_mpoly) -> bool:
             if self.has_kernels(factor):
                 return factor not in decays
-            varies = len(factor) > 1 and degree_in(factor, 0) > 0
-            return varies and factor not in singular and not self._has_waves(factor)
+            return len(factor) > 1 and degree_in(factor, 0) > 0 and not self._has_waves(factor)
 
-        return value.filter(is_mode)
+        result = Factored.number(self.ring, 1)
+        for factor, exponent in value.filter(is_mode).factors:
+            rest = factor if self.has_kernels(factor) else _without(factor, singular)
+            if not rest.is_constant():
+                result = result * Factored.polynomial(self.ring, rest) ** exponent
+        return result
 
     def _free(self, value: Factored) -> Factored:
         """Return a value in exponentials; parameters that wavenumbers determine are expressed by them."""
@@ -224,7 +238,7 @@ class KernelReduction:
 
     def _entire(self, ratio: Factored, table: KernelTable) -> tuple[Factored, Factored]:
         """Split a quotient into entire parts that are not both zero where a wavenumber is."""
-        vanishing = Vanishing(self.ring, table, self.solved)
+        vanishing = Vanishing(self.ring, table, self._solutions)
         one = Factored.number(self.ring, 1)
         above, below = [one], [one]
         rest = Factored.number(self.ring, ratio.unit)
@@ -237,7 +251,7 @@ class KernelReduction:
             piece = Factored(self.ring, Fraction(1), ((factor, abs(exponent)),))
             (above if exponent > 0 else below).append(piece / orders ** abs(exponent))
             rest = rest * orders**exponent
-        rest = self._whole(rest, table, splits)
+        rest = self._whole(_merge_splits(rest, splits.values()), table, splits)
         num, den = rest.numerator(), rest.denominator()
         for piece in above:
             num = num * piece
@@ -301,6 +315,30 @@ class KernelReduction:
         return rest
 
 
+def _merge_splits(value: Factored, splits: Iterable[Factored]) -> Factored:
+    """Return a product with ``(lambda_1 - lambda_2) (lambda_1 + lambda_2)`` as one factor."""
+    for split in splits:
+        ((polynomial, _),) = split.factors
+        _, pieces = polynomial.factor()
+        halves = [Factored.polynomial(value.ring, p) for p, _ in pieces]
+        exponents = [
+            next((e for f, e in value.factors if f == h.factors[0][0]), 0)
+            for h in halves
+            if len(h.factors) == 1
+        ]
+        if len(exponents) == 2 and exponents[0] == exponents[1] != 0:  # noqa: PLR2004
+            value = value * (split / (halves[0] * halves[1])) ** exponents[0]
+    return value
+
+
+def _without(polynomial: fmpz_mpoly, factors: Sequence[fmpz_mpoly]) -> fmpz_mpoly:
+    """Return a polynomial divided by every power of the factors that divides it."""
+    for factor in factors:
+        while not (common := polynomial.gcd(factor)).is_constant():
+            polynomial = polynomial / common
+    return polynomial
+
+
 def _multiples(
     table: KernelTable, coordinates: Sequence[Sequence[Sequence[int]]]
 ) -> tuple[tuple[int, tuple[int, ...]], ...]:
@@ -326,26 +364,66 @@ def _solve_relations(
 ) -> tuple[tuple[str, Factored], ...]:
     """Return parameters as rational functions of wavenumbers and the rest, one per dispersion relation.
 
-    Each relation is linear in most of the parameters it holds, such as a density.
+    Each relation is linear in most of the parameters it holds, such as a density. The one with the shortest
+    expression is taken, with the relations in either order.
     """
+    relations = [r for d in table.dispersions for r in _relations(ring, d)]
+    orders = (
+        (relations, relations[::-1]) if any(d.kind == "pair" for d in table.dispersions) else (relations,)
+    )
+    return min((_solve_in_turn(ring, order, parameters) for order in orders), key=_length)
+
+
+def _solve_in_many_ways(
+    ring: Ring, table: KernelTable, parameters: Sequence[str]
+) -> list[tuple[tuple[str, Factored], ...]]:
+    """Return solutions of the relations that start from different parameters.
+
+    Some have poles where wavenumbers vanish, and others have not.
+    """
+    if not any(d.kind == "pair" for d in table.dispersions):
+        return []
+    found: dict[tuple[str, ...], tuple[tuple[str, Factored], ...]] = {}
+    relations = [r for d in table.dispersions for r in _relations(ring, d)]
+    for first in (None, *parameters):
+        for order in (relations, relations[::-1]):
+            solved = _solve_in_turn(ring, order, parameters, first)
+            if len(solved) == len(relations):
+                found.setdefault(tuple(name for name, _ in solved), solved)
+        if len(found) > WAYS:
+            break
+    return list(found.values())
+
+
+def _length(solved: Sequence[tuple[str, Factored]]) -> tuple[int, int]:
+    """Return what is better the smaller it is: relations left unsolved, and terms."""
+    return -len(solved), sum(len(f) for _, formula in solved for f, _ in formula.factors)
+
+
+def _solve_in_turn(
+    ring: Ring, relations: Sequence[Factored], parameters: Sequence[str], preferred: str | None = None
+) -> tuple[tuple[str, Factored], ...]:
     solved: list[tuple[str, Factored]] = []
-    for relation in (r for d in table.dispersions for r in _relations(ring, d)):
+    for relation in relations:
         value = relation
         for name, formula in solved:
             value = value.map_factors(ring, lambda f, n=name, g=formula: _substitute(ring, f, n, g))  # type: ignore[misc]
-        polynomial = value.numerator().expand() if not value.is_zero else ring.constant(0)
+        if value.is_zero:
+            continue
+        polynomial = value.numerator().expand()
+        found: list[tuple[bool, int, int, str, Factored]] = []
         for name in parameters:
             index = ring.index[name]
             if any(n == name for n, _ in solved) or degree_in(polynomial, index) != 1:
                 continue
-            x = ring.context.gen(index)
             zero = _at_zero(ring, polynomial, index)
-            slope = (polynomial - zero) / x
-            formula = -Factored.polynomial(ring, zero) / Factored.polynomial(ring, slope)
-            if formula.is_zero:
-                continue
+            slope = (polynomial - zero) / ring.context.gen(index)
+            if not zero.is_zero():
+                formula = -Factored.polynomial(ring, zero) / Factored.polynomial(ring, slope)
+                found.append((name != preferred, len(zero) + len(slope), len(zero), name, formula))
+        if found:
+            *_, name, formula = min(found, key=lambda entry: entry[:3])
             solved.append((name, formula))
-            break
     return tuple(solved)
 
 
@@ -372,8 +450,31 @@ def _substitute(ring: Ring, factor: fmpz_mpoly, name: str, formula: Factored) ->
     index = ring.index[name]
     if not degree_in(factor, index):
         return Factored.polynomial(ring, factor)
-    images = [formula if n == name else Factored.generator(ring, n) for n in ring.names]
-    return compose_rational(ring, factor, images)
+    highest = degree_in(factor, index)
+    below = formula.denominator()
+    # The factors are many terms each: powers are made once, and multiplied by the engine.
+    above_powers = _powers((formula * below).expand(), highest, ring)
+    below_powers = _powers(below.expand(), highest, ring)
+    total = ring.constant(0)
+    for power, part in split(ring, factor, index).items():
+        size = len(part) * len(above_powers[power]) * len(below_powers[highest - power])
+        if ring.bytes_of(size) > MEMORY_LIMIT:
+            raise _too_large()
+        total = total + part * above_powers[power] * below_powers[highest - power]
+    return Factored.polynomial(ring, total) / below**highest
+
+
+def _powers(base: fmpz_mpoly, highest: int, ring: Ring) -> list[fmpz_mpoly]:
+    found = [ring.constant(1)]
+    for _ in range(highest):
+        found.append(found[-1] * base)
+    return found
+
+
+def _too_large() -> BudgetError:
+    message = "the closed form is too large: its wavenumbers depend on too many symbols"
+    hint = "leave out losses, foundations or lengths, or split the model"
+    return BudgetError(Diagnostic("SF502", message, None, hint))
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,8 @@ import pytest
 import sympy
 
 import symflex
-from symflex.emit.forms import FORMS
+from symflex.emit.forms.usage import RATIONAL
+from tests.unit.roots.distributed import ROD, SLIDING_FREE
 
 TABLES = {
     "parameters": {
@@ -142,7 +143,7 @@ def test_parameters_are_positive_symbols(colocated):
     assert next(x for x in colocated.expr.free_symbols if x.name == "m_1").is_positive
 
 
-@pytest.mark.parametrize("name", [name for name in FORMS if name != "zpk"])
+@pytest.mark.parametrize("name", [name for name in RATIONAL if name not in ("zpk", "frequency")])
 def test_every_form_is_the_same_function(colocated, name):
     form = colocated.form(name)
     assert form.name == name
@@ -331,3 +332,41 @@ def test_every_public_name_can_be_imported_and_documents_itself():
 def test_a_name_that_does_not_exist_is_an_attribute_error():
     with pytest.raises(AttributeError, match="no attribute 'lod'"):
         symflex.lod  # noqa: B018
+
+
+@pytest.fixture(scope="module")
+def beam():
+    return symflex.loads(SLIDING_FREE)
+
+
+def test_a_distributed_function_says_so(beam):
+    G = beam.transfer_function("V_tip", "F")
+    assert (G.is_distributed, G.bind().is_distributed) == (True, True)
+    assert repr(G) == "<TransferFunction V_tip/F: mobility, distributed>"
+
+
+def test_a_lumped_function_is_not_distributed():
+    assert not symflex.loads(TEXT).transfer_function("X_act", "F").is_distributed
+
+
+def test_poles_of_a_distributed_function_are_estimates(beam):
+    poles = beam.transfer_function("V_act", "F").bind().poles(modes=2, digits=20)
+    # tan x + tanh x = 0: x = 2.36502, 5.49780
+    x = [round(math.sqrt(complex(p).imag), 5) for p in poles if p.im >= 0]
+    assert x == [0, 2.36502, 5.49780]
+    assert not any(p.certified for p in poles[1:])
+
+
+def test_a_pole_zero_map_takes_a_region(beam):
+    found = beam.transfer_function("V_act", "F").bind().pole_zero_map(region=(-1, 1, 2, 10))
+    assert len(found.poles) == 1
+
+
+def test_only_one_region_is_taken(beam):
+    with pytest.raises(symflex.SymflexError, match="SF902"):
+        beam.transfer_function("V_act", "F").bind().pole_zero_map(modes=2, band=(1, 2))
+
+
+def test_the_gain_of_a_distributed_function_at_rest_is_its_limit():
+    # A rod held at one end: E A/l = 1 N/m.
+    assert symflex.loads(ROD).transfer_function("X", "F").bind().dcgain() == pytest.approx(1)

@@ -2,6 +2,8 @@ from __future__ import annotations
 
 import pytest
 
+from tests.unit.roots.distributed import SLIDING_FREE
+
 ROOT_KEYS = {
     "re", "im", "radius", "multiplicity", "frequency_hz", "damping_ratio", "on_imaginary_axis", "is_real",
     "certified", "boundary",
@@ -29,7 +31,7 @@ def test_json_has_the_documented_keys(shell):
     assert (done.code, done.err) == (0, "")
     document = done.json
     assert set(document) == {
-        "schema", "tf", "region", "certified", "poles", "zeros", "hidden", "certificate",
+        "schema", "tf", "region", "certified", "poles", "zeros", "hidden", "excluded", "certificate",
     }  # fmt: skip
     assert document["schema"] == "symflex.roots/1"
     assert set(document["certificate"]) == {"engine", "counted", "found", "reason"}
@@ -116,3 +118,40 @@ def test_a_transfer_function_that_is_zero_has_only_hidden_modes(shell):
     document = shell("roots", "zero.toml", "--tf", "V/F", "--json").json
     assert (document["poles"], document["zeros"]) == ([], [])
     assert [root["im"][:2] for root in document["hidden"]] == ["3.", "-3"]
+
+
+def test_roots_of_a_distributed_system_are_shown_uncertified(beam):
+    done = beam("roots", "beam.toml", "--modes", "2")
+    assert done.out.startswith("V_act/F   uncertified: 10 of 10 roots located numerically\n")
+
+
+def test_what_is_uncertified_ends_with_code_0(beam):
+    assert beam("roots", "beam.toml", "--modes", "2").code == 0
+
+
+def test_what_is_uncertified_ends_with_code_4_when_proof_is_asked_for(beam):
+    assert beam("roots", "beam.toml", "--modes", "2", "--strict").code == 4
+
+
+def test_what_is_proved_is_enough_for_the_strict(shell):
+    assert shell("roots", "x.toml", "--strict").code == 0
+
+
+def test_json_of_a_distributed_system_is_not_certified(beam):
+    document = beam("roots", "beam.toml", "--modes", "2", "--json").json
+    assert (document["certified"], document["poles"][1]["certified"]) == (False, False)
+
+
+def test_the_default_region_of_a_distributed_system_is_explained(beam):
+    assert "by default: a distributed system has infinitely many poles" in beam("roots", "beam.toml").out
+
+
+def test_a_million_modes_exceed_a_budget(beam):
+    done = beam("roots", "beam.toml", "--modes", "1000000")
+    assert (done.code, "SF505" in done.err) == (5, True)
+
+
+@pytest.fixture
+def beam(shell):
+    (shell.folder / "beam.toml").write_text(SLIDING_FREE)
+    return shell

@@ -203,7 +203,7 @@ def test_a_product_of_half_angles_is_found_as_a_common_factor():
 def test_the_order_at_a_zero_wavenumber_is_that_of_the_taylor_series(function, order):
     found = propagation("bending", (L,))
     kernels = [found.kernel_ring.generator(k.generator) for k in found.table.kernels]
-    vanishing = Vanishing(found.kernel_ring, found.table, ())
+    vanishing = Vanishing(found.kernel_ring, found.table, [()])
     assert vanishing.at_zero(function(*kernels), found.table.wavenumbers[0]) == order
 
 
