@@ -317,8 +317,8 @@ class KernelReduction:
 
 def _merge_splits(value: Factored, splits: Iterable[Factored]) -> Factored:
     """Return a product with ``(lambda_1 - lambda_2) (lambda_1 + lambda_2)`` as one factor."""
-    for split in splits:
-        ((polynomial, _),) = split.factors
+    for pair in splits:
+        ((polynomial, _),) = pair.factors
         _, pieces = polynomial.factor()
         halves = [Factored.polynomial(value.ring, p) for p, _ in pieces]
         exponents = [
@@ -327,7 +327,7 @@ def _merge_splits(value: Factored, splits: Iterable[Factored]) -> Factored:
             if len(h.factors) == 1
         ]
         if len(exponents) == 2 and exponents[0] == exponents[1] != 0:  # noqa: PLR2004
-            value = value * (split / (halves[0] * halves[1])) ** exponents[0]
+            value = value * (pair / (halves[0] * halves[1])) ** exponents[0]
     return value
 
 
