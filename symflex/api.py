@@ -14,7 +14,7 @@ import mpmath
 
 from symflex import pipeline
 from symflex import roots as roots_room
-from symflex.emit.forms import PrintedForm, print_form
+from symflex.emit.forms import PrintedForm, counts_of, print_form
 from symflex.emit.json_format import derive_json
 from symflex.emit.sympy_expression import symbols_of, to_sympy
 from symflex.emit.text import form_text
@@ -44,7 +44,7 @@ class Model:
 
     Parameters
     ----------
-    parameters, definitions, elements, signals, blocks, inputs, outputs : mapping
+    parameters, definitions, elements, signals, blocks, fields, inputs, outputs : mapping
     analysis, figures, published : mapping
         The tables of the specification language, as Python mappings of the same shape.
     title, source : str
@@ -77,6 +77,7 @@ class Model:
         elements: Table | None = None,
         signals: Table | None = None,
         blocks: Table | None = None,
+        fields: Table | None = None,
         inputs: Table | None = None,
         outputs: Table | None = None,
         analysis: Table | None = None,
@@ -91,6 +92,7 @@ class Model:
             "elements": elements,
             "signals": signals,
             "blocks": blocks,
+            "fields": fields,
             "inputs": inputs,
             "outputs": outputs,
             "analysis": analysis,
@@ -264,6 +266,11 @@ class TransferFunction:
         """SI unit, empty when unknown."""
         return self.exact.unit
 
+    @property
+    def is_distributed(self) -> bool:
+        """True when waves or delays make the function transcendental, with infinitely many poles or zeros."""
+        return self.exact.is_distributed
+
     @cached_property
     def _shortest(self) -> Form:
         return self.form()
@@ -297,7 +304,11 @@ class TransferFunction:
         return tuple((to_sympy(e, symbols), m) for e, m in hidden_expressions(self.exact))
 
     def form(self, name: str | None = None, digits: int = 6) -> Form:
-        """Return the function as ``polynomial``, ``monic``, ``factored``, ``zpk`` or ``definitions``.
+        """Return the function in one of the forms of ``symflex derive``.
+
+        ``polynomial``, ``monic``, ``factored``, ``zpk`` and ``definitions`` for rational functions,
+        ``hyperbolic``, ``krylov``, ``vaughan``, ``factored`` and ``polynomial`` for those of beams, rods and
+        delays, ``frequency`` for all.
 
         Parameters
         ----------
@@ -331,7 +342,9 @@ class TransferFunction:
         return BoundTransferFunction(pipeline.bind(self.exact, values))
 
     def __repr__(self) -> str:
-        zeros, poles = self.exact.order
+        if self.is_distributed:
+            return f"<TransferFunction {self.name}: {self.quantity}, distributed>"
+        zeros, poles = ("infinitely many" if n is None else n for n in counts_of(self.exact))
         return f"<TransferFunction {self.name}: {self.quantity}, {zeros} zeros, {poles} poles>"
 
     def _repr_latex_(self) -> str:
@@ -343,7 +356,7 @@ class TransferFunction:
 
 @dataclass(frozen=True)
 class Root:
-    """A certified root s [rad/s].
+    """A root s [rad/s].
 
     Parameters
     ----------
@@ -374,7 +387,7 @@ class Root:
 
     @property
     def radius(self) -> mpmath.mpf:
-        """A bound on the distance from :attr:`value` to the root [rad/s]."""
+        """A bound on the distance from :attr:`value` to the root [rad/s]; if unproved, an estimate."""
         root = self.certified_root
         with roots_room.precision(64):
             return to_mpmath((root.re.rad() ** 2 + root.im.rad() ** 2).sqrt().upper())
@@ -386,8 +399,8 @@ class Root:
 
     @property
     def certified(self) -> bool:
-        """False when several roots could not be told apart inside the enclosure."""
-        return self.certified_root.certified
+        """False when several roots could not be told apart inside the enclosure, or nothing is proved."""
+        return self.certified_root.certified and not self.certified_root.is_estimate
 
     @property
     def on_imaginary_axis(self) -> bool:
@@ -426,7 +439,11 @@ def to_mpmath(ball: arb) -> mpmath.mpf:
 
 @dataclass(frozen=True)
 class BoundTransferFunction:
-    """A transfer function with numbers: evaluates, and finds its poles and zeros with proof."""
+    """A transfer function with numbers: evaluates, and finds its poles and zeros.
+
+    Those of a lumped system are proved. A distributed one has infinitely many; they are located numerically,
+    in a region, and not certified.
+    """
 
     bound: transfer_room.BoundTransferFunction
 
@@ -434,6 +451,11 @@ class BoundTransferFunction:
     def name(self) -> str:
         """``OUT/IN``."""
         return self.bound.name
+
+    @property
+    def is_distributed(self) -> bool:
+        """True when the function is transcendental."""
+        return self.bound.is_distributed
 
     def __repr__(self) -> str:
         return f"<BoundTransferFunction {self.name}>"
@@ -462,7 +484,8 @@ class BoundTransferFunction:
         Parameters
         ----------
         modes : int, optional
-            Only the lowest modes, with the roots at the origin.
+            Only the lowest modes, with the roots at the origin. For a distributed system the model's
+            ``[analysis]`` decides when neither modes nor band are given, and else the number is five.
         band : (float, float), optional
             Only natural frequencies in this band [Hz].
         digits : int
@@ -476,21 +499,48 @@ class BoundTransferFunction:
         """Return the zeros; see :meth:`poles`."""
         return tuple(Root(r) for r in pipeline.roots(self.bound, _region(modes, band), digits).zeros)
 
-    def pole_zero_map(self, digits: int = 15) -> roots_room.PoleZeroMap:
-        """Return poles, zeros and hidden modes with their certificate."""
-        return pipeline.roots(self.bound, None, digits)
+    def pole_zero_map(
+        self,
+        digits: int = 15,
+        *,
+        modes: int | None = None,
+        band: tuple[float, float] | None = None,
+        region: tuple[float, float, float, float] | None = None,
+    ) -> roots_room.PoleZeroMap:
+        """Return poles, zeros and hidden modes with their certificate.
+
+        Parameters
+        ----------
+        digits : int
+            Correct significant digits.
+        modes : int, optional
+            Only the lowest modes, with the roots at the origin.
+        band : (float, float), optional
+            Only natural frequencies in this band [Hz].
+        region : (float, float, float, float), optional
+            Only the rectangle ``(re_low, re_high, im_low, im_high)`` [rad/s].
+        """
+        return pipeline.roots(self.bound, _region(modes, band, region), digits)
 
     def dcgain(self) -> float:
         """Return the limit for s -> 0 from the right, possibly infinite."""
         return self.bound.limit_at_zero()
 
 
-def _region(modes: int | None, band: tuple[float, float] | None) -> roots_room.Region | None:
-    if modes is not None and band is not None:
-        raise UsageError(Diagnostic("SF902", "give modes or band, not both"))
+def _region(
+    modes: int | None,
+    band: tuple[float, float] | None,
+    rectangle: tuple[float, float, float, float] | None = None,
+) -> roots_room.Region | None:
+    if sum(choice is not None for choice in (modes, band, rectangle)) > 1:
+        raise UsageError(Diagnostic("SF902", "give only one of modes, band and region"))
     if modes is not None:
         return roots_room.Modes(modes)
     if band is not None:
-        low, high = (Fraction(Decimal(repr(float(f)))) for f in band)
-        return roots_room.Band(low, high)
-    return None
+        return roots_room.Band(*map(_exact, band))
+    return None if rectangle is None else roots_room.Rectangle(*map(_exact, rectangle))
+
+
+def _exact(number: float) -> Fraction:
+    """Return the shortest decimal that prints a number."""
+    return Fraction(Decimal(repr(float(number))))

@@ -27,6 +27,7 @@ DIGITS_LIMIT = 10_000
 @click.option(
     "--digits", type=click.IntRange(1, DIGITS_LIMIT), help="Correct significant digits.  [default: 15]"
 )
+@click.option("--strict", is_flag=True, help="Exit with code 4 when roots are located but not proved.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @reporting
 def command(
@@ -37,12 +38,15 @@ def command(
     band: tuple[str, str] | None,
     region: tuple[str, str, str, str] | None,
     digits: int | None,
+    strict: bool,
     as_json: bool,
 ) -> int:
     """Print poles, zeros and hidden modes of one transfer function of SPEC.
 
-    Every root comes with a proved radius and multiplicity, its natural frequency and damping ratio. Exit code
-    4 says that some roots could not be told apart.
+    Every root comes with its radius and multiplicity, natural frequency and damping ratio. Those of lumped
+    systems are proved. Distributed systems have infinitely many, of which the lowest are shown by default;
+    they are located numerically and marked uncertified. Exit code 4 says that roots could not be told apart
+    or found.
     """
     from symflex import pipeline
     from symflex.emit.text import roots_text
@@ -60,7 +64,8 @@ def command(
         emit_json(found.to_json_dict())
     else:
         click.echo(roots_text(found, shown, terminal_width()))
-    return 0 if found.certificate.certified else 4
+    certificate = found.certificate
+    return 0 if certificate.certified or (certificate.is_complete and not strict) else 4
 
 
 def _region(

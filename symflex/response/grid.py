@@ -5,12 +5,14 @@ Input: certified poles and zeros. Output: angular frequencies [rad/s].
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import log, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from symflex.errors import Diagnostic, UsageError
+from symflex.roots import Band
 from symflex.roots.locate import locate
 
 if TYPE_CHECKING:
@@ -26,6 +28,8 @@ WIDEST_ANGLE = 0.94 * pi / 2
 POINTS_PER_DECADE = 6
 COARSE_STEPS = 3
 DEFAULT_BAND_HZ = (0.1, 10.0)
+BEYOND_LAST_POLE = 1.3
+"""A distributed system has further poles just above the last one found."""
 
 
 def default_band(*maps: PoleZeroMap) -> tuple[float, float]:
@@ -39,8 +43,8 @@ def default_band(*maps: PoleZeroMap) -> tuple[float, float]:
     Returns
     -------
     tuple of float
-        From a decade below the lowest to a decade above the highest nonzero natural frequency; 0.1 Hz
-        to 10 Hz when there is none.
+        From a decade below the lowest to a decade above the highest nonzero natural frequency, of a
+        distributed system a little above the highest pole found; 0.1 Hz to 10 Hz when there is none.
 
     Examples
     --------
@@ -50,9 +54,16 @@ def default_band(*maps: PoleZeroMap) -> tuple[float, float]:
     >>> print(f"{low * 2 * pi:.3f} {high * 2 * pi:.3f}")
     0.300 30.000
     """
-    roots = [root for found in maps for root in (*found.poles, *found.zeros) if not root.is_zero]
-    frequencies = [root.frequency_hz() for root in roots]
-    return (min(frequencies) / 10, max(frequencies) * 10) if frequencies else DEFAULT_BAND_HZ
+    lows, highs = [], []
+    for found in maps:
+        poles = [root.frequency_hz() for root in found.poles if not root.is_zero]
+        zeros = [root.frequency_hz() for root in found.zeros if not root.is_zero]
+        lows += poles + zeros
+        if found.certificate.is_estimate and poles:
+            highs.append(max(poles) * BEYOND_LAST_POLE)
+        else:
+            highs += [frequency * 10 for frequency in poles + zeros]
+    return (min(lows) / 10, max(highs)) if lows else DEFAULT_BAND_HZ
 
 
 def adaptive_grid(
@@ -73,7 +84,7 @@ def adaptive_grid(
     points : int
         Logarithmically spaced points, at least 2; more are added around lightly damped poles and zeros.
     roots : PoleZeroMap, optional
-        All poles and zeros, when they are known already.
+        All poles and zeros, of a distributed system those in the band, when they are known already.
 
     Returns
     -------
@@ -94,7 +105,9 @@ def adaptive_grid(
     if points < 2:  # noqa: PLR2004
         message = f"a grid has at least 2 points, not {points}"
         raise ValueError(message)
-    found = locate(bound) if roots is None else roots
+    if roots is None:
+        roots = locate(bound, Band(Fraction(low_hz), Fraction(high_hz)) if bound.is_distributed else None)
+    found = roots
     low, high = 2 * pi * low_hz, 2 * pi * high_hz
     step = log(high / low) / (points - 1)
     parts = [np.geomspace(low, high, points)]

@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from flint import acb, ctx
 
+from symflex.response.follow import follow_phase
 from symflex.response.frequency_response import FrequencyResponse
 from symflex.response.phase import count_turns
 from symflex.roots.locate import locate
+from symflex.transfer.bind import EnclosedDistributed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -40,13 +42,14 @@ def respond(
     omega : array_like of float, shape (n,)
         Angular frequencies [rad/s], finite.
     roots : PoleZeroMap, optional
-        All poles and zeros, when they are known already.
+        All poles and zeros, when they are known already; those of a distributed system do not matter.
 
     Returns
     -------
     FrequencyResponse
         Each value is right to the last bits of its absolute value; ``inf + nan*1j`` at a pole. The phase is
-        counted from the poles and zeros, so it does not depend on how fine the grid is.
+        counted from the poles and zeros, for a distributed system followed from s = 0, so it does not depend
+        on how fine the grid is.
 
     Raises
     ------
@@ -78,14 +81,37 @@ def respond(
     if bound.ratio.is_zero:
         return FrequencyResponse(bound.name, grid, np.zeros(grid.shape, np.complex128), quantity, unit)
     values = _evaluate(bound, grid)
-    turns = count_turns(grid, values, locate(bound) if roots is None else roots)
+    if bound.is_distributed:
+        turns = _follow_turns(bound, grid, values)
+    else:
+        turns = count_turns(grid, values, locate(bound) if roots is None else roots)
     return FrequencyResponse(bound.name, grid, values, quantity, unit, turns)
+
+
+def _follow_turns(
+    bound: BoundTransferFunction, omega: npt.NDArray[np.float64], values: npt.NDArray[np.complex128]
+) -> npt.NDArray[np.int64]:
+    """Return the whole turns that the principal values of a distributed system's phase lack."""
+    steps, places = np.unique(np.abs(omega), return_inverse=True)
+    phase = np.zeros(steps.shape)
+    moving = steps > 0
+    phase[moving] = follow_phase(bound, steps[moving])
+    usable = np.isfinite(values) & (values != 0)
+    principal = np.angle(np.where(usable, values, 1))
+    wanted = np.where(omega < 0, -1, 1) * phase[places]
+    usable &= np.isfinite(wanted) & (omega != 0)
+    turns = np.rint((np.where(usable, wanted, principal) - principal) / (2 * np.pi))
+    return turns.astype(np.int64)
 
 
 def _evaluate(bound: BoundTransferFunction, omega: npt.NDArray[np.float64]) -> npt.NDArray[np.complex128]:
     """Return the values, with more bits for those points where cancellation asks for them."""
     values = np.zeros(omega.shape, np.complex128)
     pending, bits = list(enumerate(omega.tolist())), FIRST_BITS
+    if bound.is_distributed:
+        # Where wavenumbers vanish, there is a limit but no value.
+        values[omega == 0] = bound(0j)
+        pending = [(i, value) for i, value in pending if value]
     while pending:
         balls = _enclose(bound.enclosed(bits), [value for _, value in pending])
         unsettled = []
@@ -100,10 +126,12 @@ def _evaluate(bound: BoundTransferFunction, omega: npt.NDArray[np.float64]) -> n
     return values
 
 
-def _enclose(function: EnclosedTransferFunction, omega: Sequence[float]) -> list[acb]:
+def _enclose(function: EnclosedTransferFunction | EnclosedDistributed, omega: Sequence[float]) -> list[acb]:
     """Return balls around the values, one polynomial after the other, for all points at once."""
     with ctx.workprec(function.bits):
         points = [acb(0, value) for value in omega]
+        if isinstance(function, EnclosedDistributed):
+            return [function(point) for point in points]
         values = [function.unit] * len(points)
         for polynomial, exponent in function.factors:
             factor = polynomial.evaluate(points, "iter")

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from flint import fmpz_mpoly_ctx
 
+from symflex.roots.distributed import locate_distributed
 from symflex.roots.pole_zero_map import PoleZeroMap, find_pole_zero_map
 from symflex.roots.problem import Constant, PolynomialInS, RootProblem
 from symflex.transfer import BoundTransferFunction, coefficients_in_s
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def locate(bound: BoundTransferFunction, region: Region | None = None, digits: int = 30) -> PoleZeroMap:
-    """Find the poles and zeros of a transfer function, proved, with its hidden modes.
+    """Find the poles and zeros of a transfer function, with its hidden modes; proved for lumped systems.
 
     Parameters
     ----------
@@ -34,7 +35,11 @@ def locate(bound: BoundTransferFunction, region: Region | None = None, digits: i
     -------
     PoleZeroMap
         A transfer function that is identically zero has neither poles nor zeros; all its modes are hidden.
+        The roots of a distributed system are located numerically, in :func:`default_region` when everything
+        is asked for, and not certified.
     """
+    if bound.is_distributed:
+        return locate_distributed(bound, region, digits)
     above = [(f, e) for f, e in bound.ratio.factors if e > 0]
     below = [(f, -e) for f, e in bound.ratio.factors if e < 0]
     hidden = [(f.polynomial, f.multiplicity) for f in bound.hidden]

@@ -35,6 +35,8 @@ class Certificate:
         Roots enclosed, with multiplicity.
     reason : str, optional
         Why it is not certified.
+    is_estimate : bool
+        The roots were located numerically: counted and found, but not proved.
     """
 
     engine: str
@@ -42,6 +44,12 @@ class Certificate:
     counted: int
     found: int
     reason: str | None = None
+    is_estimate: bool = False
+
+    @property
+    def is_complete(self) -> bool:
+        """Every root counted was found and told apart, with or without proof."""
+        return self.certified or (self.is_estimate and self.counted == self.found)
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,11 +61,35 @@ class HiddenRoot:
     root : Root
         The mode that input and output do not see together.
     cause : str
-        Such as ``"cancelled"``, ``"uncontrollable"``, ``"unobservable"``.
+        ``"cancelled"`` exactly; ``"coincident"`` when a pole and a zero agree in all digits.
     """
 
     root: Root
     cause: str = "cancelled"
+
+
+@dataclass(frozen=True, slots=True)
+class Exclusion:
+    """A part of the s plane that no search can exhaust.
+
+    Parameters
+    ----------
+    re, im : float
+        Its centre [rad/s]; the conjugate is left out too.
+    radius : float
+        [rad/s].
+    reason : str
+        Why.
+    """
+
+    re: float
+    im: float
+    radius: float
+    reason: str
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return the exclusion as JSON data."""
+        return {"re": self.re, "im": self.im, "radius": self.radius, "reason": self.reason}
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +110,10 @@ class PoleZeroMap:
         The count behind it.
     digits : int
         Significant digits printed.
+    excluded : tuple of Exclusion
+        Parts of the region that were left out.
+    is_default_region : bool
+        A region was chosen because a function with infinitely many roots was to be searched for all.
     """
 
     tf: str
@@ -87,6 +123,8 @@ class PoleZeroMap:
     hidden: tuple[HiddenRoot, ...]
     certificate: Certificate
     digits: int = 30
+    excluded: tuple[Exclusion, ...] = ()
+    is_default_region: bool = False
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the map in the schema ``symflex.roots/1``, ready for :func:`json.dumps`."""
@@ -99,6 +137,7 @@ class PoleZeroMap:
             "poles": [_root_to_json(root, self.digits) for root in self.poles],
             "zeros": [_root_to_json(root, self.digits) for root in self.zeros],
             "hidden": [{**_root_to_json(h.root, self.digits), "cause": h.cause} for h in self.hidden],
+            "excluded": [exclusion.to_json_dict() for exclusion in self.excluded],
             "certificate": {
                 "engine": certificate.engine,
                 "counted": certificate.counted,
@@ -196,6 +235,6 @@ def _root_to_json(root: Root, digits: int) -> dict[str, object]:
         "damping_ratio": root.damping_ratio(),
         "on_imaginary_axis": root.on_imaginary_axis,
         "is_real": root.is_real,
-        "certified": root.certified,
+        "certified": root.certified and not root.is_estimate,
         "boundary": root.on_boundary,
     }

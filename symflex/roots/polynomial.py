@@ -111,7 +111,7 @@ def find_polynomial_roots(
         if len(clusters) == len(roots):
             break
         wanted *= 2
-    return _in_order([_merge([roots[i] for i in cluster]) for cluster in clusters])
+    return in_order([_merge([roots[i] for i in cluster]) for cluster in clusters])
 
 
 def _by_degree(degree: int) -> tuple[Proposer, ...]:
@@ -208,7 +208,7 @@ def _hull(balls: Sequence[arb]) -> arb:
     return arb(middle, (high - middle).upper() + (middle - low).upper()) if high > low else low
 
 
-def _in_order(roots: Sequence[Root]) -> tuple[Root, ...]:
+def in_order(roots: Sequence[Root]) -> tuple[Root, ...]:
     """Sort by natural frequency, real part, imaginary part downwards; overlapping balls count as equal."""
     keyed = [(root.natural_frequency(), root) for root in roots]
 

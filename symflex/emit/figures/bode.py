@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from itertools import cycle
 from math import ceil, log10
 from typing import TYPE_CHECKING, Final
@@ -20,6 +21,7 @@ from symflex.emit.figures.style import (
     title_lines,
 )
 from symflex.response import adaptive_grid, default_band, respond
+from symflex.roots import Band
 from symflex.roots.locate import locate
 
 if TYPE_CHECKING:
@@ -58,6 +60,11 @@ def draw_bode(
     """
     maps = [locate(bound) for bound in bounds]
     low, high = band_hz or _band_of_model(tfs[0]) or default_band(*maps)
+    band = Band(Fraction(low), Fraction(high))
+    maps = [
+        locate(bound, band) if bound.is_distributed else found
+        for bound, found in zip(bounds, maps, strict=True)
+    ]
     responses = [
         respond(bound, adaptive_grid(bound, low, high, roots=found), found)
         for bound, found in zip(bounds, maps, strict=True)

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from symflex.roots import PoleZeroMap
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
 PANELS_IN_COLUMN: Final = 3
@@ -52,9 +53,11 @@ def draw_poles_zeros(
     """Draw poles (crosses) and zeros (circles); see :func:`symflex.emit.figures.draw`.
 
     All panels show the same part of the s plane. A root outside it is named at the border where the ray from
-    the origin to it leaves the panel. A multiple root carries its multiplicity.
+    the origin to it leaves the panel. A multiple root carries its multiplicity. Of distributed systems the
+    default modes are shown, as far up as the highest pole.
     """
-    panels = [marks_of(locate(bound)) for bound in bounds]
+    maps = [locate(bound) for bound in bounds]
+    panels = [marks_of(found) for found in maps]
     count = len(panels)
     width = COLUMN_INCHES if count <= PANELS_IN_COLUMN else PAGE_INCHES
     columns = min(count, PANELS_IN_COLUMN if width == COLUMN_INCHES else PANELS_ON_PAGE)
@@ -63,7 +66,7 @@ def draw_poles_zeros(
     narrowest = min(NARROWEST, room / 1.3)
     view = choose_view(
         [mark for marks in panels for mark in marks],
-        None if band_hz is None else band_hz[1],
+        _highest_pole(maps) if band_hz is None else band_hz[1],
         (narrowest, WIDEST),
     )
     panel_width = min(room, TALLEST_INCHES * view.ratio)
@@ -99,6 +102,12 @@ def draw_poles_zeros(
             parse_math=False,
         )
     return figure
+
+
+def _highest_pole(maps: Sequence[PoleZeroMap]) -> float | None:
+    """Return up to which frequency [Hz] poles of distributed systems are known, ``None`` without any."""
+    found = [root for each in maps if each.certificate.is_estimate for root in each.poles if not root.is_zero]
+    return max((root.frequency_hz() for root in found), default=None)
 
 
 def _draw_panel(axes: Axes, marks: Sequence[Mark], view: View, width: float, height: float) -> None:

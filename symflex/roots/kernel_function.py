@@ -1,0 +1,288 @@
+"""The part of a numerator or denominator that holds kernels, as a function of s.
+
+Input: a bound transfer function and a product of factors over its ring.
+Output: a :class:`KernelFunction`, evaluated with its logarithmic derivative at any precision.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import lru_cache
+from math import lcm
+from typing import TYPE_CHECKING, Final
+
+from flint import acb, acb_series, arb
+
+from symflex.kernels import Factored, degree_in
+from symflex.roots.precision import precision
+from symflex.transfer.enclose_kernels import KernelValues, expansion
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.kernels import Dispersion, KernelTable
+    from symflex.transfer import BoundTransferFunction
+    from symflex.transfer.enclose_kernels import Value
+
+FIRST_BITS = 64
+LAST_BITS = 4096
+SETTLED_BITS = 24
+"""Accuracy asked of every factor before its sign, phase or slope is used."""
+ORIGIN = -140.0
+"""ln(abs(s)) where the order of a root at 0 is read off."""
+BRANCH_BITS = 256
+ANYWHERE = (0.7, 1.3)
+"""Real and imaginary part of a frequency like any other."""
+BRANCHES = (1, 2, 4)
+TWINS: Final = {"cosh": "cos", "cos": "cosh", "sinh": "sin", "sin": "sinh"}
+MATRIX_WORK = 40
+"""What a matrix exponential costs, in multiplications of a term."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """Value and slope of a function F at a point.
+
+    Parameters
+    ----------
+    log : complex
+        ln F, its imaginary part up to whole turns.
+    slope : complex
+        The logarithmic derivative in the coordinate of the path.
+    """
+
+    log: complex
+    slope: complex
+
+
+@dataclass(eq=False)
+class KernelFunction:
+    """A product of powers of polynomials in s, wavenumbers and kernels.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        Whose ring and kernels they are.
+    part : Factored
+        Factors of s, of wavenumbers and of kernels; entire together.
+
+    Attributes
+    ----------
+    power : int
+        What is counted is ``part**power``: a power that makes a function of one value out of one whose sign
+        or phase depends on the branch of a wavenumber; 1 for most.
+    work : int
+        Terms evaluated so far; grows with use, so that searches can keep to a budget.
+    """
+
+    bound: BoundTransferFunction
+    part: Factored
+    power: int = field(default=1, init=False)
+    work: int = field(default=0, init=False)
+
+    def __post_init__(self) -> None:
+        self._bits = FIRST_BITS
+        laws = self.bound.kernels.dispersions
+        terms = sum(len(f) for f, _ in self.part.factors) + 2 * len(self.bound.kernels.kernels)
+        self._cost = terms + MATRIX_WORK * sum(law.order for law in laws if law.kind == "general")
+        self._values = lru_cache(maxsize=None)(self._kernel_values)
+        self.power = self._branch_order()
+
+    @property
+    def is_even(self) -> bool:
+        """Proved: F(-s) is F(s) or -F(s), so that roots mirror each other in the imaginary axis too."""
+        table = self.bound.kernels
+        if any(kernel.function == "exp" for kernel in table.kernels):
+            return False
+        laws = [value for law in table.dispersions for value in law.characteristic]
+        shifted = any(not law.shift.is_zero for law in table.dispersions)
+        even = all(_parity(f) is not None for value in laws for f, _ in value.factors) and all(
+            sum((_parity(f) or 0) * e for f, e in value.factors) % 2 == 0 for value in laws
+        )
+        return even and not shifted and all(_parity(f) is not None for f, _ in self.part.factors)
+
+    def at_logarithm(self, z: complex) -> Sample | None:
+        """Return the sample at ``s = exp(z)``, with the slope in z; ``None`` on a root."""
+        found = self._settled(lambda: acb(z.real, z.imag).exp())
+        return None if found is None else self._sample(*found)
+
+    def at_point(self, s: acb) -> Sample | None:
+        """Return the sample at an exact ``s``, with the slope in ln(s)."""
+        found = self._settled(lambda: s)
+        return None if found is None else self._sample(*found)
+
+    def order_at_zero(self) -> float:
+        """Return the order of the root at s = 0, close to an integer; NaN when it is not found."""
+        sample = self.at_logarithm(complex(ORIGIN, 0.0))
+        return float("nan") if sample is None else sample.slope.real
+
+    def newton_step(self, s: acb, bits: int) -> acb:
+        """Return ``part/part'`` at an exact ``s``; finite also where the ball around the part contains 0."""
+        with precision(bits):
+            found = self._factors(s, bits)
+            nearest = min(range(len(found)), key=lambda i: _closeness(*found[i][:2]))
+            value, slope, exponent = found[nearest]
+            rest = acb(0)
+            for i, (other, other_slope, e) in enumerate(found):
+                if i != nearest:
+                    rest = rest + e * other_slope / other
+            return value / (exponent * slope + value * rest)
+
+    def _branch_order(self) -> int:
+        """Return the power in which the choice of the wavenumbers does not matter."""
+        order = 1
+        with precision(BRANCH_BITS):
+            evaluator = self._values(BRANCH_BITS)
+            values = evaluator.at(acb(*ANYWHERE))
+            value = _number(evaluator.value(self.part, values))
+            for law in self.bound.kernels.dispersions:
+                for other in other_branches(law, self.bound.kernels, values):
+                    turned = _number(evaluator.value(self.part, {**values, **other})) / value
+                    found = next((n for n in BRANCHES if (turned**n - 1).contains(0)), BRANCHES[-1])
+                    order = lcm(order, found)
+        return order
+
+    def reach(self, s: float) -> float:
+        """Return the largest kernel argument, in absolute value, at a positive ``s``."""
+        with precision(FIRST_BITS):
+            evaluator = self._values(FIRST_BITS)
+            values = evaluator.at(acb(s))
+            sizes = []
+            for kernel in self.bound.kernels.kernels:
+                law, length = kernel.dispersion, _number(evaluator.value(kernel.length, values))
+                if kernel.function == "exp":
+                    rate = _number(evaluator.value(law.shift, values))
+                elif kernel.function == "fundamental":
+                    rate = _spectral_size([_number(evaluator.value(c, values)) for c in law.characteristic])
+                else:
+                    rate = _number(values[kernel.wavenumber])
+                sizes.append(abs(rate * length).mid())
+            return max(float(size) if size.is_finite() else 0.0 for size in sizes)
+
+    def _sample(self, found: list[tuple[acb, acb, int]], s: acb) -> Sample:
+        total, slope = 0j, 0j
+        for value, derivative, exponent in found:
+            middle = value.mid()
+            total += exponent * complex(float(abs(middle).log()), float(middle.arg()))
+            slope += exponent * complex(s * derivative / value)
+        return Sample(self.power * total, self.power * slope)
+
+    def _settled(self, point: Callable[[], acb]) -> tuple[list[tuple[acb, acb, int]], acb] | None:
+        bits = self._bits
+        while bits <= LAST_BITS:
+            with precision(bits):
+                s = point()
+                found = self._factors(s, bits)
+                if all(f.rel_accuracy_bits() >= SETTLED_BITS and d.is_finite() for f, d, _ in found):
+                    return found, s
+            bits *= 2
+        return None
+
+    def _factors(self, s: acb, bits: int) -> list[tuple[acb, acb, int]]:
+        """Return value, derivative and exponent of every factor, at the current precision."""
+        self.work += self._cost
+        evaluator = self._values(bits)
+        values = evaluator.at(expansion(s))
+        found = []
+        for factor, exponent in self.part.factors:
+            series = evaluator.polynomial(factor, values)
+            if isinstance(series, acb_series):
+                found.append((series[0], series[1], exponent))
+        return found
+
+    def _kernel_values(self, bits: int) -> KernelValues:
+        with precision(bits):
+            constants = {name: evaluate() for name, evaluate in self.bound.constants}
+            return KernelValues(self.bound.ratio.ring.names, self.bound.kernels, constants)
+
+
+def other_branches(
+    law: Dispersion, table: KernelTable, values: Mapping[str, Value]
+) -> list[dict[str, Value]]:
+    """Return the values of wavenumbers and kernels with another root of the dispersion relation chosen."""
+    kernels = table.kernels_of(law)
+    turn = acb(0, 1) if law.kind == "bending" else acb(-1)
+    found: list[dict[str, Value]] = []
+    for wavenumber in law.wavenumbers:
+        branch: dict[str, Value] = {wavenumber: turn * values[wavenumber]}
+        for kernel in (k for k in kernels if k.wavenumber == wavenumber):
+            source = values[kernel.generator]
+            if law.kind == "bending":
+                twin = TWINS[kernel.function]
+                source = next(
+                    (
+                        values[k.generator]
+                        for k in kernels
+                        if k.function == twin and k.length is kernel.length
+                    ),
+                    source,
+                )
+            branch[kernel.generator] = turn * source if kernel.function in ("sinh", "sin") else source
+        found.append(branch)
+    if len(law.wavenumbers) > 1:
+        first, second = law.wavenumbers
+        branch = {first: values[second], second: values[first]}
+        for kernel in kernels:
+            other = second if kernel.wavenumber == first else first
+            twin_of = (
+                k.generator
+                for k in kernels
+                if (k.wavenumber, k.function) == (other, kernel.function) and k.length is kernel.length
+            )
+            branch[kernel.generator] = values[next(twin_of, kernel.generator)]
+        found.append(branch)
+    return found
+
+
+def _parity(polynomial: fmpz_mpoly) -> int | None:
+    """Return whether all powers of s are even (0) or odd (1), ``None`` when neither."""
+    found = {int(monomial[0]) % 2 for monomial in polynomial.monoms()}
+    return found.pop() if len(found) == 1 else None
+
+
+def _closeness(value: acb, slope: acb) -> float:
+    """Return ln(abs(F/F')), how far about a root of F is away."""
+    size, steepness = abs(value).mid(), abs(slope).mid()
+    if not steepness > 0 or not size > 0:
+        return -float("inf") if steepness > 0 else float("inf")
+    return float((size / steepness).log())
+
+
+def _spectral_size(coefficients: Sequence[acb]) -> acb:
+    """Return about the size of the largest root of a characteristic polynomial."""
+    order = len(coefficients)
+    sizes = [abs(c).mid() for c in coefficients]
+    return acb(
+        max((size.root(order - i) for i, size in enumerate(sizes) if size > 0), key=float, default=arb(0))
+    )
+
+
+def _number(value: Value) -> acb:
+    return value[0] if isinstance(value, acb_series) else value
+
+
+def split_off_kernels(value: Factored, table: KernelTable) -> tuple[Factored, Factored]:
+    """Return the factors that hold s alone, and the product of those that hold wavenumbers or kernels.
+
+    Exponential kernels by themselves have no roots and are left out of both.
+    """
+    ring = value.ring
+    generators = [ring.index[name] for name in table.generators]
+    bare = {str(ring.generator(k.generator)) for k in table.kernels if k.function == "exp"}
+    plain, mixed = [], []
+    for factor, exponent in value.factors:
+        if any(degree_in(factor, i) for i in generators):
+            if str(factor) not in bare:
+                mixed.append((factor, exponent))
+        else:
+            plain.append((factor, exponent))
+    return Factored(ring, Fraction(1), tuple(plain)), Factored(ring, Fraction(1), tuple(mixed))
+
+
+def has_kernels(value: Factored, table: KernelTable) -> bool:
+    """Tell whether a product has a factor with a kernel, not only powers of wavenumbers."""
+    kernels = [value.ring.index[k.generator] for k in table.kernels]
+    return any(degree_in(f, i) for f, e in value.factors if e > 0 for i in kernels)
