@@ -13,7 +13,8 @@ from symflex.cli.report import emit_json, reporting, terminal_width
 @click.option(
     "--form",
     metavar="FORM",
-    help="polynomial, monic, factored, definitions or zpk; the shortest symbolic form by default.",
+    help="polynomial, monic, factored, definitions, zpk, frequency; for beams, rods and delays also "
+    "hyperbolic, krylov, vaughan. The shortest symbolic form by default.",
 )
 @click.option(
     "--format", "format_", type=click.Choice(["text", "latex", "json"]), default="text", show_default=True

@@ -27,6 +27,7 @@ def derive_json(tf: TransferFunction, form: PrintedForm) -> dict[str, object]:
         "num": format_expression(form.num),
         "den": format_expression(form.den),
         "where": [[name, format_expression(e)] for name, e in form.where],
+        "laws": [[name, format_expression(law)] for name, law in form.laws],
         "latex": inline_latex(tf, form),
         "hidden": [{"factor": format_expression(e), "multiplicity": m} for e, m in hidden_expressions(tf)],
     }

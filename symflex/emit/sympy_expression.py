@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import sympy
 
 from symflex.expressions import (
+    FUNCTIONS,
     Attribute,
     Call,
     Expression,
@@ -45,6 +46,12 @@ def to_sympy(expression: Expression, symbols: Mapping[str, sympy.Symbol]) -> sym
     symbols : mapping of str to Symbol
         What to use for names; a missing name becomes a plain symbol.
 
+    Returns
+    -------
+    sympy.Expr
+        A function of x that only a differential equation determines is an undefined function, or its
+        derivative at a point.
+
     Examples
     --------
     >>> from symflex.expressions import Name, Sum
@@ -70,7 +77,11 @@ def to_sympy(expression: Expression, symbols: Mapping[str, sympy.Symbol]) -> sym
             return to_sympy(numerator, symbols) / to_sympy(denominator, symbols)
         case Power(base, exponent):
             return to_sympy(base, symbols) ** to_sympy(exponent, symbols)
-        case Call(name, argument):
+        case Call(name, argument) if name in FUNCTIONS:
             return getattr(sympy, name)(to_sympy(argument, symbols))
+        case Call(name, argument, order):
+            point, x = to_sympy(argument, symbols), sympy.Dummy("x")
+            function = sympy.Function(name)
+            return sympy.Subs(function(x).diff(x, order), x, point) if order else function(point)
     message = f"{type(expression).__name__} has no SymPy counterpart"
     raise TypeError(message)

@@ -5,7 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symflex.emit.forms import PrintedForm, hidden_expressions
-from symflex.expressions import Expression, Number, Quotient, format_expression
+from symflex.expressions import (
+    Derivative,
+    Equation,
+    Expression,
+    Number,
+    Quotient,
+    format_expression,
+    names,
+)
 from symflex.roots import Band, Modes, Rectangle
 
 if TYPE_CHECKING:
@@ -25,10 +33,11 @@ SHALLOW = 8
 
 
 def form_text(tf: TransferFunction, form: PrintedForm) -> str:
-    """Return ``OUT/IN = num/den`` on one line, and a line per definition used."""
+    """Return ``OUT/IN = num/den`` on one line, and a line per definition or law used."""
     whole = form.num if _is_one(form.den) else Quotient(form.num, form.den)
     lines = [f"{tf.name} = {format_expression(whole)}"]
     lines += [f"  where {name} = {format_expression(e)}" for name, e in form.where]
+    lines += [f"  where {line}" for law in form.laws for line in law_lines(*law)]
     return "\n".join(lines)
 
 
@@ -56,10 +65,14 @@ def derive_text(tf: TransferFunction, form: PrintedForm, width: int = WIDTH) -> 
         lines += [INDENT + _placed(line, bar, alone=len(den) == 1) for line in den]
     lines.append("")
     for word, (name, expression) in zip(_where_words(), form.where, strict=False):
-        first, *more = wrapped(expression, width - len(word) - len(name) - 5)
+        first, *more = wrapped(expression, width - len(word) - len(name) - 6)
         lines.append(f"{INDENT}{word} {name} = {first}")
         lines += [" " * (len(word) + len(name) + 6) + line for line in more]
-    if form.where:
+    for line in (line for law in form.laws for line in law_lines(*law)):
+        word = "     " if form.where or lines[-1].startswith(f"{INDENT}where") else "where"
+        first, *more = _lay_out(line, width - len(word) - 3, hanging=len(INDENT))
+        lines += [f"{INDENT}{word} {first}", *(" " * (len(word) + 3) + text for text in more)]
+    if form.where or form.laws:
         lines.append("")
     for factor, multiplicity in hidden_expressions(tf):
         times = f", {multiplicity} times" if multiplicity > 1 else ""
@@ -68,6 +81,14 @@ def derive_text(tf: TransferFunction, form: PrintedForm, width: int = WIDTH) -> 
     if tf.hidden:
         lines.append("")
     return "\n".join(lines)
+
+
+def law_lines(name: str, law: Equation) -> list[str]:
+    """Return the differential equation of a function of x, and where it starts."""
+    order = max(node.order for node in names(law) if isinstance(node, Derivative))
+    zero = [f"{name}{chr(39) * k}(0) = " for k in range(order - 1)]
+    start = f"{''.join(zero)}0, " if zero else ""
+    return [format_expression(law), f"{start}{name}{chr(39) * (order - 1)}(0) = 1"]
 
 
 def _where_words() -> Sequence[str]:
@@ -188,9 +209,18 @@ def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
     """
     certificate = found.certificate
     status = "certified" if certificate.certified else f"NOT CERTIFIED: {certificate.reason}"
-    lines = [f"{found.tf}   {status}: {certificate.found} of {certificate.counted} roots enclosed"]
+    verb = "enclosed"
+    if certificate.is_estimate:
+        status, verb = "uncertified", "located numerically"
+    lines = [f"{found.tf}   {status}: {certificate.found} of {certificate.counted} roots {verb}"]
     if shown := _region_text(found.region):
         lines.append(f"{INDENT}shown: {shown}")
+    if found.is_default_region:
+        lines.append(f"{INDENT}by default: a distributed system has infinitely many poles")
+    for part in found.excluded:
+        im = f" +- {part.im:g} j" if part.im else ""
+        where = f"{part.radius:.3g} rad/s about {part.re:g}{im}"
+        lines.append(f"{INDENT}left out: {where}, where roots accumulate")
     for title, roots in (("poles", found.poles), ("zeros", found.zeros)):
         lines += ["", _counted(title, roots), *_root_table(roots, digits, width)]
     if found.hidden:
@@ -199,7 +229,8 @@ def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
         lines += ["", title, *_root_table(hidden, digits, width)]
     everything = [*found.poles, *found.zeros, *(h.root for h in found.hidden)]
     if everything:
-        lines += ["", "  radius bounds the distance from the printed value to the root [rad/s]"]
+        verb = "estimates" if certificate.is_estimate else "bounds"
+        lines += ["", f"  radius {verb} the distance from the printed value to the root [rad/s]"]
     if any(root.on_boundary for root in everything):
         lines.append("  | marks a root on the boundary of what was asked for")
     if not all(root.certified for root in everything):

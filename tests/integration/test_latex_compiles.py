@@ -13,6 +13,7 @@ from types import SimpleNamespace
 import pytest
 
 from symflex.emit.forms import PrintedForm, print_form
+from symflex.emit.forms.usage import forms_of
 from symflex.emit.latex import latex_document, latex_expression, latex_fragment
 from symflex.emit.latex.expression import Writer
 from symflex.equations import assemble
@@ -32,10 +33,17 @@ from symflex.model import load_model
 from symflex.roots.locate import locate
 from symflex.spec import read
 from symflex.transfer import bind, derive, derive_all
+from tests.unit.emit.models_with_kernels import derived as of_case
 
 pytestmark = pytest.mark.needs_tool("pdflatex")
 
-MODELS = sorted((Path(__file__).parents[2] / "derivations" / "eppinger1988").glob("*.toml"))
+DERIVATIONS = Path(__file__).parents[2] / "derivations"
+WITH_KERNELS = ("sliding_free_beam", "robot_axis")
+MODELS = [p for p in sorted((DERIVATIONS / "eppinger1988").glob("*.toml")) if p.stem not in WITH_KERNELS]
+DISTRIBUTED = [
+    *(DERIVATIONS / "eppinger1988" / f"{name}.toml" for name in WITH_KERNELS),
+    *sorted((DERIVATIONS / "classics").glob("*.toml")),
+]
 COMPLAINT = re.compile(r"^(?:!|.*Warning:|Overfull|Underfull|Missing character).*$", re.MULTILINE)
 SAFE = ["-interaction=nonstopmode", "-halt-on-error", "-no-shell-escape"]
 WRAPPER = (
@@ -76,6 +84,23 @@ def test_the_document_of_every_model_compiles_without_a_warning(path, form, tmp_
     maps = [locate(bind(tf), None, 12) for tf in tfs]
     forms = [print_form(tf, form) for tf in tfs]
     assert complaints(tmp_path, latex_document(model, tfs, forms, pole_zero_maps=maps)) == []
+
+
+@pytest.mark.parametrize("path", DISTRIBUTED, ids=lambda p: p.stem)
+def test_the_document_of_a_model_with_kernels_compiles_without_a_warning(path, tmp_path):
+    model, tfs = derived(path)
+    assert complaints(tmp_path, latex_document(model, tfs, [print_form(tf) for tf in tfs])) == []
+
+
+@pytest.mark.parametrize("name", [*(p.stem for p in DISTRIBUTED), "third order"])
+def test_every_form_of_a_function_with_kernels_fits_a_column(name, tmp_path):
+    fragments = [
+        "Text:\n"
+        + latex_fragment(tf, print_form(tf, form), width_mm=88).replace(r"\label{", rf"\label{{{form}-")
+        for tf in of_case(name)
+        for form in forms_of(tf)
+    ]
+    assert complaints(tmp_path, WRAPPER % (88, "\n\n".join(fragments))) == []
 
 
 @pytest.mark.parametrize("width", [88.0, 120.0])

@@ -5,10 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symflex.emit.forms.arrange import Arranger
+from symflex.emit.forms.counts import counts_of
 from symflex.emit.forms.definitions import definitions_form
+from symflex.emit.forms.economical import economical
+from symflex.emit.forms.frequency import frequency_form
 from symflex.emit.forms.hidden import hidden_expressions
+from symflex.emit.forms.hyperbolic import hyperbolic_form
+from symflex.emit.forms.krylov import krylov_form
 from symflex.emit.forms.polynomial import factored_form, monic_form, polynomial_form
 from symflex.emit.forms.printed import Form, PrintedForm
+from symflex.emit.forms.usage import forms_of
+from symflex.emit.forms.vaughan import vaughan_form
 from symflex.emit.forms.zpk import zpk_form
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
@@ -23,12 +30,18 @@ FORMS: dict[str, Form] = {
     "factored": factored_form,
     "definitions": definitions_form,
     "zpk": zpk_form,
+    "hyperbolic": hyperbolic_form,
+    "krylov": krylov_form,
+    "vaughan": vaughan_form,
+    "frequency": frequency_form,
 }
 
 LARGE = 300
 """Number of expanded terms from which only the closed form is tried: no expanded print is shorter."""
 CANDIDATES = ("definitions", "factored", "polynomial")
-"""The symbolic forms among which the shortest print is the default; ties go to the first."""
+"""The symbolic forms of rational functions; the shortest print is the default, ties go to the first."""
+DISTRIBUTED_CANDIDATES = ("hyperbolic", "factored", "vaughan", "krylov")
+"""The same for functions with kernels."""
 
 
 def print_form(tf: TransferFunction, form: str | None = None, digits: int = 6) -> PrintedForm:
@@ -46,17 +59,25 @@ def print_form(tf: TransferFunction, form: str | None = None, digits: int = 6) -
     Raises
     ------
     UsageError
-        SF902 when there is no such form.
+        SF902 when there is no such form, or the function has none.
     ModelError
         SF229 when the form needs numbers and a parameter has none.
     """
+    if tf.is_distributed:
+        tf = economical(tf)
     if form is None:
-        tried = CANDIDATES if sum(len(f) for f, _ in tf.ratio.factors) <= LARGE else CANDIDATES[:1]
-        return min((FORMS[name](tf, digits) for name in tried), key=_length)
+        return min((FORMS[name](tf, digits) for name in _candidates(tf)), key=_length)
     if form not in FORMS:
         hint = nearest(form, FORMS) or "forms: " + ", ".join(FORMS)
         raise UsageError(Diagnostic("SF902", f"there is no form '{form[:64]}'", None, hint))
     return FORMS[form](tf, digits)
+
+
+def _candidates(tf: TransferFunction) -> tuple[str, ...]:
+    found: tuple[str, ...] = CANDIDATES
+    if tf.is_distributed:
+        found = tuple(name for name in DISTRIBUTED_CANDIDATES if name in forms_of(tf))
+    return found if sum(len(f) for f, _ in tf.ratio.factors) <= LARGE else found[:1]
 
 
 def _length(form: PrintedForm) -> int:
@@ -66,10 +87,12 @@ def _length(form: PrintedForm) -> int:
 
 __all__ = [
     "CANDIDATES",
+    "DISTRIBUTED_CANDIDATES",
     "FORMS",
     "Arranger",
     "Form",
     "PrintedForm",
+    "counts_of",
     "hidden_expressions",
     "print_form",
 ]

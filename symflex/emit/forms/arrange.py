@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import gcd
+from operator import add
 from typing import TYPE_CHECKING
 
 from symflex.expressions import (
+    Call,
     Expression,
     Name,
     Number,
@@ -22,7 +24,7 @@ from symflex.expressions import (
 from symflex.kernels import LAPLACE, Ring, degree_in
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
     from flint import fmpz_mpoly
 
@@ -44,16 +46,22 @@ class Arranger:
         What to print for a generator, where it is not its own name (closed sums).
     degrees : mapping of str to int
         Degree in s of such generators, so that they stand where their power belongs.
+    apart : frozenset of str
+        Functions of s: they stand after what multiplies them, and a sum that begins with one begins with a
+        plus.
     """
 
     ring: Ring
     names: Mapping[str, Expression]
     degrees: Mapping[str, int]
+    apart: frozenset[str] = frozenset()
 
     @staticmethod
-    def plain(ring: Ring, names: Mapping[str, Expression] | None = None) -> Arranger:
+    def plain(
+        ring: Ring, names: Mapping[str, Expression] | None = None, apart: Iterable[str] = ()
+    ) -> Arranger:
         """Return an arranger for a ring whose generators print as themselves."""
-        return Arranger(ring, names or {}, {})
+        return Arranger(ring, names or {}, {}, frozenset(apart))
 
     @cached_property
     def _symbols(self) -> tuple[Expression, ...]:
@@ -64,13 +72,17 @@ class Arranger:
         return tuple(1 if n == LAPLACE else self.degrees.get(n, 0) for n in self.ring.names)
 
     @cached_property
+    def _is_apart(self) -> tuple[bool, ...]:
+        return tuple(n in self.apart for n in self.ring.names)
+
+    @cached_property
     def _is_sum(self) -> tuple[bool, ...]:
         return tuple(n in self.degrees for n in self.ring.names)
 
     def collected(self, polynomial: fmpz_mpoly, *, factored: bool = True) -> Expression:
         """Return a polynomial by descending powers of s, each coefficient factored."""
         parts = coefficients(self.ring, polynomial)
-        s = Name(LAPLACE)
+        s = self._symbols[0]
         terms = []
         for exponent in sorted(parts, reverse=True):
             coefficient = self.coefficient(parts[exponent], factored=factored)
@@ -120,6 +132,46 @@ class Arranger:
         longer = len(format_expression(collected)) > len(format_expression(nested))
         return nested if longer else collected
 
+    def separated(self, polynomial: fmpz_mpoly, *, by_functions: bool) -> Expression:
+        """Return a sum of coefficients times sums of functions.
+
+        Parameters
+        ----------
+        polynomial : fmpz_mpoly
+            Over the ring.
+        by_functions : bool
+            Collect the coefficients of every product of functions, or the functions that one monomial
+            multiplies.
+        """
+        parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
+        for monomial, coefficient in _terms(polynomial).items():
+            key = tuple(e if f == by_functions else 0 for f, e in zip(self._is_apart, monomial, strict=True))
+            rest = tuple(e - k for e, k in zip(monomial, key, strict=True))
+            parts.setdefault(key, {})[rest] = coefficient
+        # Monomials whose coefficients differ by a number share them.
+        shared: dict[tuple[tuple[tuple[int, ...], int], ...], dict[tuple[int, ...], int]] = {}
+        for key, terms in parts.items():
+            scale = gcd(*terms.values()) * (1 if terms[self._first(terms)] > 0 else -1)
+            primitive = tuple(sorted((m, c // scale) for m, c in terms.items()))
+            shared.setdefault(primitive, {})[key] = scale
+        groups = []
+        for primitive, keys in shared.items():
+            coefficient_terms = dict(primitive)
+            first = tuple(map(add, self._first(coefficient_terms), self._first(keys)))
+            pieces = [self._group(coefficient_terms), self._group(keys)]
+            if not by_functions:
+                pieces.reverse()
+            groups.append((self._monomial_key(first), product_of(pieces)))
+        return sum_of([part for _, part in sorted(groups, key=lambda g: g[0])])
+
+    def _first(self, terms: Mapping[tuple[int, ...], int]) -> tuple[int, ...]:
+        """Return the monomial that is printed first."""
+        return min(terms, key=self._monomial_key)
+
+    def monomial(self, exponents: Sequence[int]) -> Expression:
+        """Return a product of powers of the generators."""
+        return self._monomial(tuple(exponents), 1)
+
     def _group(self, terms: dict[tuple[int, ...], int]) -> Expression:
         content, rest = _pull_content(terms)
         front = self._monomial(content, 1)
@@ -127,6 +179,9 @@ class Arranger:
             ((monomial, coefficient),) = rest.items()
             return product_of([number(coefficient), front, self._monomial(monomial, 1)])
         scale, rest = _pull_number(rest)
+        first = self._first(rest)
+        if rest[first] < 0 and any(e and f for e, f in zip(first, self._is_apart, strict=True)):
+            scale, rest = -scale, {m: -c for m, c in rest.items()}
         return product_of([number(scale), front, *self._pieces(rest)])
 
     def _pieces(self, terms: dict[tuple[int, ...], int]) -> list[Expression]:
@@ -192,18 +247,26 @@ class Arranger:
     def _monomial(self, monomial: tuple[int, ...], coefficient: int) -> Expression:
         """Return number, pi, parameters in declared order, s, closed sums."""
         plain: list[Expression] = []
+        functions: list[Expression] = []
         sums: list[Expression] = []
         for i, exponent in enumerate(monomial):
             if i and exponent:
-                target = sums if self._is_sum[i] else plain
-                target.append(power(self._symbols[i], exponent))
+                target = sums if self._is_sum[i] else functions if self._is_apart[i] else plain
+                target.append(_raised(self._symbols[i], exponent))
         pi = self.ring.index.get("pi")
         if pi is not None and monomial[pi]:
             symbol = power(Name("pi"), monomial[pi])
             plain.remove(symbol)
             plain.insert(0, symbol)
-        laplace = [power(Name(LAPLACE), monomial[0])] if monomial and monomial[0] else []
-        return product_of([number(coefficient), *plain, *laplace, *sums])
+        laplace = [power(self._symbols[0], monomial[0])] if monomial and monomial[0] else []
+        return product_of([number(coefficient), *plain, *laplace, *functions, *sums])
+
+
+def _raised(symbol: Expression, exponent: int) -> Expression:
+    """Return a power of a symbol; of an exponential, the exponential of a multiple."""
+    if isinstance(symbol, Call) and symbol.name == "exp":
+        return Call("exp", product_of([number(exponent), symbol.argument]))
+    return power(symbol, exponent)
 
 
 def _share_sums(parts: list[Expression]) -> list[Expression]:

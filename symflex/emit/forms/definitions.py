@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symflex.emit.forms.arrange import Arranger
-from symflex.emit.forms.polynomial import constant_symbols
+from symflex.emit.forms.constants import constant_symbols
+from symflex.emit.forms.hyperbolic import in_kernels
 from symflex.emit.forms.printed import PrintedForm
 from symflex.expressions import Expression, Name, format_expression, names
 from symflex.kernels import Factored, Ring, degree_in
@@ -28,9 +29,12 @@ def definitions_form(tf: TransferFunction, digits: int) -> PrintedForm:
     """Return the shortest print that keeps sums of the network and definitions closed.
 
     Numerator and denominator each have two candidates, and the shorter one is taken: the elimination's own
-    closed form, and the expanded polynomial rewritten in the definitions by exact division.
+    closed form, and the expanded polynomial rewritten in the definitions by exact division. Functions with
+    kernels are printed as in the hyperbolic form.
     """
     del digits
+    if tf.is_distributed:
+        return in_kernels(tf, "definitions", tf.ratio)
     if tf.closed is not None and _is_large(tf):
         return _with_where(tf, *_from_closure(tf, tf.closed))
     num, den = _rewritten(tf)

@@ -6,7 +6,11 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symflex.emit.forms.arrange import Arranger, coefficients
+from symflex.emit.forms.constants import constant_symbols
+from symflex.emit.forms.hyperbolic import collected_form, in_kernels
+from symflex.emit.forms.irreducible import irreducible_kernels
 from symflex.emit.forms.printed import PrintedForm
+from symflex.emit.forms.usage import require_rational
 from symflex.expressions import Expression, Name, number, power, product_of, quotient, sum_of
 from symflex.kernels import LAPLACE, Factored, Ring, degree_in
 
@@ -16,13 +20,13 @@ if TYPE_CHECKING:
     from symflex.transfer import TransferFunction
 
 
-def constant_symbols(tf: TransferFunction) -> dict[str, Expression]:
-    """Return what the generators of functions of constants print as."""
-    return {c.generator: c.expression for c in tf.constants}
-
-
 def polynomial_form(tf: TransferFunction, digits: int) -> PrintedForm:
-    """Return numerator and denominator by descending powers of s, coefficients collected and factored."""
+    """Return numerator and denominator by descending powers of s, coefficients collected and factored.
+
+    Functions of s stand among the coefficients.
+    """
+    if tf.is_distributed:
+        return collected_form(tf)
     del digits
     arranger = Arranger.plain(tf.ratio.ring, constant_symbols(tf))
     return PrintedForm(
@@ -33,8 +37,15 @@ def polynomial_form(tf: TransferFunction, digits: int) -> PrintedForm:
 
 
 def monic_form(tf: TransferFunction, digits: int) -> PrintedForm:
-    """Return the polynomial form divided by the denominator's leading coefficient."""
+    """Return the polynomial form divided by the denominator's leading coefficient.
+
+    Raises
+    ------
+    UsageError
+        SF902 for a function with kernels.
+    """
     del digits
+    require_rational(tf, "monic")
     ring = tf.ratio.ring
     arranger = Arranger.plain(ring, constant_symbols(tf))
     den = tf.ratio.denominator().expand()
@@ -62,8 +73,13 @@ def _divided(arranger: Arranger, ring: Ring, polynomial: fmpz_mpoly, divisor: fm
 
 
 def factored_form(tf: TransferFunction, digits: int) -> PrintedForm:
-    """Return numerator and denominator as products of irreducible factors over the rationals."""
+    """Return numerator and denominator as products of irreducible factors over the rationals.
+
+    Of functions with kernels the trigonometric factors too.
+    """
     del digits
+    if tf.is_distributed:
+        return in_kernels(tf, "factored", irreducible_kernels(tf.ratio, tf.kernels))
     arranger = Arranger.plain(tf.ratio.ring, constant_symbols(tf))
     return PrintedForm(
         "factored",

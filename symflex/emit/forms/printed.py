@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from symflex.expressions import Expression
+    from symflex.expressions import Equation, Expression
     from symflex.transfer import TransferFunction
 
 
@@ -17,17 +17,22 @@ class PrintedForm:
     Parameters
     ----------
     name : str
-        The form's name: ``polynomial``, ``monic``, ``factored``, ``zpk``, ``definitions``.
+        The form's name, a key of ``FORMS``.
     num, den : Expression
         Numerator and denominator, terms and factors in the order of print.
     where : tuple of (str, Expression)
-        The definitions that occur, in declared order.
+        The names that occur and what they stand for; a line may use the names of any other, without cycles.
+    laws : tuple of (str, Equation)
+        Functions of x that occur, with the differential equation each solves: at x = 0 the highest but one of
+        its derivatives is one and those before it are zero. Only for field equations whose exponents have no
+        formula.
     """
 
     name: str
     num: Expression
     den: Expression
     where: tuple[tuple[str, Expression], ...] = ()
+    laws: tuple[tuple[str, Equation], ...] = ()
 
 
 class Form(Protocol):

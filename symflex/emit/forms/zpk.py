@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 from flint import arb
 
 from symflex.emit.forms.printed import PrintedForm
+from symflex.emit.forms.usage import require_rational
 from symflex.expressions import Expression, Name, number, power, product_of, sum_of
 from symflex.kernels import LAPLACE
 from symflex.roots import Root, precision
 from symflex.roots.locate import locate
-from symflex.transfer import bind
+from symflex.transfer import EnclosedTransferFunction, bind
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,7 +31,10 @@ def zpk_form(tf: TransferFunction, digits: int) -> PrintedForm:
     ------
     ModelError
         SF229 when a parameter has no value.
+    UsageError
+        SF902 for a function with kernels.
     """
+    require_rational(tf, "zpk")
     bound = bind(tf)
     if bound.ratio.is_zero:
         return PrintedForm("zpk", number(0), number(1))
@@ -45,6 +49,7 @@ def _gain(bound: BoundTransferFunction, digits: int) -> arb:
     """Return the ratio of the leading coefficients of numerator and denominator."""
     bits = 64 + BITS_PER_DIGIT * (digits + GUARD_DIGITS)
     enclosed = bound.enclosed(bits)
+    assert isinstance(enclosed, EnclosedTransferFunction)
     with precision(bits):
         gain = enclosed.unit.real
         for polynomial, exponent in enclosed.factors:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from symflex.emit.forms import Arranger
+from symflex.emit.forms import counts_of, hidden_expressions
 from symflex.emit.latex.equation import equation_label, model_labels, ratio_latex, transfer_function_latex
 from symflex.emit.latex.expression import Writer
 from symflex.emit.latex.table import VALUE_DIGITS, parameter_table, pole_zero_table
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.emit.forms import PrintedForm
+    from symflex.expressions import Expression
     from symflex.model import Model
     from symflex.roots import PoleZeroMap
     from symflex.transfer import HiddenFactor, TransferFunction
@@ -134,13 +135,17 @@ def _about_values(model: Model) -> str:
 
 
 def _introduction(tf: TransferFunction) -> str:
-    zeros, poles = tf.order
+    zeros, poles = counts_of(tf)
     unit = f", in {unit_latex(tf.unit)}" if tf.unit and tf.unit != "1" else ""
     counts = f"{_counted(zeros, 'zero')} and {_counted(poles, 'pole')}"
+    if zeros is None and poles is None:
+        counts = "infinitely many zeros and poles"
     return f"\\subsection{{${ratio_latex(tf)}$}}\n\nThe {escape_text(tf.quantity)}{unit}, with {counts}:"
 
 
-def _counted(count: int, noun: str) -> str:
+def _counted(count: int | None, noun: str) -> str:
+    if count is None:
+        return f"infinitely many {noun}s"
     number = _COUNTS[count] if count < len(_COUNTS) else str(count)
     return f"{number} {noun}{'' if count == 1 else 's'}"
 
@@ -148,24 +153,26 @@ def _counted(count: int, noun: str) -> str:
 def _hidden_modes(tf: TransferFunction) -> list[str]:
     """Return a sentence for every factor in s that cancelled."""
     writer = Writer(model_labels(tf.model))
-    symbols = {c.generator: c.expression for c in tf.constants}
-    arranger = Arranger.plain(tf.ratio.ring, symbols)
-    return [_hidden_mode(factor, tf, arranger, writer) for factor in tf.hidden]
+    printed = hidden_expressions(tf)
+    return [_hidden_mode(h, e, tf, writer) for h, (e, _) in zip(tf.hidden, printed, strict=True)]
 
 
-def _hidden_mode(factor: HiddenFactor, tf: TransferFunction, arranger: Arranger, writer: Writer) -> str:
+def _hidden_mode(factor: HiddenFactor, printed: Expression, tf: TransferFunction, writer: Writer) -> str:
     ring = tf.ratio.ring
-    degree = int(factor.polynomial.degrees()[ring.index[LAPLACE]])
-    noun, verb = ("mode", "is") if degree * factor.multiplicity == 1 else ("modes", "are")
+    degrees = factor.polynomial.degrees()
+    count = int(degrees[ring.index[LAPLACE]])
+    is_transcendental = any(int(degrees[ring.index[k.generator]]) for k in tf.kernels.kernels)
+    is_one = not is_transcendental and count * factor.multiplicity == 1
+    noun, verb = ("mode", "is") if is_one else ("modes", "are")
     if factor.polynomial == ring.generator(LAPLACE):
         what, where = "The factor $s$", rf"the {noun} at $s = 0$"
     else:
-        piece = writer.piece(arranger.collected(factor.polynomial))
-        if piece.width > _LONGEST_HIDDEN * TEXT_WIDTH_MM / EM_MM:
-            what = f"A factor of degree {degree} in $s$"
-        else:
+        piece = writer.piece(printed)
+        if piece.width <= _LONGEST_HIDDEN * TEXT_WIDTH_MM / EM_MM:
             what = f"The factor ${piece.latex}$"
-        where = f"the {noun} at its {'root' if degree == 1 else 'roots'}"
+        else:
+            what = "A transcendental factor" if is_transcendental else f"A factor of degree {count} in $s$"
+        where = f"the {noun} at its {'root' if count == 1 and not is_transcendental else 'roots'}"
     times = "" if factor.multiplicity == 1 else f" {_counted(factor.multiplicity, 'time')}"
     return (
         f"{what} cancels between numerator and denominator{times}: {where} {verb} hidden, that is, "

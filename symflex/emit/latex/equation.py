@@ -10,11 +10,11 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from symflex.emit.latex.expression import Style, Writer
+from symflex.emit.latex.expression import Piece, Style, Writer
 from symflex.emit.latex.label import labels_of, symbol
 from symflex.emit.latex.lines import break_lines
 from symflex.emit.latex.width import EM_MM, MINUS, QUAD, RELATION
-from symflex.expressions import Expression, Name, Negative, Number, names
+from symflex.expressions import Call, Derivative, Expression, Name, Negative, Number, names, number
 from symflex.kernels import LAPLACE
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ def transfer_function_latex(tf: TransferFunction, form: PrintedForm, *, width_mm
     writer = Writer(_labels(tf, form))
     width = None if width_mm is None else max(width_mm, NARROWEST_MM) / EM_MM
     parts = [_formula(tf, form, writer, None if width is None else width - _TAG)]
-    if form.where:
+    if form.where or form.laws:
         parts.append(_where(form, writer, width))
     return "\n".join(parts)
 
@@ -102,15 +102,17 @@ def inline_latex(tf: TransferFunction, form: PrintedForm) -> str:
     r"""Return a transfer function as one line of mathematics without delimiters, for notebooks and HTML."""
     writer = Writer(_labels(tf, form))
     formula = f"{_left_side(tf)[0]} = {_right_side(form, writer)[0]}"
-    if not form.where:
+    if not (form.where or form.laws):
         return formula
     where = [f"{writer.label(n).latex} = {writer.piece(e).latex}" for n, e in form.where]
+    where += [f"{law.latex} = {value}" for law, value in _laws(form, writer)]
     return rf"{formula},\quad \text{{where }} " + r",\; ".join(where)
 
 
 def _labels(tf: TransferFunction, form: PrintedForm) -> dict[str, str]:
     labels = model_labels(tf.model)
-    return labels_of([(name, "") for name, _ in form.where if name not in labels], labels)
+    own = [(name, "") for name, _ in (*form.where, *form.laws) if name not in labels]
+    return labels_of(own, labels)
 
 
 def _end(end: Input | Output) -> tuple[str, float]:
@@ -159,11 +161,12 @@ def _formula(tf: TransferFunction, form: PrintedForm, writer: Writer, width: flo
 def _named_parts(form: PrintedForm, writer: Writer, width: float, left: str, left_width: float) -> list[_Row]:
     """Return the quotient of what is short and of names for what is not, and what the names stand for."""
     sign, num = _signed(form)
+    varying = _varying(form)
     parts = []
     for name, expression in zip(_free_names(form, writer), (num, form.den), strict=True):
         piece = writer.piece(expression, Style.TEXT)
         is_long = left_width + RELATION + MINUS + _FRACTION_EDGES + piece.width > width
-        depends = any(isinstance(n, Name) and n.name == LAPLACE for n in names(expression))
+        depends = any(n.name in varying for n in names(expression))
         head = f"{name}(s)" if depends else name
         parts.append((head if is_long else piece.latex, expression, is_long))
     rows = [_Row(left, left_width, (rf"{sign}\frac{{{parts[0][0]}}}{{{parts[1][0]}}}",))]
@@ -173,6 +176,17 @@ def _named_parts(form: PrintedForm, writer: Writer, width: float, left: str, lef
         if is_long
     ]
     return rows
+
+
+def _varying(form: PrintedForm) -> frozenset[str]:
+    """Return s, and the names that stand for functions of it."""
+    varying = {LAPLACE, *(name for name, _ in form.laws)}
+    # A line may use the names of any other.
+    for _ in form.where:
+        varying |= {
+            name for name, e in form.where if any(n.name in varying for n in names(e) if isinstance(n, Name))
+        }
+    return frozenset(varying)
 
 
 def _free_names(form: PrintedForm, writer: Writer) -> tuple[str, str]:
@@ -185,10 +199,23 @@ def _free_names(form: PrintedForm, writer: Writer) -> tuple[str, str]:
 
 
 def _where(form: PrintedForm, writer: Writer, width: float | None) -> str:
-    rows = _broken_rows(form.where, writer, None if width is None else width - _WHERE_WIDTH)
+    room = None if width is None else width - _WHERE_WIDTH
+    rows = _broken_rows(form.where, writer, room) if form.where else []
+    rows += [_Row(left.latex, left.width, (value,)) for left, value in _laws(form, writer)]
     first = rows[0]
     rows[0] = _Row(f"{_WHERE}{first.left}", first.left_width, first.right)
     return _align(rows, "align*", "")
+
+
+def _laws(form: PrintedForm, writer: Writer) -> list[tuple[Piece, str]]:
+    """Return the differential equations of functions of x and their values at x = 0."""
+    rows = []
+    for name, law in form.laws:
+        order = max(node.order for node in names(law) if isinstance(node, Derivative))
+        rows.append((writer.piece(law.left), writer.piece(law.right).latex))
+        at_zero = [writer.piece(Call(name, number(0), k)) for k in range(order)]
+        rows += [(piece, "1" if k == order - 1 else "0") for k, piece in enumerate(at_zero)]
+    return rows
 
 
 def _broken_rows(

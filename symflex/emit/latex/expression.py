@@ -14,7 +14,18 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from symflex.emit.latex.label import symbol
 from symflex.emit.latex.width import CDOT, DIGIT, MINUS, OPERATOR, SCRIPT, SLASH, THIN
-from symflex.expressions import Call, Expression, Name, Negative, Number, Power, Product, Quotient, Sum
+from symflex.expressions import (
+    Call,
+    Derivative,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+)
 from symflex.expressions.format import number_text
 from symflex.kernels.functions import FUNCTIONS
 
@@ -67,6 +78,8 @@ _OPERATOR_WIDTHS: Final = {"sqrt": 1.1, "exp": 1.7, "log": 1.5, "sin": 1.4, "cos
 _WIDEST_OPERATOR: Final = 2.3
 _TRIGONOMETRIC: Final = frozenset(("sin", "cos", "tan", "sinh", "cosh", "tanh"))
 _SHORT_EXPONENT: Final = 8
+_MOST_PRIMES: Final = 3
+_PRIME_WIDTH: Final = 0.3
 
 
 def latex_expression(expression: Expression, labels: Mapping[str, str], style: Style = Style.DISPLAY) -> str:
@@ -84,7 +97,7 @@ def latex_expression(expression: Expression, labels: Mapping[str, str], style: S
     Raises
     ------
     TypeError
-        For a derivative, an equation or a quantity of an element, which no transfer function holds.
+        For an equation or a quantity of an element, which no transfer function holds.
 
     Examples
     --------
@@ -120,6 +133,9 @@ class Writer:
             if isinstance(node, Name):
                 done.append(self._name(node.name))
                 continue
+            if isinstance(node, Derivative):
+                done.append(self._primed(node.name, node.order))
+                continue
             if isinstance(node, Number):
                 done.append(_number(node.value, where))
                 continue
@@ -131,8 +147,20 @@ class Writer:
             else:
                 pieces = done[-len(children) :]
                 del done[-len(children) :]
-                done.append(_combined(node, pieces, where))
+                if isinstance(node, Call) and node.name not in FUNCTIONS:
+                    done.append(_applied(self._primed(node.name, node.order), pieces[0]))
+                else:
+                    done.append(_combined(node, pieces, where))
         return done[0]
+
+    def _primed(self, name: str, order: int) -> Piece:
+        """Return a function of x or one of its derivatives."""
+        piece = self._name(name)
+        if not order:
+            return piece
+        primes = "'" * order if order <= _MOST_PRIMES else rf"^{{({order})}}"
+        width = piece.width + _PRIME_WIDTH * order
+        return piece._replace(latex=piece.latex + primes, width=width, has_superscript=True)
 
     def exponent(self, expression: Expression) -> Piece:
         """Return a subtree as it prints in an exponent."""
@@ -345,9 +373,14 @@ def _root(radicand: Piece) -> Piece:
     return Piece(latex, radicand.width + _ROOT_WIDTH, Shape.CALL, radicand.is_tall)
 
 
+def _applied(function: Piece, argument: Piece) -> Piece:
+    """Return a function of x at a point."""
+    inside = fenced(argument)
+    width = function.width + inside.width
+    return Piece(function.latex + inside.latex, width, Shape.CALL, inside.is_tall, inside.nesting)
+
+
 def _call(node: Call, argument: Piece) -> Piece:
-    if node.name not in FUNCTIONS:
-        raise TypeError(f"no LaTeX for the function {node.name}")
     if node.name == "sqrt":
         return _root(argument)
     if node.name == "exp" and is_short(node.argument):

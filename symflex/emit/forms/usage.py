@@ -1,0 +1,66 @@
+"""Refusing a form that a function does not have, with the forms it has."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symflex.errors import Diagnostic, UsageError
+
+if TYPE_CHECKING:
+    from symflex.transfer import TransferFunction
+
+RATIONAL = ("definitions", "factored", "polynomial", "monic", "zpk", "frequency")
+"""The forms of a rational function."""
+DISTRIBUTED = ("hyperbolic", "factored", "krylov", "vaughan", "frequency", "polynomial")
+"""The forms of a function with kernels of wavenumbers that have a formula."""
+WITHOUT_FORMULA = ("hyperbolic", "krylov", "factored", "polynomial")
+"""The forms of a function whose wavenumbers have none."""
+
+
+def forms_of(tf: TransferFunction) -> tuple[str, ...]:
+    """Return the forms a transfer function has."""
+    if not tf.is_distributed:
+        return RATIONAL
+    return WITHOUT_FORMULA if any(d.kind == "general" for d in tf.kernels.dispersions) else DISTRIBUTED
+
+
+def refuse(tf: TransferFunction, form: str, reason: str) -> UsageError:
+    """Return the error to raise."""
+    hint = f"forms of {tf.name}: " + ", ".join(forms_of(tf))
+    return UsageError(Diagnostic("SF902", f"{tf.name} has no {form} form: {reason}", None, hint))
+
+
+def require_kernels(tf: TransferFunction, form: str) -> None:
+    """Refuse a rational function.
+
+    Raises
+    ------
+    UsageError
+        SF902.
+    """
+    if not tf.is_distributed:
+        raise refuse(tf, form, "it is a rational function of s")
+
+
+def require_rational(tf: TransferFunction, form: str) -> None:
+    """Refuse a function with kernels.
+
+    Raises
+    ------
+    UsageError
+        SF902.
+    """
+    if tf.is_distributed:
+        raise refuse(tf, form, "it is not a rational function of s")
+
+
+def require_formula(tf: TransferFunction, form: str) -> None:
+    """Refuse a function whose wavenumbers have no formula.
+
+    Raises
+    ------
+    UsageError
+        SF902.
+    """
+    if any(d.kind == "general" for d in tf.kernels.dispersions):
+        raise refuse(tf, form, "the exponents of its field equations have no formula")
