@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from graphlib import TopologicalSorter
 from typing import TYPE_CHECKING
 
 from symflex.emit.forms import hidden_expressions
 from symflex.emit.latex import inline_latex
-from symflex.expressions import format_expression
+from symflex.expressions import Name, format_expression, names
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.emit.forms import PrintedForm
+    from symflex.expressions import Expression
     from symflex.transfer import TransferFunction
 
 SCHEMA = "symflex.derive/1"
@@ -26,11 +28,20 @@ def derive_json(tf: TransferFunction, form: PrintedForm) -> dict[str, object]:
         "form": form.name,
         "num": format_expression(form.num),
         "den": format_expression(form.den),
-        "where": [[name, format_expression(e)] for name, e in form.where],
+        "where": [[name, format_expression(e)] for name, e in _in_order_of_definition(form)],
         "laws": [[name, format_expression(law)] for name, law in form.laws],
         "latex": inline_latex(tf, form),
         "hidden": [{"factor": format_expression(e), "multiplicity": m} for e, m in hidden_expressions(tf)],
     }
+
+
+def _in_order_of_definition(form: PrintedForm) -> list[tuple[str, Expression]]:
+    """Return the ``where`` lines so that each uses only those before it."""
+    lines = dict(form.where)
+    graph = {
+        name: [n.name for n in names(e) if isinstance(n, Name) and n.name in lines] for name, e in form.where
+    }
+    return [(name, lines[name]) for name in TopologicalSorter(graph).static_order()]
 
 
 def derive_document(entries: Sequence[tuple[TransferFunction, PrintedForm]]) -> dict[str, object]:

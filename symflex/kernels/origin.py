@@ -1,4 +1,4 @@
-"""The order of zeros at s = 0, where wavenumbers are branched and kernels cancel.
+"""The order of zeros at s = 0 and elsewhere where wavenumbers vanish, are branched, and kernels cancel.
 
 With ``s = e^4`` every wavenumber is a power series in e.
 """
@@ -8,12 +8,14 @@ from __future__ import annotations
 from random import Random
 from typing import TYPE_CHECKING
 
+from symflex.kernels.normal_form import split
+from symflex.kernels.ring import degree_in
 from symflex.kernels.taylor import BASE, PRIMES, TaylorField, random_values
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from flint import nmod_poly
+    from flint import fmpz_mpoly, nmod_poly
 
     from symflex.kernels.dispersion import Dispersion, KernelTable
     from symflex.kernels.factored import Factored
@@ -26,7 +28,7 @@ TRIALS = 40
 
 
 class Origin:
-    """Orders at s = 0 of functions over one ring.
+    """Orders at s = 0, or where another polynomial in s and parameters vanishes, of functions over one ring.
 
     Parameters
     ----------
@@ -34,14 +36,16 @@ class Origin:
         s first; with the table's generators.
     table : KernelTable
         Wavenumbers and kernels; general dispersions are not covered.
+    at : fmpz_mpoly, optional
+        What vanishes instead of s; linear in s or in a parameter.
     """
 
-    def __init__(self, ring: Ring, table: KernelTable) -> None:
+    def __init__(self, ring: Ring, table: KernelTable, at: fmpz_mpoly | None = None) -> None:
         self.ring = ring
-        self._found = _find_point(ring, table)
+        self._found = _find_point(ring, table, ring.context.gen(0) if at is None else at)
 
     def order(self, value: Factored) -> int | None:
-        """Return the order of the zero (negative: of the pole) at s = 0, ``None`` when it is not found."""
+        """Return the order of the zero (negative: of the pole), ``None`` when it is not found."""
         if self._found is None:
             return None
         field, values = self._found
@@ -54,13 +58,24 @@ class Origin:
         return total // BRANCHES if total % BRANCHES == 0 else None
 
 
-def _find_point(ring: Ring, table: KernelTable) -> tuple[TaylorField, dict[str, nmod_poly]] | None:
-    """Return series for all generators near s = 0."""
+def _find_point(
+    ring: Ring, table: KernelTable, at: fmpz_mpoly
+) -> tuple[TaylorField, dict[str, nmod_poly]] | None:
+    """Return series for all generators near where a polynomial vanishes."""
     if any(d.kind == "general" for d in table.dispersions):
         return None
+    linear = next((i for i in range(len(ring.names)) if degree_in(at, i) == 1), None)
+    if linear is None:
+        return None
+    parts = split(ring, at, linear)
+    name, zero = ring.names[linear], ring.constant(0)
 
     def prepare(values: dict[str, nmod_poly], field: TaylorField) -> bool:
-        values[ring.names[0]] = field.power(BRANCHES)
+        rest, slope = (field.polynomial(parts.get(k, zero), ring.names, values) for k in (0, 1))
+        below = field.inverse(slope)
+        if below is None:
+            return False
+        values[name] = field.times(field.power(BRANCHES) - rest, below)
         return True
 
     return find_point(ring, table, TERMS, prepare)

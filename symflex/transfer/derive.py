@@ -175,7 +175,7 @@ class _Workshop:
         if below.unit < 0:
             above, below = -above, -below
         determinant = self._expanded(self._closure.open(self._den)) / self._cleared
-        cancelled = reduced.shared * reduction.hidden_at_origin(determinant, reduced)
+        cancelled = reduced.shared * reduction.hidden_where_waves_vanish(determinant, reduced)
         ratio = above / below
         if not any(reduction.has_kernels(f) for f, _ in ratio.factors):
             table = NO_KERNELS

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symflex.errors import BudgetError, Diagnostic
@@ -90,6 +91,14 @@ class KernelReduction:
         degrees = factor.degrees()
         return any(int(degrees[i]) for i in self._kernels)
 
+    def _is_of_waves(self, factor: fmpz_mpoly) -> bool:
+        """Tell whether a polynomial over the coordinates holds wavenumbers and no kernels."""
+        ring = self.coordinates.coordinates
+        degrees = factor.degrees()
+        return any(int(degrees[ring.index[w]]) for w in self.table.wavenumbers) and not any(
+            int(degrees[i]) for i in range(len(self.ring.names) - len(self._kernels), len(ring.names))
+        )
+
     def _has_waves(self, factor: fmpz_mpoly) -> bool:
         degrees = factor.degrees()
         return any(int(degrees[self.ring.index[w]]) for w in self.table.wavenumbers)
@@ -117,6 +126,8 @@ class KernelReduction:
         before = self._free(cancelled)
         shared, _ = cancel((shared * before).numerator(), before.denominator())
         quotient, shared = self._split_contents(quotient), self._split_contents(shared)
+        # Powers of wavenumbers come of clearing denominators: as powers of s they would look like modes.
+        shared = shared.filter(lambda f: not self._is_of_waves(f))
         table, back = self._restorer([quotient, shared.numerator()])
         ratio = self._shortest(back(quotient))
         modes = self._modes(self._shortest(back(shared.numerator())))
@@ -158,16 +169,27 @@ class KernelReduction:
             result = result * images**exponent
         return result
 
-    def hidden_at_origin(self, determinant: Factored, reduced: Reduced) -> Factored:
-        """Return the power of s that only the determinant has: rigid-body modes out of sight."""
-        one = Factored.number(self.ring, 1)
+    def hidden_where_waves_vanish(self, determinant: Factored, reduced: Reduced) -> Factored:
+        """Return the factors that only the determinant has: rigid-body modes out of sight."""
+        result = Factored.number(self.ring, 1)
         if reduced.num.is_zero:
-            return one
-        whole = Origin(self.ring, self.table).order(determinant)
-        left = Origin(self.ring, reduced.table).order(reduced.den)
-        if whole is None or left is None or whole <= left:
-            return one
-        return Factored.generator(self.ring, "s") ** (whole - left)
+            return result
+        for factor in self._vanishing:
+            whole = Origin(self.ring, self.table, factor).order(determinant)
+            left = Origin(self.ring, reduced.table, factor).order(reduced.den)
+            if whole is not None and left is not None and whole > left:
+                result = result * Factored.polynomial(self.ring, factor) ** (whole - left)
+        return result
+
+    @cached_property
+    def _vanishing(self) -> tuple[fmpz_mpoly, ...]:
+        """What vanishes with a wavenumber: s, and where foundations balance inertia."""
+        found = [self.ring.context.gen(0)]
+        for dispersion in self.table.dispersions:
+            for factor, exponent in dispersion.characteristic[0].factors if dispersion.characteristic else ():
+                if exponent > 0 and degree_in(factor, 0) and factor not in found:
+                    found.append(factor)
+        return tuple(found)
 
     def _split_contents(self, value: Factored) -> Factored:
         """Return a value over the coordinates with every factor free of kernels set apart."""
@@ -197,9 +219,9 @@ class KernelReduction:
     def _modes(self, value: Factored) -> Factored:
         """Return the factors that are modes.
 
-        Powers of s are not, nor are factors that come of expressing the equations in wavenumbers, nor the
-        poles of the field equations, where their solutions have essential singularities; exponentials have
-        no zeros.
+        What vanishes with a wavenumber is looked at elsewhere. No modes are factors that come of expressing
+        the equations in wavenumbers, nor the poles of the field equations, where their solutions have
+        essential singularities; exponentials have no zeros.
         """
         singular = [
             f for d in self.table.dispersions for c in d.characteristic for f, _ in c.denominator().factors
@@ -213,7 +235,7 @@ class KernelReduction:
 
         result = Factored.number(self.ring, 1)
         for factor, exponent in value.filter(is_mode).factors:
-            rest = factor if self.has_kernels(factor) else _without(factor, singular)
+            rest = factor if self.has_kernels(factor) else _without(factor, (*singular, *self._vanishing))
             if not rest.is_constant():
                 result = result * Factored.polynomial(self.ring, rest) ** exponent
         return result

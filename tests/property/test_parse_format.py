@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from symflex import pipeline
-from symflex.emit.forms import FORMS, hidden_expressions, print_form
+from symflex.emit.forms import hidden_expressions, print_form
+from symflex.emit.forms.usage import forms_of
 from symflex.emit.json_format import derive_json
 from symflex.expressions import (
     Name,
@@ -60,7 +61,7 @@ def test_any_built_tree_is_read_back_as_itself(expression):
 @pytest.mark.parametrize("path", sorted(FOLDER.rglob("*.toml")), ids=lambda p: p.stem)
 def test_everything_a_derivation_prints_is_read_back_as_itself(path):
     for tf in pipeline.derive_all(pipeline.load(path)):
-        forms = [print_form(tf, name) for name in FORMS]
+        forms = [print_form(tf, name) for name in forms_of(tf)]
         parts = [e for f in forms for e in (f.num, f.den, *(w for _, w in f.where))]
         for part in dict.fromkeys([*parts, *(e for e, _ in hidden_expressions(tf))]):
             text = format_expression(part)
