@@ -10,7 +10,7 @@ from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 
-from benchmarks import chains, startup
+from benchmarks import chains, distributed, startup
 from benchmarks.measure import Claim, Measurement
 from symflex import __version__
 
@@ -27,6 +27,9 @@ def main(arguments: list[str] | None = None) -> int:
     chain_measurements, chain_claims = chains.measure(asked.limit)
     measurements += chain_measurements
     claims += chain_claims
+    beam_measurements, beam_claims = distributed.measure(asked.limit)
+    measurements += beam_measurements
+    claims += beam_claims
 
     print(_markdown(measurements, claims))
     if asked.json:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import isfinite
 from typing import TYPE_CHECKING, Protocol
 
 from symflex.emit.forms import print_form
@@ -68,6 +69,8 @@ def _shortfall(verification: Verification) -> str:
     if error <= ACCURACY:
         return ""
     low, high = (float(f) for f in verification.band)
+    if not isfinite(error):
+        return f"{name} overflows somewhere over {low:g} Hz to {high:g} Hz"
     return f"{name} is accurate to {error:.1e} only, over {low:g} Hz to {high:g} Hz"
 
 

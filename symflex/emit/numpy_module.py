@@ -8,32 +8,22 @@ from __future__ import annotations
 
 import keyword
 from dataclasses import dataclass
-from textwrap import TextWrapper
 from typing import TYPE_CHECKING
 
 from symflex.emit.forms import print_form
+from symflex.emit.numpy_expression import WIDTH, Printer, statement
+from symflex.emit.numpy_pieces import LINTS, PiecesText, support
 from symflex.emit.program import (
-    Add,
-    Apply,
-    Constant,
-    Divide,
-    InverseLaplace,
-    Laplace,
-    Multiply,
-    Negate,
-    Node,
-    Power,
+    Piecewise,
     Program,
-    Reference,
     Verification,
     choose_program,
+    choose_real_program,
     identifiers,
     inert,
     nearest_double,
     wrapped,
 )
-from symflex.emit.program import Parameter as ParameterNode
-from symflex.emit.program.evaluate import NUMPY_FUNCTIONS
 from symflex.expressions import Number, Quotient, format_expression
 
 if TYPE_CHECKING:
@@ -43,7 +33,6 @@ if TYPE_CHECKING:
     from symflex.model import Model, Parameter
     from symflex.transfer import TransferFunction
 
-WIDTH = 88
 FORMULA_LINES = 20
 FORMULA_TERMS = 1000
 LITERAL_WIDTH = 60
@@ -51,14 +40,21 @@ LITERAL_WIDTH = 60
 RESERVED = frozenset({*keyword.kwlist, "np", "s", "arguments", "complex", "ArrayLike", "NDArray"})
 """Names a parameter cannot take in the generated code."""
 
+LINTS_OF_NAMES = "E501, E741, N802, N803, N806, PLR0915, RUF001, RUF002, RUF100"
+
 IMPORTS = """\
-# ruff: noqa: E501, E741, N802, N803, N806, PLR0915, RUF001, RUF002, RUF100  (names and texts are the model's)
+# ruff: noqa: {lints}  (names and texts are the model's)
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 """
+
+COST = (
+    "Fundamental functions come from matrix exponentials: some hundred times the cost of a complex "
+    "exponential each, and finite only while they themselves fit in double precision."
+)
 
 SUPPORT = '''\
 def _numbers(
@@ -71,7 +67,9 @@ def _numbers(
             message = f"numbers or arrays of numbers are wanted, not {array.dtype}"
             raise TypeError(message)
     types = [complex, *(complex if a.dtype.kind == "c" else float for a in arrays[1:])]
-    return tuple(a.astype(t)[()] for a, t in zip(arrays, types, strict=True))
+    return tuple(
+        a.astype(t, copy=False)[()] for a, t in zip(arrays, types, strict=True)
+    )
 
 
 def _shaped(
@@ -94,7 +92,7 @@ class NumpyExport:
     text : str
         The module's source.
     verified : tuple of Verification
-        One per transfer function, in the order of the module.
+        One per transfer function, in the order of the module, then one per frequency response.
     """
 
     text: str
@@ -110,6 +108,9 @@ def numpy_module(
     digits: int = 2,
 ) -> NumpyExport:
     """Return a module with one function ``OUT_over_IN(s, *, parameter=default, ...)`` per transfer function.
+
+    Lossless distributed systems get a second one, ``OUT_over_IN_at(omega, *, ...)``: the frequency response
+    in real arithmetic.
 
     Each function is checked against ball arithmetic before it is written, and says in its docstring what
     came of it.
@@ -160,14 +161,25 @@ def numpy_module(
     functions = identifiers(
         {key: f"{tf.output.name}_over_{tf.input.name}" for key, (tf, _, _) in chosen.items()}, RESERVED
     )
+    found = {key: choose_real_program(tf, band_hz, samples) for key, (tf, _, _) in chosen.items()}
+    real = {key: (chosen[key][0], *made) for key, made in found.items() if made is not None}
+    taken = {*RESERVED, *functions.values()}
+    responses = identifiers({key: f"{functions[key]}_at" for key in real}, taken)
     blocks = [_parameter_table(model, names)]
     for key, (tf, program, verification) in chosen.items():
         sentence = verification.text(digits)
         blocks.append(_Function(tf, program, functions[key], names, sentence).text())
-    blocks += [SUPPORT, _function_table(functions)]
-    verified = tuple(v for _, _, v in chosen.values())
-    header = f"{_header(model, verified, digits)}{IMPORTS}\n"
-    return NumpyExport(header + "\n\n".join(blocks), verified)
+        if key in real:
+            _, response, measured = real[key]
+            blocks.append(_Function(tf, response, responses[key], names, measured.text(digits)).text())
+    pieces = [p for _, p, _ in (*chosen.values(), *real.values()) if isinstance(p, Piecewise)]
+    blocks += [SUPPORT, *support(pieces), _function_table("TRANSFER_FUNCTIONS", functions)]
+    if pieces:
+        blocks.append(_function_table("FREQUENCY_RESPONSES", responses))
+    verified = tuple(v for _, _, v in (*chosen.values(), *real.values()))
+    lints = f"{LINTS_OF_NAMES}, {LINTS}" if pieces else LINTS_OF_NAMES
+    header = _header(model, tuple(v for _, _, v in chosen.values()), digits)
+    return NumpyExport(f"{header}{IMPORTS.format(lints=lints)}\n" + "\n\n".join(blocks), verified)
 
 
 # ------------------------------------------------------------------------------------------ the module
@@ -215,9 +227,9 @@ def _parameter_table(model: Model, names: Mapping[str, str]) -> str:
     return "\n".join([*lines, "}"] if model.parameters else [lines[0] + "}"]) + "\n"
 
 
-def _function_table(functions: Mapping[str, str]) -> str:
+def _function_table(name: str, functions: Mapping[str, str]) -> str:
     lines = [f"    {_literal(key)}: {function}," for key, function in functions.items()]
-    return "\n".join(["TRANSFER_FUNCTIONS = {", *lines, "}"]) + "\n"
+    return "\n".join([f"{name} = {{", *lines, "}"] if lines else [f"{name} = {{}}"]) + "\n"
 
 
 def _default(parameter: Parameter) -> str:
@@ -248,22 +260,38 @@ class _Function:
     """Prints one transfer function: what a user calls, and the arithmetic behind it."""
 
     tf: TransferFunction
-    program: Program
+    program: Program | Piecewise
     name: str
     names: Mapping[str, str]
     sentence: str
 
+    @property
+    def is_real(self) -> bool:
+        """True for a frequency response in real arithmetic."""
+        return isinstance(self.program, Piecewise) and self.program.turn is not None
+
+    @property
+    def variable(self) -> str:
+        """The first argument's name."""
+        if not self.is_real:
+            return "s"
+        return "omega_" if "omega" in self.names.values() else "omega"
+
     def text(self) -> str:
         parameters = [(p, self.names[p.name]) for p in self.tf.parameters]
-        values = ", ".join(["s", *(name for _, name in parameters)])
-        signature = [f"def {self.name}(", "    s: ArrayLike,", *(["    *,"] if parameters else [])]
+        values = ", ".join([self.variable, *(name for _, name in parameters)])
+        signature = [
+            f"def {self.name}(",
+            f"    {self.variable}: ArrayLike,",
+            *(["    *,"] if parameters else []),
+        ]
         for parameter, name in parameters:
             default = _default(parameter)
             signature.append(f"    {name}: ArrayLike{f' = {default}' if default else ''},")
         body = [
-            *_statement("arguments", f"_numbers({values})", "    "),
+            *statement("arguments", f"{'_real' if self.is_real else ''}_numbers({values})", "    "),
             '    with np.errstate(all="ignore"):',
-            f"        return _shaped(_{self.name}(*arguments), arguments)",
+            *statement("return", self._call(), "        "),
         ]
         return "\n".join(
             [
@@ -278,8 +306,22 @@ class _Function:
             ]
         )
 
+    @property
+    def _pieces(self) -> PiecesText | None:
+        if not isinstance(self.program, Piecewise):
+            return None
+        return PiecesText(self.program, self.name, self.variable, self.names, RESERVED)
+
+    def _call(self) -> str:
+        pieces = self._pieces
+        return f"_shaped(_{self.name}(*arguments), arguments)" if pieces is None else pieces.call()
+
     def _kernel(self, parameters: Sequence[str]) -> list[str]:
         """Return the private function that computes with numbers or arrays of any shape."""
+        if (pieces := self._pieces) is not None:
+            return pieces.functions()
+        if isinstance(self.program, Piecewise):
+            raise TypeError
         lines = [f"def _{self.name}("]
         lines += [f"    {name}: NDArray[np.complex128]," for name in ("s", *parameters)]
         lines.append(") -> NDArray[np.complex128]:")
@@ -289,16 +331,16 @@ class _Function:
         used |= set(own.values())
         assignments = [*program.constants, *program.near.assignments, *(far.assignments if far else ())]
         intermediates = identifiers({a.name: a.name for a in assignments}, used)
-        printer = _Printer(self.names, intermediates, own["inverse"])
+        printer = Printer(self.names, intermediates, own["inverse"])
         for assignment in (*program.constants, *program.near.assignments):
             lines += printer.assignment(assignment.name, assignment.value, "    ")
         if far is None:
             value = printer.print(program.near.value)
             return [
                 *lines,
-                *_statement("return", value if program.varies else f"np.asarray({value})", "    "),
+                *statement("return", value if program.varies else f"np.asarray({value})", "    "),
             ]
-        lines += _statement(own["value"], printer.print(program.near.value), "    ")
+        lines += statement(own["value"], printer.print(program.near.value), "    ")
         lines.append(f"    {own['limit']} = {program.limit!r}")
         lines.append(f"    {own['is_far']} = np.abs(s) > {own['limit']}")
         lines.append(f"    if np.any({own['is_far']}):")
@@ -306,15 +348,18 @@ class _Function:
         for assignment in far.assignments:
             lines += printer.assignment(assignment.name, assignment.value, "        ")
         whole = f"np.where({own['is_far']}, {printer.print(far.value)}, {own['value']})"
-        return [*lines, *_statement(own["value"], whole, "        "), f"    return {own['value']}"]
+        return [*lines, *statement(own["value"], whole, "        "), f"    return {own['value']}"]
 
     def _docstring(self) -> str:
         tf = self.tf
         unit = f" [{tf.unit}]" if tf.unit else ""
-        lines = [inert(f"{tf.quantity[:1].upper()}{tf.quantity[1:]} {tf.name}{unit}."), ""]
+        at = " at s = j omega, in real arithmetic" if self.is_real else ""
+        lines = [inert(f"{tf.quantity[:1].upper()}{tf.quantity[1:]} {tf.name}{unit}{at}."), ""]
         lines += [f"    {line}" if line else "" for line in _formula(tf)]
-        lines += ["", "    Parameters", "    ----------", "    s : array_like of complex"]
-        lines.append("        Laplace variable [rad/s]; it and all parameters are broadcast together.")
+        kind = "float" if self.is_real else "complex"
+        lines += ["", "    Parameters", "    ----------", f"    {self.variable} : array_like of {kind}"]
+        what = "Angular frequency" if self.is_real else "Laplace variable"
+        lines.append(f"        {what} [rad/s]; it and all parameters are broadcast together.")
         for parameter in tf.parameters:
             name = self.names[parameter.name]
             is_needed = parameter.value is None
@@ -329,6 +374,8 @@ class _Function:
         lines += ["", "    Notes", "    -----"]
         lines += _origin(tf.model, "    ")
         lines += wrapped(inert(self.sentence), WIDTH, "    ")
+        if isinstance(self.program, Piecewise) and self.program.solves:
+            lines += wrapped(COST, WIDTH, "    ")
         return _docstring(lines, "    ")
 
 
@@ -340,7 +387,8 @@ def _formula(tf: TransferFunction) -> list[str]:
     elif tf.closed is not None and len(tf.closed.num) + len(tf.closed.den) <= FORMULA_TERMS:
         form = print_form(tf, "definitions")
     else:
-        return [f"A quotient of polynomials of degree {above} and {below} in s."]
+        kind = "sums of kernels" if tf.is_distributed else f"polynomials of degree {above} and {below}"
+        return [f"A quotient of {kind} in s."]
     is_whole = isinstance(form.den, Number) and form.den.value == 1
     whole = format_expression(form.num if is_whole else Quotient(form.num, form.den))
     width = WIDTH - 4
@@ -352,76 +400,3 @@ def _formula(tf: TransferFunction) -> list[str]:
         return lines
     kept = lines[: FORMULA_LINES - 1]
     return [*kept, f"    ... and {len(lines) - len(kept)} lines more."]
-
-
-# ------------------------------------------------------------------------------------------ expressions
-
-_SUM, _PRODUCT, _SIGN, _POWER, _LEAF = range(5)
-
-
-@dataclass(frozen=True)
-class _Printer:
-    """Prints expressions as Python, evaluated in the order of the tree."""
-
-    parameters: Mapping[str, str]
-    locals: Mapping[str, str]
-    inverse: str
-
-    def assignment(self, name: str, value: Node, indent: str) -> list[str]:
-        return _statement(self.locals[name], self.print(value), indent)
-
-    def print(self, node: Node) -> str:
-        return self._print(node)[0]
-
-    def _print(self, node: Node) -> tuple[str, int]:
-        """Return the text and how tightly it binds."""
-        match node:
-            case Constant(value, pi_power):
-                is_pi = value == 1 and pi_power == 1
-                return "np.pi" if is_pi else repr(nearest_double(value, pi_power)), _LEAF
-            case ParameterNode(name):
-                return self.parameters[name], _LEAF
-            case Reference(name):
-                return self.locals[name], _LEAF
-            case Laplace():
-                return "s", _LEAF
-            case InverseLaplace():
-                return self.inverse, _LEAF
-            case Add(terms):
-                return self._sum(terms), _SUM
-            case Multiply(factors):
-                texts = [self._within(factors[0], _PRODUCT), *(self._within(f, _SIGN) for f in factors[1:])]
-                return " * ".join(texts), _PRODUCT
-            case Divide(numerator, denominator):
-                return f"{self._within(numerator, _PRODUCT)} / {self._within(denominator, _SIGN)}", _PRODUCT
-            case Power(base, exponent):
-                return f"{self._within(base, _LEAF)}**{exponent}", _POWER
-            case Negate(operand):
-                return f"-{self._within(operand, _POWER)}", _SIGN
-            case Apply(function, argument):
-                return f"np.{NUMPY_FUNCTIONS[function]}({self.print(argument)})", _LEAF
-        message = f"no text for {type(node).__name__}"
-        raise TypeError(message)
-
-    def _sum(self, terms: Sequence[Node]) -> str:
-        text = self._within(terms[0], _PRODUCT)
-        for term in terms[1:]:
-            if isinstance(term, Negate):
-                text += f" - {self._within(term.operand, _PRODUCT)}"
-            else:
-                text += f" + {self._within(term, _PRODUCT)}"
-        return text
-
-    def _within(self, node: Node, tightest: int) -> str:
-        text, binding = self._print(node)
-        return text if binding >= tightest else f"({text})"
-
-
-def _statement(target: str, value: str, indent: str) -> list[str]:
-    """Return ``target = value``, or ``return value``, on as many lines as it needs."""
-    opening = f"{indent}{target} " if target == "return" else f"{indent}{target} = "
-    if len(opening) + len(value) <= WIDTH:
-        return [opening + value]
-    # Only between operators: an identifier longer than a line stays whole.
-    wrapper = TextWrapper(width=WIDTH - len(indent) - 4, break_long_words=False, break_on_hyphens=False)
-    return [f"{opening}(", *(f"{indent}    {line}" for line in wrapper.wrap(value)), f"{indent})"]

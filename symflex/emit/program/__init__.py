@@ -1,6 +1,7 @@
 """Numeric programs in no language yet: how to compute a transfer function, and how well that works."""
 
 from symflex.emit.program.build import available_forms, build_program
+from symflex.emit.program.distributed import build_piecewise, build_real
 from symflex.emit.program.evaluate import evaluate, nearest_double
 from symflex.emit.program.identifiers import identifiers
 from symflex.emit.program.nodes import (
@@ -8,42 +9,59 @@ from symflex.emit.program.nodes import (
     Apply,
     Assignment,
     Branch,
+    ComplexNumber,
+    Condition,
     Constant,
     Divide,
     InverseLaplace,
+    Item,
     Laplace,
     Multiply,
     Negate,
     Node,
     Parameter,
+    Piece,
+    Piecewise,
     Power,
     Program,
     Reference,
+    Solutions,
+    Straight,
 )
 from symflex.emit.program.prose import inert, wrapped
-from symflex.emit.program.verify import References, Verification, choose_program
+from symflex.emit.program.verify import References, Verification, choose_program, choose_real_program
 
 __all__ = [
     "Add",
     "Apply",
     "Assignment",
     "Branch",
+    "ComplexNumber",
+    "Condition",
     "Constant",
     "Divide",
     "InverseLaplace",
+    "Item",
     "Laplace",
     "Multiply",
     "Negate",
     "Node",
     "Parameter",
+    "Piece",
+    "Piecewise",
     "Power",
     "Program",
     "Reference",
     "References",
+    "Solutions",
+    "Straight",
     "Verification",
     "available_forms",
+    "build_piecewise",
     "build_program",
+    "build_real",
     "choose_program",
+    "choose_real_program",
     "evaluate",
     "identifiers",
     "inert",

@@ -75,17 +75,19 @@ def build_program(tf: TransferFunction, form: str | None = None) -> Program:
     if tf.ratio.is_zero:
         return schedule(forge, parameters, forge.constant(0), None, inf)
     make = _maker(tf, form or forms[0])
-    near, degree = make(_Generators(forge, tf, is_far=False))
+    near, degree = make(Generators(forge, tf, is_far=False))
     limit = 10.0 ** (HEADROOM // degree) if degree else inf
     if limit >= FAR_FROM:
         return schedule(forge, parameters, near, None, inf)
-    far, _ = make(_Generators(forge, tf, is_far=True))
+    far, _ = make(Generators(forge, tf, is_far=True))
     return schedule(forge, parameters, near, far, limit)
 
 
 def available_forms(tf: TransferFunction) -> tuple[str, ...]:
-    """Return the names of the forms a transfer function can be evaluated in, the preferred one first."""
-    forms = []
+    """Return the forms a lumped transfer function can be evaluated in, the preferred one first."""
+    forms: list[str] = []
+    if tf.is_distributed:
+        return ()
     if tf.closed is not None and not tf.ratio.is_zero and _closes_polynomially(tf):
         closed = tf.closed
         terms = [len(closed.num), len(closed.den), *(len(p) for _, p in closed.closure.sums)]
@@ -121,7 +123,7 @@ def _used(ring: Ring, polynomials: Iterable[fmpz_mpoly]) -> set[str]:
 
 
 @dataclass
-class _Generators:
+class Generators:
     """Makes an expression for every generator, in powers of s or of 1/s."""
 
     forge: Forge
@@ -239,7 +241,7 @@ def _every_definition(model: Model) -> Iterator[tuple[str, Expression]]:
             yield from _every_definition(block.submodel)
 
 
-def _maker(tf: TransferFunction, form: str) -> Callable[[_Generators], tuple[int, int]]:
+def _maker(tf: TransferFunction, form: str) -> Callable[[Generators], tuple[int, int]]:
     """Return what makes the value of a form, and the highest power of s in it, for either branch."""
     if form == "factors":
         return _factors
@@ -251,7 +253,7 @@ def _maker(tf: TransferFunction, form: str) -> Callable[[_Generators], tuple[int
     return lambda g: _quotient(g, express(g.forge, plan, g.images(ring, polynomials)))
 
 
-def _quotient(generators: _Generators, parts: Sequence[tuple[int, int]]) -> tuple[int, int]:
+def _quotient(generators: Generators, parts: Sequence[tuple[int, int]]) -> tuple[int, int]:
     above, below = parts
     return generators.balance(above, below), max(above[1], below[1])
 
@@ -263,7 +265,7 @@ def _closed_form(tf: TransferFunction) -> ClosedForm:
     return tf.closed
 
 
-def _factors(generators: _Generators) -> tuple[int, int]:
+def _factors(generators: Generators) -> tuple[int, int]:
     """Return the product of factors and the highest power of s in it."""
     ratio, forge = generators.tf.ratio, generators.forge
     varying = Factored(ratio.ring, Fraction(1), tuple(f for f in ratio.factors if int(f[0].degrees()[0])))

@@ -15,18 +15,24 @@ from symflex.emit.program.nodes import (
     Apply,
     Assignment,
     Branch,
+    ComplexNumber,
     Constant,
     Divide,
     InverseLaplace,
+    Item,
     Laplace,
     Multiply,
     Negate,
     Node,
     Parameter,
+    Piece,
+    Piecewise,
     Power,
     Program,
     Reference,
+    Solutions,
 )
+from symflex.emit.program.runtime import complex_exp, mean_over_circle, propagated, series_solutions
 from symflex.errors import Diagnostic, ModelError
 
 if TYPE_CHECKING:
@@ -36,8 +42,10 @@ if TYPE_CHECKING:
 
 CONSTANT_BITS = 256
 
-NUMPY_FUNCTIONS = {name: name for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh")}
-"""What numpy calls each of the elementary functions."""
+NUMPY_FUNCTIONS = {
+    name: name for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh", "abs")
+}
+"""What numpy calls each of the elementary functions, and the magnitude."""
 
 
 def nearest_double(value: Fraction, pi_power: int = 0) -> float:
@@ -70,15 +78,17 @@ def nearest_double(value: Fraction, pi_power: int = 0) -> float:
     return result
 
 
-def evaluate(program: Program, s: ArrayLike, values: Mapping[str, ArrayLike]) -> NDArray[np.complex128]:
+def evaluate(
+    program: Program | Piecewise, s: ArrayLike, values: Mapping[str, ArrayLike]
+) -> NDArray[np.complex128]:
     """Return the values of a program, exactly those that the generated code returns.
 
     Parameters
     ----------
-    program : Program
+    program : Program or Piecewise
         Of one transfer function.
     s : array_like of complex
-        Laplace variable [rad/s].
+        Laplace variable [rad/s]; the angular frequency for a program in real arithmetic.
     values : mapping of str to array_like
         Every parameter, by its name in the model; broadcast against ``s``.
 
@@ -87,8 +97,11 @@ def evaluate(program: Program, s: ArrayLike, values: Mapping[str, ArrayLike]) ->
     ndarray of complex
         Of the shape that ``s`` and the parameters broadcast to. Poles and overflows are inf or nan.
     """
-    point = np.asarray(s, dtype=complex)[()]
+    is_real = isinstance(program, Piecewise) and program.turn is not None
+    point = np.asarray(s, dtype=float if is_real else complex)[()]
     given = {name: _number(values[name]) for name in program.parameters}
+    if isinstance(program, Piecewise):
+        return _piecewise(program, point, given)
     run = _Run(point, given)
     with np.errstate(all="ignore"):
         run.assign(program.constants)
@@ -99,6 +112,51 @@ def evaluate(program: Program, s: ArrayLike, values: Mapping[str, ArrayLike]) ->
                 value = np.where(is_far, run.branch(program.far), value)
     shape = np.broadcast_shapes(np.shape(point), *(np.shape(v) for v in given.values()))
     return np.array(np.broadcast_to(value, shape), dtype=complex)
+
+
+def _piecewise(
+    program: Piecewise,
+    point: Any,  # noqa: ANN401
+    given: Mapping[str, Any],
+) -> NDArray[np.complex128]:
+    shape = np.broadcast_shapes(np.shape(point), *(np.shape(v) for v in given.values()))
+    columns = [np.broadcast_to(v, shape).reshape(-1) if np.ndim(v) else v for v in (point, *given.values())]
+    turn = 1 if program.turn is None else (1, 1j, -1, -1j)[program.turn % 4]
+    with np.errstate(all="ignore"):
+        run = _Run(columns[0], dict(zip(given, columns[1:], strict=True)))
+        run.assign(program.tests.constants)
+        run.assign(program.tests.assignments)
+        number = np.zeros(np.prod(shape, dtype=int), dtype=int)
+        for i, condition in enumerate(program.conditions):
+            tested = run.value(condition.quantity)
+            scale = run.value(condition.scale)
+            is_small = np.abs(tested) < condition.limit / np.abs(scale)
+            number += 2**i * (is_small if condition.limit else np.real(scale * tested) < 0.0)
+        result = np.empty(number.shape, dtype=complex)
+        for n in np.unique(number):
+            where = number == n
+            chosen = [
+                np.broadcast_to(c, number.shape)[where] if i == 0 or np.ndim(c) else c
+                for i, c in enumerate(columns)
+            ]
+            piece = program.code[program.pieces[int(n)]]
+            place = 1j * chosen[0] if piece.is_complex else chosen[0]
+            found = _piece(piece, place, dict(zip(given, chosen[1:], strict=True)))
+            result[where] = found if piece.is_complex else turn * found
+    return result.reshape(shape)
+
+
+def _piece(piece: Piece, point: Any, given: Mapping[str, Any]) -> Any:  # noqa: ANN401
+    def parts(s: Any) -> tuple[Any, ...]:  # noqa: ANN401
+        run = _Run(s, given)
+        run.assign(piece.code.constants)
+        run.assign(piece.code.assignments)
+        return tuple(run.value(node) for node in piece.code.values)
+
+    if piece.circle:
+        return mean_over_circle(parts, point, piece.circle)
+    num, den = parts(point)
+    return num / den
 
 
 def _number(value: ArrayLike) -> Any:  # noqa: ANN401
@@ -116,16 +174,19 @@ class _Run:
 
     def assign(self, assignments: tuple[Assignment, ...]) -> None:
         for assignment in assignments:
-            self._assigned[assignment.name] = self._value(assignment.value)
+            self._assigned[assignment.name] = self.value(assignment.value)
 
     def branch(self, branch: Branch) -> Any:  # noqa: ANN401
         self.assign(branch.assignments)
-        return self._value(branch.value)
+        return self.value(branch.value)
 
-    def _value(self, node: Node) -> Any:  # noqa: ANN401
+    def value(self, node: Node) -> Any:  # noqa: ANN401, PLR0912
+        """Return the value of an expression: a number, an array, or a list of these."""
         match node:
             case Constant(value, pi_power):
                 return nearest_double(value, pi_power)
+            case ComplexNumber(real, imaginary):
+                return complex(nearest_double(real), nearest_double(imaginary))
             case Parameter(name):
                 return self._parameters[name]
             case Reference(name):
@@ -135,25 +196,32 @@ class _Run:
             case InverseLaplace():
                 return 1.0 / self._s
             case Add(terms):
-                total = self._value(terms[0])
+                total = self.value(terms[0])
                 for term in terms[1:]:
                     if isinstance(term, Negate):
-                        total = total - self._value(term.operand)
+                        total = total - self.value(term.operand)
                     else:
-                        total = total + self._value(term)
+                        total = total + self.value(term)
                 return total
             case Multiply(factors):
-                product = self._value(factors[0])
+                product = self.value(factors[0])
                 for factor in factors[1:]:
-                    product = product * self._value(factor)
+                    product = product * self.value(factor)
                 return product
             case Divide(numerator, denominator):
-                return self._value(numerator) / self._value(denominator)
+                return self.value(numerator) / self.value(denominator)
             case Power(base, exponent):
-                return self._value(base) ** exponent
+                return self.value(base) ** exponent
             case Negate(operand):
-                return -self._value(operand)
+                return -self.value(operand)
+            case Apply("complex_exp", argument):
+                return complex_exp(np.asarray(self.value(argument), dtype=complex)[()])
             case Apply(function, argument):
-                return getattr(np, NUMPY_FUNCTIONS[function])(self._value(argument))
+                return getattr(np, NUMPY_FUNCTIONS[function])(self.value(argument))
+            case Solutions(coefficients, terms):
+                given = [self.value(c) for c in coefficients]
+                return series_solutions(given, terms) if terms else propagated(given)
+            case Item(values, position):
+                return self.value(values)[position]
         message = f"no value for {type(node).__name__}"
         raise TypeError(message)

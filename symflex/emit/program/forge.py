@@ -15,7 +15,19 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
 Kind = Literal[
-    "constant", "parameter", "s", "inverse", "add", "multiply", "divide", "power", "negate", "apply"
+    "constant",
+    "complex",
+    "parameter",
+    "s",
+    "inverse",
+    "add",
+    "multiply",
+    "divide",
+    "power",
+    "negate",
+    "apply",
+    "solutions",
+    "item",
 ]
 
 
@@ -35,6 +47,7 @@ class Row:
     operands: tuple[int, ...] = ()
     payload: Fraction | str | int = 0
     pi_power: int = 0
+    imaginary: Fraction | int = 0
 
 
 @dataclass
@@ -65,6 +78,10 @@ class Forge:
             pi_power = 0
         number = self._make(Row("constant", (), abs(exact), pi_power))
         return self.negate(number) if exact < 0 else number
+
+    def complex_number(self, real: Fraction | int, imaginary: Fraction | int) -> int:
+        """Return ``real + 1j*imaginary``."""
+        return self._make(Row("complex", (), Fraction(real), 0, Fraction(imaginary)))
 
     def parameter(self, name: str) -> int:
         """Return a parameter."""
@@ -154,8 +171,13 @@ class Forge:
         return self._product([half, half])
 
     def apply(self, function: str, argument: int) -> int:
-        """Return an elementary function of an expression free of s."""
+        """Return an elementary function."""
         return self._make(Row("apply", (argument,), function))
+
+    def solutions(self, coefficients: Sequence[int], terms: int) -> tuple[int, ...]:
+        """Return a differential equation's solutions at 1; see :class:`nodes.Solutions`."""
+        row = self.label(self._make(Row("solutions", tuple(coefficients), terms)), "solutions")
+        return tuple(self._make(Row("item", (row,), k)) for k in range(len(coefficients)))
 
     def label(self, x: int, name: str) -> int:
         """Ask for an assignment of ``x``; the first name given stays."""

@@ -33,6 +33,14 @@ class Constant(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class ComplexNumber(Node):
+    """The number ``real + 1j*imaginary``."""
+
+    real: Fraction
+    imaginary: Fraction
+
+
+@dataclass(frozen=True, slots=True)
 class Parameter(Node):
     """A parameter, by its name in the model."""
 
@@ -120,7 +128,7 @@ class Negate(Node):
 
 @dataclass(frozen=True, slots=True)
 class Apply(Node):
-    """An elementary function of an expression free of s; ``function`` is a key of ``kernels.FUNCTIONS``."""
+    """An elementary function; ``function`` is a key of ``kernels.FUNCTIONS``, ``abs`` or ``complex_exp``."""
 
     function: str
     argument: Node
@@ -129,6 +137,42 @@ class Apply(Node):
     def children(self) -> tuple[Node, ...]:
         """The operands, from left to right."""
         return (self.argument,)
+
+
+@dataclass(frozen=True, slots=True)
+class Solutions(Node):
+    """The values at x = 1 of the solutions of ``y^(n) + c_(n-1) y^(n-1) + ... + c_0 y = 0``, as a list.
+
+    Solution k starts from ``y^(i)(0) = 1`` for i = k and 0 for the other i below n.
+
+    Parameters
+    ----------
+    coefficients : tuple of Node
+        ``c_0, ..., c_(n-1)``.
+    terms : int
+        Length of their Taylor series; 0 asks for a method that serves coefficients of any size.
+    """
+
+    coefficients: tuple[Node, ...]
+    terms: int
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The operands, from left to right."""
+        return self.coefficients
+
+
+@dataclass(frozen=True, slots=True)
+class Item(Node):
+    """One value of a list."""
+
+    values: Node
+    position: int
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The list."""
+        return (self.values,)
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,6 +226,88 @@ class Program:
         """The number of operations that depend on s: what an array of frequencies pays for, per element."""
         roots = [*(a.value for a in self.near.assignments), self.near.value]
         return sum(_operations(root) for root in roots)
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """A test made for every value of s.
+
+    Parameters
+    ----------
+    quantity : Node
+        What is tested.
+    limit : float
+        The condition holds where ``abs(quantity) < limit/abs(scale)``; if it is zero, where the real part of
+        ``scale*quantity`` is negative.
+    scale : Node
+        Free of s.
+    """
+
+    quantity: Node
+    limit: float
+    scale: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Straight:
+    """Assignments in order, those of parameters alone first, and the values they lead to."""
+
+    constants: tuple[Assignment, ...]
+    assignments: tuple[Assignment, ...]
+    values: tuple[Node, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """One way of computing a quotient.
+
+    Parameters
+    ----------
+    code : Straight
+        Its values are numerator and denominator; with a circle also the logarithm of the factor that both
+        were divided by, and the radius of the circle over the size of s.
+    circle : int
+        Number of points on a circle around s over which numerator and denominator are averaged, because
+        the formula itself is singular near s though they are not; 0 for none.
+    is_complex: bool
+        True for a piece of complex s in a program of the angular frequency.
+    """
+
+    code: Straight
+    circle: int = 0
+    is_complex: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Piecewise:
+    """How to compute a transfer function of a distributed system.
+
+    Parameters
+    ----------
+    parameters : tuple of str
+        Names of the parameters it takes, as in the model.
+    tests : Straight
+        Makes the quantities of the conditions, in order.
+    conditions : tuple of Condition
+        Condition i adds ``2**i`` to the number of the piece that serves.
+    pieces : tuple of int
+        For every such number, which of ``code`` it is.
+    code : tuple of Piece
+        The pieces.
+    turn : int or None
+        None for a function of complex s. For a function of angular frequency in real arithmetic, which the
+        leaf :class:`Laplace` then stands for: its value times ``1j**turn`` is the transfer function.
+    solves : bool
+        True when fundamental functions of any size are computed from matrices.
+    """
+
+    parameters: tuple[str, ...]
+    tests: Straight
+    conditions: tuple[Condition, ...]
+    pieces: tuple[int, ...]
+    code: tuple[Piece, ...]
+    turn: int | None = None
+    solves: bool = False
 
 
 def _contains_laplace(root: Node) -> bool:

@@ -12,9 +12,11 @@ from symflex.emit.program.nodes import (
     Apply,
     Assignment,
     Branch,
+    ComplexNumber,
     Constant,
     Divide,
     InverseLaplace,
+    Item,
     Laplace,
     Multiply,
     Negate,
@@ -23,9 +25,13 @@ from symflex.emit.program.nodes import (
     Power,
     Program,
     Reference,
+    Solutions,
+    Straight,
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from symflex.emit.program.forge import Forge, Row
 
 DEEPEST = 8
@@ -35,6 +41,13 @@ DEEPEST = 8
 def schedule(forge: Forge, parameters: tuple[str, ...], near: int, far: int | None, limit: float) -> Program:
     """Return the program that computes ``near``, or ``far`` where ``abs(s)`` exceeds ``limit``."""
     return _Schedule(forge, near, far).program(parameters, limit)
+
+
+def straight(forge: Forge, values: Sequence[int]) -> Straight:
+    """Return the code that computes several values."""
+    run = _Schedule(forge, values[0], None)
+    constants, assignments, _ = run.sections(list(values), set(), shared=True)
+    return Straight(constants, assignments, tuple(run.nodes[v] for v in values))
 
 
 @dataclass
@@ -48,20 +61,32 @@ class _Schedule:
 
     def program(self, parameters: tuple[str, ...], limit: float) -> Program:
         roots = [x for x in (self.near, self.far) if x is not None]
-        of_near, reached = self._reached([self.near]), self._reached(roots)
+        late = set() if self.far is None else self._reached([self.far]) - self._reached([self.near])
+        constants, at_near, at_far = self.sections(roots, late)
+        far = None if self.far is None else Branch(at_far, self.nodes[self.far])
+        return Program(parameters, constants, Branch(at_near, self.nodes[self.near]), far, limit)
+
+    def sections(
+        self, roots: list[int], late: set[int], *, shared: bool = False
+    ) -> tuple[tuple[Assignment, ...], tuple[Assignment, ...], tuple[Assignment, ...]]:
+        """Return assignments free of s, those with s, and those in ``late``; expressions go to ``nodes``.
+
+        With ``shared``, a root that others are made of is assigned as well.
+        """
+        reached = self._reached(roots)
         uses = self._uses(reached)
-        sections: tuple[list[Assignment], ...] = ([], [], [])
+        sections: tuple[list[Assignment], list[Assignment], list[Assignment]] = ([], [], [])
         for x in sorted(reached):
             node, deep = self._node(x)
-            if x not in roots and self._deserves_name(x, uses[x], deep):
-                section = 0 if not self.forge.depends[x] else 1 if x in of_near else 2
+            is_inner = x not in roots or (shared and uses[x][0] > 0)
+            if is_inner and self._deserves_name(x, (uses[x][0] + (x in roots), uses[x][1]), deep):
+                section = 0 if not self.forge.depends[x] else 2 if x in late else 1
                 name = self._name(x)
                 sections[section].append(Assignment(name, node))
                 node, deep = Reference(name), 0
             self.nodes[x], self.depth[x] = node, deep
-        constants, at_near, at_far = (tuple(section) for section in sections)
-        far = None if self.far is None else Branch(at_far, self.nodes[self.far])
-        return Program(parameters, constants, Branch(at_near, self.nodes[self.near]), far, limit)
+        constants, early, after = (tuple(section) for section in sections)
+        return constants, early, after
 
     def _reached(self, roots: list[int]) -> set[int]:
         found: set[int] = set()
@@ -113,6 +138,8 @@ def _node_of(row: Row, operands: tuple[Node, ...]) -> Node:
     match row.kind:
         case "constant":
             return Constant(Fraction(row.payload), row.pi_power)
+        case "complex":
+            return ComplexNumber(Fraction(row.payload), Fraction(row.imaginary))
         case "parameter":
             return Parameter(str(row.payload))
         case "s":
@@ -131,3 +158,7 @@ def _node_of(row: Row, operands: tuple[Node, ...]) -> Node:
             return Negate(operands[0])
         case "apply":
             return Apply(str(row.payload), operands[0])
+        case "solutions":
+            return Solutions(operands, int(row.payload))
+        case "item":
+            return Item(operands[0], int(row.payload))

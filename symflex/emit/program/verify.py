@@ -9,23 +9,27 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from math import inf, isfinite, pi, tau
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from flint import acb, arb, ctx
 
 from symflex.emit.program.build import available_forms, build_program
+from symflex.emit.program.distributed import REACHES, build_piecewise, build_real
 from symflex.emit.program.evaluate import evaluate, nearest_double
+from symflex.emit.program.nodes import Program
 from symflex.errors import BudgetError, ModelError
 from symflex.transfer import bind
+from symflex.transfer.bind import EnclosedTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
-    from symflex.emit.program.nodes import Program
-    from symflex.transfer import BoundTransferFunction, EnclosedTransferFunction, TransferFunction
+    from symflex.emit.program.nodes import Piecewise
+    from symflex.transfer import BoundTransferFunction, TransferFunction
+    from symflex.transfer.bind import Enclosed
 
 DEFAULT_BAND = (Fraction(1, 10), Fraction(10_000))
 """Hz."""
@@ -52,6 +56,15 @@ FIRST_BITS = 128
 LAST_BITS = 4096
 ENOUGH_BITS = 64
 
+SCAN = 3000
+"""Frequencies over the band among which a distributed system's resonances and antiresonances are sought."""
+
+MOST_EXTREMES = 40
+"""Resonances, and antiresonances, around which the error is measured; the first and the last ones of more."""
+
+TINY = 1e-307
+"""What is smaller has no more digits in double precision."""
+
 
 @dataclass(frozen=True, slots=True)
 class Verification:
@@ -62,7 +75,8 @@ class Verification:
     name : str
         ``OUT/IN``.
     form : str
-        The form evaluated: ``closed``, ``nested`` or ``factors``.
+        The form evaluated: ``closed``, ``nested`` or ``factors``; of a distributed system ``pieces`` or
+        ``real``.
     error : float or None
         The worst ``|dG| / (|G| (1 + |s G'/G|))`` on the imaginary axis: the relative error beyond what one
         rounding of ``s`` would cause. ``None`` when it was not measured.
@@ -93,6 +107,8 @@ class Verification:
             return f"not verified: {self.reason}"
         error = "0" if self.error == 0 else f"{self.error:.{digits - 1}e}"
         low, high = (frequency_text(f) for f in self.band)
+        if self.error == inf:
+            return f"not accurate: some values overflow over {low} ... {high}"
         return f"verified: worst relative error {error} over {low} ... {high} against ball arithmetic"
 
 
@@ -112,7 +128,7 @@ def frequency_text(hertz: Fraction) -> str:
 
 def choose_program(
     tf: TransferFunction, band_hz: tuple[Fraction, Fraction] | None = None, samples: int = SAMPLES
-) -> tuple[Program, Verification]:
+) -> tuple[Program | Piecewise, Verification]:
     """Return the program of the form with the smallest measured error, and the measurement.
 
     Without values for all parameters nothing can be measured; recurrences are taken unless another form is
@@ -135,6 +151,8 @@ def choose_program(
         SF233 when a number does not fit in double precision.
     """
     band = band_hz or tf.model.analysis.band or DEFAULT_BAND
+    if tf.is_distributed and not tf.ratio.is_zero:
+        return _choose_pieces(lambda reach: build_piecewise(tf, reach), tf, band, samples, "pieces")
     forms = available_forms(tf)
     missing = [p.name for p in tf.parameters if p.value is None]
     if missing:
@@ -158,6 +176,58 @@ def choose_program(
     best = min(error for _, _, error in reaching)
     similar = [c for c in reaching if c[2] <= SIMILAR * best]
     program, form, error = min(similar, key=lambda c: (c[0].size, c[2]))
+    return program, Verification(tf.name, form, error, band, len(references.s))
+
+
+def choose_real_program(
+    tf: TransferFunction, band_hz: tuple[Fraction, Fraction] | None = None, samples: int = SAMPLES
+) -> tuple[Piecewise, Verification] | None:
+    """Return the program of the frequency response in real arithmetic, for lossless distributed systems only.
+
+    Parameters
+    ----------
+    tf, band_hz, samples
+        As for :func:`choose_program`.
+    """
+    if not tf.is_distributed or tf.ratio.is_zero or build_real(tf) is None:
+        return None
+    band = band_hz or tf.model.analysis.band or DEFAULT_BAND
+
+    def build(reach: float) -> Piecewise:
+        made = build_real(tf, reach)
+        if made is None:
+            message = f"{tf.name} is real for one series length only"
+            raise RuntimeError(message)
+        return made
+
+    return _choose_pieces(build, tf, band, samples, "real")
+
+
+def _choose_pieces(
+    build: Callable[[float], Piecewise],
+    tf: TransferFunction,
+    band: tuple[Fraction, Fraction],
+    samples: int,
+    form: str,
+) -> tuple[Piecewise, Verification]:
+    """Return the program whose series reach as far as serves accuracy best, and its measured error."""
+    first = build(REACHES[0])
+    missing = [p.name for p in tf.parameters if p.value is None]
+    if missing:
+        return first, Verification(tf.name, form, None, band, 0, "no values for " + ", ".join(missing))
+    try:
+        bound = bind(tf)
+        references = References(bound, band, samples)
+    except ModelError as problem:
+        return first, Verification(tf.name, form, None, band, 0, problem.diagnostics[0].message)
+    candidates: list[tuple[bool, float, Piecewise]] = []
+    for reach in REACHES:
+        program = first if reach == REACHES[0] else build(reach)
+        error, keeps = references.worst_error(program), keeps_its_value(program, bound)
+        candidates.append((not keeps, error, program))
+        if keeps and error < ACCURATE:
+            break
+    _, error, program = min(candidates, key=lambda c: c[:2])
     return program, Verification(tf.name, form, error, band, len(references.s))
 
 
@@ -188,13 +258,47 @@ def sample_frequencies(
     """Return frequencies [Hz] over a band, denser around those of poles and zeros."""
     low, high = float(band_hz[0]), float(band_hz[1])
     frequencies = [np.geomspace(low, high, samples)]
-    for polynomial, _ in bound.enclosed(FIRST_BITS).factors if not bound.ratio.is_zero else ():
+    enclosed = bound.enclosed(FIRST_BITS)
+    if not isinstance(enclosed, EnclosedTransferFunction):
+        for center in _extremes(bound, low, high):
+            frequencies.append(center * np.array([1 + sign * x for x in ASIDE for sign in (1, -1)]))
+    factors = enclosed.factors if isinstance(enclosed, EnclosedTransferFunction) else ()
+    for polynomial, _ in factors if not bound.ratio.is_zero else ():
         roots = _roots(polynomial.coeffs())
         for center in (*np.abs(roots.imag), *np.abs(roots)):
             near = center / (2 * pi) * np.array([1 + sign * x for x in ASIDE for sign in (1, -1)])
             frequencies.append(near)
     merged = np.unique(np.concatenate(frequencies))
     return merged[(merged >= low) & (merged <= high)]
+
+
+def _extremes(bound: BoundTransferFunction, low: float, high: float) -> list[float]:
+    """Return resonances and antiresonances [Hz]: where the magnitude on the axis is largest and smallest."""
+    if bound.ratio.is_zero:
+        return []
+    program = build_piecewise(bound.source)
+    values = doubles(bound)
+
+    def size(hertz: NDArray[np.float64]) -> NDArray[np.float64]:
+        with np.errstate(all="ignore"):
+            return np.nan_to_num(np.log(np.abs(evaluate(program, tau * 1j * hertz, values))))
+
+    grid = np.geomspace(low, high, SCAN)
+    found: list[float] = []
+    level = size(grid)
+    for sign in (1, -1):
+        inner = sign * level[1:-1]
+        peaks = np.flatnonzero((inner > sign * level[:-2]) & (inner >= sign * level[2:])) + 1
+        if len(peaks) > MOST_EXTREMES:
+            peaks = np.concatenate([peaks[: MOST_EXTREMES // 2], peaks[-MOST_EXTREMES // 2 :]])
+        for k in peaks:
+            left, right = grid[k - 1], grid[k + 1]
+            for _ in range(8):
+                near = np.linspace(left, right, 21)
+                best = int(np.argmax(sign * size(near)))
+                left, right = near[max(best - 1, 0)], near[min(best + 1, 20)]
+            found.append(float(left + right) / 2)
+    return found
 
 
 def _roots(coefficients: Sequence[acb]) -> NDArray[np.complex128]:
@@ -224,15 +328,15 @@ class References:
         self, bound: BoundTransferFunction, band_hz: tuple[Fraction, Fraction], samples: int = SAMPLES
     ) -> None:
         self._bound = bound
-        self._known: dict[int, EnclosedTransferFunction] = {}
+        self._known: dict[int, Enclosed] = {}
         points = 1j * (tau * sample_frequencies(bound, band_hz, samples))
         found = [(s, self._reference(complex(s))) for s in points]
         self._references = [reference for _, reference in found if reference is not None]
         self.s = np.array([s for s, reference in found if reference is not None], dtype=complex)
 
-    def worst_error(self, program: Program) -> float:
+    def worst_error(self, program: Program | Piecewise) -> float:
         """Return a bound of the error at all frequencies, for a program that gets the nearest doubles."""
-        values = evaluate(program, self.s, doubles(self._bound))
+        values = evaluate(program, _arguments(program, self.s), doubles(self._bound))
         errors = (r.error_of(complex(v)) for r, v in zip(self._references, values, strict=True))
         return max(errors, default=0.0)
 
@@ -251,7 +355,7 @@ class References:
             bits *= 2
         return None
 
-    def _at(self, bits: int) -> EnclosedTransferFunction:
+    def _at(self, bits: int) -> Enclosed:
         if bits not in self._known:
             self._known[bits] = self._bound.enclosed(bits)
         return self._known[bits]
@@ -270,17 +374,25 @@ class _Reference:
             return inf
         with ctx.workprec(self.bits):
             distance = (acb(computed.real, computed.imag) - self.value).abs_upper()
+            if distance < TINY:
+                return 0.0
             return float((distance / self.size).upper())
 
 
-def keeps_its_value(program: Program, bound: BoundTransferFunction) -> bool:
+def _arguments(program: Program | Piecewise, s: NDArray[Any]) -> NDArray[Any]:
+    """Return what a program takes for values of s on the imaginary axis."""
+    is_real = not isinstance(program, Program) and program.turn is not None
+    return s.imag if is_real else s
+
+
+def keeps_its_value(program: Program | Piecewise, bound: BoundTransferFunction) -> bool:
     """Tell whether a program is finite, and not spuriously zero, from 1e-9 to 1e12 rad/s."""
-    values = evaluate(program, 1j * REACH, doubles(bound))
+    values = evaluate(program, _arguments(program, 1j * REACH), doubles(bound))
     keeps = np.isfinite(values) & (values != 0)
     if bound.ratio.is_zero or keeps.all():
         return True
     expected = np.array([bound(complex(s)) for s in 1j * REACH[~keeps]])
-    return bool((~np.isfinite(expected) | (expected == 0)).all())
+    return bool((~np.isfinite(expected) | (np.abs(expected) < TINY)).all())
 
 
 def doubles(bound: BoundTransferFunction) -> dict[str, float]:

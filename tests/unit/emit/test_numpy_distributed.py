@@ -155,7 +155,7 @@ def beam(s, i="1e-8", length="1", eta="0", n="0", k_f="0", shear=None):
 
 
 def clamped_end_compliance(t, dynamic=0):
-    """Return the end's deflection per unit force there, of a clamped beam; ``dynamic`` is a mass times s^2."""
+    """Return the end's deflection per unit force, of a clamped beam; ``dynamic``: a mass times s^2."""
     # w, theta, f, tau at the end from f, tau at the root; tau = 0 and f = F - dynamic*w.
     block = mp.matrix([[t[2, 2] + dynamic * t[0, 2], t[2, 3] + dynamic * t[0, 3]], [t[3, 2], t[3, 3]]])
     root = mp.lu_solve(block, mp.matrix([1, 0]))

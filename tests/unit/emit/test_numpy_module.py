@@ -86,7 +86,7 @@ def test_every_function_agrees_with_ball_arithmetic_at_complex_points(spec, fold
         bound = pipeline.bind(tf)
         expected = np.array([bound(complex(z)) for z in s])
         computed = module.TRANSFER_FUNCTIONS[tf.name](s)
-        # A wave's phase is as uncertain as s times its delay: at 1e12 rad/s one rounding of s is 1e5 of the value's.
+        # A wave's phase is as uncertain as s times its delay: one rounding of 1e12j is 1e5 of the value's.
         swing = [1.0 + (abs(z * slope_of(bound, z)) if tf.is_distributed else 0.0) for z in s]
         size = np.maximum(abs(expected), 1e-300)
         assert np.max(abs(computed - expected) / size / swing) < 1e-12

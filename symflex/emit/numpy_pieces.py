@@ -1,0 +1,246 @@
+"""Functions of distributed systems as Python text: one per piece, and the choice among them.
+
+Input: a :class:`Piecewise` program and identifiers.
+Output: lines of a module that imports numpy only.
+"""
+
+from __future__ import annotations
+
+import inspect
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from symflex.emit.numpy_expression import WIDTH, Printer, statement
+from symflex.emit.program import (
+    Apply,
+    Assignment,
+    Node,
+    Piece,
+    Piecewise,
+    Solutions,
+    Straight,
+    identifiers,
+    runtime,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+PIECES_SUPPORT = '''\
+BLOCK = 20480
+"""Values computed at once, so that intermediate ones stay in the processor's cache."""
+
+
+def _in_pieces(tests, pieces, arguments, unit):
+    """Return the value of the piece that serves, element by element.
+
+    Test i adds 2**i to the number of the piece where it holds. The unit, a power
+    of 1j, is a factor that the pieces leave out.
+    """
+    shape = np.broadcast_shapes(*(np.shape(a) for a in arguments))
+    if not shape:
+        number = sum(2**i for i, holds in enumerate(tests(*arguments)) if holds)
+        return complex(unit * pieces[number](*arguments))
+    columns = [
+        np.broadcast_to(a, shape).reshape(-1) if np.ndim(a) else a for a in arguments
+    ]
+    value = np.zeros(shape, dtype=complex)
+    flat = value.reshape(-1)
+    line = flat.imag if unit in (1j, -1j) else flat.real
+    for start in range(0, flat.size, BLOCK):
+        part = flat[start : start + BLOCK]
+        given = [a[start : start + BLOCK] if np.ndim(a) else a for a in columns]
+        number, mixed = 0, False
+        held = tests(*given)
+        for i, holds in enumerate(held):
+            if np.all(holds):
+                number += 2**i
+            elif np.any(holds):
+                mixed = True
+        if not mixed:
+            found = pieces[number](*given)
+            if np.iscomplexobj(found):
+                part[:] = found if unit == 1 else unit * found
+            elif unit in (1, 1j):
+                line[start : start + BLOCK] = found
+            else:
+                np.negative(found, out=line[start : start + BLOCK])
+            continue
+        numbers = sum(2**i * holds for i, holds in enumerate(held))
+        for k in np.unique(numbers):
+            where = np.broadcast_to(numbers == k, part.shape)
+            found = pieces[k](*(a[where] if np.ndim(a) else a for a in given))
+            part[where] = unit * found
+    return value
+'''
+
+LEFT_SUPPORT = '''\
+def _is_left(x, scale):
+    """Tell where the real part of a product is negative."""
+    if np.ndim(scale) == 0 and np.imag(scale) == 0.0 and np.real(scale) > 0.0:
+        return np.real(x) < 0.0
+    return np.real(scale * x) < 0.0
+'''
+
+REAL_SUPPORT = '''\
+def _real_numbers(*arguments: ArrayLike) -> tuple[NDArray[np.float64], ...]:
+    """Return real numbers."""
+    arrays = [np.asarray(value) for value in arguments]
+    for array in arrays:
+        if array.dtype.kind not in "biuf":
+            message = f"real numbers or arrays of them are wanted, not {array.dtype}"
+            raise TypeError(message)
+    return tuple(a.astype(float, copy=False)[()] for a in arrays)
+'''
+
+LINTS = "ANN001, ANN201, ANN202, N816, PLR0914, PLR1704, PLR2004"
+"""Rules that the private functions of the pieces do not follow."""
+
+
+def _copied(function: object) -> str:
+    """Return the text of a run-time function as a private one, without annotations."""
+    text = inspect.getsource(function)  # type: ignore[arg-type]
+    signature = re.compile(r"def (\w+)\((.*?)\) -> .*?:(?:  # noqa[^\n]*)?\n", re.DOTALL)
+    found = signature.match(text)
+    if found is None:
+        message = f"{function} has no signature"
+        raise ValueError(message)
+    names = re.findall(r"(\w+): ", found.group(2))
+    return f"def _{found.group(1)}({', '.join(names)}):\n{text[found.end() :]}"
+
+
+def support(programs: Sequence[Piecewise]) -> list[str]:
+    """Return the functions that generated pieces call, those in use only."""
+    if not programs:
+        return []
+    blocks = [PIECES_SUPPORT]
+    if any(p.turn is not None for p in programs):
+        blocks.append(REAL_SUPPORT)
+    if any(not c.limit for p in programs for c in p.conditions):
+        blocks.append(LEFT_SUPPORT)
+    code = [piece for p in programs for piece in p.code]
+    nodes = [n for c in code for n in _nodes(c.code)]
+    if any(isinstance(n, Apply) and n.function == "complex_exp" for n in nodes):
+        blocks.append(_copied(runtime.complex_exp))
+    asked = {n.terms > 0 for n in nodes if isinstance(n, Solutions)}
+    if True in asked:
+        blocks.append(_copied(runtime.series_solutions))
+    if False in asked:
+        blocks.append(_copied(runtime.propagated))
+    if any(c.circle for c in code):
+        blocks.append(_copied(runtime.mean_over_circle))
+    return blocks
+
+
+def _nodes(code: Straight) -> Iterator[Node]:
+    pending = [*code.values, *(a.value for a in (*code.constants, *code.assignments))]
+    while pending:
+        node = pending.pop()
+        yield node
+        pending += node.children
+
+
+@dataclass(frozen=True)
+class PiecesText:
+    """Prints the private functions behind one transfer function.
+
+    Parameters
+    ----------
+    program : Piecewise
+        What they compute.
+    name : str
+        Identifier of the public function.
+    variable : str
+        Its first argument, ``s`` or ``omega``.
+    parameters : mapping of str to str
+        Identifiers of the parameters.
+    reserved : set of str
+        Identifiers that intermediates cannot have.
+    """
+
+    program: Piecewise
+    name: str
+    variable: str
+    parameters: Mapping[str, str]
+    reserved: frozenset[str]
+
+    def call(self) -> str:
+        """Return the call that computes the value of ``arguments``."""
+        unit = ("1", "1j", "-1", "-1j")[self.program.turn or 0]
+        return f"_in_pieces(_{self.name}_tests, _{self.name}_pieces, arguments, {unit})"
+
+    def functions(self) -> list[str]:
+        """Return the lines of all functions."""
+        lines = [*self._tests(), "", ""]
+        for i, piece in enumerate(self.program.code):
+            lines += [*self._piece(i, piece), "", ""]
+        names = [f"_{self.name}_{i}" for i in self.program.pieces]
+        comma = "," if len(names) == 1 else ""
+        return [*lines, *statement(f"_{self.name}_pieces", f"({', '.join(names)}{comma})", "")]
+
+    def _head(self, name: str) -> list[str]:
+        given = [self.variable, *(self.parameters[p] for p in self.program.parameters)]
+        line = f"def {name}({', '.join(given)}):"
+        if len(line) <= WIDTH:
+            return [line]
+        return [f"def {name}(", *(f"    {g}," for g in given), "):"]
+
+    def _printer(self, code: Straight, variable: str) -> Printer:
+        assignments: list[Assignment] = [*code.constants, *code.assignments]
+        taken = {*self.reserved, *self.parameters.values(), self.variable, variable, "z"}
+        names = identifiers({a.name: a.name for a in assignments}, taken)
+        return Printer(self.parameters, names, "inverse", variable)
+
+    def _body(self, code: Straight, printer: Printer) -> list[str]:
+        lines: list[str] = []
+        for assignment in (*code.constants, *code.assignments):
+            lines += printer.assignment(assignment.name, assignment.value, "    ")
+        return lines
+
+    def _tests(self) -> list[str]:
+        program = self.program
+        lines = self._head(f"_{self.name}_tests")
+        printer = self._printer(program.tests, self.variable)
+        lines += self._body(program.tests, printer)
+        tests = []
+        for condition in program.conditions:
+            text = printer.print(condition.quantity)
+            scale = printer.print(condition.scale)
+            if not condition.limit:
+                tests.append(f"_is_left({text}, {scale})")
+                continue
+            below = f" / np.abs({scale})" if scale != "1.0" else ""
+            tests.append(f"np.abs({text}) < {condition.limit!r}{below}")
+        return [*lines, *statement("return", f"[{', '.join(tests)}]", "    ")]
+
+    def _piece(self, number: int, piece: Piece) -> list[str]:
+        name = f"_{self.name}_{number}"
+        if piece.circle:
+            given = ", ".join(["z", *(self.parameters[p] for p in self.program.parameters)])
+            printer = self._printer(piece.code, self.variable)
+            values = ", ".join(printer.print(v) for v in piece.code.values)
+            whole = f"_mean_over_circle(lambda z: {name}_parts({given}), {self.variable}, {piece.circle})"
+            return [
+                *self._head(f"{name}_parts"),
+                *self._body(piece.code, printer),
+                *statement("return", values, "    "),
+                "",
+                "",
+                *self._head(name),
+                *statement("return", whole, "    "),
+            ]
+        lines = self._head(name)
+        variable = self.variable
+        if piece.is_complex:
+            variable = identifiers({"s": "s"}, {*self.reserved - {"s"}, *self.parameters.values()})["s"]
+            lines.append(f"    {variable} = 1j * {self.variable}")
+        printer = self._printer(piece.code, variable)
+        lines += self._body(piece.code, printer)
+        num, den = piece.code.values
+        whole = printer.quotient(num, den)
+        if piece.is_complex:
+            # The factor that the real pieces leave out comes after.
+            unit = ("1", "-1j", "-1", "1j")[self.program.turn or 0]
+            whole = f"{unit} * ({whole})"
+        return [*lines, *statement("return", whole, "    ")]

@@ -1,0 +1,231 @@
+"""Sums of exponentials on the imaginary axis of a lossless system: real functions of the angular frequency.
+
+There every wavenumber is real, imaginary, or on the diagonal, and a transfer function is real up to a power
+of j.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from math import gcd, lcm
+from typing import TYPE_CHECKING
+
+from symflex.kernels import Factored
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.emit.program.exponents import Family, Key, Term
+    from symflex.kernels import Dispersion, KernelTable, Ring
+
+Gaussian = tuple[Fraction, Fraction]
+
+RealTerm = tuple[tuple[tuple[Fraction, Fraction], ...], int]
+"""As :data:`symflex.emit.program.exponents.Term`, with the magnitudes of wavenumbers times lengths."""
+
+RealKey = tuple[RealTerm, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class RealSum:
+    """``j^turn * waves * sum(coefficient * product of terms)``, everything but the turn real.
+
+    Parameters
+    ----------
+    terms : mapping of RealKey to fmpz_mpoly
+        Coefficients in the angular frequency, which takes the place of s, and magnitudes of wavenumbers.
+    waves : Factored
+        A product of powers of such magnitudes, with a rational number in front.
+    turn : int
+        The power of j, from 0 to 3.
+    """
+
+    terms: Mapping[RealKey, fmpz_mpoly]
+    waves: Factored
+    turn: int
+
+
+@dataclass(frozen=True, eq=False)
+class RealAxis:
+    """Turns functions of ``s = j omega`` into real ones.
+
+    Parameters
+    ----------
+    ring : Ring
+        With wavenumbers and kernels.
+    table : KernelTable
+        Over the same ring.
+    positive : tuple of str
+        Parameters known to be positive.
+    signs : mapping of int to bool
+        By identity of a dispersion, whether its ``c_0`` is taken to be negative.
+    """
+
+    ring: Ring
+    table: KernelTable
+    positive: tuple[str, ...]
+    signs: Mapping[int, bool] = field(default_factory=dict)
+
+    @property
+    def is_real(self) -> bool:
+        """True when all dispersions are waves or bending without loss."""
+        for d in self.table.dispersions:
+            if d.kind not in ("wave", "bending") or not d.shift.is_zero:
+                return False
+            found = self.real(d.characteristic[0])
+            if found is None or found[1] % 2:
+                return False
+        return True
+
+    def where(self, signs: Mapping[int, bool]) -> RealAxis:
+        """Return the same for given signs of ``c_0``."""
+        return replace(self, signs=signs)
+
+    def sign(self, dispersion: Dispersion) -> bool | None:
+        """Return whether ``c_0`` is negative, ``None`` when it depends on values."""
+        if id(dispersion) in self.signs:
+            return self.signs[id(dispersion)]
+        value = self.coefficient(dispersion)
+        known = {self.ring.index[n] for n in (*self.positive, "pi")} | {0}
+        for factor, _ in value.factors:
+            for monomial, coefficient in factor.terms():
+                if int(coefficient) < 0 or any(e and i not in known for i, e in enumerate(monomial)):
+                    return None
+        return bool(value.unit < 0)
+
+    def coefficient(self, dispersion: Dispersion) -> Factored:
+        """Return ``c_0``, with the angular frequency in place of s."""
+        found = self.real(dispersion.characteristic[0])
+        if found is None:
+            message = f"{dispersion.name} has losses"
+            raise ValueError(message)
+        value, turn = found
+        return -value if turn % 4 else value
+
+    def real(self, value: Factored) -> tuple[Factored, int] | None:
+        """Return a value without wavenumbers over a power of j, and the power; ``None`` if it is complex."""
+        result, turn = Factored.number(self.ring, value.unit), 0
+        for factor, exponent in value.factors:
+            terms: dict[tuple[int, ...], int] = {}
+            degrees = [int(m[0]) for m in factor.monoms()]
+            lowest = min(degrees)
+            if any((d - lowest) % 2 for d in degrees):
+                return None
+            for monomial, coefficient in factor.terms():
+                sign = -1 if (int(monomial[0]) - lowest) % 4 else 1
+                terms[tuple(int(e) for e in monomial)] = int(coefficient) * sign
+            real = Factored.polynomial(self.ring, self.ring.context.from_dict(terms))
+            result = result * real**exponent
+            turn += lowest * exponent
+        return result, turn % 4
+
+    def real_sum(
+        self, terms: Mapping[Key, fmpz_mpoly], waves: Factored, families: Sequence[Family]
+    ) -> RealSum | None:
+        """Return a sum of exponentials in real terms; ``None`` when it is not real up to a power of j.
+
+        Parameters
+        ----------
+        terms : mapping of Key to fmpz_mpoly
+            As in :class:`ExponentialSum`.
+        waves : Factored
+            A product of powers of wavenumbers in front.
+        families : sequence of Family
+            What the keys refer to.
+        """
+        powers = {}
+        for factor, exponent in waves.factors:
+            if len(factor) > 1:
+                return None
+            powers[str(factor)] = exponent
+        by_name = {d.wavenumbers[0]: d for d in self.table.dispersions}
+        places = [
+            (self.ring.index[n], d, powers.get(str(self.ring.generator(n)), 0)) for n, d in by_name.items()
+        ]
+        collected: dict[RealKey, dict[tuple[int, ...], Gaussian]] = {}
+        for key, polynomial in terms.items():
+            images = [self._image(t, f.dispersion) for t, f in zip(key, families, strict=True)]
+            for monomial, coefficient in polynomial.terms():
+                exponents = tuple(int(e) for e in monomial)
+                number = _times((Fraction(int(coefficient)), Fraction(0)), _turned(exponents[0]))
+                for i, dispersion, extra in places:
+                    number = _times(number, _power(self._direction(dispersion), exponents[i] + extra))
+                products: list[tuple[RealKey, Gaussian]] = [((), number)]
+                for image in images:
+                    products = [((*k, t), _times(x, y)) for k, x in products for t, y in image]
+                for k, x in products:
+                    own = collected.setdefault(k, {})
+                    have = own.get(exponents, (Fraction(0), Fraction(0)))
+                    own[exponents] = (have[0] + x[0], have[1] + x[1])
+        return self._gathered(collected, waves)
+
+    def _gathered(
+        self, collected: Mapping[RealKey, Mapping[tuple[int, ...], Gaussian]], waves: Factored
+    ) -> RealSum | None:
+        is_real = all(not y for own in collected.values() for _, y in own.values())
+        is_imaginary = all(not x for own in collected.values() for x, _ in own.values())
+        if not (is_real or is_imaginary):
+            return None
+        part = 0 if is_real else 1
+        numbers = [x[part] for own in collected.values() for x in own.values() if x[part]]
+        scale = Fraction(lcm(*(x.denominator for x in numbers)), gcd(*(x.numerator for x in numbers)))
+        terms = {}
+        for key, own in collected.items():
+            whole = {m: int(x[part] * scale) for m, x in own.items() if x[part]}
+            if whole:
+                terms[key] = self.ring.context.from_dict(whole)
+        return RealSum(terms, waves / scale, part)
+
+    def _direction(self, dispersion: Dispersion) -> Gaussian:
+        """Return the wavenumber over its real magnitude."""
+        if dispersion.kind == "bending":
+            return (Fraction(1, 2), Fraction(1, 2)) if self.sign(dispersion) else (Fraction(1), Fraction(0))
+        return (Fraction(1), Fraction(0)) if self.sign(dispersion) else (Fraction(0), Fraction(1))
+
+    def _image(self, term: Term, dispersion: Dispersion) -> list[tuple[RealTerm, Gaussian]]:
+        """Return a term in functions of the real magnitude."""
+        pairs = tuple((Fraction(a), Fraction(b)) for a, b in term[0])
+        parity, one = term[1], (Fraction(1), Fraction(0))
+        negative = self.sign(dispersion)
+        if dispersion.kind == "wave" and not negative:
+            return _oscillation(tuple((Fraction(0), a) for a, _ in pairs), one)
+        if dispersion.kind == "wave" or not negative:
+            return [((pairs, parity), one)]
+        # exp((a + j b)(1 + j) x/2) and exp((a - j b)(1 + j) x/2)
+        up = tuple(((a - b) / 2, (a + b) / 2) for a, b in pairs)
+        down = tuple(((a + b) / 2, (a - b) / 2) for a, b in pairs)
+        half = (Fraction(1, 2), Fraction(0)) if parity == 0 else (Fraction(0), Fraction(-1, 2))
+        other = half if parity == 0 else (Fraction(0), Fraction(1, 2))
+        return [*_oscillation(up, half), *_oscillation(down, other)]
+
+
+def _oscillation(
+    pairs: tuple[tuple[Fraction, Fraction], ...], number: Gaussian
+) -> list[tuple[RealTerm, Gaussian]]:
+    """Return ``number * exp(sum((a_i + j b_i) x_i))``."""
+    first = next((b for _, b in pairs if b), Fraction(0))
+    if not first:
+        return [((pairs, 0), number)]
+    sign = 1 if first > 0 else -1
+    same = tuple((a, sign * b) for a, b in pairs)
+    return [((same, 0), number), ((same, 1), _times(number, (Fraction(0), Fraction(sign))))]
+
+
+def _times(left: Gaussian, right: Gaussian) -> Gaussian:
+    return left[0] * right[0] - left[1] * right[1], left[0] * right[1] + left[1] * right[0]
+
+
+def _power(base: Gaussian, exponent: int) -> Gaussian:
+    size = base[0] ** 2 + base[1] ** 2
+    step = base if exponent >= 0 else (base[0] / size, -base[1] / size)
+    result = (Fraction(1), Fraction(0))
+    for _ in range(abs(exponent)):
+        result = _times(result, step)
+    return result
+
+
+def _turned(power: int) -> Gaussian:
+    return _power((Fraction(0), Fraction(1)), power % 4)
