@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import json
 import shutil
 import subprocess
@@ -10,6 +11,7 @@ import sys
 import pytest
 
 from tests.house.repository import ROOT, blocks
+from tests.independent.spec_expressions import evaluate
 
 DIFFS = [block for block in blocks(ROOT / "docs" / "extending.md") if block.language == "diff"]
 MODEL = """
@@ -23,6 +25,15 @@ blocks     = { P = { type = "low_pass", T = "T" } }
 body   = { type = "mass",    at = "x", m = "m" }
 side   = { type = "inerter", between = ["x", "ground"], B = "B" }
 spring = { type = "spring",  between = ["x", "ground"], k = "k" }
+"""
+ROD = """
+symflex = 1
+parameters = { E = "4 Pa", A = "0.5 m^2", rho = "2 kg/m^3", nu = "0.25", I_p = "3 m^4", l = "1.5 m" }
+inputs     = { F = { force = "q" } }
+outputs    = { X = "q" }
+
+[elements]
+rod = { type = "love_rod", between = ["ground", "q"], E = "E", A = "A", rho = "rho", nu = "nu", I_p = "I_p", l = "l" }
 """
 ROOTS = """
 from symflex.roots import ROOT_FINDERS, Everything, RootProblem
@@ -63,6 +74,19 @@ def test_there_are_diffs():
 
 def test_an_inerter_adds_to_the_mass(extended):
     assert derived(extended, "polynomial")["X/F"] == ("1", "(m + B)*s^2 + k")
+
+
+def test_the_new_theory_adds_the_lateral_inertia_to_the_stiffness(extended):
+    (extended / "rod.toml").write_text(ROD, encoding="utf-8")
+    text = python(extended, "-m", "symflex", "derive", "rod.toml", "--json", "--form", "hyperbolic")
+    (entry,) = json.loads(text)["transfer_functions"]
+    numbers = {"E": 4.0, "A": 0.5, "rho": 2.0, "nu": 0.25, "I_p": 3.0, "l": 1.5, "s": 0.7 + 1.1j}
+    for name, line in entry["where"]:
+        numbers[name] = evaluate(line, numbers, [])
+    found = evaluate(entry["num"], numbers, []) / evaluate(entry["den"], numbers, [])
+    stiffness = 4.0 * 0.5 + 2.0 * 0.25**2 * 3.0 * numbers["s"] ** 2
+    gamma = cmath.sqrt(2.0 * 0.5 * numbers["s"] ** 2 / stiffness)
+    assert abs(found - cmath.tanh(1.5 * gamma) / (stiffness * gamma)) < 1e-13
 
 
 def test_the_low_pass_multiplies_the_displacement(extended):
