@@ -442,11 +442,17 @@ def _solve_in_turn(
             slope = (polynomial - zero) / ring.context.gen(index)
             if not zero.is_zero():
                 formula = -Factored.polynomial(ring, zero) / Factored.polynomial(ring, slope)
-                found.append((name != preferred, len(zero) + len(slope), len(zero), name, formula))
+                if all(_stays_finite(ring, earlier, name, formula) for _, earlier in solved):
+                    found.append((name != preferred, len(zero) + len(slope), len(zero), name, formula))
         if found:
             *_, name, formula = min(found, key=lambda entry: entry[:3])
             solved.append((name, formula))
     return tuple(solved)
+
+
+def _stays_finite(ring: Ring, value: Factored, name: str, formula: Factored) -> bool:
+    """Tell whether a rational function has no denominator that a substitution makes zero."""
+    return not any(_substitute(ring, f, name, formula).is_zero for f, e in value.factors if e < 0)
 
 
 def _at_zero(ring: Ring, polynomial: fmpz_mpoly, index: int) -> fmpz_mpoly:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import contextlib
 
 import mpmath
 import pytest
@@ -19,6 +20,7 @@ from symflex.quantities import unit_of
 from symflex.roots import ROOT_FINDERS
 from tests.contract.exact import Point, read, value_of
 from tests.contract.smallest import BLOCK_VALUES, block_model, element_model
+from tests.independent.spec_expressions import evaluate
 
 RING = Ring(("s", "p", "q"))
 
@@ -112,9 +114,50 @@ X = "x"
     return pipeline.derive_all(pipeline.loads(text))[0]
 
 
+def clamped_rod():
+    text = """symflex = 1
+[parameters]
+E = "2 Pa"
+A = "3 m^2"
+rho = "5 kg/m^3"
+l = "0.5 m"
+[elements]
+rod = { type = "rod", between = ["ground", "q"], E = "E", A = "A", rho = "rho", l = "l" }
+[inputs]
+F = { force = "q" }
+[outputs]
+X = "q"
+"""
+    return pipeline.derive_all(pipeline.loads(text))[0]
+
+
+def law_of_the_mass(s):
+    return 1 / (2 * s**2 + s + 8)
+
+
+def law_of_the_rod(s):
+    gamma = s * mpmath.sqrt(mpmath.mpf(5) / 2)
+    return mpmath.tanh(gamma / 2) / (6 * gamma)
+
+
+SAMPLES = (
+    (damped_mass, {"m": 2, "b": 1, "k": 8}, law_of_the_mass),
+    (clamped_rod, {"E": 2, "A": 3, "rho": 5, "l": mpmath.mpf("0.5")}, law_of_the_rod),
+)
+
+
+def printed(name, digits=6):
+    """A form of each sample that has it, with what its numbers are and its law."""
+    found = []
+    for make, values, law in SAMPLES:
+        with contextlib.suppress(UsageError):
+            found.append((make(), print_form(make(), name, digits), values, law))
+    return found
+
+
 @pytest.mark.parametrize("name", FORMS)
-def test_a_form_bears_its_key_as_name(name):
-    assert print_form(damped_mass(), name).name == name
+def test_a_form_bears_its_key_as_name_and_some_function_has_it(name):
+    assert {form.name for _, form, _, _ in printed(name)} == {name}
 
 
 @pytest.mark.parametrize("name", FORMS)
@@ -123,19 +166,19 @@ def test_a_form_is_documented(name):
 
 
 @pytest.mark.parametrize("name", FORMS)
-def test_a_form_of_a_damped_mass_is_its_law(name):
-    form = print_form(damped_mass(), name, 12)
-    at = Point(1, m=2, b=1, k=8, s="0.3")
-    num, den = (value_of(read(format_expression(e)), at) for e in (form.num, form.den))
-    # 1/(2 s^2 + s + 8) at s = 0.3; every coefficient of its monic form is a short decimal.
-    assert num / den == 1 / (2 * at["s"] ** 2 + at["s"] + 8)
+def test_a_form_of_a_damped_mass_or_a_rod_is_its_law(name):
+    for _, form, values, law in printed(name, 12):
+        s = mpmath.mpc("0.3", "1.1")
+        where = [(n, format_expression(e)) for n, e in form.where]
+        num, den = (evaluate(format_expression(e), values | {"s": s}, where) for e in (form.num, form.den))
+        assert abs(num / den / law(s) - 1) < 1e-11
 
 
 @pytest.mark.parametrize("name", FORMS)
 def test_a_form_is_the_same_each_time(name):
-    tf = damped_mass()
-    one, other = (print_form(tf, name) for _ in range(2))
-    assert (one.num, one.den, one.where) == (other.num, other.den, other.where)
+    for tf, one, _, _ in printed(name):
+        other = print_form(tf, name)
+        assert (one.num, one.den, one.where) == (other.num, other.den, other.where)
 
 
 def test_the_candidates_for_the_default_are_forms():
@@ -151,11 +194,11 @@ def test_an_unknown_form_is_a_usage_error_with_a_suggestion():
 
 @pytest.mark.parametrize("name", FORMS)
 def test_a_printed_form_stays_within_the_program_s_limits(name):
-    form = print_form(damped_mass(), name, 40)
-    for part in (form.num, form.den):
-        text = format_expression(part)
-        assert len(text) < PROGRAM_LIMITS.characters
-        assert read(text) == part
+    for _, form, _, _ in printed(name, 40):
+        for part in (form.num, form.den):
+            text = format_expression(part)
+            assert len(text) < PROGRAM_LIMITS.characters
+            assert read(text) == part
 
 
 # ------------------------------------------------------------------------------------------- exporters
