@@ -18,7 +18,7 @@ from symflex.expressions import PROGRAM_LIMITS, format_expression
 from symflex.kernels import FUNCTIONS, Factored, Ring
 from symflex.quantities import unit_of
 from symflex.roots import ROOT_FINDERS
-from tests.contract.exact import Point, read, value_of
+from tests.contract.exact import read
 from tests.contract.smallest import BLOCK_VALUES, block_model, element_model
 from tests.independent.spec_expressions import evaluate
 

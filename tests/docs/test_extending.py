@@ -33,7 +33,8 @@ inputs     = { F = { force = "q" } }
 outputs    = { X = "q" }
 
 [elements]
-rod = { type = "love_rod", between = ["ground", "q"], E = "E", A = "A", rho = "rho", nu = "nu", I_p = "I_p", l = "l" }
+rod = { type = "love_rod", between = ["ground", "q"], E = "E", A = "A", rho = "rho", nu = "nu", I_p = "I_p",\
+    l = "l" }
 """
 ROOTS = """
 from symflex.roots import ROOT_FINDERS, Everything, RootProblem

@@ -254,6 +254,61 @@ def test_the_response_at_a_negative_frequency_is_conjugate():
     assert response(-25.0) == np.conj(response(25.0))
 
 
+@pytest.mark.parametrize("name", ["sliding_free", "tip_mass", "rod_tip_mass", "two_beams"])
+def test_responses_in_an_array_of_both_signs_are_conjugate(name):
+    omega = np.concatenate([np.logspace(-3, 5, 40), -np.logspace(-3, 5, 40)])
+    for response in module(specification(name), name).FREQUENCY_RESPONSES.values():
+        values = response(omega)
+        assert np.all(values[40:] == np.conj(values[:40]))
+
+
+@pytest.mark.parametrize("name", ["sliding_free", "tip_mass", "rod_tip_mass", "two_beams"])
+def test_an_array_gives_in_real_arithmetic_what_its_numbers_give(name):
+    omega = np.array([-3e4, -70.0, -0.01, 0.02, 5.0, 300.0, 1e5])
+    for response in module(specification(name), name).FREQUENCY_RESPONSES.values():
+        one_by_one = np.array([response(float(w)) for w in omega])
+        assert np.allclose(response(omega), one_by_one, rtol=1e-13, atol=0.0)
+
+
+def test_parameters_and_frequencies_are_broadcast_together():
+    response = module(specification("sliding_free"), "sliding_free").V_act_over_F_at
+    omega, lengths = np.logspace(-3, 4, 9), np.array([[0.2], [1.0], [3.0]])
+    values = response(omega, l=lengths)
+    expected = np.array([[response(float(w), l=float(length)) for w in omega] for length in lengths[:, 0]])
+    assert np.allclose(values, expected, rtol=1e-13, atol=0.0)
+
+
+def test_one_frequency_serves_for_an_array_of_parameters():
+    response = module(specification("sliding_free"), "sliding_free").V_act_over_F_at
+    values = response(-25.0, rho=np.array([1000.0, 2700.0]))
+    assert values[1] == pytest.approx(response(-25.0), rel=1e-14)
+
+
+@pytest.mark.parametrize("name", ["sliding_free", "tip_mass", "rod_tip_mass", "two_beams"])
+def test_real_arithmetic_raises_nothing_whatever_numpy_is_told_about_errors(name):
+    omega = np.concatenate([np.logspace(-9, 12, 64), -np.logspace(-9, 12, 64), [0.0, -0.0]])
+    with np.errstate(all="raise"):
+        for response in module(specification(name), name).FREQUENCY_RESPONSES.values():
+            assert not np.any(np.isnan(response(omega)))
+
+
+@pytest.mark.parametrize("output", [0, 1], ids=["V_act", "V_tip"])
+def test_the_sliding_free_beam_in_real_arithmetic_agrees_with_its_boundary_value_problem(output):
+    made = module(specification("sliding_free"), "sliding_free")
+    function = (made.V_act_over_F_at, made.V_tip_over_F_at)[output]
+    points = [1j * w for w in np.logspace(-9, 5, 57)]
+    errors = relative_errors(lambda s: function(s.imag), lambda s: sliding_free(s)[output], points)
+    assert max(errors) < 2e-15
+
+
+@pytest.mark.parametrize("name", ["tip_mass", "two_beams"])
+def test_a_compliance_in_real_arithmetic_at_zero_is_the_static_one(name):
+    static = float(abs(EXPECTED[name](mp.mpf(10) ** -25)))
+    assert module(specification(name), name).X_over_F_at(np.array([0.0, 1e-6]))[0] == pytest.approx(
+        static, rel=1e-14
+    )
+
+
 @pytest.mark.parametrize("name", ["kelvin_voigt"])
 def test_a_lossy_system_has_no_response_in_real_arithmetic(name):
     assert module(specification(name), name).FREQUENCY_RESPONSES == {}
