@@ -7,7 +7,7 @@ Output: a :class:`NumpyExport`, the module's text and how well each function agr
 from __future__ import annotations
 
 import keyword
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from symflex.emit.forms import print_form
@@ -16,6 +16,7 @@ from symflex.emit.numpy_pieces import LINTS, PiecesText, support
 from symflex.emit.program import (
     Piecewise,
     Program,
+    References,
     Verification,
     choose_program,
     choose_real_program,
@@ -24,7 +25,10 @@ from symflex.emit.program import (
     nearest_double,
     wrapped,
 )
+from symflex.emit.program.real_axis import for_positive, in_half_angles
+from symflex.emit.program.verify import SIMILAR, keeps_its_value
 from symflex.expressions import Number, Quotient, format_expression
+from symflex.transfer import bind
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -161,7 +165,7 @@ def numpy_module(
     functions = identifiers(
         {key: f"{tf.output.name}_over_{tf.input.name}" for key, (tf, _, _) in chosen.items()}, RESERVED
     )
-    found = {key: choose_real_program(tf, band_hz, samples) for key, (tf, _, _) in chosen.items()}
+    found = {key: _real_program(tf, band_hz, samples) for key, (tf, _, _) in chosen.items()}
     real = {key: (chosen[key][0], *made) for key, made in found.items() if made is not None}
     taken = {*RESERVED, *functions.values()}
     responses = identifiers({key: f"{functions[key]}_at" for key in real}, taken)
@@ -180,6 +184,24 @@ def numpy_module(
     lints = f"{LINTS_OF_NAMES}, {LINTS}" if pieces else LINTS_OF_NAMES
     header = _header(model, tuple(v for _, _, v in chosen.values()), digits)
     return NumpyExport(f"{header}{IMPORTS.format(lints=lints)}\n" + "\n\n".join(blocks), verified)
+
+
+def _real_program(
+    tf: TransferFunction, band_hz: tuple[Fraction, Fraction] | None, samples: int
+) -> tuple[Piecewise, Verification] | None:
+    """Return the program of the frequency response, in half-angle tangents where that serves as well."""
+    made = choose_real_program(tf, band_hz, samples)
+    if made is None:
+        return None
+    program, verification = for_positive(made[0]), made[1]
+    shorter = in_half_angles(program)
+    if shorter is None or verification.error is None:
+        return program, verification
+    bound = bind(tf)
+    error = References(bound, verification.band, samples).worst_error(shorter)
+    if error > SIMILAR * verification.error or not keeps_its_value(shorter, bound):
+        return program, verification
+    return shorter, replace(verification, error=error)
 
 
 # ------------------------------------------------------------------------------------------ the module

@@ -15,6 +15,8 @@ from symflex.emit.numpy_expression import WIDTH, Printer, statement
 from symflex.emit.program import (
     Apply,
     Assignment,
+    Laplace,
+    Multiply,
     Node,
     Piece,
     Piecewise,
@@ -23,6 +25,7 @@ from symflex.emit.program import (
     identifiers,
     runtime,
 )
+from symflex.emit.program.real_axis import needed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -84,6 +87,69 @@ def _is_left(x, scale):
 '''
 
 REAL_SUPPORT = '''\
+def _in_real_pieces(limits, sizes, pieces, arguments, unit):
+    """Return the response at angular frequencies of any sign.
+
+    Size i below limit i adds 2**i to the number of the piece where it is. Pieces return
+    numerator and denominator at a positive frequency, without the unit, 1 or 1j; at
+    a negative one the response is conjugate.
+    """
+    shape = np.broadcast_shapes(*(np.shape(a) for a in arguments))
+    bounds = limits(*arguments[1:])
+    if not shape:
+        size = sizes(abs(arguments[0]), *arguments[1:])
+        number = sum(2**i for i, x in enumerate(size) if x < bounds[i])
+        num, den = pieces[number](abs(arguments[0]), *arguments[1:])
+        found = num / den
+        if np.iscomplexobj(num):
+            value = complex(unit * found)
+        else:
+            value = complex(found, 0.0) if unit == 1 else complex(0.0, found)
+        return value.conjugate() if np.signbit(arguments[0]) else value
+    columns, bounds = (
+        [np.broadcast_to(a, shape).reshape(-1) if np.ndim(a) else a for a in group]
+        for group in (arguments, bounds)
+    )
+    value = np.zeros(shape, dtype=complex)
+    flat = value.reshape(-1)
+    line = flat.real if unit == 1 else flat.imag
+    for start in range(0, flat.size, BLOCK):
+        part, out = flat[start : start + BLOCK], line[start : start + BLOCK]
+        given, below = (
+            [a[start : start + BLOCK] if np.ndim(a) else a for a in group]
+            for group in (columns, bounds)
+        )
+        turned = np.fmin.reduce(np.ravel(given[0])) < 0.0
+        if turned:
+            is_negative = np.signbit(given[0])
+            given[0] = np.abs(given[0])
+        number, mixed = 0, False
+        held = [x < limit for x, limit in zip(sizes(*given), below)]
+        for i, holds in enumerate(held):
+            if np.all(holds):
+                number += 2**i
+            elif np.any(holds):
+                mixed = True
+        if not mixed:
+            num, den = pieces[number](*given)
+            if np.iscomplexobj(num):
+                part[:] = unit * (num / den)
+            else:
+                np.divide(num, den, out=out)
+        else:
+            numbers = sum(2**i * holds for i, holds in enumerate(held))
+            for k in np.unique(numbers):
+                where = np.broadcast_to(numbers == k, part.shape)
+                num, den = pieces[k](*(a[where] if np.ndim(a) else a for a in given))
+                if np.iscomplexobj(num):
+                    part[where] = unit * (num / den)
+                else:
+                    out[where] = num / den
+        if turned:
+            np.negative(part.imag, out=part.imag, where=is_negative)
+    return value
+
+
 def _real_numbers(*arguments: ArrayLike) -> tuple[NDArray[np.float64], ...]:
     """Return real numbers."""
     arrays = [np.asarray(value) for value in arguments]
@@ -117,7 +183,7 @@ def support(programs: Sequence[Piecewise]) -> list[str]:
     blocks = [PIECES_SUPPORT]
     if any(p.turn is not None for p in programs):
         blocks.append(REAL_SUPPORT)
-    if any(not c.limit for p in programs for c in p.conditions):
+    if any(not c.limit for p in programs if p.turn is None for c in p.conditions):
         blocks.append(LEFT_SUPPORT)
     code = [piece for p in programs for piece in p.code]
     nodes = [n for c in code for n in _nodes(c.code)]
@@ -167,20 +233,26 @@ class PiecesText:
 
     def call(self) -> str:
         """Return the call that computes the value of ``arguments``."""
-        unit = ("1", "1j", "-1", "-1j")[self.program.turn or 0]
-        return f"_in_pieces(_{self.name}_tests, _{self.name}_pieces, arguments, {unit})"
+        if self.program.turn is None:
+            return f"_in_pieces(_{self.name}_tests, _{self.name}_pieces, arguments, 1)"
+        parts = ", ".join(f"_{self.name}_{part}" for part in ("limits", "sizes", "pieces"))
+        return f"_in_real_pieces({parts}, arguments, {'1j' if self.program.turn else '1'})"
 
     def functions(self) -> list[str]:
         """Return the lines of all functions."""
-        lines = [*self._tests(), "", ""]
+        tests = self._tests() if self.program.turn is None else self._real_tests()
+        lines = [*tests, "", ""]
         for i, piece in enumerate(self.program.code):
             lines += [*self._piece(i, piece), "", ""]
         names = [f"_{self.name}_{i}" for i in self.program.pieces]
         comma = "," if len(names) == 1 else ""
         return [*lines, *statement(f"_{self.name}_pieces", f"({', '.join(names)}{comma})", "")]
 
-    def _head(self, name: str) -> list[str]:
-        given = [self.variable, *(self.parameters[p] for p in self.program.parameters)]
+    def _head(self, name: str, *, is_free: bool = False) -> list[str]:
+        """Return the first lines of a function, without the first argument if it is free of that."""
+        given = [self.parameters[p] for p in self.program.parameters]
+        if not is_free:
+            given = [self.variable, *given]
         line = f"def {name}({', '.join(given)}):"
         if len(line) <= WIDTH:
             return [line]
@@ -214,6 +286,33 @@ class PiecesText:
             tests.append(f"np.abs({text}) < {condition.limit!r}{below}")
         return [*lines, *statement("return", f"[{', '.join(tests)}]", "    ")]
 
+    def _real_tests(self) -> list[str]:
+        """Return two functions: of the limits, made once per call, and of the sizes, made per block."""
+        program = self.program
+        printer = self._printer(program.tests, self.variable)
+        limits: list[str] = []
+        sizes: list[Node] = []
+        for condition in program.conditions:
+            if not condition.limit:
+                limits.append("0.0")
+                sizes.append(Multiply((condition.scale, condition.quantity)))
+                continue
+            scale = printer.print(condition.scale)
+            limits.append(repr(condition.limit) + (f" / np.abs({scale})" if scale != "1.0" else ""))
+            is_positive = isinstance(condition.quantity, Laplace)
+            sizes.append(condition.quantity if is_positive else Apply("abs", condition.quantity))
+        fixed = needed(program.tests, [c.scale for c in program.conditions if c.limit])
+        return [
+            *self._head(f"_{self.name}_limits", is_free=True),
+            *self._body(fixed, printer),
+            *statement("return", f"[{', '.join(limits)}]", "    "),
+            "",
+            "",
+            *self._head(f"_{self.name}_sizes"),
+            *self._body(needed(program.tests, sizes), printer),
+            *statement("return", f"[{', '.join(printer.print(x) for x in sizes)}]", "    "),
+        ]
+
     def _piece(self, number: int, piece: Piece) -> list[str]:
         name = f"_{self.name}_{number}"
         if piece.circle:
@@ -238,9 +337,11 @@ class PiecesText:
         printer = self._printer(piece.code, variable)
         lines += self._body(piece.code, printer)
         num, den = piece.code.values
-        whole = printer.quotient(num, den)
+        if self.program.turn is None:
+            return [*lines, *statement("return", printer.quotient(num, den), "    ")]
+        above, below = printer.print(num), printer.print(den)
         if piece.is_complex:
             # The factor that the real pieces leave out comes after.
-            unit = ("1", "-1j", "-1", "1j")[self.program.turn or 0]
-            whole = f"{unit} * ({whole})"
+            above = f"{'-1j' if self.program.turn else '(1+0j)'} * ({above})"
+        whole = f"{above}, {below}"
         return [*lines, *statement("return", whole, "    ")]
