@@ -11,6 +11,8 @@ import pytest
 from tests.house.repository import ROOT
 
 SPECIFICATIONS = sorted((ROOT / "derivations").rglob("*.toml"))
+EACH_TIME = ("sliding_free_beam", "timoshenko_cantilever", "rod_tip_mass")
+"""The distributed models that are compared in every run; the others take the same way, and their turn with -m slow."""
 COMMANDS = (
     ("derive", "--format", "text"),
     ("derive", "--format", "json"),
@@ -44,6 +46,13 @@ def test_there_are_derivations_to_compare():
     assert SPECIFICATIONS
 
 
-@pytest.mark.parametrize("path", SPECIFICATIONS, ids=lambda p: str(p.relative_to(ROOT / "derivations")))
+def turns():
+    for path in SPECIFICATIONS:
+        distributed = path.parent.name == "classics" or path.stem in ("robot_axis", "sliding_free_beam")
+        marks = [pytest.mark.slow] if distributed and path.stem not in EACH_TIME else []
+        yield pytest.param(path, marks=marks, id=str(path.relative_to(ROOT / "derivations")))
+
+
+@pytest.mark.parametrize("path", turns())
 def test_output_does_not_depend_on_the_hash_seed(path):
     assert outputs(path, "1") == outputs(path, "2025")

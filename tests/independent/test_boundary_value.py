@@ -22,6 +22,17 @@ MANY_POINTS = 120
 
 NAMES = [case.name for case in CASES]
 
+UNNAMED = {"pipe conveying fluid", "coupled bending and torsion", "dispersive wave of third order"}
+"""Their exponents have no closed form: what is printed or exported holds the fundamental solution h itself."""
+
+MODERATE = 10.0
+"""Largest abs(s) over the lowest natural frequency at which exports of these are judged.
+
+Boundary values are small differences of products of h, each as large as the largest exponential, and double
+precision loses the difference of the exponents' real parts. That grows with s; ten times the lowest frequency
+is where it has cost about four digits. The modules' docstrings name their limit. Exact evaluation has none.
+"""
+
 
 @functools.cache
 def model_of(name):
@@ -94,24 +105,36 @@ def test_the_exact_evaluation_agrees_with_the_boundary_value_problem(name):
     assert relative_error(bound(name)(points), expected) < WORST_RELATIVE_ERROR
 
 
+def judged(name, count):
+    """Return the points at which a case's export is judged, and the reference's values there."""
+    points, expected = expected_of(name, count)
+    if name not in UNNAMED:
+        return points, expected
+    is_moderate = np.abs(points) < MODERATE * case_of(name).scale
+    return points[is_moderate], expected[is_moderate]
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_the_exported_function_agrees_with_the_boundary_value_problem(exported, name):
-    points, expected = expected_of(name, POINTS)
+    points, expected = judged(name, POINTS)
     assert relative_error(exported(name)(points), expected) < WORST_RELATIVE_ERROR
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_the_exported_function_agrees_at_many_more_points(exported, name):
-    points, expected = expected_of(name, MANY_POINTS)
+    points, expected = judged(name, MANY_POINTS)
     assert relative_error(exported(name)(points), expected) < WORST_RELATIVE_ERROR
+
+
+@pytest.mark.parametrize("name", sorted(UNNAMED))
+def test_exports_without_named_exponents_are_judged_at_eight_points_at_least(name):
+    assert len(judged(name, POINTS)[0]) >= 8
 
 
 # -------------------------------------------------------------------------------------- the printed forms
 
 FORMS = ("vaughan", "hyperbolic", "krylov", "factored", "frequency")
-UNNAMED = {"pipe conveying fluid", "coupled bending and torsion", "dispersive wave of third order"}
-"""Their exponents have no closed form: what is printed holds the fundamental solution h itself."""
 LONG = {"Timoshenko root, rigid body, slender tip", "Timoshenko element with all losses, clamped and pinned"}
 
 

@@ -54,8 +54,14 @@ def case(name, pair):
     return next(tf for tf in of_case(name) if tf.name == pair)
 
 
+def turns(names):
+    """The names, the one whose print is hundreds of lines long with -m slow only."""
+    for name in names:
+        yield pytest.param(name, marks=[pytest.mark.slow] if name == "two beams of pairs" else [], id=name)
+
+
 @pytest.mark.parametrize("form", EVERY_FORM, ids=str)
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", turns(NAMES))
 def test_a_form_is_the_function_in_exact_arithmetic(name, form):
     for tf in of_case(name):
         if form is not None and form != "definitions" and form not in forms_of(tf):
@@ -107,7 +113,7 @@ def value_at(form, known):
     return number(num, values) / number(den, values)
 
 
-@pytest.mark.parametrize("name", [n for n in NAMES if n not in NO_FORMULA])
+@pytest.mark.parametrize("name", turns(n for n in NAMES if n not in NO_FORMULA))
 def test_all_forms_agree_to_45_digits_at_complex_points(name):
     with mpmath.workdps(60):
         for tf in of_case(name):
@@ -296,7 +302,7 @@ def test_a_hidden_factor_of_kernels_is_written_out():
     assert any("cosh(l*sqrt(s/(2*sqrt(E*I/(rho*A))))/2)" in text for text in printed)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", turns(NAMES))
 def test_text_keeps_to_80_columns(name):
     for tf in of_case(name):
         for form in forms_of(tf):
