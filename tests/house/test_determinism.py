@@ -12,7 +12,7 @@ from tests.house.repository import ROOT
 
 SPECIFICATIONS = sorted((ROOT / "derivations").rglob("*.toml"))
 EACH_TIME = ("sliding_free_beam", "timoshenko_cantilever", "rod_tip_mass")
-"""The distributed models that are compared in every run; the others take the same way, and their turn with -m slow."""
+"""The distributed models that are compared in every run; the others take their turn with -m slow."""
 COMMANDS = (
     ("derive", "--format", "text"),
     ("derive", "--format", "json"),
@@ -47,10 +47,12 @@ def test_there_are_derivations_to_compare():
 
 
 def turns():
+    found = []
     for path in SPECIFICATIONS:
         distributed = path.parent.name == "classics" or path.stem in ("robot_axis", "sliding_free_beam")
         marks = [pytest.mark.slow] if distributed and path.stem not in EACH_TIME else []
-        yield pytest.param(path, marks=marks, id=str(path.relative_to(ROOT / "derivations")))
+        found.append(pytest.param(path, marks=marks, id=str(path.relative_to(ROOT / "derivations"))))
+    return found
 
 
 @pytest.mark.parametrize("path", turns())

@@ -56,8 +56,8 @@ def case(name, pair):
 
 def turns(names):
     """The names, the one whose print is hundreds of lines long with -m slow only."""
-    for name in names:
-        yield pytest.param(name, marks=[pytest.mark.slow] if name == "two beams of pairs" else [], id=name)
+    long = {"two beams of pairs": [pytest.mark.slow]}
+    return [pytest.param(name, marks=long.get(name, []), id=name) for name in names]
 
 
 @pytest.mark.parametrize("form", EVERY_FORM, ids=str)
