@@ -124,7 +124,7 @@ def _in_real_pieces(limits, sizes, pieces, arguments, unit):
             is_negative = np.signbit(given[0])
             given[0] = np.abs(given[0])
         number, mixed = 0, False
-        held = [x < limit for x, limit in zip(sizes(*given), below)]
+        held = [x < limit for x, limit in zip(sizes(*given), below, strict=True)]
         for i, holds in enumerate(held):
             if np.all(holds):
                 number += 2**i
