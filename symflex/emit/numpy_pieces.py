@@ -160,7 +160,7 @@ def _real_numbers(*arguments: ArrayLike) -> tuple[NDArray[np.float64], ...]:
     return tuple(a.astype(float, copy=False)[()] for a in arrays)
 '''
 
-LINTS = "ANN001, ANN201, ANN202, N816, PLR0914, PLR1704, PLR2004"
+LINTS = "ANN001, ANN201, ANN202, N816, PLR0912, PLR0914, PLR1704, PLR2004"
 """Rules that the private functions of the pieces do not follow."""
 
 
