@@ -48,6 +48,9 @@ CIRCLE = 24
 CONFLUENT = 2.0
 """Twice the squared distance of a pair's arguments below which means over a circle are taken."""
 
+LONE = 0.25
+"""Part of the series' reach up to which the smaller of a pair's arguments has a series by itself."""
+
 BASES: dict[str, Callable[[Iterable[Sequence[tuple[int, int]]]], LocalBasis]] = {
     "wave": wave_basis,
     "bending": bending_basis,
@@ -92,6 +95,10 @@ _Test = tuple[int, float, int]
 """Expression, limit and scale of a condition."""
 
 
+_Choice = tuple[tuple[bool, ...], tuple[bool, ...], tuple[int, ...], bool, tuple[int, ...]]
+"""What makes a piece: groups near zero, delays that grow, dispersions mirrored, meeting pairs, lone ones."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class _Group:
     """The families of one dispersion at one length, whose arguments are small together."""
@@ -102,6 +109,17 @@ class _Group:
     families: tuple[int, ...]
     basis: LocalBasis
     spread: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Lone:
+    """The smaller wavenumber of a pair at one length, whose argument is small while the other's is not."""
+
+    dispersion: Dispersion
+    length: Factored
+    position: int
+    families: tuple[int, ...]
+    basis: LocalBasis
 
 
 @dataclass(frozen=True, eq=False)
@@ -273,6 +291,16 @@ class _Workshop:
                     basis = BASES[family.dispersion.kind](exponents)
                     yield _Group(family.dispersion, length, position, tuple(ids), basis, spread)
 
+    def _lone(self, group: _Group) -> _Lone | None:
+        """Return the smaller wavenumber of a pair at a length, ``None`` if no kernel has it there."""
+        smaller = group.dispersion.wavenumbers[1]
+        for i in group.families:
+            if self.families[i].wavenumber == smaller:
+                exponents = sorted({k[i][0][group.position][0] for h in self.halves for k in h.terms})
+                basis = wave_basis([((a, 0),) for a in exponents])
+                return _Lone(group.dispersion, group.length, group.position, (i,), basis)
+        return None
+
     # -------------------------------------------------------------------------------- complex arithmetic
 
     def _sizes(self, site: Site) -> tuple[list[_Test], list[int]]:
@@ -309,8 +337,11 @@ class _Workshop:
         tests += [
             (site.distance(self.groups[i].dispersion, self.groups[i].length), CONFLUENT, one) for i in pairs
         ]
+        fourth = len(tests)
+        laws = [d for d in self.table.dispersions if any(self.groups[i].dispersion is d for i in pairs)]
+        tests += [self._lone_test(site, d) for d in laws]
         code: list[Piece] = []
-        known: dict[tuple[tuple[bool, ...], tuple[bool, ...], tuple[int, ...], bool], int] = {}
+        known: dict[_Choice, int] = {}
         numbers: list[int] = []
         for number in range(2 ** len(tests)):
             bits = [bool(number >> i & 1) for i in range(len(tests))]
@@ -322,13 +353,33 @@ class _Workshop:
                 for (d, _), b in zip(roots, bits[third:second], strict=True)
                 if b and small.count(d) < sum(id(g.dispersion) == d for g in self.groups)
             )
-            meets = any(bits[second + j] and not near[i] for j, i in enumerate(pairs))
-            key = (near, grows, mirrored, meets)
+            far = {id(self.groups[i].dispersion) for i in pairs if not near[i]}
+            lone = tuple(
+                id(d)
+                for d, b in zip(laws, bits[fourth:], strict=True)
+                if b and id(d) in far and not all(near)
+            )
+            meets = any(
+                bits[second + j] and not near[i] and id(self.groups[i].dispersion) not in lone
+                for j, i in enumerate(pairs)
+            )
+            key = (near, grows, mirrored, meets, lone)
             if key not in known:
                 known[key] = len(code)
                 code.append(self._piece(*key))
             numbers.append(known[key])
         return self._assembled(forge, tests, numbers, code, None)
+
+    def _lone_test(self, site: Site, dispersion: Dispersion) -> _Test:
+        """Return the test that the smaller of a pair's arguments is small at every length."""
+        forge = site.forge
+        reaches = [
+            forge.multiply([forge.constant(g.spread), site.length(g.length)])
+            for g in self.groups
+            if g.dispersion is dispersion
+        ]
+        scale = forge.multiply([forge.constant(2), forge.power(forge.add(reaches), 2)])
+        return site.quotient(dispersion), (LONE * self.reach) ** 2, scale
 
     def _assembled(
         self, forge: Forge, tests: Sequence[_Test], numbers: list[int], code: list[Piece], turn: int | None
@@ -346,6 +397,7 @@ class _Workshop:
         grows: tuple[bool, ...] = (),
         mirrored: tuple[int, ...] = (),
         meets: bool = False,
+        lone: tuple[int, ...] = (),
         *,
         is_complex: bool = False,
     ) -> Piece:
@@ -358,7 +410,10 @@ class _Workshop:
             self._exponents(),
             mirrored,
         )
-        groups = [g for g, n in zip(self.groups, near, strict=True) if n]
+        groups: list[_Group | _Lone] = [g for g, n in zip(self.groups, near, strict=True) if n]
+        for group, is_near in zip(self.groups, near, strict=True):
+            if not is_near and id(group.dispersion) in lone and (own := self._lone(group)) is not None:
+                groups.append(own)
         scales = self._scales(groups, site.grows)
         values, gain = [], self.plain
         for half, sign in zip(self.halves, (1, -1), strict=True):
@@ -384,7 +439,7 @@ class _Workshop:
             for j in range(len(family.lengths))
         }
 
-    def _scales(self, near: Sequence[_Group], grows: Mapping[int, bool]) -> Scales:
+    def _scales(self, near: Sequence[_Group | _Lone], grows: Mapping[int, bool]) -> Scales:
         """Return per family, and length that is not small, the largest exponent that occurs."""
         small = {(i, g.position) for g in near for i in g.families}
         keys = [key for h in self.halves for key in h.terms]
@@ -395,7 +450,9 @@ class _Workshop:
             if (i, j) not in small
         }
 
-    def _value(self, half: _Half, near: Sequence[_Group], site: Site, scales: Scales) -> tuple[int, Factored]:
+    def _value(
+        self, half: _Half, near: Sequence[_Group | _Lone], site: Site, scales: Scales
+    ) -> tuple[int, Factored]:
         """Return the expression of a half, and the factor that was taken out of it."""
         forge = site.forge
         if not near:
@@ -403,7 +460,7 @@ class _Workshop:
             return total, half.waves * half.unit
         parts = self._local_parts(half, near)
         taken = Factored.number(self.ring, 1)
-        if len(near) == len(self.groups):
+        if len(near) == len(self.groups) or any(isinstance(g, _Lone) for g in near):
             taken = self._power_of_s(v for rest in parts.values() for v in rest.values())
         summands = []
         for orders, rest in parts.items():
@@ -412,9 +469,11 @@ class _Workshop:
             summands.append(forge.multiply([inner, *self._solutions(site, near, orders)]))
         return forge.add(summands), taken
 
-    def _solutions(self, site: Site, near: Sequence[_Group], orders: Sequence[int]) -> list[int]:
+    def _solutions(self, site: Site, near: Sequence[_Group | _Lone], orders: Sequence[int]) -> list[int]:
         return [
             site.local(g.basis, g.dispersion, g.length, k, self.reach)
+            if isinstance(g, _Group)
+            else site.local_of_smaller(g.basis, g.dispersion, g.length, k, LONE * self.reach)
             for g, k in zip(near, orders, strict=True)
         ]
 
@@ -424,15 +483,18 @@ class _Workshop:
         power = min(next((e for f, e in v.factors if f == s), 0) for v in values)
         return Factored.generator(self.ring, LAPLACE) ** power
 
-    def _local_parts(self, half: _Half, near: Sequence[_Group]) -> dict[tuple[int, ...], dict[Key, Factored]]:
+    def _local_parts(
+        self, half: _Half, near: Sequence[_Group | _Lone]
+    ) -> dict[tuple[int, ...], dict[Key, Factored]]:
         """Return, per order of the derivatives in the small lengths, the coefficients of what remains."""
         found: dict[tuple[int, ...], dict[Key, Factored]] = {}
         for orders in product(*(range(g.basis.order) for g in near)):
             terms: dict[Key, fmpz_mpoly] = dict(half.terms)
             for group, order in zip(near, orders, strict=True):
                 terms = self._derivative(terms, group, order)
+            lone = [g.dispersion for g in near if isinstance(g, _Lone)]
             values = {
-                k: self._reduced(Factored.polynomial(self.ring, p * 2 ** self._still(k)) * half.waves)
+                k: self._reduced(Factored.polynomial(self.ring, p * 2 ** self._still(k)) * half.waves, lone)
                 for k, p in terms.items()
                 if len(p)
             }
@@ -441,7 +503,7 @@ class _Workshop:
         return found
 
     def _derivative(
-        self, terms: Mapping[Key, fmpz_mpoly], group: _Group, order: int
+        self, terms: Mapping[Key, fmpz_mpoly], group: _Group | _Lone, order: int
     ) -> dict[Key, fmpz_mpoly]:
         """Return the derivative of a sum with respect to a length at zero."""
         gens = [self.ring.generator(self.families[i].wavenumber) for i in group.families]
@@ -462,12 +524,39 @@ class _Workshop:
                 found[k] = found.get(k, self.ring.constant(0)) + polynomial * factor
         return found
 
-    def _reduced(self, value: Factored) -> Factored:
-        """Return a value in normal form, free of wavenumbers where it is symmetric in them."""
+    def _reduced(self, value: Factored, lone: Sequence[Dispersion]) -> Factored:
+        """Return a value in normal form, free of wavenumbers where it is symmetric in them.
+
+        Values of pairs whose smaller wavenumber alone is expanded are made free of its negative powers.
+        """
         for dispersion in self.table.dispersions:
             if dispersion.kind == "pair" and not value.is_zero:
-                value = self._without_pair(value, dispersion)
-        return self.normal.reduce_factored(value)
+                is_lone = any(d is dispersion for d in lone)
+                reduce = self._without_smaller if is_lone else self._without_pair
+                value = reduce(value, dispersion)
+        # Powers of a lone wavenumber are small; the relations would make differences of large terms of them.
+        return value if lone else self.normal.reduce_factored(value)
+
+    def _without_smaller(self, value: Factored, dispersion: Dispersion) -> Factored:
+        """Return a value that is finite where the smaller wavenumber is zero without negative powers of it.
+
+        With ``lambda_1^2 lambda_2^2 = c_0``, such a power becomes one of c_0, and that divides what is in
+        normal form: 1 and lambda_2^2 generate what is finite at both roots of ``x^2 + c_2 x``.
+        """
+        large, small = (Factored.generator(self.ring, w) for w in dispersion.wavenumbers)
+        (first, _), (second, _) = large.factors[0], small.factors[0]
+        power = next((e for f, e in value.factors if f == second), 0)
+        if power >= 0:
+            return value
+        even = -power + power % 2
+        outside = next((e for f, e in value.factors if f == first), 0)
+        # Powers of the larger one stay outside, where they are harmless; even ones are all there is of it.
+        whole = value / large**outside * (large * small) ** even
+        numerator = self.normal.reduce(whole.numerator().expand()) / whole.denominator()
+        if numerator.is_zero:
+            return numerator
+        reduced, _ = cancel(numerator, dispersion.characteristic[0] ** (even // 2))
+        return reduced * large**outside
 
     def _without_pair(self, value: Factored, dispersion: Dispersion) -> Factored:
         """Return a value that is symmetric in two wavenumbers without them."""

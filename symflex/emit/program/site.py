@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 
 MINUS_J = (0, -1)
 
+LEAST = Fraction(1, 2**60)
+"""Part of the root of c_0 below which c_2 does not count."""
+
 Scales = dict[tuple[int, int], int]
 """Per family and length, the exponent that is divided out of a sum."""
 
@@ -148,8 +151,12 @@ class Site:
     def _pair(self, law: Dispersion) -> tuple[int, int]:
         """Return the square roots of the roots of ``x^2 + c_2 x + c_0``, without cancellation."""
         forge = self.forge
-        middle = forge.multiply([forge.constant(Fraction(-1, 2)), self.coefficient(law, 2)])
         c0 = self.coefficient(law)
+        # Less than a rounding of the result, and not zero where c_2 is.
+        least = forge.multiply([forge.constant(LEAST), forge.apply("sqrt", forge.apply("abs", c0))])
+        middle = forge.add(
+            [forge.multiply([forge.constant(Fraction(-1, 2)), self.coefficient(law, 2)]), least]
+        )
         inside = forge.add(
             [forge.constant(1), forge.negate(forge.divide(c0, forge.multiply([middle, middle])))]
         )
@@ -221,6 +228,10 @@ class Site:
         quotient = forge.divide(forge.multiply([forge.constant(4), c0]), c2)
         return forge.multiply([forge.power(self.length(length), 2), forge.add([c2, forge.negate(quotient)])])
 
+    def quotient(self, dispersion: Dispersion) -> int:
+        """Return ``c_0/c_2`` of a pair: at least half the square of the smaller wavenumber in size."""
+        return self.forge.divide(self.coefficient(dispersion), self.coefficient(dispersion, 2))
+
     def fundamental(self, kernel: Kernel) -> int:
         """Return the derivative of a fundamental function at its length."""
         forge, law = self.forge, kernel.dispersion
@@ -252,12 +263,7 @@ class Site:
             argument = self._argument(dispersion, length)
             if dispersion.kind == "wave":
                 argument = forge.negate(argument)
-            self._labelled(argument, "z")
-            series = basis.series(k, size)
-            total = forge.constant(series[-1])
-            for number in reversed(series[:-1]):
-                total = forge.add([forge.multiply([total, argument]), forge.constant(number)])
-            return forge.multiply([forge.power(x, k), total])
+            return self._series(basis, argument, x, k, size)
         e, f = forge.negate(self.coefficient(dispersion, 2)), self.coefficient(dispersion)
         coefficients = []
         for i, polynomial in enumerate(basis.coefficients):
@@ -267,6 +273,30 @@ class Site:
             ]
             coefficients.append(forge.multiply([forge.power(x, basis.order - i), forge.add(terms)]))
         return forge.multiply([forge.power(x, k), forge.solutions(coefficients, series_length(size))[k]])
+
+    def local_of_smaller(
+        self, basis: LocalBasis, dispersion: Dispersion, length: Factored, k: int, size: float
+    ) -> int:
+        """Return solution k of an equation in a length, of the smaller wavenumber of a pair alone.
+
+        Parameters
+        ----------
+        basis, dispersion, length, k, size
+            As for :meth:`local`; the basis is that of a wave.
+        """
+        forge, x = self.forge, self.length(length)
+        wavenumber = self._generators.generator(dispersion.wavenumbers[1])
+        argument = forge.multiply([forge.power(x, 2), wavenumber, wavenumber])
+        return self._series(basis, argument, x, k, size)
+
+    def _series(self, basis: LocalBasis, argument: int, x: int, k: int, size: float) -> int:
+        forge = self.forge
+        self._labelled(argument, "z")
+        series = basis.series(k, size)
+        total = forge.constant(series[-1])
+        for number in reversed(series[:-1]):
+            total = forge.add([forge.multiply([total, argument]), forge.constant(number)])
+        return forge.multiply([forge.power(x, k), total])
 
     # ---------------------------------------------------------------------------------- sums of exponentials
 

@@ -62,8 +62,37 @@ SCAN = 3000
 MOST_EXTREMES = 40
 """Resonances, and antiresonances, around which the error is measured; the first and the last ones of more."""
 
+GENERAL_SAMPLES = 100
+"""At most so many frequencies where exponents have no closed form: their balls are costly."""
+
+GENERAL_EXTREMES = 4
+GENERAL_BITS = 1024
+"""Precision from which such a value is not sought any more; it then counts as not measured."""
+
+GENERAL_ACCURACY = 1e-12
+"""What such a function promises up to the frequency named."""
+
 TINY = 1e-307
 """What is smaller has no more digits in double precision."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """How far a function is accurate that is not so everywhere.
+
+    Parameters
+    ----------
+    highest : Fraction or None
+        Up to here [Hz] every sample was measured and accurate to 1e-12; ``None`` when the first was not.
+    error : float
+        The worst one up to there.
+    skipped : int
+        Frequencies at which nothing was measured, because balls would need too many bits.
+    """
+
+    highest: Fraction | None
+    error: float
+    skipped: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +115,8 @@ class Verification:
         Number of frequencies.
     reason : str
         Why it was not measured; empty when it was.
+    reach : Reach or None
+        Only of functions made of matrix exponentials, which are not accurate at all frequencies.
     """
 
     name: str
@@ -94,6 +125,7 @@ class Verification:
     band: tuple[Fraction, Fraction]
     samples: int
     reason: str = ""
+    reach: Reach | None = None
 
     def text(self, digits: int = 2) -> str:
         """Return the sentence that stands in the docstring.
@@ -105,11 +137,36 @@ class Verification:
         """
         if self.error is None:
             return f"not verified: {self.reason}"
-        error = "0" if self.error == 0 else f"{self.error:.{digits - 1}e}"
+        if self.reach is not None:
+            return self._text_of_reach(self.reach, digits)
+        error = _error_text(self.error, digits)
         low, high = (frequency_text(f) for f in self.band)
         if self.error == inf:
             return f"not accurate: some values overflow over {low} ... {high}"
         return f"verified: worst relative error {error} over {low} ... {high} against ball arithmetic"
+
+    def _text_of_reach(self, reach: Reach, digits: int) -> str:
+        low, high = (frequency_text(f) for f in self.band)
+        skipped = f"; not measured at {reach.skipped} of {self.samples + reach.skipped} frequencies"
+        missing = skipped if reach.skipped else ""
+        is_lost = self.error is None or self.error == inf
+        worst = (
+            "some values overflow" if is_lost else f"errors up to {_error_text(self.error or 0.0, digits)}"
+        )
+        if reach.highest is None:
+            return f"not accurate over {low} ... {high}, where matrix exponentials lose digits{missing}"
+        end = frequency_text(reach.highest)
+        inner = f"verified: worst relative error {_error_text(reach.error, digits)} over {low} ... {end}"
+        if reach.highest == self.band[1]:
+            return f"{inner} against ball arithmetic"
+        return (
+            f"{inner} against ball arithmetic; above, up to {high}, matrix exponentials lose digits: "
+            f"{worst}{missing}"
+        )
+
+
+def _error_text(error: float, digits: int) -> str:
+    return "0" if error == 0 else f"{error:.{digits - 1}e}"
 
 
 def frequency_text(hertz: Fraction) -> str:
@@ -220,6 +277,11 @@ def _choose_pieces(
         references = References(bound, band, samples)
     except ModelError as problem:
         return first, Verification(tf.name, form, None, band, 0, problem.diagnostics[0].message)
+    if first.solves:
+        # Their accuracy ends below the band's end, whatever is done where arguments are small.
+        measured = references.reach(first, band)
+        worst = references.worst_error(first)
+        return first, Verification(tf.name, form, worst, band, len(references.s), "", measured)
     candidates: list[tuple[bool, float, Piecewise]] = []
     for reach in REACHES:
         program = first if reach == REACHES[0] else build(reach)
@@ -277,6 +339,7 @@ def _extremes(bound: BoundTransferFunction, low: float, high: float) -> list[flo
     if bound.ratio.is_zero:
         return []
     program = build_piecewise(bound.source)
+    most = GENERAL_EXTREMES if program.solves else MOST_EXTREMES
     values = doubles(bound)
 
     def size(hertz: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -289,15 +352,15 @@ def _extremes(bound: BoundTransferFunction, low: float, high: float) -> list[flo
     for sign in (1, -1):
         inner = sign * level[1:-1]
         peaks = np.flatnonzero((inner > sign * level[:-2]) & (inner >= sign * level[2:])) + 1
-        if len(peaks) > MOST_EXTREMES:
-            peaks = np.concatenate([peaks[: MOST_EXTREMES // 2], peaks[-MOST_EXTREMES // 2 :]])
-        for k in peaks:
-            left, right = grid[k - 1], grid[k + 1]
-            for _ in range(8):
-                near = np.linspace(left, right, 21)
-                best = int(np.argmax(sign * size(near)))
-                left, right = near[max(best - 1, 0)], near[min(best + 1, 20)]
-            found.append(float(left + right) / 2)
+        if len(peaks) > most:
+            peaks = np.concatenate([peaks[: most // 2], peaks[-most // 2 :]])
+        left, right = grid[peaks - 1], grid[peaks + 1]
+        each = np.arange(len(peaks))
+        for _ in range(8 if len(peaks) else 0):
+            near = np.linspace(left, right, 21)
+            best = np.argmax(sign * size(near), axis=0)
+            left, right = near[np.maximum(best - 1, 0), each], near[np.minimum(best + 1, 20), each]
+        found += ((left + right) / 2).tolist()
     return found
 
 
@@ -324,29 +387,59 @@ class References:
         Number of frequencies, besides those around poles and zeros.
     """
 
+    # Where exponents have no closed form, fewer samples are taken and precision is bounded.
+
     def __init__(
         self, bound: BoundTransferFunction, band_hz: tuple[Fraction, Fraction], samples: int = SAMPLES
     ) -> None:
         self._bound = bound
         self._known: dict[int, Enclosed] = {}
-        points = 1j * (tau * sample_frequencies(bound, band_hz, samples))
-        found = [(s, self._reference(complex(s))) for s in points]
+        is_general = any(d.kind == "general" for d in bound.source.kernels.dispersions)
+        self._last_bits = GENERAL_BITS if is_general else LAST_BITS
+        count = min(samples, GENERAL_SAMPLES) if is_general else samples
+        points = 1j * (tau * sample_frequencies(bound, band_hz, count))
+        found = []
+        bits = FIRST_BITS
+        for s in points:
+            reference = self._reference(complex(s), bits)
+            found.append((s, reference))
+            if is_general:
+                # Exponentials only grow with the frequency.
+                bits = self._last_bits if reference is None else reference.bits
+        self._skipped = np.array([s for s, reference in found if reference is None], dtype=complex)
         self._references = [reference for _, reference in found if reference is not None]
         self.s = np.array([s for s, reference in found if reference is not None], dtype=complex)
 
     def worst_error(self, program: Program | Piecewise) -> float:
         """Return a bound of the error at all frequencies, for a program that gets the nearest doubles."""
-        values = evaluate(program, _arguments(program, self.s), doubles(self._bound))
-        errors = (r.error_of(complex(v)) for r, v in zip(self._references, values, strict=True))
-        return max(errors, default=0.0)
+        return max(self._errors(program), default=0.0)
 
-    def _reference(self, s: complex) -> _Reference | None:
+    def reach(self, program: Program | Piecewise, band_hz: tuple[Fraction, Fraction]) -> Reach:
+        """Return up to which frequency every sample was measured and is accurate."""
+        end, worst = np.inf, 0.0
+        highest: complex | None = None
+        if len(self._skipped):
+            end = float(np.min(self._skipped.imag))
+        for s, error in zip(self.s, self._errors(program), strict=True):
+            if s.imag > end or error > GENERAL_ACCURACY:
+                break
+            highest, worst = s, max(worst, error)
+        else:
+            if not len(self._skipped):
+                return Reach(band_hz[1], worst, 0)
+        hertz = None if highest is None else Fraction(f"{highest.imag / tau:.3g}")
+        return Reach(hertz, worst, len(self._skipped))
+
+    def _errors(self, program: Program | Piecewise) -> list[float]:
+        values = evaluate(program, _arguments(program, self.s), doubles(self._bound))
+        return [r.error_of(complex(v)) for r, v in zip(self._references, values, strict=True)]
+
+    def _reference(self, s: complex, bits: int = FIRST_BITS) -> _Reference | None:
         """Return the value at ``s``, or ``None`` at a pole or zero."""
         point = acb(s.real, s.imag)
         if self._bound.ratio.is_zero:
             return _Reference(acb(0), FIRST_BITS, acb(1).abs_lower())
-        bits = FIRST_BITS
-        while bits <= LAST_BITS:
+        while bits <= self._last_bits:
             function = self._at(bits)
             value, slope = function(point), function.logarithmic_derivative(point)
             if value.is_finite() and slope.is_finite() and value.rel_accuracy_bits() >= ENOUGH_BITS:
