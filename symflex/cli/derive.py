@@ -2,9 +2,18 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import click
 
-from symflex.cli.report import emit_json, reporting, terminal_width
+from symflex.cli.report import emit_json, note, reporting, terminal_width
+from symflex.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.emit.forms import PrintedForm
+    from symflex.transfer import TransferFunction
 
 
 @click.command("derive")
@@ -30,14 +39,13 @@ def command(
     All of them by default. JSON strings are in the specification's own expression grammar.
     """
     from symflex import pipeline
-    from symflex.emit.forms import print_form
     from symflex.emit.json_format import derive_document
     from symflex.emit.latex import transfer_function_latex
     from symflex.emit.text import derive_text
 
     model = pipeline.load(spec)
     derived = pipeline.derive_all(model, pipeline.pick_pairs(model, tfs))
-    entries = [(tf, print_form(tf, form, digits)) for tf in derived]
+    entries = _in_form(derived, form, digits)
     if as_json or format_ == "json":
         emit_json(derive_document(entries))
     elif format_ == "latex":
@@ -48,3 +56,33 @@ def command(
         width = terminal_width()
         click.echo("\n".join(derive_text(tf, printed, width) for tf, printed in entries).rstrip("\n"))
     return 0
+
+
+def _in_form(
+    derived: Sequence[TransferFunction], form: str | None, digits: int
+) -> list[tuple[TransferFunction, PrintedForm]]:
+    """Return every function in the form asked for; those that lack it in their default, with a note.
+
+    Raises
+    ------
+    UsageError
+        SF902 when none of them has the form.
+    """
+    from symflex.emit.forms import print_form
+
+    found: list[tuple[TransferFunction, PrintedForm]] = []
+    refusals: list[UsageError] = []
+    notes: list[str] = []
+    for tf in derived:
+        try:
+            found.append((tf, print_form(tf, form, digits)))
+        except UsageError as error:
+            refusals.append(error)
+            if len(refusals) == len(derived):
+                raise refusals[0] from None
+            printed = print_form(tf, None, digits)
+            found.append((tf, printed))
+            notes.append(f"{tf.name} has no {form} form: printed in its {printed.name} form")
+    for line in notes:
+        note(line)
+    return found

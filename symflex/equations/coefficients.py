@@ -72,6 +72,8 @@ def _read(expression: Expression, unknowns: Collection[str], evaluator: Evaluato
             return {k: c * scale for k, c in _read(varying[0], unknowns, evaluator).items()}
         case Quotient(numerator, denominator):
             below = evaluator.constant(denominator)
+            if evaluator.vanishes(below):
+                raise ModelError(Diagnostic("SF224", "division by zero", denominator.span))
             return {k: c / below for k, c in _read(numerator, unknowns, evaluator).items()}
     form = evaluator.linear(expression)
     return dict(form.terms)

@@ -243,7 +243,11 @@ def _line(
     for parameter in element.parameters:
         values.setdefault(parameter.name, zero)
     chosen = {c.name: c.default for c in element.choices} | dict(use.choices)
-    system = FIELDS[element.theory(chosen)](s, values)
+    try:
+        system = FIELDS[element.theory(chosen)](s, values)
+    except ZeroDivisionError:
+        message = f"a stiffness of {element.type_name} '{use.name}' is zero"
+        raise ModelError(Diagnostic("SF224", message, use.span)) from None
     return demands.medium(use.name, system, use.span), values[element.length]
 
 

@@ -153,12 +153,20 @@ class Evaluator:
     def _name(self, expression: Name | Attribute) -> Factored | LinearForm:
         meaning = self.scope.lookup(expression, constant=False)
         if meaning.kind == "block":
-            return self.blocks[meaning.name]
+            return self._block(expression, meaning.name)
         if meaning.kind == "through" and meaning.variable is not None:
             return self.through[meaning.variable]
         if meaning.variable is not None:
             return LinearForm.of((meaning.variable, Factored.number(self.ring, 1)))
         return Factored.generator(self.ring, LAPLACE if meaning.kind == "laplace" else meaning.name)
+
+    def _block(self, expression: Name | Attribute, name: str) -> Factored:
+        if name not in self.blocks:
+            # Only while kernels are surveyed: everywhere else every block has a value.
+            message = f"a delay (block '{name}') inside a field's equation or a length is not available"
+            hint = f'a delayed load may come from a signal: [signals] load = "{name}*..."'
+            raise ModelError(Diagnostic("SF910", message, expression.span, hint))
+        return self.blocks[name]
 
     def _sum(self, expression: Sum, terms: tuple[Expression, ...]) -> Factored | LinearForm:
         values = [self._evaluate(term) for term in terms]

@@ -97,16 +97,17 @@ class _Workshop:
         self._images = Images(self._ring)
         self._denominators: list[tuple[fmpz_mpoly, Factored]] = []
         self._definitions: dict[str, Factored] = {}
+        if propagation is not None:
+            # Propagators hold no definitions, but definitions may hold delays.
+            images = [self._generator(n) for n in propagation.kernel_ring.names]
+            for p in propagation.propagators:
+                self._definitions[p.generator] = compose_rational(self._ring, p.image, images)
         for name, value in equations.definitions:
             self._definitions[name] = self._expanded(value)
         self._reduction = None if propagation is None else self._kernel_reduction(propagation)
 
     def _kernel_reduction(self, propagation: Propagation) -> KernelReduction:
         """Return how quotients of kernels are reduced, with definitions opened everywhere."""
-        for p in propagation.propagators:
-            names = propagation.kernel_ring.names
-            images = [self._definitions[n] if n in self._definitions else self._generator(n) for n in names]
-            self._definitions[p.generator] = compose_rational(self._ring, p.image, images)
         table = propagation.table
         values = [v for d in table.dispersions for v in (*d.characteristic, d.shift)]
         values += [k.length for k in table.kernels]

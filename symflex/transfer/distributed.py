@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symflex.errors import BudgetError, Diagnostic
-from symflex.kernels import MEMORY_LIMIT, Dispersion, Factored, KernelTable, Ring, degree_in
+from symflex.kernels import LAPLACE, MEMORY_LIMIT, Dispersion, Factored, KernelTable, Ring, degree_in
 from symflex.kernels.exponentials import Exponentials
 from symflex.kernels.multiple_angles import lift
 from symflex.kernels.normal_form import NormalForm, split
@@ -433,8 +433,9 @@ def _solve_in_turn(
         if value.is_zero:
             continue
         polynomial = value.numerator().expand()
-        found: list[tuple[bool, int, int, str, Factored]] = []
-        for name in parameters:
+        found: list[tuple[int, int, int, str, Factored]] = []
+        # s comes last: it is everywhere, but better than nothing where a diffusivity enters squared.
+        for name in (*parameters, LAPLACE):
             index = ring.index[name]
             if any(n == name for n, _ in solved) or degree_in(polynomial, index) != 1:
                 continue
@@ -443,7 +444,8 @@ def _solve_in_turn(
             if not zero.is_zero():
                 formula = -Factored.polynomial(ring, zero) / Factored.polynomial(ring, slope)
                 if all(_stays_finite(ring, earlier, name, formula) for _, earlier in solved):
-                    found.append((name != preferred, len(zero) + len(slope), len(zero), name, formula))
+                    rank = 2 if name == LAPLACE else int(name != preferred)
+                    found.append((rank, len(zero) + len(slope), len(zero), name, formula))
         if found:
             *_, name, formula = min(found, key=lambda entry: entry[:3])
             solved.append((name, formula))

@@ -97,3 +97,30 @@ def test_json_reads_back_to_the_same_function_exactly(shell, path):
 def test_two_points_differ_so_that_the_comparison_above_means_something():
     (tf, *_) = pipeline.derive_all(pipeline.load(TWO_MASS))
     assert point_for(tf, 1).truth != point_for(tf, 2).truth
+
+
+MIXED = """symflex = 1
+parameters = { E = "70 GPa", A = "1 cm^2", rho = "2700 kg/m^3", l = "1 m", m = "2 kg" }
+inputs     = { F = { force = "q" }, G = { force = "x" } }
+outputs    = { Q = "q", X = "x" }
+
+[elements]
+rod = { type = "rod", between = ["ground", "q"], E = "E", A = "A", rho = "rho", l = "l" }
+car = { type = "mass", at = "x", m = "m" }
+"""
+
+
+def test_functions_that_lack_a_form_are_printed_in_their_own_with_a_note(shell, tmp_path):
+    (tmp_path / "mixed.toml").write_text(MIXED, encoding="utf-8")
+    path = str(tmp_path / "mixed.toml")
+    done = shell("derive", path, "--form", "krylov", "--tf", "Q/F", "--tf", "X/G")
+    assert done.code == 0
+    assert "krylov form" in done.out
+    assert done.err.strip() == "X/G has no krylov form: printed in its definitions form"
+
+
+def test_a_form_that_no_function_has_is_a_usage_error(shell, tmp_path):
+    (tmp_path / "mixed.toml").write_text(MIXED, encoding="utf-8")
+    done = shell("derive", str(tmp_path / "mixed.toml"), "--form", "krylov", "--tf", "X/G")
+    assert done.code == 2
+    assert "SF902" in done.err

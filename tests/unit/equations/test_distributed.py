@@ -1,0 +1,118 @@
+"""What distributed parts may hold, and what they may not."""
+
+from __future__ import annotations
+
+import pytest
+
+from symflex import pipeline
+from symflex.errors import BudgetError, ModelError
+
+HEAD = """
+symflex = 1
+[parameters]
+E = "70 GPa"
+I = "1e-8 m^4"
+rho = "2700 kg/m^3"
+A = "1e-4 m^2"
+l = "1 m"
+T_d = "1 ms"
+[blocks]
+D = { type = "delay", T = "T_d" }
+"""
+FIELD = """
+[fields.w]
+domain = ["0", "l"]
+equation = "EQUATION"
+conditions = ["w(0) = 0", "w'(0) = 0", "w''(l) = 0", "CONDITION"]
+[inputs]
+F = {}
+[outputs]
+X = "w(l)"
+"""
+
+
+def derived(body, equation="E*I*w'''' + rho*A*s^2*w = 0", condition="E*I*w'''(l) = -F"):
+    text = HEAD + body.replace("EQUATION", equation).replace("CONDITION", condition)
+    return pipeline.derive_all(pipeline.loads(text))[0]
+
+
+@pytest.mark.parametrize("equation", ["E*I*w'''' + rho*A*s^2*D*w = 0", "E*I*w'''' + rho*A*s^2*w = D*F/l"])
+def test_a_delay_inside_an_equation_is_refused_at_its_place(equation):
+    with pytest.raises(ModelError) as caught:
+        derived(FIELD, equation)
+    (problem,) = caught.value.diagnostics
+    assert problem.code == "SF910"
+    assert problem.span is not None
+
+
+def test_a_delay_in_a_condition_is_a_factor():
+    late, prompt = derived(FIELD, condition="E*I*w'''(l) = -D*F"), derived(FIELD)
+    s = 3 + 40j
+    ratio = pipeline.bind(late)(s) / pipeline.bind(prompt)(s)
+    # exp(-s*T) with T = 1 ms
+    assert abs(ratio - 2.718281828459045 ** (-s * 1e-3)) < 1e-14
+
+
+def test_a_delay_may_stand_in_a_definition():
+    body = """
+[definitions]
+late = "D"
+[signals]
+y = "late*u"
+[inputs]
+u = {}
+[outputs]
+Y = "y"
+"""
+    assert abs(pipeline.bind(derived(body))(1j) - 2.718281828459045 ** (-1e-3j)) < 1e-15
+
+
+def test_densely_coupled_symbols_end_in_a_budget():
+    n = 7
+    names = [f"u{i}" for i in range(n)]
+    parameters = "\n".join(f'a_{i}_{j} = {{ unit = "1/m" }}' for i in range(n) for j in range(n))
+    equations = ", ".join(
+        '"u{0}\' = {1}"'.format(i, " + ".join(f"a_{i}_{j}*u{j}" for j in range(n))) for i in range(n)
+    )
+    conditions = ", ".join(f'"u{i}({"0" if i else "l"}) = {"0" if i else "F"}"' for i in range(n))
+    text = f"""
+symflex = 1
+[parameters]
+l = "1 m"
+{parameters}
+[fields.f]
+unknowns = [{", ".join(f'"{u}"' for u in names)}]
+domain = ["0", "l"]
+equations = [{equations}]
+conditions = [{conditions}]
+[inputs]
+F = {{}}
+[outputs]
+X = "u1(l)"
+"""
+    with pytest.raises(BudgetError) as caught:
+        pipeline.derive_all(pipeline.loads(text))
+    assert caught.value.diagnostics[0].span is not None
+
+
+def test_a_division_by_zero_in_an_equation_is_found_at_its_place():
+    with pytest.raises(ModelError) as caught:
+        derived(FIELD, equation="E*I*w''''/(2 - 2) + rho*A*s^2*w = 0")
+    assert [d.code for d in caught.value.diagnostics] == ["SF224"]
+
+
+def test_common_factors_are_found_where_only_s_is_linear_in_the_dispersion_relation():
+    text = """
+symflex = 1
+parameters = { D_0 = "1 m^2/s", v = "2 m/s", l = "1.5 m" }
+inputs = { u = {} }
+outputs = { Y = "c(l/2)" }
+[fields.c]
+domain = ["0", "l"]
+equation = "D_0*c'' - v*c' - s*c = 0"
+conditions = ["v*c(0) - D_0*c'(0) = v*u", "c'(l) = 0"]
+"""
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    # v e^(v l/4D) / (2 D gamma sinh q + v cosh q) with q = gamma l/2: one sum of two terms is left.
+    assert sorted(len(f) for f, _ in tf.ratio.factors if len(f) > 1) == [2]
+    assert any(len(h.polynomial) == 2 for h in tf.hidden)
