@@ -72,7 +72,7 @@ def test_densely_coupled_symbols_end_in_a_budget():
     names = [f"u{i}" for i in range(n)]
     parameters = "\n".join(f'a_{i}_{j} = {{ unit = "1/m" }}' for i in range(n) for j in range(n))
     equations = ", ".join(
-        '"u{0}\' = {1}"'.format(i, " + ".join(f"a_{i}_{j}*u{j}" for j in range(n))) for i in range(n)
+        '"u{}\' = {}"'.format(i, " + ".join(f"a_{i}_{j}*u{j}" for j in range(n))) for i in range(n)
     )
     conditions = ", ".join(f'"u{i}({"0" if i else "l"}) = {"0" if i else "F"}"' for i in range(n))
     text = f"""
