@@ -85,8 +85,10 @@ def test_the_python_examples_of_a_page_run_in_order(page, reader):
             assert not runner.failures, "".join(report)
 
 
-def test_the_readme_shows_what_its_example_prints(reader):
+def test_the_readme_shows_what_its_examples_print(reader):
     readme = ROOT / "README.md"
-    specification, shown = [b for b in blocks(readme) if b.title or b.language == "text"]
-    printed = symflex_output(["derive", specification.title], reader(readme)).stdout
-    assert printed.strip() == shown.text.strip()
+    found = [b for b in blocks(readme) if b.title or b.language == "text"]
+    options = ([], ["--tf", "V_tip/F", "--form", "vaughan"])
+    for specification, shown, chosen in zip(found[::2], found[1::2], options, strict=True):
+        printed = symflex_output(["derive", specification.title, *chosen], reader(readme)).stdout
+        assert printed.strip() == shown.text.strip()
