@@ -58,7 +58,12 @@ class NumpyExporter:
     def export(self, model: Model, tfs: Sequence[TransferFunction]) -> Export:
         """Return the module; accuracy that was not reached is a warning."""
         made = numpy_module(tfs, model, model.analysis.band)
-        return Export(made.text, tuple(w for v in made.verified if (w := _shortfall(v))))
+        # A function and its frequency response in real arithmetic: the worse one is told of, once.
+        worst: dict[str, Verification] = {}
+        for v in made.verified:
+            if v.name not in worst or (v.error or 0.0) > (worst[v.name].error or 0.0):
+                worst[v.name] = v
+        return Export(made.text, tuple(w for v in worst.values() if (w := _shortfall(v))))
 
 
 def _shortfall(verification: Verification) -> str:

@@ -44,7 +44,12 @@ def _in_pieces(tests, pieces, arguments, unit):
     shape = np.broadcast_shapes(*(np.shape(a) for a in arguments))
     if not shape:
         number = sum(2**i for i, holds in enumerate(tests(*arguments)) if holds)
-        return complex(unit * pieces[number](*arguments))
+        value = complex(unit * pieces[number](*arguments))
+        if np.isfinite(value):
+            return value
+        # At a pole numbers are divided otherwise than arrays.
+        given = (np.atleast_1d(arguments[0]), *arguments[1:])
+        return complex(_in_pieces(tests, pieces, given, unit)[0])
     columns = [
         np.broadcast_to(a, shape).reshape(-1) if np.ndim(a) else a for a in arguments
     ]
@@ -76,6 +81,18 @@ def _in_pieces(tests, pieces, arguments, unit):
             found = pieces[k](*(a[where] if np.ndim(a) else a for a in given))
             part[where] = unit * found
     return value
+'''
+
+ARRAY_SUPPORT = '''\
+def _in_array(tests, pieces, arguments):
+    """Return what _in_pieces does, a number as part of an array.
+
+    Matrix exponentials magnify the last bit, which numbers may round differently.
+    """
+    shape = np.broadcast_shapes(*(np.shape(a) for a in arguments))
+    given = (np.atleast_1d(arguments[0]), *arguments[1:])
+    value = _in_pieces(tests, pieces, given, 1).reshape(shape)
+    return value if shape else complex(value[()])
 '''
 
 LEFT_SUPPORT = '''\
@@ -181,6 +198,8 @@ def support(programs: Sequence[Piecewise]) -> list[str]:
     if not programs:
         return []
     blocks = [PIECES_SUPPORT]
+    if any(p.solves for p in programs):
+        blocks.append(ARRAY_SUPPORT)
     if any(p.turn is not None for p in programs):
         blocks.append(REAL_SUPPORT)
     if any(not c.limit for p in programs if p.turn is None for c in p.conditions):
@@ -234,6 +253,8 @@ class PiecesText:
     def call(self) -> str:
         """Return the call that computes the value of ``arguments``."""
         if self.program.turn is None:
+            if self.program.solves:
+                return f"_in_array(_{self.name}_tests, _{self.name}_pieces, arguments)"
             return f"_in_pieces(_{self.name}_tests, _{self.name}_pieces, arguments, 1)"
         parts = ", ".join(f"_{self.name}_{part}" for part in ("limits", "sizes", "pieces"))
         return f"_in_real_pieces({parts}, arguments, {'1j' if self.program.turn else '1'})"

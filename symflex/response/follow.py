@@ -36,6 +36,8 @@ SMALLEST_STEP = 1e-9
 DETOUR = 4.0
 """Width of the way around a root, in lengths of the step that meets it."""
 
+STEEPEST = 1e11
+"""Slope of ln G over ln(s) from which on a frequency is as good as a root."""
 SHORTEST_SHARE = 1e-6
 
 Point = tuple[complex, "Sample"]
@@ -63,6 +65,9 @@ def follow_phase(bound: BoundTransferFunction, omega: npt.NDArray[np.float64]) -
     for i, value in enumerate(omega.tolist()):
         sample = walk.function.at_point(acb(0, value))
         if sample is None:
+            continue
+        if abs(sample.slope) > STEEPEST:
+            phase[i] = total
             continue
         there = (complex(log(value), pi / 2), sample)
         total += walk.along(here, there)

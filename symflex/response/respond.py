@@ -15,6 +15,7 @@ from symflex.response.follow import follow_phase
 from symflex.response.frequency_response import FrequencyResponse
 from symflex.response.phase import count_turns
 from symflex.roots.locate import locate
+from symflex.roots.vanishing import without_lengths_of_zero
 from symflex.transfer.bind import EnclosedDistributed
 
 if TYPE_CHECKING:
@@ -77,6 +78,9 @@ def respond(
     if grid.ndim != 1 or not np.isfinite(grid).all():
         message = "omega must be a one-dimensional array of finite numbers"
         raise ValueError(message)
+    settled = without_lengths_of_zero(bound)
+    if settled is not bound:
+        bound, roots = settled, None
     quantity, unit = bound.source.quantity, bound.source.unit
     if bound.ratio.is_zero:
         return FrequencyResponse(bound.name, grid, np.zeros(grid.shape, np.complex128), quantity, unit)

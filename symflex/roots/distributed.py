@@ -8,11 +8,12 @@ from __future__ import annotations
 from cmath import phase
 from dataclasses import replace
 from fractions import Fraction
-from math import inf, log, pi
+from math import inf, isfinite, log, pi
 from typing import TYPE_CHECKING
 
 from flint import arb
 
+from symflex.errors import Diagnostic, UncertifiedError
 from symflex.kernels import Factored, Ring, degree_in
 from symflex.kernels.origin import Origin
 from symflex.roots.kernel_function import KernelFunction, has_kernels, split_off_kernels
@@ -234,7 +235,11 @@ def _roots_at_zero(bound: BoundTransferFunction, part: Factored, *, is_hidden: b
     if not is_hidden:
         order = Origin(bound.ratio.ring, bound.kernels).order(part)
         if order is None:
-            is_exact, order = False, round(KernelFunction(bound, part).order_at_zero())
+            found = KernelFunction(bound, part).order_at_zero()
+            if not isfinite(found):
+                message = f"the order of the root of {bound.name} at s = 0 cannot be told"
+                raise UncertifiedError(Diagnostic("SF404", message))
+            is_exact, order = False, round(found)
     else:
         s = part.ring.context.gen(0)
         order = sum(e for f, e in part.factors if f == s)

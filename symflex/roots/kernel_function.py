@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 
 from flint import acb, acb_series, arb
 
+from symflex.errors import Diagnostic, ModelError
 from symflex.kernels import Factored, degree_in
 from symflex.roots.precision import precision
 from symflex.transfer.enclose_kernels import KernelValues, expansion
@@ -38,8 +39,8 @@ ANYWHERE = (0.7, 1.3)
 """Real and imaginary part of a frequency like any other."""
 BRANCHES = (1, 2, 4)
 TWINS: Final = {"cosh": "cos", "cos": "cosh", "sinh": "sin", "sin": "sinh"}
-MATRIX_WORK = 40
-"""What a matrix exponential costs, in multiplications of a term."""
+MATRIX_WORK = 0.75
+"""What a matrix exponential costs, in multiplications of a term, over the fourth power of the order."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,18 +88,25 @@ class KernelFunction:
         self._bits = FIRST_BITS
         laws = self.bound.kernels.dispersions
         terms = sum(len(f) for f, _ in self.part.factors) + 2 * len(self.bound.kernels.kernels)
-        self._cost = terms + MATRIX_WORK * sum(law.order for law in laws if law.kind == "general")
+        self._cost = terms + int(MATRIX_WORK * sum(law.order**4 for law in laws if law.kind == "general"))
         self._values = lru_cache(maxsize=None)(self._kernel_values)
         self.power = self._branch_order()
 
     @property
     def is_even(self) -> bool:
         """Proved: F(-s) is F(s) or -F(s), so that roots mirror each other in the imaginary axis too."""
-        table = self.bound.kernels
-        if any(kernel.function == "exp" for kernel in table.kernels):
+        kernels = [k for k in self.bound.kernels.kernels if self.part.depends_on(k.generator)]
+        if any(kernel.function == "exp" for kernel in kernels):
             return False
-        laws = [value for law in table.dispersions for value in law.characteristic]
-        shifted = any(not law.shift.is_zero for law in table.dispersions)
+        # Another part's dispersion relation may be lopsided.
+        dispersions = [
+            law
+            for law in self.bound.kernels.dispersions
+            if any(kernel.dispersion is law for kernel in kernels)
+            or any(self.part.depends_on(name) for name in law.wavenumbers)
+        ]
+        laws = [value for law in dispersions for value in law.characteristic]
+        shifted = any(not law.shift.is_zero for law in dispersions)
         even = all(_parity(f) is not None for value in laws for f, _ in value.factors) and all(
             sum((_parity(f) or 0) * e for f, e in value.factors) % 2 == 0 for value in laws
         )
@@ -134,10 +142,20 @@ class KernelFunction:
     def _branch_order(self) -> int:
         """Return the power in which the choice of the wavenumbers does not matter."""
         order = 1
-        with precision(BRANCH_BITS):
-            evaluator = self._values(BRANCH_BITS)
-            values = evaluator.at(acb(*ANYWHERE))
-            value = _number(evaluator.value(self.part, values))
+        bits = BRANCH_BITS
+        while True:
+            with precision(bits):
+                evaluator = self._values(bits)
+                values = evaluator.at(acb(*ANYWHERE))
+                value = _number(evaluator.value(self.part, values))
+            if value.is_finite() and not value.contains(0):
+                break
+            bits *= 4
+            if bits > LAST_BITS:
+                message = f"a part of {self.bound.name} is 0/0 or 0 at every s for these values"
+                hint = "a rigid or massless limit has its own equations"
+                raise ModelError(Diagnostic("SF231", message, None, hint))
+        with precision(bits):
             for law in self.bound.kernels.dispersions:
                 for other in other_branches(law, self.bound.kernels, values):
                     turned = _number(evaluator.value(self.part, {**values, **other})) / value
@@ -183,7 +201,7 @@ class KernelFunction:
 
     def _factors(self, s: acb, bits: int) -> list[tuple[acb, acb, int]]:
         """Return value, derivative and exponent of every factor, at the current precision."""
-        self.work += self._cost
+        self.work += self._cost * max(1, bits // (2 * FIRST_BITS))
         evaluator = self._values(bits)
         values = evaluator.at(expansion(s))
         found = []
@@ -267,15 +285,21 @@ def _number(value: Value) -> acb:
 def split_off_kernels(value: Factored, table: KernelTable) -> tuple[Factored, Factored]:
     """Return the factors that hold s alone, and the product of those that hold wavenumbers or kernels.
 
-    Exponential kernels by themselves have no roots and are left out of both.
+    Exponential kernels by themselves have no roots and are left out of both, as is what does not depend on s.
     """
     ring = value.ring
+    varying = [0] + [
+        ring.index[name]
+        for law in table.dispersions
+        if any(c.depends_on(ring.names[0]) for c in (*law.characteristic, law.shift))
+        for name in (*law.wavenumbers, *(k.generator for k in table.kernels_of(law)))
+    ]
     generators = [ring.index[name] for name in table.generators]
     bare = {str(ring.generator(k.generator)) for k in table.kernels if k.function == "exp"}
     plain, mixed = [], []
     for factor, exponent in value.factors:
         if any(degree_in(factor, i) for i in generators):
-            if str(factor) not in bare:
+            if str(factor) not in bare and any(degree_in(factor, i) for i in varying):
                 mixed.append((factor, exponent))
         else:
             plain.append((factor, exponent))

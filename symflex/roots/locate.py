@@ -9,6 +9,7 @@ from flint import fmpz_mpoly_ctx
 from symflex.roots.distributed import locate_distributed
 from symflex.roots.pole_zero_map import PoleZeroMap, find_pole_zero_map
 from symflex.roots.problem import Constant, PolynomialInS, RootProblem
+from symflex.roots.vanishing import without_lengths_of_zero
 from symflex.transfer import BoundTransferFunction, coefficients_in_s
 
 if TYPE_CHECKING:
@@ -38,6 +39,7 @@ def locate(bound: BoundTransferFunction, region: Region | None = None, digits: i
         The roots of a distributed system are located numerically, in :func:`default_region` when everything
         is asked for, and not certified.
     """
+    bound = without_lengths_of_zero(bound)
     if bound.is_distributed:
         return locate_distributed(bound, region, digits)
     above = [(f, e) for f, e in bound.ratio.factors if e > 0]

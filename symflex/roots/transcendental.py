@@ -37,6 +37,8 @@ SEARCH_STEPS = 30
 CONVERGED = 1e-11
 POLISHING_ROUNDS = 60
 LARGEST_RING = 120
+HIGHEST = 300.0
+"""ln of the radius [rad/s] beyond which nothing is sought."""
 SAME_ORDER = 0.05
 MODES_LIMIT = 2000
 
@@ -126,6 +128,10 @@ class RootSearch:
         if self.reached == -inf:
             self.reached = self.smallest()
         while self.reached < radius or sum(root.multiplicity for root in self.roots) < modes:
+            if self.reached > HIGHEST:
+                # Kernels that do not depend on s: there are no more roots.
+                self.reached = inf
+                break
             try:
                 high, found = self._ring(self.reached, self.reached + RING)
             except BudgetError as error:
@@ -292,7 +298,7 @@ class RootSearch:
                     return None
             re, im = arb(s.real, radius), arb(s.imag, radius)
             is_real = im.contains(0)
-            on_axis = self.is_even and re.contains(0)
+            on_axis = re.contains(0)
         return Root(
             arb(0) if on_axis else re,
             arb(0) if is_real else im,

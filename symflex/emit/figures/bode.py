@@ -58,13 +58,11 @@ def draw_bode(
 
     Peaks and troughs without damping have no end; they run to the frame.
     """
-    maps = [locate(bound) for bound in bounds]
-    low, high = band_hz or _band_of_model(tfs[0]) or default_band(*maps)
+    # The default roots of distributed systems serve for nothing but a band.
+    given = band_hz or _band_of_model(tfs[0])
+    low, high = given or default_band(*(locate(bound) for bound in bounds))
     band = Band(Fraction(low), Fraction(high))
-    maps = [
-        locate(bound, band) if bound.is_distributed else found
-        for bound, found in zip(bounds, maps, strict=True)
-    ]
+    maps = [locate(bound, band if bound.is_distributed else None) for bound in bounds]
     responses = [
         respond(bound, adaptive_grid(bound, low, high, roots=found), found)
         for bound, found in zip(bounds, maps, strict=True)

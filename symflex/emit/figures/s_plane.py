@@ -21,6 +21,10 @@ REAL_REACH: Final = 2.5
 MARGIN: Final = 0.2
 MARGIN_FOR_NOTES: Final = 0.5
 LEFT_SHARE: Final = 0.65
+RIM: Final = (0.95, 1.03)
+"""A root so near the frame, relative to its distance from the origin, would be cut by it."""
+WIDER: Final = 1.085
+WIDENINGS: Final = 8
 SAME_DIRECTION: Final = pi / 30
 PLAIN_LIMIT: Final = 1e5
 
@@ -136,7 +140,13 @@ def choose_view(marks: Sequence[Mark], high_hz: float | None, ratios: tuple[floa
         share = 0.5 if any(s.real > 0 for s in points) else LEFT_SHARE
         left, right = left - share * missing, right + (1 - share) * missing
     half = max(half, (right - left) / ratios[1] / 2)
-    return View((left, right), (-half, half), frozenset(shown))
+    view = View((left, right), (-half, half), frozenset(shown))
+    for _ in range(WIDENINGS):
+        if not any(RIM[0] < abs(s) / abs(view.border(s)) < RIM[1] for s in points if s):
+            break
+        (left, right), (low, high) = view.re, view.im
+        view = View((WIDER * left, WIDER * right), (WIDER * low, WIDER * high), view.shown)
+    return view
 
 
 def leaving(marks: Iterable[Mark], view: View) -> list[list[Mark]]:

@@ -19,7 +19,8 @@ def complex_exp(z: Any) -> Any:  # noqa: ANN401
     square = t * t
     scale = np.exp(z.real) / (1.0 + square)
     if not np.ndim(z):
-        return complex(scale * (1.0 - square), scale * 2.0 * t)
+        # A numpy number: dividing by a Python zero would raise.
+        return np.complex128(complex(scale * (1.0 - square), scale * 2.0 * t))
     value = np.empty_like(z)
     value.real = scale * (1.0 - square)
     value.imag = scale * (2.0 * t)
@@ -71,15 +72,16 @@ def propagated(coefficients: list[Any]) -> list[Any]:
         companion[..., i, i + 1] = size
     for i, c in enumerate(rows):
         companion[..., n - 1, i] = -c / size ** (n - 1 - i)
-    largest = np.max(size[np.isfinite(size)], initial=1.0)
-    halvings = int(np.ceil(np.log2(largest))) + 3
-    small = companion / 2.0**halvings
+    # Each element has its own number of halvings: what others are must not matter.
+    largest = np.where(np.isfinite(size), np.maximum(size, 1.0), 1.0)
+    halvings = np.ceil(np.log2(largest)).astype(int) + 3
+    small = companion / (2.0**halvings)[..., None, None]
     identity = np.eye(n, dtype=complex)
     grown = identity
     for m in range(18, 0, -1):
         grown = identity + small @ grown / m
-    for _ in range(halvings):
-        grown = grown @ grown
+    for k in range(int(np.max(halvings, initial=0))):
+        grown = np.where((k < halvings)[..., None, None], grown @ grown, grown)
     return [(grown[..., k, n - 1] * size ** (k - n + 1.0))[()] for k in range(n)]
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from flint import acb, arb, ctx
 
 from symflex.emit.program.build import available_forms, build_program
-from symflex.emit.program.distributed import REACHES, build_piecewise, build_real
+from symflex.emit.program.distributed import build_piecewise, build_real, reaches_of
 from symflex.emit.program.evaluate import evaluate, nearest_double
 from symflex.emit.program.nodes import Program
 from symflex.errors import BudgetError, ModelError
@@ -69,6 +69,12 @@ GENERAL_EXTREMES = 4
 GENERAL_BITS = 1024
 """Precision from which such a value is not sought any more; it then counts as not measured."""
 
+LOWEST, HIGHEST = Fraction("1e-10"), Fraction("1.6e11")
+"""Frequencies [Hz] between which such a function is looked at, wider than 1e-9 to 1e12 rad/s."""
+
+ASIDE_SAMPLES = 30
+"""Frequencies below the band, and above it, at which such a function is measured."""
+
 GENERAL_ACCURACY = 1e-12
 """What such a function promises up to the frequency named."""
 
@@ -88,11 +94,14 @@ class Reach:
         The worst one up to there.
     skipped : int
         Frequencies at which nothing was measured, because balls would need too many bits.
+    lowest : Fraction, optional
+        Down to here [Hz] the same holds; the band's lower end when ``None``.
     """
 
     highest: Fraction | None
     error: float
     skipped: int
+    lowest: Fraction | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,14 +164,15 @@ class Verification:
         )
         if reach.highest is None:
             return f"not accurate over {low} ... {high}, where matrix exponentials lose digits{missing}"
+        start = low if reach.lowest is None else frequency_text(reach.lowest)
         end = frequency_text(reach.highest)
-        inner = f"verified: worst relative error {_error_text(reach.error, digits)} over {low} ... {end}"
-        if reach.highest == self.band[1]:
-            return f"{inner} against ball arithmetic"
-        return (
-            f"{inner} against ball arithmetic; above, up to {high}, matrix exponentials lose digits: "
-            f"{worst}{missing}"
-        )
+        error = _error_text(reach.error, digits)
+        inner = f"verified: worst relative error {error} over {start} ... {end} against ball arithmetic"
+        if reach.highest >= HIGHEST:
+            return inner
+        if reach.highest >= self.band[1]:
+            return f"{inner}; above, matrix exponentials lose digits"
+        return f"{inner}; above, up to {high}, matrix exponentials lose digits: {worst}{missing}"
 
 
 def _error_text(error: float, digits: int) -> str:
@@ -268,7 +278,8 @@ def _choose_pieces(
     form: str,
 ) -> tuple[Piecewise, Verification]:
     """Return the program whose series reach as far as serves accuracy best, and its measured error."""
-    first = build(REACHES[0])
+    reaches = reaches_of(tf)
+    first = build(reaches[0])
     missing = [p.name for p in tf.parameters if p.value is None]
     if missing:
         return first, Verification(tf.name, form, None, band, 0, "no values for " + ", ".join(missing))
@@ -278,19 +289,39 @@ def _choose_pieces(
     except ModelError as problem:
         return first, Verification(tf.name, form, None, band, 0, problem.diagnostics[0].message)
     if first.solves:
-        # Their accuracy ends below the band's end, whatever is done where arguments are small.
-        measured = references.reach(first, band)
-        worst = references.worst_error(first)
-        return first, Verification(tf.name, form, worst, band, len(references.s), "", measured)
+        return _choose_general(build, first, references, _Aside(bound, band), tf, band)
     candidates: list[tuple[bool, float, Piecewise]] = []
-    for reach in REACHES:
-        program = first if reach == REACHES[0] else build(reach)
+    for reach in reaches:
+        program = first if reach == reaches[0] else build(reach)
         error, keeps = references.worst_error(program), keeps_its_value(program, bound)
         candidates.append((not keeps, error, program))
         if keeps and error < ACCURATE:
             break
     _, error, program = min(candidates, key=lambda c: c[:2])
     return program, Verification(tf.name, form, error, band, len(references.s))
+
+
+def _choose_general(
+    build: Callable[[float], Piecewise],
+    first: Piecewise,
+    references: References,
+    aside: _Aside,
+    tf: TransferFunction,
+    band: tuple[Fraction, Fraction],
+) -> tuple[Piecewise, Verification]:
+    """Return the program whose accuracy reaches furthest; it ends somewhere, whatever the series do."""
+    found: list[tuple[tuple[float, ...], Piecewise, Reach]] = []
+    reaches = reaches_of(tf)
+    for reach in reaches:
+        program = first if reach == reaches[0] else build(reach)
+        measured = aside.extended(program, references.reach(program, band), band)
+        ends = [0.0 if x is None else float(x) for x in (measured.lowest, measured.highest)]
+        found.append(((ends[0], -ends[1], measured.error), program, measured))
+        if measured.highest is not None and measured.highest >= band[1] and measured.error < ACCURATE:
+            break
+    _, program, measured = min(found, key=lambda f: f[0])
+    worst = references.worst_error(program)
+    return program, Verification(tf.name, "pieces", worst, band, len(references.s), "", measured)
 
 
 def _program(tf: TransferFunction, form: str) -> Program | None:
@@ -385,19 +416,28 @@ class References:
         [Hz].
     samples : int
         Number of frequencies, besides those around poles and zeros.
+    is_plain : bool
+        True to take none around poles and zeros.
     """
 
     # Where exponents have no closed form, fewer samples are taken and precision is bounded.
 
     def __init__(
-        self, bound: BoundTransferFunction, band_hz: tuple[Fraction, Fraction], samples: int = SAMPLES
+        self,
+        bound: BoundTransferFunction,
+        band_hz: tuple[Fraction, Fraction],
+        samples: int = SAMPLES,
+        *,
+        is_plain: bool = False,
     ) -> None:
         self._bound = bound
         self._known: dict[int, Enclosed] = {}
         is_general = any(d.kind == "general" for d in bound.source.kernels.dispersions)
         self._last_bits = GENERAL_BITS if is_general else LAST_BITS
         count = min(samples, GENERAL_SAMPLES) if is_general else samples
-        points = 1j * (tau * sample_frequencies(bound, band_hz, count))
+        low, high = (float(f) for f in band_hz)
+        hertz = np.geomspace(low, high, count) if is_plain else sample_frequencies(bound, band_hz, count)
+        points = 1j * (tau * hertz)
         found = []
         bits = FIRST_BITS
         for s in points:
@@ -430,6 +470,16 @@ class References:
         hertz = None if highest is None else Fraction(f"{highest.imag / tau:.3g}")
         return Reach(hertz, worst, len(self._skipped))
 
+    def down(self, program: Program | Piecewise, start: Fraction) -> tuple[Fraction, float]:
+        """Return down to which frequency [Hz] every sample is accurate, and the worst error of these."""
+        lowest, worst = start, 0.0
+        gap = float(np.max(self._skipped.imag, initial=0.0))
+        for s, error in reversed(list(zip(self.s, self._errors(program), strict=True))):
+            if s.imag < gap or error > GENERAL_ACCURACY:
+                break
+            lowest, worst = Fraction(f"{s.imag / tau:.3g}"), max(worst, error)
+        return lowest, worst
+
     def _errors(self, program: Program | Piecewise) -> list[float]:
         values = evaluate(program, _arguments(program, self.s), doubles(self._bound))
         return [r.error_of(complex(v)) for r, v in zip(self._references, values, strict=True)]
@@ -452,6 +502,37 @@ class References:
         if bits not in self._known:
             self._known[bits] = self._bound.enclosed(bits)
         return self._known[bits]
+
+
+class _Aside:
+    """What a program of matrix exponentials is worth below a band, and above it.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        With the declared values.
+    band_hz : tuple of Fraction
+        [Hz].
+    """
+
+    def __init__(self, bound: BoundTransferFunction, band_hz: tuple[Fraction, Fraction]) -> None:
+        low, high = band_hz
+        self._below = References(bound, (LOWEST, low), ASIDE_SAMPLES, is_plain=True) if low > LOWEST else None
+        self._above = (
+            References(bound, (high, HIGHEST), ASIDE_SAMPLES, is_plain=True) if high < HIGHEST else None
+        )
+
+    def extended(self, program: Piecewise, inner: Reach, band_hz: tuple[Fraction, Fraction]) -> Reach:
+        """Return how far a program is accurate, from its reach within the band."""
+        lowest, highest, error = band_hz[0], inner.highest, inner.error
+        if self._below is not None:
+            lowest, own = self._below.down(program, band_hz[0])
+            error = max(error, own)
+        if self._above is not None and inner.highest == band_hz[1]:
+            outer = self._above.reach(program, (band_hz[1], HIGHEST))
+            if outer.highest is not None and outer.highest > band_hz[1]:
+                highest, error = outer.highest, max(error, outer.error)
+        return Reach(highest, error, inner.skipped, lowest)
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ import math
 import tempfile
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import mpmath as mp
 import numpy as np
@@ -375,3 +376,57 @@ def test_the_interpreter_computes_what_the_module_does(name):
         module_values = module(specification(name), name).TRANSFER_FUNCTIONS[tf.name](s)
         own = evaluate(build_piecewise(tf), s, values)
         assert np.max(np.abs(own - module_values) / np.abs(module_values)) < 1e-11
+
+
+# ------------------------------------------------------------------ exponents without closed form
+
+PIPE = """
+symflex = 1
+[parameters]
+EI = "100 N*m^2"
+m = "3 kg/m"
+m_f = "1 kg/m"
+U = "5 m/s"
+l = "2 m"
+[fields.w]
+domain = ["0", "l"]
+equation = "EI*w'''' + m_f*U^2*w'' + 2*m_f*U*s*w' + m*s^2*w = p"
+conditions = ["w(0) = 0", "w''(0) = 0", "w(l) = 0", "w''(l) = 0"]
+[inputs]
+p = { unit = "N/m" }
+[outputs]
+Y = "w(l/2)"
+[analysis]
+band = ["0.1 Hz", "1 Hz"]
+"""
+
+
+@pytest.fixture(scope="module")
+def pipe() -> Any:
+    model = pipeline.loads(PIPE)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "pipe.py"
+        path.write_text(numpy_module(pipeline.derive_all(model), model).text, encoding="utf-8")
+        spec = importlib.util.spec_from_file_location("exported_pipe", path)
+        assert spec is not None and spec.loader is not None
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+    return module.Y_over_p
+
+
+def _column_under_load() -> float:
+    # EI w'''' + P w'' = 1, pinned: w = (cos(k(x - l/2))/cos(kl/2) - 1)/(P k^2) + x(x - l)/(2P), P = k^2 EI
+    force, stiffness, length = 25.0, 100.0, 2.0
+    k = np.sqrt(force / stiffness)
+    middle = (1.0 / np.cos(k * length / 2) - 1.0) / (force * k**2)
+    return float(middle - length**2 / (8.0 * force))
+
+
+@pytest.mark.parametrize("s", [0.0, 1e-9j, 1e-6j, -1e-9, 1e-6 + 1e-6j])
+def test_a_pipe_with_flow_deflects_at_rest_as_a_compressed_column(pipe: Any, s: complex) -> None:
+    assert abs(pipe(s) / _column_under_load() - 1) < 1e-12
+
+
+@pytest.mark.parametrize("s", [0.0, 1e-9j, 1j, 30j, 100j, 1e3j])
+def test_numbers_and_arrays_give_the_same_where_matrix_exponentials_serve(pipe: Any, s: complex) -> None:
+    assert pipe(s) == pytest.approx(pipe(np.array([s, 1j, 50j]))[0], rel=1e-12)
