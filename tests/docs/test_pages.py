@@ -89,6 +89,7 @@ def test_the_readme_shows_what_its_examples_print(reader):
     readme = ROOT / "README.md"
     found = [b for b in blocks(readme) if b.title or b.language == "text"]
     options = ([], ["--tf", "V_tip/F", "--form", "vaughan"])
+    folder = reader(readme)
     for specification, shown, chosen in zip(found[::2], found[1::2], options, strict=True):
-        printed = symflex_output(["derive", specification.title, *chosen], reader(readme)).stdout
+        printed = symflex_output(["derive", specification.title, *chosen], folder).stdout
         assert printed.strip() == shown.text.strip()
