@@ -28,17 +28,17 @@ class Beam(LineElement):
     summary = "Uniform beam in bending between two planar nodes"
     ports = (Port("between", 2, "planar", "the two ends, the second one l further along x"),)
     parameters = (
-        ParameterPort("E", "Pa", "a modulus of elasticity"),
-        ParameterPort("I", "m^4", "a second moment of area"),
-        ParameterPort("rho", "kg/m^3", "a density"),
-        ParameterPort("A", "m^2", "a cross-section"),
+        ParameterPort("E", "Pa", "a modulus of elasticity", sign="positive"),
+        ParameterPort("I", "m^4", "a second moment of area", sign="positive"),
+        ParameterPort("rho", "kg/m^3", "a density", sign="nonnegative"),
+        ParameterPort("A", "m^2", "a cross-section", sign="nonnegative"),
         ParameterPort("l", "m", "a length"),
-        ParameterPort("eta", "s", "a Kelvin-Voigt loss time", "0"),
+        ParameterPort("eta", "s", "a Kelvin-Voigt loss time", "0", sign="nonnegative"),
         ParameterPort("c_f", "N*s/m^2", "a viscous foundation", "0"),
         ParameterPort("k_f", "N/m^2", "an elastic foundation", "0"),
         ParameterPort("N", "N", "an axial force", "0", only=("euler-bernoulli", "rayleigh")),
-        ParameterPort("kappa", "1", "a shear coefficient", only=("timoshenko",)),
-        ParameterPort("G", "Pa", "a shear modulus", only=("timoshenko",)),
+        ParameterPort("kappa", "1", "a shear coefficient", only=("timoshenko",), sign="positive"),
+        ParameterPort("G", "Pa", "a shear modulus", only=("timoshenko",), sign="positive"),
     )
     choices = (Choice("theory", THEORIES, THEORIES[0], "a beam theory"),)
     through = ("f", "tau")

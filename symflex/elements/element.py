@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 Domain = Literal["translation", "rotation", "electrical"]
 PortDomain = Literal["translation", "rotation", "electrical", "planar", "any", "whole"]
 
+Sign = Literal["any", "nonnegative", "positive"]
+
 Placing = Literal["translation", "rotation", "electrical", "planar"]
 
 ACROSS_UNIT: dict[str, str] = {"translation": "m", "rotation": "rad", "electrical": "V"}
@@ -166,6 +168,9 @@ class ParameterPort:
         True when the value may be an expression of signals, inputs and nodes.
     only : tuple of str
         Values of the element's choices with which the key may be given; empty when with all of them.
+    sign : str
+        What the value must be: ``any``, ``nonnegative`` or ``positive``; of distributed elements, told as
+        far as values and assumptions tell. A distributed element's length is always positive.
     """
 
     name: str
@@ -174,6 +179,7 @@ class ParameterPort:
     default: str | None = None
     signal: bool = False
     only: tuple[str, ...] = ()
+    sign: Sign = "any"
 
     def applies(self, chosen: Collection[str]) -> bool:
         """Tell whether the key may be given with the chosen values."""

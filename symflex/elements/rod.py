@@ -23,11 +23,11 @@ class Rod(LineElement):
     summary = "Uniform rod in tension and compression"
     ports = (Port("between", 2, "translation", "the two ends, the second one l further along x"),)
     parameters = (
-        ParameterPort("E", "Pa", "a modulus of elasticity"),
-        ParameterPort("A", "m^2", "a cross-section"),
-        ParameterPort("rho", "kg/m^3", "a density"),
+        ParameterPort("E", "Pa", "a modulus of elasticity", sign="positive"),
+        ParameterPort("A", "m^2", "a cross-section", sign="positive"),
+        ParameterPort("rho", "kg/m^3", "a density", sign="nonnegative"),
         ParameterPort("l", "m", "a length"),
-        ParameterPort("eta", "s", "a Kelvin-Voigt loss time", "0"),
+        ParameterPort("eta", "s", "a Kelvin-Voigt loss time", "0", sign="nonnegative"),
         ParameterPort("c_f", "N*s/m^2", "a viscous foundation", "0"),
         ParameterPort("k_f", "N/m^2", "an elastic foundation", "0"),
     )

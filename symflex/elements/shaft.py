@@ -24,11 +24,11 @@ class Shaft(LineElement):
     summary = "Uniform shaft in torsion"
     ports = (Port("between", 2, "rotation", "the two ends, the second one l further along x"),)
     parameters = (
-        ParameterPort("G", "Pa", "a shear modulus"),
-        ParameterPort("J", "m^4", "a polar second moment of area"),
-        ParameterPort("rho", "kg/m^3", "a density"),
+        ParameterPort("G", "Pa", "a shear modulus", sign="positive"),
+        ParameterPort("J", "m^4", "a polar second moment of area", sign="positive"),
+        ParameterPort("rho", "kg/m^3", "a density", sign="nonnegative"),
         ParameterPort("l", "m", "a length"),
-        ParameterPort("eta", "s", "a Kelvin-Voigt loss time", "0"),
+        ParameterPort("eta", "s", "a Kelvin-Voigt loss time", "0", sign="nonnegative"),
         ParameterPort("c_f", "N*m*s/m", "a viscous foundation", "0"),
         ParameterPort("k_f", "N*m/m", "an elastic foundation", "0"),
     )

@@ -23,9 +23,9 @@ class String(LineElement):
     summary = "Stretched string, deflected across its length"
     ports = (Port("between", 2, "translation", "the two ends, the second one l further along x"),)
     parameters = (
-        ParameterPort("N", "N", "a tension"),
-        ParameterPort("rho", "kg/m^3", "a density"),
-        ParameterPort("A", "m^2", "a cross-section"),
+        ParameterPort("N", "N", "a tension", sign="positive"),
+        ParameterPort("rho", "kg/m^3", "a density", sign="nonnegative"),
+        ParameterPort("A", "m^2", "a cross-section", sign="nonnegative"),
         ParameterPort("l", "m", "a length"),
         ParameterPort("c_f", "N*s/m^2", "a viscous foundation", "0"),
         ParameterPort("k_f", "N/m^2", "an elastic foundation", "0"),

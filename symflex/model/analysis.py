@@ -145,7 +145,7 @@ def _kind(reader: Reader, table: TableValue, entry: Entry, what: str) -> str:
 
 
 def read_published(reader: Reader, section: TableValue | None, model: Model) -> tuple[Published, ...]:
-    """Return the printed formulas; their names are checked when they are compared."""
+    """Return the printed formulas; :mod:`symflex.model.printed` checks their names."""
     found: list[Published] = []
     known = named_pairs(model) if section else {}
     for entry in section.entries if section else ():
@@ -164,18 +164,20 @@ def read_published(reader: Reader, section: TableValue | None, model: Model) -> 
         scale = table.get("scale")
         scaled = reader.expression(scale.value, f"scale of {what}", quantities=False) if scale else None
         cited = reader.plain(table, "source", what)
-        if expression is not None:
+        if expression is not None and where is not None and (scaled is not None or not scale):
             found.append(Published(tf, expression, where, scaled, cited, entry.key_span))
     return tuple(found)
 
 
-def _where(reader: Reader, table: TableValue, what: str) -> tuple[tuple[str, Expression], ...]:
+def _where(reader: Reader, table: TableValue, what: str) -> tuple[tuple[str, Expression], ...] | None:
+    """Return the lines, ``None`` when one cannot be read."""
     entry = table.get("where")
     inner = reader.table(entry, f"where of {what}") if entry else None
     found = []
-    for item in inner.entries if inner else ():
+    items = inner.entries if inner else ()
+    for item in items:
         if reader.name(item, "an abbreviation", RESERVED):
             expression = reader.expression(item.value, f"'{item.key}' of {what}", quantities=False)
             if expression is not None:
                 found.append((item.key, expression))
-    return tuple(found)
+    return tuple(found) if len(found) == len(items) and (inner or not entry) else None

@@ -15,7 +15,7 @@ from symflex.kernels import LAPLACE
 from symflex.model.analysis import named_pairs, pick_tf
 from symflex.model.linearity import EXPONENT_LIMIT
 from symflex.model.model import PlacedBlock
-from symflex.model.reading import literal_value, signed_number
+from symflex.model.reading import signed_number
 from symflex.model.scope import RESERVED
 from symflex.model.units import lower
 from symflex.spec import ArrayValue, read
@@ -111,11 +111,6 @@ def _read_values(
         found = table.get(parameter.name)
         if found is not None:
             expression = _value(reader, found.value, where, coefficients=block.type_name == "tf")
-            value = None if expression is None else literal_value(expression)
-            if parameter.name == block.kernel_time and value is not None and value < 0:
-                message = f"{where} is negative; a delay cannot look ahead"
-                reader.note("SF209", message, found.value.span)
-                expression = None
         elif parameter.default is not None:
             expression = signed_number(Fraction(parameter.default))
         else:

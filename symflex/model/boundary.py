@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from symflex.errors import Span
     from symflex.expressions import Equation, Expression
+    from symflex.model.independence import Repetition
     from symflex.model.model import Definition, Field, PlacedBlock
     from symflex.model.points import Line
     from symflex.model.reading import Reader
@@ -85,10 +86,11 @@ def check_fields(reader: Reader, fields: Sequence[Field], around: Surroundings) 
     """
     orders: dict[str, int] = {}
     placed: set[str] = set()
+    point = RandomPoint(around.scope, around.definitions)
     for field in fields:
         if _check_domain(reader, field, around):
             placed.add(field.name)
-        order = _check_equations(reader, field, around.scope)
+        order = _check_equations(reader, field, around, point)
         if order is not None:
             orders[field.name] = order
     conditions: list[_Condition] = []
@@ -108,7 +110,7 @@ def check_fields(reader: Reader, fields: Sequence[Field], around: Surroundings) 
             sound = sound and bool(calls) and not problems
             conditions.append(_Condition(field, equation, calls))
     if sound and not around.scope.broken:
-        _check_counts(reader, fields, orders, conditions, around)
+        _check_counts(reader, fields, orders, conditions, point)
     return frozenset(placed)
 
 
@@ -186,9 +188,9 @@ def _check_domain(reader: Reader, field: Field, around: Surroundings) -> bool:
     return good
 
 
-def _check_equations(reader: Reader, field: Field, scope: Scope) -> int | None:
+def _check_equations(reader: Reader, field: Field, around: Surroundings, point: RandomPoint) -> int | None:
     """Return the order in x of a field's equations, ``None`` when something is wrong with them."""
-    inside = scope.within(field.unknowns)
+    inside = around.scope.within(field.unknowns)
     problems = [p for e in field.equations for p in check_equation(e, inside)]
     reader.take(problems)
     if problems:
@@ -205,6 +207,8 @@ def _check_equations(reader: Reader, field: Field, scope: Scope) -> int | None:
             message = f"the unknown '{unknown}' of field '{field.name}' stands in none of its equations"
             reader.note("SF242", message, field.span)
             return None
+    if not inside.broken and _repeat(reader, field, point):
+        return None
     highest = {u: max(orders.get(u, 0) for orders in found) for u in field.unknowns}
     order = sum(highest.values())
     if order == 0:
@@ -222,6 +226,31 @@ def _check_equations(reader: Reader, field: Field, scope: Scope) -> int | None:
         reader.note("SF242", message, field.equations[0].span, hint)
         return None
     return order
+
+
+def _repeat(reader: Reader, field: Field, point: RandomPoint) -> bool:
+    """Note equations that repeat or contradict earlier ones, and tell whether there are any."""
+    along = point.within(field.unknowns)
+    try:
+        repeated = repetitions([along.condition(e) for e in field.equations])
+    except ZeroDivisionError:
+        return False  # reported where the equations are assembled
+    for repetition in repeated:
+        message = _repetition_message("equation", repetition, field.equations)
+        hint = "each unknown needs an equation of its own"
+        reader.note("SF242", message, field.equations[repetition.condition].span, hint)
+    return bool(repeated)
+
+
+def _repetition_message(what: str, repetition: Repetition, equations: Sequence[Equation]) -> str:
+    lines = sorted({_line(equations[i].span) for i in repetition.others})
+    texts = " and ".join(f"'{_text(equations[i])}'" for i in repetition.others)
+    where = f" (line {', '.join(map(str, lines))})" if lines and lines[0] else ""
+    if repetition.contradicts:
+        return f"this {what} contradicts {texts}{where}"
+    if repetition.others:
+        return f"this {what} repeats {texts}{where}"
+    return f"this {what} says nothing: what it holds cancels"
 
 
 def _orders(equation: Equation, unknowns: Sequence[str]) -> dict[str, int]:
@@ -255,12 +284,11 @@ def _check_counts(
     fields: Sequence[Field],
     orders: Mapping[str, int],
     conditions: Sequence[_Condition],
-    around: Surroundings,
+    point: RandomPoint,
 ) -> None:
     """Note repeated conditions, and too few or too many of them, for every group of joined fields."""
     owners = {unknown: field.name for field in fields for unknown in field.unknowns}
     joined = _joined([f.name for f in fields], [{owners[call.name] for call in c.calls} for c in conditions])
-    point = RandomPoint(around.scope, around.definitions)
     for group in joined:
         members = [f for f in fields if f.name in group]
         own = [c for c in conditions if owners[c.calls[0].name] in group]
@@ -294,15 +322,7 @@ def _check_group(
     places = _Places(members, orders, kept, point)
     missing = order - len(kept)
     for repetition in repeated:
-        lines = sorted({_line(conditions[i].equation.span) for i in repetition.others})
-        texts = " and ".join(f"'{_text(conditions[i].equation)}'" for i in repetition.others)
-        where = f" (line {', '.join(map(str, lines))})" if lines and lines[0] else ""
-        if repetition.contradicts:
-            message = f"this condition contradicts {texts}{where}"
-        elif repetition.others:
-            message = f"this condition repeats {texts}{where}"
-        else:
-            message = "this condition says nothing: what it holds cancels"
+        message = _repetition_message("condition", repetition, [c.equation for c in conditions])
         hint = "keep one of them" if repetition.contradicts else "remove it"
         if missing > 0:
             hint = f"another condition is needed in its place{places.likely()}"

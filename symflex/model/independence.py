@@ -1,13 +1,13 @@
-"""Whether conditions repeat or contradict one another, told from their trees alone.
+"""Whether conditions, or a field's equations, repeat or contradict one another, told from their trees alone.
 
-Every condition is a linear form in the fields' values at points and in what drives them. Its coefficients are
-compared at a random point of a prime field, where equal ones are equal and different ones differ, almost
+Every one is a linear form in the fields' values, at points or along x, and in what drives them. Coefficients
+are compared at a random point of a prime field, where equal ones are equal and different ones differ, almost
 surely. Conditions that only the differential equations tie together are found later, with the equations.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from random import Random
 from typing import TYPE_CHECKING
 
@@ -15,6 +15,7 @@ from symflex.errors import SpecError
 from symflex.expressions import (
     Attribute,
     Call,
+    Derivative,
     Equation,
     Expression,
     Name,
@@ -31,19 +32,19 @@ from symflex.model.scope import CONSTANT_KINDS, Scope
 from symflex.model.units import lower
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from symflex.elements import Variable
 
 Place = tuple[str, int, int]
-"""An unknown, its point modulo the prime, and the order of the derivative."""
+"""An unknown, its point modulo the prime (zero along x), and the order of the derivative."""
 Form = dict["Place | Variable | None", int]
 """A linear form; ``None`` is the constant one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Repetition:
-    """A condition whose left side follows from those of ``others``; all by their numbers.
+    """A condition or equation whose left side follows from those of ``others``; all by their numbers.
 
     ``contradicts`` is true when its right side does not follow as well.
     """
@@ -68,6 +69,10 @@ class RandomPoint:
                 self._opened[name] = self.constant(expression)
             except (ZeroDivisionError, SpecError):
                 self._opened[name] = _random(name)  # what is wrong with it is reported there
+
+    def within(self, unknowns: Iterable[str]) -> RandomPoint:
+        """Return the same point for the equations of the field with these unknowns."""
+        return replace(self, scope=self.scope.within(unknowns))
 
     def constant(self, expression: Expression) -> int:
         """Return the value of an expression without unknowns.
@@ -112,6 +117,8 @@ class RandomPoint:
                 if name in self.scope.unknowns:
                     return {(name, at, order): 1}
                 return {None: _random(f"{name}({at})")}
+            case Derivative(name, order):
+                return {(name, 0, order): 1}
         message = f"unexpected expression {type(expression).__name__}"
         raise TypeError(message)
 
@@ -120,6 +127,8 @@ class RandomPoint:
         return _total([self.form(equation.left), _scaled(self.form(equation.right), -1)])
 
     def _name(self, expression: Name | Attribute) -> Form:
+        if isinstance(expression, Name) and expression.name in self.scope.inside:
+            return {(expression.name, 0, 0): 1}
         meaning = self.scope.lookup(expression, constant=False)
         if meaning.variable is not None and meaning.kind not in CONSTANT_KINDS:
             return {meaning.variable: 1}
@@ -136,7 +145,7 @@ class RandomPoint:
 
 
 def repetitions(forms: Sequence[Form]) -> list[Repetition]:
-    """Return every condition that repeats or contradicts earlier ones.
+    """Return every condition or equation that repeats or contradicts earlier ones.
 
     One with a right side that holds more than inputs is passed over: nodes and signals may meet it.
     """

@@ -6,13 +6,13 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Literal, cast
 
-from symflex.elements import ELEMENTS, Element, LineElement, Port
+from symflex.elements import ELEMENTS, Element, Port
 from symflex.errors import SpecError
 from symflex.errors.diagnostic import nearest
 from symflex.model.declarations import read_label
 from symflex.model.model import Input, NodeReference
 from symflex.model.nodes import Attachment, Coupling
-from symflex.model.reading import NAME, Reader, literal_value, signed_number
+from symflex.model.reading import NAME, Reader, signed_number
 from symflex.model.scope import RESERVED
 from symflex.quantities import parse_unit, unit_of
 
@@ -160,8 +160,6 @@ class NetworkReader:
                 )
             elif found is not None:
                 expression = reader.expression(found.value, f"{parameter.name} of {who}")
-                if isinstance(element, LineElement) and parameter.name == element.length:
-                    expression = self._length(expression, f"{parameter.name} of {who}")
             elif parameter.default is not None:
                 like = any(p.name == parameter.default for p in element.parameters)
                 expression = (
@@ -182,14 +180,6 @@ class NetworkReader:
             else:
                 given[parameter.name] = expression
         return tuple(given.items()) if complete else None
-
-    def _length(self, expression: Expression | None, what: str) -> Expression | None:
-        value = None if expression is None else literal_value(expression)
-        if expression is None or value is None or value > 0:
-            return expression
-        shown = "0" if value == 0 else "negative"
-        self.reader.note("SF209", f"{what} is {shown}; a length is positive", expression.span)
-        return None
 
     def _element_type(self, table: TableValue, entry: Entry) -> Element | None:
         kind = table.get("type")

@@ -86,7 +86,7 @@ class Line:
             product = coefficient
             for name, exponent in monomial:
                 known = PI_NEARLY if name == "pi" else self.values.get(name)
-                if not known:
+                if known is None or (known == 0 and exponent < 0):
                     return None
                 product *= known**exponent
             total += product

@@ -42,6 +42,8 @@ from symflex.model.model import (
 from symflex.model.network import DraftElement, DraftInput, NetworkReader
 from symflex.model.nodes import domain_of, infer_nodes
 from symflex.model.points import Line
+from symflex.model.printed import check_printed, readable_names
+from symflex.model.ranges import check_ranges, ranged_values
 from symflex.model.reading import QuantityLiteral, Reader, describe
 from symflex.model.scope import Scope, build_scope
 from symflex.model.signals import read_outputs, read_signals
@@ -159,7 +161,8 @@ def resolve(spec: Spec, origin: Origin) -> Model:
         outputs,
         fields,
     )
-    model = _finish(reader, draft, broken_names(sections, draft) | twins)
+    broken = broken_names(sections, draft) | twins
+    model = _finish(reader, draft, broken)
     later = Reader()
     model = replace(
         model,
@@ -169,6 +172,9 @@ def resolve(spec: Spec, origin: Origin) -> Model:
         figures=read_figures(later, sections["figures"], model),
         published=read_published(later, sections["published"], model),
     )
+    readable = readable_names(model, broken)
+    for published in model.published:
+        later.take(check_printed(published, readable))
     # A transfer function is missing where its output or input could not be read: no second mistake.
     whole = all(
         len(found) == len(section.entries)
@@ -322,6 +328,7 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> Model:
             unsound.add(expression.span)
     around = _surroundings(draft, scope)
     _check_lengths(reader, draft, around, unsound)
+    check_ranges(reader, draft, around.line, unsound)
     before = len(reader.problems)
     fields_placed = check_fields(reader, draft.fields, around)
     unsound |= _unsound_equations(draft, reader.problems[before:])
@@ -388,7 +395,8 @@ def _surroundings(draft: Draft, scope: Scope) -> Surroundings:
     """Return what places along x are made of."""
     parameters = [p.resolve(angular=True, implied_unit="") for p in draft.declared]
     parameters += draft.inherited
-    definitions = {d.name: d.expression for d in draft.definitions} if draft.fields else {}
+    extended = bool(draft.fields) or any(True for _ in ranged_values(draft))
+    definitions = {d.name: d.expression for d in draft.definitions} if extended else {}
     line = Line(
         definitions,
         frozenset(p.name for p in parameters if p.assume == "positive"),

@@ -37,7 +37,7 @@ def test_a_formula_with_a_mistake_is_refused_at_its_place(name):
 def test_all_mistakes_of_a_formula_are_reported_together():
     with pytest.raises(SpecError) as caught:
         audited("V_act", "foo(s) + bar^s + tip")
-    assert [d.code for d in caught.value.diagnostics] == ["SF210", "SF210", "SF212", "SF225"]
+    assert [d.code for d in caught.value.diagnostics] == ["SF210", "SF210", "SF225", "SF212"]
 
 
 UNREAD = {

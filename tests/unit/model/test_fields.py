@@ -195,6 +195,39 @@ SEGMENT = "E*I*{0}'''' + rho*A*s^2*{0} = 0"
 JOINT = ["w1(a) = w2(a)", "w1'(a) = w2'(a)", "w1''(a) = w2''(a)", "E*I*(w1'''(a) - w2'''(a)) = F"]
 
 
+def system(*equations):
+    conditions = [f"{u}(0) = F" for u in ("u", "v", "y")[: len(equations)]]
+    return field(conditions, equations, unknowns=("u", "v", "y")[: len(equations)])
+
+
+@pytest.mark.parametrize(
+    "equations",
+    [
+        ("u' = s*v", "2*u' = 2*s*v"),
+        ("u' = s*v", "s*u' - s^2*v = 0"),
+        ("a*u' + v' = s*v", "a*v' + a^2*u' = a*s*v"),
+        ("u' + v' = s*y", "v' - y' = s*u", "u' + y' = s*(y - u)"),
+    ],
+)
+def test_equations_that_repeat_one_another_are_refused(equations):
+    # The last of the three is the first minus the second.
+    unit_free = PARAMETERS.replace('l = "1.2 m"', "l = 1.2")
+    assert codes(system(*equations), rest=REST.replace("w(l)", "u(l)"), parameters=unit_free) == ["SF242"]
+
+
+def test_equations_that_differ_in_their_load_contradict_one_another():
+    ((code, message),) = problems(
+        system("a*u' = s*v + s*F", "2*a*u' = 2*s*v"), rest=REST.replace("w(l)", "u(l)")
+    )
+    assert (code, message) == ("SF242", "this equation contradicts 'a*u' = s*v + s*F' (line 12)")
+
+
+def test_equations_that_only_look_alike_are_kept():
+    rest = '[inputs]\nF = {}\n[outputs]\nX = "u(l)"\n'
+    parameters = "symflex = 1\n[parameters]\na = {}\nb = {}\nl = {}\n"
+    assert load(system("u' = a*v", "2*u' = b*v + v'"), rest=rest, parameters=parameters).fields
+
+
 def segments(first, second):
     rest = REST.replace("w(l)", "w2(l)")
     one = field(first, [SEGMENT.format("w1")], ("0", "a"), "w1")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from symflex import pipeline
 from symflex.errors import ModelError
 from symflex.response import respond
 from symflex.roots import Modes
@@ -25,8 +26,9 @@ y = "D*u/(1 + T_c*s + D)"
 """
 
 WITHOUT_LENGTH = f"""{PARAMETERS}
+x_g = "0.5 m"
 [elements]
-arm = {{ type = "beam", between = ["p", "q"], {BEAM}, l = "l - 1" }}
+arm = {{ type = "beam", between = ["p", "q"], {BEAM}, l = "l - x_g" }}
 [inputs]
 F = {{ force = "q" }}
 [outputs]
@@ -81,8 +83,9 @@ def test_the_response_without_a_delay_is_that_of_the_rational_function():
 
 
 def test_a_beam_without_length_is_refused():
+    (tf,) = pipeline.derive_all(pipeline.loads(WITHOUT_LENGTH))
     with pytest.raises(ModelError, match="SF231"):
-        locate(bound(WITHOUT_LENGTH))
+        locate(pipeline.bind(tf, {"x_g": 1}))
 
 
 def test_what_does_not_depend_on_s_has_no_poles():

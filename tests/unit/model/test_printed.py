@@ -1,0 +1,89 @@
+"""The names of printed formulas, checked when the file is read."""
+
+from __future__ import annotations
+
+import pytest
+
+from symflex.errors import Source, SpecError
+from symflex.model import load_model
+
+MODEL = """symflex = 1
+[parameters]
+m = "2 kg"
+k = { value = "8 N/m" }
+[definitions]
+w_0 = "k/m"
+[elements]
+body = { type = "mass", at = "x", m = "m" }
+spring = { type = "spring", between = ["x", "ground"], k = "k" }
+[inputs]
+F = { force = "x" }
+[outputs]
+X = "x"
+[published."X/F"]
+"""
+
+
+def codes(expr, where="", scale="1"):
+    text = f'{MODEL}expr = "{expr}"\nwhere = {{ {where} }}\nscale = "{scale}"\n'
+    try:
+        load_model(Source("spec.toml", text))
+    except SpecError as error:
+        return [d.code for d in error.diagnostics]
+    return []
+
+
+@pytest.mark.parametrize(
+    ("expr", "where"),
+    [
+        ("1/(m*s^2 + k)", ""),
+        ("1/(m*(s^2 + w_0))", ""),
+        ("exp(-s*T)*sqrt(s)^(1/2)", 'T = "1"'),
+        ("1/a", 'a = "m*b", b = "s^2 + w_0"'),
+        ("w_0", 'w_0 = "2"'),
+        ("s^(-3/(1 + 1))", ""),
+        ("x", 'x = "s"'),
+    ],
+)
+def test_a_formula_of_known_names_is_accepted(expr, where):
+    assert codes(expr, where) == []
+
+
+@pytest.mark.parametrize(
+    ("expr", "where", "code"),
+    [
+        ("1/(M*s^2)", "", "SF210"),
+        ("sec(s)", "", "SF210"),
+        ("a", 'a = "3*zz"', "SF210"),
+        ("s", 'unused = "zz"', "SF210"),
+        ("x", "", "SF212"),
+        ("F", "", "SF212"),
+        ("X", "", "SF212"),
+        ("spring.f", "", "SF212"),
+        ("X'", "", "SF212"),
+        ("w'(0)", "", "SF212"),
+        ("a", 'a = "b", b = "a"', "SF215"),
+        ("k", 'k = "2*k"', "SF215"),
+        ("w_0", 'k = "w_0"', "SF215"),
+        ("s^m", "", "SF225"),
+        ("s^pi", "", "SF225"),
+    ],
+)
+def test_a_formula_with_a_mistake_is_refused(expr, where, code):
+    assert codes(expr, where) == [code]
+
+
+def test_the_scale_is_checked():
+    assert codes("s", scale="zz") == ["SF210"]
+
+
+def test_a_long_chain_of_lines_is_answered():
+    lines = ", ".join(f'a{i} = "a{i + 1}*s"' for i in range(2000))
+    assert codes("a0", lines + ', a2000 = "s"') == []
+
+
+def test_a_name_with_a_mistake_of_its_own_is_not_called_unknown():
+    text = MODEL.replace("8 N/m", "8 Nm/m") + 'expr = "1/k"\n'
+    with pytest.raises(SpecError) as caught:
+        load_model(Source("spec.toml", text))
+    assert [d.code for d in caught.value.diagnostics] == ["SF201"]

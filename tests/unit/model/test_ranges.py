@@ -1,0 +1,102 @@
+"""Values a distributed part cannot have: told from numbers, from declared values and from assumed signs."""
+
+from __future__ import annotations
+
+import pytest
+
+from symflex.errors import Source, SpecError
+from symflex.model import load_model
+
+PARAMETERS = """symflex = 1
+[parameters]
+E = "70 GPa"
+rho = "2700 kg/m^3"
+A = "1e-3 m^2"
+l = "1.2 m"
+l_2 = {}
+x_1 = { value = "1.2 m", assume = "real" }
+z = { value = "0 m", assume = "nonnegative" }
+d = { assume = "real" }
+[definitions]
+rest = "l - x_1"
+"""
+ROD = {"E": "E", "rho": "rho", "A": "A", "l": "l"}
+REST = '[inputs]\nF = { force = "b" }\n[outputs]\nX = "b"\n'
+DELAY = """symflex = 1
+[parameters]
+T = "2 ms"
+T_r = { assume = "real" }
+[blocks]
+D = { type = "delay", T = "%s" }
+[inputs]
+u = {}
+[outputs]
+y = "D*u"
+"""
+
+
+def rod(**changed):
+    keys = "".join(f'{name} = "{value}"\n' for name, value in {**ROD, **changed}.items())
+    return PARAMETERS + f'[elements.bar]\ntype = "rod"\nbetween = ["a", "b"]\n{keys}' + REST
+
+
+def codes(text):
+    try:
+        load_model(Source("spec.toml", text))
+    except SpecError as error:
+        return [d.code for d in error.diagnostics]
+    return []
+
+
+@pytest.mark.parametrize("length", ["l", "l - x_1/2", "l_2", "d", "l - l_2", "l + z", "0.5*rest + l"])
+def test_a_length_that_may_be_positive_is_accepted(length):
+    assert codes(rod(l=length)) == []
+
+
+@pytest.mark.parametrize(
+    "length", ["0 m", "-1 m", "-l", "-l_2", "l - x_1", "l - 2*x_1", "rest", "z", "2*z", "-l - l_2", "l - 1.2"]
+)
+def test_a_length_known_to_be_zero_or_negative_is_refused(length):
+    assert codes(rod(l=length)) == ["SF209"]
+
+
+@pytest.mark.parametrize("modulus", ["0", "-3", "E - E", "-E", "0 GPa"])
+def test_a_stiffness_known_to_be_zero_or_negative_is_refused(modulus):
+    assert codes(rod(E=modulus)) == ["SF209"]
+
+
+@pytest.mark.parametrize("key", ["eta", "rho"])
+def test_what_may_be_zero_is_accepted_as_zero(key):
+    assert codes(rod(**{key: "0"})) == []
+
+
+def test_a_modulus_that_depends_on_s_is_accepted():
+    assert codes(rod(E="E*(1 + 0.001*s)")) == []
+
+
+def test_a_negative_elastic_foundation_is_accepted():
+    assert codes(rod(k_f="-5 N/m^2")) == []
+
+
+def test_a_value_with_another_mistake_is_reported_once():
+    assert codes(rod(l="-l*unheard")) == ["SF210"]
+
+
+@pytest.mark.parametrize("time", ["T", "0 s", "T - T", "T_r", "T_r - T", "T*(3 - 2)"])
+def test_a_delay_that_may_not_be_negative_is_accepted(time):
+    assert codes(DELAY % time) == []
+
+
+@pytest.mark.parametrize("time", ["-T", "T - 2*T", "-2 ms", "T - 0.003"])
+def test_a_delay_known_to_be_negative_is_refused(time):
+    assert codes(DELAY % time) == ["SF209"]
+
+
+@pytest.mark.parametrize("end", ["z", "l - x_1", "0*l"])
+def test_a_domain_without_length_by_value_is_refused(end):
+    text = (
+        PARAMETERS
+        + f'[fields.u]\ndomain = ["0", "{end}"]\nequation = "E*u\'\' = rho*s^2*u"\n'
+        + 'conditions = ["u(0) = F", "u\'(0) = 0"]\n[inputs]\nF = {}\n[outputs]\nX = "u(0)"\n'
+    )
+    assert "SF240" in codes(text)
