@@ -7,6 +7,8 @@ import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[2]
 
 _FENCE = re.compile(
@@ -75,3 +77,16 @@ def blocks(page: Path) -> list[Block]:
 def all_blocks(language: str) -> list[Block]:
     """Return the blocks of one language on all pages."""
     return [block for page in pages() for block in blocks(page) if block.language == language]
+
+
+EACH_TIME = ("sliding_free_beam", "timoshenko_cantilever", "rod_tip_mass")
+"""The distributed models that go through every test in every run; the others do with -m slow."""
+
+
+def in_turns(paths):
+    """The paths as parameters: most of the classics, which all go the same way, are marked slow."""
+    found = []
+    for path in paths:
+        is_turn = path.parent.name != "classics" or path.stem in EACH_TIME
+        found.append(pytest.param(path, marks=[] if is_turn else [pytest.mark.slow], id=path.stem))
+    return found

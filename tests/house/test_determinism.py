@@ -8,11 +8,9 @@ import sys
 
 import pytest
 
-from tests.house.repository import ROOT
+from tests.house.repository import ROOT, in_turns
 
 SPECIFICATIONS = sorted((ROOT / "derivations").rglob("*.toml"))
-EACH_TIME = ("sliding_free_beam", "timoshenko_cantilever", "rod_tip_mass")
-"""The distributed models that are compared in every run; the others take their turn with -m slow."""
 COMMANDS = (
     ("derive", "--format", "text"),
     ("derive", "--format", "json"),
@@ -46,15 +44,6 @@ def test_there_are_derivations_to_compare():
     assert SPECIFICATIONS
 
 
-def turns():
-    found = []
-    for path in SPECIFICATIONS:
-        distributed = path.parent.name == "classics" or path.stem in ("robot_axis", "sliding_free_beam")
-        marks = [pytest.mark.slow] if distributed and path.stem not in EACH_TIME else []
-        found.append(pytest.param(path, marks=marks, id=str(path.relative_to(ROOT / "derivations"))))
-    return found
-
-
-@pytest.mark.parametrize("path", turns())
+@pytest.mark.parametrize("path", in_turns(SPECIFICATIONS))
 def test_output_does_not_depend_on_the_hash_seed(path):
     assert outputs(path, "1") == outputs(path, "2025")

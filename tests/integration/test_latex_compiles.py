@@ -33,6 +33,7 @@ from symflex.model import load_model
 from symflex.roots.locate import locate
 from symflex.spec import read
 from symflex.transfer import bind, derive, derive_all
+from tests.house.repository import in_turns
 from tests.unit.emit.models_with_kernels import derived as of_case
 
 pytestmark = pytest.mark.needs_tool("pdflatex")
@@ -86,18 +87,18 @@ def test_the_document_of_every_model_compiles_without_a_warning(path, form, tmp_
     assert complaints(tmp_path, latex_document(model, tfs, forms, pole_zero_maps=maps)) == []
 
 
-@pytest.mark.parametrize("path", DISTRIBUTED, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", in_turns(DISTRIBUTED))
 def test_the_document_of_a_model_with_kernels_compiles_without_a_warning(path, tmp_path):
     model, tfs = derived(path)
     assert complaints(tmp_path, latex_document(model, tfs, [print_form(tf) for tf in tfs])) == []
 
 
-@pytest.mark.parametrize("name", [*(p.stem for p in DISTRIBUTED), "third order"])
-def test_every_form_of_a_function_with_kernels_fits_a_column(name, tmp_path):
+@pytest.mark.parametrize("path", in_turns([*DISTRIBUTED, Path("third order")]))
+def test_every_form_of_a_function_with_kernels_fits_a_column(path, tmp_path):
     fragments = [
         "Text:\n"
         + latex_fragment(tf, print_form(tf, form), width_mm=88).replace(r"\label{", rf"\label{{{form}-")
-        for tf in of_case(name)
+        for tf in of_case(path.stem)
         for form in forms_of(tf)
     ]
     assert complaints(tmp_path, WRAPPER % (88, "\n\n".join(fragments))) == []

@@ -14,7 +14,7 @@ from symflex.emit.forms import FORMS, print_form
 from symflex.errors import UsageError
 from symflex.expressions import quotient
 from symflex.model import Published
-from tests.house.repository import ROOT
+from tests.house.repository import ROOT, in_turns
 
 CLASSICS = sorted((ROOT / "derivations" / "classics").glob("*.toml"))
 PAPER = [
@@ -25,7 +25,7 @@ NESTED = {("timoshenko_cantilever", "frequency")}
 """Roots in roots of negative numbers, which are compared at points."""
 
 
-@pytest.mark.parametrize("path", [*CLASSICS, *PAPER], ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", in_turns([*CLASSICS, *PAPER]))
 @pytest.mark.parametrize("form", SYMBOLIC)
 def test_a_form_is_proved_equal_to_the_derivation(path, form):
     for tf in pipeline.derive_all(pipeline.load(path)):

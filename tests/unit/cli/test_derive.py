@@ -5,6 +5,7 @@ import pytest
 from symflex import pipeline
 from symflex.emit.forms.usage import RATIONAL, forms_of
 from tests.contract.exact import read
+from tests.house.repository import in_turns
 from tests.unit.cli.commands import DERIVATIONS, TWO_MASS
 from tests.unit.emit.residues import point_for
 
@@ -81,7 +82,7 @@ def test_what_cancelled_is_named(shell):
     assert "hidden: s cancelled" in shell("derive", TWO_MASS, "--tf", "V_act/F").out
 
 
-@pytest.mark.parametrize("path", DERIVATIONS, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", in_turns(DERIVATIONS))
 def test_json_reads_back_to_the_same_function_exactly(shell, path):
     model = pipeline.load(path)
     derived = pipeline.derive_all(model)
