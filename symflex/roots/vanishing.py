@@ -37,7 +37,7 @@ def without_lengths_of_zero(bound: BoundTransferFunction) -> BoundTransferFuncti
     ... parameters.T = { value = "0 s", assume = "nonnegative" }
     ... blocks.D = { type = "delay", T = "T" }
     ... inputs.u = {}
-    ... outputs.y = "u/(s + D)"
+    ... outputs.y = "u/(1 + D)"
     ... ''')
     >>> bound = pipeline.derive_bound(model, model.transfer_functions)[0]
     >>> without_lengths_of_zero(bound).is_distributed
