@@ -63,6 +63,11 @@ class LinearForm:
         """Return the combination of the given terms; the reference (``None``) contributes nothing."""
         return LinearForm(tuple((v, c) for v, c in terms if v is not None and not c.is_zero))
 
+    @property
+    def coefficients(self) -> tuple[Factored, ...]:
+        """The coefficients, in order."""
+        return tuple(c for _, c in self.terms)
+
     @staticmethod
     def total(forms: Iterable[LinearForm]) -> LinearForm:
         """Return the sum of the forms, with one term per variable."""

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from graphlib import CycleError, TopologicalSorter
-from math import lcm
 from typing import TYPE_CHECKING
 
 from symflex.elements import ElementUse, LinearForm, Stamp, Terminal, Variable
@@ -16,10 +15,19 @@ from symflex.elements.line import LineElement
 from symflex.equations.distributed import survey
 from symflex.equations.equations import ConstantFunction, EquationRow, Equations, OutputRow
 from symflex.equations.evaluate import Evaluator, Opener
-from symflex.equations.realisation import least_common_multiple, written_denominator
+from symflex.equations.realisation import written_denominator
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
 from symflex.expressions import Call, Expression, Name, format_expression, names
-from symflex.kernels import FUNCTIONS, LAPLACE, Factored, Ring, random_point, residue
+from symflex.kernels import (
+    FUNCTIONS,
+    LAPLACE,
+    Factored,
+    Ring,
+    common_denominator,
+    least_common_multiple,
+    random_point,
+    residue,
+)
 from symflex.model import scope_of
 from symflex.model.nodes import variable_of
 
@@ -191,7 +199,7 @@ class _Assembly:
         product = Factored.number(self.ring, 1)
         for row in self.rows:
             if row.role == "condition" or (row.about.kind == "through" and row.about.owner in transmissions):
-                product = product * common_denominator(self.ring, row.form)
+                product = product * common_denominator(self.ring, row.form.coefficients)
         return product
 
     def _solutions(self) -> Iterable[FieldSolution]:
@@ -410,7 +418,8 @@ class _Assembly:
                     self.balance[end] = _side_by_side(self.balance[end], form)
 
     def _polynomial(self, row: EquationRow) -> EquationRow:
-        return EquationRow(row.about, row.role, row.form * common_denominator(self.ring, row.form))
+        cleared = row.form * common_denominator(self.ring, row.form.coefficients)
+        return EquationRow(row.about, row.role, cleared)
 
     def _equal(self, variable: Variable, expression: Expression, evaluator: Evaluator) -> None:
         """Add the row ``variable = expression``."""
@@ -430,21 +439,16 @@ class _Assembly:
             self.problems.extend(error.diagnostics)
             return None
         # A filter in an output is the output's own: as an unknown it would be a mode of all the others.
-        divisor = common_denominator(self.ring, form) * self._cancelled(expression, form, evaluator)
+        below = common_denominator(self.ring, form.coefficients)
+        divisor = below * self._cancelled(expression, form, evaluator)
         return OutputRow(name, form * divisor, divisor)
 
     def _cancelled(self, expression: Expression, form: LinearForm, evaluator: Evaluator) -> Factored:
         """Return the poles that cancelled within an expression: they stay modes of the model."""
-        left = common_denominator(self.ring, form)
+        left = common_denominator(self.ring, form.coefficients)
         return least_common_multiple(left, (written_denominator(expression, evaluator),)) / left
 
 
 def _side_by_side(left: LinearForm, right: LinearForm) -> LinearForm:
     """Return the sum without adding coefficients of equal variables, so that each branch stays one symbol."""
     return LinearForm((*left.terms, *right.terms))
-
-
-def common_denominator(ring: Ring, form: LinearForm) -> Factored:
-    """Return the least common multiple of the coefficients' denominators."""
-    numbers = Factored.number(ring, lcm(*(c.unit.denominator for _, c in form.terms)))
-    return least_common_multiple(numbers, (c.denominator() for _, c in form.terms))

@@ -6,15 +6,12 @@ Output: the product of all denominators in s along its products, cancelled or no
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symflex.expressions import Expression, Name, Negative, Power, Product, Quotient, Sum
-from symflex.kernels import LAPLACE, Factored, degree_in
+from symflex.kernels import LAPLACE, Factored, degree_in, least_common_multiple
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from symflex.equations.evaluate import Evaluator
 
 
@@ -53,17 +50,6 @@ def written_denominator(expression: Expression, evaluator: Evaluator) -> Factore
         case Sum(terms):
             return least_common_multiple(one, (written_denominator(t, evaluator) for t in terms))
     return one
-
-
-def least_common_multiple(start: Factored, values: Iterable[Factored]) -> Factored:
-    """Return the least multiple of ``start`` with the factors of every value, whose numbers are ignored."""
-    result = start
-    for value in values:
-        for factor, exponent in value.factors:
-            have = next((e for f, e in result.factors if f == factor), 0)
-            if exponent > have:
-                result = result * Factored(start.ring, Fraction(1), ((factor, exponent - have),))
-    return result
 
 
 def _in_s(value: Factored) -> Factored:

@@ -1,7 +1,7 @@
 """The exact ring, factored rational functions over it, and the functions that may appear as generators."""
 
 from symflex.kernels.dispersion import NO_KERNELS, Dispersion, Kernel, KernelTable
-from symflex.kernels.factored import Factored
+from symflex.kernels.factored import Factored, common_denominator, least_common_multiple
 from symflex.kernels.functions import FUNCTIONS, ElementaryFunction
 from symflex.kernels.propagators import Propagation, Propagator, propagate
 from symflex.kernels.residue import PRIME, random_point, residue
@@ -21,7 +21,9 @@ __all__ = [
     "Propagation",
     "Propagator",
     "Ring",
+    "common_denominator",
     "degree_in",
+    "least_common_multiple",
     "propagate",
     "random_point",
     "residue",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from math import comb
+from math import comb, lcm
 from typing import TYPE_CHECKING
 
 from flint import fmpz
@@ -13,7 +13,7 @@ from symflex.errors import BudgetError, Diagnostic
 from symflex.kernels.ring import DEGREE_LIMIT, MEMORY_LIMIT, TERM_LIMIT, Ring, degree_in
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Sequence
 
     from flint import fmpz_mpoly
 
@@ -155,6 +155,10 @@ class Factored:
         """
         return self._expand_scaled(1)
 
+    def exponent_of(self, factor: fmpz_mpoly) -> int:
+        """Return the exponent of one of the factors, zero when it is none of them."""
+        return next((e for f, e in self.factors if f == factor), 0)
+
     def filter(self, keep: Callable[[fmpz_mpoly], bool]) -> Factored:
         """Return the product of the factors that ``keep`` accepts, with unit one."""
         return Factored(self.ring, Fraction(1), tuple((f, e) for f, e in self.factors if keep(f)))
@@ -183,8 +187,8 @@ class Factored:
 
     def _common(self, other: Factored) -> Factored:
         """Return the product of shared factors with the smaller exponent of each."""
-        common = [(f, min(e, _exponent(other.factors, f))) for f, e in self.factors]
-        common += [(f, min(e, 0)) for f, e in other.factors if _exponent(self.factors, f) == 0]
+        common = [(f, min(e, other.exponent_of(f))) for f, e in self.factors]
+        common += [(f, min(e, 0)) for f, e in other.factors if self.exponent_of(f) == 0]
         return Factored(self.ring, Fraction(1), tuple((f, e) for f, e in common if e))
 
     def _expand_scaled(self, scale: int) -> fmpz_mpoly:
@@ -211,8 +215,29 @@ class Factored:
         return result
 
 
-def _exponent(factors: Iterable[tuple[fmpz_mpoly, int]], wanted: fmpz_mpoly) -> int:
-    return next((e for f, e in factors if f == wanted), 0)
+def least_common_multiple(start: Factored, values: Iterable[Factored]) -> Factored:
+    """Return the least multiple of ``start`` with the factors of every value, whose numbers are ignored."""
+    result = start
+    for value in values:
+        for factor, exponent in value.factors:
+            missing = exponent - result.exponent_of(factor)
+            if missing > 0:
+                result = result * Factored(start.ring, Fraction(1), ((factor, missing),))
+    return result
+
+
+def common_denominator(ring: Ring, values: Sequence[Factored]) -> Factored:
+    """Return the least common multiple of the values' denominators, numbers included.
+
+    Examples
+    --------
+    >>> ring = Ring(("s", "k"))
+    >>> k = Factored.generator(ring, "k")
+    >>> str(common_denominator(ring, [k / 6, k**-2 / 4, k**-1]))
+    '12*k^2'
+    """
+    numbers = Factored.number(ring, lcm(*(v.unit.denominator for v in values)))
+    return least_common_multiple(numbers, (v.denominator() for v in values))
 
 
 def _merge(

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from flint import fmpq, fmpq_mat, fmpz_mat
 
-from symflex.kernels.factored import Factored
+from symflex.kernels.factored import Factored, common_denominator
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -60,7 +60,8 @@ def length_base(lengths: Sequence[Factored], *, positive: bool = False) -> Lengt
     >>> [str(b) for b in found.base], found.coordinates
     (['1/2*l', '(l - x)'], ((2, 0), (1, 0), (0, 1)))
     """
-    common = _common_denominator(lengths)
+    ring = lengths[0].ring
+    common = common_denominator(ring, lengths)
     vectors, monomials = _vectors([length * common for length in lengths])
     scale = lcm(*(x.denominator for v in vectors for x in v))
     whole = [[int(x * scale) for x in v] for v in vectors]
@@ -69,7 +70,6 @@ def length_base(lengths: Sequence[Factored], *, positive: bool = False) -> Lengt
     chosen = _subset(whole, lattice, rank, positive=positive)
     rows = lattice if chosen is None else [whole[i] for i in chosen]
     coordinates = tuple(_coordinates(rows, v) for v in whole)
-    ring = lengths[0].ring
     base = []
     for i, row in enumerate(rows):
         if chosen is not None:
@@ -78,16 +78,6 @@ def length_base(lengths: Sequence[Factored], *, positive: bool = False) -> Lengt
         polynomial = ring.context.from_dict({m: x for m, x in zip(monomials, row, strict=True) if x})
         base.append(Factored.polynomial(ring, polynomial) * Fraction(1, scale) / common)
     return LengthBase(tuple(base), coordinates)
-
-
-def _common_denominator(lengths: Sequence[Factored]) -> Factored:
-    common = lengths[0] ** 0
-    for length in lengths:
-        for factor, exponent in length.denominator().factors:
-            have = next((e for f, e in common.factors if f == factor), 0)
-            if exponent > have:
-                common = common * Factored(length.ring, Fraction(1), ((factor, exponent - have),))
-    return common
 
 
 def _vectors(lengths: Sequence[Factored]) -> tuple[list[list[Fraction]], list[Monomial]]:

@@ -11,11 +11,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from symflex.kernels.factored import Factored
+from symflex.kernels.factored import Factored, common_denominator
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from flint import fmpz_mpoly
 
     from symflex.kernels.dispersion import Dispersion, KernelTable
@@ -90,11 +88,10 @@ class NormalForm:
             degree = {"wave": 2, "bending": 4}.get(dispersion.kind)
             if degree is None:
                 continue
-            generator = self.ring.generator(dispersion.wavenumbers[0])
-            exponent = next((e for f, e in value.factors if f == generator), 0)
-            times = exponent // degree
+            (name,) = dispersion.wavenumbers
+            times = value.exponent_of(self.ring.generator(name)) // degree
             if times:
-                power = Factored.generator(self.ring, dispersion.wavenumbers[0]) ** (-degree * times)
+                power = Factored.generator(self.ring, name) ** (-degree * times)
                 value = value * power * self.power_of(dispersion) ** times
         return value
 
@@ -142,7 +139,7 @@ class NormalForm:
     def _pair(self, polynomial: fmpz_mpoly, dispersion: Dispersion) -> tuple[fmpz_mpoly, Factored]:
         """Use ``lambda_1^2 = -c_2 - lambda_2^2``, then ``lambda_2^4 = -c_2 lambda_2^2 - c_0``."""
         c0, c2 = dispersion.characteristic[0], dispersion.characteristic[2]
-        below = _common_multiple(c0.denominator(), c2.denominator())
+        below = common_denominator(self.ring, (c0, c2))
         d = below.expand()
         n0, n2 = (c0 * below).expand(), (c2 * below).expand()
         first, second = (self.ring.index[w] for w in dispersion.wavenumbers)
@@ -165,16 +162,3 @@ class NormalForm:
                     total = total + part * y**power * d
             polynomial, scale = total, scale * below
         return polynomial, scale
-
-
-def _common_multiple(left: Factored, right: Factored) -> Factored:
-    """Return a common multiple of two products."""
-    result = left
-    exponents: Mapping[str, int] = {str(f): e for f, e in left.factors}
-    for factor, exponent in right.factors:
-        missing = exponent - exponents.get(str(factor), 0)
-        if missing > 0:
-            result = result * Factored(left.ring, result.unit**0, ((factor, missing),))
-    if result.unit % right.unit:
-        result = result * right.unit
-    return result

@@ -228,7 +228,7 @@ class BoundTransferFunction:
         if self.kernels:
             return self._limit_at_zero_of_kernels()
         s = self.ratio.ring.context.gen(0)
-        order = next((e for f, e in self.ratio.factors if f == s), 0)
+        order = self.ratio.exponent_of(s)
         if order > 0:
             return 0.0
         rest = tuple((f, e) for f, e in self.ratio.factors if f != s)

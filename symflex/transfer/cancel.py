@@ -26,7 +26,7 @@ def cancel(
         return quotient, Factored.number(ring, 1)
     shared = Factored.number(ring, 1)
     for factor, exponent in numerator.factors:
-        other = next((e for f, e in denominator.factors if f == factor), 0)
+        other = denominator.exponent_of(factor)
         if exponent > 0 and other > 0:
             shared = shared * Factored(ring, Fraction(1), ((factor, min(exponent, other)),))
     above = [(f, e) for f, e in quotient.factors if e > 0]
