@@ -88,7 +88,7 @@ class Printer:
                 texts = [self._within(factors[0], _PRODUCT), *(self._within(f, _SIGN) for f in factors[1:])]
                 return " * ".join(texts), _PRODUCT
             case Divide(numerator, denominator):
-                return f"{self._within(numerator, _PRODUCT)} / {self._within(denominator, _SIGN)}", _PRODUCT
+                return self.quotient(numerator, denominator), _PRODUCT
             case Power(base, exponent):
                 return f"{self._within(base, _LEAF)}**{exponent}", _POWER
             case Negate(operand):

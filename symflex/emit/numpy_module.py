@@ -7,7 +7,7 @@ Output: a :class:`NumpyExport`, the module's text and how well each function agr
 from __future__ import annotations
 
 import keyword
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symflex.emit.forms import print_form
@@ -16,19 +16,14 @@ from symflex.emit.numpy_pieces import LINTS, PiecesText, support
 from symflex.emit.program import (
     Piecewise,
     Program,
-    References,
     Verification,
-    choose_program,
-    choose_real_program,
+    choose_programs,
     identifiers,
     inert,
     nearest_double,
     wrapped,
 )
-from symflex.emit.program.real_axis import for_positive, in_half_angles
-from symflex.emit.program.verify import SIMILAR, keeps_its_value
 from symflex.expressions import Number, Quotient, format_expression
-from symflex.transfer import bind
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -160,48 +155,29 @@ def numpy_module(
     >>> "def V_over_F(" in export.text
     True
     """
-    chosen = {tf.name: (tf, *choose_program(tf, band_hz, samples)) for tf in tfs}
+    chosen = {tf.name: (tf, *choose_programs(tf, band_hz, samples)) for tf in tfs}
     names = identifiers({p.name: p.name for p in model.parameters}, RESERVED)
     functions = identifiers(
         {key: f"{tf.output.name}_over_{tf.input.name}" for key, (tf, _, _) in chosen.items()}, RESERVED
     )
-    found = {key: _real_program(tf, band_hz, samples) for key, (tf, _, _) in chosen.items()}
-    real = {key: (chosen[key][0], *made) for key, made in found.items() if made is not None}
+    real = {key: made for key, (_, _, made) in chosen.items() if made is not None}
     taken = {*RESERVED, *functions.values()}
     responses = identifiers({key: f"{functions[key]}_at" for key in real}, taken)
     blocks = [_parameter_table(model, names)]
-    for key, (tf, program, verification) in chosen.items():
-        sentence = verification.text(digits)
-        blocks.append(_Function(tf, program, functions[key], names, sentence).text())
+    for key, (tf, (program, verification), _) in chosen.items():
+        blocks.append(_Function(tf, program, functions[key], names, verification.text(digits)).text())
         if key in real:
-            _, response, measured = real[key]
+            response, measured = real[key]
             blocks.append(_Function(tf, response, responses[key], names, measured.text(digits)).text())
-    pieces = [p for _, p, _ in (*chosen.values(), *real.values()) if isinstance(p, Piecewise)]
+    made = [*(first for _, first, _ in chosen.values()), *real.values()]
+    pieces = [program for program, _ in made if isinstance(program, Piecewise)]
     blocks += [SUPPORT, *support(pieces), _function_table("TRANSFER_FUNCTIONS", functions)]
     if pieces:
         blocks.append(_function_table("FREQUENCY_RESPONSES", responses))
-    verified = tuple(v for _, _, v in (*chosen.values(), *real.values()))
     lints = f"{LINTS_OF_NAMES}, {LINTS}" if pieces else LINTS_OF_NAMES
-    header = _header(model, tuple(v for _, _, v in chosen.values()), digits)
+    verified = tuple(verification for _, verification in made)
+    header = _header(model, verified[: len(chosen)], digits)
     return NumpyExport(f"{header}{IMPORTS.format(lints=lints)}\n" + "\n\n".join(blocks), verified)
-
-
-def _real_program(
-    tf: TransferFunction, band_hz: tuple[Fraction, Fraction] | None, samples: int
-) -> tuple[Piecewise, Verification] | None:
-    """Return the program of the frequency response, in half-angle tangents where that serves as well."""
-    made = choose_real_program(tf, band_hz, samples)
-    if made is None:
-        return None
-    program, verification = for_positive(made[0]), made[1]
-    shorter = in_half_angles(program)
-    if shorter is None or verification.error is None:
-        return program, verification
-    bound = bind(tf)
-    error = References(bound, verification.band, samples).worst_error(shorter)
-    if error > SIMILAR * verification.error or not keeps_its_value(shorter, bound):
-        return program, verification
-    return shorter, replace(verification, error=error)
 
 
 # ------------------------------------------------------------------------------------------ the module
@@ -288,14 +264,9 @@ class _Function:
     sentence: str
 
     @property
-    def is_real(self) -> bool:
-        """True for a frequency response in real arithmetic."""
-        return isinstance(self.program, Piecewise) and self.program.turn is not None
-
-    @property
     def variable(self) -> str:
         """The first argument's name."""
-        if not self.is_real:
+        if not self.program.is_real:
             return "s"
         return "omega_" if "omega" in self.names.values() else "omega"
 
@@ -311,7 +282,7 @@ class _Function:
             default = _default(parameter)
             signature.append(f"    {name}: ArrayLike{f' = {default}' if default else ''},")
         body = [
-            *statement("arguments", f"{'_real' if self.is_real else ''}_numbers({values})", "    "),
+            *statement("arguments", f"{'_real' if self.program.is_real else ''}_numbers({values})", "    "),
             '    with np.errstate(all="ignore"):',
             *statement("return", self._call(), "        "),
         ]
@@ -328,22 +299,18 @@ class _Function:
             ]
         )
 
-    @property
-    def _pieces(self) -> PiecesText | None:
-        if not isinstance(self.program, Piecewise):
-            return None
-        return PiecesText(self.program, self.name, self.variable, self.names, RESERVED)
+    def _pieces(self, program: Piecewise) -> PiecesText:
+        return PiecesText(program, self.name, self.variable, self.names, RESERVED)
 
     def _call(self) -> str:
-        pieces = self._pieces
-        return f"_shaped(_{self.name}(*arguments), arguments)" if pieces is None else pieces.call()
+        if isinstance(self.program, Piecewise):
+            return self._pieces(self.program).call()
+        return f"_shaped(_{self.name}(*arguments), arguments)"
 
     def _kernel(self, parameters: Sequence[str]) -> list[str]:
         """Return the private function that computes with numbers or arrays of any shape."""
-        if (pieces := self._pieces) is not None:
-            return pieces.functions()
         if isinstance(self.program, Piecewise):
-            raise TypeError
+            return self._pieces(self.program).functions()
         lines = [f"def _{self.name}("]
         lines += [f"    {name}: NDArray[np.complex128]," for name in ("s", *parameters)]
         lines.append(") -> NDArray[np.complex128]:")
@@ -375,12 +342,12 @@ class _Function:
     def _docstring(self) -> str:
         tf = self.tf
         unit = f" [{tf.unit}]" if tf.unit else ""
-        at = " at s = j omega, in real arithmetic" if self.is_real else ""
+        at = " at s = j omega, in real arithmetic" if self.program.is_real else ""
         lines = [inert(f"{tf.quantity[:1].upper()}{tf.quantity[1:]} {tf.name}{unit}{at}."), ""]
         lines += [f"    {line}" if line else "" for line in _formula(tf)]
-        kind = "float" if self.is_real else "complex"
+        kind = "float" if self.program.is_real else "complex"
         lines += ["", "    Parameters", "    ----------", f"    {self.variable} : array_like of {kind}"]
-        what = "Angular frequency" if self.is_real else "Laplace variable"
+        what = "Angular frequency" if self.program.is_real else "Laplace variable"
         lines.append(f"        {what} [rad/s]; it and all parameters are broadcast together.")
         for parameter in tf.parameters:
             name = self.names[parameter.name]

@@ -28,7 +28,7 @@ from symflex.emit.program import (
 from symflex.emit.program.real_axis import needed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
 PIECES_SUPPORT = '''\
 BLOCK = 20480
@@ -181,9 +181,9 @@ LINTS = "ANN001, ANN201, ANN202, N816, PLR0912, PLR0914, PLR1704, PLR2004"
 """Rules that the private functions of the pieces do not follow."""
 
 
-def _copied(function: object) -> str:
+def _copied(function: Callable[..., object]) -> str:
     """Return the text of a run-time function as a private one, without annotations."""
-    text = inspect.getsource(function)  # type: ignore[arg-type]
+    text = inspect.getsource(function)
     signature = re.compile(r"def (\w+)\((.*?)\) -> .*?:(?:  # noqa[^\n]*)?\n", re.DOTALL)
     found = signature.match(text)
     if found is None:
@@ -200,9 +200,9 @@ def support(programs: Sequence[Piecewise]) -> list[str]:
     blocks = [PIECES_SUPPORT]
     if any(p.solves for p in programs):
         blocks.append(ARRAY_SUPPORT)
-    if any(p.turn is not None for p in programs):
+    if any(p.is_real for p in programs):
         blocks.append(REAL_SUPPORT)
-    if any(not c.limit for p in programs if p.turn is None for c in p.conditions):
+    if any(not c.limit for p in programs if not p.is_real for c in p.conditions):
         blocks.append(LEFT_SUPPORT)
     code = [piece for p in programs for piece in p.code]
     nodes = [n for c in code for n in _nodes(c.code)]
@@ -252,7 +252,7 @@ class PiecesText:
 
     def call(self) -> str:
         """Return the call that computes the value of ``arguments``."""
-        if self.program.turn is None:
+        if not self.program.is_real:
             if self.program.solves:
                 return f"_in_array(_{self.name}_tests, _{self.name}_pieces, arguments)"
             return f"_in_pieces(_{self.name}_tests, _{self.name}_pieces, arguments, 1)"
@@ -261,7 +261,7 @@ class PiecesText:
 
     def functions(self) -> list[str]:
         """Return the lines of all functions."""
-        tests = self._tests() if self.program.turn is None else self._real_tests()
+        tests = self._real_tests() if self.program.is_real else self._tests()
         lines = [*tests, "", ""]
         for i, piece in enumerate(self.program.code):
             lines += [*self._piece(i, piece), "", ""]
@@ -358,7 +358,7 @@ class PiecesText:
         printer = self._printer(piece.code, variable)
         lines += self._body(piece.code, printer)
         num, den = piece.code.values
-        if self.program.turn is None:
+        if not self.program.is_real:
             return [*lines, *statement("return", printer.quotient(num, den), "    ")]
         above, below = printer.print(num), printer.print(den)
         if piece.is_complex:

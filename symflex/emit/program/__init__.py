@@ -29,7 +29,7 @@ from symflex.emit.program.nodes import (
     Straight,
 )
 from symflex.emit.program.prose import inert, wrapped
-from symflex.emit.program.verify import References, Verification, choose_program, choose_real_program
+from symflex.emit.program.verify import References, Verification, choose_program, choose_programs
 
 __all__ = [
     "Add",
@@ -61,7 +61,7 @@ __all__ = [
     "build_program",
     "build_real",
     "choose_program",
-    "choose_real_program",
+    "choose_programs",
     "evaluate",
     "identifiers",
     "inert",

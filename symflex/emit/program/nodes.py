@@ -217,6 +217,11 @@ class Program:
     limit: float
 
     @property
+    def is_real(self) -> bool:
+        """False: it takes complex s."""
+        return False
+
+    @property
     def varies(self) -> bool:
         """False when the value does not depend on s."""
         return bool(self.near.assignments) or _contains_laplace(self.near.value)
@@ -308,6 +313,11 @@ class Piecewise:
     code: tuple[Piece, ...]
     turn: int | None = None
     solves: bool = False
+
+    @property
+    def is_real(self) -> bool:
+        """True for a function of angular frequency in real arithmetic."""
+        return self.turn is not None
 
 
 def _contains_laplace(root: Node) -> bool:

@@ -6,9 +6,10 @@ Output: a :class:`Verification`, a bound that holds at every sample.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import inf, isfinite, pi, tau
+from itertools import chain
+from math import inf, isfinite, tau
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,17 +18,17 @@ from flint import acb, arb, ctx
 from symflex.emit.program.build import available_forms, build_program
 from symflex.emit.program.distributed import build_piecewise, build_real, reaches_of
 from symflex.emit.program.evaluate import evaluate, nearest_double
-from symflex.emit.program.nodes import Program
+from symflex.emit.program.real_axis import for_positive, in_half_angles
 from symflex.errors import BudgetError, ModelError
 from symflex.transfer import bind
 from symflex.transfer.bind import EnclosedTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
-    from symflex.emit.program.nodes import Piecewise
+    from symflex.emit.program.nodes import Piecewise, Program
     from symflex.transfer import BoundTransferFunction, TransferFunction
     from symflex.transfer.bind import Enclosed
 
@@ -217,18 +218,67 @@ def choose_program(
     ModelError
         SF233 when a number does not fit in double precision.
     """
+    return _choose(_gauge(tf, band_hz, samples))
+
+
+def choose_programs(
+    tf: TransferFunction, band_hz: tuple[Fraction, Fraction] | None = None, samples: int = SAMPLES
+) -> tuple[tuple[Program | Piecewise, Verification], tuple[Piecewise, Verification] | None]:
+    """Return what :func:`choose_program` does, and the same for the frequency response in real arithmetic.
+
+    The latter is there for lossless distributed systems only.
+
+    Parameters
+    ----------
+    tf, band_hz, samples
+        As for :func:`choose_program`.
+
+    Raises
+    ------
+    BudgetError, ModelError
+        As :func:`choose_program` does.
+    """
+    gauge = _gauge(tf, band_hz, samples)
+    return _choose(gauge), _choose_real(gauge)
+
+
+@dataclass(frozen=True, slots=True)
+class _Gauge:
+    """What the programs of one transfer function are measured against.
+
+    Without ``references`` nothing can be measured, for the ``reason`` given.
+    """
+
+    tf: TransferFunction
+    band: tuple[Fraction, Fraction]
+    references: References | None
+    reason: str = ""
+
+    def verified(self, form: str, error: float | None, reach: Reach | None = None) -> Verification:
+        samples = 0 if self.references is None else len(self.references.s)
+        return Verification(self.tf.name, form, error, self.band, samples, self.reason, reach)
+
+
+def _gauge(tf: TransferFunction, band_hz: tuple[Fraction, Fraction] | None, samples: int) -> _Gauge:
     band = band_hz or tf.model.analysis.band or DEFAULT_BAND
-    if tf.is_distributed and not tf.ratio.is_zero:
-        return _choose_pieces(lambda reach: build_piecewise(tf, reach), tf, band, samples, "pieces")
-    forms = available_forms(tf)
     missing = [p.name for p in tf.parameters if p.value is None]
     if missing:
-        return _unmeasured(tf, forms, band, "no values for " + ", ".join(missing))
+        return _Gauge(tf, band, None, "no values for " + ", ".join(missing))
     try:
-        bound = bind(tf)
-        references = References(bound, band, samples)
+        return _Gauge(tf, band, References(bind(tf), band, samples))
     except ModelError as problem:
-        return _unmeasured(tf, forms, band, problem.diagnostics[0].message)
+        return _Gauge(tf, band, None, problem.diagnostics[0].message)
+
+
+def _choose(gauge: _Gauge) -> tuple[Program | Piecewise, Verification]:
+    tf, references = gauge.tf, gauge.references
+    if tf.is_distributed and not tf.ratio.is_zero:
+        usual, *others = reaches_of(tf)
+        rest = (build_piecewise(tf, reach) for reach in others)
+        return _choose_pieces(build_piecewise(tf, usual), rest, gauge, "pieces")
+    forms = available_forms(tf)
+    if references is None:
+        return _unmeasured(gauge, forms)
     is_long = sum(len(f) for f, _ in tf.ratio.factors) > LONG
     candidates: list[tuple[Program, str, float]] = []
     for form in forms:
@@ -239,89 +289,67 @@ def choose_program(
     if not candidates:
         program = build_program(tf)
         candidates.append((program, "", references.worst_error(program)))
-    reaching = [c for c in candidates if keeps_its_value(c[0], bound)] or candidates
+    reaching = [c for c in candidates if keeps_its_value(c[0], references.bound)] or candidates
     best = min(error for _, _, error in reaching)
     similar = [c for c in reaching if c[2] <= SIMILAR * best]
     program, form, error = min(similar, key=lambda c: (c[0].size, c[2]))
-    return program, Verification(tf.name, form, error, band, len(references.s))
+    return program, gauge.verified(form, error)
 
 
-def choose_real_program(
-    tf: TransferFunction, band_hz: tuple[Fraction, Fraction] | None = None, samples: int = SAMPLES
-) -> tuple[Piecewise, Verification] | None:
-    """Return the program of the frequency response in real arithmetic, for lossless distributed systems only.
-
-    Parameters
-    ----------
-    tf, band_hz, samples
-        As for :func:`choose_program`.
-    """
-    if not tf.is_distributed or tf.ratio.is_zero or build_real(tf) is None:
+def _choose_real(gauge: _Gauge) -> tuple[Piecewise, Verification] | None:
+    """Return the program of the frequency response, in half-angle tangents where that serves as well."""
+    tf, references = gauge.tf, gauge.references
+    if not tf.is_distributed or tf.ratio.is_zero:
         return None
-    band = band_hz or tf.model.analysis.band or DEFAULT_BAND
-
-    def build(reach: float) -> Piecewise:
-        made = build_real(tf, reach)
-        if made is None:
-            message = f"{tf.name} is real for one series length only"
-            raise RuntimeError(message)
-        return made
-
-    return _choose_pieces(build, tf, band, samples, "real")
+    usual, *others = reaches_of(tf)
+    first = build_real(tf, usual)
+    if first is None:
+        return None
+    rest = (made for reach in others if (made := build_real(tf, reach)) is not None)
+    chosen, verification = _choose_pieces(first, rest, gauge, "real")
+    program = for_positive(chosen)
+    shorter = in_half_angles(program)
+    if shorter is None or references is None or verification.error is None:
+        return program, verification
+    error = references.worst_error(shorter)
+    if error > SIMILAR * verification.error or not keeps_its_value(shorter, references.bound):
+        return program, verification
+    return shorter, replace(verification, error=error)
 
 
 def _choose_pieces(
-    build: Callable[[float], Piecewise],
-    tf: TransferFunction,
-    band: tuple[Fraction, Fraction],
-    samples: int,
-    form: str,
+    first: Piecewise, others: Iterable[Piecewise], gauge: _Gauge, form: str
 ) -> tuple[Piecewise, Verification]:
     """Return the program whose series reach as far as serves accuracy best, and its measured error."""
-    reaches = reaches_of(tf)
-    first = build(reaches[0])
-    missing = [p.name for p in tf.parameters if p.value is None]
-    if missing:
-        return first, Verification(tf.name, form, None, band, 0, "no values for " + ", ".join(missing))
-    try:
-        bound = bind(tf)
-        references = References(bound, band, samples)
-    except ModelError as problem:
-        return first, Verification(tf.name, form, None, band, 0, problem.diagnostics[0].message)
+    references = gauge.references
+    if references is None:
+        return first, gauge.verified(form, None)
     if first.solves:
-        return _choose_general(build, first, references, _Aside(bound, band), tf, band)
+        return _choose_general(chain([first], others), gauge, references)
     candidates: list[tuple[bool, float, Piecewise]] = []
-    for reach in reaches:
-        program = first if reach == reaches[0] else build(reach)
-        error, keeps = references.worst_error(program), keeps_its_value(program, bound)
+    for program in chain([first], others):
+        error, keeps = references.worst_error(program), keeps_its_value(program, references.bound)
         candidates.append((not keeps, error, program))
         if keeps and error < ACCURATE:
             break
     _, error, program = min(candidates, key=lambda c: c[:2])
-    return program, Verification(tf.name, form, error, band, len(references.s))
+    return program, gauge.verified(form, error)
 
 
 def _choose_general(
-    build: Callable[[float], Piecewise],
-    first: Piecewise,
-    references: References,
-    aside: _Aside,
-    tf: TransferFunction,
-    band: tuple[Fraction, Fraction],
+    programs: Iterable[Piecewise], gauge: _Gauge, references: References
 ) -> tuple[Piecewise, Verification]:
     """Return the program whose accuracy reaches furthest; it ends somewhere, whatever the series do."""
+    band, aside = gauge.band, _Aside(references.bound, gauge.band)
     found: list[tuple[tuple[float, ...], Piecewise, Reach]] = []
-    reaches = reaches_of(tf)
-    for reach in reaches:
-        program = first if reach == reaches[0] else build(reach)
+    for program in programs:
         measured = aside.extended(program, references.reach(program, band), band)
         ends = [0.0 if x is None else float(x) for x in (measured.lowest, measured.highest)]
         found.append(((ends[0], -ends[1], measured.error), program, measured))
         if measured.highest is not None and measured.highest >= band[1] and measured.error < ACCURATE:
             break
     _, program, measured = min(found, key=lambda f: f[0])
-    worst = references.worst_error(program)
-    return program, Verification(tf.name, "pieces", worst, band, len(references.s), "", measured)
+    return program, gauge.verified("pieces", references.worst_error(program), measured)
 
 
 def _program(tf: TransferFunction, form: str) -> Program | None:
@@ -332,17 +360,16 @@ def _program(tf: TransferFunction, form: str) -> Program | None:
         return None
 
 
-def _unmeasured(
-    tf: TransferFunction, forms: Sequence[str], band: tuple[Fraction, Fraction], reason: str
-) -> tuple[Program, Verification]:
+def _unmeasured(gauge: _Gauge, forms: Sequence[str]) -> tuple[Program, Verification]:
+    tf = gauge.tf
     # Expanded coefficients of a model without numbers would be pages long.
     compact = [form for form in forms if form != "factors"] or forms
     programs = [(form, program) for form in compact if (program := _program(tf, form)) is not None]
     if not programs:
-        return build_program(tf), Verification(tf.name, "", None, band, 0, reason)
+        return build_program(tf), gauge.verified("", None)
     shortest = min(program.size for _, program in programs)
     form, program = next((f, p) for f, p in programs if p.size <= MUCH_LONGER * shortest)
-    return program, Verification(tf.name, form, None, band, 0, reason)
+    return program, gauge.verified(form, None)
 
 
 def sample_frequencies(
@@ -351,24 +378,25 @@ def sample_frequencies(
     """Return frequencies [Hz] over a band, denser around those of poles and zeros."""
     low, high = float(band_hz[0]), float(band_hz[1])
     frequencies = [np.geomspace(low, high, samples)]
-    enclosed = bound.enclosed(FIRST_BITS)
-    if not isinstance(enclosed, EnclosedTransferFunction):
-        for center in _extremes(bound, low, high):
-            frequencies.append(center * np.array([1 + sign * x for x in ASIDE for sign in (1, -1)]))
-    factors = enclosed.factors if isinstance(enclosed, EnclosedTransferFunction) else ()
-    for polynomial, _ in factors if not bound.ratio.is_zero else ():
-        roots = _roots(polynomial.coeffs())
-        for center in (*np.abs(roots.imag), *np.abs(roots)):
-            near = center / (2 * pi) * np.array([1 + sign * x for x in ASIDE for sign in (1, -1)])
-            frequencies.append(near)
+    around = np.array([1 + sign * x for x in ASIDE for sign in (1, -1)])
+    frequencies += [center * around for center in _centers(bound, low, high)]
     merged = np.unique(np.concatenate(frequencies))
     return merged[(merged >= low) & (merged <= high)]
 
 
-def _extremes(bound: BoundTransferFunction, low: float, high: float) -> list[float]:
-    """Return resonances and antiresonances [Hz]: where the magnitude on the axis is largest and smallest."""
+def _centers(bound: BoundTransferFunction, low: float, high: float) -> list[float]:
+    """Return the frequencies [Hz] of poles and zeros; of a distributed system where these show."""
     if bound.ratio.is_zero:
         return []
+    enclosed = bound.enclosed(FIRST_BITS)
+    if not isinstance(enclosed, EnclosedTransferFunction):
+        return _extremes(bound, low, high)
+    roots = np.concatenate([[], *(_roots(polynomial.coeffs()) for polynomial, _ in enclosed.factors)])
+    return [*(np.abs(roots.imag) / tau), *(np.abs(roots) / tau)]
+
+
+def _extremes(bound: BoundTransferFunction, low: float, high: float) -> list[float]:
+    """Return resonances and antiresonances [Hz]: where the magnitude on the axis is largest and smallest."""
     program = build_piecewise(bound.source)
     most = GENERAL_EXTREMES if program.solves else MOST_EXTREMES
     values = doubles(bound)
@@ -430,7 +458,7 @@ class References:
         *,
         is_plain: bool = False,
     ) -> None:
-        self._bound = bound
+        self.bound = bound
         self._known: dict[int, Enclosed] = {}
         is_general = any(d.kind == "general" for d in bound.source.kernels.dispersions)
         self._last_bits = GENERAL_BITS if is_general else LAST_BITS
@@ -481,13 +509,13 @@ class References:
         return lowest, worst
 
     def _errors(self, program: Program | Piecewise) -> list[float]:
-        values = evaluate(program, _arguments(program, self.s), doubles(self._bound))
+        values = evaluate(program, _arguments(program, self.s), doubles(self.bound))
         return [r.error_of(complex(v)) for r, v in zip(self._references, values, strict=True)]
 
     def _reference(self, s: complex, bits: int = FIRST_BITS) -> _Reference | None:
         """Return the value at ``s``, or ``None`` at a pole or zero."""
         point = acb(s.real, s.imag)
-        if self._bound.ratio.is_zero:
+        if self.bound.ratio.is_zero:
             return _Reference(acb(0), FIRST_BITS, acb(1).abs_lower())
         while bits <= self._last_bits:
             function = self._at(bits)
@@ -500,7 +528,7 @@ class References:
 
     def _at(self, bits: int) -> Enclosed:
         if bits not in self._known:
-            self._known[bits] = self._bound.enclosed(bits)
+            self._known[bits] = self.bound.enclosed(bits)
         return self._known[bits]
 
 
@@ -555,8 +583,7 @@ class _Reference:
 
 def _arguments(program: Program | Piecewise, s: NDArray[Any]) -> NDArray[Any]:
     """Return what a program takes for values of s on the imaginary axis."""
-    is_real = not isinstance(program, Program) and program.turn is not None
-    return s.imag if is_real else s
+    return s.imag if program.is_real else s
 
 
 def keeps_its_value(program: Program | Piecewise, bound: BoundTransferFunction) -> bool:
