@@ -15,11 +15,14 @@ from symflex.emit.program import (
     InverseLaplace,
     Item,
     Laplace,
+    ModalValue,
+    ModeValues,
     Multiply,
     Negate,
     Node,
     Power,
     Reference,
+    Roots,
     Solutions,
     nearest_double,
 )
@@ -102,6 +105,13 @@ class Printer:
                 if terms:
                     return f"_series_solutions([{given}], {terms})", _LEAF
                 return f"_propagated([{given}])", _LEAF
+            case Roots(coefficients):
+                return f"_characteristic_roots([{', '.join(self.print(c) for c in coefficients)}])", _LEAF
+            case ModeValues(roots, length):
+                return f"_mode_values({self.print(roots)}[:-1], {self.print(length)})", _LEAF
+            case ModalValue(modes, coefficients, frames):
+                lists = (f"[{', '.join(self.print(x) for x in xs)}]" for xs in (modes, coefficients))
+                return f"_modal_value({', '.join(lists)}, {frames!r})", _LEAF
             case Item(values, position):
                 return f"{self._within(values, _LEAF)}[{position}]", _LEAF
         message = f"no text for {type(node).__name__}"

@@ -51,8 +51,7 @@ from numpy.typing import ArrayLike, NDArray
 """
 
 COST = (
-    "Fundamental functions come from matrix exponentials: some hundred times the cost of a complex "
-    "exponential each, and finite only while they themselves fit in double precision."
+    "Exponents without a formula are found numerically, which costs some hundred times a complex exponential."
 )
 
 SUPPORT = '''\

@@ -16,16 +16,19 @@ from symflex.emit.program import (
     Apply,
     Assignment,
     Laplace,
+    ModalValue,
     Multiply,
     Node,
     Piece,
     Piecewise,
+    Roots,
     Solutions,
     Straight,
     identifiers,
     runtime,
 )
 from symflex.emit.program.real_axis import needed
+from symflex.kernels import modal_amplitudes, mode_values
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -190,7 +193,9 @@ def _copied(function: Callable[..., object]) -> str:
         message = f"{function} has no signature"
         raise ValueError(message)
     names = re.findall(r"(\w+): ", found.group(2))
-    return f"def _{found.group(1)}({', '.join(names)}):\n{text[found.end() :]}"
+    body = re.sub(r"(\w): Any = ", r"\1 = ", text[found.end() :])
+    body = re.sub(r"\b(complex_exp|modal_amplitudes)\(", r"_\1(", body)
+    return f"def _{found.group(1)}({', '.join(names)}):\n{body}"
 
 
 def support(programs: Sequence[Piecewise]) -> list[str]:
@@ -206,13 +211,18 @@ def support(programs: Sequence[Piecewise]) -> list[str]:
         blocks.append(LEFT_SUPPORT)
     code = [piece for p in programs for piece in p.code]
     nodes = [n for c in code for n in _nodes(c.code)]
-    if any(isinstance(n, Apply) and n.function == "complex_exp" for n in nodes):
+    exponentials = (n for n in nodes if isinstance(n, Apply) and n.function == "complex_exp")
+    if any(exponentials) or any(isinstance(n, ModalValue) for n in nodes):
         blocks.append(_copied(runtime.complex_exp))
     asked = {n.terms > 0 for n in nodes if isinstance(n, Solutions)}
     if True in asked:
         blocks.append(_copied(runtime.series_solutions))
     if False in asked:
         blocks.append(_copied(runtime.propagated))
+    if any(isinstance(n, Roots) for n in nodes):
+        blocks.append(_copied(runtime.characteristic_roots))
+    if any(isinstance(n, ModalValue) for n in nodes):
+        blocks += [_copied(f) for f in (mode_values, modal_amplitudes, runtime.modal_value)]
     if any(c.circle for c in code):
         blocks.append(_copied(runtime.mean_over_circle))
     return blocks

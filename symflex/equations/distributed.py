@@ -20,7 +20,7 @@ from symflex.fields import FIELDS, Component, FieldSystem, components, first_ord
 from symflex.kernels import Dispersion, Factored, propagate
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
     from symflex.equations.evaluate import Evaluator
     from symflex.errors import Span
@@ -217,7 +217,7 @@ def survey(model: Model, evaluator: Evaluator, expressions: Iterable[Expression]
         raise (BudgetError if all(d.code.startswith("SF5") for d in problems) else ModelError)(*problems)
     if not (lines or delays or solutions):
         return None
-    propagation = propagate(evaluator.ring, demands.demands)
+    propagation = propagate(evaluator.ring, _alike(demands.demands))
     one = Factored.number(propagation.ring, 1)
     return Distributed(
         propagation,
@@ -229,6 +229,21 @@ def survey(model: Model, evaluator: Evaluator, expressions: Iterable[Expression]
         solutions,
         evaluator,
     )
+
+
+def _alike(
+    demands: Sequence[tuple[Dispersion, Sequence[Factored]]],
+) -> list[tuple[Dispersion, Sequence[Factored]]]:
+    """Return all dispersions without names for their roots if one has none.
+
+    Products of named and nameless exponentials would have no form in which what cancels is seen.
+    """
+    if not any(law.kind == "general" for law, _ in demands):
+        return list(demands)
+    return [
+        (law if law.kind == "exponential" else replace(law, kind="general"), lengths)
+        for law, lengths in demands
+    ]
 
 
 def _line(

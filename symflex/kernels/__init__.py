@@ -3,6 +3,7 @@
 from symflex.kernels.dispersion import NO_KERNELS, Dispersion, Kernel, KernelTable
 from symflex.kernels.factored import Factored, common_denominator, least_common_multiple
 from symflex.kernels.functions import FUNCTIONS, ElementaryFunction
+from symflex.kernels.modal_sum import ModalSums, modal_amplitudes, mode_values
 from symflex.kernels.propagators import Propagation, Propagator, propagate
 from symflex.kernels.residue import PRIME, random_point, residue
 from symflex.kernels.ring import LAPLACE, MEMORY_LIMIT, Ring, degree_in
@@ -18,12 +19,15 @@ __all__ = [
     "Factored",
     "Kernel",
     "KernelTable",
+    "ModalSums",
     "Propagation",
     "Propagator",
     "Ring",
     "common_denominator",
     "degree_in",
     "least_common_multiple",
+    "modal_amplitudes",
+    "mode_values",
     "propagate",
     "random_point",
     "residue",

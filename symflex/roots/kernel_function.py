@@ -17,7 +17,7 @@ from flint import acb, acb_series, arb
 from symflex.errors import Diagnostic, ModelError
 from symflex.kernels import Factored, degree_in
 from symflex.roots.precision import precision
-from symflex.transfer.enclose_kernels import KernelValues, expansion
+from symflex.transfer.enclose_kernels import expansion
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from symflex.kernels import Dispersion, KernelTable
     from symflex.transfer import BoundTransferFunction
-    from symflex.transfer.enclose_kernels import Value
+    from symflex.transfer.enclose_kernels import KernelValues, Value
 
 FIRST_BITS = 64
 LAST_BITS = 4096
@@ -39,8 +39,8 @@ ANYWHERE = (0.7, 1.3)
 """Real and imaginary part of a frequency like any other."""
 BRANCHES = (1, 2, 4)
 TWINS: Final = {"cosh": "cos", "cos": "cosh", "sinh": "sin", "sin": "sinh"}
-MATRIX_WORK = 0.75
-"""What a matrix exponential costs, in multiplications of a term, over the fourth power of the order."""
+MODAL_WORK = 0.75
+"""What sums over characteristic roots cost, in multiplications of a term, over the order to the fourth."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +88,7 @@ class KernelFunction:
         self._bits = FIRST_BITS
         laws = self.bound.kernels.dispersions
         terms = sum(len(f) for f, _ in self.part.factors) + 2 * len(self.bound.kernels.kernels)
-        self._cost = terms + int(MATRIX_WORK * sum(law.order**4 for law in laws if law.kind == "general"))
+        self._cost = terms + int(MODAL_WORK * sum(law.order**4 for law in laws if law.kind == "general"))
         self._values = lru_cache(maxsize=None)(self._kernel_values)
         self.power = self._branch_order()
 
@@ -214,7 +214,7 @@ class KernelFunction:
     def _kernel_values(self, bits: int) -> KernelValues:
         with precision(bits):
             constants = {name: evaluate() for name, evaluate in self.bound.constants}
-            return KernelValues(self.bound.ratio.ring.names, self.bound.kernels, constants)
+            return self.bound.kernel_values(constants)
 
 
 def other_branches(

@@ -17,7 +17,7 @@ from flint import acb, acb_poly, acb_series, arb, ctx
 
 from symflex.errors import Diagnostic, ModelError, Source, Span, Text, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.kernels import LAPLACE, NO_KERNELS, Factored, KernelTable, Ring, degree_in
+from symflex.kernels import LAPLACE, NO_KERNELS, Factored, KernelTable, ModalSums, Ring, degree_in
 from symflex.model import ExactValue
 from symflex.quantities import parse_quantity, unit_of
 from symflex.transfer.balls import ball, enclose, rational_value
@@ -188,7 +188,15 @@ class BoundTransferFunction:
         """Return a function over the ring of kernels, such as :attr:`num`, evaluated in balls."""
         with ctx.workprec(bits):
             values = {name: evaluate() for name, evaluate in self.constants}
-        return EnclosedDistributed(bits, part, KernelValues(self.ratio.ring.names, self.kernels, values))
+        return EnclosedDistributed(bits, part, self.kernel_values(values))
+
+    def kernel_values(self, constants: Mapping[str, arb]) -> KernelValues:
+        """Return the evaluator of the ring of kernels, from enclosures of the constants."""
+        return KernelValues(self.ratio.ring.names, self.kernels, constants, self._modal_sums)
+
+    @cached_property
+    def _modal_sums(self) -> ModalSums:
+        return ModalSums(self.ratio.ring, self.kernels)
 
     @cached_property
     def constant_ring(self) -> Ring:

@@ -7,10 +7,12 @@ Output: one value per generator of the ring, wavenumbers and kernels included.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_mat, acb_series
+from flint import acb, acb_mat, acb_poly, acb_series, ctx
 
+from symflex.kernels import ModalSums, modal_amplitudes, mode_values
 from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
@@ -36,14 +38,20 @@ class KernelValues:
         Over the same ring.
     constants : mapping of str to arb
         Enclosures of the constants.
+    sums : ModalSums
+        Over the same ring.
     """
 
     names: Sequence[str]
     table: KernelTable
     constants: Mapping[str, arb]
+    sums: ModalSums
 
     def at(self, s: Value) -> dict[str, Value]:
-        """Return the values of all generators at ``s`` [rad/s]."""
+        """Return the values of all generators at ``s`` [rad/s], and characteristic roots without names.
+
+        Where the roots of a dispersion can be told apart, they stand for its fundamental functions.
+        """
         values: dict[str, Value] = {"s": s, **{name: acb(value) for name, value in self.constants.items()}}
         coefficients: dict[int, tuple[Value, ...]] = {}
         shifts: dict[int, Value] = {}
@@ -53,19 +61,56 @@ class KernelValues:
             shifts[id(law)] = self.value(law.shift, values)
             values.update(zip(law.wavenumbers, _wavenumbers(law, found), strict=True))
         fundamental: dict[tuple[int, int], tuple[Value, ...]] = {}
+        roots = self._roots(coefficients)
+        values.update(roots)
         for kernel in self.table.kernels:
             length = self.value(kernel.length, values)
             law = kernel.dispersion
             if kernel.function == "exp":
                 values[kernel.generator] = (-shifts[id(law)] * length).exp()
-            elif kernel.function == "fundamental":
+            elif kernel.function == "fundamental" and not roots:
                 key = (id(law), id(kernel.length))
                 if key not in fundamental:
                     fundamental[key] = fundamental_functions(coefficients[id(law)], length)
                 values[kernel.generator] = fundamental[key][kernel.order]
-            else:
+            elif kernel.wavenumber:
                 values[kernel.generator] = _kernel(kernel, values[kernel.wavenumber] * length)
         return values
+
+    @cached_property
+    def _laws(self) -> tuple[tuple[int, Dispersion], ...]:
+        """The dispersions with fundamental functions, and their positions."""
+        used = {id(m.dispersion) for m in self.sums.modes if not m.is_decay}
+        return tuple((n, law) for n, law in enumerate(self.table.dispersions) if id(law) in used)
+
+    def _roots(self, coefficients: Mapping[int, Sequence[Value]]) -> dict[str, Value]:
+        """Return the roots of all dispersions that have fundamental functions; none if some nearly meet."""
+        found: dict[str, Value] = {}
+        for number, law in self._laws:
+            roots = characteristic_roots(coefficients[id(law)])
+            if roots is None:
+                return {}
+            found.update({_root_name(number, i): root for i, root in enumerate(roots)})
+        return found
+
+    def _modal_sum(self, polynomial: fmpz_mpoly, values: Mapping[str, Value]) -> Value:
+        """Return a polynomial in fundamental functions without the cancellation of what grows fastest."""
+        modes = []
+        for mode in self.sums.modes:
+            length = self.value(mode.length, values)
+            if mode.is_decay:
+                roots = [-self.value(mode.dispersion.shift, values)]
+            else:
+                number = next(n for n, law in self._laws if law is mode.dispersion)
+                roots = [values[_root_name(number, i)] for i in range(mode.roots)]
+            modes.append(mode_values(roots, length))
+        made = self.sums.of(polynomial)
+        coefficients = [self._monomials(c, values) for c in made.coefficients]
+        frames = [(f.slots, f.terms, f.keys) for f in made.frames]
+        total: Value = acb(0)
+        for amplitude, exponent in modal_amplitudes(modes, coefficients, frames):
+            total = total + amplitude * (exponent + acb(0)).exp()
+        return total
 
     def value(self, value: Factored, values: Mapping[str, Value]) -> Value:
         """Return a product of powers of polynomials."""
@@ -76,6 +121,11 @@ class KernelValues:
 
     def polynomial(self, polynomial: fmpz_mpoly, values: Mapping[str, Value]) -> Value:
         """Return a polynomial of the ring."""
+        if self.sums.has_functions(polynomial) and all(_root_name(n, 0) in values for n, _ in self._laws):
+            return self._modal_sum(polynomial, values)
+        return self._monomials(polynomial, values)
+
+    def _monomials(self, polynomial: fmpz_mpoly, values: Mapping[str, Value]) -> Value:
         total: Value = acb(0)
         powers: dict[tuple[int, int], Value] = {}
         for monomial, coefficient in polynomial.terms():
@@ -121,6 +171,46 @@ def _kernel(kernel: Kernel, argument: Value) -> Value:
             grown, decayed = argument.exp(), (-argument).exp()
             return (grown + decayed) / 2 if kernel.function == "cosh" else (grown - decayed) / 2
     return argument.cos() if kernel.function == "cos" else argument.sin()
+
+
+def _root_name(dispersion: int, i: int) -> str:
+    return f"x_{i}[{dispersion}]"
+
+
+def characteristic_roots(coefficients: Sequence[Value]) -> tuple[Value, ...] | None:
+    """Return enclosures of all roots of ``x^n + ... + c_0``, ``None`` where they cannot be told apart."""
+    base = [c[0] if isinstance(c, acb_series) else c for c in coefficients]
+    polynomial = acb_poly([*base, acb(1)])
+    try:
+        isolated = polynomial.roots()
+    except ValueError:
+        return None
+    slope = polynomial.derivative()
+    found: list[Value] = []
+    for disc in isolated:
+        root = _refined(polynomial, slope, disc)
+        if root is None:
+            return None
+        moving = [c[1] * root**i for i, c in enumerate(coefficients) if isinstance(c, acb_series)]
+        if moving:
+            found.append(acb_series([root, -sum(moving, acb(0)) / slope(root)], 2))
+        else:
+            found.append(root)
+    return tuple(found)
+
+
+def _refined(polynomial: acb_poly, slope: acb_poly, disc: acb) -> acb | None:
+    """Return an isolated root to the working precision, by interval Newton steps (Moore 1966)."""
+    root = disc
+    for _ in range(ctx.prec.bit_length() + 2):
+        middle = root.mid()
+        step = middle - polynomial(middle) / slope(root)
+        if not step.is_finite():
+            return None
+        if step.rad() >= root.rad() / 2:
+            return step if step.rad() < root.rad() else root
+        root = step
+    return root
 
 
 def fundamental_functions(coefficients: Sequence[Value], length: Value) -> tuple[Value, ...]:

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symflex.expressions import Name, names
-from symflex.kernels import LAPLACE, NO_KERNELS, KernelTable, degree_in
+from symflex.kernels import LAPLACE, NO_KERNELS, KernelTable, ModalSums, degree_in
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -124,6 +124,11 @@ class TransferFunction:
         laws = [v for d in self.kernels.dispersions for v in (*d.characteristic, d.shift)]
         within = (*laws, *(k.length for k in self.kernels.kernels))
         return (*self.ratio.factors, *(f for v in within for f in v.factors))
+
+    @cached_property
+    def modal_sums(self) -> ModalSums:
+        """The polynomials of the ring in fundamental functions as sums of exponentials."""
+        return ModalSums(self.ratio.ring, self.kernels)
 
     @cached_property
     def hidden_parameters(self) -> tuple[Parameter, ...]:

@@ -12,14 +12,14 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
-from math import gcd, pi, prod
+from math import gcd
 from typing import TYPE_CHECKING
 
 from symflex.emit.program.build import TERM_LIMIT
 from symflex.emit.program.exponents import ExponentialSum, derivative_at_zero, expand, families_of
 from symflex.emit.program.forge import Forge
-from symflex.emit.program.general_series import GeneralSeries
 from symflex.emit.program.local_basis import LocalBasis, bending_basis, pair_basis, wave_basis
+from symflex.emit.program.modal import MODAL_REACHES, build_modal, declared_length
 from symflex.emit.program.nodes import Condition, Piece, Piecewise
 from symflex.emit.program.real_axis import RealAxis
 from symflex.emit.program.schedule import straight
@@ -42,12 +42,6 @@ if TYPE_CHECKING:
 REACHES = (3.0, 2.0, 4.5)
 """Sizes of the largest exponent below which series are used; which serves best is measured."""
 
-GENERAL_REACHES = (10.0, 15.0, 6.0, 4.0)
-"""The same where exponents have no closed form: series then replace the matrix exponentials."""
-
-GENERAL_TERMS = 4000
-"""Terms up to which such a series is written."""
-
 CHOOSING = 3
 """Base lengths up to which every one has series or exponentials by itself; more have series together only."""
 
@@ -67,7 +61,7 @@ BASES: dict[str, Callable[[Iterable[Sequence[tuple[int, int]]]], LocalBasis]] = 
 
 def reaches_of(tf: TransferFunction) -> tuple[float, ...]:
     """Return the reaches of series that are worth trying, the usual one first."""
-    return GENERAL_REACHES if GeneralSeries.serves(tf.kernels) else REACHES
+    return MODAL_REACHES if tf.modal_sums.serves else REACHES
 
 
 def build_piecewise(tf: TransferFunction, reach: float | None = None) -> Piecewise:
@@ -86,7 +80,11 @@ def build_piecewise(tf: TransferFunction, reach: float | None = None) -> Piecewi
     BudgetError
         SF503 when the program would be too large.
     """
-    return _Workshop(tf, reaches_of(tf)[0] if reach is None else reach).program()
+    if sum(len(f) for f, _ in tf.ratio.factors) > TERM_LIMIT:
+        message = f"a program for {tf.name} would have more than {TERM_LIMIT} terms"
+        raise BudgetError(Diagnostic("SF503", message, None, "keep repeated sums in [definitions]"))
+    chosen = reaches_of(tf)[0] if reach is None else reach
+    return build_modal(tf, chosen) if tf.modal_sums.serves else _Workshop(tf, chosen).program()
 
 
 def build_real(tf: TransferFunction, reach: float = REACHES[0]) -> Piecewise | None:
@@ -159,12 +157,6 @@ class _Workshop:
         self.families = families_of(self.ring, self.table)
         self.waves = {self.ring.index[w] for w in self.table.wavenumbers}
         self.kernels = {self.ring.index[k.generator] for k in self.table.kernels}
-        if sum(len(f) for f, _ in tf.ratio.factors) > TERM_LIMIT:
-            message = f"a program for {tf.name} would have more than {TERM_LIMIT} terms"
-            raise BudgetError(Diagnostic("SF503", message, None, "keep repeated sums in [definitions]"))
-        # Before common factors leave them: numerator and denominator in kernels, and what is left.
-        self.kernel_parts: list[Factored] = []
-        self.rest = Factored.number(self.ring, 1)
         self.plain, self.halves = self._halves()
         self.groups = tuple(self._groups())
         self.delays = tuple(i for i, f in enumerate(self.families) if not f.wavenumber)
@@ -194,7 +186,6 @@ class _Workshop:
             symmetric, remaining = self._symmetric(product_of_waves)
             waves[side] = remaining
             plain = plain * symmetric ** (-1 if side else 1)
-        self.kernel_parts, self.rest = kernels, plain
         sums = [expand(self.ring, k.expand(), self.families) for k in kernels]
         sums = self._in_segments(sums)
         halves = []
@@ -251,7 +242,7 @@ class _Workshop:
             ):
                 changes.append(identity)
                 continue
-            values = [self._number(x) for x in family.lengths]
+            values = [declared_length(self.tf, x) for x in family.lengths]
             order = sorted(range(count), key=lambda j, v=values: v[j])  # type: ignore[misc]
             matrix = [[0] * count for _ in range(count)]
             for rank, j in enumerate(order):
@@ -263,21 +254,6 @@ class _Workshop:
             families[i] = replace(family, lengths=tuple(new))
         self.families = tuple(families)
         return [s.in_lengths(changes) for s in sums]
-
-    def _number(self, length: Factored) -> float:
-        """Return the declared value of a length; without values, of a model with every parameter 1."""
-        known = {p.name: p.value for p in self.tf.parameters}
-        point = []
-        for name in self.ring.names:
-            value = known.get(name)
-            point.append(1.0 if value is None else float(value.rational) * pi**value.pi_power)
-        result = float(length.unit)
-        for factor, exponent in length.factors:
-            total = sum(
-                int(c) * prod(x ** int(e) for x, e in zip(point, m, strict=True)) for m, c in factor.terms()
-            )
-            result *= total**exponent
-        return result
 
     def _half(self, found: ExponentialSum, waves: Factored) -> _Half:
         doubled = {key: p * 2 ** self._still(key) for key, p in found.terms.items()}
@@ -358,9 +334,6 @@ class _Workshop:
         laws = [d for d in self.table.dispersions if any(self.groups[i].dispersion is d for i in pairs)]
         tests += [self._lone_test(site, d) for d in laws]
         fifth = len(tests)
-        series = self._series_piece()
-        if series is not None:
-            tests.append((self._series_size(site), 1.0, one))
         code: list[Piece] = []
         known: dict[_Choice, int] = {}
         numbers: list[int] = []
@@ -389,82 +362,7 @@ class _Workshop:
                 known[key] = len(code)
                 code.append(self._piece(*key))
             numbers.append(known[key])
-        if series is not None:
-            numbers[2**fifth :] = [len(code)] * 2**fifth
-            code.append(series)
         return self._assembled(forge, tests, numbers, code, None)
-
-    # ------------------------------------------------------------------- exponents without closed form
-
-    def _series_piece(self) -> Piece | None:
-        """Return numerator and denominator as power series in all lengths together.
-
-        ``None`` when there are other kernels, or too many terms.
-        """
-        if not GeneralSeries.serves(self.table):
-            return None
-        series = GeneralSeries(self.ring, self.table)
-        for reach in sorted({r for r in GENERAL_REACHES if r < self.reach} | {self.reach}, reverse=True):
-            halves = [series.coefficients(k.expand(), reach) for k in self.kernel_parts]
-            count = sum(len(f) for half in halves for value in half for f, _ in value.factors)
-            if count <= GENERAL_TERMS and all(halves):
-                self.reach = reach
-                return self._series(halves)
-        return None
-
-    def _series(self, halves: Sequence[Sequence[Factored]]) -> Piece:
-        forge = Forge()
-        site = Site(forge, self.tf, self.families)
-        gain, values = self.rest, []
-        for half, sign in zip(halves, (1, -1), strict=True):
-            taken = self._power_of_s(half)
-            gain = gain * taken**sign
-            values.append(forge.add([site.value(value / taken) for value in reversed(half)]))
-        num = forge.multiply([site.value(gain.numerator()), values[0]])
-        den = forge.multiply([site.value(gain.denominator()), values[1]])
-        return Piece(straight(forge, [num, den]))
-
-    def _series_size(self, site: Site) -> int:
-        """Return what is less than one where all exponents times lengths, together, are within reach.
-
-        Where ``sum(abs(c_i) r^i) < r^n``, every root of ``x^n + ... + c_0`` is less than r in size.
-        """
-        forge = site.forge
-        degree = self._kernel_degree()
-        parts: list[int] = []
-        for law in self.table.dispersions:
-            kernels = self.table.kernels_of(law)
-            if not kernels:
-                continue
-            lengths = {id(k.length): k.length for k in kernels}.values()
-            longest = site.length(max(lengths, key=lambda x: abs(self._number(x))))
-            scale = forge.multiply([forge.constant(degree / Fraction(self.reach)), longest])
-            n = law.order
-            for i, c in enumerate(law.characteristic):
-                if not c.is_zero:
-                    product_of = forge.multiply([forge.power(scale, n - i), site.value(c)])
-                    parts.append(forge.apply("abs", product_of))
-            if not law.shift.is_zero:
-                parts.append(forge.apply("abs", forge.multiply([scale, site.value(law.shift)])))
-        return forge.add(parts)
-
-    def _kernel_degree(self) -> int:
-        """Return the largest sum of exponents, in exponents of the longest length, of any product."""
-        longest = {
-            id(d): max(abs(self._number(k.length)) for k in self.table.kernels_of(d))
-            for d in self.table.dispersions
-            if self.table.kernels_of(d)
-        }
-        weights = [
-            (self.ring.index[k.generator], abs(self._number(k.length)) / longest[id(k.dispersion)])
-            for k in self.table.kernels
-        ]
-        most = max(
-            sum(int(m[i]) * w for i, w in weights)
-            for half in self.kernel_parts
-            for m in half.expand().monoms()
-        )
-        return max(1, round(most + 0.499))
 
     def _lone_test(self, site: Site, dispersion: Dispersion) -> _Test:
         """Return the test that the smaller of a pair's arguments is small at every length."""
@@ -484,8 +382,7 @@ class _Workshop:
         nodes = zip(head.values, tests, head.values[len(tests) :], strict=False)
         conditions = tuple(Condition(n, limit, scale) for n, (_, limit, _), scale in nodes)
         parameters = tuple(p.name for p in self.tf.parameters)
-        solves = any(k.function == "fundamental" for k in self.table.kernels)
-        return Piecewise(parameters, head, conditions, tuple(numbers), tuple(code), turn, solves)
+        return Piecewise(parameters, head, conditions, tuple(numbers), tuple(code), turn)
 
     def _piece(
         self,

@@ -21,6 +21,8 @@ from symflex.emit.program.nodes import (
     InverseLaplace,
     Item,
     Laplace,
+    ModalValue,
+    ModeValues,
     Multiply,
     Negate,
     Node,
@@ -30,10 +32,19 @@ from symflex.emit.program.nodes import (
     Power,
     Program,
     Reference,
+    Roots,
     Solutions,
 )
-from symflex.emit.program.runtime import complex_exp, mean_over_circle, propagated, series_solutions
+from symflex.emit.program.runtime import (
+    characteristic_roots,
+    complex_exp,
+    mean_over_circle,
+    modal_value,
+    propagated,
+    series_solutions,
+)
 from symflex.errors import Diagnostic, ModelError
+from symflex.kernels import mode_values
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -221,6 +232,14 @@ class _Run:
             case Solutions(coefficients, terms):
                 given = [self.value(c) for c in coefficients]
                 return series_solutions(given, terms) if terms else propagated(given)
+            case Roots(coefficients):
+                return characteristic_roots([self.value(c) for c in coefficients])
+            case ModeValues(roots, length):
+                return mode_values(self.value(roots)[:-1], self.value(length))
+            case ModalValue(modes, coefficients, frames):
+                return modal_value(
+                    [self.value(m) for m in modes], [self.value(c) for c in coefficients], frames
+                )
             case Item(values, position):
                 return self.value(values)[position]
         message = f"no value for {type(node).__name__}"

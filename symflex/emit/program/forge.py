@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from symflex.emit.program.nodes import Frames
+
 Kind = Literal[
     "constant",
     "complex",
@@ -27,6 +29,9 @@ Kind = Literal[
     "negate",
     "apply",
     "solutions",
+    "roots",
+    "modes",
+    "modal",
     "item",
 ]
 
@@ -41,13 +46,14 @@ class Depends(IntFlag):
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One expression: its kind, its operands, and a number, name or exponent."""
+    """One expression: its kind, its operands, a number, name or exponent, and what a sum is made of."""
 
     kind: Kind
     operands: tuple[int, ...] = ()
     payload: Fraction | str | int = 0
     pi_power: int = 0
     imaginary: Fraction | int = 0
+    frames: Frames = ()
 
 
 @dataclass
@@ -177,7 +183,28 @@ class Forge:
     def solutions(self, coefficients: Sequence[int], terms: int) -> tuple[int, ...]:
         """Return a differential equation's solutions at 1; see :class:`nodes.Solutions`."""
         row = self.label(self._make(Row("solutions", tuple(coefficients), terms)), "solutions")
-        return tuple(self._make(Row("item", (row,), k)) for k in range(len(coefficients)))
+        return tuple(self.item(row, k) for k in range(len(coefficients)))
+
+    def roots(self, coefficients: Sequence[int]) -> int:
+        """Return the list of a polynomial's roots; see :class:`nodes.Roots`."""
+        return self.label(self._make(Row("roots", tuple(coefficients))), "x")
+
+    def mode_values(self, roots: int, length: int) -> int:
+        """Return what a sum needs of roots at a length; see :class:`nodes.ModeValues`."""
+        return self.label(self._make(Row("modes", (roots, length))), "modes")
+
+    def modal_value(
+        self, modes: Sequence[int], coefficients: Sequence[int], frames: Frames
+    ) -> tuple[int, int]:
+        """Return a sum over its largest exponential, and the logarithm of that."""
+        row = self.label(
+            self._make(Row("modal", (*modes, *coefficients), len(modes), frames=frames)), "total"
+        )
+        return self.item(row, 0), self.item(row, 1)
+
+    def item(self, values: int, position: int) -> int:
+        """Return one value of a list."""
+        return self._make(Row("item", (values,), position))
 
     def label(self, x: int, name: str) -> int:
         """Ask for an assignment of ``x``; the first name given stays."""

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from flint import Ordering, fmpz_mpoly_ctx
 
 from symflex.emit.program.local_basis import SERIES_ERROR
+from symflex.errors import BudgetError, Diagnostic
 from symflex.kernels import Factored
 
 if TYPE_CHECKING:
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.kernels import Dispersion, Kernel, KernelTable, Ring
+
+WORK_LIMIT = 60_000
+"""Terms that one step may hold before such a series is given up."""
 
 LEADING = 16
 """Taylor coefficients that may vanish before the first that does not."""
@@ -38,17 +42,11 @@ class GeneralSeries:
     ring : Ring
         Of the polynomials.
     table : KernelTable
-        Its kernels are fundamental functions and exponentials only; see :meth:`serves`.
+        Its kernels are fundamental functions and exponentials only.
     """
 
     ring: Ring
     table: KernelTable
-
-    @staticmethod
-    def serves(table: KernelTable) -> bool:
-        """Tell whether a table has fundamental functions, and besides these exponentials at most."""
-        functions = {k.function for k in table.kernels}
-        return "fundamental" in functions and functions <= {"fundamental", "exp"} and not table.wavenumbers
 
     def coefficients(self, polynomial: fmpz_mpoly, size: float) -> tuple[Factored, ...]:
         """Return the terms of the series, without leading zeros, as far as an exponent of a size needs.
@@ -59,6 +57,11 @@ class GeneralSeries:
             Over the ring.
         size : float
             Largest exponent at which the series is used.
+
+        Raises
+        ------
+        BudgetError
+            SF503 when it has too many terms.
         """
         count = LEADING
         while size**count / factorial(count) > SERIES_ERROR:
@@ -101,6 +104,8 @@ class GeneralSeries:
         for power in range(max(by_power), -1, -1):
             if any(len(c) for c in total):
                 total = _product(total, kernel, zero)
+                if sum(map(len, total)) > WORK_LIMIT:
+                    raise BudgetError(Diagnostic("SF503", "the power series has too many terms"))
             if power in by_power:
                 inner = self._nested(by_power[power], at + 1, count)
                 total = [a + b for a, b in zip(total, inner, strict=True)]

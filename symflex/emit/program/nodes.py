@@ -13,6 +13,12 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from fractions import Fraction
 
+Frames = tuple[
+    tuple[tuple[int, ...], tuple[tuple[tuple[int, ...], int], ...], tuple[tuple[tuple[int, ...], int], ...]],
+    ...,
+]
+"""Slots, terms and keys of the frames of a :class:`symflex.kernels.ModalSum`."""
+
 
 @dataclass(frozen=True, slots=True)
 class Node:
@@ -160,6 +166,69 @@ class Solutions(Node):
     def children(self) -> tuple[Node, ...]:
         """The operands, from left to right."""
         return self.coefficients
+
+
+@dataclass(frozen=True, slots=True)
+class Roots(Node):
+    """The roots of ``x^n + c_(n-1) x^(n-1) + ... + c_0``, and last the least distance of two, as a list.
+
+    Parameters
+    ----------
+    coefficients : tuple of Node
+        ``c_0, ..., c_(n-1)``.
+    """
+
+    coefficients: tuple[Node, ...]
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The operands, from left to right."""
+        return self.coefficients
+
+
+@dataclass(frozen=True, slots=True)
+class ModeValues(Node):
+    """What a sum needs of all roots at one length; see :func:`symflex.kernels.mode_values`.
+
+    Parameters
+    ----------
+    roots : Node
+        A list as :class:`Roots` gives.
+    length : Node
+        What they are multiplied by.
+    """
+
+    roots: Node
+    length: Node
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The operands, from left to right."""
+        return (self.roots, self.length)
+
+
+@dataclass(frozen=True, slots=True)
+class ModalValue(Node):
+    """A sum of exponentials, over the largest one, and the logarithm of that, as a list.
+
+    Parameters
+    ----------
+    modes : tuple of ModeValues or Reference
+        One per mode.
+    coefficients : tuple of Node
+        As in :class:`symflex.kernels.ModalSum`.
+    frames : tuple
+        Slots, terms and keys of every frame.
+    """
+
+    modes: tuple[Node, ...]
+    coefficients: tuple[Node, ...]
+    frames: Frames
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The operands, from left to right."""
+        return (*self.modes, *self.coefficients)
 
 
 @dataclass(frozen=True, slots=True)

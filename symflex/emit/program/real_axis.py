@@ -19,6 +19,8 @@ from symflex.emit.program.nodes import (
     Divide,
     Item,
     Laplace,
+    ModalValue,
+    ModeValues,
     Multiply,
     Negate,
     Node,
@@ -27,6 +29,7 @@ from symflex.emit.program.nodes import (
     Piecewise,
     Power,
     Reference,
+    Roots,
     Solutions,
     Straight,
 )
@@ -337,6 +340,12 @@ def _everywhere(node: Node, change: Callable[[Node], Node]) -> Node:
             node = Apply(function, parts[0])
         case Solutions(_, terms):
             node = Solutions(parts, terms)
+        case Roots():
+            node = Roots(parts)
+        case ModeValues():
+            node = ModeValues(*parts)
+        case ModalValue(modes, _, frames):
+            node = ModalValue(parts[: len(modes)], parts[len(modes) :], frames)
         case Item(_, position):
             node = Item(parts[0], position)
     return change(node)

@@ -1,6 +1,6 @@
 """What generated code of distributed systems needs besides arithmetic; it is copied into modules.
 
-The functions use numpy and each other, and nothing else.
+The functions use numpy, each other and :func:`symflex.kernels.modal_amplitudes`, and nothing else.
 """
 
 from __future__ import annotations
@@ -8,6 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from symflex.kernels import modal_amplitudes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -83,6 +85,54 @@ def propagated(coefficients: list[Any]) -> list[Any]:
     for k in range(int(np.max(halvings, initial=0))):
         grown = np.where((k < halvings)[..., None, None], grown @ grown, grown)
     return [(grown[..., k, n - 1] * size ** (k - n + 1.0))[()] for k in range(n)]
+
+
+def characteristic_roots(coefficients: list[Any]) -> list[Any]:
+    """Return the roots of x^n + c_(n-1) x^(n-1) + ... + c_0, and the least distance of two.
+
+    Eigenvalues of the companion matrix, then steps of Aberth and Ehrlich, which give
+    small roots besides large ones their digits.
+    """
+    n = len(coefficients)
+    shape = np.broadcast_shapes(*(np.shape(c) for c in coefficients))
+    rows = [np.broadcast_to(np.asarray(c, dtype=complex), shape) for c in coefficients]
+    sizes = [np.abs(c) ** (1.0 / (n - i)) for i, c in enumerate(rows)]
+    size = np.maximum(np.max(sizes, axis=0), 1e-30)
+    is_finite = np.isfinite(size)
+    scaled = [np.where(is_finite, c / size ** (n - i), 0.0) for i, c in enumerate(rows)]
+    companion = np.zeros((*shape, n, n), dtype=complex)
+    for i in range(n - 1):
+        companion[..., i, i + 1] = 1.0
+    for i, c in enumerate(scaled):
+        companion[..., n - 1, i] = -c
+    x = np.linalg.eigvals(companion)
+    differences = x[..., :, None] - x[..., None, :]
+    for _ in range(3 if n > 1 else 0):
+        value, slope = np.ones_like(x), np.zeros_like(x)
+        for c in reversed(scaled):
+            slope = slope * x + value
+            value = value * x + c[..., None]
+        away = np.sum(np.where(differences == 0.0, 0.0, 1.0 / differences), axis=-1)
+        step = value / (slope - value * away)
+        x = x - np.where(np.isfinite(step) & (np.abs(step) < np.abs(x)), step, 0.0)
+        differences = x[..., :, None] - x[..., None, :]
+    apart = np.abs(differences) + np.where(np.eye(n, dtype=bool), np.inf, 0.0)
+    found = np.where(is_finite, size, np.nan)
+    least = np.min(apart, axis=(-2, -1)) * found
+    return [*((x[..., i] * found)[()] for i in range(n)), least[()]]
+
+
+def modal_value(modes: list[Any], coefficients: list[Any], frames: Any) -> list[Any]:  # noqa: ANN401
+    """Return a sum of exponentials over the largest one, and the logarithm of that."""
+    found = modal_amplitudes(modes, coefficients, frames)
+    growth = np.real(found[0][1])
+    for _, exponent in found[1:]:
+        growth = np.maximum(growth, np.real(exponent))
+    total = 0.0
+    for amplitude, exponent in found:
+        left = np.asarray(exponent - growth, dtype=complex)[()]
+        total = total + amplitude * complex_exp(left)
+    return [total, growth]
 
 
 def mean_over_circle(parts: Callable[[Any], tuple[Any, ...]], s: Any, points: int) -> Any:  # noqa: ANN401

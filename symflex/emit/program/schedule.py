@@ -18,6 +18,8 @@ from symflex.emit.program.nodes import (
     InverseLaplace,
     Item,
     Laplace,
+    ModalValue,
+    ModeValues,
     Multiply,
     Negate,
     Node,
@@ -25,6 +27,7 @@ from symflex.emit.program.nodes import (
     Power,
     Program,
     Reference,
+    Roots,
     Solutions,
     Straight,
 )
@@ -158,7 +161,20 @@ def _node_of(row: Row, operands: tuple[Node, ...]) -> Node:
             return Negate(operands[0])
         case "apply":
             return Apply(str(row.payload), operands[0])
-        case "solutions":
-            return Solutions(operands, int(row.payload))
         case "item":
             return Item(operands[0], int(row.payload))
+        case "solutions" | "roots" | "modes" | "modal":
+            return _list_of(row, operands)
+
+
+def _list_of(row: Row, operands: tuple[Node, ...]) -> Node:
+    """Return a node whose value is a list."""
+    match row.kind:
+        case "roots":
+            return Roots(operands)
+        case "modes":
+            return ModeValues(*operands)
+        case "modal":
+            count = int(row.payload)
+            return ModalValue(operands[:count], operands[count:], row.frames)
+    return Solutions(operands, int(row.payload))

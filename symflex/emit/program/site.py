@@ -66,7 +66,9 @@ class Site:
     def __post_init__(self) -> None:
         self.ring = self.tf.ratio.ring
         self.waves = {w: d for d in self.tf.kernels.dispersions for w in d.wavenumbers}
-        self.kernels = {k.generator: k for k in self.tf.kernels.kernels if k.function == "fundamental"}
+        self.kernels = {
+            k.generator: k for k in self.tf.kernels.kernels if k.function in ("fundamental", "exp")
+        }
         self._generators = _KernelGenerators(self.forge, self.tf, False, site=self)
         self._varying = {0, *(self.ring.index[n] for n in (*self.waves, *self.kernels))}
 
@@ -233,9 +235,11 @@ class Site:
         return self.forge.divide(self.coefficient(dispersion), self.coefficient(dispersion, 2))
 
     def fundamental(self, kernel: Kernel) -> int:
-        """Return the derivative of a fundamental function at its length."""
+        """Return the derivative of a fundamental function at its length, or a decay."""
         forge, law = self.forge, kernel.dispersion
         x, n = self.length(kernel.length), law.order
+        if kernel.function == "exp":
+            return forge.apply("complex_exp", forge.negate(forge.multiply([x, self.value(law.shift)])))
         scaled = [forge.multiply([forge.power(x, n - i), self.coefficient(law, i)]) for i in range(n)]
         values = forge.solutions(scaled, 0)
         return forge.multiply([forge.power(x, n - 1 - kernel.order), values[kernel.order]])

@@ -63,20 +63,16 @@ SCAN = 3000
 MOST_EXTREMES = 40
 """Resonances, and antiresonances, around which the error is measured; the first and the last ones of more."""
 
-GENERAL_SAMPLES = 100
-"""At most so many frequencies where exponents have no closed form: their balls are costly."""
-
-GENERAL_EXTREMES = 4
-GENERAL_BITS = 1024
-"""Precision from which such a value is not sought any more; it then counts as not measured."""
+LIGHT = 200
+"""Terms of a function with numeric exponents from which fewer frequencies are looked at: each is costly."""
 
 LOWEST, HIGHEST = Fraction("1e-10"), Fraction("1.6e11")
-"""Frequencies [Hz] between which such a function is looked at, wider than 1e-9 to 1e12 rad/s."""
+"""Frequencies [Hz] between which a function with numeric exponents is looked at, 1e-9 to 1e12 rad/s."""
 
 ASIDE_SAMPLES = 30
 """Frequencies below the band, and above it, at which such a function is measured."""
 
-GENERAL_ACCURACY = 1e-12
+REACHED = 1e-12
 """What such a function promises up to the frequency named."""
 
 TINY = 1e-307
@@ -93,15 +89,12 @@ class Reach:
         Up to here [Hz] every sample was measured and accurate to 1e-12; ``None`` when the first was not.
     error : float
         The worst one up to there.
-    skipped : int
-        Frequencies at which nothing was measured, because balls would need too many bits.
     lowest : Fraction, optional
         Down to here [Hz] the same holds; the band's lower end when ``None``.
     """
 
     highest: Fraction | None
     error: float
-    skipped: int
     lowest: Fraction | None = None
 
 
@@ -126,7 +119,7 @@ class Verification:
     reason : str
         Why it was not measured; empty when it was.
     reach : Reach or None
-        Only of functions made of matrix exponentials, which are not accurate at all frequencies.
+        Only of functions whose exponents are found numerically; these may not be accurate everywhere.
     """
 
     name: str
@@ -157,14 +150,12 @@ class Verification:
 
     def _text_of_reach(self, reach: Reach, digits: int) -> str:
         low, high = (frequency_text(f) for f in self.band)
-        skipped = f"; not measured at {reach.skipped} of {self.samples + reach.skipped} frequencies"
-        missing = skipped if reach.skipped else ""
         is_lost = self.error is None or self.error == inf
         worst = (
             "some values overflow" if is_lost else f"errors up to {_error_text(self.error or 0.0, digits)}"
         )
         if reach.highest is None:
-            return f"not accurate over {low} ... {high}, where matrix exponentials lose digits{missing}"
+            return f"not accurate over {low} ... {high}, where rounding costs digits: {worst}"
         start = low if reach.lowest is None else frequency_text(reach.lowest)
         end = frequency_text(reach.highest)
         error = _error_text(reach.error, digits)
@@ -172,8 +163,8 @@ class Verification:
         if reach.highest >= HIGHEST:
             return inner
         if reach.highest >= self.band[1]:
-            return f"{inner}; above, matrix exponentials lose digits"
-        return f"{inner}; above, up to {high}, matrix exponentials lose digits: {worst}{missing}"
+            return f"{inner}; above, rounding costs digits"
+        return f"{inner}; above, up to {high}, rounding costs digits: {worst}"
 
 
 def _error_text(error: float, digits: int) -> str:
@@ -398,14 +389,15 @@ def _centers(bound: BoundTransferFunction, low: float, high: float) -> list[floa
 def _extremes(bound: BoundTransferFunction, low: float, high: float) -> list[float]:
     """Return resonances and antiresonances [Hz]: where the magnitude on the axis is largest and smallest."""
     program = build_piecewise(bound.source)
-    most = GENERAL_EXTREMES if program.solves else MOST_EXTREMES
+    part = _part(bound)
+    most = 2 * max(1, int(MOST_EXTREMES * part) // 2)
     values = doubles(bound)
 
     def size(hertz: NDArray[np.float64]) -> NDArray[np.float64]:
         with np.errstate(all="ignore"):
             return np.nan_to_num(np.log(np.abs(evaluate(program, tau * 1j * hertz, values))))
 
-    grid = np.geomspace(low, high, SCAN)
+    grid = np.geomspace(low, high, int(SCAN * part))
     found: list[float] = []
     level = size(grid)
     for sign in (1, -1):
@@ -421,6 +413,13 @@ def _extremes(bound: BoundTransferFunction, low: float, high: float) -> list[flo
             left, right = near[np.maximum(best - 1, 0), each], near[np.minimum(best + 1, 20), each]
         found += ((left + right) / 2).tolist()
     return found
+
+
+def _part(bound: BoundTransferFunction) -> float:
+    """Return which part of the usual number of frequencies is looked at."""
+    if not any(d.kind == "general" for d in bound.source.kernels.dispersions):
+        return 1.0
+    return min(1.0, LIGHT / sum(len(f) for f, _ in bound.ratio.factors))
 
 
 def _roots(coefficients: Sequence[acb]) -> NDArray[np.complex128]:
@@ -448,8 +447,6 @@ class References:
         True to take none around poles and zeros.
     """
 
-    # Where exponents have no closed form, fewer samples are taken and precision is bounded.
-
     def __init__(
         self,
         bound: BoundTransferFunction,
@@ -460,21 +457,11 @@ class References:
     ) -> None:
         self.bound = bound
         self._known: dict[int, Enclosed] = {}
-        is_general = any(d.kind == "general" for d in bound.source.kernels.dispersions)
-        self._last_bits = GENERAL_BITS if is_general else LAST_BITS
-        count = min(samples, GENERAL_SAMPLES) if is_general else samples
         low, high = (float(f) for f in band_hz)
+        count = max(1, int(samples * _part(bound)))
         hertz = np.geomspace(low, high, count) if is_plain else sample_frequencies(bound, band_hz, count)
         points = 1j * (tau * hertz)
-        found = []
-        bits = FIRST_BITS
-        for s in points:
-            reference = self._reference(complex(s), bits)
-            found.append((s, reference))
-            if is_general:
-                # Exponentials only grow with the frequency.
-                bits = self._last_bits if reference is None else reference.bits
-        self._skipped = np.array([s for s, reference in found if reference is None], dtype=complex)
+        found = [(s, self._reference(complex(s))) for s in points]
         self._references = [reference for _, reference in found if reference is not None]
         self.s = np.array([s for s, reference in found if reference is not None], dtype=complex)
 
@@ -484,26 +471,22 @@ class References:
 
     def reach(self, program: Program | Piecewise, band_hz: tuple[Fraction, Fraction]) -> Reach:
         """Return up to which frequency every sample was measured and is accurate."""
-        end, worst = np.inf, 0.0
+        worst = 0.0
         highest: complex | None = None
-        if len(self._skipped):
-            end = float(np.min(self._skipped.imag))
         for s, error in zip(self.s, self._errors(program), strict=True):
-            if s.imag > end or error > GENERAL_ACCURACY:
+            if error > REACHED:
                 break
             highest, worst = s, max(worst, error)
         else:
-            if not len(self._skipped):
-                return Reach(band_hz[1], worst, 0)
+            return Reach(band_hz[1], worst)
         hertz = None if highest is None else Fraction(f"{highest.imag / tau:.3g}")
-        return Reach(hertz, worst, len(self._skipped))
+        return Reach(hertz, worst)
 
     def down(self, program: Program | Piecewise, start: Fraction) -> tuple[Fraction, float]:
         """Return down to which frequency [Hz] every sample is accurate, and the worst error of these."""
         lowest, worst = start, 0.0
-        gap = float(np.max(self._skipped.imag, initial=0.0))
         for s, error in reversed(list(zip(self.s, self._errors(program), strict=True))):
-            if s.imag < gap or error > GENERAL_ACCURACY:
+            if error > REACHED:
                 break
             lowest, worst = Fraction(f"{s.imag / tau:.3g}"), max(worst, error)
         return lowest, worst
@@ -512,12 +495,13 @@ class References:
         values = evaluate(program, _arguments(program, self.s), doubles(self.bound))
         return [r.error_of(complex(v)) for r, v in zip(self._references, values, strict=True)]
 
-    def _reference(self, s: complex, bits: int = FIRST_BITS) -> _Reference | None:
+    def _reference(self, s: complex) -> _Reference | None:
         """Return the value at ``s``, or ``None`` at a pole or zero."""
         point = acb(s.real, s.imag)
         if self.bound.ratio.is_zero:
             return _Reference(acb(0), FIRST_BITS, acb(1).abs_lower())
-        while bits <= self._last_bits:
+        bits = FIRST_BITS
+        while bits <= LAST_BITS:
             function = self._at(bits)
             value, slope = function(point), function.logarithmic_derivative(point)
             if value.is_finite() and slope.is_finite() and value.rel_accuracy_bits() >= ENOUGH_BITS:
@@ -533,7 +517,7 @@ class References:
 
 
 class _Aside:
-    """What a program of matrix exponentials is worth below a band, and above it.
+    """What a program with numeric exponents is worth below a band, and above it.
 
     Parameters
     ----------
@@ -560,7 +544,7 @@ class _Aside:
             outer = self._above.reach(program, (band_hz[1], HIGHEST))
             if outer.highest is not None and outer.highest > band_hz[1]:
                 highest, error = outer.highest, max(error, outer.error)
-        return Reach(highest, error, inner.skipped, lowest)
+        return Reach(highest, error, lowest)
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from tests.independent.boundary_value import (
     Number,
     Problem,
+    Rows,
     Values,
     bending,
     exponential,
@@ -98,28 +99,45 @@ def heated_wall(v: Values, s: Number) -> Number:
     return problem.solve()(line.start[0])
 
 
-def pipe(v: Values, s: Number) -> Number:
-    """Cantilevered pipe that conveys fluid at speed U (Paidoussis 1998, eq. 3.1 without gravity and loss)."""
+def flowing(v: Values, s: Number) -> Rows:
+    """Rows of a pipe that conveys fluid at speed U (Paidoussis 1998, eq. 3.1 without gravity and loss)."""
     fluid, total = v["m_f"], v["m_f"] + v["m_p"]
     stiffness = v["E"] * v["I"]
+    last = [-total * s**2, -2 * fluid * v["U"] * s, -fluid * v["U"] ** 2, 0, 0]
+    return [
+        [0, 1, 0, 0, 0],
+        [0, 0, 1, 0, 0],
+        [0, 0, 0, 1, 0],
+        [x / stiffness for x in last],
+    ]
+
+
+def pipe(v: Values, s: Number) -> Number:
+    """Cantilevered pipe that conveys fluid."""
+    stiffness = v["E"] * v["I"]
     problem = Problem()
-    line = problem.line(
-        [
-            [0, 1, 0, 0, 0],
-            [0, 0, 1, 0, 0],
-            [0, 0, 0, 1, 0],
-            [
-                -total * s**2 / stiffness,
-                -2 * fluid * v["U"] * s / stiffness,
-                -fluid * v["U"] ** 2 / stiffness,
-                0,
-                0,
-            ],
-        ]
-    )
+    line = problem.line(flowing(v, s))
     end = line.at(v["l"])
     problem.require(line.start[0], line.start[1], end[2], stiffness * end[3] + 1)
     return problem.solve()(end[0])
+
+
+def pipe_with_tail(v: Values, s: Number) -> Number:
+    """Cantilevered pipe that conveys fluid, a bare beam clamped to its end: deflection inside the pipe."""
+    pipe_stiffness, stiffness = v["E"] * v["I"], v["E"] * v["I_2"]
+    problem = Problem()
+    line = problem.line(flowing(v, s))
+    last = [-v["m_p"] * s**2 / stiffness, 0, 0, 0, 0]
+    tail = problem.line([[0, 1, 0, 0, 0], [0, 0, 1, 0, 0], [0, 0, 0, 1, 0], last])
+    joint, tip = line.at(v["l"]), tail.at(v["l_2"])
+    problem.require(line.start[0], line.start[1], tip[2], stiffness * tip[3] + 1)
+    problem.require(
+        joint[0] - tail.start[0],
+        joint[1] - tail.start[1],
+        pipe_stiffness * joint[2] - stiffness * tail.start[2],
+        pipe_stiffness * joint[3] - stiffness * tail.start[3],
+    )
+    return problem.solve()(line.at(v["x_s"])[0])
 
 
 def bending_and_torsion(v: Values, s: Number) -> Number:
@@ -376,6 +394,43 @@ FIELDS_OF_ALL_KINDS = (
         1.6,
         (-2.0, 2.3),
         pipe,
+    ),
+    Case(
+        "pipe conveying fluid with a bare tail",
+        spec(
+            {
+                "E": "2e6 Pa",
+                "I": "2e-9 m^4",
+                "I_2": "1e-9 m^4",
+                "m_f": "0.12 kg/m",
+                "m_p": "0.2 kg/m",
+                "U": "0.7 m/s",
+                "l": "0.5 m",
+                "l_2": "0.2 m",
+                "x_s": "0.3 m",
+            },
+            ode(
+                "E*I*w'''' + m_f*U^2*w'' + 2*m_f*U*s*w' + (m_f + m_p)*s^2*w = 0",
+                "w(0) = 0",
+                "w'(0) = 0",
+                "w(l) = y(l)",
+                "w'(l) = y'(l)",
+            )
+            + ode(
+                "E*I_2*y'''' + m_p*s^2*y = 0",
+                "E*I*w''(l) = E*I_2*y''(l)",
+                "E*I*w'''(l) = E*I_2*y'''(l)",
+                "y''(l + l_2) = 0",
+                "E*I_2*y'''(l + l_2) = -u",
+                name="y",
+                domain=("l", "l + l_2"),
+            ),
+            "w(x_s)",
+        ),
+        "out/u",
+        1.0,
+        (-2.0, 2.3),
+        pipe_with_tail,
     ),
     Case(
         "coupled bending and torsion",
