@@ -175,19 +175,7 @@ class Exponentials:
 
     def split(self, polynomial: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly]:
         """Return a polynomial over the coordinates as one free of kernels times the rest."""
-        ring = self.coordinates
-        free = len(self._kept) - len(self._plain_kernels)
-        parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
-        for monomial, coefficient in polynomial.terms():
-            exponents = tuple(int(e) for e in monomial)
-            key = exponents[free:]
-            parts.setdefault(key, {})[(*exponents[:free], *(0 for _ in key))] = int(coefficient)
-        content = ring.constant(0)
-        for terms in parts.values():
-            content = content.gcd(ring.context.from_dict(terms))
-            if content.is_one():
-                break
-        return content, polynomial / content
+        return split_content(self.coordinates, polynomial, len(self._kept) - len(self._plain_kernels))
 
     @property
     def _plain_kernels(self) -> tuple[str, ...]:
@@ -198,7 +186,7 @@ class Exponentials:
     def parity(self, polynomial: fmpz_mpoly) -> tuple[int, ...]:
         """Return per angle whether the degree is odd: then only half the angle's kernels can express it."""
         source = self.coordinates
-        monomial = polynomial.monoms()[0]
+        monomial = polynomial.monomial(0)
         degrees = polynomial.degrees()
         return tuple(
             int(degrees[source.index[a.coordinates[0]]]) % 2
@@ -217,3 +205,18 @@ class Exponentials:
                 for k in self.table.kernels
             ),
         )
+
+
+def split_content(ring: Ring, polynomial: fmpz_mpoly, free: int) -> tuple[fmpz_mpoly, fmpz_mpoly]:
+    """Return a polynomial as one in the first so many generators times the rest."""
+    parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
+    for monomial, coefficient in polynomial.terms():
+        exponents = tuple(int(e) for e in monomial)
+        key = exponents[free:]
+        parts.setdefault(key, {})[(*exponents[:free], *(0 for _ in key))] = int(coefficient)
+    content = ring.constant(0)
+    for terms in parts.values():
+        content = content.gcd(ring.context.from_dict(terms))
+        if content.is_one():
+            break
+    return content, polynomial / content

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from flint import Ordering, fmpz_mpoly_ctx
+
 from symflex.kernels.factored import Factored, common_denominator
 
 if TYPE_CHECKING:
@@ -23,10 +25,9 @@ if TYPE_CHECKING:
 def split(ring: Ring, polynomial: fmpz_mpoly, index: int) -> dict[int, fmpz_mpoly]:
     """Return the coefficient of every power of one generator, over the same ring."""
     parts: dict[int, dict[tuple[int, ...], int]] = {}
-    for monomial, coefficient in polynomial.terms():
-        exponents = [int(e) for e in monomial]
-        power, exponents[index] = exponents[index], 0
-        parts.setdefault(power, {})[tuple(exponents)] = int(coefficient)
+    for monomial, coefficient in polynomial.to_dict().items():
+        own = parts.setdefault(int(monomial[index]), {})
+        own[(*monomial[:index], 0, *monomial[index + 1 :])] = int(coefficient)
     return {power: ring.context.from_dict(terms) for power, terms in parts.items()}
 
 
@@ -65,8 +66,7 @@ class NormalForm:
 
         Without ``pairs``, the relations between two wavenumbers of one dispersion are left unused.
         """
-        for index, square in self._squares:
-            polynomial = self._powers(polynomial, index, 2, square)
+        polynomial = self._without_squares(polynomial)
         result = Factored.number(self.ring, 1)
         for dispersion in self.table.dispersions:
             if dispersion.kind == "pair" and not pairs:
@@ -100,15 +100,29 @@ class NormalForm:
         c0 = dispersion.characteristic[0]
         return -c0 if dispersion.kind == "wave" else c0 / 4
 
-    def _powers(self, polynomial: fmpz_mpoly, index: int, degree: int, image: fmpz_mpoly) -> fmpz_mpoly:
-        """Return the polynomial with ``x^degree`` replaced."""
-        if int(polynomial.degrees()[index]) < degree:
+    @cached_property
+    def _odd_first(self) -> tuple[fmpz_mpoly_ctx, tuple[tuple[int, fmpz_mpoly], ...]]:
+        """The ring with sinh and sin before all else, and the relation of each such kernel."""
+        names = self.ring.context.names()
+        odd = [names[i] for i, _ in self._squares]
+        context = fmpz_mpoly_ctx.get([*odd, *(n for n in names if n not in odd)], Ordering.lex)
+        relations = [
+            (i, context.gen(k) ** 2 - square.project_to_context(context))
+            for k, (i, square) in enumerate(self._squares)
+        ]
+        return context, tuple(relations)
+
+    def _without_squares(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
+        """Return the polynomial without squares of sinh and sin, by division with these leading."""
+        degrees = polynomial.degrees()
+        context, relations = self._odd_first
+        needed = [relation for i, relation in relations if int(degrees[i]) > 1]
+        if not needed:
             return polynomial
-        x = self.ring.context.gen(index)
-        total = self.ring.constant(0)
-        for power, part in split(self.ring, polynomial, index).items():
-            total = total + part * x ** (power % degree) * image ** (power // degree)
-        return total
+        moved = polynomial.project_to_context(context)
+        for relation in needed:
+            _, moved = divmod(moved, relation)
+        return moved.project_to_context(self.ring.context)
 
     def _disperse(self, polynomial: fmpz_mpoly, dispersion: Dispersion) -> tuple[fmpz_mpoly, Factored]:
         """Return a multiple of the polynomial in normal form, and the factor it was multiplied by."""

@@ -24,6 +24,7 @@ from symflex.transfer.balls import ball, enclose, rational_value
 from symflex.transfer.cancel import cancel
 from symflex.transfer.distributed import embedded_table
 from symflex.transfer.enclose_kernels import KernelValues, expansion
+from symflex.transfer.monomials import MonomialPlans
 from symflex.transfer.transfer_function import HiddenFactor, TransferFunction
 
 if TYPE_CHECKING:
@@ -192,7 +193,11 @@ class BoundTransferFunction:
 
     def kernel_values(self, constants: Mapping[str, arb]) -> KernelValues:
         """Return the evaluator of the ring of kernels, from enclosures of the constants."""
-        return KernelValues(self.ratio.ring.names, self.kernels, constants, self._modal_sums)
+        return KernelValues(self.ratio.ring.names, self.kernels, constants, self._modal_sums, self._plans)
+
+    @cached_property
+    def _plans(self) -> MonomialPlans:
+        return MonomialPlans()
 
     @cached_property
     def _modal_sums(self) -> ModalSums:

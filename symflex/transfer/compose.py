@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symflex.kernels import Factored, Ring
@@ -41,19 +40,33 @@ def compose_rational(ring: Ring, factor: fmpz_mpoly, images: Sequence[Factored |
         for i, (d, image) in enumerate(zip(degrees, images, strict=True))
         if d and image is not None
     }
-    total = ring.constant(0)
+    powers: dict[tuple[int, int], fmpz_mpoly] = {}
+    terms: list[fmpz_mpoly] = []
     for monomial, coefficient in factor.terms():
-        term = Factored.number(ring, Fraction(int(coefficient)))
-        for i, exponent in enumerate(monomial):
-            image = images[i]
-            if degrees[i] and image is not None:
-                below = denominators[i]
-                term = term * (image * below) ** int(exponent) * below ** (degrees[i] - int(exponent))
-        total = total + term.expand()
+        term = ring.constant(int(coefficient))
+        for i, below in denominators.items():
+            exponent = int(monomial[i])
+            if (i, exponent) not in powers:
+                image = images[i]
+                raised = below ** (degrees[i] - exponent)
+                powers[i, exponent] = (
+                    raised if image is None else (image * below) ** exponent * raised
+                ).expand()
+            term = term * powers[i, exponent]
+        terms.append(term)
+    total = _sum(terms, ring)
     scale = Factored.number(ring, 1)
     for i, below in denominators.items():
         scale = scale * below ** degrees[i]
     return Factored.polynomial(ring, total) / scale
+
+
+def _sum(terms: list[fmpz_mpoly], ring: Ring) -> fmpz_mpoly:
+    """Return a sum, in pairs: adding one by one would copy what is there every time."""
+    while len(terms) > 1:
+        pairs = zip(terms[::2], [*terms[1::2], ring.constant(0)], strict=False)
+        terms = [a + b for a, b in pairs]
+    return terms[0] if terms else ring.constant(0)
 
 
 def _is_small(factor: fmpz_mpoly, images: Sequence[Factored | None]) -> bool:

@@ -13,20 +13,27 @@ from typing import TYPE_CHECKING
 
 from symflex.errors import BudgetError, Diagnostic
 from symflex.kernels import LAPLACE, MEMORY_LIMIT, Dispersion, Factored, KernelTable, Ring, degree_in
-from symflex.kernels.exponentials import Exponentials
+from symflex.kernels.exponentials import Exponentials, split_content
 from symflex.kernels.multiple_angles import lift
 from symflex.kernels.normal_form import NormalForm, split
 from symflex.kernels.origin import Origin
 from symflex.kernels.vanishing import Vanishing
 from symflex.transfer.cancel import cancel
+from symflex.transfer.kernel_images import KernelImages
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from flint import fmpz_mpoly
 
     from symflex.kernels.exponentials import Angle
 
+    Split = Callable[[fmpz_mpoly], tuple[fmpz_mpoly, fmpz_mpoly]]
+
+TERM_LIMIT = 200_000
+"""Terms of a quotient in kernels up to which it is reduced: some ten seconds."""
+
+CIRCULAR_AND_HYPERBOLIC = frozenset({"cosh", "sinh", "cos", "sin"})
 
 WAYS = 12
 """Number of ways to solve the dispersion relations that are tried when orders of vanishing are looked for."""
@@ -92,12 +99,10 @@ class KernelReduction:
         return any(int(degrees[i]) for i in self._kernels)
 
     def _is_of_waves(self, factor: fmpz_mpoly) -> bool:
-        """Tell whether a polynomial over the coordinates holds wavenumbers and no kernels."""
-        ring = self.coordinates.coordinates
+        """Tell whether a polynomial, in kernels or exponentials, holds wavenumbers and no kernels."""
         degrees = factor.degrees()
-        return any(int(degrees[ring.index[w]]) for w in self.table.wavenumbers) and not any(
-            int(degrees[i]) for i in range(len(self.ring.names) - len(self._kernels), len(ring.names))
-        )
+        free = len(self.ring.names) - len(self._kernels)
+        return self._has_waves(factor) and not any(int(d) for d in degrees[free:])
 
     def _has_waves(self, factor: fmpz_mpoly) -> bool:
         degrees = factor.degrees()
@@ -114,27 +119,54 @@ class KernelReduction:
             The common factor that was cancelled before, over what rows were multiplied by to clear
             denominators.
         """
+        if max(sum(len(f) for f, _ in v.factors) for v in (num, den)) > TERM_LIMIT:
+            message = f"the closed form comes from one with more than {TERM_LIMIT} terms in kernels"
+            hint = "let equal parts share their parameters, or split the model"
+            raise BudgetError(Diagnostic("SF502", message, None, hint))
         # Where parameters follow from the wavenumbers, that alone makes equal functions equal.
         pairs = not self._is_solved
-        above, below = (self._free(self.normal.reduce_factored(v, pairs=pairs)) for v in (num, den))
+        above, below = (self._solved_for(self.normal.reduce_factored(v, pairs=pairs)) for v in (num, den))
         if below.is_zero:
             return None
         if above.is_zero:
             one, modes = Factored.number(self.ring, 1), self.normal.reduce_factored(den * cancelled)
             return Reduced(one * 0, one, self._modes(modes), self.table)
-        quotient, shared = cancel(above, below)
-        before = self._free(cancelled)
-        shared, _ = cancel((shared * before).numerator(), before.denominator())
-        quotient, shared = self._split_contents(quotient), self._split_contents(shared)
-        # Powers of wavenumbers come of clearing denominators: as powers of s they would look like modes.
-        shared = shared.filter(lambda f: not self._is_of_waves(f))
-        table, back = self._restorer([quotient, shared.numerator()])
-        ratio = self._shortest(back(quotient))
-        modes = self._modes(self._shortest(back(shared.numerator())))
+        before = self._solved_for(cancelled)
+        if self._are_apart(above, below):
+            table, quotient, shared = self.table, *self._lowest(above, below, before, self._kernel_content)
+        else:
+            num, den, before = (self._in_exponentials(v) for v in (above, below, before))
+            quotient, shared = self._lowest(num, den, before, self.coordinates.split)
+            table, back = self._restorer([quotient, shared])
+            quotient, shared = back(quotient), back(shared)
+        ratio = self._shortest(quotient)
+        modes = self._modes(self._shortest(shared))
         if table is self.table:
             ratio, modes, table = self._lifted(ratio, modes)
         num, den = self._entire(ratio, table)
         return Reduced(num, den, modes, table)
+
+    def _lowest(
+        self, above: Factored, below: Factored, before: Factored, split: Split
+    ) -> tuple[Factored, Factored]:
+        """Return a quotient with common factors cancelled, and these times what was cancelled before."""
+        quotient, shared = cancel(above, below)
+        shared, _ = cancel((shared * before).numerator(), before.denominator())
+        quotient, shared = _split_contents(quotient, split), _split_contents(shared, split)
+        # Powers of wavenumbers come of clearing denominators: as powers of s they would look like modes.
+        return quotient, shared.filter(lambda f: not self._is_of_waves(f)).numerator()
+
+    def _are_apart(self, above: Factored, below: Factored) -> bool:
+        """Tell whether no factor with a kernel is proved to be common."""
+        if any(k.function not in CIRCULAR_AND_HYPERBOLIC for k in self.table.kernels):
+            return False
+        images = KernelImages(self.ring, self.coordinates.angles)
+        pieces = [[f for f, _ in v.factors if self.has_kernels(f)] for v in (above, below)]
+        return all(images.prove_apart(f, g) for f in pieces[0] for g in pieces[1])
+
+    def _kernel_content(self, polynomial: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly]:
+        """Return a polynomial in normal form as one free of kernels times the rest."""
+        return split_content(self.ring, polynomial, len(self.ring.names) - len(self._kernels))
 
     def _lifted(self, ratio: Factored, modes: Factored) -> tuple[Factored, Factored, KernelTable]:
         """Return the values in kernels of longer lengths that were asked for, where these suffice."""
@@ -191,17 +223,6 @@ class KernelReduction:
                     found.append(factor)
         return tuple(found)
 
-    def _split_contents(self, value: Factored) -> Factored:
-        """Return a value over the coordinates with every factor free of kernels set apart."""
-        result = Factored.number(value.ring, value.unit)
-        for factor, exponent in value.factors:
-            content, rest = self.coordinates.split(factor)
-            number, pieces = content.factor()
-            result = result * Fraction(int(number)) ** exponent
-            for piece, power in (*pieces, (rest, 1)):
-                result = result * Factored.polynomial(value.ring, piece) ** (exponent * int(power))
-        return result
-
     def _shortest(self, value: Factored) -> Factored:
         """Return a value with every factor in normal form, or with pairs of wavenumbers left as they are.
 
@@ -240,10 +261,13 @@ class KernelReduction:
                 result = result * Factored.polynomial(self.ring, rest) ** exponent
         return result
 
-    def _free(self, value: Factored) -> Factored:
-        """Return a value in exponentials; parameters that wavenumbers determine are expressed by them."""
+    def _solved_for(self, value: Factored) -> Factored:
+        """Return a value with the parameters that wavenumbers determine expressed by them."""
         for name, formula in self.solved:
             value = value.map_factors(self.ring, lambda f, n=name, g=formula: _substitute(self.ring, f, n, g))  # type: ignore[misc]
+        return value
+
+    def _in_exponentials(self, value: Factored) -> Factored:
         return value.map_factors(self.coordinates.coordinates, self.coordinates.transform)
 
     def _restorer(self, values: Sequence[Factored]) -> tuple[KernelTable, _Restorer]:
@@ -335,6 +359,18 @@ class KernelReduction:
             if meeting and meeting % 2 == 0:
                 rest = rest / split**meeting * (c2**2 - c0 * 4) ** (meeting // 2)
         return rest
+
+
+def _split_contents(value: Factored, split: Split) -> Factored:
+    """Return a value with every factor free of kernels set apart."""
+    result = Factored.number(value.ring, value.unit)
+    for factor, exponent in value.factors:
+        content, rest = split(factor)
+        number, pieces = content.factor()
+        result = result * Fraction(int(number)) ** exponent
+        for piece, power in (*pieces, (rest, 1)):
+            result = result * Factored.polynomial(value.ring, piece) ** (exponent * int(power))
+    return result
 
 
 def _merge_splits(value: Factored, splits: Iterable[Factored]) -> Factored:

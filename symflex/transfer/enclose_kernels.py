@@ -14,6 +14,7 @@ from flint import acb, acb_mat, acb_poly, acb_series, ctx
 
 from symflex.kernels import ModalSums, modal_amplitudes, mode_values
 from symflex.transfer.balls import ball
+from symflex.transfer.monomials import MonomialPlans
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -40,12 +41,15 @@ class KernelValues:
         Enclosures of the constants.
     sums : ModalSums
         Over the same ring.
+    plans : MonomialPlans
+        Shared by all precisions.
     """
 
     names: Sequence[str]
     table: KernelTable
     constants: Mapping[str, arb]
     sums: ModalSums
+    plans: MonomialPlans
 
     def at(self, s: Value) -> dict[str, Value]:
         """Return the values of all generators at ``s`` [rad/s], and characteristic roots without names.
@@ -126,17 +130,8 @@ class KernelValues:
         return self._monomials(polynomial, values)
 
     def _monomials(self, polynomial: fmpz_mpoly, values: Mapping[str, Value]) -> Value:
-        total: Value = acb(0)
-        powers: dict[tuple[int, int], Value] = {}
-        for monomial, coefficient in polynomial.terms():
-            term: Value = acb(coefficient)
-            for i, exponent in enumerate(monomial):
-                if exponent:
-                    key = (i, int(exponent))
-                    if key not in powers:
-                        powers[key] = _power(values[self.names[i]], int(exponent))
-                    term = term * powers[key]
-            total = total + term
+        plan = self.plans.of(polynomial)
+        total: Value = plan.value(acb(1), [_power(values[self.names[i]], e) for i, e in plan.powers])
         return total
 
 

@@ -45,6 +45,12 @@ REACHES = (3.0, 2.0, 4.5)
 CHOOSING = 3
 """Base lengths up to which every one has series or exponentials by itself; more have series together only."""
 
+REAL_TERMS = 1000
+"""Terms of numerator and denominator up to which a program in real arithmetic is made besides."""
+
+SIGNING = 2
+"""Dispersions up to which a piece is made for every choice of signs of their wavenumbers."""
+
 CIRCLE = 24
 CONFLUENT = 2.0
 """Twice the squared distance of a pair's arguments below which means over a circle are taken."""
@@ -88,7 +94,9 @@ def build_piecewise(tf: TransferFunction, reach: float | None = None) -> Piecewi
 
 
 def build_real(tf: TransferFunction, reach: float = REACHES[0]) -> Piecewise | None:
-    """Return the program of the response at an angular frequency in real arithmetic, ``None`` with losses.
+    """Return the program of the response at an angular frequency in real arithmetic.
+
+    ``None`` with losses, and where it would be very long.
 
     Parameters
     ----------
@@ -97,6 +105,8 @@ def build_real(tf: TransferFunction, reach: float = REACHES[0]) -> Piecewise | N
     reach : float
         As for :func:`build_piecewise`.
     """
+    if sum(len(f) for f, _ in tf.ratio.factors) > REAL_TERMS:
+        return None
     positive = tuple(p.name for p in tf.parameters if p.assume == "positive")
     axis = RealAxis(tf.ratio.ring, tf.kernels, positive)
     return _Workshop(tf, reach).real_program(axis) if axis.is_real else None
@@ -307,6 +317,10 @@ class _Workshop:
             counts.append(len(own))
         return tests, counts
 
+    @property
+    def _is_signed(self) -> bool:
+        return len(self.table.dispersions) <= SIGNING
+
     def _near(self, bits: Sequence[bool], counts: Sequence[int]) -> tuple[bool, ...]:
         """Return which groups are taken to be small."""
         near, at = [], 0
@@ -318,7 +332,7 @@ class _Workshop:
     def program(self) -> Piecewise:
         """Return the program for complex s."""
         forge = Forge()
-        site = Site(forge, self.tf, self.families)
+        site = Site(forge, self.tf, self.families, is_signed=self._is_signed)
         tests, counts = self._sizes(site)
         first, one = len(tests), forge.constant(1)
         tests += [(site.exponent(self.families[i], 0), 0.0, one) for i in self.delays]
@@ -402,6 +416,7 @@ class _Workshop:
             dict(zip(self.delays, grows, strict=True)),
             self._exponents(),
             mirrored,
+            self._is_signed,
         )
         groups: list[_Group | _Lone] = [g for g, n in zip(self.groups, near, strict=True) if n]
         for group, is_near in zip(self.groups, near, strict=True):

@@ -51,6 +51,8 @@ class Site:
         Per family and length, the pairs ``(a, b)`` that occur.
     mirrored : sequence of int
         Identities of dispersions whose wavenumbers are even in s and here computed from ``-s``.
+    is_signed : bool
+        True when ``mirrored`` tells the sign of roots of squares; otherwise these are computed as such.
     axis : RealAxis, optional
         Given for real arithmetic: the leaf of s is then the angular frequency, wavenumbers are magnitudes.
     """
@@ -61,6 +63,7 @@ class Site:
     grows: Mapping[int, bool] = field(default_factory=dict)
     exponents: Mapping[tuple[int, int], Sequence[tuple[int, int]]] = field(default_factory=dict)
     mirrored: Sequence[int] = ()
+    is_signed: bool = True
     axis: RealAxis | None = None
 
     def __post_init__(self) -> None:
@@ -133,7 +136,7 @@ class Site:
 
     def plain_parts(self, law: Dispersion) -> tuple[int, int] | None:
         """Return the factor free of s of :meth:`plain_root`, and s or its magnitude."""
-        if law.kind not in ("wave", "bending"):
+        if law.kind not in ("wave", "bending") or not (self.is_signed or self.axis is not None):
             return None
         c0, s = law.characteristic[0], self.ring.context.gen(0)
         power = next((e for f, e in c0.factors if f == s), 0)
