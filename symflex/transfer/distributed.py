@@ -379,11 +379,7 @@ def _merge_splits(value: Factored, splits: Iterable[Factored]) -> Factored:
         ((polynomial, _),) = pair.factors
         _, pieces = polynomial.factor()
         halves = [Factored.polynomial(value.ring, p) for p, _ in pieces]
-        exponents = [
-            next((e for f, e in value.factors if f == h.factors[0][0]), 0)
-            for h in halves
-            if len(h.factors) == 1
-        ]
+        exponents = [value.exponent_of(h.factors[0][0]) for h in halves if len(h.factors) == 1]
         if len(exponents) == 2 and exponents[0] == exponents[1] != 0:  # noqa: PLR2004
             value = value * (pair / (halves[0] * halves[1])) ** exponents[0]
     return value

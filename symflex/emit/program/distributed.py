@@ -488,7 +488,7 @@ class _Workshop:
     def _power_of_s(self, values: Iterable[Factored]) -> Factored:
         """Return the power of s that all values share."""
         s = self.ring.context.gen(0)
-        power = min(next((e for f, e in v.factors if f == s), 0) for v in values)
+        power = min(v.exponent_of(s) for v in values)
         return Factored.generator(self.ring, LAPLACE) ** power
 
     def _local_parts(
@@ -553,11 +553,11 @@ class _Workshop:
         """
         large, small = (Factored.generator(self.ring, w) for w in dispersion.wavenumbers)
         (first, _), (second, _) = large.factors[0], small.factors[0]
-        power = next((e for f, e in value.factors if f == second), 0)
+        power = value.exponent_of(second)
         if power >= 0:
             return value
         even = -power + power % 2
-        outside = next((e for f, e in value.factors if f == first), 0)
+        outside = value.exponent_of(first)
         # Powers of the larger one stay outside, where they are harmless; even ones are all there is of it.
         whole = value / large**outside * (large * small) ** even
         numerator = self.normal.reduce(whole.numerator().expand()) / whole.denominator()

@@ -139,7 +139,7 @@ class Site:
         if law.kind not in ("wave", "bending") or not (self.is_signed or self.axis is not None):
             return None
         c0, s = law.characteristic[0], self.ring.context.gen(0)
-        power = next((e for f, e in c0.factors if f == s), 0)
+        power = c0.exponent_of(s)
         rest = c0.filter(lambda f: f != s) * c0.unit
         if power != 2 or rest.depends_on(LAPLACE):  # noqa: PLR2004
             return None

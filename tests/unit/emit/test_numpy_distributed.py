@@ -16,7 +16,9 @@ import pytest
 
 from symflex import pipeline
 from symflex.emit.numpy_module import numpy_module
-from symflex.emit.program import build_piecewise, evaluate
+from symflex.emit.program import build_piecewise, evaluate, modal
+from symflex.emit.program.verify import doubles
+from symflex.transfer import bind
 
 BAR = 'E = "70 GPa"\nI = "1e-8 m^4"\nrho = "2700 kg/m^3"\nA = "1e-4 m^2"\nl = "1 m"\n'
 BEAM = 'type = "beam", E = "E", I = "I", rho = "rho", A = "A", l = "l"'
@@ -430,3 +432,41 @@ def test_a_pipe_with_flow_deflects_at_rest_as_a_compressed_column(pipe: Any, s: 
 @pytest.mark.parametrize("s", [0.0, 1e-9j, 1j, 30j, 100j, 1e3j])
 def test_numbers_and_arrays_give_the_same_where_matrix_exponentials_serve(pipe: Any, s: complex) -> None:
     assert pipe(s) == pytest.approx(pipe(np.array([s, 1j, 50j]))[0], rel=1e-12)
+
+
+COMPRESSED = """
+symflex = 1
+[parameters]
+EI = "1 N*m^2"
+m = "1 kg/m"
+P = "400 N"
+c = "1e-3 N*s/m"
+l = "1 m"
+[fields.w]
+domain = ["0", "l"]
+equation = "EI*w'''' + P*w'' + c*s*w' + m*s^2*w = 0"
+conditions = ["w(0) = 0", "w'(0) = 0", "w''(l) = 0", "EI*w'''(l) + P*w'(l) = -F"]
+[inputs]
+F = { unit = "N" }
+[outputs]
+Y = "w(l)"
+"""
+
+
+@pytest.mark.parametrize("s", [200.0, 200.0001, 199.9 + 0.05j, 201.0, 190 - 3j, 260.0])
+def test_roots_that_nearly_meet_cost_no_digits(s: complex) -> None:
+    # x^4 + 400 x^2 + s^2 has double roots at s = 200, which c takes apart a little: exponents of size 14.
+    (tf,) = pipeline.derive_all(pipeline.loads(COMPRESSED))
+    bound = bind(tf)
+    found = evaluate(modal.build_modal(tf, 4.0), np.array([s]), doubles(bound))[0]
+    assert abs(found / bound(complex(s)) - 1) < 1e-11
+
+
+def test_matrix_exponentials_serve_where_series_would_be_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(modal, "SERIES_TERMS", 0)
+    (tf,) = pipeline.derive_all(pipeline.loads(COMPRESSED.replace("400 N", "4 N")))
+    bound = bind(tf)
+    s = np.array([0.0, 1e-6j, 0.3j, -0.2 + 2j, 6j])
+    found = evaluate(modal.build_modal(tf, 10.0), s, doubles(bound))
+    expected = np.array([bound(complex(x)) for x in s])
+    assert np.max(np.abs(found / expected - 1)) < 1e-11
