@@ -90,10 +90,18 @@ def derive(equations: Equations, output: str, source: str) -> TransferFunction:
 
 
 def derive_all(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> tuple[TransferFunction, ...]:
-    """Return the transfer functions of the given pairs, all by default, from one elimination."""
-    return transfer_room.derive_all(
-        assemble(model), model.transfer_functions if pairs is None else tuple(pairs)
-    )
+    """Return the transfer functions of the given pairs, all by default, from one elimination.
+
+    Those in which some wavenumbers have a formula and others have none take a second one, without names.
+    """
+    wanted = model.transfer_functions if pairs is None else tuple(pairs)
+    found = transfer_room.derive_all(assemble(model), wanted)
+    mixed = [i for i, tf in enumerate(found) if tf.is_mixed]
+    if not mixed:
+        return found
+    nameless = equations_room.assemble(model, _nested_transfer, is_nameless=True)
+    again = dict(zip(mixed, transfer_room.derive_all(nameless, [wanted[i] for i in mixed]), strict=True))
+    return tuple(again.get(i, tf) for i, tf in enumerate(found))
 
 
 def derive_bound(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[BoundTransferFunction, ...]:

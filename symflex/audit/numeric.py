@@ -92,7 +92,9 @@ class Numbers:
             if not ratio.is_finite() or ratio.contains(0) or ratio.rel_accuracy_bits() <= DOUBLE_BITS:
                 return None
             # In balls, since neither value need be within reach of a double.
-            decibels, angle = 20 * abs(ratio).log() / arb(10).log(), ratio.arg() * 180 / arb.pi()
+            decibels = 20 * abs(ratio).log() / arb(10).log()
+            # A ball around a negative number reaches across the cut: its middle does not.
+            angle = ratio.mid().arg() * 180 / arb.pi()
             return float(decibels.mid()), float(angle.mid())
 
     def both_at(self, s: tuple[Fraction, Fraction], digits: int = DIGITS) -> tuple[acb, acb] | None:
@@ -255,8 +257,9 @@ def largest_deviation(numbers: Numbers) -> Deviation | None:
     values = [numbers.ratio_at(frequency) for frequency in grid]
     magnitude = _largest(numbers, grid, values, 0)
     angle = _largest(numbers, grid, values, 1)
-    if magnitude is None or angle is None:
+    if magnitude is None and angle is None:
         return None
+    magnitude, angle = magnitude or (0.0, grid[0]), angle or (0.0, grid[0])
     unbounded = abs(magnitude[0]) > UNBOUNDED
     return Deviation(magnitude[0], magnitude[1], unbounded, angle[0], angle[1], numbers.band)
 

@@ -43,7 +43,12 @@ GENERATOR_LIMIT = 1_000
 UNKNOWN_LIMIT = 2_500
 
 
-def assemble(model: Model, nested: Callable[[PlacedBlock, Ring], Factored] | None = None) -> Equations:
+def assemble(
+    model: Model,
+    nested: Callable[[PlacedBlock, Ring], Factored] | None = None,
+    *,
+    is_nameless: bool = False,
+) -> Equations:
     """Stamp every element and signal of a model into one linear system.
 
     Parameters
@@ -52,6 +57,9 @@ def assemble(model: Model, nested: Callable[[PlacedBlock, Ring], Factored] | Non
         Resolved.
     nested : callable, optional
         Returns the transfer function of a ``model`` block over a given ring.
+    is_nameless : bool
+        True to give no wavenumber a name: a quotient with named and nameless ones has no form in which what
+        cancels is seen.
 
     Raises
     ------
@@ -76,7 +84,7 @@ def assemble(model: Model, nested: Callable[[PlacedBlock, Ring], Factored] | Non
             *(c.generator for c in constants),
         )
     )
-    distributed = _Assembly(model, ring, constants, nested).survey()
+    distributed = _Assembly(model, ring, constants, nested).survey(is_nameless=is_nameless)
     whole = ring if distributed is None else distributed.propagation.ring
     return _Assembly(model, whole, constants, nested, distributed).run()
 
@@ -131,7 +139,7 @@ class _Assembly:
     rows: list[EquationRow] = field(default_factory=list)
     through: dict[Variable, LinearForm] = field(default_factory=dict)
 
-    def survey(self) -> Distributed | None:
+    def survey(self, *, is_nameless: bool) -> Distributed | None:
         """Return the model's distributed parts; this assembly is over the ring without kernels."""
         lines = any(isinstance(use.element, LineElement) for use in self.model.elements)
         delays = any(b.block is not None and b.block.kernel_time for b in self.model.blocks)
@@ -140,7 +148,7 @@ class _Assembly:
         evaluator, _ = self._evaluator(self._blocks())
         if self.problems:
             raise ModelError(*self.problems)
-        return survey(self.model, evaluator, _expressions(self.model))
+        return survey(self.model, evaluator, _expressions(self.model), is_nameless=is_nameless)
 
     def _evaluator(self, blocks: Mapping[str, Factored]) -> tuple[Evaluator, dict[str, int]]:
         known = {d.name for d in self.model.definitions}

@@ -171,7 +171,9 @@ class _Demands:
         return self.keys[key]
 
 
-def survey(model: Model, evaluator: Evaluator, expressions: Iterable[Expression]) -> Distributed | None:
+def survey(
+    model: Model, evaluator: Evaluator, expressions: Iterable[Expression], *, is_nameless: bool = False
+) -> Distributed | None:
     """Return the distributed parts of a model, ``None`` when it has none.
 
     Parameters
@@ -182,6 +184,8 @@ def survey(model: Model, evaluator: Evaluator, expressions: Iterable[Expression]
         Over the ring without kernels, with the rational blocks.
     expressions : iterable of Expression
         Everything in which a field may be evaluated at a point.
+    is_nameless : bool
+        True to give no wavenumber a name.
 
     Raises
     ------
@@ -217,7 +221,7 @@ def survey(model: Model, evaluator: Evaluator, expressions: Iterable[Expression]
         raise (BudgetError if all(d.code.startswith("SF5") for d in problems) else ModelError)(*problems)
     if not (lines or delays or solutions):
         return None
-    propagation = propagate(evaluator.ring, _alike(demands.demands))
+    propagation = propagate(evaluator.ring, _nameless(demands.demands) if is_nameless else demands.demands)
     one = Factored.number(propagation.ring, 1)
     return Distributed(
         propagation,
@@ -231,15 +235,10 @@ def survey(model: Model, evaluator: Evaluator, expressions: Iterable[Expression]
     )
 
 
-def _alike(
+def _nameless(
     demands: Sequence[tuple[Dispersion, Sequence[Factored]]],
 ) -> list[tuple[Dispersion, Sequence[Factored]]]:
-    """Return all dispersions without names for their roots if one has none.
-
-    Products of named and nameless exponentials would have no form in which what cancels is seen.
-    """
-    if not any(law.kind == "general" for law, _ in demands):
-        return list(demands)
+    """Return all dispersions without names for their roots: fundamental functions are their kernels."""
     return [
         (law if law.kind == "exponential" else replace(law, kind="general"), lengths)
         for law, lengths in demands
@@ -282,6 +281,10 @@ def _solution(field: Field, evaluator: Evaluator, demands: _Demands) -> FieldSol
                 "eliminate an unknown by hand, or differentiate an equation",
             )
         )
+    if static := [u for u in field.unknowns if u not in system.states]:
+        message = f"the equations of field '{field.name}' hold no derivative of " + " and ".join(static)
+        hint = "put what it equals in its place in the other equations and conditions"
+        raise ModelError(Diagnostic("SF305", message, field.span, hint))
     medium = demands.medium(field.name, system, field.span)
     return FieldSolution(field, medium, inputs, evaluator.constant(field.start))
 

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
+    from collections.abc import Container
+
     from symflex.kernels.factored import Factored
 
 DispersionKind = Literal["exponential", "wave", "bending", "pair", "general"]
@@ -102,6 +104,18 @@ class KernelTable:
     def generators(self) -> tuple[str, ...]:
         """Generators of wavenumbers and then of kernels."""
         return (*self.wavenumbers, *(k.generator for k in self.kernels))
+
+    def restricted(self, names: Container[str]) -> KernelTable:
+        """Return the table of the dispersions of which some generator is among the names."""
+        kept = {
+            id(d)
+            for d in self.dispersions
+            if any(n in names for n in (*d.wavenumbers, *(k.generator for k in self.kernels_of(d))))
+        }
+        return KernelTable(
+            tuple(d for d in self.dispersions if id(d) in kept),
+            tuple(k for k in self.kernels if id(k.dispersion) in kept),
+        )
 
     def kernels_of(self, dispersion: Dispersion) -> tuple[Kernel, ...]:
         """Return the kernels of one dispersion, in order."""

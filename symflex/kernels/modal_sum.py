@@ -13,8 +13,8 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import combinations_with_replacement, permutations, product
-from math import factorial, prod
+from itertools import combinations_with_replacement, product
+from math import comb, factorial, prod
 from typing import TYPE_CHECKING, Any
 
 from symflex.errors import BudgetError, Diagnostic
@@ -23,7 +23,7 @@ from symflex.kernels.normal_form import split
 from symflex.kernels.ring import Ring
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from flint import fmpz_mpoly
 
@@ -164,7 +164,7 @@ class ModalSums:
         return tuple(found.values())
 
     @cached_property
-    def _kernels(self) -> tuple[tuple[int, int, int], ...]:
+    def kernels(self) -> tuple[tuple[int, int, int], ...]:
         """Per fundamental function or decay the position of its generator, its mode, and its order."""
 
         def mode_of(kernel: Kernel) -> int:
@@ -181,15 +181,10 @@ class ModalSums:
             if k.function in ("fundamental", "exp")
         )
 
-    @property
-    def serves(self) -> bool:
-        """True when there are fundamental functions."""
-        return any(not mode.is_decay for mode in self.modes)
-
     def has_functions(self, polynomial: fmpz_mpoly) -> bool:
         """Tell whether a polynomial has fundamental functions in it."""
         degrees = polynomial.degrees()
-        return any(int(degrees[i]) and not self.modes[m].is_decay for i, m, _ in self._kernels)
+        return any(int(degrees[i]) and not self.modes[m].is_decay for i, m, _ in self.kernels)
 
     def of(self, polynomial: fmpz_mpoly) -> ModalSum:
         """Return the sum of a polynomial.
@@ -209,7 +204,7 @@ class ModalSums:
         for monomial, number in polynomial.terms():
             exponents = [int(e) for e in monomial]
             functions: list[tuple[int, int]] = []
-            for position, mode, order in self._kernels:
+            for position, mode, order in self.kernels:
                 functions += [(mode, order)] * exponents[position]
                 exponents[position] = 0
             collected.setdefault(tuple(sorted(functions)), {})[tuple(exponents)] = int(number)
@@ -221,6 +216,7 @@ class ModalSums:
         coefficients: list[fmpz_mpoly] = []
         frames = []
         for slots, own in by_slots.items():
+            self._check_size(slots)
             terms_of_frame: list[tuple[tuple[int, ...], int]] = []
             for orders, coefficient in own.items():
                 images = _arrangements(slots, orders)
@@ -232,17 +228,20 @@ class ModalSums:
                 frames.append(Frame(slots, tuple(terms_of_frame), keys))
         return ModalSum(tuple(coefficients), tuple(frames))
 
+    def _check_size(self, slots: tuple[int, ...]) -> None:
+        """Raise if roots can be given to the slots in too many ways."""
+        ways = (comb(self.modes[m].roots + count - 1, count) for m, count in Counter(slots).items())
+        if prod(ways) > KEY_LIMIT:
+            message = f"the closed form has more than {KEY_LIMIT} products of exponentials"
+            raise BudgetError(Diagnostic("SF503", message))
+
     def _keys(
         self, slots: tuple[int, ...], terms: Sequence[tuple[tuple[int, ...], fmpz_mpoly]]
     ) -> tuple[tuple[Key, int], ...]:
-        groups = Counter(slots)
         choices = [
             list(combinations_with_replacement(range(self.modes[m].roots), count))
-            for m, count in groups.items()
+            for m, count in Counter(slots).items()
         ]
-        if prod(map(len, choices)) > KEY_LIMIT:
-            message = f"the closed form has more than {KEY_LIMIT} products of exponentials"
-            raise BudgetError(Diagnostic("SF503", message))
         algebra = _RootAlgebra(self.ring, self.modes)
         kept: dict[Key, bool] = {}
         found = []
@@ -271,8 +270,17 @@ def _arrangements(slots: tuple[int, ...], orders: tuple[int, ...]) -> list[tuple
     by_mode: dict[int, list[int]] = {}
     for slot, order in zip(slots, orders, strict=True):
         by_mode.setdefault(slot, []).append(order)
-    parts = [sorted(set(permutations(own))) for own in by_mode.values()]
+    parts = [list(_permutations(Counter(own))) for own in by_mode.values()]
     return [tuple(o for part in chosen for o in part) for chosen in product(*parts)]
+
+
+def _permutations(left: Counter[int]) -> Iterator[tuple[int, ...]]:
+    """Return the distinct orders of values that occur several times."""
+    if not left:
+        yield ()
+    for value in sorted(left):
+        for rest in _permutations(left - Counter([value])):
+            yield (value, *rest)
 
 
 def _repetitions(slots: tuple[int, ...], values: tuple[int, ...]) -> int:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from flint import Ordering, fmpz_mpoly_ctx
 
+from symflex.errors import BudgetError, Diagnostic
 from symflex.kernels.factored import Factored, common_denominator
 
 if TYPE_CHECKING:
@@ -20,6 +21,10 @@ if TYPE_CHECKING:
 
     from symflex.kernels.dispersion import Dispersion, KernelTable
     from symflex.kernels.ring import Ring
+
+
+PAIR_TERMS = 60_000
+"""Terms up to which powers of a pair of wavenumbers are replaced: some seconds."""
 
 
 def split(ring: Ring, polynomial: fmpz_mpoly, index: int) -> dict[int, fmpz_mpoly]:
@@ -168,6 +173,10 @@ class NormalForm:
                 total = total + part * x ** (power % 2) * image ** (power // 2) * d ** (highest - power // 2)
             polynomial, scale = total, scale * below**highest
         while (degree := int(polynomial.degrees()[second])) >= 4:  # noqa: PLR2004
+            if len(polynomial) > PAIR_TERMS:
+                message = "the closed form is too large: two wavenumbers depend on too many symbols"
+                hint = "give some parameters numbers, or leave out losses, loads or lengths"
+                raise BudgetError(Diagnostic("SF502", message, None, hint))
             total = self.ring.constant(0)
             for power, part in split(self.ring, polynomial, second).items():
                 if power == degree:

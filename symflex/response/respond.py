@@ -125,7 +125,8 @@ def _evaluate(bound: BoundTransferFunction, omega: npt.NDArray[np.float64]) -> n
             elif bits < LAST_BITS:
                 unsettled.append(point)
             elif not ball.is_finite():
-                values[point[0]] = complex(inf, nan)
+                # Where wavenumbers vanish or meet, there is a limit.
+                values[point[0]] = bound(1j * point[1]) if bound.is_distributed else complex(inf, nan)
         pending, bits = unsettled, 2 * bits
     return values
 

@@ -439,6 +439,11 @@ def bind(
     if not tf.kernels:
         return BoundTransferFunction(tf, exact, ratio, tuple(hidden))
     kernels = _bound_table(tf.kernels, images)
+    for law in kernels.dispersions:
+        if law.wavenumbers and law.characteristic[0].is_zero:
+            message = f"a wavenumber of {tf.name} is zero at every s for these values"
+            hint = "a rigid or massless limit has its own equations: write the zero in place of the parameter"
+            raise ModelError(Diagnostic("SF231", message, None, hint))
     parts = (images.apply_factored(tf.num), images.apply_factored(tf.den))
     return BoundTransferFunction(tf, exact, ratio, tuple(hidden), kernels, parts)
 

@@ -40,6 +40,11 @@ def compose_rational(ring: Ring, factor: fmpz_mpoly, images: Sequence[Factored |
         for i, (d, image) in enumerate(zip(degrees, images, strict=True))
         if d and image is not None
     }
+    wholes = {
+        i: image * denominators[i]
+        for i, image in enumerate(images)
+        if image is not None and i in denominators
+    }
     powers: dict[tuple[int, int], fmpz_mpoly] = {}
     terms: list[fmpz_mpoly] = []
     for monomial, coefficient in factor.terms():
@@ -47,11 +52,8 @@ def compose_rational(ring: Ring, factor: fmpz_mpoly, images: Sequence[Factored |
         for i, below in denominators.items():
             exponent = int(monomial[i])
             if (i, exponent) not in powers:
-                image = images[i]
-                raised = below ** (degrees[i] - exponent)
-                powers[i, exponent] = (
-                    raised if image is None else (image * below) ** exponent * raised
-                ).expand()
+                raised = wholes[i] ** exponent * below ** (degrees[i] - exponent)
+                powers[i, exponent] = raised.expand()
             term = term * powers[i, exponent]
         terms.append(term)
     total = _sum(terms, ring)

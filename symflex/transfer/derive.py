@@ -183,6 +183,8 @@ class _Workshop:
             ratio, above, below, cancelled = (
                 self._without_kernels(v) for v in (ratio, above, below, cancelled)
             )
+        if table:
+            table = table.restricted(_generators_in(above, below, cancelled))
         model = self._equations.model
         known = dict(model.quotients).get((output.name, given.name))
         return TransferFunction(
@@ -252,3 +254,11 @@ class _Workshop:
         return tuple(
             HiddenFactor(f, e) for f, e in value.factors if e > 0 and any(degree_in(f, i) for i in varying)
         )
+
+
+def _generators_in(*values: Factored) -> set[str]:
+    """Return the names of all generators that occur."""
+    names = values[0].ring.names
+    return {
+        names[i] for v in values for f, _ in v.factors for i, degree in enumerate(f.degrees()) if int(degree)
+    }

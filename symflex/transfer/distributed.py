@@ -135,8 +135,8 @@ class KernelReduction:
         if self._are_apart(above, below):
             table, quotient, shared = self.table, *self._lowest(above, below, before, self._kernel_content)
         else:
-            num, den, before = (self._in_exponentials(v) for v in (above, below, before))
-            quotient, shared = self._lowest(num, den, before, self.coordinates.split)
+            above, below, before = (self._in_exponentials(v) for v in (above, below, before))
+            quotient, shared = self._lowest(above, below, before, self.coordinates.split)
             table, back = self._restorer([quotient, shared])
             quotient, shared = back(quotient), back(shared)
         ratio = self._shortest(quotient)
@@ -157,7 +157,7 @@ class KernelReduction:
         return quotient, shared.filter(lambda f: not self._is_of_waves(f)).numerator()
 
     def _are_apart(self, above: Factored, below: Factored) -> bool:
-        """Tell whether no factor with a kernel is proved to be common."""
+        """Tell whether it is proved that no factor with a kernel is common."""
         if any(k.function not in CIRCULAR_AND_HYPERBOLIC for k in self.table.kernels):
             return False
         images = KernelImages(self.ring, self.coordinates.angles)
@@ -165,7 +165,7 @@ class KernelReduction:
         return all(images.prove_apart(f, g) for f in pieces[0] for g in pieces[1])
 
     def _kernel_content(self, polynomial: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly]:
-        """Return a polynomial in normal form as one free of kernels times the rest."""
+        """Return a polynomial as one free of kernels times the rest."""
         return split_content(self.ring, polynomial, len(self.ring.names) - len(self._kernels))
 
     def _lifted(self, ratio: Factored, modes: Factored) -> tuple[Factored, Factored, KernelTable]:

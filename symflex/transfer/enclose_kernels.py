@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_mat, acb_poly, acb_series, ctx
+from flint import acb, acb_mat, acb_poly, acb_series, arb, ctx
 
 from symflex.kernels import ModalSums, modal_amplitudes, mode_values
 from symflex.transfer.balls import ball
@@ -19,9 +19,12 @@ from symflex.transfer.monomials import MonomialPlans
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from flint import arb, fmpz_mpoly
+    from flint import fmpz_mpoly
 
     from symflex.kernels import Dispersion, Factored, Kernel, KernelTable
+
+FINER = 2**30
+"""Parts of the least distance of two roots to which they are isolated at the second try."""
 
 Value = acb | acb_series
 """A number, or a power series in the displacement from one."""
@@ -176,22 +179,32 @@ def characteristic_roots(coefficients: Sequence[Value]) -> tuple[Value, ...] | N
     """Return enclosures of all roots of ``x^n + ... + c_0``, ``None`` where they cannot be told apart."""
     base = [c[0] if isinstance(c, acb_series) else c for c in coefficients]
     polynomial = acb_poly([*base, acb(1)])
-    try:
-        isolated = polynomial.roots()
-    except ValueError:
-        return None
     slope = polynomial.derivative()
+    roots = _isolated(polynomial, slope)
+    if roots is None:
+        return None
     found: list[Value] = []
-    for disc in isolated:
-        root = _refined(polynomial, slope, disc)
-        if root is None:
-            return None
+    for root in roots:
         moving = [c[1] * root**i for i, c in enumerate(coefficients) if isinstance(c, acb_series)]
         if moving:
             found.append(acb_series([root, -sum(moving, acb(0)) / slope(root)], 2))
         else:
             found.append(root)
     return tuple(found)
+
+
+def _isolated(polynomial: acb_poly, slope: acb_poly) -> list[acb] | None:
+    try:
+        discs = polynomial.roots()
+        found = [_refined(polynomial, slope, disc) for disc in discs]
+        gap = min((abs(a.mid() - b.mid()) for i, a in enumerate(discs) for b in discs[:i]), default=arb(1))
+        if not all(root is not None and root.rad() < gap / FINER for root in found):
+            # Told apart, but too roughly for Newton's method.
+            found = [_refined(polynomial, slope, disc) for disc in polynomial.roots(tol=gap.mid() / FINER)]
+    except ValueError:
+        return None
+    roots = [root for root in found if root is not None]
+    return roots if len(roots) == len(found) else None
 
 
 def _refined(polynomial: acb_poly, slope: acb_poly, disc: acb) -> acb | None:

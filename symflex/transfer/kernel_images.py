@@ -50,18 +50,8 @@ class KernelImages:
 
     def prove_apart(self, f: fmpz_mpoly, g: fmpz_mpoly) -> bool:
         """Tell whether two polynomials are proved to share no factor with a kernel; False decides nothing."""
-        for angle, one, other in zip(self.angles, self._images(f), self._images(g), strict=True):
-            if one is None or other is None:
-                return False
-            common = one.gcd(other)
-            if angle.kind == "circular":
-                # sin^2 + cos^2 is one, and no factor.
-                unit = nmod_poly([1, 0, 1], PRIME)
-                while (spurious := common.gcd(unit)).degree() > 0:
-                    common //= spurious
-            if common.degree() > 0:
-                return False
-        return True
+        pairs = zip(self._images(f), self._images(g), strict=True)
+        return all(a is not None and b is not None and a.gcd(b).degree() <= 0 for a, b in pairs)
 
     @cached_property
     def _point(self) -> Mapping[int, int]:

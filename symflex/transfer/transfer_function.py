@@ -108,6 +108,19 @@ class TransferFunction:
         """True when the function is transcendental: it holds kernels besides s."""
         return bool(self.kernels)
 
+    @cached_property
+    def is_nameless(self) -> bool:
+        """True when it holds kernels of wavenumbers that have no formula."""
+        return any(
+            self.ratio.depends_on(k.generator) for k in self.kernels.kernels if k.function == "fundamental"
+        )
+
+    @property
+    def is_mixed(self) -> bool:
+        """True when some of its wavenumbers have a formula and others have none."""
+        named = (*self.kernels.wavenumbers, *(k.generator for k in self.kernels.kernels if k.wavenumber))
+        return self.is_nameless and any(self.ratio.depends_on(name) for name in named)
+
     @property
     def name(self) -> str:
         """``OUT/IN``."""

@@ -83,14 +83,18 @@ class Invariants:
         Factors that are not invariant by themselves are multiplied with others of their side.
         """
         result = Factored.number(self.ring, value.unit)
-        kernels = [self.source.index[k.generator] for k in self.table.kernels if k.wavenumber]
+        moving = [
+            self.source.index[name]
+            for name in (*self.table.wavenumbers, *(k.generator for k in self.table.kernels if k.wavenumber))
+        ]
         for side in (1, -1):
             rest = Factored.number(self.source, 1)
             for factor, exponent in value.factors:
                 if exponent * side < 0:
                     continue
                 one = Factored(self.source, Fraction(1), ((factor, abs(exponent)),))
-                if not any(int(factor.degrees()[i]) for i in kernels):
+                degrees = factor.degrees()
+                if len(factor) == 1 or not any(int(degrees[i]) for i in moving):
                     result = result * Factored.polynomial(self.ring, self.embed(factor)) ** exponent
                 elif (found := self._invariant(factor)) is not None:
                     result = result * found**exponent
@@ -297,8 +301,11 @@ class Invariants:
             total = total + part * powers.product((a + b) // 2, (a - b) // 2)
         return real_powers(self.ring, total), 2**highest
 
-    def _without_wavenumbers(self, value: Factored) -> Factored:
-        """Return a value with the even powers of pairs that are left in terms of their coefficients."""
+    def _without_wavenumbers(self, value: Factored) -> Factored | None:
+        """Return a value with the even powers of pairs that are left in terms of their coefficients.
+
+        ``None`` when odd ones are left.
+        """
         for number, d in enumerate(self.table.dispersions):
             if d.kind != "pair":
                 continue
@@ -309,6 +316,8 @@ class Invariants:
             value = value / (x * y) ** power * c0 ** (power // 2)
             difference = x**2 - y**2
             meeting = exponents.get(str(difference.factors[0][0]), 0)
+            if power % 2 or meeting % 2:
+                return None
             value = value / difference**meeting * (c2**2 - c0 * 4) ** (meeting // 2)
         return value
 

@@ -42,7 +42,7 @@ def krylov_form(tf: TransferFunction, digits: int) -> PrintedForm:
     """
     del digits
     require_kernels(tf, "krylov")
-    if any(d.kind == "general" for d in tf.kernels.dispersions):
+    if tf.is_nameless:
         return in_kernels(tf, "krylov", tf.ratio)
     change, value = in_krylov_functions(tf.ratio.ring, tf.kernels, tf.ratio)
     ring = change.ring

@@ -21,7 +21,7 @@ def forms_of(tf: TransferFunction) -> tuple[str, ...]:
     """Return the forms a transfer function has."""
     if not tf.is_distributed:
         return RATIONAL
-    return WITHOUT_FORMULA if any(d.kind == "general" for d in tf.kernels.dispersions) else DISTRIBUTED
+    return WITHOUT_FORMULA if tf.is_nameless else DISTRIBUTED
 
 
 def refuse(tf: TransferFunction, form: str, reason: str) -> UsageError:
@@ -62,5 +62,5 @@ def require_formula(tf: TransferFunction, form: str) -> None:
     UsageError
         SF902.
     """
-    if any(d.kind == "general" for d in tf.kernels.dispersions):
+    if tf.is_nameless:
         raise refuse(tf, form, "the exponents of its field equations have no formula")

@@ -45,6 +45,9 @@ REACHES = (3.0, 2.0, 4.5)
 CHOOSING = 3
 """Base lengths up to which every one has series or exponentials by itself; more have series together only."""
 
+LOCAL_TERMS = 30_000
+"""Terms looked at while series for small arguments are made free of wavenumbers: some ten seconds."""
+
 REAL_TERMS = 1000
 """Terms of numerator and denominator up to which a program in real arithmetic is made besides."""
 
@@ -67,7 +70,7 @@ BASES: dict[str, Callable[[Iterable[Sequence[tuple[int, int]]]], LocalBasis]] = 
 
 def reaches_of(tf: TransferFunction) -> tuple[float, ...]:
     """Return the reaches of series that are worth trying, the usual one first."""
-    return MODAL_REACHES if tf.modal_sums.serves else REACHES
+    return MODAL_REACHES if tf.is_nameless else REACHES
 
 
 def build_piecewise(tf: TransferFunction, reach: float | None = None) -> Piecewise:
@@ -90,7 +93,7 @@ def build_piecewise(tf: TransferFunction, reach: float | None = None) -> Piecewi
         message = f"a program for {tf.name} would have more than {TERM_LIMIT} terms"
         raise BudgetError(Diagnostic("SF503", message, None, "keep repeated sums in [definitions]"))
     chosen = reaches_of(tf)[0] if reach is None else reach
-    return build_modal(tf, chosen) if tf.modal_sums.serves else _Workshop(tf, chosen).program()
+    return build_modal(tf, chosen) if tf.is_nameless else _Workshop(tf, chosen).program()
 
 
 def build_real(tf: TransferFunction, reach: float = REACHES[0]) -> Piecewise | None:
@@ -164,6 +167,7 @@ class _Workshop:
         self.ring: Ring = tf.ratio.ring
         self.table = tf.kernels
         self.normal = NormalForm(self.ring, self.table)
+        self.work = 0
         self.families = families_of(self.ring, self.table)
         self.waves = {self.ring.index[w] for w in self.table.wavenumbers}
         self.kernels = {self.ring.index[k.generator] for k in self.table.kernels}
@@ -437,7 +441,8 @@ class _Workshop:
             return Piece(straight(forge, [num, den]), 0, is_complex)
         growth = forge.add([forge.multiply([forge.constant(d), site.angle(*at)]) for at, d in scales.items()])
         size = forge.add([forge.constant(2), *(site.angle(*at) for at in scales)])
-        return Piece(straight(forge, [num, den, growth, forge.divide(forge.constant(1), size)]), CIRCLE)
+        radius = forge.divide(forge.apply("abs", forge.s), size)
+        return Piece(straight(forge, [num, den, growth, radius]), CIRCLE)
 
     def _exponents(self) -> dict[tuple[int, int], list[tuple[int, int]]]:
         keys = [key for h in self.halves for key in h.terms]
@@ -545,6 +550,14 @@ class _Workshop:
         # Powers of a lone wavenumber are small; the relations would make differences of large terms of them.
         return value if lone else self.normal.reduce_factored(value)
 
+    def _normal_form(self, polynomial: fmpz_mpoly) -> Factored:
+        self.work += len(polynomial)
+        if self.work > LOCAL_TERMS:
+            message = f"the series of {self.tf.name} for small arguments would take too long to find"
+            hint = "give some parameters numbers, or leave out losses, loads or lengths"
+            raise BudgetError(Diagnostic("SF503", message, None, hint))
+        return self.normal.reduce(polynomial)
+
     def _without_smaller(self, value: Factored, dispersion: Dispersion) -> Factored:
         """Return a value that is finite where the smaller wavenumber is zero without negative powers of it.
 
@@ -560,7 +573,7 @@ class _Workshop:
         outside = value.exponent_of(first)
         # Powers of the larger one stay outside, where they are harmless; even ones are all there is of it.
         whole = value / large**outside * (large * small) ** even
-        numerator = self.normal.reduce(whole.numerator().expand()) / whole.denominator()
+        numerator = self._normal_form(whole.numerator().expand()) / whole.denominator()
         if numerator.is_zero:
             return numerator
         reduced, _ = cancel(numerator, dispersion.characteristic[0] ** (even // 2))
@@ -577,7 +590,7 @@ class _Workshop:
         even, twice = -lowest + lowest % 2, -meeting + meeting % 2
         c0, c2 = dispersion.characteristic[0], dispersion.characteristic[2]
         whole = value * (one * other) ** even * split**twice
-        numerator = self.normal.reduce(whole.numerator().expand()) / whole.denominator()
+        numerator = self._normal_form(whole.numerator().expand()) / whole.denominator()
         if numerator.is_zero:
             return numerator
         reduced, _ = cancel(numerator, c0 ** (even // 2) * (c2**2 - c0 * 4) ** (twice // 2))

@@ -17,7 +17,7 @@ from flint import Ordering, fmpz_mpoly_ctx
 
 from symflex.emit.program.local_basis import SERIES_ERROR
 from symflex.errors import BudgetError, Diagnostic
-from symflex.kernels import Factored
+from symflex.kernels import Factored, common_denominator
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -30,7 +30,9 @@ WORK_LIMIT = 60_000
 """Terms that one step may hold before such a series is given up."""
 
 LEADING = 16
-"""Taylor coefficients that may vanish before the first that does not."""
+"""Taylor coefficients looked at, at least; where the first ones vanish, some more."""
+
+FURTHER = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,12 +68,16 @@ class GeneralSeries:
         count = LEADING
         while size**count / factorial(count) > SERIES_ERROR:
             count += 1
-        # Only over the common denominator is it seen which ones vanish.
-        total = [self._factored(c, m) for m, c in enumerate(self._total(polynomial, count))]
-        first = next((m for m, c in enumerate(total) if not c.is_zero), None)
-        if first is None:
-            return ()
-        largest = max(size**m / factorial(m) for m in range(first, count))
+        while True:
+            # Only over the common denominator is it seen which ones vanish.
+            total = [self._factored(c, m) for m, c in enumerate(self._total(polynomial, count))]
+            first = next((m for m, c in enumerate(total) if not c.is_zero), None)
+            if first is None:
+                return ()
+            largest = max(size**m / factorial(m) for m in range(first, count))
+            if count > size and size**count / factorial(count) < SERIES_ERROR * largest:
+                break
+            count += FURTHER
         far = (m for m in range(first + 1, count) if m > size)
         last = next((m for m in far if size**m / factorial(m) < SERIES_ERROR * largest), count)
         return tuple(c for c in total[first:last] if not c.is_zero)
@@ -146,21 +152,12 @@ class GeneralSeries:
     def _below(self) -> Factored:
         """A common denominator of all coefficients of dispersion relations, and shifts."""
         values = [v for d in self.table.dispersions for v in (*d.characteristic, d.shift)]
-        return self._common(values)
+        return common_denominator(self.ring, values)
 
     @cached_property
     def _length_below(self) -> Factored:
         """A common denominator of all lengths."""
-        return self._common([k.length for k in self.table.kernels])
-
-    def _common(self, values: Sequence[Factored]) -> Factored:
-        found = Factored.number(self.ring, 1)
-        for value in values:
-            if not value.is_zero:
-                found = found * (value * found).denominator()
-                missing = (value * found).unit.denominator
-                found = found * missing
-        return found
+        return common_denominator(self.ring, [k.length for k in self.table.kernels])
 
     def _over(self, value: Factored) -> fmpz_mpoly:
         """Return a value as a polynomial in the generators and the inverse of the common denominator."""

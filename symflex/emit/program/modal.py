@@ -14,13 +14,16 @@ from functools import cached_property, partial
 from math import pi, prod
 from typing import TYPE_CHECKING
 
+from flint import nmod_poly
+
 from symflex.emit.program.forge import Forge
 from symflex.emit.program.general_series import GeneralSeries
 from symflex.emit.program.nodes import Condition, Constant, Piece, Piecewise
 from symflex.emit.program.schedule import straight
 from symflex.emit.program.site import Site
 from symflex.errors import BudgetError
-from symflex.kernels import LAPLACE, Factored, degree_in
+from symflex.kernels import LAPLACE, PRIME, Factored, degree_in, random_point, residue
+from symflex.kernels.normal_form import split
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -78,6 +81,16 @@ def build_modal(tf: TransferFunction, reach: float) -> Piecewise:
     return _ModalWorkshop(tf, reach).program()
 
 
+def _has_double_root(law: Dispersion) -> bool:
+    """Tell whether two characteristic roots are equal at every s, or do not move apart with s."""
+    if not any(c.depends_on(LAPLACE) for c in law.characteristic):
+        return True
+    point = random_point(law.characteristic[0].ring.names)
+    values = [0 if c.is_zero else residue(c, point) for c in law.characteristic]
+    polynomial = nmod_poly([*values, 1], PRIME)
+    return bool(polynomial.gcd(polynomial.derivative()).degree() > 0)
+
+
 @dataclass
 class _ModalWorkshop:
     tf: TransferFunction
@@ -118,6 +131,18 @@ class _ModalWorkshop:
         """Return the program."""
         forge = Forge()
         site = Site(forge, self.tf, ())
+        if any(_has_double_root(law) for law in self._laws):
+            # At every s some roots meet, and means over a circle would be of no use.
+            parameters = tuple(p.name for p in self.tf.parameters)
+            return Piecewise(
+                parameters,
+                straight(forge, [site.forge.constant(1)]),
+                (),
+                (0,),
+                (self._direct(),),
+                None,
+                solves=True,
+            )
         laws = [law for law in self._laws if law.order > 1]
         tests = [(forge.item(self._roots(site, law), law.order), APART) for law in laws]
         code = [self._modal(is_mean=False), self._modal(is_mean=True)]
@@ -175,8 +200,51 @@ class _ModalWorkshop:
             for law in self._laws
             for i in range(law.order)
         ]
-        radius = forge.divide(forge.constant(1), forge.add([forge.constant(2), *sizes]))
+        radius = forge.divide(forge.apply("abs", forge.s), forge.add([forge.constant(2), *sizes]))
+        radius = forge.add([radius, *self._step(site)])
         return Piece(straight(forge, [num, den, growths[1], radius]), CIRCLE)
+
+    def _step(self, site: Site) -> list[int]:
+        """Return about how far from s = 0 roots that meet there have moved apart, if that can be told.
+
+        There some coefficient of a characteristic polynomial, with the longest length for a unit, has changed
+        by as much as the largest of them at s = 0.
+        """
+        forge = site.forge
+        found: list[int] = []
+        for law in self._laws:
+            x = site.length(self.longest[id(law)])
+            static, moving = [forge.constant(1)], []
+            for i, c in enumerate(law.characteristic):
+                if c.is_zero:
+                    continue
+                above, below = (split(self.ring, v.expand(), 0) for v in (c.numerator(), c.denominator()))
+                if 0 not in below:
+                    return []
+                at_rest = Factored.polynomial(self.ring, below[0])
+                unit = forge.power(x, law.order - i)
+                for power, part in above.items():
+                    value = site.value(Factored.polynomial(self.ring, part) / at_rest)
+                    size = forge.apply("abs", forge.multiply([unit, value]))
+                    if power:
+                        moving.append((power, size))
+                    else:
+                        static.append(size)
+                for power, part in below.items():
+                    if power:
+                        share = site.value(Factored.polynomial(self.ring, part) / at_rest)
+                        found.append(self._root(forge, forge.apply("abs", share), power))
+            largest = forge.add(static)
+            for power, size in moving:
+                found.append(self._root(forge, forge.divide(size, largest), power))
+        return [forge.divide(forge.constant(1), forge.add(found))] if found else []
+
+    @staticmethod
+    def _root(forge: Forge, value: int, power: int) -> int:
+        """Return about the root of a power."""
+        for _ in range((power - 1).bit_length()):
+            value = forge.apply("sqrt", value)
+        return value
 
     def _sum(self, site: Site, modes: Sequence[int], factor: fmpz_mpoly) -> tuple[int, int]:
         """Return a factor over its largest exponential, and the logarithm of that."""
@@ -235,28 +303,37 @@ class _ModalWorkshop:
 
         Where ``sum(abs(c_i) r^i) < r^n``, every root of ``x^n + ... + c_0`` is less than r in size.
         """
-        forge, degree = site.forge, self._degree()
+        forge = site.forge
+        reaches: dict[tuple[int, bool], list[int]] = {}
+        laws: dict[tuple[int, bool], Dispersion] = {}
+        for mode, degree in zip(self.sums.modes, self._degrees(), strict=True):
+            if degree:
+                key = (id(mode.dispersion), mode.is_decay)
+                laws[key] = mode.dispersion
+                part = [forge.constant(degree / Fraction(self.reach)), site.length(mode.length)]
+                reaches.setdefault(key, []).append(forge.apply("abs", forge.multiply(part)))
         parts: list[int] = []
-        for mode in self.sums.modes:
-            law = mode.dispersion
-            scale = forge.multiply([forge.constant(degree / Fraction(self.reach)), site.length(mode.length)])
-            if mode.is_decay:
-                parts.append(forge.apply("abs", forge.multiply([scale, site.value(law.shift)])))
-            elif mode.length is self.longest[id(law)]:
-                for i, c in enumerate(law.characteristic):
-                    if not c.is_zero:
-                        term = forge.multiply([forge.power(scale, law.order - i), site.value(c)])
-                        parts.append(forge.apply("abs", term))
+        for (law, is_decay), own in reaches.items():
+            dispersion, scale = laws[law, is_decay], forge.add(own)
+            if is_decay:
+                parts.append(forge.apply("abs", forge.multiply([scale, site.value(dispersion.shift)])))
+                continue
+            for i, c in enumerate(dispersion.characteristic):
+                if not c.is_zero:
+                    term = forge.multiply([forge.power(scale, dispersion.order - i), site.value(c)])
+                    parts.append(forge.apply("abs", term))
         return forge.add(parts)
 
-    def _degree(self) -> int:
-        """Return the largest sum of exponents, in exponents of the longest length, of any product."""
-        weights = []
-        for kernel in self.table.kernels:
-            longest = self.longest.get(id(kernel.dispersion), kernel.length)
-            own, most = (abs(declared_length(self.tf, x)) for x in (kernel.length, longest))
-            weights.append((self.ring.index[kernel.generator], own / most))
-        largest = max(
-            sum(int(m[i]) * w for i, w in weights) for half in self.halves for m in half.expand().monoms()
-        )
-        return max(1, round(largest + 0.499))
+    def _degrees(self) -> list[int]:
+        """Return the largest number of kernels of every mode in any product."""
+        positions: list[list[int]] = [[] for _ in self.sums.modes]
+        for position, mode, _ in self.sums.kernels:
+            positions[mode].append(position)
+        found = []
+        for own in positions:
+            of_halves = (
+                sum(e * max(sum(int(m[i]) for i in own) for m in f.monoms()) for f, e in half.factors)
+                for half in self.halves
+            )
+            found.append(max(of_halves))
+        return found

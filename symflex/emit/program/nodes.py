@@ -339,7 +339,7 @@ class Piece:
     ----------
     code : Straight
         Its values are numerator and denominator; with a circle also the logarithm of the factor that both
-        were divided by, and the radius of the circle over the size of s.
+        were divided by, and the radius of the circle.
     circle : int
         Number of points on a circle around s over which numerator and denominator are averaged, because
         the formula itself is singular near s though they are not; 0 for none.

@@ -99,7 +99,7 @@ def characteristic_roots(coefficients: list[Any]) -> list[Any]:
     sizes = [np.abs(c) ** (1.0 / (n - i)) for i, c in enumerate(rows)]
     size = np.maximum(np.max(sizes, axis=0), 1e-30)
     is_finite = np.isfinite(size)
-    scaled = [np.where(is_finite, c / size ** (n - i), 0.0) for i, c in enumerate(rows)]
+    scaled = [np.nan_to_num(c / size ** (n - i)) * is_finite for i, c in enumerate(rows)]
     companion = np.zeros((*shape, n, n), dtype=complex)
     for i in range(n - 1):
         companion[..., i, i + 1] = 1.0
@@ -107,14 +107,14 @@ def characteristic_roots(coefficients: list[Any]) -> list[Any]:
         companion[..., n - 1, i] = -c
     x = np.linalg.eigvals(companion)
     differences = x[..., :, None] - x[..., None, :]
-    for _ in range(3 if n > 1 else 0):
+    for _ in range(8 if n > 1 else 0):
         value, slope = np.ones_like(x), np.zeros_like(x)
         for c in reversed(scaled):
             slope = slope * x + value
             value = value * x + c[..., None]
         away = np.sum(np.where(differences == 0.0, 0.0, 1.0 / differences), axis=-1)
         step = value / (slope - value * away)
-        x = x - np.where(np.isfinite(step) & (np.abs(step) < np.abs(x)), step, 0.0)
+        x = x - np.where(np.isfinite(step) & (np.abs(step) < 1.0), step, 0.0)
         differences = x[..., :, None] - x[..., None, :]
     apart = np.abs(differences) + np.where(np.eye(n, dtype=bool), np.inf, 0.0)
     found = np.where(is_finite, size, np.nan)
@@ -140,13 +140,13 @@ def mean_over_circle(parts: Callable[[Any], tuple[Any, ...]], s: Any, points: in
 
     Both are analytic, so the mean is the value at the center s, where the formula
     itself cancels. parts returns numerator, denominator, the logarithm of what both
-    were divided by, and the radius over abs(s).
+    were divided by, and the radius.
     """
     _, _, center, radius = parts(s)
     num, den = 0.0, 0.0
     for k in range(points):
         turn = np.exp(2j * np.pi * (k + 0.5) / points)
-        above, below, growth, _ = parts(s + radius * np.abs(s) * turn)
+        above, below, growth, _ = parts(s + radius * turn)
         scale = np.exp(growth - center)
         num = num + above * scale
         den = den + below * scale

@@ -247,6 +247,8 @@ class _Gauge:
 
     def verified(self, form: str, error: float | None, reach: Reach | None = None) -> Verification:
         samples = 0 if self.references is None else len(self.references.s)
+        if error is not None and not samples and not self.tf.ratio.is_zero:
+            return Verification(self.tf.name, form, None, self.band, 0, "no value could be enclosed")
         return Verification(self.tf.name, form, error, self.band, samples, self.reason, reach)
 
 
@@ -336,7 +338,8 @@ def _choose_general(
     for program in programs:
         measured = aside.extended(program, references.reach(program, band), band)
         ends = [0.0 if x is None else float(x) for x in (measured.lowest, measured.highest)]
-        found.append(((ends[0], -ends[1], measured.error), program, measured))
+        lacks = ends[0] > band[0] or ends[1] < band[1]
+        found.append(((lacks, -ends[1], ends[0], measured.error), program, measured))
         if measured.highest is not None and measured.highest >= band[1] and measured.error < ACCURATE:
             break
     _, program, measured = min(found, key=lambda f: f[0])
@@ -417,7 +420,7 @@ def _extremes(bound: BoundTransferFunction, low: float, high: float) -> list[flo
 
 def _part(bound: BoundTransferFunction) -> float:
     """Return which part of the usual number of frequencies is looked at."""
-    if not any(d.kind == "general" for d in bound.source.kernels.dispersions):
+    if not bound.source.is_nameless:
         return 1.0
     return min(1.0, LIGHT / sum(len(f) for f, _ in bound.ratio.factors))
 
@@ -462,6 +465,7 @@ class References:
         hertz = np.geomspace(low, high, count) if is_plain else sample_frequencies(bound, band_hz, count)
         points = 1j * (tau * hertz)
         found = [(s, self._reference(complex(s))) for s in points]
+        self._lost = [s.imag for s, reference in found if reference is None]
         self._references = [reference for _, reference in found if reference is not None]
         self.s = np.array([s for s, reference in found if reference is not None], dtype=complex)
 
@@ -471,22 +475,23 @@ class References:
 
     def reach(self, program: Program | Piecewise, band_hz: tuple[Fraction, Fraction]) -> Reach:
         """Return up to which frequency every sample was measured and is accurate."""
-        worst = 0.0
+        worst, end = 0.0, min(self._lost, default=inf)
         highest: complex | None = None
         for s, error in zip(self.s, self._errors(program), strict=True):
-            if error > REACHED:
+            if error > REACHED or s.imag > end:
                 break
             highest, worst = s, max(worst, error)
         else:
-            return Reach(band_hz[1], worst)
+            if not self._lost:
+                return Reach(band_hz[1], worst)
         hertz = None if highest is None else Fraction(f"{highest.imag / tau:.3g}")
         return Reach(hertz, worst)
 
     def down(self, program: Program | Piecewise, start: Fraction) -> tuple[Fraction, float]:
         """Return down to which frequency [Hz] every sample is accurate, and the worst error of these."""
-        lowest, worst = start, 0.0
+        lowest, worst, end = start, 0.0, max(self._lost, default=0.0)
         for s, error in reversed(list(zip(self.s, self._errors(program), strict=True))):
-            if error > REACHED:
+            if error > REACHED or s.imag < end:
                 break
             lowest, worst = Fraction(f"{s.imag / tau:.3g}"), max(worst, error)
         return lowest, worst

@@ -78,3 +78,15 @@ def test_a_difference_in_the_fortieth_digit_is_proved():
 
 def test_a_formula_in_definitions_of_its_own_is_read():
     assert audited("1/(m*((s + b/(2*m))^2 + k/m - (b/(2*m))^2))").verdict == "equal"
+
+
+def test_without_losses_a_wrong_factor_is_measured_too_and_a_wrong_sign_is_half_a_turn():
+    lossless = OSCILLATOR.replace('damper = {{ type = "damper", between = ["x", "ground"], b = "b" }}\n', "")
+
+    def deviation(expr):
+        (found,) = pipeline.audit(pipeline.loads(lossless.format(expr=expr, extra="")))
+        return found.deviation
+
+    assert deviation("2/(m*s^2 + k)").magnitude_db == pytest.approx(6.0206, abs=1e-3)
+    assert deviation("2/(m*s^2 + k)").phase_deg == 0
+    assert abs(deviation("-1/(m*s^2 + k)").phase_deg) == pytest.approx(180)

@@ -17,6 +17,19 @@ def spec(parameters, body):
 
 
 MODELS = {
+    "thermoelastic rod": spec(
+        "a b e l",
+        """[fields.rod]
+unknowns = ["u", "T"]
+domain = ["0", "l"]
+equations = ["a*u'' - e*T' = s^2*u", "b*T'' = s*T + e*s*u'"]
+conditions = ["u(0) = 0", "T'(0) = 0", "a*u'(l) - e*T(l) = f", "T(l) = 0"]
+[inputs]
+f = {}
+[outputs]
+Q = "T(0)"
+""",
+    ),
     "two beams": spec(
         "E I rho A l E_2 I_2 l_2 m",
         f"""[elements]

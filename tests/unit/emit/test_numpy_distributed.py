@@ -470,3 +470,69 @@ def test_matrix_exponentials_serve_where_series_would_be_too_long(monkeypatch: p
     found = evaluate(modal.build_modal(tf, 10.0), s, doubles(bound))
     expected = np.array([bound(complex(x)) for x in s])
     assert np.max(np.abs(found / expected - 1)) < 1e-11
+
+
+MASSLESS = """
+symflex = 1
+[parameters]
+EI = "4e-3 N*m^2"
+N = "1 N"
+m = "0.1 kg"
+l = "1 m"
+[fields.w]
+domain = ["0", "l"]
+equation = "EI*w'''' - N*w'' = 0"
+conditions = ["w(0) = 0", "w'(0) = 0", "w''(l) = 0", "EI*w'''(l) - N*w'(l) = m*s^2*w(l) - F"]
+[inputs]
+F = { unit = "N" }
+[outputs]
+Y = "w(l)"
+"""
+
+
+def test_roots_that_are_equal_at_every_s_are_no_obstacle() -> None:
+    (tf,) = pipeline.derive_all(pipeline.loads(MASSLESS))
+    s = np.array([0.0, 1j, 10j, 40j, 100j, 3 - 2j])
+    program = build_piecewise(tf)
+    # A beam without mass under tension is a spring: w(l)/F = (l - tanh(k l)/k)/N with k^2 = N/EI.
+    k = math.sqrt(1.0 / 4e-3)
+    compliance = 1.0 - math.tanh(k) / k
+    expected = compliance / (1.0 + 0.1 * compliance * s**2)
+    assert np.max(np.abs(evaluate(program, s, doubles(bind(tf))) / expected - 1)) < 1e-9
+
+
+JOINED = COMPRESSED.replace('c = "1e-3 N*s/m"', 'c = "1e-3 N*s/m"\nl_2 = "0.05 m"').replace(
+    '[fields.w]\ndomain = ["0", "l"]', '[fields.w]\ndomain = ["0", "l + l_2"]'
+)
+
+
+@pytest.mark.parametrize("length", [0.05, 1.0, 4.0])
+def test_lengths_given_at_run_time_need_not_be_like_the_declared_ones(length: float) -> None:
+    text = JOINED.replace("w''(l)", "w''(l + l_2)").replace("w'''(l)", "w'''(l + l_2)")
+    text = text.replace("P*w'(l)", "P*w'(l + l_2)").replace('Y = "w(l)"', 'Y = "w(l_2)"')
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    bound = bind(tf, {"l_2": length})
+    s = np.array([0.5j, 2.1j, 30j, 5 + 9j])
+    found = evaluate(build_piecewise(tf), s, doubles(bound))
+    expected = np.array([bound(complex(x)) for x in s])
+    assert np.max(np.abs(found / expected - 1)) < 1e-10
+
+
+STATIC = """
+symflex = 1
+[fields.w]
+domain = ["0", "1"]
+equation = "w'~~~ - 100*w'' + s*w' + s^2*w = 0"
+conditions = ["w(0) = 0", "w'(0) = 0", "w''(1) = 0", "w~~~(1) - 100*w'(1) = -F"]
+[inputs]
+F = {}
+[outputs]
+Y = "w(1)"
+""".replace("~~~", 3 * "'")
+
+
+def test_large_static_exponents_do_not_spoil_the_value_at_rest() -> None:
+    (tf,) = pipeline.derive_all(pipeline.loads(STATIC))
+    found = evaluate(build_piecewise(tf), np.array([0.0, 1e-12j, -1e-11]), {})
+    # A beam under tension: w(1)/F = (1 - tanh(10)/10)/100.
+    assert np.max(np.abs(found / ((1.0 - math.tanh(10.0) / 10.0) / 100.0) - 1)) < 1e-10

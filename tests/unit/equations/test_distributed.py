@@ -116,3 +116,28 @@ conditions = ["v*c(0) - D_0*c'(0) = v*u", "c'(l) = 0"]
     # v e^(v l/4D) / (2 D gamma sinh q + v cosh q) with q = gamma l/2: one sum of two terms is left.
     assert sorted(len(f) for f, _ in tf.ratio.factors if len(f) > 1) == [2]
     assert any(len(h.polynomial) == 2 for h in tf.hidden)
+
+
+@pytest.mark.parametrize(
+    ("unknowns", "equations", "static"),
+    [
+        ('["a", "b"]', '["a\' = s*b", "b = 2*a"]', "b"),
+        ('["a"]', "[\"a' - a' + s*a = 0\"]", "a"),
+    ],
+)
+def test_an_unknown_without_derivatives_is_refused_at_its_field(unknowns, equations, static):
+    text = f"""
+symflex = 1
+[fields.f]
+unknowns = {unknowns}
+domain = ["0", "1"]
+equations = {equations}
+conditions = ["a(0) = u"]
+[inputs]
+u = {{}}
+[outputs]
+Y = "{static}(1)"
+"""
+    with pytest.raises(ModelError, match=f"SF305.*no derivative of {static}") as caught:
+        pipeline.derive_all(pipeline.loads(text))
+    assert caught.value.diagnostics[0].span is not None

@@ -10,6 +10,7 @@ from symflex import pipeline
 from symflex.errors import ModelError
 from symflex.kernels import degree_in
 from symflex.kernels.origin import Origin
+from symflex.transfer import bind
 
 HEAD = """
 symflex = 1
@@ -346,3 +347,90 @@ def test_the_laplace_variable_alone_is_not_a_kernel():
     tf = SLIDING["V_act/F"]
     kernels = [tf.ratio.ring.index[k.generator] for k in tf.kernels.kernels]
     assert any(degree_in(f, i) for f, _ in tf.ratio.factors for i in kernels)
+
+
+BESIDE = """
+symflex = 1
+parameters = { E = "1 Pa", A = "1 m^2", rho = "1 kg/m^3", l = "1 m", c = "1 m/s", d = "1 m^3/s" }
+inputs = { F = { force = "x" }, u = {} }
+outputs = { X = "x", V = "v(l)" }
+[elements]
+bar = { type = "rod", between = ["ground", "x"], E = "E", A = "A", rho = "rho", l = "l" }
+[fields.v]
+domain = ["0", "l"]
+equation = "d*v''' + c*v' + s*v = 0"
+conditions = ["v(0) = u", "v(l) = 0", "v'(l) = 0"]
+"""
+
+
+def test_a_part_keeps_its_wavenumbers_beside_an_equation_that_has_no_names_for_them():
+    model = pipeline.loads(BESIDE.replace('V = "v(l)"', 'V = "v(l/2)"'))
+    pairs = [("X", "F"), ("V", "u")]
+    rod, wave = pipeline.derive_all(model, pairs)
+    assert (rod.is_nameless, wave.is_nameless) == (False, True)
+    assert rod.ratio.depends_on(rod.kernels.wavenumbers[0])
+
+
+def test_a_function_of_both_has_no_names():
+    text = BESIDE.replace('V = "v(l)"', 'V = "v(l/2)"').replace('"v(0) = u"', '"v(0) = x"')
+    (found,) = pipeline.derive_all(pipeline.loads(text), [("V", "F")])
+    assert found.is_nameless
+    assert not found.is_mixed
+    assert {k.function for k in found.kernels.kernels} == {"fundamental"}
+
+
+ARCH = """
+symflex = 1
+[parameters]
+EA = "5e5 N"
+EI = "20 N*m^2"
+kGA = "1.5e5 N"
+R = "0.8 m"
+rA = "0.5 kg/m"
+rI = "2e-5 kg*m"
+l = "1.2 m"
+[inputs]
+F = { unit = "N" }
+[outputs]
+Y = "w(l)"
+[fields.arch]
+unknowns = ["u", "w", "phi"]
+domain = ["0", "l"]
+equations = [
+    "EA*(u'' - w'/R) - kGA/R*(w' + u/R - phi) = rA*s^2*u",
+    "kGA*(w'' + u'/R - phi') + EA/R*(u' - w/R) = rA*s^2*w",
+    "EI*phi'' + kGA*(w' + u/R - phi) = rI*s^2*phi",
+]
+conditions = [
+    "u(0) = 0", "w(0) = 0", "phi(0) = 0", "EA*(u'(l) - w(l)/R) = 0",
+    "kGA*(w'(l) + u(l)/R - phi(l)) = F", "phi'(l) = 0",
+]
+"""
+
+
+def test_wavenumbers_of_almost_equal_size_are_told_apart():
+    # Two wave speeds of this curved beam are close; a value nearby was right where this one had been lost.
+    (tf,) = pipeline.derive_all(pipeline.loads(ARCH))
+    found = bind(tf)
+    assert abs(found(4737689.687559328j) / found(4737689.7j) - 1) < 1e-3
+
+
+def test_a_wavenumber_that_is_zero_at_every_s_is_refused():
+    text = """
+symflex = 1
+[parameters]
+E = "70 GPa"
+I = "2e-9 m^4"
+rho = { value = "0 kg/m^3", assume = "nonnegative" }
+A = "6e-5 m^2"
+l = "0.8 m"
+[elements]
+arm = { type = "beam", between = ["ground", "tip"], E = "E", I = "I", rho = "rho", A = "A", l = "l" }
+[inputs]
+F = { force = "tip" }
+[outputs]
+Y = "tip"
+"""
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    with pytest.raises(ModelError, match="SF231"):
+        bind(tf)
