@@ -83,10 +83,8 @@ class Invariants:
         Factors that are not invariant by themselves are multiplied with others of their side.
         """
         result = Factored.number(self.ring, value.unit)
-        moving = [
-            self.source.index[name]
-            for name in (*self.table.wavenumbers, *(k.generator for k in self.table.kernels if k.wavenumber))
-        ]
+        kernels = [self.source.index[k.generator] for k in self.table.kernels if k.wavenumber]
+        waves = [self.source.index[name] for name in self.table.wavenumbers]
         for side in (1, -1):
             rest = Factored.number(self.source, 1)
             for factor, exponent in value.factors:
@@ -94,7 +92,9 @@ class Invariants:
                     continue
                 one = Factored(self.source, Fraction(1), ((factor, abs(exponent)),))
                 degrees = factor.degrees()
-                if len(factor) == 1 or not any(int(degrees[i]) for i in moving):
+                # A sum of powers of wavenumbers need not be invariant either.
+                moving = kernels if len(factor) == 1 else [*kernels, *waves]
+                if not any(int(degrees[i]) for i in moving):
                     result = result * Factored.polynomial(self.ring, self.embed(factor)) ** exponent
                 elif (found := self._invariant(factor)) is not None:
                     result = result * found**exponent
