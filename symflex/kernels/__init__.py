@@ -3,6 +3,7 @@
 from symflex.kernels.dispersion import NO_KERNELS, Dispersion, Kernel, KernelTable
 from symflex.kernels.factored import Factored, common_denominator, least_common_multiple
 from symflex.kernels.functions import FUNCTIONS, ElementaryFunction
+from symflex.kernels.memo import PolynomialMemo
 from symflex.kernels.modal_sum import ModalSums, modal_amplitudes, mode_values
 from symflex.kernels.propagators import Propagation, Propagator, propagate
 from symflex.kernels.residue import PRIME, random_point, residue
@@ -20,6 +21,7 @@ __all__ = [
     "Kernel",
     "KernelTable",
     "ModalSums",
+    "PolynomialMemo",
     "Propagation",
     "Propagator",
     "Ring",

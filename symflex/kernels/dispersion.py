@@ -105,6 +105,16 @@ class KernelTable:
         """Generators of wavenumbers and then of kernels."""
         return (*self.wavenumbers, *(k.generator for k in self.kernels))
 
+    @property
+    def coefficients(self) -> tuple[Factored, ...]:
+        """The coefficients of all characteristic polynomials, and shifts."""
+        return tuple(v for d in self.dispersions for v in (*d.characteristic, d.shift))
+
+    @property
+    def values(self) -> tuple[Factored, ...]:
+        """All that wavenumbers and kernels are made of: coefficients and lengths."""
+        return (*self.coefficients, *(k.length for k in self.kernels))
+
     def restricted(self, names: Container[str]) -> KernelTable:
         """Return the table of the dispersions of which some generator is among the names."""
         kept = {

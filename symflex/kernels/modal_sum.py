@@ -11,7 +11,7 @@ arithmetic, and left out; in rounded numbers nothing of it can be lost then, how
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations_with_replacement, product
 from math import comb, factorial, prod
@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from symflex.errors import BudgetError, Diagnostic
 from symflex.kernels.factored import Factored, common_denominator
+from symflex.kernels.memo import PolynomialMemo
 from symflex.kernels.normal_form import split
 from symflex.kernels.ring import Ring
 
@@ -97,7 +98,10 @@ class ModalSum:
 
 
 def mode_values(roots: Any, length: Any) -> tuple[Any, Any]:  # noqa: ANN401
-    """Return the exponents of all roots at a length, and per root x^k/chi'(x) for k below their number."""
+    """Return the exponents of all roots at a length, and per root x^k/chi'(x) for k below their number.
+
+    They may be numbers, arrays or balls.
+    """
     powers = []
     for i, x in enumerate(roots):
         slope: Any = 1.0
@@ -150,35 +154,28 @@ class ModalSums:
 
     ring: Ring
     table: KernelTable
-    _known: dict[str, ModalSum] = field(default_factory=dict)
 
     @cached_property
+    def _modes(self) -> Mapping[tuple[int, int, bool], Mode]:
+        return {
+            _key(k): Mode(k.dispersion, k.length, k.function == "exp")
+            for k in self.table.kernels
+            if k.function in ("fundamental", "exp")
+        }
+
+    @property
     def modes(self) -> tuple[Mode, ...]:
         """The modes that slots count."""
-        found: dict[tuple[int, int, bool], Mode] = {}
-        for kernel in self.table.kernels:
-            if kernel.function in ("fundamental", "exp"):
-                is_decay = kernel.function == "exp"
-                key = (id(kernel.dispersion), id(kernel.length), is_decay)
-                found.setdefault(key, Mode(kernel.dispersion, kernel.length, is_decay))
-        return tuple(found.values())
+        return tuple(self._modes.values())
 
     @cached_property
     def kernels(self) -> tuple[tuple[int, int, int], ...]:
         """Per fundamental function or decay the position of its generator, its mode, and its order."""
-
-        def mode_of(kernel: Kernel) -> int:
-            wanted = (kernel.dispersion, kernel.length, kernel.function == "exp")
-            return next(
-                i
-                for i, m in enumerate(self.modes)
-                if m.dispersion is wanted[0] and m.length is wanted[1] and m.is_decay == wanted[2]
-            )
-
+        numbers = {key: i for i, key in enumerate(self._modes)}
         return tuple(
-            (self.ring.index[k.generator], mode_of(k), k.order)
+            (self.ring.index[k.generator], numbers[_key(k)], k.order)
             for k in self.table.kernels
-            if k.function in ("fundamental", "exp")
+            if _key(k) in numbers
         )
 
     def has_functions(self, polynomial: fmpz_mpoly) -> bool:
@@ -186,18 +183,10 @@ class ModalSums:
         degrees = polynomial.degrees()
         return any(int(degrees[i]) and not self.modes[m].is_decay for i, m, _ in self.kernels)
 
-    def of(self, polynomial: fmpz_mpoly) -> ModalSum:
-        """Return the sum of a polynomial.
-
-        Raises
-        ------
-        BudgetError
-            SF503 when it has more than ``KEY_LIMIT`` exponentials.
-        """
-        name = str(polynomial)
-        if name not in self._known:
-            self._known[name] = self._made(polynomial)
-        return self._known[name]
+    @cached_property
+    def of(self) -> PolynomialMemo[ModalSum]:
+        """The sum of a polynomial; SF503 when it has more than ``KEY_LIMIT`` exponentials."""
+        return PolynomialMemo(self._made)
 
     def _made(self, polynomial: fmpz_mpoly) -> ModalSum:
         collected: dict[tuple[tuple[int, int], ...], dict[tuple[int, ...], int]] = {}
@@ -263,6 +252,11 @@ class ModalSums:
             own = labels.setdefault((id(mode.dispersion), mode.is_decay), {})
             found.append(own.setdefault(root, len(own)))
         return tuple(found)
+
+
+def _key(kernel: Kernel) -> tuple[int, int, bool]:
+    """Return what tells modes apart."""
+    return id(kernel.dispersion), id(kernel.length), kernel.function == "exp"
 
 
 def _arrangements(slots: tuple[int, ...], orders: tuple[int, ...]) -> list[tuple[int, ...]]:

@@ -26,7 +26,8 @@ if TYPE_CHECKING:
 
     from symflex.kernels import Dispersion, KernelTable
     from symflex.transfer import BoundTransferFunction
-    from symflex.transfer.enclose_kernels import KernelValues, Value
+    from symflex.transfer.enclose_kernels import KernelValues
+    from symflex.transfer.monomials import Value
 
 FIRST_BITS = 64
 LAST_BITS = 4096

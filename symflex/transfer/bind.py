@@ -17,14 +17,23 @@ from flint import acb, acb_poly, acb_series, arb, ctx
 
 from symflex.errors import Diagnostic, ModelError, Source, Span, Text, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.kernels import LAPLACE, NO_KERNELS, Factored, KernelTable, ModalSums, Ring, degree_in
+from symflex.kernels import (
+    LAPLACE,
+    NO_KERNELS,
+    Factored,
+    KernelTable,
+    ModalSums,
+    PolynomialMemo,
+    Ring,
+    degree_in,
+)
 from symflex.model import ExactValue
 from symflex.quantities import parse_quantity, unit_of
 from symflex.transfer.balls import ball, enclose, rational_value
 from symflex.transfer.cancel import cancel
 from symflex.transfer.distributed import embedded_table
 from symflex.transfer.enclose_kernels import KernelValues, expansion
-from symflex.transfer.monomials import MonomialPlans
+from symflex.transfer.monomials import Plan, plan
 from symflex.transfer.transfer_function import HiddenFactor, TransferFunction
 
 if TYPE_CHECKING:
@@ -196,8 +205,8 @@ class BoundTransferFunction:
         return KernelValues(self.ratio.ring.names, self.kernels, constants, self._modal_sums, self._plans)
 
     @cached_property
-    def _plans(self) -> MonomialPlans:
-        return MonomialPlans()
+    def _plans(self) -> PolynomialMemo[Plan]:
+        return PolynomialMemo(plan)
 
     @cached_property
     def _modal_sums(self) -> ModalSums:
@@ -450,9 +459,7 @@ def bind(
 
 def _bound_table(table: KernelTable, images: _Substitution) -> KernelTable:
     """Return the table with values in its coefficients and lengths."""
-    values = [v for d in table.dispersions for v in (*d.characteristic, d.shift)]
-    values += [k.length for k in table.kernels]
-    return embedded_table(table, [(v, images.apply_factored(v)) for v in values])
+    return embedded_table(table, [(v, images.apply_factored(v)) for v in table.values])
 
 
 def _used_constants(tf: TransferFunction) -> list[str]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 from random import Random
 from typing import TYPE_CHECKING
 
-from symflex.kernels import LAPLACE, Ring, degree_in
+from symflex.kernels import LAPLACE, PolynomialMemo, Ring, degree_in
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly
@@ -27,8 +28,6 @@ class Images:
     """
 
     ring: Ring
-    _point: tuple[fmpz_mpoly, ...] = ()
-    _known: dict[int, tuple[fmpz_mpoly, fmpz_mpoly, fmpz_mpoly | None]] = field(default_factory=dict)
 
     def prove_coprime(self, f: fmpz_mpoly, g: fmpz_mpoly) -> bool:
         """Tell whether two factors are proved coprime; False decides nothing.
@@ -48,20 +47,21 @@ class Images:
             return False
         return bool(image_f.gcd(image_g).is_constant())
 
-    def _image(self, f: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly | None]:
+    @cached_property
+    def _point(self) -> tuple[fmpz_mpoly, ...]:
+        random = Random(1)
+        numbers = [LINE.constant(random.randrange(2**20, 2**21)) for _ in self.ring.names[1:]]
+        return (LINE.generator(LAPLACE), *numbers)
+
+    @cached_property
+    def _image(self) -> PolynomialMemo[tuple[fmpz_mpoly, fmpz_mpoly | None]]:
+        return PolynomialMemo(self._made)
+
+    def _made(self, f: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly | None]:
         """Return the leading coefficient in s, and the image unless its degree drops."""
-        known = self._known.get(id(f))
-        if known is None:
-            if not self._point:
-                random = Random(1)
-                numbers = [LINE.constant(random.randrange(2**20, 2**21)) for _ in self.ring.names[1:]]
-                self._point = (LINE.generator(LAPLACE), *numbers)
-            image = f.compose(*self._point, ctx=LINE.context)
-            kept = degree_in(image, 0) == degree_in(f, 0)
-            # The polynomial is kept as well: as long as it lives, its id is its own.
-            known = (f, _leading_coefficient(self.ring, f), image if kept else None)
-            self._known[id(f)] = known
-        return known[1:]
+        image = f.compose(*self._point, ctx=LINE.context)
+        kept = degree_in(image, 0) == degree_in(f, 0)
+        return _leading_coefficient(self.ring, f), image if kept else None
 
 
 def _leading_coefficient(ring: Ring, f: fmpz_mpoly) -> fmpz_mpoly:

@@ -109,9 +109,7 @@ class _Workshop:
     def _kernel_reduction(self, propagation: Propagation) -> KernelReduction:
         """Return how quotients of kernels are reduced, with definitions opened everywhere."""
         table = propagation.table
-        values = [v for d in table.dispersions for v in (*d.characteristic, d.shift)]
-        values += [k.length for k in table.kernels]
-        opened = [(v, self._expanded(propagation.embed(v))) for v in values]
+        opened = [(v, self._expanded(propagation.embed(v))) for v in table.values]
         self._cleared = self._expanded(self._equations.cleared or Factored.number(propagation.ring, 1))
         parameters = [p.name for p in self._equations.model.parameters]
         return KernelReduction(self._ring, embedded_table(table, opened), parameters, propagation.coordinates)

@@ -147,12 +147,12 @@ class KernelReduction:
         return Reduced(num, den, modes, table)
 
     def _lowest(
-        self, above: Factored, below: Factored, before: Factored, split: Split
+        self, above: Factored, below: Factored, before: Factored, contents: Split
     ) -> tuple[Factored, Factored]:
         """Return a quotient with common factors cancelled, and these times what was cancelled before."""
         quotient, shared = cancel(above, below)
         shared, _ = cancel((shared * before).numerator(), before.denominator())
-        quotient, shared = _split_contents(quotient, split), _split_contents(shared, split)
+        quotient, shared = _split_contents(quotient, contents), _split_contents(shared, contents)
         # Powers of wavenumbers come of clearing denominators: as powers of s they would look like modes.
         return quotient, shared.filter(lambda f: not self._is_of_waves(f)).numerator()
 

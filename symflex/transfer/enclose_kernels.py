@@ -14,20 +14,18 @@ from flint import acb, acb_mat, acb_poly, acb_series, arb, ctx
 
 from symflex.kernels import ModalSums, modal_amplitudes, mode_values
 from symflex.transfer.balls import ball
-from symflex.transfer.monomials import MonomialPlans
+from symflex.transfer.monomials import Value
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from flint import fmpz_mpoly
 
-    from symflex.kernels import Dispersion, Factored, Kernel, KernelTable
+    from symflex.kernels import Dispersion, Factored, Kernel, KernelTable, PolynomialMemo
+    from symflex.transfer.monomials import Plan
 
 FINER = 2**30
 """Parts of the least distance of two roots to which they are isolated at the second try."""
-
-Value = acb | acb_series
-"""A number, or a power series in the displacement from one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +42,7 @@ class KernelValues:
         Enclosures of the constants.
     sums : ModalSums
         Over the same ring.
-    plans : MonomialPlans
+    plans : PolynomialMemo of Plan
         Shared by all precisions.
     """
 
@@ -52,7 +50,7 @@ class KernelValues:
     table: KernelTable
     constants: Mapping[str, arb]
     sums: ModalSums
-    plans: MonomialPlans
+    plans: PolynomialMemo[Plan]
 
     def at(self, s: Value) -> dict[str, Value]:
         """Return the values of all generators at ``s`` [rad/s], and characteristic roots without names.
@@ -133,9 +131,8 @@ class KernelValues:
         return self._monomials(polynomial, values)
 
     def _monomials(self, polynomial: fmpz_mpoly, values: Mapping[str, Value]) -> Value:
-        plan = self.plans.of(polynomial)
-        total: Value = plan.value(acb(1), [_power(values[self.names[i]], e) for i, e in plan.powers])
-        return total
+        plan = self.plans(polynomial)
+        return plan.value([_power(values[self.names[i]], e) for i, e in plan.powers])
 
 
 def _power(base: Value, exponent: int) -> Value:

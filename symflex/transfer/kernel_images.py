@@ -6,14 +6,13 @@ Output: a proof, or none; without one, greatest common divisors have to be sough
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
-from random import Random
 from typing import TYPE_CHECKING
 
 from flint import nmod_poly
 
-from symflex.kernels import PRIME
+from symflex.kernels import PRIME, PolynomialMemo, random_point
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -46,7 +45,6 @@ class KernelImages:
 
     ring: Ring
     angles: Sequence[Angle]
-    _known: dict[int, tuple[fmpz_mpoly, list[Image]]] = field(default_factory=dict)
 
     def prove_apart(self, f: fmpz_mpoly, g: fmpz_mpoly) -> bool:
         """Tell whether two polynomials are proved to share no factor with a kernel; False decides nothing."""
@@ -56,10 +54,9 @@ class KernelImages:
     @cached_property
     def _point(self) -> Mapping[int, int]:
         """A residue per generator that is true to the relations of the kernels."""
-        random = Random(2)
-        point = {i: random.randrange(1, PRIME) for i in range(len(self.ring.names))}
+        point = dict(enumerate(random_point(self.ring.names).values()))
         for angle in self.angles:
-            x = random.randrange(2, PRIME - 1)
+            x = point[self.ring.index[angle.even.generator]]
             even, odd = self.ring.index[angle.even.generator], self.ring.index[angle.odd.generator]
             if angle.kind == "hyperbolic":
                 below = pow(2 * x, -1, PRIME)
@@ -69,12 +66,9 @@ class KernelImages:
                 point[even], point[odd] = (1 - x * x) * below % PRIME, 2 * x * below % PRIME
         return point
 
-    def _images(self, f: fmpz_mpoly) -> list[Image]:
-        known = self._known.get(id(f))
-        if known is None:
-            # The polynomial is kept as well: as long as it lives, its id is its own.
-            known = self._known[id(f)] = (f, self._made(f))
-        return known[1]
+    @cached_property
+    def _images(self) -> PolynomialMemo[list[Image]]:
+        return PolynomialMemo(self._made)
 
     def _made(self, f: fmpz_mpoly) -> list[Image]:
         point = self._point

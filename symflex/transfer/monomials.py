@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from flint import acb, acb_series
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from flint import fmpz_mpoly
+
+Value = acb | acb_series
+"""A number, or a power series in the displacement from one."""
 
 Step = tuple[int, tuple[int, ...], int]
 """How many factors of the last product stay, which powers follow, and the term's integer."""
@@ -29,10 +34,10 @@ class Plan:
     powers: tuple[tuple[int, int], ...]
     steps: tuple[Step, ...]
 
-    def value(self, one: Any, powers: Sequence[Any]) -> Any:  # noqa: ANN401
-        """Return the polynomial's value from those of the powers, of the same kind as ``one``."""
-        products = [one]
-        total = one * 0
+    def value(self, powers: Sequence[Value]) -> Value:
+        """Return the polynomial's value from those of the powers."""
+        products: list[Value] = [acb(1)]
+        total: Value = acb(0)
         for kept, following, coefficient in self.steps:
             del products[kept + 1 :]
             product = products[-1]
@@ -43,22 +48,8 @@ class Plan:
         return total
 
 
-@dataclass
-class MonomialPlans:
-    """The plans of the polynomials of one ring, each made once."""
-
-    _known: dict[int, tuple[fmpz_mpoly, Plan]] = field(default_factory=dict)
-
-    def of(self, polynomial: fmpz_mpoly) -> Plan:
-        """Return the plan of a polynomial."""
-        known = self._known.get(id(polynomial))
-        if known is None:
-            # The polynomial is kept as well: as long as it lives, its id is its own.
-            known = self._known[id(polynomial)] = (polynomial, _plan(polynomial))
-        return known[1]
-
-
-def _plan(polynomial: fmpz_mpoly) -> Plan:
+def plan(polynomial: fmpz_mpoly) -> Plan:
+    """Return how to evaluate a polynomial."""
     numbers: dict[tuple[int, int], int] = {}
     steps: list[Step] = []
     last: tuple[int, ...] = ()

@@ -134,9 +134,7 @@ class TransferFunction:
     @property
     def all_factors(self) -> tuple[tuple[fmpz_mpoly, int], ...]:
         """The factors of the ratio and of everything its wavenumbers and kernels are made of."""
-        laws = [v for d in self.kernels.dispersions for v in (*d.characteristic, d.shift)]
-        within = (*laws, *(k.length for k in self.kernels.kernels))
-        return (*self.ratio.factors, *(f for v in within for f in v.factors))
+        return (*self.ratio.factors, *(f for v in self.kernels.values for f in v.factors))
 
     @cached_property
     def modal_sums(self) -> ModalSums:

@@ -19,7 +19,7 @@ from symflex.emit.program.build import TERM_LIMIT
 from symflex.emit.program.exponents import ExponentialSum, derivative_at_zero, expand, families_of
 from symflex.emit.program.forge import Forge
 from symflex.emit.program.local_basis import LocalBasis, bending_basis, pair_basis, wave_basis
-from symflex.emit.program.modal import MODAL_REACHES, build_modal, declared_length
+from symflex.emit.program.modal import CIRCLE, MODAL_REACHES, build_modal, declared_length
 from symflex.emit.program.nodes import Condition, Piece, Piecewise
 from symflex.emit.program.real_axis import RealAxis
 from symflex.emit.program.schedule import straight
@@ -54,7 +54,6 @@ REAL_TERMS = 1000
 SIGNING = 2
 """Dispersions up to which a piece is made for every choice of signs of their wavenumbers."""
 
-CIRCLE = 24
 CONFLUENT = 2.0
 """Twice the squared distance of a pair's arguments below which means over a circle are taken."""
 

@@ -33,6 +33,7 @@ LEADING = 16
 """Taylor coefficients looked at, at least; where the first ones vanish, some more."""
 
 FURTHER = 8
+"""How many more at a time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,8 +152,7 @@ class GeneralSeries:
     @cached_property
     def _below(self) -> Factored:
         """A common denominator of all coefficients of dispersion relations, and shifts."""
-        values = [v for d in self.table.dispersions for v in (*d.characteristic, d.shift)]
-        return common_denominator(self.ring, values)
+        return common_denominator(self.ring, self.table.coefficients)
 
     @cached_property
     def _length_below(self) -> Factored:

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
+    from symflex.emit.program.nodes import Straight
     from symflex.kernels import Dispersion
     from symflex.kernels.modal_sum import Mode
     from symflex.transfer import TransferFunction
@@ -44,6 +45,7 @@ APART = 0.5
 """Distance of two roots, times the longest length, below which means over a circle are taken."""
 
 CIRCLE = 24
+"""Points of a circle over which means are taken."""
 
 
 def declared_length(tf: TransferFunction, length: Factored) -> float:
@@ -133,31 +135,30 @@ class _ModalWorkshop:
         site = Site(forge, self.tf, ())
         if any(_has_double_root(law) for law in self._laws):
             # At every s some roots meet, and means over a circle would be of no use.
-            parameters = tuple(p.name for p in self.tf.parameters)
-            return Piecewise(
-                parameters,
-                straight(forge, [site.forge.constant(1)]),
-                (),
-                (0,),
-                (self._direct(),),
-                None,
-                solves=True,
-            )
+            return self._assembled(straight(forge, [forge.constant(1)]), (), (0,), (self._direct(),))
         laws = [law for law in self._laws if law.order > 1]
         tests = [(forge.item(self._roots(site, law), law.order), APART) for law in laws]
         code = [self._modal(is_mean=False), self._modal(is_mean=True)]
         pieces = [0, *[1] * (2 ** len(tests) - 1)]
-        small = self._small()
+        code.append(self._small())
         tests.append((self._size(site), 1.0))
         pieces += [2] * len(pieces)
-        code.append(small)
         head = straight(forge, [x for x, _ in tests])
         conditions = tuple(
             Condition(node, limit, Constant(Fraction(1)))
             for node, (_, limit) in zip(head.values, tests, strict=False)
         )
+        return self._assembled(head, conditions, tuple(pieces), tuple(code))
+
+    def _assembled(
+        self,
+        head: Straight,
+        conditions: tuple[Condition, ...],
+        pieces: tuple[int, ...],
+        code: tuple[Piece, ...],
+    ) -> Piecewise:
         parameters = tuple(p.name for p in self.tf.parameters)
-        return Piecewise(parameters, head, conditions, tuple(pieces), tuple(code), None, solves=True)
+        return Piecewise(parameters, head, conditions, pieces, code, solves=True)
 
     # ----------------------------------------------------------------------------------- sums of exponentials
 

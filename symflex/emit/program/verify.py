@@ -72,7 +72,7 @@ LOWEST, HIGHEST = Fraction("1e-10"), Fraction("1.6e11")
 ASIDE_SAMPLES = 30
 """Frequencies below the band, and above it, at which such a function is measured."""
 
-REACHED = 1e-12
+PROMISED = 1e-12
 """What such a function promises up to the frequency named."""
 
 TINY = 1e-307
@@ -478,7 +478,7 @@ class References:
         worst, end = 0.0, min(self._lost, default=inf)
         highest: complex | None = None
         for s, error in zip(self.s, self._errors(program), strict=True):
-            if error > REACHED or s.imag > end:
+            if error > PROMISED or s.imag > end:
                 break
             highest, worst = s, max(worst, error)
         else:
@@ -491,7 +491,7 @@ class References:
         """Return down to which frequency [Hz] every sample is accurate, and the worst error of these."""
         lowest, worst, end = start, 0.0, max(self._lost, default=0.0)
         for s, error in reversed(list(zip(self.s, self._errors(program), strict=True))):
-            if error > REACHED or s.imag < end:
+            if error > PROMISED or s.imag < end:
                 break
             lowest, worst = Fraction(f"{s.imag / tau:.3g}"), max(worst, error)
         return lowest, worst

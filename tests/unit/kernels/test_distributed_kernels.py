@@ -48,9 +48,7 @@ def embedded(found):
         factors = tuple((f.compose(*gens, ctx=ring.context), e) for f, e in v.factors)
         return Factored(ring, v.unit, factors)
 
-    values = [v for d in table.dispersions for v in (*d.characteristic, d.shift)]
-    values += [k.length for k in table.kernels]
-    return embedded_table(table, [(v, over(v)) for v in values])
+    return embedded_table(table, [(v, over(v)) for v in table.values])
 
 
 def value(factored, values):
