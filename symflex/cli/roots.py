@@ -27,7 +27,7 @@ DIGITS_LIMIT = 10_000
 @click.option(
     "--digits", type=click.IntRange(1, DIGITS_LIMIT), help="Correct significant digits.  [default: 15]"
 )
-@click.option("--strict", is_flag=True, help="Exit with code 4 when roots are located but not proved.")
+@click.option("--strict", is_flag=True, help="Exit with code 4 also when a part of the region is left out.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @reporting
 def command(
@@ -43,10 +43,10 @@ def command(
 ) -> int:
     """Print poles, zeros and hidden modes of one transfer function of SPEC.
 
-    Every root comes with its radius and multiplicity, natural frequency and damping ratio. Those of lumped
-    systems are proved. Distributed systems have infinitely many, of which the lowest are shown by default;
-    they are located numerically and marked uncertified. Exit code 4 says that roots could not be told apart
-    or found.
+    Every root is proved to lie within its radius, with its multiplicity, and none is missing. Distributed
+    systems have infinitely many, of which the lowest are shown by default. Exit code 4 says that roots could
+    not be told apart, or that their number could not be proved; exit code 5, that the budget was exceeded:
+    what was proved until then is shown.
     """
     from symflex import pipeline
     from symflex.emit.text import roots_text
@@ -65,7 +65,9 @@ def command(
     else:
         click.echo(roots_text(found, shown, terminal_width()))
     certificate = found.certificate
-    return 0 if certificate.certified or (certificate.is_complete and not strict) else 4
+    if certificate.is_exceeded:
+        return 5
+    return 0 if certificate.certified and not (strict and found.excluded) else 4
 
 
 def _region(

@@ -209,10 +209,7 @@ def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
     """
     certificate = found.certificate
     status = "certified" if certificate.certified else f"NOT CERTIFIED: {certificate.reason}"
-    verb = "enclosed"
-    if certificate.is_estimate:
-        status, verb = "uncertified", "located numerically"
-    lines = [f"{found.tf}   {status}: {certificate.found} of {certificate.counted} roots {verb}"]
+    lines = [f"{found.tf}   {status}: {certificate.found} of {certificate.counted} roots enclosed"]
     if shown := _region_text(found.region):
         lines.append(f"{INDENT}shown: {shown}")
     if found.is_default_region:
@@ -229,8 +226,7 @@ def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
         lines += ["", title, *_root_table(hidden, digits, width)]
     everything = [*found.poles, *found.zeros, *(h.root for h in found.hidden)]
     if everything:
-        verb = "estimates" if certificate.is_estimate else "bounds"
-        lines += ["", f"  radius {verb} the distance from the printed value to the root [rad/s]"]
+        lines += ["", "  radius bounds the distance from the printed value to the root [rad/s]"]
     if any(root.on_boundary for root in everything):
         lines.append("  | marks a root on the boundary of what was asked for")
     if not all(root.certified for root in everything):

@@ -18,8 +18,8 @@ import numpy as np
 from flint import acb
 
 from symflex.errors import Diagnostic, UncertifiedError
+from symflex.roots.budget import Budget
 from symflex.roots.kernel_function import KernelFunction
-from symflex.roots.transcendental import RootSearch
 from symflex.roots.winding import Winding, continuous_step
 
 if TYPE_CHECKING:
@@ -80,10 +80,10 @@ class _Walk:
 
     def __init__(self, bound: BoundTransferFunction) -> None:
         self.function = KernelFunction(bound, bound.ratio)
-        sides = [RootSearch(KernelFunction(bound, part), (), 1) for part in (bound.num, bound.den)]
-        self.start = min(side.smallest() for side in sides)
+        sides = [KernelFunction(bound, part) for part in (bound.num, bound.den)]
+        self.start = min(Winding(f, Budget()).smallest(pi / 2 if f.is_even else pi) for f in sides)
         """ln of a radius below the lowest pole and zero."""
-        self._winding = Winding(self.function)
+        self._winding = Winding(self.function, Budget())
 
     def reach_axis(self, start: float) -> tuple[Point, float]:
         """Return a point low on the axis, and the phase there."""

@@ -59,7 +59,7 @@ def default_band(*maps: PoleZeroMap) -> tuple[float, float]:
         poles = [root.frequency_hz() for root in found.poles if not root.is_zero]
         zeros = [root.frequency_hz() for root in found.zeros if not root.is_zero]
         lows += poles + zeros
-        if found.certificate.is_estimate and poles:
+        if found.is_infinite and poles:
             highs.append(max(poles) * BEYOND_LAST_POLE)
         else:
             highs += [frequency * 10 for frequency in poles + zeros]

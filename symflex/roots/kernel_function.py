@@ -44,6 +44,10 @@ MODAL_WORK = 0.75
 """What sums over characteristic roots cost, in multiplications of a term, over the order to the fourth."""
 
 
+FactorBall = tuple[acb, acb, int]
+"""Value and derivative of a factor, and its exponent."""
+
+
 @dataclass(frozen=True, slots=True)
 class Sample:
     """Value and slope of a function F at a point.
@@ -128,17 +132,27 @@ class KernelFunction:
         sample = self.at_logarithm(complex(ORIGIN, 0.0))
         return float("nan") if sample is None else sample.slope.real
 
-    def newton_step(self, s: acb, bits: int) -> acb:
-        """Return ``part/part'`` at an exact ``s``; finite also where the ball around the part contains 0."""
+    def enclosed(self, s: acb, bits: int) -> list[FactorBall]:
+        """Return balls around value and derivative of every factor on a ball ``s``."""
         with precision(bits):
-            found = self._factors(s, bits)
-            nearest = min(range(len(found)), key=lambda i: _closeness(*found[i][:2]))
-            value, slope, exponent = found[nearest]
-            rest = acb(0)
-            for i, (other, other_slope, e) in enumerate(found):
-                if i != nearest:
-                    rest = rest + e * other_slope / other
-            return value / (exponent * slope + value * rest)
+            return self._factors(s, bits)
+
+    def enclosed_about(self, ball: acb, centre: acb, bits: int) -> list[FactorBall]:
+        """Return balls around values at an exact point, and around derivatives on a ball that holds it.
+
+        Both are of the same branch of the wavenumbers.
+        """
+        self._spend(bits)
+        with precision(bits):
+            evaluator = self._values(bits)
+            around = evaluator.at(expansion(ball))
+            at_centre = evaluator.at(centre, around)
+            found = []
+            for factor, exponent in self.part.factors:
+                series = evaluator.polynomial(factor, around)
+                if isinstance(series, acb_series):
+                    found.append((_number(evaluator.polynomial(factor, at_centre)), series[1], exponent))
+            return found
 
     def _branch_order(self) -> int:
         """Return the power in which the choice of the wavenumbers does not matter."""
@@ -200,9 +214,12 @@ class KernelFunction:
             bits *= 2
         return None
 
-    def _factors(self, s: acb, bits: int) -> list[tuple[acb, acb, int]]:
-        """Return value, derivative and exponent of every factor, at the current precision."""
+    def _spend(self, bits: int) -> None:
         self.work += self._cost * max(1, bits // (2 * FIRST_BITS))
+
+    def _factors(self, s: acb, bits: int) -> list[FactorBall]:
+        """Return value, derivative and exponent of every factor, at the current precision."""
+        self._spend(bits)
         evaluator = self._values(bits)
         values = evaluator.at(expansion(s))
         found = []
@@ -260,14 +277,6 @@ def _parity(polynomial: fmpz_mpoly) -> int | None:
     """Return whether all powers of s are even (0) or odd (1), ``None`` when neither."""
     found = {int(monomial[0]) % 2 for monomial in polynomial.monoms()}
     return found.pop() if len(found) == 1 else None
-
-
-def _closeness(value: acb, slope: acb) -> float:
-    """Return ln(abs(F/F')), how far about a root of F is away."""
-    size, steepness = abs(value).mid(), abs(slope).mid()
-    if not steepness > 0 or not size > 0:
-        return -float("inf") if steepness > 0 else float("inf")
-    return float((size / steepness).log())
 
 
 def _spectral_size(coefficients: Sequence[acb]) -> acb:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from flint import fmpz_mpoly_ctx
 
+from symflex.roots.budget import Budget
 from symflex.roots.distributed import locate_distributed
 from symflex.roots.pole_zero_map import PoleZeroMap, find_pole_zero_map
 from symflex.roots.problem import Constant, PolynomialInS, RootProblem
@@ -20,8 +21,13 @@ if TYPE_CHECKING:
     from symflex.roots.region import Region
 
 
-def locate(bound: BoundTransferFunction, region: Region | None = None, digits: int = 30) -> PoleZeroMap:
-    """Find the poles and zeros of a transfer function, with its hidden modes; proved for lumped systems.
+def locate(
+    bound: BoundTransferFunction,
+    region: Region | None = None,
+    digits: int = 30,
+    budget: Budget | None = None,
+) -> PoleZeroMap:
+    """Find the poles and zeros of a transfer function, with its hidden modes, proved.
 
     Parameters
     ----------
@@ -31,17 +37,19 @@ def locate(bound: BoundTransferFunction, region: Region | None = None, digits: i
         Everything by default.
     digits : int
         Correct significant digits of each root.
+    budget : Budget, optional
+        Limits the search; by default a distributed system's is limited by its work.
 
     Returns
     -------
     PoleZeroMap
         A transfer function that is identically zero has neither poles nor zeros; all its modes are hidden.
-        The roots of a distributed system are located numerically, in :func:`default_region` when everything
-        is asked for, and not certified.
+        Those of a distributed system, of which there are infinitely many, are searched in
+        :func:`default_region` when everything is asked for.
     """
     bound = without_lengths_of_zero(bound)
     if bound.is_distributed:
-        return locate_distributed(bound, region, digits)
+        return locate_distributed(bound, region, digits, budget or Budget())
     above = [(f, e) for f, e in bound.ratio.factors if e > 0]
     below = [(f, -e) for f, e in bound.ratio.factors if e < 0]
     hidden = [(f.polynomial, f.multiplicity) for f in bound.hidden]

@@ -35,8 +35,8 @@ class Certificate:
         Roots enclosed, with multiplicity.
     reason : str, optional
         Why it is not certified.
-    is_estimate : bool
-        The roots were located numerically: counted and found, but not proved.
+    is_exceeded : bool
+        The budget was exceeded: every root shown is proved, and others may be missing.
     """
 
     engine: str
@@ -44,12 +44,7 @@ class Certificate:
     counted: int
     found: int
     reason: str | None = None
-    is_estimate: bool = False
-
-    @property
-    def is_complete(self) -> bool:
-        """Every root counted was found and told apart, with or without proof."""
-        return self.certified or (self.is_estimate and self.counted == self.found)
+    is_exceeded: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,6 +109,8 @@ class PoleZeroMap:
         Parts of the region that were left out.
     is_default_region : bool
         A region was chosen because a function with infinitely many roots was to be searched for all.
+    is_infinite : bool
+        The function is transcendental: there are roots beyond any region.
     """
 
     tf: str
@@ -125,6 +122,7 @@ class PoleZeroMap:
     digits: int = 30
     excluded: tuple[Exclusion, ...] = ()
     is_default_region: bool = False
+    is_infinite: bool = False
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the map in the schema ``symflex.roots/1``, ready for :func:`json.dumps`."""
@@ -143,6 +141,7 @@ class PoleZeroMap:
                 "counted": certificate.counted,
                 "found": certificate.found,
                 "reason": certificate.reason,
+                "budget_exceeded": certificate.is_exceeded,
             },
         }
 
@@ -235,6 +234,6 @@ def _root_to_json(root: Root, digits: int) -> dict[str, object]:
         "damping_ratio": root.damping_ratio(),
         "on_imaginary_axis": root.on_imaginary_axis,
         "is_real": root.is_real,
-        "certified": root.certified and not root.is_estimate,
+        "certified": root.certified,
         "boundary": root.on_boundary,
     }

@@ -35,7 +35,7 @@ class RootDecimals:
 
 @dataclass(frozen=True, slots=True)
 class Root:
-    """A root s [rad/s], proved to lie in the box ``re`` x ``im`` unless it is said to be an estimate.
+    """A root s [rad/s], proved to lie in the box ``re`` x ``im``.
 
     Parameters
     ----------
@@ -49,8 +49,6 @@ class Root:
         False when the box is proved to hold ``multiplicity`` roots that could not be told apart.
     on_boundary : bool
         On the boundary of the region searched, or too close to it to be decided.
-    is_estimate : bool
-        The enclosure is an estimate, and the root was located numerically: nothing of it is proved.
 
     Examples
     --------
@@ -66,7 +64,6 @@ class Root:
     is_real: bool
     certified: bool = True
     on_boundary: bool = False
-    is_estimate: bool = False
 
     @property
     def is_zero(self) -> bool:

@@ -1,27 +1,30 @@
-"""Roots of functions with kernels in a part of the s plane: counted, separated, polished; not proved.
+"""Roots of functions with kernels in a part of the s plane: counted, separated, proved one by one.
 
-Cells of z = ln(s) are counted by the argument principle and split until each holds one root; Newton steps in
-balls give it the digits asked for. Radii are the sizes of the last Newton steps: estimates, not bounds.
+Cells of z = ln(s) are counted by the argument principle and split until each holds one root. The count may be
+numerical, which makes guesses, or proved, which leaves none out; every root found is proved either way.
 """
 
 from __future__ import annotations
 
 from cmath import exp, pi
 from dataclasses import dataclass, replace
-from math import inf, log
+from math import inf
 from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
 from symflex.errors import BudgetError, Diagnostic
-from symflex.roots.precision import BITS_PER_DIGIT, precision
-from symflex.roots.root import GUARD_BITS, Root
-from symflex.roots.winding import Cell, RootOnPathError, Winding
+from symflex.roots.clusters import middle_of, resolve
+from symflex.roots.krawczyk import prove_simple
+from symflex.roots.precision import bits_for_digits, precision
+from symflex.roots.root import Root
+from symflex.roots.winding import RING, Cell, RootOnPathError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from symflex.roots.kernel_function import KernelFunction
+    from symflex.roots.argument_principle import CertifiedWinding
+    from symflex.roots.winding import Winding
 
 MARGIN = 0.03
 """How far beyond the axes cells reach [rad], so that no side lies on a row of roots."""
@@ -29,17 +32,19 @@ RIGHT_HALF = 1.3
 """Where the first cut across a half plane is made [rad]: to the right of lightly damped roots."""
 SHARES = (0.5127, 0.4631, 0.5719, 0.4213, 0.55, 0.38, 0.61)
 """Where a cell may be cut: off its middle, where symmetry puts roots."""
-RING = log(2)
 NUDGES = (0.0, 0.0123, 0.0371, 0.0743, 0.113, 0.171)
 CLOSEST = 1e-11
 """Cells smaller than this are not split further."""
 SEARCH_STEPS = 30
 CONVERGED = 1e-11
-POLISHING_ROUNDS = 60
-LARGEST_RING = 120
+FIRST_BITS = 128
+SMALL = 1e-9
+"""Size of cells in which roots that cannot be told apart by splitting are told apart by their moments."""
+CLUSTER_BITS = 256
+CLUSTER_DOUBLINGS = 4
+DISC_GROWTH = 100
 HIGHEST = 300.0
 """ln of the radius [rad/s] beyond which nothing is sought."""
-SAME_ORDER = 0.05
 MODES_LIMIT = 2000
 
 
@@ -53,10 +58,13 @@ class Found:
         In the upper half plane, for even functions in its right quadrant; both with the axes.
     missing : int
         Roots that were counted but not found.
+    cell : Cell, optional
+        What was searched.
     """
 
     roots: tuple[Root, ...]
     missing: int
+    cell: Cell | None = None
 
 
 class RootSearch:
@@ -64,8 +72,10 @@ class RootSearch:
 
     Parameters
     ----------
-    function : KernelFunction
-        With at least one kernel.
+    winding : Winding
+        Counts the roots of a function with at least one kernel.
+    proof : CertifiedWinding
+        Of the same function.
     holes : sequence of Cell
         What is left out: neighbourhoods of points where roots accumulate.
     digits : int
@@ -85,16 +95,17 @@ class RootSearch:
         ln of the radius up to which it searched.
     """
 
-    def __init__(self, function: KernelFunction, holes: Sequence[Cell], digits: int) -> None:
-        self.function = function
+    def __init__(self, winding: Winding, proof: CertifiedWinding, holes: Sequence[Cell], digits: int) -> None:
+        self.function = winding.function
         self.holes = tuple(holes)
         self.digits = digits
-        self.is_even = function.is_even
+        self.is_even = self.function.is_even
         self.excluded: set[Cell] = set()
         self.roots: list[Root] = []
         self.missing = 0
         self.reached = -inf
-        self._winding = Winding(function)
+        self._winding = winding
+        self._proof = proof
 
     @property
     def left(self) -> float:
@@ -102,59 +113,53 @@ class RootSearch:
         return pi / 2 if self.is_even else pi
 
     def smallest(self) -> float:
-        """Return ln of a radius within which no roots lie but those at s = 0."""
-        order = self.function.order_at_zero()
-        z = self._scale()
-        for hole in self.holes:
-            z = min(z, hole.low - RING)
-        for _ in range(LARGEST_RING):
-            try:
-                turns = self._winding.turn(complex(z, 0), complex(z, self.left)) / self.left
-            except RootOnPathError:
-                turns = inf
-            if abs(turns - order) < SAME_ORDER:
-                return z
-            z -= RING
-        raise BudgetError(Diagnostic("SF505", "the lowest root cannot be found"))
+        """Return ln of a radius within which no roots lie but those at s = 0, by all appearances."""
+        return self._winding.smallest(self.left, self.holes)
 
     def extend(self, modes: int, radius: float = -inf) -> None:
         """Search outwards until there are enough modes, and at least to ln of a radius.
 
         The results accumulate in :attr:`roots` and :attr:`missing`; none lacks as far as :attr:`reached`.
+
+        Raises
+        ------
+        BudgetError
+            SF505, SF506; what was found stays.
         """
         if modes > MODES_LIMIT:
             message = f"at most {MODES_LIMIT} modes of a distributed function are searched, not {modes}"
             raise BudgetError(Diagnostic("SF505", message, None, "ask for a band"))
         if self.reached == -inf:
             self.reached = self.smallest()
-        while self.reached < radius or sum(root.multiplicity for root in self.roots) < modes:
+        while self.reached < radius or (known := self._modes()) < modes:
             if self.reached > HIGHEST:
                 # Kernels that do not depend on s: there are no more roots.
                 self.reached = inf
                 break
-            try:
-                high, found = self._ring(self.reached, self.reached + RING)
-            except BudgetError as error:
-                raise self._with_results(error) from None
+            if self.reached >= radius:
+                self._winding.budget.progress.report(known / modes, f"{known} of {modes} modes located")
+            high, found = self._ring(self.reached, self._passing(self.reached + RING))
             self.roots.extend(found.roots)
             self.missing += found.missing
             self.reached = high
 
-    def _with_results(self, error: BudgetError) -> BudgetError:
-        """Return an error that says how far the search came."""
-        (diagnostic,) = error.diagnostics
-        count, hertz = sum(root.multiplicity for root in self.roots), exp(self.reached).real / (2 * pi)
-        message = f"{diagnostic.message}; {count} modes were found up to {hertz:g} Hz"
-        return BudgetError(replace(diagnostic, message=message))
+    def _modes(self) -> int:
+        return sum(root.multiplicity for root in self.roots)
+
+    def _passing(self, radius: float) -> float:
+        """Return ln of a radius whose circle passes all holes."""
+        for hole in sorted(self.holes, key=lambda hole: hole.low):
+            if hole.low - max(NUDGES) <= radius <= hole.high:
+                radius = hole.high + MARGIN
+        return radius
 
     def ring(self, low: float, high: float, right: float = 0.0, left: float = pi) -> Found:
         """Return the roots with ln(abs(s)) and arg(s) in the given limits, and perhaps a few beyond."""
         cell = self._widened(Cell(low, high, right, min(left, self.left)))
         for nudge in NUDGES:
+            moved = Cell(cell.low - nudge / 3, cell.high + nudge / 2, cell.right - nudge, cell.left + nudge)
             try:
-                return self._search(
-                    Cell(cell.low - nudge / 3, cell.high + nudge / 2, cell.right - nudge, cell.left + nudge)
-                )
+                return self._search(moved)
             except RootOnPathError:
                 continue
         return Found((), 1)
@@ -172,24 +177,6 @@ class RootSearch:
             return high + nudge, found
         raise BudgetError(Diagnostic("SF505", f"roots do not separate near {exp(high).real:g} rad/s"))
 
-    def _scale(self) -> float:
-        """Return ln of a frequency at which the largest argument of a kernel is about one."""
-        z, step = 0.0, 2 * RING
-        reach = self.function.reach(exp(z).real)
-        for _ in range(LARGEST_RING):
-            if reach > 1:
-                z -= step
-                lower = self.function.reach(exp(z).real)
-                if lower > 0.9 * reach:
-                    break
-                reach = lower
-            else:
-                higher = self.function.reach(exp(z + step).real)
-                if higher > 1:
-                    break
-                z += step
-        return z
-
     def _search(self, cell: Cell) -> Found:
         cells = [cell]
         for hole in self.holes:
@@ -204,7 +191,7 @@ class RootSearch:
             found, lost = self._separate(part, count)
             roots.extend(found)
             missing += lost
-        return Found(tuple(roots), missing)
+        return Found(tuple(roots), missing, cell)
 
     def _separate(self, cell: Cell, count: int) -> tuple[list[Root], int]:
         """Return the roots in a cell known to hold ``count`` of them."""
@@ -215,18 +202,21 @@ class RootSearch:
             part, number = pending.pop()
             if number == 0:
                 continue
-            root = self._single(part, number) if number > 0 else None
-            if root is not None:
-                # Beyond the axes are mirror images of others; where wavenumbers branch there may be no root.
-                if root.multiplicity and not root.im < 0 and not (self.is_even and root.re < 0):
-                    roots.append(root)
-                continue
-            parts = self._split(part, number) if part.size > CLOSEST and number > 0 else None
-            if parts is None:
-                missing += max(1, abs(number) // self.function.power)
-            else:
+            found = self._together(part, number) if number > 0 else None
+            parts = None
+            if found is None and part.size > CLOSEST and number > 0:
+                parts = self._split(part, number)
+            if found is None and parts is None and number > 0:
+                found = self._cluster(part, number)
+            if found is not None:
+                roots.extend(found)
+            elif parts is not None:
                 pending.extend(parts)
-        return roots, missing
+            else:
+                missing += max(1, abs(number) // self.function.power)
+        # Beyond the axes are mirror images of others; where wavenumbers branch there may be no root.
+        kept = (r for r in roots if r.multiplicity and not r.im < 0 and not (self.is_even and r.re < 0))
+        return list(kept), missing
 
     def _split(self, cell: Cell, count: int) -> tuple[tuple[Cell, int], tuple[Cell, int]] | None:
         shares: tuple[float, ...] = SHARES
@@ -241,7 +231,7 @@ class RootSearch:
             return (one, number), (other, count - number)
         return None
 
-    def _single(self, cell: Cell, count: int) -> Root | None:
+    def _together(self, cell: Cell, count: int) -> list[Root] | None:
         """Return the root in a cell when there is one, of any multiplicity; ``None`` to look closer."""
         z = cell.centre
         for _ in range(SEARCH_STEPS):
@@ -261,52 +251,57 @@ class RootSearch:
             return None
         if not cell.holds(z, CONVERGED):
             return None
-        return self._polish(z, count)
-
-    def _polish(self, z: complex, count: int) -> Root | None:
-        """Return the root near ``exp(z)`` with all its digits."""
-        order = arb(count) / self.function.power
-        goal = arb(10) ** -(self.digits + 2)
-        wanted = int((self.digits + 4) * BITS_PER_DIGIT) + GUARD_BITS
-        limit = 4 * count * wanted + 1024
-        bits = 128
-        with precision(bits):
+        with precision(FIRST_BITS):
             s = acb(z.real, z.imag).exp().mid()
-        for _ in range(POLISHING_ROUNDS):
-            step = self.function.newton_step(s, bits)
+        root = prove_simple(self.function, s, self.digits, even=self.is_even)
+        if root is None or root.multiplicity * self.function.power != count or not _is_in(cell, root):
+            return None
+        return [root]
+
+    def _cluster(self, cell: Cell, count: int) -> list[Root] | None:
+        """Return the roots in a small cell by their moments, or as one that could not be told apart."""
+        whole, broken = divmod(count, self.function.power)
+        if broken or cell.size > SMALL:
+            return None
+        with precision(FIRST_BITS):
+            centre = acb(cell.centre.real, cell.centre.imag).exp().mid()
+            radius = (centre.abs_upper() * 2 * cell.size).mid()
+        bits = CLUSTER_BITS
+        for _ in range(CLUSTER_DOUBLINGS):
+            found = resolve(self.function, centre, radius, self.digits, bits, even=self.is_even)
+            if found is not None and sum(root.multiplicity for root in found) == whole:
+                return found
+            bits *= 2
+        return self._as_one(centre, radius, count)
+
+    def _as_one(self, centre: acb, radius: arb, count: int) -> list[Root] | None:
+        """Return the smallest disc that is proved to hold all roots of a cluster."""
+        bits = max(CLUSTER_BITS, 2 * bits_for_digits(self.digits))
+        centre = middle_of(self.function, centre, radius, bits) or centre
+        with precision(bits):
+            size = (centre.abs_upper() * arb(10) ** -self.digits).mid()
+        whole = count // self.function.power
+        while size < radius:
+            try:
+                if self._proof.count_in_disc(centre, size) == count:
+                    with precision(bits):
+                        re, im = arb(centre.real, size), arb(centre.imag, size)
+                    alone = whole == 1
+                    return [Root(re, im, whole, on_imaginary_axis=False, is_real=False, certified=alone)]
+            except RootOnPathError:
+                pass
             with precision(bits):
-                step = order * step
-                size = step.abs_upper() if step.is_finite() else None
-                if size is not None and size < goal * s.abs_lower():
-                    return self._confirmed((s - step).mid(), size, count)
-                if size is None or 4 * (step.real.rad() + step.imag.rad()) > size:
-                    bits *= 2
-                    if bits > limit:
-                        return None
-                    continue
-                s = (s - step).mid()
-                if size < s.abs_lower() * arb(2) ** (-bits // 4):
-                    bits = max(bits, min(wanted, 2 * bits))
+                size = (size * DISC_GROWTH).mid()
         return None
 
-    def _confirmed(self, s: acb, radius: arb, count: int) -> Root | None:
-        """Return the root unless several lie where a multiple one seemed to be."""
-        with precision(s.bits() + GUARD_BITS):
-            if count > self.function.power or count % self.function.power:
-                about = 10 * radius / s.abs_lower() + arb(10) ** -self.digits
-                if self._winding.count_about(s, about.mid()) != count:
-                    return None
-            re, im = arb(s.real, radius), arb(s.imag, radius)
-            is_real = im.contains(0)
-            on_axis = re.contains(0)
-        return Root(
-            arb(0) if on_axis else re,
-            arb(0) if is_real else im,
-            count // self.function.power,
-            on_imaginary_axis=bool(on_axis),
-            is_real=bool(is_real),
-            is_estimate=True,
-        )
+
+def _is_in(cell: Cell, root: Root) -> bool:
+    """Tell whether a root lies in a cell, or at most a hair outside."""
+    with precision(FIRST_BITS):
+        z = acb(root.re.mid(), root.im.mid()).log()
+    point = complex(z.mid())
+    turns = round((cell.centre.imag - point.imag) / (2 * pi))
+    return cell.holds(point + 2j * pi * turns, CONVERGED)
 
 
 def mirrored(roots: Iterable[Root], *, even: bool) -> list[Root]:

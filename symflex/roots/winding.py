@@ -1,28 +1,28 @@
 """Counting roots by the argument principle, numerically: how often a function winds about 0 along a path.
 
 Paths are straight in z = ln(s), where rows of resonances are spaced alike whatever their frequency. Steps are
-halved until values and slopes at both ends agree; nothing is proved.
+halved until values and slopes at both ends agree; that is fast, and proves nothing.
 """
 
 from __future__ import annotations
 
-from cmath import pi, rect
+from cmath import pi
 from dataclasses import dataclass
 from itertools import pairwise
-from math import ceil, exp
+from math import ceil, exp, inf, log
 from typing import TYPE_CHECKING
 
-from flint import acb
-
 from symflex.errors import BudgetError, Diagnostic
-from symflex.roots.precision import precision
-from symflex.roots.root import GUARD_BITS
 
 if TYPE_CHECKING:
-    from flint import arb
+    from collections.abc import Sequence
 
+    from symflex.roots.budget import Budget
     from symflex.roots.kernel_function import KernelFunction, Sample
 
+RING = log(2)
+LARGEST_RING = 120
+SAME_ORDER = 0.05
 LONGEST_STEP = 0.4
 PHASE_STEP = 2.0
 """Largest change [rad] of a kernel's argument over a step: no row of roots is stepped over."""
@@ -36,7 +36,6 @@ WORK_LIMIT = 5_000_000
 """Terms evaluated in one search."""
 SHORTER = "ask for fewer modes or a smaller region"
 TOO_LONG = "the search for roots takes too long"
-POINTS_ABOUT = 16
 
 
 class RootOnPathError(Exception):
@@ -100,13 +99,28 @@ class Winding:
     ----------
     function : KernelFunction
         What is followed.
+    budget : Budget
+        Spent by every value.
     """
 
-    def __init__(self, function: KernelFunction) -> None:
+    def __init__(self, function: KernelFunction, budget: Budget) -> None:
         self.function = function
+        self.budget = budget
         self._samples: dict[complex, Sample | None] = {}
         self._reaches: dict[float, float] = {}
         self._edges: dict[tuple[complex, complex], float] = {}
+
+    def spend(self) -> None:
+        """Go on if the work and the time allow it.
+
+        Raises
+        ------
+        BudgetError
+            SF505 when the search has become too long and no time was given, SF506 when that is over.
+        """
+        self.budget.spend()
+        if self.budget.seconds is None and self.function.work > WORK_LIMIT:
+            raise BudgetError(Diagnostic("SF505", TOO_LONG, None, SHORTER))
 
     def sample(self, z: complex) -> Sample:
         """Return ln F and its slope at a point.
@@ -119,10 +133,7 @@ class Winding:
             SF505 when the search has become too long.
         """
         if z not in self._samples:
-            if self.function.work > WORK_LIMIT:
-                raise BudgetError(
-                    Diagnostic("SF505", TOO_LONG, None, "ask for fewer modes or a smaller region")
-                )
+            self.spend()
             self._samples[z] = self.function.at_logarithm(z)
         found = self._samples[z]
         if found is None:
@@ -134,6 +145,48 @@ class Winding:
         if z not in self._reaches:
             self._reaches[z] = self.function.reach(exp(z))
         return self._reaches[z]
+
+    def smallest(self, left: float, holes: Sequence[Cell] = ()) -> float:
+        """Return ln of a radius within which no roots lie but those at s = 0, by all appearances.
+
+        Parameters
+        ----------
+        left : float
+            pi, or pi/2 for functions whose roots mirror each other in the imaginary axis.
+        holes : sequence of Cell
+            To stay away from.
+        """
+        order = self.function.order_at_zero()
+        z = self._scale()
+        for hole in holes:
+            z = min(z, hole.low - RING)
+        for _ in range(LARGEST_RING):
+            try:
+                turns = self.turn(complex(z, 0), complex(z, left)) / left
+            except RootOnPathError:
+                turns = inf
+            if abs(turns - order) < SAME_ORDER:
+                return z
+            z -= RING
+        raise BudgetError(Diagnostic("SF505", "the lowest root cannot be found"))
+
+    def _scale(self) -> float:
+        """Return ln of a frequency at which the largest argument of a kernel is about one."""
+        z, step = 0.0, 2 * RING
+        reach = self.reach(z)
+        for _ in range(LARGEST_RING):
+            if reach > 1:
+                z -= step
+                lower = self.reach(z)
+                if lower > 0.9 * reach:
+                    break
+                reach = lower
+            else:
+                higher = self.reach(z + step)
+                if higher > 1:
+                    break
+                z += step
+        return z
 
     def turn(self, start: complex, end: complex, smallest: float = SMALLEST_STEP) -> float:
         """Return the change of the argument [rad] from ``start`` straight to ``end``.
@@ -182,20 +235,6 @@ class Winding:
         if abs(turns - round(turns)) > NEARLY_WHOLE:
             raise RootOnPathError
         return round(turns)
-
-    def count_about(self, s: acb, radius: arb) -> int | None:
-        """Return the number of roots within a small relative radius; ``None`` when others are near."""
-        total = 0j
-        for k in range(POINTS_ABOUT):
-            direction = rect(1.0, 2 * pi * k / POINTS_ABOUT)
-            with precision(s.bits() + GUARD_BITS):
-                sample = self.function.at_point(s * (1 + acb(direction) * radius))
-            if sample is None:
-                return None
-            total += direction * sample.slope / POINTS_ABOUT
-        total *= float(radius)
-        count = round(total.real)
-        return count if abs(total - count) < NEARLY_WHOLE else None
 
 
 def continuous_step(start: Sample, end: Sample, step: complex) -> float | None:

@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     from symflex.kernels import Dispersion, Factored, Kernel, KernelTable, PolynomialMemo
     from symflex.transfer.monomials import Plan
 
+SIGNS = (1, -1)
+NARROW = 2.0**-30
+"""Relative radius of balls whose square root needs no special care."""
 FINER = 2**30
 """Parts of the least distance of two roots to which they are isolated at the second try."""
 
@@ -52,35 +55,49 @@ class KernelValues:
     sums: ModalSums
     plans: PolynomialMemo[Plan]
 
-    def at(self, s: Value) -> dict[str, Value]:
+    def at(self, s: Value, near: Mapping[str, Value] | None = None) -> dict[str, Value]:
         """Return the values of all generators at ``s`` [rad/s], and characteristic roots without names.
 
         Where the roots of a dispersion can be told apart, they stand for its fundamental functions.
+
+        Parameters
+        ----------
+        s : acb or acb_series
+            A point, a ball, or a series about either.
+        near : mapping of str to acb or acb_series, optional
+            Values at a ball that holds ``s``: wavenumbers take the same branch.
         """
-        values: dict[str, Value] = {"s": s, **{name: acb(value) for name, value in self.constants.items()}}
+        values: dict[str, Value] = {"s": s, **self._numbers}
         coefficients: dict[int, tuple[Value, ...]] = {}
         shifts: dict[int, Value] = {}
         for law in self.table.dispersions:
             found = tuple(self.value(c, values) for c in law.characteristic)
             coefficients[id(law)] = found
-            shifts[id(law)] = self.value(law.shift, values)
-            values.update(zip(law.wavenumbers, _wavenumbers(law, found), strict=True))
+            if not law.shift.is_zero:
+                shifts[id(law)] = self.value(law.shift, values)
+            values.update(_wavenumbers(law, found, near))
         fundamental: dict[tuple[int, int], tuple[Value, ...]] = {}
         roots = self._roots(coefficients)
         values.update(roots)
         for kernel in self.table.kernels:
-            length = self.value(kernel.length, values)
             law = kernel.dispersion
             if kernel.function == "exp":
-                values[kernel.generator] = (-shifts[id(law)] * length).exp()
+                length = self.value(kernel.length, values)
+                values[kernel.generator] = (-shifts.get(id(law), acb(0)) * length + acb(0)).exp()
             elif kernel.function == "fundamental" and not roots:
                 key = (id(law), id(kernel.length))
                 if key not in fundamental:
+                    length = self.value(kernel.length, values)
                     fundamental[key] = fundamental_functions(coefficients[id(law)], length)
                 values[kernel.generator] = fundamental[key][kernel.order]
             elif kernel.wavenumber:
-                values[kernel.generator] = _kernel(kernel, values[kernel.wavenumber] * length)
+                argument = values[kernel.wavenumber] * self.value(kernel.length, values)
+                values[kernel.generator] = _kernel(kernel, argument)
         return values
+
+    @cached_property
+    def _numbers(self) -> dict[str, Value]:
+        return {name: acb(value) for name, value in self.constants.items()}
 
     @cached_property
     def _laws(self) -> tuple[tuple[int, Dispersion], ...]:
@@ -119,10 +136,28 @@ class KernelValues:
 
     def value(self, value: Factored, values: Mapping[str, Value]) -> Value:
         """Return a product of powers of polynomials."""
-        total: Value = acb(ball(value.unit))
-        for factor, exponent in value.factors:
+        known = self._products.get(id(value))
+        if known is None:
+            # What does not depend on s is evaluated once; the product is kept, so that its id stays its own.
+            varying = {self.names[0], *self.table.generators}
+            plans = [(self.plans(f), e) for f, e in value.factors]
+            is_constant = not any(self.names[i] in varying for p, _ in plans for i, _ in p.powers)
+            total: Value = acb(ball(value.unit))
+            moving = []
+            for factor, exponent in value.factors:
+                if is_constant:
+                    total = total * _power(self.polynomial(factor, values), exponent)
+                else:
+                    moving.append((factor, exponent))
+            known = self._products[id(value)] = (value, total, tuple(moving))
+        _, total, moving_factors = known
+        for factor, exponent in moving_factors:
             total = total * _power(self.polynomial(factor, values), exponent)
         return total
+
+    @cached_property
+    def _products(self) -> dict[int, tuple[Factored, Value, tuple[tuple[fmpz_mpoly, int], ...]]]:
+        return {}
 
     def polynomial(self, polynomial: fmpz_mpoly, values: Mapping[str, Value]) -> Value:
         """Return a polynomial of the ring."""
@@ -144,18 +179,60 @@ def _power(base: Value, exponent: int) -> Value:
     return 1 / result if exponent < 0 else result
 
 
-def _wavenumbers(law: Dispersion, c: Sequence[Value]) -> tuple[Value, ...]:
+def _wavenumbers(law: Dispersion, c: Sequence[Value], near: Mapping[str, Value] | None) -> dict[str, Value]:
     """Return the roots by their names; every branch serves, because functions are symmetric in them."""
+    found: tuple[Value, ...] = ()
     match law.kind:
         case "wave":
-            return ((-c[0]).sqrt(),)
+            found = (_root(-c[0]),)
         case "bending":
-            return ((c[0] / 4).sqrt().sqrt(),)
+            found = (_root(_root(c[0] / 4)),)
         case "pair":
             middle = -c[2] / 2
-            root = (middle * middle - c[0]).sqrt()
-            return ((middle + root).sqrt(), (middle - root).sqrt())
-    return ()
+            root = _root(middle * middle - c[0])
+            if near is not None:
+                first, second = (_middle(near[name]) for name in law.wavenumbers)
+                root = _closest((root, -root), (first * first - second * second) / 2)
+            found = (_root(middle + root), _root(middle - root))
+    named = dict(zip(law.wavenumbers, found, strict=True))
+    if near is None:
+        return named
+    return {
+        name: _closest(_turned(value, 4 if law.kind == "bending" else 2), _middle(near[name]))
+        for name, value in named.items()
+    }
+
+
+def _root(x: Value) -> Value:
+    """Return a square root that is analytic on the ball, tight where the ball is wide.
+
+    Whether the ball crosses the cut of the principal root does not matter then.
+    """
+    base = x[0] if isinstance(x, acb_series) else x
+    middle = base.mid()
+    if middle == 0:
+        return x.sqrt()
+    reach = (base / middle - 1).abs_upper()
+    if reach < NARROW or not reach < 1:
+        return (x / middle).sqrt() * middle.sqrt()
+    # sqrt(m) sqrt(1 + e) with abs(e) <= d differs from sqrt(m) by at most (1 - sqrt(1 - d)) sqrt(m).
+    off = (1 - (1 - reach).sqrt()).upper()
+    root = middle.sqrt() * acb(arb(1, off), arb(0, off))
+    return acb_series([root, x[1] / (2 * root)], 2) if isinstance(x, acb_series) else root
+
+
+def _middle(value: Value) -> acb:
+    return (value[0] if isinstance(value, acb_series) else value).mid()
+
+
+def _turned(value: Value, branches: int) -> tuple[Value, ...]:
+    """Return the values a root of a number has."""
+    turned = value * acb(0, 1)
+    return (value, -value) if branches == len(SIGNS) else (value, turned, -value, -turned)
+
+
+def _closest(candidates: Sequence[Value], goal: acb) -> Value:
+    return min(candidates, key=lambda value: float(abs(_middle(value) - goal).mid()))
 
 
 def _kernel(kernel: Kernel, argument: Value) -> Value:

@@ -106,7 +106,7 @@ def draw_poles_zeros(
 
 def _highest_pole(maps: Sequence[PoleZeroMap]) -> float | None:
     """Return up to which frequency [Hz] poles of distributed systems are known, ``None`` without any."""
-    found = [root for each in maps if each.certificate.is_estimate for root in each.poles if not root.is_zero]
+    found = [root for each in maps if each.is_infinite for root in each.poles if not root.is_zero]
     return max((root.frequency_hz() for root in found), default=None)
 
 

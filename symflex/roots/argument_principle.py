@@ -1,0 +1,282 @@
+"""Counting roots by the argument principle, with proof: every step of a path is a ball of s.
+
+Along a straight step in z = ln(s) a function leaves its value F(m) in the middle by no more than the bound of
+abs(dF/dz) over the step's ball times half the step. Where that is less than abs(F(m)), the argument stays
+within the arc sine of the ratio; the sum of principal differences from middle to middle is then the change of
+the argument, whatever happens in between.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import asin, inf, pi
+from typing import TYPE_CHECKING, Protocol
+
+from flint import acb, arb
+
+from symflex.roots.precision import precision
+from symflex.roots.winding import Cell, RootOnPathError, Winding
+
+if TYPE_CHECKING:
+    from symflex.roots.budget import Budget
+    from symflex.roots.kernel_function import KernelFunction
+
+BITS = 64
+LAST_BITS = 2048
+FIRST_STEP = 0.2
+"""Of the first step [in z]."""
+ROOM = 1.5
+"""Largest deviation of the argument [rad] from the middle to an end of a step; less than pi/2."""
+GOAL = 1.15
+"""Deviation that the next step aims at."""
+GROWTH = 2.5
+SHORTEST = 0.3
+WIDENED = 1 + 2.0**-40
+SPREAD = 2.0**-50
+"""Relative width that makes up for the rounding of a step's middle."""
+SMALLEST = 1e-12
+SMALLEST_TURN = 1e-6
+PHASE_ERROR = 2.0**-10
+
+
+class Path(Protocol):
+    """A curve in the s plane, from t = 0 to 1."""
+
+    def point(self, t: float) -> acb:
+        """Return a point."""
+        ...
+
+    def step(self, start: float, end: float) -> tuple[acb, acb, arb]:
+        """Return a ball around a step, its middle, and the most that s moves from the middle on it."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """What is straight in z = ln(s).
+
+    Parameters
+    ----------
+    start, end : complex
+        z; an imaginary part that is the double nearest to pi or pi/2 stands for that number itself.
+    """
+
+    start: complex
+    end: complex
+
+    def _place(self, t: float) -> complex:
+        return self.start if t == 0 else self.end if t == 1 else self.start + (self.end - self.start) * t
+
+    def point(self, t: float) -> acb:
+        """Return a point."""
+        z = self._place(t)
+        return acb(arb(z.real), _angle(z.imag)).exp()
+
+    def step(self, start: float, end: float) -> tuple[acb, acb, arb]:
+        """Return a ball around a step, its middle, and the most that s moves from the middle on it."""
+        a, b = self._place(start), self._place(end)
+        middle, half = (a + b) / 2, (b - a) / 2
+        re = arb(middle.real, abs(half.real) * WIDENED + SPREAD * abs(middle.real))
+        im = arb(middle.imag, abs(half.imag) * WIDENED + SPREAD * (1 + abs(middle.imag)))
+        ball = acb(re, im).exp()
+        centre = acb(middle.real, middle.imag).exp()
+        return ball, centre, ball.abs_upper() * acb(re.rad(), im.rad()).abs_upper()
+
+
+@dataclass(frozen=True, slots=True)
+class Circle:
+    """About an exact point.
+
+    Parameters
+    ----------
+    centre : acb
+        Exact.
+    radius : arb
+        Exact [rad/s].
+    """
+
+    centre: acb
+    radius: arb
+
+    def point(self, t: float) -> acb:
+        """Return a point."""
+        return self.centre + self.radius * (acb(0, 2) * arb.pi() * arb(t)).exp()
+
+    def step(self, start: float, end: float) -> tuple[acb, acb, arb]:
+        """Return a ball around a step, its middle, and the most that s moves from the middle on it."""
+        middle, half = (start + end) / 2, (end - start) / 2
+        turn = arb(middle, half * WIDENED + SPREAD)
+        ball = self.centre + self.radius * (acb(0, 2) * arb.pi() * turn).exp()
+        return ball, self.point(middle), self.radius * 2 * arb.pi() * turn.rad()
+
+
+class CertifiedWinding(Winding):
+    """Follows one function along paths with proof.
+
+    Parameters
+    ----------
+    function : KernelFunction
+        What is followed.
+    budget : Budget
+        Spent by every step.
+    """
+
+    def __init__(self, function: KernelFunction, budget: Budget) -> None:
+        super().__init__(function, budget)
+        self._bits = BITS
+        self._turns: dict[tuple[complex, complex], arb] = {}
+
+    def count(self, cell: Cell) -> int:
+        """Return the number of roots in a cell, with multiplicity: proved.
+
+        Raises
+        ------
+        RootOnPathError
+            A root lies on the cell's boundary, or too close to it.
+        """
+        corners = (
+            complex(cell.low, cell.right),
+            complex(cell.high, cell.right),
+            complex(cell.high, cell.left),
+            complex(cell.low, cell.left),
+        )
+        smallest = max(SMALLEST, 1e-9 * cell.size)
+        with precision(BITS):
+            total = arb(0)
+            for i in range(4):
+                total += self.certified_turn(corners[i - 1], corners[i], smallest)
+            return _whole(total / (2 * arb.pi()))
+
+    def count_within(self, z: float, left: float) -> int:
+        """Return the number of roots with ln(abs(s)) below ``z``, those at s = 0 included: proved.
+
+        Parameters
+        ----------
+        z : float
+            ln of the radius.
+        left : float
+            pi, or pi/2 for functions whose roots mirror each other in the imaginary axis: by symmetry an arc
+            from the positive real axis tells what the circle does.
+
+        Raises
+        ------
+        RootOnPathError
+            A root lies on the circle, or too close to it.
+        """
+        turn = self.certified_turn(complex(z, 0.0), complex(z, left))
+        with precision(BITS):
+            return _whole(turn / _angle(left))
+
+    def count_in_disc(self, centre: acb, radius: arb) -> int:
+        """Return the number of roots closer to an exact point than a radius [rad/s]: proved.
+
+        Raises
+        ------
+        RootOnPathError
+            A root lies on the circle, or too close to it.
+        """
+        bits = max(BITS, centre.bits() + BITS)
+        with precision(bits):
+            turn, _ = self._follow(Circle(centre, radius), 2 * pi, SMALLEST_TURN, bits)
+            return _whole(turn / (2 * arb.pi()))
+
+    def certified_turn(self, start: complex, end: complex, smallest: float = SMALLEST) -> arb:
+        """Return a ball around the change of the argument [rad] from ``start`` straight to ``end``, in z.
+
+        Raises
+        ------
+        RootOnPathError
+            When steps would become smaller than ``smallest``.
+        """
+        if (end, start) in self._turns:
+            return -self._turns[end, start]
+        if (start, end) not in self._turns:
+            length = abs(end - start)
+            with precision(BITS):
+                turn, self._bits = self._follow(Line(start, end), length, smallest / length, self._bits)
+            self._turns[start, end] = turn
+        return self._turns[start, end]
+
+    def _follow(self, path: Path, length: float, smallest: float, bits: int) -> tuple[arb, int]:
+        """Return the change of the argument along a path, and the precision that it took."""
+        total = arb(0)
+        last, bits = self._phase(path.point(0.0), bits)
+        t, step = 0.0, min(1.0, FIRST_STEP / length)
+        while t < 1:
+            end = min(1.0, t + step)
+            deviation, phase = self._deviation(path, t, end, bits)
+            if deviation > ROOM:
+                if deviation == inf:
+                    # Perhaps it is not the step that is too long, but the precision that is too low.
+                    _, bits = self._phase(path.point((t + end) / 2), bits)
+                step = (end - t) * max(SHORTEST, min(0.7, GOAL / deviation))
+                if step < smallest:
+                    raise RootOnPathError
+                continue
+            total += _principal(phase - last)
+            last = phase
+            step = (end - t) * max(1 / GROWTH, min(GROWTH, GOAL / max(deviation, 0.1)))
+            t = end
+        final, bits = self._phase(path.point(1.0), bits)
+        return total + _principal(final - last), bits
+
+    def _phase(self, s: acb, bits: int) -> tuple[arb, int]:
+        """Return a ball around arg F at a point, up to whole turns, and the precision it took."""
+        while bits <= max(LAST_BITS, 4 * s.bits()):
+            with precision(bits):
+                factors = self.function.enclosed(s, bits)
+                if all(value.is_finite() and not value.contains(0) for value, _, _ in factors):
+                    phase = arb(0)
+                    for value, _, exponent in factors:
+                        phase += exponent * _argument(value)
+                    phase *= self.function.power
+                    if phase.rad() < PHASE_ERROR:
+                        return phase, bits
+            bits *= 2
+        raise RootOnPathError
+
+    def _deviation(self, path: Path, start: float, end: float, bits: int) -> tuple[float, arb]:
+        """Return how far arg F may turn from the middle of a step to its ends, and arg F in the middle."""
+        self.spend()
+        with precision(bits):
+            ball, centre, reach = path.step(start, end)
+            found = self.function.enclosed_about(ball, centre, bits)
+            deviation, phase = 0.0, arb(0)
+            for value, slope, exponent in found:
+                size, change = value.abs_lower(), (slope * reach).abs_upper()
+                if not change.is_finite() or not size > 0:
+                    return inf, phase
+                ratio = float((change / size).upper())
+                deviation += abs(exponent) * (asin(ratio) if ratio < 1 else ratio * pi / 2)
+                phase += exponent * _argument(value)
+            return deviation * self.function.power, phase * self.function.power
+
+
+def _argument(value: acb) -> arb:
+    """Return an argument of a ball, up to whole turns, also where it crosses the negative real axis."""
+    return value.arg() if value.real.mid() > 0 else (-value).arg() + arb.pi()
+
+
+def _angle(value: float) -> arb:
+    """Return an imaginary part of z, where a double stands for pi or pi/2 if it is the nearest one."""
+    for known, exact in ((pi, arb.pi()), (pi / 2, arb.pi() / 2)):
+        if abs(value) == known:
+            return exact if value > 0 else -exact
+    return arb(value)
+
+
+def _principal(difference: arb) -> arb:
+    """Return a difference of arguments less whole turns, proved to lie between -pi and pi."""
+    turns = round(float(difference.mid()) / (2 * pi))
+    result = difference - 2 * arb.pi() * turns
+    if not abs(result) < arb.pi():
+        raise RootOnPathError
+    return result
+
+
+def _whole(turns: arb) -> int:
+    """Return the only integer in a ball."""
+    found = turns.unique_fmpz()
+    if found is None:
+        raise RootOnPathError
+    return int(found)

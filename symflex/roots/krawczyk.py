@@ -1,0 +1,170 @@
+"""Proving that a box holds exactly one root of a function with kernels.
+
+Where the interval Newton operator ``N(X) = m - f(m)/f'(X)`` of a factor f sends a box X into its interior,
+f has exactly one root in X, a simple one, and N(X) holds it (Moore 1966; Krawczyk 1969 multiplies with an
+approximate inverse instead, which saves nothing in one dimension). Where all other factors differ from 0 on
+X, the function has that root with the factor's exponent for its multiplicity.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from flint import acb, arb
+
+from symflex.roots.precision import bits_for_digits, precision
+from symflex.roots.root import GUARD_BITS, Root
+
+if TYPE_CHECKING:
+    from symflex.roots.kernel_function import KernelFunction
+
+LEAST_BITS = 96
+BOX_SHARE = 0.4
+"""The box is so many of the bits smaller than the root is large."""
+DOUBLINGS = 5
+STEPS = 4
+"""Newton steps at one precision."""
+SMALLER = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """A box that holds exactly one root of one factor, and what is known of the others there.
+
+    Parameters
+    ----------
+    re, im : arb
+        Enclosures of the root [rad/s], exactly zero where symmetry proves that.
+    reach : arb
+        Half the side of the box in which there is no other root of the factor [rad/s].
+    exponent : int
+        Of the factor.
+    touching : tuple of int
+        Other factors that may have a root in the box.
+    """
+
+    re: arb
+    im: arb
+    reach: arb
+    exponent: int
+    touching: tuple[int, ...]
+
+
+def prove_simple(
+    function: KernelFunction, s: acb, digits: int, *, factor: int | None = None, even: bool | None = None
+) -> Root | None:
+    """Return the root of a factor next to a point with an enclosure, or ``None`` where none is proved.
+
+    Parameters
+    ----------
+    function : KernelFunction
+        A product of factors.
+    s : acb
+        Exact, close to the root.
+    digits : int
+        Significant digits wanted.
+    factor : int, optional
+        Which factor; the nearest root by default.
+    even : bool, optional
+        Whether roots mirror each other in the imaginary axis.
+
+    Returns
+    -------
+    Root
+        ``multiplicity`` is the factor's exponent. Where other factors have roots in the same box that cannot
+        be told apart, it is the sum of all exponents, and the root is not ``certified``.
+    """
+    is_even = function.is_even if even is None else even
+    wanted = bits_for_digits(digits + 2) + GUARD_BITS
+    bits = max(LEAST_BITS, wanted)
+    found: Box | None = None
+    for _ in range(DOUBLINGS):
+        box = _box(function, s, bits, factor, even=is_even)
+        if box is not None:
+            found = box
+            with precision(bits):
+                size = acb(box.re, box.im).abs_lower()
+                error = (box.re.rad() + box.im.rad()).upper()
+                if not box.touching and error < size * arb(10) ** -digits:
+                    return _root(box, box.exponent, certified=True)
+                s = acb(box.re.mid(), box.im.mid())
+        bits *= 2
+    if found is None:
+        return None
+    total = found.exponent
+    for other in found.touching:
+        beside = _box(function, s, bits // 2, other, even=is_even)
+        if beside is None:
+            return None
+        total += beside.exponent
+    return _root(found, total, certified=not found.touching)
+
+
+def _root(box: Box, multiplicity: int, *, certified: bool) -> Root:
+    return Root(
+        box.re,
+        box.im,
+        multiplicity,
+        on_imaginary_axis=bool(box.re == 0) and certified,
+        is_real=bool(box.im == 0) and certified,
+        certified=certified,
+    )
+
+
+def _box(function: KernelFunction, s: acb, bits: int, factor: int | None, *, even: bool) -> Box | None:
+    """Return a box about the root next to ``s``, after a few Newton steps at a precision."""
+    with precision(bits):
+        middle, chosen = acb(s.real.mid(), s.imag.mid()), factor
+        reach = arb(0)
+        for _ in range(STEPS):
+            factors = function.enclosed(middle, bits)
+            if chosen is None:
+                chosen = nearest_factor(factors)
+            value, slope, _ = factors[chosen]
+            step = value / slope
+            if not step.is_finite():
+                return None
+            middle = (middle - step).mid()
+            reach = middle.abs_upper() * arb(2) ** (-BOX_SHARE * bits)
+            if step.abs_upper() < reach / SMALLER:
+                break
+        else:
+            return None
+        assert chosen is not None
+        on_axis = even and bool(abs(middle.real) < reach / SMALLER)
+        is_real = bool(abs(middle.imag) < reach / SMALLER)
+        middle = acb(arb(0) if on_axis else middle.real, arb(0) if is_real else middle.imag)
+        reach = reach.mid()
+        box = middle + acb(arb(0, reach), arb(0, reach))
+        factors = function.enclosed_about(box, middle, bits)
+        value, slope, exponent = factors[chosen]
+        step = value / slope
+        if not step.is_finite() or not (abs(step.real) < reach and abs(step.imag) < reach):
+            return None
+        farthest = (box - middle).abs_upper()
+        touching = tuple(
+            i
+            for i, (other, change, _) in enumerate(factors)
+            if i != chosen and not other.abs_lower() > (change * farthest).abs_upper()
+        )
+        root = middle - step
+        # The only root of the product in a box that mirrors itself is its own mirror image.
+        alone = not touching
+        return Box(
+            arb(0) if on_axis and alone else root.real,
+            arb(0) if is_real and alone else root.imag,
+            reach,
+            exponent,
+            touching,
+        )
+
+
+def nearest_factor(factors: list[tuple[acb, acb, int]]) -> int:
+    """Return the factor with a positive exponent whose root is nearest by Newton's estimate."""
+    sizes = []
+    for i, (value, slope, exponent) in enumerate(factors):
+        size, steepness = abs(value).mid(), abs(slope).mid()
+        if exponent > 0 and steepness > 0:
+            sizes.append((float((size / steepness).log()) if size > 0 else -float("inf"), i))
+    return min(sizes)[1] if sizes else 0

@@ -1,0 +1,429 @@
+"""One side of a transfer function with kernels, numerator or denominator: its roots in a region, counted.
+
+Roots are guessed by numerical subdivision and proved one by one; one certified count of the whole domain
+shows that none is missing. Where that fails, the subdivision is repeated with every count proved.
+"""
+
+from __future__ import annotations
+
+from cmath import phase
+from dataclasses import dataclass, replace
+from math import inf, log, pi
+from typing import TYPE_CHECKING
+
+from flint import acb, arb
+
+from symflex.errors import Diagnostic, UncertifiedError
+from symflex.kernels import Factored, Ring, degree_in
+from symflex.kernels.origin import Origin
+from symflex.roots.argument_principle import CertifiedWinding
+from symflex.roots.kernel_function import KernelFunction, has_kernels, split_off_kernels
+from symflex.roots.polynomial import find_polynomial_roots
+from symflex.roots.precision import precision
+from symflex.roots.problem import Constant, PolynomialInS, RootProblem
+from symflex.roots.region import Band, Modes, Rectangle
+from symflex.roots.root import FLOAT_BITS, Root
+from symflex.roots.square_free_kernels import without_squares
+from symflex.roots.transcendental import HIGHEST, MODES_LIMIT, RootSearch, mirrored
+from symflex.roots.winding import Cell, RootOnPathError, Winding
+from symflex.transfer import coefficients_in_s
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.roots.budget import Budget
+    from symflex.roots.region import Region
+    from symflex.transfer import BoundTransferFunction
+
+GUESS_AND_PROVE = "guess-and-prove"
+SUBDIVISION = "subdivision"
+NEIGHBOURHOOD = 0.05
+"""Of a point where roots accumulate: relative to its distance from 0."""
+ACCUMULATION_DIGITS = 20
+ORIGIN_DEPTH = 90.0
+"""How far below the lowest root, in ln, a circle about 0 is counted where the order is not known exactly."""
+
+
+@dataclass(frozen=True, slots=True)
+class Proof:
+    """Whether the roots of one side are all there.
+
+    Parameters
+    ----------
+    counted : int
+        Roots in the domain searched, by a certified count; those found where there is none.
+    found : int
+        Roots proved there.
+    reason : str, optional
+        Why the count is not certified.
+    """
+
+    counted: int
+    found: int
+    reason: str | None = None
+
+    @property
+    def is_complete(self) -> bool:
+        """The count is certified, and every root was found."""
+        return self.reason is None and self.counted == self.found
+
+
+class Side:
+    """The numerator, the denominator, or what cancelled between them.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        The function.
+    part : Factored
+        The product whose roots are sought.
+    digits : int
+        Significant digits of every root.
+    budget : Budget
+        Of the search.
+    is_hidden : bool
+        Only powers of s count as roots at 0, not what kernels vanish like.
+
+    Attributes
+    ----------
+    roots : list of Root
+        All found so far, mirror images and roots at 0 included.
+    missing : int
+        Roots counted but not found.
+    engine : str
+        How the roots were found.
+    """
+
+    def __init__(
+        self,
+        bound: BoundTransferFunction,
+        part: Factored,
+        digits: int,
+        budget: Budget,
+        *,
+        is_hidden: bool = False,
+    ) -> None:
+        self._bound = bound
+        self._digits = digits
+        self._budget = budget
+        self.holes = {hole_about(point): point for point in accumulation_points(bound)}
+        plain, mixed = split_off_kernels(part, bound.kernels)
+        exact = polynomial_roots(bound, plain, digits)
+        self._exact = [root for root in exact if not any(_within(root, hole) for hole in self.holes)]
+        self._search: RootSearch | None = None
+        self._origin: list[Root] = []
+        self._order = 0
+        self._domain: Cell | None = None
+        self.engine = GUESS_AND_PROVE
+        if has_kernels(mixed, bound.kernels):
+            # Kernels may have poles where polynomials vanish: only together are they entire.
+            self.function = KernelFunction(*without_squares(bound, _without_laplace(plain) * mixed))
+            self._winding = CertifiedWinding(self.function, budget)
+            self._search = self._searching(Winding(self.function, budget))
+            self._origin, self._order = self._roots_at_zero(part, is_hidden=is_hidden)
+        self._located = self._origin if self._search else self._exact
+        self.roots = list(self._located)
+        self.missing = 0
+
+    def _searching(self, winding: Winding) -> RootSearch:
+        return RootSearch(winding, self._winding, tuple(self.holes), self._digits)
+
+    def _roots_at_zero(self, part: Factored, *, is_hidden: bool) -> tuple[list[Root], int]:
+        """Return the root at s = 0, and how often the function without powers of s winds about 0 there."""
+        power, zero = self.function.power, arb(0)
+        powers = part.exponent_of(part.ring.context.gen(0))
+        exact = Origin(part.ring, self.function.bound.kernels).order(self.function.part**power)
+        if exact is not None and (is_hidden or exact % power == 0):
+            total = powers if is_hidden else powers + exact // power
+            root = Root(zero, zero, total, on_imaginary_axis=True, is_real=True)
+            return [root for _ in range(total >= 1)], exact
+        left = pi / 2 if self.function.is_even else pi
+        z = self._winding.smallest(left, tuple(self.holes)) - ORIGIN_DEPTH
+        try:
+            turns, rest = divmod(self._winding.count_within(z, left), power)
+        except RootOnPathError:
+            turns, rest = 0, 1
+        if rest:
+            message = f"the order of the root of {self._bound.name} at s = 0 cannot be told"
+            raise UncertifiedError(Diagnostic("SF404", message))
+        # Kernels without a formula: so many roots lie this close to 0, and nothing says that they are 0.
+        with precision(FLOAT_BITS):
+            box = arb(0, arb(z).exp().upper())
+        total = powers if is_hidden else powers + turns
+        if not turns or is_hidden:
+            box = zero
+        is_zero = bool(box == 0)
+        certified = is_zero or total == 1
+        root = Root(box, box, total, on_imaginary_axis=is_zero, is_real=is_zero, certified=certified)
+        return [root for _ in range(total >= 1)], turns * power
+
+    @property
+    def is_finite(self) -> bool:
+        """There are no kernels, and all roots are known."""
+        return self._search is None
+
+    @property
+    def reached(self) -> float:
+        """Up to which ln(abs(s)) all roots are known."""
+        return -inf if self._search is None else self._search.reached
+
+    @property
+    def modes(self) -> int:
+        """How many modes are known; as many as anyone wants when there are no others."""
+        return MODES_LIMIT if self._search is None else len(groups(self.roots))
+
+    def extend(self, modes: int, radius: float = -inf) -> None:
+        """Find a number of modes, and all roots up to ln of a radius."""
+        if self._search is None:
+            self.roots = list(self._exact)
+            return
+        try:
+            self._search.extend(modes, radius)
+        finally:
+            self.missing = self._search.missing
+            self._set(self._search.roots)
+            self._domain = Cell(-inf, min(self._search.reached, HIGHEST), 0.0, pi)
+
+    def search(self, region: Region) -> None:
+        """Find at least the roots in a region."""
+        if self._search is None:
+            return
+        if isinstance(region, Modes):
+            self.extend(region.count)
+            return
+        limits = _limits(self._search, region)
+        if limits is None:
+            self._domain = Cell(0.0, 0.0, 0.0, 0.0)
+            self._set(())
+            return
+        low, high, right, left = limits
+        smallest = self._search.smallest()
+        found = self._search.ring(max(low, smallest), high, right, left)
+        self.missing = found.missing
+        self._domain = found.cell
+        if found.cell is not None and low <= smallest and _is_whole_ring(found.cell, self._search):
+            # A whole disc is easier to count than a ring whose inner circle is very small.
+            self._domain = replace(found.cell, low=-inf)
+        self._set(found.roots)
+
+    def prove(self, region: Region) -> Proof:
+        """Count the roots of the domain that was searched; subdivide it with proof if one is missing."""
+        if self._search is None:
+            found = sum(root.multiplicity for root in self.roots)
+            return Proof(found, found)
+        proof = self._counted(self._search)
+        if proof.is_complete:
+            return proof
+        self.engine = SUBDIVISION
+        reached, modes = self._search.reached, self.modes
+        self._search = self._searching(self._winding)
+        if isinstance(region, Modes):
+            self.extend(modes, reached)
+        else:
+            self.search(region)
+        # Every cell was counted with proof.
+        found = sum(root.multiplicity for root in self._located)
+        reason = None if not self.missing else f"{self.missing} roots were counted but not found"
+        return Proof(found + self.missing, found, reason)
+
+    def excluded(self) -> tuple[complex, ...]:
+        """Return the points about which nothing was searched."""
+        met = set() if self._search is None else self._search.excluded
+        return tuple(point for hole, point in self.holes.items() if hole in met)
+
+    def _set(self, located: Sequence[Root]) -> None:
+        even = self._search is not None and self._search.is_even
+        found = [self._proved(root) for root in mirrored(located, even=even)]
+        self._located = [*self._origin, *found]
+        self.roots = list(self._located)
+
+    def _proved(self, root: Root) -> Root:
+        """Return the certified root of a polynomial factor in place of the one located."""
+        same = (r for r in self._exact if overlap(r, root) and r.multiplicity == root.multiplicity)
+        return next(same, root)
+
+    def _counted(self, search: RootSearch) -> Proof:
+        """Count the domain by its boundary."""
+        if self._domain is None:
+            return Proof(0, 0, "nothing was searched")
+        cells, holes = self._parts(self._domain, search)
+        found, unsure = 0, False
+        for root in self._located:
+            positions = [_position(cell, root) for cell in cells]
+            unsure = unsure or (not any(positions) and None in positions)
+            if any(positions) and not any(_position(hole, root) for hole in holes):
+                found += root.multiplicity
+        if unsure:
+            return Proof(found, found, "a root lies on the boundary of what was searched")
+        try:
+            turns = self._turns(self._domain, cells, holes, search)
+        except RootOnPathError:
+            return Proof(found, found, "the number of roots could not be proved")
+        if self._domain.low == -inf:
+            turns -= self._order
+        counted, rest = divmod(turns, self.function.power)
+        if rest:
+            return Proof(found, found, "the number of roots could not be proved")
+        if self._domain.low == -inf:
+            counted += sum(root.multiplicity for root in self._origin)
+        return Proof(counted, found)
+
+    def _turns(self, domain: Cell, cells: Sequence[Cell], holes: Sequence[Cell], search: RootSearch) -> int:
+        if not _is_whole_ring(domain, search):
+            return sum(self._winding.count(cell) for cell in cells)
+        turns = self._winding.count_within(domain.high, search.left)
+        if domain.low > -inf:
+            turns -= self._winding.count_within(domain.low, search.left)
+        return turns - sum(self._winding.count(hole) for hole in holes)
+
+    def _parts(self, domain: Cell, search: RootSearch) -> tuple[tuple[Cell, ...], tuple[Cell, ...]]:
+        """Return the cells that were searched, and the holes in them, mirror images included."""
+        if _is_whole_ring(domain, search):
+            cell = Cell(domain.low, domain.high, -pi, pi)
+            met = [h for h in self.holes if h.low < cell.high and h.high > cell.low]
+            return (cell,), tuple(image for hole in met for image in _images(hole))
+        cells: tuple[Cell, ...] = (domain,)
+        for hole in self.holes:
+            cells = tuple(part for whole in cells for part in whole.without(hole))
+        return cells, ()
+
+
+def _is_whole_ring(cell: Cell, search: RootSearch) -> bool:
+    return (
+        cell.right <= 0
+        and cell.left >= search.left
+        and all(
+            hole.high < cell.low or hole.low > cell.high or (cell.low < hole.low and hole.high < cell.high)
+            for hole in search.holes
+        )
+    )
+
+
+def _images(hole: Cell) -> tuple[Cell, ...]:
+    """Return a neighbourhood in the closed upper half plane and, off the real axis, its mirror image."""
+    if hole.right <= 0 <= hole.left or hole.right <= pi <= hole.left:
+        return (hole,)
+    return (hole, Cell(hole.low, hole.high, -hole.left, -hole.right))
+
+
+def _position(cell: Cell, root: Root) -> bool | None:
+    """Tell whether a root lies in a cell, ``None`` where its enclosure does not decide that."""
+    if root.is_zero:
+        return cell.low == -inf
+    with precision(FLOAT_BITS):
+        s = root.enclosure()
+        size = s.abs_upper().log() if s.abs_lower() > 0 else None
+        if size is None:
+            return None
+        along = abs(s).log()
+        if along < cell.low or along > cell.high:
+            return False
+        decided = bool(along > cell.low) and bool(along < cell.high)
+        if cell.right <= -pi and cell.left >= pi:
+            return True if decided else None
+        # Measured from the middle of the cell, the argument does not jump on it.
+        middle = acb(0, (cell.right + cell.left) / 2).exp()
+        turned = (s / middle).arg()
+        half = (cell.left - cell.right) / 2
+        if turned > half or turned < -half:
+            return False
+        return True if decided and bool(turned < half) and bool(turned > -half) else None
+
+
+def _limits(search: RootSearch, region: Region) -> tuple[float, float, float, float] | None:
+    """Return ln(abs(s)) and arg(s) between which a region lies, folded into the upper half plane."""
+    match region:
+        case Band(low, high):
+            bottom = log(2 * pi * low) if low else search.smallest()
+            top = log(2 * pi * high) if high else -inf
+            return (bottom, top, 0.0, pi) if bottom < top else None
+        case Rectangle(re_low, re_high, im_low, im_high):
+            sides = (float(re_low), float(re_high), float(im_low), float(im_high))
+            return _limits_of_rectangle(search, *sides)
+    message = f"no search for {type(region).__name__}"
+    raise TypeError(message)
+
+
+def _limits_of_rectangle(
+    search: RootSearch, re_low: float, re_high: float, im_low: float, im_high: float
+) -> tuple[float, float, float, float] | None:
+    across_real, across_imaginary = im_low <= 0 <= im_high, re_low <= 0 <= re_high
+    bottom = 0.0 if across_real else min(abs(im_low), abs(im_high))
+    top = max(abs(im_low), abs(im_high))
+    corners = [complex(re, im) for re in (re_low, re_high) for im in (bottom, top)]
+    high = max(abs(corner) for corner in corners)
+    if high == 0:
+        return None
+    nearest = complex(0.0 if across_imaginary else min(abs(re_low), abs(re_high)), bottom)
+    low = log(abs(nearest)) if nearest else search.smallest()
+    right, left = min(map(phase, corners)), max(map(phase, corners))
+    if search.is_even or not nearest:
+        right, left = 0.0, pi
+    return (low, log(high), right, left) if low < log(high) else None
+
+
+def groups(roots: Sequence[Root]) -> list[list[Root]]:
+    """Return the roots other than 0, those together that mirror each other in the axes."""
+    found: dict[tuple[str, str], list[Root]] = {}
+    with precision(FLOAT_BITS):
+        for root in roots:
+            if not root.is_zero:
+                key = (str(abs(root.re).mid()), str(abs(root.im).mid()))
+                found.setdefault(key, []).append(root)
+    return list(found.values())
+
+
+def _without_laplace(value: Factored) -> Factored:
+    s = value.ring.context.gen(0)
+    return value.filter(lambda factor: factor != s)
+
+
+def polynomial_roots(bound: BoundTransferFunction, part: Factored, digits: int) -> list[Root]:
+    """Return the roots of the factors with positive exponents."""
+    polynomials = [(polynomial_in_s(bound, f), e) for f, e in part.factors if e > 0]
+    problem = RootProblem(tuple((p, e) for p, e in polynomials if p.degree > 0))
+    return list(find_polynomial_roots(problem, digits)) if problem.degree else []
+
+
+def polynomial_in_s(bound: BoundTransferFunction, factor: fmpz_mpoly) -> PolynomialInS:
+    """Return a factor without wavenumbers and kernels as a polynomial in s."""
+    constants = tuple(Constant(name, evaluate) for name, evaluate in bound.constants)
+    ring = bound.ratio.ring
+    used = tuple(c for c in constants if degree_in(factor, ring.index[c.name]))
+    small = Ring(("s", *(c.name for c in used)))
+    places = [ring.index[name] for name in small.names]
+    terms = {tuple(int(m[i]) for i in places): int(c) for m, c in factor.terms()}
+    coefficients = Ring(small.names[1:])
+    polynomial = small.context.from_dict(terms)
+    return PolynomialInS(coefficients_in_s(polynomial, coefficients), coefficients.context, used)
+
+
+def accumulation_points(bound: BoundTransferFunction) -> tuple[complex, ...]:
+    """Return where the laws of waves have poles in s, such as -1/eta; upper half plane."""
+    points: list[complex] = []
+    for law in bound.kernels.dispersions:
+        for value in (v for v in (*law.characteristic, law.shift) if not v.is_zero):
+            for root in polynomial_roots(bound, value**-1, ACCUMULATION_DIGITS):
+                point = complex(float(root.re.mid()), float(root.im.mid()))
+                if point and point.imag >= 0 and point not in points:
+                    points.append(point)
+    return tuple(points)
+
+
+def hole_about(point: complex) -> Cell:
+    """Return the neighbourhood of a point that is left out."""
+    z = complex(log(abs(point)), phase(point))
+    e = NEIGHBOURHOOD
+    return Cell(z.real - e, z.real + e, z.imag - e, z.imag + e)
+
+
+def _within(root: Root, hole: Cell) -> bool:
+    point = complex(float(root.re.mid()), abs(float(root.im.mid())))
+    return bool(point) and hole.holds(complex(log(abs(point)), phase(point)))
+
+
+def overlap(a: Root, b: Root) -> bool:
+    """Tell whether two roots may be the same."""
+    return bool(a.re.overlaps(b.re)) and bool(a.im.overlaps(b.im))
