@@ -1,9 +1,9 @@
 """Counting roots by the argument principle, with proof: every step of a path is a ball of s.
 
-Along a straight step in z = ln(s) a function leaves its value F(m) in the middle by no more than the bound of
-abs(dF/dz) over the step's ball times half the step. Where that is less than abs(F(m)), the argument stays
-within the arc sine of the ratio; the sum of principal differences from middle to middle is then the change of
-the argument, whatever happens in between.
+A sum of exponentials is followed through the largest of these, whose argument is known, and the ratio to it,
+whose values on a step's ball must keep to one side of 0: :mod:`symflex.roots.exponential_sum`. Any other
+function leaves its value F(m) in the middle by no more than the bound of abs(F') over the ball times half the
+step; where that is less than abs(F(m)), the argument stays within the arc sine of the ratio.
 """
 
 from __future__ import annotations
@@ -36,7 +36,6 @@ SPREAD = 2.0**-50
 """Relative width that makes up for the rounding of a step's middle."""
 SMALLEST = 1e-12
 SMALLEST_TURN = 1e-6
-PHASE_ERROR = 2.0**-10
 
 
 class Path(Protocol):
@@ -200,56 +199,65 @@ class CertifiedWinding(Winding):
     def _follow(self, path: Path, length: float, smallest: float, bits: int) -> tuple[arb, int]:
         """Return the change of the argument along a path, and the precision that it took."""
         total = arb(0)
-        last, bits = self._phase(path.point(0.0), bits)
         t, step = 0.0, min(1.0, FIRST_STEP / length)
+        here = path.point(0.0)
         while t < 1:
             end = min(1.0, t + step)
-            deviation, phase = self._deviation(path, t, end, bits)
-            if deviation > ROOM:
-                if deviation == inf:
+            there = path.point(end)
+            self.spend()
+            with precision(bits):
+                spread, turn = self._change(path, t, end, here, there, bits)
+            if spread > ROOM:
+                if spread == inf:
                     # Perhaps it is not the step that is too long, but the precision that is too low.
-                    _, bits = self._phase(path.point((t + end) / 2), bits)
-                step = (end - t) * max(SHORTEST, min(0.7, GOAL / deviation))
+                    bits = self._sufficient(path.point((t + end) / 2), bits)
+                step = (end - t) * max(SHORTEST, min(0.7, GOAL / spread))
                 if step < smallest:
                     raise RootOnPathError
                 continue
-            total += _principal(phase - last)
-            last = phase
-            step = (end - t) * max(1 / GROWTH, min(GROWTH, GOAL / max(deviation, 0.1)))
-            t = end
-        final, bits = self._phase(path.point(1.0), bits)
-        return total + _principal(final - last), bits
+            total += turn
+            step = (end - t) * max(1 / GROWTH, min(GROWTH, GOAL / max(spread, 0.1)))
+            t, here = end, there
+        return total, bits
 
-    def _phase(self, s: acb, bits: int) -> tuple[arb, int]:
-        """Return a ball around arg F at a point, up to whole turns, and the precision it took."""
+    def _change(
+        self, path: Path, start: float, end: float, here: acb, there: acb, bits: int
+    ) -> tuple[float, arb]:
+        """Return a bound on how far arg F may turn on a step, and how far it turns from end to end."""
+        ball, centre, reach = path.step(start, end)
+        by_exponentials = self.function.turn_of_exponentials(ball, here, there, bits)
+        if by_exponentials is not None:
+            return by_exponentials
+        found = self.function.enclosed_about(ball, centre, bits)
+        deviation = 0.0
+        for value, slope, exponent in found:
+            size, change = value.abs_lower(), (slope * reach).abs_upper()
+            if not change.is_finite() or not size > 0:
+                return inf, arb(0)
+            ratio = float((change / size).upper())
+            deviation += abs(exponent) * (asin(ratio) if ratio < 1 else ratio * pi / 2)
+        deviation *= self.function.power
+        if deviation > ROOM:
+            return deviation, arb(0)
+        # Both ends lie within a right angle of the middle.
+        return deviation, _principal(self._phase(there, bits) - self._phase(here, bits))
+
+    def _phase(self, s: acb, bits: int) -> arb:
+        """Return a ball around arg F at a point, up to whole turns."""
+        phase = arb(0)
+        for value, _, exponent in self.function.enclosed(s, bits):
+            phase += exponent * _argument(value)
+        return phase * self.function.power
+
+    def _sufficient(self, s: acb, bits: int) -> int:
+        """Return a precision at which no factor of F is lost at a point."""
         while bits <= max(LAST_BITS, 4 * s.bits()):
             with precision(bits):
                 factors = self.function.enclosed(s, bits)
                 if all(value.is_finite() and not value.contains(0) for value, _, _ in factors):
-                    phase = arb(0)
-                    for value, _, exponent in factors:
-                        phase += exponent * _argument(value)
-                    phase *= self.function.power
-                    if phase.rad() < PHASE_ERROR:
-                        return phase, bits
+                    return bits
             bits *= 2
         raise RootOnPathError
-
-    def _deviation(self, path: Path, start: float, end: float, bits: int) -> tuple[float, arb]:
-        """Return how far arg F may turn from the middle of a step to its ends, and arg F in the middle."""
-        self.spend()
-        with precision(bits):
-            ball, centre, reach = path.step(start, end)
-            found = self.function.enclosed_about(ball, centre, bits)
-            deviation, phase = 0.0, arb(0)
-            for value, slope, exponent in found:
-                size, change = value.abs_lower(), (slope * reach).abs_upper()
-                if not change.is_finite() or not size > 0:
-                    return inf, phase
-                ratio = float((change / size).upper())
-                deviation += abs(exponent) * (asin(ratio) if ratio < 1 else ratio * pi / 2)
-                phase += exponent * _argument(value)
-            return deviation * self.function.power, phase * self.function.power
 
 
 def _argument(value: acb) -> arb:

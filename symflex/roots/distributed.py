@@ -15,12 +15,12 @@ from symflex.kernels import Factored
 from symflex.roots.pole_zero_map import Certificate, Exclusion, HiddenRoot, PoleZeroMap
 from symflex.roots.polynomial import POLYNOMIAL, in_order
 from symflex.roots.region import Band, Everything, Modes, Position
+from symflex.roots.root import overlap
 from symflex.roots.side import (
     ACCUMULATION_DIGITS,
     NEIGHBOURHOOD,
     Side,
     groups,
-    overlap,
     polynomial_roots,
 )
 

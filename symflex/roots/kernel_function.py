@@ -6,16 +6,18 @@ Output: a :class:`KernelFunction`, evaluated with its logarithmic derivative at 
 
 from __future__ import annotations
 
+from cmath import exp as cexp
 from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import lru_cache
-from math import lcm
+from functools import cached_property, lru_cache
+from math import asin, inf, lcm, pi
 from typing import TYPE_CHECKING, Final
 
 from flint import acb, acb_series, arb
 
 from symflex.errors import Diagnostic, ModelError
 from symflex.kernels import Factored, degree_in
+from symflex.roots.exponential_sum import ExponentialValues, arguments_of, exponential_sum
 from symflex.roots.precision import precision
 from symflex.transfer.enclose_kernels import expansion
 
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.kernels import Dispersion, KernelTable
+    from symflex.roots.exponential_sum import Argument, ExponentialSum
     from symflex.transfer import BoundTransferFunction
     from symflex.transfer.enclose_kernels import KernelValues
     from symflex.transfer.monomials import Value
@@ -40,6 +43,7 @@ ANYWHERE = (0.7, 1.3)
 """Real and imaginary part of a frequency like any other."""
 BRANCHES = (1, 2, 4)
 TWINS: Final = {"cosh": "cos", "cos": "cosh", "sinh": "sin", "sin": "sinh"}
+RIGHT_ANGLE = 1.57
 MODAL_WORK = 0.75
 """What sums over characteristic roots cost, in multiplications of a term, over the order to the fourth."""
 
@@ -95,6 +99,7 @@ class KernelFunction:
         terms = sum(len(f) for f, _ in self.part.factors) + 2 * len(self.bound.kernels.kernels)
         self._cost = terms + int(MODAL_WORK * sum(law.order**4 for law in laws if law.kind == "general"))
         self._values = lru_cache(maxsize=None)(self._kernel_values)
+        self._sums = lru_cache(maxsize=None)(self._exponential_values)
         self.power = self._branch_order()
 
     @property
@@ -144,15 +149,96 @@ class KernelFunction:
         """
         self._spend(bits)
         with precision(bits):
+            found = []
+            if self._exponentials is not None:
+                sums = self._sums(bits)
+                wide = sums.at(expansion(ball))
+                exact = sums.at(centre, wide)
+                for i, (_, exponent) in enumerate(sums.sums):
+                    series = sums.value(i, wide)
+                    if isinstance(series, acb_series):
+                        found.append((_number(sums.value(i, exact)), series[1], exponent))
+                return found
             evaluator = self._values(bits)
             around = evaluator.at(expansion(ball))
             at_centre = evaluator.at(centre, around)
-            found = []
             for factor, exponent in self.part.factors:
                 series = evaluator.polynomial(factor, around)
                 if isinstance(series, acb_series):
                     found.append((_number(evaluator.polynomial(factor, at_centre)), series[1], exponent))
             return found
+
+    def fastest(self, z: complex) -> float:
+        """Return the largest exponent at ``s = exp(z)``, in absolute value; 0 where none is known."""
+        if self._exponentials is None:
+            return self.reach(abs(cexp(z)))
+        with precision(FIRST_BITS):
+            sums = self._sums(FIRST_BITS)
+            place = sums.at(acb(z.real, z.imag).exp())
+            sizes = [
+                float(abs(_number(exponent)).mid())
+                for i in range(len(sums.sums))
+                for exponent in sums.exponents(i, place)
+                if exponent is not None
+            ]
+        return max(sizes, default=0.0)
+
+    def turn_of_exponentials(self, ball: acb, start: acb, end: acb, bits: int) -> tuple[float, arb] | None:
+        """Return how far arg F, of :attr:`power`, turns between two points of a ball.
+
+        Parameters
+        ----------
+        ball : acb
+            Holds the path from one point to the other.
+        start, end : acb
+            Points.
+        bits : int
+            Precision.
+
+        Returns
+        -------
+        tuple
+            A measure of how far F may turn anywhere on the ball, infinite where nothing is proved, and the
+            turn. ``None`` when the function is no sum of exponentials.
+        """
+        if self._exponentials is None:
+            return None
+        self._spend(bits)
+        sums = self._sums(bits)
+        around = sums.at(ball)
+        first, last = sums.at(start, around), sums.at(end, around)
+        total, widest = arb(0), 0.0
+        for i, (terms, exponent) in enumerate(sums.sums):
+            largest = sums.largest(i, around) if len(terms.terms) > 1 else 0
+            widest = max(widest, _spread(_number(sums.value(i, around, largest))))
+            if widest > RIGHT_ANGLE:
+                return widest, total
+            ratio = _number(sums.value(i, last, largest)) / _number(sums.value(i, first, largest))
+            own = [sums.exponents(i, place)[largest] for place in (first, last)]
+            if own[0] is not None and own[1] is not None:
+                total += exponent * _number(own[1] - own[0]).imag
+            total += exponent * ratio.arg()
+        return widest, total * self.power
+
+    def _exponential_values(self, bits: int) -> ExponentialValues:
+        return ExponentialValues(self._values(bits), self._arguments, self._exponentials or ())
+
+    @cached_property
+    def _arguments(self) -> tuple[Argument, ...]:
+        return arguments_of(self.bound.kernels) or ()
+
+    @cached_property
+    def _exponentials(self) -> tuple[tuple[ExponentialSum, int], ...] | None:
+        """The factors as sums of exponentials, where all wavenumbers have formulas and the sums are short."""
+        if arguments_of(self.bound.kernels) is None:
+            return None
+        found = []
+        for factor, exponent in self.part.factors:
+            terms = exponential_sum(self.part.ring, self.bound.kernels, self._arguments, factor)
+            if terms is None:
+                return None
+            found.append((terms, exponent))
+        return tuple(found)
 
     def _branch_order(self) -> int:
         """Return the power in which the choice of the wavenumbers does not matter."""
@@ -220,9 +306,17 @@ class KernelFunction:
     def _factors(self, s: acb, bits: int) -> list[FactorBall]:
         """Return value, derivative and exponent of every factor, at the current precision."""
         self._spend(bits)
+        found = []
+        if self._exponentials is not None:
+            sums = self._sums(bits)
+            place = sums.at(expansion(s))
+            for i, (_, exponent) in enumerate(sums.sums):
+                series = sums.value(i, place)
+                if isinstance(series, acb_series):
+                    found.append((series[0], series[1], exponent))
+            return found
         evaluator = self._values(bits)
         values = evaluator.at(expansion(s))
-        found = []
         for factor, exponent in self.part.factors:
             series = evaluator.polynomial(factor, values)
             if isinstance(series, acb_series):
@@ -233,6 +327,18 @@ class KernelFunction:
         with precision(bits):
             constants = {name: evaluate() for name, evaluate in self.bound.constants}
             return self.bound.kernel_values(constants)
+
+
+def _spread(ratio: acb) -> float:
+    """Return how far the argument may turn on a ball [rad], infinite where it holds 0 or anything."""
+    if not ratio.is_finite():
+        return inf
+    middle = ratio.mid()
+    off, size = (ratio - middle).abs_upper(), middle.abs_lower()
+    if not size > 0:
+        return inf
+    share = float((off / size).upper())
+    return 2 * asin(share) if share < 1 else pi * share
 
 
 def other_branches(

@@ -23,8 +23,10 @@ LEAST_BITS = 96
 BOX_SHARE = 0.4
 """The box is so many of the bits smaller than the root is large."""
 DOUBLINGS = 5
-STEPS = 4
-"""Newton steps at one precision."""
+CLOSE = BOX_SHARE + 0.02
+"""The last Newton step before a box is drawn is by so many of the bits smaller."""
+FIRST_BITS = 64
+STEPS = 24
 SMALLER = 4
 
 
@@ -115,23 +117,12 @@ def _root(box: Box, multiplicity: int, *, certified: bool) -> Root:
 def _box(function: KernelFunction, s: acb, bits: int, factor: int | None, *, even: bool) -> Box | None:
     """Return a box about the root next to ``s``, after a few Newton steps at a precision."""
     with precision(bits):
-        middle, chosen = acb(s.real.mid(), s.imag.mid()), factor
-        reach = arb(0)
-        for _ in range(STEPS):
-            factors = function.enclosed(middle, bits)
-            if chosen is None:
-                chosen = nearest_factor(factors)
-            value, slope, _ = factors[chosen]
-            step = value / slope
-            if not step.is_finite():
-                return None
-            middle = (middle - step).mid()
-            reach = middle.abs_upper() * arb(2) ** (-BOX_SHARE * bits)
-            if step.abs_upper() < reach / SMALLER:
-                break
-        else:
+        middle = acb(s.real.mid(), s.imag.mid())
+        approached = _approached(function, middle, bits, factor)
+        if approached is None:
             return None
-        assert chosen is not None
+        middle, chosen = approached
+        reach = middle.abs_upper() * arb(2) ** (-BOX_SHARE * bits)
         on_axis = even and bool(abs(middle.real) < reach / SMALLER)
         is_real = bool(abs(middle.imag) < reach / SMALLER)
         middle = acb(arb(0) if on_axis else middle.real, arb(0) if is_real else middle.imag)
@@ -158,6 +149,30 @@ def _box(function: KernelFunction, s: acb, bits: int, factor: int | None, *, eve
             exponent,
             touching,
         )
+
+
+def _approached(function: KernelFunction, s: acb, bits: int, factor: int | None) -> tuple[acb, int] | None:
+    """Return a point close to a root to a share of the bits, by Newton steps at rising precision."""
+    level, chosen = min(FIRST_BITS, bits), factor
+    for _ in range(STEPS):
+        factors = function.enclosed(s, level)
+        if chosen is None or level == FIRST_BITS:
+            chosen = nearest_factor(factors) if factor is None else factor
+        value, slope, _ = factors[chosen]
+        with precision(level):
+            step = value / slope
+            if not step.is_finite():
+                if level >= bits:
+                    return None
+                level = min(2 * level, bits)
+                continue
+            s = (s - step).mid()
+            size, least = step.abs_upper(), s.abs_lower()
+        if level >= bits and size < least * 2.0 ** (-CLOSE * bits):
+            return s, chosen
+        if size < least * 2.0 ** (-level / 3):
+            level = min(2 * level, bits)
+    return None
 
 
 def nearest_factor(factors: list[tuple[acb, acb, int]]) -> int:

@@ -121,6 +121,18 @@ class Root:
         return RootDecimals(re, im, _round_up(re_error, im_error))
 
 
+def overlap(a: Root, b: Root) -> bool:
+    """Tell whether two roots may be the same.
+
+    Examples
+    --------
+    >>> one = Root(arb(0), arb(4, 0.1), 1, on_imaginary_axis=True, is_real=False)
+    >>> overlap(one, Root(arb(0), arb(4.1, 0.1), 1, on_imaginary_axis=True, is_real=False))
+    True
+    """
+    return bool(a.re.overlaps(b.re)) and bool(a.im.overlaps(b.im))
+
+
 def exact_fraction(number: arb) -> Fraction:
     """Return the midpoint of a ball as the rational number it is.
 

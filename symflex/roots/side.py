@@ -22,7 +22,7 @@ from symflex.roots.polynomial import find_polynomial_roots
 from symflex.roots.precision import precision
 from symflex.roots.problem import Constant, PolynomialInS, RootProblem
 from symflex.roots.region import Band, Modes, Rectangle
-from symflex.roots.root import FLOAT_BITS, Root
+from symflex.roots.root import FLOAT_BITS, Root, overlap
 from symflex.roots.square_free_kernels import without_squares
 from symflex.roots.transcendental import HIGHEST, MODES_LIMIT, RootSearch, mirrored
 from symflex.roots.winding import Cell, RootOnPathError, Winding
@@ -42,6 +42,7 @@ SUBDIVISION = "subdivision"
 NEIGHBOURHOOD = 0.05
 """Of a point where roots accumulate: relative to its distance from 0."""
 ACCUMULATION_DIGITS = 20
+ROUNDING = 1e-15
 ORIGIN_DEPTH = 90.0
 """How far below the lowest root, in ln, a circle about 0 is counted where the order is not known exactly."""
 
@@ -116,12 +117,15 @@ class Side:
         self._origin: list[Root] = []
         self._order = 0
         self._domain: Cell | None = None
+        self._scans = False
         self.engine = GUESS_AND_PROVE
         if has_kernels(mixed, bound.kernels):
             # Kernels may have poles where polynomials vanish: only together are they entire.
             self.function = KernelFunction(*without_squares(bound, _without_laplace(plain) * mixed))
             self._winding = CertifiedWinding(self.function, budget)
             self._search = self._searching(Winding(self.function, budget))
+            # Samples next to the axis are of one branch only if all branches are alike.
+            self._scans = self.function.is_even and self.function.power == 1 and not self.holes
             self._origin, self._order = self._roots_at_zero(part, is_hidden=is_hidden)
         self._located = self._origin if self._search else self._exact
         self.roots = list(self._located)
@@ -179,12 +183,29 @@ class Side:
         if self._search is None:
             self.roots = list(self._exact)
             return
+        if self._scans:
+            self._extend_scan(self._search, modes, radius)
+        if not self._scans:
+            try:
+                self._search.extend(modes, radius)
+            finally:
+                self._take(self._search)
+
+    def _extend_scan(self, search: RootSearch, modes: int, radius: float) -> None:
+        """Look for roots on the axes; where there are others, subdivide instead."""
         try:
-            self._search.extend(modes, radius)
+            search.scan(modes, radius)
         finally:
-            self.missing = self._search.missing
-            self._set(self._search.roots)
-            self._domain = Cell(-inf, min(self._search.reached, HIGHEST), 0.0, pi)
+            self._take(search)
+        if self.counted().is_complete:
+            return
+        self._scans = False
+        self._search = self._searching(Winding(self.function, self._budget))
+
+    def _take(self, search: RootSearch) -> None:
+        self.missing = search.missing
+        self._set(search.roots)
+        self._domain = Cell(-inf, min(search.reached, HIGHEST), 0.0, pi)
 
     def search(self, region: Region) -> None:
         """Find at least the roots in a region."""
@@ -200,7 +221,17 @@ class Side:
             return
         low, high, right, left = limits
         smallest = self._search.smallest()
-        found = self._search.ring(max(low, smallest), high, right, left)
+        low = max(low, smallest)
+        if self._scans and right <= 0 and left >= self._search.left:
+            self._domain = Cell(-inf if low <= smallest else low, high, 0.0, pi)
+            try:
+                self._set(self._search.on_axes(low, high))
+            except RootOnPathError:
+                self._set(())
+            if self.counted().is_complete:
+                return
+        self._scans = False
+        found = self._search.ring(low, high, right, left)
         self.missing = found.missing
         self._domain = found.cell
         if found.cell is not None and low <= smallest and _is_whole_ring(found.cell, self._search):
@@ -213,7 +244,7 @@ class Side:
         if self._search is None:
             found = sum(root.multiplicity for root in self.roots)
             return Proof(found, found)
-        proof = self._counted(self._search)
+        proof = self.counted()
         if proof.is_complete:
             return proof
         self.engine = SUBDIVISION
@@ -244,10 +275,14 @@ class Side:
         same = (r for r in self._exact if overlap(r, root) and r.multiplicity == root.multiplicity)
         return next(same, root)
 
-    def _counted(self, search: RootSearch) -> Proof:
-        """Count the domain by its boundary."""
-        if self._domain is None:
+    def counted(self) -> Proof:
+        """Count the domain that was searched by its boundary."""
+        search = self._search
+        if search is None or self._domain is None:
             return Proof(0, 0, "nothing was searched")
+        if not _are_apart(self._located):
+            found = sum(root.multiplicity for root in self._located)
+            return Proof(found, found, "some roots could not be told apart")
         cells, holes = self._parts(self._domain, search)
         found, unsure = 0, False
         for root in self._located:
@@ -288,6 +323,20 @@ class Side:
         for hole in self.holes:
             cells = tuple(part for whole in cells for part in whole.without(hole))
         return cells, ()
+
+
+def _are_apart(roots: Sequence[Root]) -> bool:
+    """Tell whether no two enclosures overlap."""
+    with precision(FLOAT_BITS):
+        ordered = sorted(roots, key=lambda root: float(abs(root.enclosure()).lower()))
+        reached: list[tuple[float, Root]] = []
+        for root in ordered:
+            low, high = (float(x) for x in (abs(root.enclosure()).lower(), abs(root.enclosure()).upper()))
+            reached = [(end, other) for end, other in reached if end >= low * (1 - ROUNDING)]
+            if any(overlap(root, other) for _, other in reached):
+                return False
+            reached.append((high * (1 + ROUNDING), root))
+    return True
 
 
 def _is_whole_ring(cell: Cell, search: RootSearch) -> bool:
@@ -422,8 +471,3 @@ def hole_about(point: complex) -> Cell:
 def _within(root: Root, hole: Cell) -> bool:
     point = complex(float(root.re.mid()), abs(float(root.im.mid())))
     return bool(point) and hole.holds(complex(log(abs(point)), phase(point)))
-
-
-def overlap(a: Root, b: Root) -> bool:
-    """Tell whether two roots may be the same."""
-    return bool(a.re.overlaps(b.re)) and bool(a.im.overlaps(b.im))

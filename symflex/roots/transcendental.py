@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING
 from flint import acb, arb
 
 from symflex.errors import BudgetError, Diagnostic
+from symflex.roots.axis_scan import sign_changes
 from symflex.roots.clusters import middle_of, resolve
 from symflex.roots.krawczyk import prove_simple
 from symflex.roots.precision import bits_for_digits, precision
-from symflex.roots.root import Root
+from symflex.roots.root import Root, overlap
 from symflex.roots.winding import RING, Cell, RootOnPathError
 
 if TYPE_CHECKING:
@@ -43,6 +44,8 @@ SMALL = 1e-9
 CLUSTER_BITS = 256
 CLUSTER_DOUBLINGS = 4
 DISC_GROWTH = 100
+FEW = 8
+"""Modes from which on a search goes on in smaller rings."""
 HIGHEST = 300.0
 """ln of the radius [rad/s] beyond which nothing is sought."""
 MODES_LIMIT = 2000
@@ -142,6 +145,39 @@ class RootSearch:
             self.roots.extend(found.roots)
             self.missing += found.missing
             self.reached = high
+
+    def scan(self, modes: int, radius: float = -inf) -> None:
+        """Search both axes outwards until there are enough modes; what lies off the axes is not found.
+
+        See :meth:`extend`, which searches the whole plane.
+        """
+        if self.reached == -inf:
+            self.reached = self.smallest()
+        while self.reached < radius or self._modes() < modes:
+            if self.reached > HIGHEST:
+                self.reached = inf
+                break
+            known = self._modes()
+            if self.reached >= radius:
+                self._winding.budget.progress.report(known / modes, f"{known} of {modes} modes located")
+            high = self.reached + (RING if known < FEW else RING / 4)
+            self.roots.extend(self.on_axes(self.reached, high))
+            self.reached = high
+
+    def on_axes(self, low: float, high: float) -> list[Root]:
+        """Return the roots on both axes where an even function changes its sign, between ln of two radii."""
+        found: list[Root] = []
+        for angle in (0.0, pi / 2):
+            last: Root | None = None
+            for z in sign_changes(self._winding, low, high, angle):
+                with precision(FIRST_BITS):
+                    s = acb(z.real, z.imag).exp().mid()
+                root = prove_simple(self.function, s, self.digits, even=True)
+                # Newton's method may have gone to the same root twice.
+                if root is not None and (last is None or not overlap(root, last)):
+                    found.append(root)
+                    last = root
+        return found
 
     def _modes(self) -> int:
         return sum(root.multiplicity for root in self.roots)

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from symflex.transfer.monomials import Plan
 
 SIGNS = (1, -1)
+ZERO = acb(0)
 NARROW = 2.0**-30
 """Relative radius of balls whose square root needs no special care."""
 FINER = 2**30
@@ -95,6 +96,15 @@ class KernelValues:
                 values[kernel.generator] = _kernel(kernel, argument)
         return values
 
+    def generators_at(self, s: Value, near: Mapping[str, Value] | None = None) -> dict[str, Value]:
+        """Return the values of all generators but kernels; see :meth:`at`."""
+        values: dict[str, Value] = {"s": s, **self._numbers}
+        for law in self.table.dispersions:
+            if law.wavenumbers:
+                found = tuple(ZERO if c.is_zero else self.value(c, values) for c in law.characteristic)
+                values.update(_wavenumbers(law, found, near))
+        return values
+
     @cached_property
     def _numbers(self) -> dict[str, Value]:
         return {name: acb(value) for name, value in self.constants.items()}
@@ -146,13 +156,13 @@ class KernelValues:
             moving = []
             for factor, exponent in value.factors:
                 if is_constant:
-                    total = total * _power(self.polynomial(factor, values), exponent)
+                    total = total * power_of(self.polynomial(factor, values), exponent)
                 else:
                     moving.append((factor, exponent))
             known = self._products[id(value)] = (value, total, tuple(moving))
         _, total, moving_factors = known
         for factor, exponent in moving_factors:
-            total = total * _power(self.polynomial(factor, values), exponent)
+            total = total * power_of(self.polynomial(factor, values), exponent)
         return total
 
     @cached_property
@@ -161,16 +171,18 @@ class KernelValues:
 
     def polynomial(self, polynomial: fmpz_mpoly, values: Mapping[str, Value]) -> Value:
         """Return a polynomial of the ring."""
-        if self.sums.has_functions(polynomial) and all(_root_name(n, 0) in values for n, _ in self._laws):
+        named = self._laws and all(_root_name(n, 0) in values for n, _ in self._laws)
+        if named and self.sums.has_functions(polynomial):
             return self._modal_sum(polynomial, values)
         return self._monomials(polynomial, values)
 
     def _monomials(self, polynomial: fmpz_mpoly, values: Mapping[str, Value]) -> Value:
         plan = self.plans(polynomial)
-        return plan.value([_power(values[self.names[i]], e) for i, e in plan.powers])
+        return plan.value([power_of(values[self.names[i]], e) for i, e in plan.powers])
 
 
-def _power(base: Value, exponent: int) -> Value:
+def power_of(base: Value, exponent: int) -> Value:
+    """Return an integer power."""
     if isinstance(base, acb):
         return base**exponent
     result: Value = base
