@@ -10,6 +10,8 @@ from cmath import pi
 from math import exp
 from typing import TYPE_CHECKING
 
+from symflex.roots.winding import RootOnPathError
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -46,15 +48,23 @@ def sign_changes(winding: Winding, low: float, high: float, angle: float) -> Ite
         A sample is a root.
     """
     turned = angle - BESIDE if angle else 0.0
-    place, sample = low, winding.sample(complex(low, turned))
+    place, sample = low, _sample(winding, complex(low, turned))
     while place < high:
         fastest = winding.function.fastest(complex(place, turned))
         following = min(high, place + min(LONGEST, STEP / fastest if fastest > 0 else LONGEST))
-        beyond = winding.sample(complex(following, turned))
+        beyond = _sample(winding, complex(following, turned))
         for start, first, end, last in _pieces(winding, place, sample, following, beyond, turned):
             if _changes_sign(winding, first, last):
                 yield complex(_secant(start, first, end, last), angle)
         place, sample = following, beyond
+
+
+def _sample(winding: Winding, z: complex) -> Sample:
+    winding.spend()
+    found = winding.function.at_logarithm(z, is_simple=True)
+    if found is None:
+        raise RootOnPathError
+    return found
 
 
 def _pieces(
@@ -68,7 +78,7 @@ def _pieces(
         if _changes_sign(winding, one, other) or not (one.slope.real < 0 < other.slope.real):
             break
         middle = (a + b) / 2
-        between = winding.sample(complex(middle, turned))
+        between = _sample(winding, complex(middle, turned))
         pieces[-1:] = [(a, one, middle, between), (middle, between, b, other)]
         if _changes_sign(winding, one, between):
             break

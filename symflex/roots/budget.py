@@ -46,7 +46,8 @@ class Budget:
     >>> Budget(seconds=0, clock=iter([0, 1]).__next__).spend()
     Traceback (most recent call last):
     ...
-    symflex.errors.error.BudgetError: error SF506: the time given is over
+    symflex.errors.exceptions.BudgetError: error[SF506]: the time given is over
+      hint: allow more time, or ask for fewer roots
     """
 
     seconds: float | None = None

@@ -122,10 +122,16 @@ class KernelFunction:
         )
         return even and not shifted and all(_parity(f) is not None for f, _ in self.part.factors)
 
-    def at_logarithm(self, z: complex) -> Sample | None:
-        """Return the sample at ``s = exp(z)``, with the slope in z; ``None`` on a root."""
+    def at_logarithm(self, z: complex, *, is_simple: bool = False) -> Sample | None:
+        """Return the sample at ``s = exp(z)``, with the slope in z; ``None`` on a root.
+
+        With ``is_simple``, every factor in the numerator counts once.
+        """
         found = self._settled(lambda: acb(z.real, z.imag).exp())
-        return None if found is None else self._sample(*found)
+        if found is None:
+            return None
+        factors, s = found
+        return self._sample([(f, d, min(e, 1)) for f, d, e in factors] if is_simple else factors, s)
 
     def at_point(self, s: acb) -> Sample | None:
         """Return the sample at an exact ``s``, with the slope in ln(s)."""

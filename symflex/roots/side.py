@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
-from symflex.errors import Diagnostic, UncertifiedError
+from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.kernels import Factored, Ring, degree_in
 from symflex.kernels.origin import Origin
 from symflex.roots.argument_principle import CertifiedWinding
@@ -183,6 +183,9 @@ class Side:
         if self._search is None:
             self.roots = list(self._exact)
             return
+        if modes > MODES_LIMIT:
+            message = f"at most {MODES_LIMIT} modes of a distributed function are searched, not {modes}"
+            raise BudgetError(Diagnostic("SF505", message, None, "ask for a band"))
         if self._scans:
             self._extend_scan(self._search, modes, radius)
         if not self._scans:
@@ -193,14 +196,18 @@ class Side:
 
     def _extend_scan(self, search: RootSearch, modes: int, radius: float) -> None:
         """Look for roots on the axes; where there are others, subdivide instead."""
+
+        def is_complete() -> bool:
+            self._take(search)
+            return self.counted().is_complete
+
         try:
-            search.scan(modes, radius)
+            done = search.scan(modes, radius, is_complete)
         finally:
             self._take(search)
-        if self.counted().is_complete:
-            return
-        self._scans = False
-        self._search = self._searching(Winding(self.function, self._budget))
+        if not done:
+            self._scans = False
+            self._search = self._searching(Winding(self.function, self._budget))
 
     def _take(self, search: RootSearch) -> None:
         self.missing = search.missing

@@ -22,7 +22,7 @@ from symflex.roots.root import Root, overlap
 from symflex.roots.winding import RING, Cell, RootOnPathError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from symflex.roots.argument_principle import CertifiedWinding
     from symflex.roots.winding import Winding
@@ -129,9 +129,6 @@ class RootSearch:
         BudgetError
             SF505, SF506; what was found stays.
         """
-        if modes > MODES_LIMIT:
-            message = f"at most {MODES_LIMIT} modes of a distributed function are searched, not {modes}"
-            raise BudgetError(Diagnostic("SF505", message, None, "ask for a band"))
         if self.reached == -inf:
             self.reached = self.smallest()
         while self.reached < radius or (known := self._modes()) < modes:
@@ -146,13 +143,26 @@ class RootSearch:
             self.missing += found.missing
             self.reached = high
 
-    def scan(self, modes: int, radius: float = -inf) -> None:
-        """Search both axes outwards until there are enough modes; what lies off the axes is not found.
+    def scan(self, modes: int, radius: float, is_complete: Callable[[], bool]) -> bool:
+        """Search both axes outwards until there are enough modes; see :meth:`extend`.
 
-        See :meth:`extend`, which searches the whole plane.
+        Parameters
+        ----------
+        modes : int
+            Wanted.
+        radius : float
+            ln of a radius up to which to go in any case.
+        is_complete : callable
+            Tells whether :attr:`roots` are all up to :attr:`reached`; asked every now and then.
+
+        Returns
+        -------
+        bool
+            False when there are roots off the axes.
         """
         if self.reached == -inf:
             self.reached = self.smallest()
+        checked = self.reached
         while self.reached < radius or self._modes() < modes:
             if self.reached > HIGHEST:
                 self.reached = inf
@@ -161,8 +171,16 @@ class RootSearch:
             if self.reached >= radius:
                 self._winding.budget.progress.report(known / modes, f"{known} of {modes} modes located")
             high = self.reached + (RING if known < FEW else RING / 4)
-            self.roots.extend(self.on_axes(self.reached, high))
+            try:
+                self.roots.extend(self.on_axes(self.reached, high))
+            except RootOnPathError:
+                return False
             self.reached = high
+            if high - checked > 2 * RING:
+                if not is_complete():
+                    return False
+                checked = high
+        return is_complete()
 
     def on_axes(self, low: float, high: float) -> list[Root]:
         """Return the roots on both axes where an even function changes its sign, between ln of two radii."""
