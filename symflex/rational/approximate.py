@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 DEFAULT_MODES = 5
 DIGITS = 30
-SCANNED_DECADES = 2
+SCANNED_DECADES = 3
 
 
 def approximate(
@@ -42,7 +42,7 @@ def approximate(
     form : str
         ``product`` or ``modal``; see :data:`symflex.rational.FORMS`.
     band : (float, float), optional
-        Where the error is stated [Hz]; by default from a hundredth of the lowest natural frequency to the
+        Where the error is stated [Hz]; by default from a thousandth of the lowest natural frequency to the
         highest one kept.
 
     Returns
