@@ -29,7 +29,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from symflex.api import BoundTransferFunction, Form, Model, Root, TransferFunction, load, loads
+    from symflex.api import BoundTransferFunction, Form, Model, Residue, Root, TransferFunction, load, loads
     from symflex.errors import SymflexError
 
 __version__ = "0.1.0"
@@ -38,6 +38,7 @@ _HOME = {
     "BoundTransferFunction": "symflex.api",
     "Form": "symflex.api",
     "Model": "symflex.api",
+    "Residue": "symflex.api",
     "Root": "symflex.api",
     "SymflexError": "symflex.errors",
     "TransferFunction": "symflex.api",
@@ -49,6 +50,7 @@ __all__ = [
     "BoundTransferFunction",
     "Form",
     "Model",
+    "Residue",
     "Root",
     "SymflexError",
     "TransferFunction",

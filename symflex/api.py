@@ -20,15 +20,16 @@ from symflex.emit.sympy_expression import symbols_of, to_sympy
 from symflex.emit.text import form_text
 from symflex.errors import Diagnostic, UsageError
 from symflex.expressions import Expression, Name
+from symflex.roots.multiprecision import to_complex_mpmath, to_mpmath
 from symflex.spec import write
 
 if TYPE_CHECKING:
     import numpy as np
     import sympy
-    from flint import arb
     from numpy.typing import ArrayLike, NDArray
 
     from symflex import model as model_room
+    from symflex import rational as rational_room
     from symflex import transfer as transfer_room
     from symflex.response import FrequencyResponse
 
@@ -382,8 +383,7 @@ class Root:
 
         Arithmetic with it rounds to ``mpmath.mp.dps`` digits, as mpmath does; see ``mpmath.workdps``.
         """
-        # mpmath.mpc(re, im) would round to the working precision.
-        return mpmath.mp.make_mpc((self.re._mpf_, self.im._mpf_))
+        return to_complex_mpmath(self.certified_root.enclosure())
 
     @property
     def radius(self) -> mpmath.mpf:
@@ -431,10 +431,49 @@ class Root:
         return complex(self.re, self.im)
 
 
-def to_mpmath(ball: arb) -> mpmath.mpf:
-    """Return the midpoint of a real ball, exactly."""
-    mantissa, exponent = ball.mid().man_exp()
-    return mpmath.mp.make_mpf(mpmath.libmp.from_man_exp(int(mantissa), int(exponent)))
+@dataclass(frozen=True)
+class Residue:
+    """How much of a mode a transfer function holds: its principal part at a pole p.
+
+    Parameters
+    ----------
+    principal : symflex.rational.Residue
+        The enclosures.
+    """
+
+    principal: rational_room.Residue
+
+    @property
+    def pole(self) -> Root:
+        """The pole p."""
+        return Root(self.principal.root)
+
+    @property
+    def value(self) -> mpmath.mpc:
+        """The coefficient of ``1/(s - p)``, midpoint of its enclosure; in the function's unit times rad/s."""
+        return to_complex_mpmath(self.principal.value)
+
+    @property
+    def radius(self) -> mpmath.mpf:
+        """A bound on the distance from :attr:`value` to the residue; if unproved, an estimate."""
+        return to_mpmath(self.principal.value.rad())
+
+    @property
+    def coefficients(self) -> tuple[mpmath.mpc, ...]:
+        """The coefficients of ``1/(s - p)``, ``1/(s - p)^2``, ... up to the pole's multiplicity."""
+        return tuple(map(to_complex_mpmath, self.principal.coefficients))
+
+    @property
+    def certified(self) -> bool:
+        """Whether the pole, and with it the residue, is proved."""
+        return not self.principal.is_estimate
+
+    def __repr__(self) -> str:
+        re, im = (mpmath.nstr(part, SHOWN_DIGITS) for part in (self.value.real, self.value.imag))
+        return f"<Residue {re}, {im} j at {complex(self.pole):.6g}, radius {mpmath.nstr(self.radius, 2)}>"
+
+    def __complex__(self) -> complex:
+        return complex(self.value)
 
 
 @dataclass(frozen=True)
@@ -520,6 +559,56 @@ class BoundTransferFunction:
             Only the rectangle ``(re_low, re_high, im_low, im_high)`` [rad/s].
         """
         return pipeline.roots(self.bound, _region(modes, band, region), digits)
+
+    def residues(
+        self, modes: int | None = None, *, band: tuple[float, float] | None = None, digits: int = 15
+    ) -> tuple[Residue, ...]:
+        """Return the residues at the poles, in their order; see :meth:`poles`.
+
+        Parameters
+        ----------
+        modes : int, optional
+            Only at the poles of the lowest modes and at the origin.
+        band : (float, float), optional
+            Only at poles with natural frequencies in this band [Hz].
+        digits : int
+            Correct significant digits.
+
+        Raises
+        ------
+        UncertifiedError
+            SF405 when poles cannot be told apart, or the behaviour at one cannot be told.
+        """
+        return tuple(Residue(r) for r in pipeline.residues(self.bound, _region(modes, band), digits))
+
+    def rational(
+        self,
+        modes: int | None = None,
+        form: str = "product",
+        *,
+        band: tuple[float, float] | None = None,
+    ) -> rational_room.RationalApproximation:
+        """Return a rational approximation, with its error along the imaginary axis.
+
+        Parameters
+        ----------
+        modes : int, optional
+            How many modes are kept, besides roots at the origin. By default those up to the end of ``band``,
+            else as many as the model's ``[analysis]`` says, else five.
+        form : str
+            ``product``: the poles and zeros, right to the leading order at s = 0; ``modal``: the principal
+            parts at the poles, and a constant that makes the finite part at s = 0 exact.
+        band : (float, float), optional
+            Where the error is stated [Hz].
+
+        Raises
+        ------
+        UsageError
+            SF902 for an unknown form, SF227 for a band that is empty or not positive.
+        UncertifiedError
+            SF405 when residues, or the behaviour near s = 0, cannot be told.
+        """
+        return pipeline.rational(self.bound, modes, form, band)
 
     def dcgain(self) -> float:
         """Return the limit for s -> 0 from the right, possibly infinite."""

@@ -2,7 +2,7 @@
 
 text --parse--> Spec --resolve--> Model --assemble--> Equations --derive--> TransferFunction
                                                                                | bind(values)
-   PoleZeroMap <--roots--  FrequencyResponse <--response--                     |
+   PoleZeroMap <--roots--  FrequencyResponse <--response--  RationalApproximation <--rational--
                                                                                |
                                                  emit: text, JSON, LaTeX, numpy, figure
 """
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from symflex.equations import Equations
     from symflex.kernels import Ring
     from symflex.model import PlacedBlock
+    from symflex.rational import RationalApproximation, Residue
     from symflex.roots import PoleZeroMap, Region
     from symflex.spec import Spec
     from symflex.transfer import BoundTransferFunction, TransferFunction
@@ -143,6 +144,27 @@ def bind(
 def roots(bound: BoundTransferFunction, region: Region | None = None, digits: int = 15) -> PoleZeroMap:
     """Return poles, zeros and hidden modes, proved; see :func:`symflex.roots.locate.locate`."""
     return locate(bound, region, digits)
+
+
+def residues(
+    bound: BoundTransferFunction, region: Region | None = None, digits: int = 15
+) -> tuple[Residue, ...]:
+    """Return the principal parts at the poles; see :func:`symflex.rational.find_residues`."""
+    from symflex import rational as rational_room  # imports numpy
+
+    return rational_room.find_residues(bound, region, digits)
+
+
+def rational(
+    bound: BoundTransferFunction,
+    modes: int | None = None,
+    form: str = "product",
+    band: tuple[float, float] | None = None,
+) -> RationalApproximation:
+    """Return a rational approximation with its error; see :func:`symflex.rational.approximate`."""
+    from symflex import rational as rational_room  # imports numpy
+
+    return rational_room.approximate(bound, modes, form, band)
 
 
 def audit(model: Model, names: Sequence[str] = ()) -> tuple[Audit, ...]:

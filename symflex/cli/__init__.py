@@ -12,6 +12,7 @@ COMMANDS: dict[str, str] = {
     "check": "Parse and resolve a specification; report every problem at once.",
     "derive": "Print transfer functions in closed form.",
     "roots": "Print poles and zeros with proved enclosures.",
+    "rational": "Print rational approximations and where they are valid.",
     "plot": "Draw a Bode plot or pole-zero array.",
     "export": "Write numeric code or LaTeX.",
     "audit": "Compare printed formulas with derived ones.",

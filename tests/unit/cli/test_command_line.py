@@ -17,7 +17,14 @@ from symflex.elements import ELEMENTS
 from symflex.errors import BudgetError, Diagnostic
 from tests.unit.cli.commands import DERIVATIONS, ROOT, TWO_MASS
 
-SPEC_COMMANDS = (("check",), ("derive",), ("roots",), ("plot", "bode"), ("export", "--to", "numpy"))
+SPEC_COMMANDS = (
+    ("check",),
+    ("derive",),
+    ("roots",),
+    ("rational",),
+    ("plot", "bode"),
+    ("export", "--to", "numpy"),
+)
 UNBREAKABLE = re.compile(r"^ *\S*$")
 
 
