@@ -29,7 +29,16 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from symflex.api import BoundTransferFunction, Form, Model, Root, TransferFunction, load, loads
+    from symflex.api import (
+        BoundTransferFunction,
+        Form,
+        Model,
+        Root,
+        Sensitivity,
+        TransferFunction,
+        load,
+        loads,
+    )
     from symflex.errors import SymflexError
 
 __version__ = "0.1.0"
@@ -39,6 +48,7 @@ _HOME = {
     "Form": "symflex.api",
     "Model": "symflex.api",
     "Root": "symflex.api",
+    "Sensitivity": "symflex.api",
     "SymflexError": "symflex.errors",
     "TransferFunction": "symflex.api",
     "load": "symflex.api",
@@ -50,6 +60,7 @@ __all__ = [
     "Form",
     "Model",
     "Root",
+    "Sensitivity",
     "SymflexError",
     "TransferFunction",
     "__version__",
