@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -402,6 +403,27 @@ def test_roots_that_part_have_no_derivative():
     # A root at 0 for all values of the parameters stays there.
     assert shown[0, "a"].derivative == 0
     assert shown[0, "a"].normalised is None
+
+
+def test_roots_that_nearly_meet_run_apart_fast():
+    # b^2 = 4 k m is nearly met: s = (-b +- sqrt(b^2 - 144))/4 and ds/dk = -1/(4 s + b).
+    b = "12.00000000000000000001"
+    text = OSCILLATOR.replace('"50 N/m"', '"18 N/m"').replace('"3 N*s/m"', f'"{b} N*s/m"')
+    found = moved(pipeline.loads(text), names=["k"], digits=6)
+    with mpmath.workdps(80):
+        root = mpmath.sqrt(mpmath.mpf(b) ** 2 - 144)
+        for s, expected in zip(found, (-1 / root, 1 / root), strict=True):
+            assert s.status == "certified"
+            assert abs(number(s.derivative) / expected - 1) < 1e-6
+
+
+def test_an_enclosure_that_holds_no_root_gives_no_derivative():
+    model = pipeline.loads(OSCILLATOR)
+    (bound,) = pipeline.derive_bound(model, model.transfer_functions)
+    found = pipeline.roots(bound, None, 15)
+    wrong = tuple(replace(root, im=root.im + 1) for root in found.poles)
+    shown = pipeline.sensitivities(model, bound, replace(found, poles=wrong))
+    assert {(s.status, s.derivative) for s in shown} == {("undecided", None)}
 
 
 def test_rigid_body_motion_of_a_beam_stays_at_zero():
