@@ -29,7 +29,17 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from symflex.api import BoundTransferFunction, Form, Model, Residue, Root, TransferFunction, load, loads
+    from symflex.api import (
+        BoundTransferFunction,
+        Form,
+        Model,
+        Residue,
+        Root,
+        Sensitivity,
+        TransferFunction,
+        load,
+        loads,
+    )
     from symflex.errors import SymflexError
 
 __version__ = "0.1.0"
@@ -40,6 +50,7 @@ _HOME = {
     "Model": "symflex.api",
     "Residue": "symflex.api",
     "Root": "symflex.api",
+    "Sensitivity": "symflex.api",
     "SymflexError": "symflex.errors",
     "TransferFunction": "symflex.api",
     "load": "symflex.api",
@@ -52,6 +63,7 @@ __all__ = [
     "Model",
     "Residue",
     "Root",
+    "Sensitivity",
     "SymflexError",
     "TransferFunction",
     "__version__",

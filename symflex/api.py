@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
@@ -19,6 +19,7 @@ from symflex.emit.json_format import derive_json
 from symflex.emit.sympy_expression import symbols_of, to_sympy
 from symflex.emit.text import form_text
 from symflex.errors import Diagnostic, UsageError
+from symflex.errors.diagnostic import nearest
 from symflex.expressions import Expression, Name
 from symflex.roots.multiprecision import to_complex_mpmath, to_mpmath
 from symflex.spec import write
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
     from symflex import model as model_room
     from symflex import rational as rational_room
+    from symflex import sensitivity as sensitivity_room
     from symflex import transfer as transfer_room
     from symflex.response import FrequencyResponse
 
@@ -342,6 +344,38 @@ class TransferFunction:
         """
         return BoundTransferFunction(pipeline.bind(self.exact, values))
 
+    def sensitivity_formula(self, parameter: str, of: str = "pole") -> tuple[sympy.Expr, sympy.Expr]:
+        """Return numerator and denominator of ds/dp for a pole s, a formula in s and the parameters.
+
+        With D the denominator it is ``-(dD/dp)/(dD/ds)``, valid at every simple root of D that moves with the
+        parameter; those that do not are left out of D. The derivative goes through all definitions,
+        wavenumbers and kernels, whose names are replaced by what they stand for.
+
+        Parameters
+        ----------
+        parameter : str
+            A parameter of the model.
+        of : str
+            ``"pole"``, or ``"zero"`` for the numerator's roots.
+
+        Raises
+        ------
+        UsageError
+            SF902 for an unknown parameter, or where wavenumbers have no formula.
+        """
+        from symflex.emit.sensitivity_formula import sensitivity_formula  # needs all of SymPy
+
+        symbols = symbols_of(self.exact.model)
+        if parameter not in symbols or of not in ("pole", "zero"):
+            what = f"parameter '{parameter[:64]}'" if parameter not in symbols else f"root called '{of[:64]}'"
+            raise UsageError(Diagnostic("SF902", f"there is no {what}", None, nearest(parameter, symbols)))
+        form = self.form("hyperbolic") if self.is_distributed else self._shortest
+        if form.printed.laws:
+            message = f"the waves of {self.name} have no formula, and so neither have its sensitivities"
+            raise UsageError(Diagnostic("SF902", message, None, "use sensitivities() of the bound function"))
+        part = form.den if of == "pole" else form.num
+        return sensitivity_formula(part, form.where, to_sympy(Name("s"), symbols), symbols[parameter])
+
     def __repr__(self) -> str:
         if self.is_distributed:
             return f"<TransferFunction {self.name}: {self.quantity}, distributed>"
@@ -477,6 +511,78 @@ class Residue:
 
 
 @dataclass(frozen=True)
+class Sensitivity:
+    """How a root s moves with a parameter p; numbers are midpoints of proved enclosures.
+
+    Parameters
+    ----------
+    moved : symflex.sensitivity.Sensitivity
+        The enclosures.
+    """
+
+    moved: sensitivity_room.Sensitivity
+
+    @property
+    def kind(self) -> str:
+        """``pole`` or ``zero``."""
+        return self.moved.kind
+
+    @property
+    def root(self) -> Root:
+        """The root."""
+        return Root(self.moved.root)
+
+    @property
+    def parameter(self) -> str:
+        """The parameter's name."""
+        return self.moved.parameter.name
+
+    @property
+    def status(self) -> str:
+        """``certified``, ``multiple`` (there is no derivative) or ``undecided``."""
+        return self.moved.status
+
+    @property
+    def derivative(self) -> mpmath.mpc | None:
+        """ds/dp [rad/s per unit of the parameter]; ``None`` where there is none."""
+        return None if self.moved.derivative is None else to_complex_mpmath(self.moved.derivative)
+
+    @property
+    def radius(self) -> mpmath.mpf | None:
+        """A bound on the distance from :attr:`derivative` to the true one."""
+        derivative = self.moved.derivative
+        if derivative is None:
+            return None
+        with roots_room.precision(64):
+            return to_mpmath((derivative.real.rad() ** 2 + derivative.imag.rad() ** 2).sqrt().upper())
+
+    @property
+    def normalised(self) -> mpmath.mpc | None:
+        """``(p/s) ds/dp``; its real part is ``(p/f) df/dp``. ``None`` at s = 0."""
+        normalised = self.moved.normalised
+        return None if normalised is None else to_complex_mpmath(normalised)
+
+    @property
+    def frequency(self) -> mpmath.mpf | None:
+        """df/dp [Hz per unit of the parameter] of the natural frequency ``f = abs(s)/(2 pi)``."""
+        frequency = self.moved.frequency
+        return None if frequency is None else to_mpmath(frequency)
+
+    @property
+    def damping_ratio(self) -> mpmath.mpf | None:
+        """dzeta/dp [1 per unit of the parameter]; ``None`` for real roots."""
+        damping_ratio = self.moved.damping_ratio
+        return None if damping_ratio is None else to_mpmath(damping_ratio)
+
+    def __repr__(self) -> str:
+        if self.moved.derivative is None:
+            return f"<Sensitivity of a {self.kind} to {self.parameter}: {self.status}>"
+        derivative = self.moved.derivative
+        printed = roots_room.decimals(derivative.real, derivative.imag, SHOWN_DIGITS)
+        return f"<Sensitivity of a {self.kind} to {self.parameter}: {printed.re}, {printed.im} j>"
+
+
+@dataclass(frozen=True)
 class BoundTransferFunction:
     """A transfer function with numbers: evaluates, and finds its poles and zeros.
 
@@ -609,6 +715,36 @@ class BoundTransferFunction:
             SF405 when residues, or the behaviour near s = 0, cannot be told.
         """
         return pipeline.rational(self.bound, modes, form, band)
+
+    def sensitivities(
+        self,
+        modes: int | None = None,
+        *,
+        parameters: Sequence[str] = (),
+        band: tuple[float, float] | None = None,
+        digits: int = 15,
+    ) -> tuple[Sensitivity, ...]:
+        """Return how poles, and then zeros, move with parameters.
+
+        Parameters
+        ----------
+        modes, band : optional
+            As for :meth:`poles`.
+        parameters : sequence of str
+            All on which the function depends when none is given.
+        digits : int
+            Correct significant digits of every derivative.
+
+        Raises
+        ------
+        UsageError
+            SF902 for an unknown parameter.
+        """
+        found = pipeline.roots(self.bound, _region(modes, band), digits)
+        model = self.bound.source.model
+        return tuple(
+            Sensitivity(m) for m in pipeline.sensitivities(model, self.bound, found, parameters, digits)
+        )
 
     def dcgain(self) -> float:
         """Return the limit for s -> 0 from the right, possibly infinite."""

@@ -22,6 +22,7 @@ from symflex.errors.diagnostic import nearest
 from symflex.kernels import Factored
 from symflex.model import Model, load_model, with_numbers
 from symflex.roots.locate import locate
+from symflex.sensitivity import differentiate
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     from symflex.model import PlacedBlock
     from symflex.rational import RationalApproximation, Residue
     from symflex.roots import PoleZeroMap, Region
+    from symflex.sensitivity import Sensitivity
     from symflex.spec import Spec
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
@@ -165,6 +167,51 @@ def rational(
     from symflex import rational as rational_room  # imports numpy
 
     return rational_room.approximate(bound, modes, form, band)
+
+
+def sensitivities(
+    model: Model,
+    bound: BoundTransferFunction,
+    found: PoleZeroMap,
+    names: Sequence[str] = (),
+    digits: int = 15,
+) -> tuple[Sensitivity, ...]:
+    """Return how poles and zeros move with parameters; see :func:`symflex.sensitivity.differentiate`.
+
+    Parameters
+    ----------
+    model : Model
+        Where ``bound`` comes from.
+    bound, found : BoundTransferFunction, PoleZeroMap
+        A transfer function with numbers, and its roots.
+    names : sequence of str
+        Parameters; all on which the function depends when none is given.
+    digits : int
+        Significant digits of every derivative.
+
+    Raises
+    ------
+    UsageError
+        SF902 for a parameter the model does not have.
+    """
+    declared = {p.name: p for p in model.parameters}
+    for name in names:
+        if name not in declared:
+            hint = nearest(name, declared) or "parameters: " + ", ".join(list(declared)[:8])
+            raise UsageError(Diagnostic("SF902", f"there is no parameter '{name[:64]}'", None, hint))
+    given = dict(bound.values)
+    values = {p.name: given.get(p.name, p.value) for p in model.parameters}
+    known = {name: value for name, value in values.items() if value is not None}
+    chosen = [p for p in model.parameters if p.name in known and (not names or p.name in names)]
+    if model.is_distributed:
+        return differentiate(bound.source, known, found, chosen, digits)
+    # One symbol at a time, among numbers, is far less than all at once.
+    pair = (bound.source.output.name, bound.source.input.name)
+    moved: list[Sensitivity] = []
+    for parameter in chosen:
+        (tf,) = derive_all(with_numbers(model, (parameter.name,), known), [pair])
+        moved += differentiate(tf, known, found, [parameter], digits)
+    return tuple(sorted(moved, key=lambda m: (m.kind, m.index)))
 
 
 def audit(model: Model, names: Sequence[str] = ()) -> tuple[Audit, ...]:

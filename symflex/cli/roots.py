@@ -27,6 +27,15 @@ DIGITS_LIMIT = 10_000
 @click.option(
     "--digits", type=click.IntRange(1, DIGITS_LIMIT), help="Correct significant digits.  [default: 15]"
 )
+@click.option(
+    "--sensitivity",
+    "wanted",
+    metavar="[PARAM]",
+    multiple=True,
+    is_flag=False,
+    flag_value="",
+    help="How roots move with a parameter, all of them when none is named; may be repeated.",
+)
 @click.option("--strict", is_flag=True, help="Exit with code 4 also when a part of the region is left out.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @reporting
@@ -38,6 +47,7 @@ def command(
     band: tuple[str, str] | None,
     region: tuple[str, str, str, str] | None,
     digits: int | None,
+    wanted: tuple[str, ...],
     strict: bool,
     as_json: bool,
 ) -> int:
@@ -47,8 +57,12 @@ def command(
     systems have infinitely many, of which the lowest are shown by default. Exit code 4 says that roots could
     not be told apart, or that their number could not be proved; exit code 5, that the budget was exceeded:
     what was proved until then is shown.
+
+    --sensitivity adds the relative change of each natural frequency, and the change of each damping ratio,
+    per relative change of a parameter. It takes the next word as a name: put it after SPEC.
     """
     from symflex import pipeline
+    from symflex.emit.sensitivity import sensitivity_text
     from symflex.emit.text import roots_text
 
     chosen = _region(modes, band, region)
@@ -60,13 +74,20 @@ def command(
     shown = digits or model.analysis.digits or 15
     (bound,) = pipeline.derive_bound(model, pairs[:1])
     found = pipeline.roots(bound, chosen, shown)
+    names = [] if "" in wanted else wanted
+    moved = pipeline.sensitivities(model, bound, found, names, shown) if wanted else ()
     if as_json:
-        emit_json(found.to_json_dict())
+        more = {"sensitivity": [m.to_json_dict(shown) for m in moved]} if wanted else {}
+        emit_json({**found.to_json_dict(), **more})
     else:
         click.echo(roots_text(found, shown, terminal_width()))
+        if wanted:
+            click.echo(sensitivity_text(moved, terminal_width()))
     certificate = found.certificate
     if certificate.is_exceeded:
         return 5
+    if any(m.status == "undecided" for m in moved):
+        return 4
     return 0 if certificate.certified and not (strict and found.excluded) else 4
 
 

@@ -20,24 +20,27 @@ class ElementaryFunction:
         Maps a real or complex ball to a ball at the current precision.
     latex : str
         The operator name in LaTeX.
+    derivative : callable
+        The derivative, in the same way.
     """
 
     name: str
     evaluate: Callable[[arb], arb]
     latex: str
+    derivative: Callable[[arb], arb]
 
 
 FUNCTIONS: dict[str, ElementaryFunction] = {
     f.name: f
     for f in (
-        ElementaryFunction("sqrt", lambda x: x.sqrt(), r"\sqrt"),
-        ElementaryFunction("exp", lambda x: x.exp(), r"\exp"),
-        ElementaryFunction("log", lambda x: x.log(), r"\log"),
-        ElementaryFunction("sin", lambda x: x.sin(), r"\sin"),
-        ElementaryFunction("cos", lambda x: x.cos(), r"\cos"),
-        ElementaryFunction("tan", lambda x: x.tan(), r"\tan"),
-        ElementaryFunction("sinh", lambda x: x.sinh(), r"\sinh"),
-        ElementaryFunction("cosh", lambda x: x.cosh(), r"\cosh"),
-        ElementaryFunction("tanh", lambda x: x.tanh(), r"\tanh"),
+        ElementaryFunction("sqrt", lambda x: x.sqrt(), r"\sqrt", lambda x: 1 / (2 * x.sqrt())),
+        ElementaryFunction("exp", lambda x: x.exp(), r"\exp", lambda x: x.exp()),
+        ElementaryFunction("log", lambda x: x.log(), r"\log", lambda x: 1 / x),
+        ElementaryFunction("sin", lambda x: x.sin(), r"\sin", lambda x: x.cos()),
+        ElementaryFunction("cos", lambda x: x.cos(), r"\cos", lambda x: -x.sin()),
+        ElementaryFunction("tan", lambda x: x.tan(), r"\tan", lambda x: 1 + x.tan() ** 2),
+        ElementaryFunction("sinh", lambda x: x.sinh(), r"\sinh", lambda x: x.cosh()),
+        ElementaryFunction("cosh", lambda x: x.cosh(), r"\cosh", lambda x: x.sinh()),
+        ElementaryFunction("tanh", lambda x: x.tanh(), r"\tanh", lambda x: 1 - x.tanh() ** 2),
     )
 }

@@ -105,7 +105,7 @@ def approximate(
         made.residues,
         made.correction,
         kept.is_exact,
-        made.is_estimate or any(root.is_estimate for root in roots),
+        made.is_estimate or any(not root.certified for root in roots),
         kept.omitted_hz,
         scan_error(bound, value, kept.found, low, high),
         stated,

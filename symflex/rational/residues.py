@@ -115,7 +115,7 @@ def _at_zero(bound: BoundTransferFunction, root: Root, digits: int) -> Residue:
     if series.order != -root.multiplicity:
         message = f"the order of the pole of {bound.name} at s = 0 is {root.multiplicity} or {-series.order}"
         raise UncertifiedError(Diagnostic("SF405", message))
-    is_estimate = series.is_estimate or root.is_estimate
+    is_estimate = series.is_estimate or not root.certified
     return Residue(root, root.enclosure(), series.principal_part, is_estimate)
 
 

@@ -11,7 +11,7 @@ from symflex.roots.polynomial import POLYNOMIAL, PolynomialRootFinder, find_poly
 from symflex.roots.precision import precision
 from symflex.roots.problem import Constant, PolynomialInS, RootProblem
 from symflex.roots.region import Band, Everything, Modes, Position, Rectangle, Region
-from symflex.roots.root import Root, RootDecimals
+from symflex.roots.root import Root, RootDecimals, decimals
 
 ROOT_FINDERS: dict[str, RootFinder] = {
     "polynomial": POLYNOMIAL,
@@ -37,6 +37,7 @@ __all__ = [
     "RootDecimals",
     "RootFinder",
     "RootProblem",
+    "decimals",
     "find_pole_zero_map",
     "find_polynomial_roots",
     "precision",

@@ -116,9 +116,20 @@ class Root:
         RootDecimals
             ``radius`` bounds the rounding of the print and the enclosure together.
         """
-        re, re_error = _round_ball(self.re, digits)
-        im, im_error = _round_ball(self.im, digits)
-        return RootDecimals(re, im, _round_up(re_error, im_error))
+        return decimals(self.re, self.im, digits)
+
+
+def decimals(re: arb, im: arb, digits: int) -> RootDecimals:
+    """Print a complex number with at most ``digits`` significant digits in each part, all certified.
+
+    Examples
+    --------
+    >>> decimals(arb(1, 1e-3), arb(2) / 3, 6)
+    RootDecimals(re='1.00', im='0.666667', radius='1.1e-3')
+    """
+    shown_re, re_error = _round_ball(re, digits)
+    shown_im, im_error = _round_ball(im, digits)
+    return RootDecimals(shown_re, shown_im, _round_up(re_error, im_error))
 
 
 def overlap(a: Root, b: Root) -> bool:

@@ -7,6 +7,7 @@ import contextlib
 
 import mpmath
 import pytest
+from flint import arb, ctx
 
 from symflex import pipeline
 from symflex.blocks import BLOCKS, MODEL_BLOCK
@@ -241,6 +242,15 @@ def test_a_function_can_be_written_in_a_model_and_binds_to_its_value(name):
     text = f'symflex = 1\n[parameters]\np = "0.5"\n[inputs]\nU = {{}}\n[outputs]\nX = "{name}(p)*U"\n'
     (tf,) = pipeline.derive_all(pipeline.loads(text))
     assert pipeline.bind(tf)(0j) == complex(float(getattr(mpmath, name)(mpmath.mpf("0.5"))))
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_a_function_s_derivative_is_its_slope(name):
+    with ctx.workprec(160), mpmath.workdps(40):
+        slope = mpmath.diff(getattr(mpmath, name), mpmath.mpf("0.375"))
+        assert FUNCTIONS[name].derivative(arb(3) / 8).str(30, radius=False) == arb(str(slope)).str(
+            30, radius=False
+        )
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
