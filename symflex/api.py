@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
     from symflex import model as model_room
     from symflex import transfer as transfer_room
+    from symflex.explanation import ZeroExplanation
     from symflex.response import FrequencyResponse
 
 Number = int | float | Fraction | Decimal | str
@@ -521,6 +522,19 @@ class BoundTransferFunction:
             Only the rectangle ``(re_low, re_high, im_low, im_high)`` [rad/s].
         """
         return pipeline.roots(self.bound, _region(modes, band, region), digits)
+
+    def explain_zeros(
+        self, modes: int | None = None, *, band: tuple[float, float] | None = None, digits: int = 15
+    ) -> ZeroExplanation:
+        """Return what the zeros are the poles of; print it to read it.
+
+        Parameters
+        ----------
+        modes, band, digits
+            As for :meth:`zeros`: which zeros are spoken of one by one.
+        """
+        found = pipeline.roots(self.bound, _region(modes, band), digits)
+        return pipeline.explain_zeros(self.bound.source.model, self.bound, found)
 
     def dcgain(self) -> float:
         """Return the limit for s -> 0 from the right, possibly infinite."""

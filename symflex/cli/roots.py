@@ -28,6 +28,7 @@ DIGITS_LIMIT = 10_000
     "--digits", type=click.IntRange(1, DIGITS_LIMIT), help="Correct significant digits.  [default: 15]"
 )
 @click.option("--strict", is_flag=True, help="Exit with code 4 when roots are located but not proved.")
+@click.option("--explain", is_flag=True, help="Say which constrained system's poles the zeros are.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @reporting
 def command(
@@ -39,6 +40,7 @@ def command(
     region: tuple[str, str, str, str] | None,
     digits: int | None,
     strict: bool,
+    explain: bool,
     as_json: bool,
 ) -> int:
     """Print poles, zeros and hidden modes of one transfer function of SPEC.
@@ -50,6 +52,7 @@ def command(
     """
     from symflex import pipeline
     from symflex.emit.text import roots_text
+    from symflex.explanation import explanation_json, explanation_text
 
     chosen = _region(modes, band, region)
     model = pipeline.load(spec)
@@ -60,10 +63,14 @@ def command(
     shown = digits or model.analysis.digits or 15
     (bound,) = pipeline.derive_bound(model, pairs[:1])
     found = pipeline.roots(bound, chosen, shown)
+    explained = pipeline.explain_zeros(model, bound, found) if explain else None
     if as_json:
-        emit_json(found.to_json_dict())
+        document = found.to_json_dict()
+        emit_json(document if explained is None else {**document, "explanation": explanation_json(explained)})
     else:
         click.echo(roots_text(found, shown, terminal_width()))
+        if explained is not None:
+            click.echo("\n" + explanation_text(explained, terminal_width()))
     certificate = found.certificate
     return 0 if certificate.certified or (certificate.is_complete and not strict) else 4
 
