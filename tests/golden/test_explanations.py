@@ -1,8 +1,8 @@
 """What a reader is told about the zeros of the models in ``derivations/``.
 
-``explanations/MODEL.OUT.IN.txt`` holds what ``symflex roots --explain`` prints below the tables. What it
-says is known from the sources: the clamped-free beam from Miu (1991), the driven winding from the motor's law,
-the real pairs from Eppinger and Seering (1988). The numbers are tested elsewhere against independent ones.
+``explanations/MODEL.OUT.IN.txt`` holds what ``symflex roots --explain`` prints below the tables. What it says
+is known from the sources: the clamped-free beam from Miu (1991), the winding from the motor's law, the real
+pairs from Eppinger and Seering (1988). The numbers are tested elsewhere against independent ones.
 """
 
 from __future__ import annotations

@@ -251,7 +251,7 @@ def test_a_mixed_output_is_explained_by_cramers_rule_alone():
 
 
 def test_an_input_without_effect_has_no_zeros_to_explain():
-    text = MOTOR.replace('k_t = "0.1 N*m/A"', 'k_t = "0 N*m/A", k_e = "0 V*s/rad"')
+    text = MOTOR.replace('k_t = "0.1 N*m/A"', 'k_t = "0 N*m/A"\nk_e = "0 V*s/rad"')
     told, _ = explained(pipeline.loads(text), "x/U")
     assert told.kind == "zero"
 
