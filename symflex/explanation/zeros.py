@@ -26,6 +26,7 @@ from symflex.explanation.constraints import Constraint, hold, open_circuit, repl
 from symflex.explanation.coordinates import acting, measured
 from symflex.explanation.ends import ends_of_element, ends_of_field, is_line
 from symflex.explanation.parts import Part, Separation, separate
+from symflex.explanation.text import explanation_json, explanation_text
 from symflex.expressions import format_expression, power, product_of
 from symflex.kernels import LAPLACE, Factored, degree_in
 from symflex.model import with_numbers
@@ -87,6 +88,8 @@ class ZeroExplanation:
     status : str
         ``proved`` in the exact ring of the equations; ``compared``: certified or located roots agree in the
         region shown; ``not shown``.
+    output, input : str
+        Their names.
     is_direct : bool
         The input acts on the very coordinate that the output shows.
     held, words, spec : str
@@ -141,9 +144,11 @@ class ZeroExplanation:
     has_zeros: bool = True
 
     def __str__(self) -> str:
-        from symflex.explanation.text import explanation_text  # the text's room is above the data's
-
         return explanation_text(self)
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return the explanation as JSON data, as ``symflex roots --explain --json`` holds it."""
+        return explanation_json(self)
 
 
 @dataclass(frozen=True, eq=False)
