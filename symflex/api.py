@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from symflex import rational as rational_room
     from symflex import sensitivity as sensitivity_room
     from symflex import transfer as transfer_room
+    from symflex.explanation import ZeroExplanation
     from symflex.response import FrequencyResponse
 
 Number = int | float | Fraction | Decimal | str
@@ -745,6 +746,19 @@ class BoundTransferFunction:
         return tuple(
             Sensitivity(m) for m in pipeline.sensitivities(model, self.bound, found, parameters, digits)
         )
+
+    def explain_zeros(
+        self, modes: int | None = None, *, band: tuple[float, float] | None = None, digits: int = 15
+    ) -> ZeroExplanation:
+        """Return what the zeros are the poles of; print it to read it.
+
+        Parameters
+        ----------
+        modes, band, digits
+            As for :meth:`zeros`: which zeros are spoken of one by one.
+        """
+        found = pipeline.roots(self.bound, _region(modes, band), digits)
+        return pipeline.explain_zeros(self.bound.source.model, self.bound, found)
 
     def dcgain(self) -> float:
         """Return the limit for s -> 0 from the right, possibly infinite."""

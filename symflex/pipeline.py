@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from symflex import audit as audit_room
 from symflex import equations as equations_room
+from symflex import explanation as explanation_room
 from symflex import spec as spec_room
 from symflex import transfer as transfer_room
 from symflex.elimination import explain_singular, is_singular
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 
     from symflex.audit import Audit
     from symflex.equations import Equations
+    from symflex.explanation import ZeroExplanation
     from symflex.kernels import Ring
     from symflex.model import PlacedBlock
     from symflex.rational import RationalApproximation, Residue
@@ -212,6 +214,11 @@ def sensitivities(
         (tf,) = derive_all(with_numbers(model, (parameter.name,), known), [pair])
         moved += differentiate(tf, known, found, [parameter], digits)
     return tuple(sorted(moved, key=lambda m: (m.kind, m.index)))
+
+
+def explain_zeros(model: Model, bound: BoundTransferFunction, found: PoleZeroMap) -> ZeroExplanation:
+    """Return what the zeros are the poles of; see :func:`symflex.explanation.explain_zeros`."""
+    return explanation_room.explain_zeros(model, bound, found, _nested_transfer)
 
 
 def audit(model: Model, names: Sequence[str] = ()) -> tuple[Audit, ...]:

@@ -27,6 +27,7 @@ DIGITS_LIMIT = 10_000
 @click.option(
     "--digits", type=click.IntRange(1, DIGITS_LIMIT), help="Correct significant digits.  [default: 15]"
 )
+@click.option("--explain", is_flag=True, help="Say which constrained system's poles the zeros are.")
 @click.option(
     "--sensitivity",
     "wanted",
@@ -49,6 +50,7 @@ def command(
     digits: int | None,
     wanted: tuple[str, ...],
     strict: bool,
+    explain: bool,
     as_json: bool,
 ) -> int:
     """Print poles, zeros and hidden modes of one transfer function of SPEC.
@@ -64,6 +66,7 @@ def command(
     from symflex import pipeline
     from symflex.emit.sensitivity import sensitivity_text
     from symflex.emit.text import roots_text
+    from symflex.explanation import explanation_json, explanation_text
 
     chosen = _region(modes, band, region)
     model = pipeline.load(spec)
@@ -76,13 +79,21 @@ def command(
     found = pipeline.roots(bound, chosen, shown)
     names = [] if "" in wanted else wanted
     moved = pipeline.sensitivities(model, bound, found, names, shown) if wanted else ()
+    explained = pipeline.explain_zeros(model, bound, found) if explain else None
     if as_json:
-        more = {"sensitivity": [m.to_json_dict(shown) for m in moved]} if wanted else {}
+        more: dict[str, object] = {}
+        if wanted:
+            more["sensitivity"] = [m.to_json_dict(shown) for m in moved]
+        if explained is not None:
+            more["explanation"] = explanation_json(explained)
         emit_json({**found.to_json_dict(), **more})
     else:
         click.echo(roots_text(found, shown, terminal_width()))
         if wanted:
             click.echo(sensitivity_text(moved, terminal_width()))
+        if explained is not None:
+            click.echo("
+" + explanation_text(explained, terminal_width()))
     certificate = found.certificate
     if certificate.is_exceeded:
         return 5

@@ -1,6 +1,7 @@
 """Exact elimination: closed sub-impedances, unit pivots, memoised minors, and singular systems explained."""
 
 from symflex.elimination.closing import ClosedSystem, Closure, close
+from symflex.elimination.determinants import Determinants
 from symflex.elimination.minors import Minors, expansion_order
 from symflex.elimination.singular import explain_singular, is_singular
 from symflex.elimination.unit_pivots import Reduced, eliminate_unit_pivots
@@ -8,6 +9,7 @@ from symflex.elimination.unit_pivots import Reduced, eliminate_unit_pivots
 __all__ = [
     "ClosedSystem",
     "Closure",
+    "Determinants",
     "Minors",
     "Reduced",
     "close",

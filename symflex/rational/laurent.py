@@ -211,7 +211,7 @@ def expand_at_pole(bound: BoundTransferFunction, root: Root, digits: int) -> tup
                     found = [acb(c.real) for c in found]
                 if _is_accurate(found, digits, bits):
                     found = [acb(about_zero(c.real), about_zero(c.imag)) for c in found]
-                    is_estimate = not root.certified or extra > 0
+                    is_estimate = extra > 0
                     return pole, LaurentSeries(-multiplicity, tuple(found), is_estimate)
         bits *= 2
     re, im = float(root.re.mid()), float(root.im.mid())

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symflex.elimination import Minors, close, eliminate_unit_pivots, expansion_order, explain_singular
+from symflex.elimination import Determinants, explain_singular
 from symflex.errors import Diagnostic, ModelError
 from symflex.kernels import LAPLACE, NO_KERNELS, Factored, KernelTable, Ring, degree_in
 from symflex.transfer.cancel import cancel
@@ -51,30 +51,12 @@ def derive(equations: Equations, output: str, source: str) -> TransferFunction:
 
 def derive_all(equations: Equations, pairs: Sequence[tuple[str, str]]) -> tuple[TransferFunction, ...]:
     """Return several transfer functions that share one elimination; see :func:`derive`."""
-    system = close(equations)
-    reduced = eliminate_unit_pivots(system.rows, system.outputs, len(system.unknowns))
-    if len(reduced.rows) != len(reduced.columns):
-        raise explain_singular(equations)
-    order = expansion_order(reduced.rows, reduced.columns)
-    minors = Minors(system.closure.ring, tuple(reduced.rows[i] for i in order))
-    every = sum(1 << c for c in reduced.columns)
-    den = minors.determinant(every)
-    if den.is_zero():
-        raise explain_singular(equations)
-    workshop = _Workshop(equations, system.closure, den)
-    outputs = {
-        row.name: (row, sparse) for row, sparse in zip(equations.outputs, reduced.outputs, strict=True)
-    }
-    found = []
-    for output, source in pairs:
-        row, sparse = outputs[output]
-        column = len(system.unknowns) + [v.owner for v in system.inputs].index(source)
-        # Cramer: det [C D; A B] over det A, up to the sign of moving the border from last row to first.
-        num = minors.bordered(sparse, every | 1 << column)
-        if len(reduced.columns) & 1:
-            num = -num
-        found.append(workshop.finish(row, source, num))
-    return tuple(found)
+    determinants = Determinants.of(equations)
+    workshop = _Workshop(equations, determinants.system.closure, determinants.den)
+    outputs = {row.name: row for row in equations.outputs}
+    return tuple(
+        workshop.finish(outputs[output], source, determinants.num(output, source)) for output, source in pairs
+    )
 
 
 class _Workshop:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 from matplotlib.ticker import MaxNLocator
 
 from symflex.emit.figures.labels import label_of_tf
+from symflex.emit.figures.placement import Panel, text_width
 from symflex.emit.figures.s_plane import Mark, View, choose_view, leaving, marks_of
 from symflex.emit.figures.style import (
     COLOURS,
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 
 PANELS_IN_COLUMN: Final = 3
 PANELS_ON_PAGE: Final = 4
-LEFT, RIGHT, BOTTOM, TOP, GAP = 0.54, 0.10, 0.38, 0.20, 0.20
+LEFT, RIGHT, BOTTOM, TOP, GAP = 0.54, 0.15, 0.38, 0.20, 0.24
 LINE_INCHES: Final = 0.13
 NARROWEST, WIDEST = 0.6, 1.25
 TALLEST_INCHES: Final = 2.6
@@ -132,24 +133,37 @@ def _draw_panel(axes: Axes, marks: Sequence[Mark], view: View, width: float, hei
             clip_on=False,
             zorder=3,
         )
+    panel = Panel(view, width, tuple(mark.s for mark in inside))
     for mark in inside:
         if mark.multiplicity > 1:
-            axes.annotate(
-                str(mark.multiplicity),
-                (mark.s.real, mark.s.imag),
-                (3.2, 2.0),
-                textcoords="offset points",
-                color=COLOUR_OF[mark.kind],
-                fontsize=NOTE_POINTS,
-            )
+            _number(axes, mark, panel)
     for group in leaving(marks, view):
-        _point_outside(axes, group, view)
+        _point_outside(axes, group, panel)
 
 
-def _point_outside(axes: Axes, group: Sequence[Mark], view: View) -> None:
+def _number(axes: Axes, mark: Mark, panel: Panel) -> None:
+    """Write a multiplicity in the corner beside its mark where no other root stands."""
+    x, y = panel.at(mark.s)
+    width = text_width(str(mark.multiplicity), NOTE_POINTS)
+    corners = [(right, up) for up in (2.0, -2.0 - NOTE_POINTS) for right in (3.6, -3.6 - width)]
+    others = Panel(panel.view, panel.width, tuple(s for s in panel.roots if s != mark.s))
+    boxes = [(x + dx, y + dy, x + dx + width, y + dy + NOTE_POINTS) for dx, dy in corners]
+    axes.annotate(
+        str(mark.multiplicity),
+        (mark.s.real, mark.s.imag),
+        corners[others.clearest(boxes)],
+        textcoords="offset points",
+        va="bottom",
+        color=COLOUR_OF[mark.kind],
+        fontsize=NOTE_POINTS,
+    )
+
+
+def _point_outside(axes: Axes, group: Sequence[Mark], panel: Panel) -> None:
     """Draw an arrow to where roots outside the view lie, and name those of the upper half plane beside it."""
+    view = panel.view
     tip = view.border(group[0].s)
-    tail = tip - 0.13 * min(view.width, view.height) * group[0].s / abs(group[0].s)
+    tail = tip - panel.free_length(tip, 0.13 * min(view.width, view.height)) * group[0].s / abs(group[0].s)
     axes.annotate(
         "",
         (tip.real, tip.imag),
@@ -170,22 +184,36 @@ def _point_outside(axes: Axes, group: Sequence[Mark], view: View) -> None:
         notes.append((f"and {len(group) - LISTED} more", "black"))
     is_sideways = abs(group[0].s.imag) * view.width < abs(group[0].s.real) * view.height
     is_right = tip.real > 0 if is_sideways else False
+    # At the sides the lines stand above or below the arrow, or behind it, else to its right or left.
+    x, y = panel.at(tip)
+    wide = max(text_width(text, NOTE_POINTS) for text, _ in notes)
+    high = NOTE_LINE_POINTS * len(notes)
+    if is_sideways:
+        end_x, end_y = panel.at(tail)
+        inward = -0.8 if is_right else 0.8
+        starts = [
+            (1.5 * inward, 4.0 + high),
+            (1.5 * inward, -6.0),
+            (end_x - x + inward, end_y - y + high / 2),
+        ]
+    else:
+        starts = [(5.0, -2.0), (-5.0, -2.0)]
+    sides = [is_right] * 3 if is_sideways else [False, True]
+    boxes = [
+        (x + dx - (wide if left else 0), y + dy - high, x + dx + (0 if left else wide), y + dy)
+        for (dx, dy), left in zip(starts, sides, strict=True)
+    ]
+    chosen = panel.clearest(boxes)
+    is_right = sides[chosen]
     for i, (text, colour) in enumerate(notes):
-        if is_sideways:
-            # Stacked upwards from the arrow, flush with the border.
-            offset = (-3.0 if is_right else 3.0, 4.0 + NOTE_LINE_POINTS * (len(notes) - 1 - i))
-            vertical = "bottom"
-        else:
-            # Stacked downwards to the right of the arrow.
-            offset = (5.0, -2.0 - NOTE_LINE_POINTS * i)
-            vertical = "top"
+        offset = (starts[chosen][0], starts[chosen][1] - NOTE_LINE_POINTS * i)
         axes.annotate(
             text,
             (tip.real, tip.imag),
             offset,
             textcoords="offset points",
             ha="right" if is_right else "left",
-            va=vertical,
+            va="top",
             fontsize=NOTE_POINTS,
             color=colour,
         )

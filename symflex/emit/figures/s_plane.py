@@ -133,8 +133,11 @@ def choose_view(marks: Sequence[Mark], high_hz: float | None, ratios: tuple[floa
     half = (1 + (MARGIN_FOR_NOTES if has_notes_above else MARGIN)) * tallest or size / 2
     left = min((s.real for s in shown), default=0.0)
     right = max((s.real for s in shown), default=0.0)
-    margin = MARGIN_FOR_NOTES if any(abs(s.real) >= abs(s.imag) for s in outside) else MARGIN
-    left, right = min(left, 0.0) - margin * size, max(right, 0.0) + MARGIN * size
+    sideways = [s for s in outside if abs(s.real) >= abs(s.imag)]
+    beyond_left, beyond_right = (
+        MARGIN_FOR_NOTES if any(sign * s.real > 0 for s in sideways) else MARGIN for sign in (-1, 1)
+    )
+    left, right = min(left, 0.0) - beyond_left * size, max(right, 0.0) + beyond_right * size
     missing = ratios[0] * 2 * half - (right - left)
     if missing > 0:
         share = 0.5 if any(s.real > 0 for s in points) else LEFT_SHARE
