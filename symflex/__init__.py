@@ -29,7 +29,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from symflex.api import BoundTransferFunction, Form, Model, Root, TransferFunction, load, loads
+    from symflex.api import BoundTransferFunction, Form, Model, ModeShape, Root, TransferFunction, load, loads
     from symflex.errors import SymflexError
 
 __version__ = "0.1.0"
@@ -37,6 +37,7 @@ __version__ = "0.1.0"
 _HOME = {
     "BoundTransferFunction": "symflex.api",
     "Form": "symflex.api",
+    "ModeShape": "symflex.api",
     "Model": "symflex.api",
     "Root": "symflex.api",
     "SymflexError": "symflex.errors",
@@ -48,6 +49,7 @@ _HOME = {
 __all__ = [
     "BoundTransferFunction",
     "Form",
+    "ModeShape",
     "Model",
     "Root",
     "SymflexError",
