@@ -38,6 +38,8 @@ SPARE_DIGITS = 15
 ROUNDS = 6
 """How often the digits of the pole are doubled until those of the shape suffice."""
 SPARE_BITS = 64
+BESIDE = acb(1.0625, 0.03125)
+"""Times a pole it is a point where nothing vanishes because of the pole."""
 DIMENSIONS = 6
 """Shapes of one pole that are sought at most."""
 NEAR = 1e-8
@@ -253,8 +255,9 @@ class _Search:
             if root.is_estimate:
                 s = acb(*(_widened(part) for part in (root.re, root.im)))
             system = self.equations.at(s)
+            typical = self.equations.at(s.mid() * BESIDE if s.mid() != 0 else acb(1)).matrix
             for dimension in range(1, DIMENSIONS + 1):
-                space = null_space(system.matrix, dimension)
+                space = null_space(system.matrix, dimension, typical)
                 if space is None:
                     continue
                 if not space.is_refuted:
@@ -265,8 +268,8 @@ class _Search:
                     return tuple(x for x in scaled if x is not None) if None not in scaled else ()
                 if dimension == 1:
                     # With more dimensions it may be that the balls are too wide for fewer.
-                    message = f"s = {_printed(root)} is no pole of the model"
-                    hint = "poles and hidden modes have shapes, zeros have none"
+                    message = f"s = {_printed(root)} is no pole of the model's equations"
+                    hint = "zeros have no shape, nor have the poles of a filter in an output"
                     raise UsageError(Diagnostic("SF902", message, None, hint))
                 return ()
         return ()

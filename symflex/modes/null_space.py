@@ -37,7 +37,7 @@ class NullSpace:
     is_refuted: bool
 
 
-def null_space(matrix: acb_mat, dimension: int = 1) -> NullSpace | None:
+def null_space(matrix: acb_mat, dimension: int = 1, typical: acb_mat | None = None) -> NullSpace | None:
     """Return the null space of a square matrix, bordered so that it becomes regular.
 
     With ``[A B; C 0] [X; T] = [0; 1]``, B and C of full rank and generic, the bordered matrix is regular as
@@ -50,6 +50,9 @@ def null_space(matrix: acb_mat, dimension: int = 1) -> NullSpace | None:
         Square.
     dimension : int
         Of the null space sought.
+    typical : acb_mat, optional
+        A matrix whose entries are as large as those of this one are in general. Rows and columns are scaled
+        after it; where entries vanish by the singularity itself, they tell nothing of the scale.
 
     Returns
     -------
@@ -66,8 +69,10 @@ def null_space(matrix: acb_mat, dimension: int = 1) -> NullSpace | None:
     True
     """
     n = int(matrix.nrows())
+    if not n:
+        return NullSpace((), True)
     rows = matrix.tolist()
-    left, right = _scales(rows)
+    left, right = _scales(rows if typical is None else typical.tolist())
     random = Random(SEED)
     bordered = [
         [*(x * left[i] * right[j] for j, x in enumerate(row)), *_border(random, dimension)]

@@ -217,6 +217,22 @@ def test_a_shaft_between_discs_turns_with_the_largest_angle_one():
     assert dense[[0, -1]] == pytest.approx([float(shape["theta_1"].real), float(shape["theta_2"].real)])
 
 
+def test_a_string_written_as_a_field_is_a_sine():
+    model = symflex.loads("""
+    symflex = 1
+    [fields.w]
+    domain     = ["0", "0.65"]
+    equation   = "180*w'' + u = 0.00942*s^2*w"
+    conditions = ["w(0) = 0", "w(0.65) = 0"]
+    [inputs]
+    u = {}
+    [outputs]
+    W = "w(0.325)"
+    """)
+    shape = model.transfer_function("W", "u").bind().mode_shape(1)
+    assert shape.along("w", 0.65 * X) == pytest.approx(sin(pi * X), abs=1e-9)
+
+
 def test_material_loss_alone_leaves_a_pinned_beam_its_sine():
     model = symflex.loads("""
     symflex = 1
@@ -347,6 +363,26 @@ def test_given_values_take_the_place_of_declared_ones():
     assert complex(drive.bind(r=10).mode_shape(1)["y"]) == pytest.approx(-0.1)
 
 
+@pytest.mark.parametrize(
+    ("path", "source", "outputs", "amplitudes"),
+    [
+        ("eppinger1988/six_mass", "F", ("X_act", "X_tip"), lambda a: (a["x_act"], a["x_tip"])),
+        ("eppinger1988/robot_axis", "V_cmd", ("V_act", "V_tip"), lambda a: (a["x_act"], a["x_tip"])),
+        ("classics/one_link_arm", "tau", ("theta_hub", "y_tip"), lambda a: (a["hub.theta"], a["tip"])),
+        ("classics/clamped_free", "F", ("W_mid", "W_tip"), lambda a: (a.along("w", 0.5), a.along("w", 1))),
+        ("classics/kelvin_voigt_cantilever", "F", ("M_root", "X_tip"), lambda a: (a["bar.tau"], a["tip"])),
+    ],
+)
+@pytest.mark.parametrize("mode", [1, 2, 3, 4])
+def test_near_a_pole_the_outputs_stand_in_the_ratio_of_the_shape(path, source, outputs, amplitudes, mode):
+    model = symflex.load(ROOT / "derivations" / f"{path}.toml")
+    first, second = (model.transfer_function(output, source).bind() for output in outputs)
+    shape = first.mode_shape(mode)
+    a, b = (complex(x) for x in amplitudes(shape))
+    s = complex(shape.pole) * (1 + 1e-12)
+    assert first(s) / second(s) == pytest.approx(a / b, rel=1e-6)
+
+
 # ------------------------------------------------------------------------- hidden and multiple modes
 
 
@@ -461,6 +497,17 @@ def test_a_zero_has_no_shape():
     )
     with pytest.raises(UsageError, match=r"SF902.*is no pole"):
         bound.mode_shape(bound.zeros()[0])
+
+
+@pytest.mark.parametrize("output", ["x/(s + 5)", "u/(s + 5)"])
+def test_the_pole_of_a_filter_in_an_output_has_no_shape(output):
+    motion = 'm = { type = "mass", at = "x", m = "1 kg" }' if "x" in output else ""
+    given = '{ force = "x" }' if motion else "{}"
+    model = symflex.loads(
+        f'symflex = 1\n[elements]\n{motion}\n[inputs]\nu = {given}\n[outputs]\nY = "{output}"'
+    )
+    with pytest.raises(UsageError, match=r"SF902.*is no pole of the model's equations"):
+        model.transfer_function("Y", "u").bind().mode_shape(1)
 
 
 @pytest.mark.parametrize(

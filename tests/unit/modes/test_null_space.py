@@ -48,3 +48,12 @@ def test_rows_and_columns_of_very_different_units_do_no_harm():
         found = null_space(acb_mat([[big, -2 * small], [2 * big, -4 * small]]))
         x, y = found.basis[0]
         assert abs(x / y * acb(10) ** 60 - 2) < arb(10) ** -10
+
+
+def test_a_column_that_vanishes_with_the_determinant_does_not_set_the_scale():
+    with ctx.workprec(128):
+        matrix = acb_mat([[1, 0], [4204, acb(arb(0, 2.0**-100))]])
+        assert null_space(matrix) is None
+        found = null_space(matrix, typical=acb_mat([[1, 0], [4204, 1]]))
+        x, y = found.basis[0]
+        assert (x / y).contains(0)
