@@ -82,7 +82,7 @@ def draw_modes(
     panels = panels_of(tfs[0].model, shapes)
     if not panels:
         raise ModelError(
-            Diagnostic("SF402", f"{bounds[0].name} has no mode other than at 0: nothing to draw")
+            Diagnostic("SF402", f"{bounds[0].name} has no mode other than at 0 that has a shape")
         )
     width = COLUMN_INCHES if len(panels) <= PANELS_IN_COLUMN else PAGE_INCHES
     lines = title_lines(title, width)
