@@ -33,6 +33,7 @@ if TYPE_CHECKING:
         BoundTransferFunction,
         Form,
         Model,
+        ModeShape,
         Residue,
         Root,
         Sensitivity,
@@ -47,6 +48,7 @@ __version__ = "0.1.0"
 _HOME = {
     "BoundTransferFunction": "symflex.api",
     "Form": "symflex.api",
+    "ModeShape": "symflex.api",
     "Model": "symflex.api",
     "Residue": "symflex.api",
     "Root": "symflex.api",
@@ -60,6 +62,7 @@ _HOME = {
 __all__ = [
     "BoundTransferFunction",
     "Form",
+    "ModeShape",
     "Model",
     "Residue",
     "Root",

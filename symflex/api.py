@@ -27,9 +27,11 @@ from symflex.spec import write
 if TYPE_CHECKING:
     import numpy as np
     import sympy
+    from flint import acb
     from numpy.typing import ArrayLike, NDArray
 
     from symflex import model as model_room
+    from symflex import modes as modes_room
     from symflex import rational as rational_room
     from symflex import sensitivity as sensitivity_room
     from symflex import transfer as transfer_room
@@ -40,6 +42,8 @@ Number = int | float | Fraction | Decimal | str
 Table = Mapping[str, object]
 SHOWN_DIGITS = 12
 SHOWN_PAIRS = 6
+END_TOLERANCE = 1e-12
+"""Relative distance by which rounding may put a place beyond the end of a beam."""
 
 
 @dataclass(frozen=True, init=False)
@@ -583,6 +587,169 @@ class Sensitivity:
         return f"<Sensitivity of a {self.kind} to {self.parameter}: {printed.re}, {printed.im} j>"
 
 
+Mode = int | Root | roots_room.Root | roots_room.HiddenRoot
+
+
+@dataclass(frozen=True)
+class ModeShape:
+    """The motion of everything at one pole, up to a common factor; the largest displacement found is 1.
+
+    Displacements are those of nodes in translation, along beams, rods and strings, and of each field's first
+    unknown [m]; where none of them moves, the largest angle is 1, else the largest voltage. At an undamped
+    pole a shape is real, as far as all that moves depends on s^2 alone.
+
+    Parameters
+    ----------
+    enclosed : symflex.modes.ModeShape
+        With a ball around every amplitude.
+
+    Examples
+    --------
+    >>> model = Model(
+    ...     elements={
+    ...         "bar": {"type": "rod", "between": ["ground", "x"], "E": "1 Pa", "A": "1 m^2",
+    ...                 "rho": "1 kg/m^3", "l": "1 m"},
+    ...     },
+    ...     inputs={"F": {"force": "x"}},
+    ...     outputs={"X": "x"},
+    ... )
+    >>> shape = model.transfer_function("X", "F").bind().mode_shape(1)  # sin(pi x/2)
+    >>> shape.names, shape.along("bar", [0, 0.5, 1]).round(6)
+    (('x', 'bar.f_a', 'bar.f'), array([0.      , 0.707107, 1.      ]))
+    """
+
+    enclosed: modes_room.ModeShape
+
+    @property
+    def pole(self) -> Root:
+        """Where."""
+        return Root(self.enclosed.pole)
+
+    @property
+    def frequency_hz(self) -> float:
+        """Natural frequency [Hz]."""
+        return self.enclosed.pole.frequency_hz()
+
+    @property
+    def damping_ratio(self) -> float | None:
+        """``-re/abs(s)`` of the pole, None at the origin."""
+        return self.enclosed.pole.damping_ratio()
+
+    @property
+    def certified(self) -> bool:
+        """True when the pole is proved and has one shape: every amplitude lies within its radius."""
+        return self.enclosed.certified
+
+    @property
+    def reference(self) -> str:
+        """What is 1: a node, or ``beam(0.3)``, a place along an element or field."""
+        return self.enclosed.reference
+
+    @property
+    def is_real(self) -> bool:
+        """True when the pole is undamped and everything moves in phase."""
+        return self.enclosed.is_real
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The nodes, element quantities and signals that have an amplitude."""
+        return tuple(motion.name for motion in self.enclosed.motions)
+
+    def __getitem__(self, name: str) -> mpmath.mpc:
+        """Return the amplitude of a node, element quantity or signal; a planar node's is its deflection.
+
+        Raises
+        ------
+        UsageError
+            SF902 when there is none of that name.
+        """
+        value = self.enclosed.motion(name).value
+        return mpmath.mp.make_mpc((to_mpmath(value.real)._mpf_, to_mpmath(value.imag)._mpf_))
+
+    def radius(self, name: str) -> mpmath.mpf:
+        """Return a bound on the distance from ``shape[name]`` to the amplitude; an estimate if unproved."""
+        return _radius(self.enclosed.motion(name).value)
+
+    @property
+    def distributed(self) -> tuple[str, ...]:
+        """The beams, rods, shafts, strings and fields."""
+        return tuple(part.name for part in self.enclosed.distributed)
+
+    def quantities(self, part: str) -> tuple[str, ...]:
+        """Return what is known along a part: ``y theta f tau`` of a beam, ``w w' w'' w'''`` of a field."""
+        return self.enclosed.along(part).states
+
+    def domain(self, part: str) -> tuple[float, float]:
+        """Return where a part begins and ends [m]; an element begins at 0."""
+        found = self.enclosed.along(part)
+        with roots_room.precision(found.bits):
+            return float(found.start.mid()), float((found.start + found.length).mid())
+
+    def along(
+        self, part: str, x: ArrayLike, quantity: str | None = None
+    ) -> NDArray[np.float64] | NDArray[np.complex128]:
+        """Return a quantity of a distributed part at x [m]; real when the shape is.
+
+        Parameters
+        ----------
+        part : str
+            A distributed element or a field.
+        x : array_like
+            Places within :meth:`domain`.
+        quantity : str, optional
+            One of :meth:`quantities`; the first one, a displacement, by default. ``theta`` is a beam's slope
+            (in the Timoshenko theory the rotation of its section), ``f`` and ``tau`` are the force and moment
+            that the part beyond x exerts on the part before it.
+
+        Raises
+        ------
+        UsageError
+            SF902 no such part or quantity; SF240 a place outside the domain.
+        """
+        import numpy as np
+
+        places = np.asarray(x, dtype=float)
+        balls = self._balls(part, places, quantity)
+        values = np.array([complex(float(b.real.mid()), float(b.imag.mid())) for b in balls], dtype=complex)
+        values = values.reshape(places.shape)
+        return values.real if self.is_real else values
+
+    def radius_along(self, part: str, x: ArrayLike, quantity: str | None = None) -> NDArray[np.float64]:
+        """Return bounds on the error of :meth:`along`, but for the rounding to double precision."""
+        import numpy as np
+
+        places = np.asarray(x, dtype=float)
+        found = [float(_radius(ball)) for ball in self._balls(part, places, quantity)]
+        return np.array(found, dtype=float).reshape(places.shape)
+
+    def _balls(self, part: str, places: NDArray[np.float64], quantity: str | None) -> list[acb]:
+        found = self.enclosed.along(part)
+        position = found.position(quantity)
+        start, end = self.domain(part)
+        slack = END_TOLERANCE * (end - start)
+        for place in places.ravel():
+            if not start - slack <= place <= end + slack:
+                message = f"x = {place:g} lies outside '{part}', which reaches from {start:g} to {end:g}"
+                raise UsageError(Diagnostic("SF240", message))
+        return [found.at(Fraction(float(place)))[position] for place in places.ravel()]
+
+    def __repr__(self) -> str:
+        damping = self.damping_ratio
+        damped = f", damping ratio {damping:.4g}" if damping else ""
+        return f"<ModeShape at {self.frequency_hz:.6g} Hz{damped}, {self.reference} = 1>"
+
+
+def _radius(ball: acb) -> mpmath.mpf:
+    with roots_room.precision(64):
+        return to_mpmath((ball.real.rad() ** 2 + ball.imag.rad() ** 2).sqrt().upper())
+
+
+def _mode(mode: Mode) -> int | roots_room.Root:
+    if isinstance(mode, Root):
+        return mode.certified_root
+    return mode.root if isinstance(mode, roots_room.HiddenRoot) else mode
+
+
 @dataclass(frozen=True)
 class BoundTransferFunction:
     """A transfer function with numbers: evaluates, and finds its poles and zeros.
@@ -759,6 +926,41 @@ class BoundTransferFunction:
         """
         found = pipeline.roots(self.bound, _region(modes, band), digits)
         return pipeline.explain_zeros(self.bound.source.model, self.bound, found)
+
+    def mode_shape(self, mode: Mode, digits: int = 15) -> ModeShape:
+        """Return how everything moves in one mode; the largest displacement is 1.
+
+        The shape is taken from the model's equations, not from the transfer function: hidden modes have one.
+
+        Parameters
+        ----------
+        mode : int, Root or HiddenRoot
+            1 is the lowest pole other than 0, 2 the next: a conjugate pair or a real pole is one mode, and
+            one of multiplicity m counts as m. 0 is the rigid-body motion at s = 0. Or a root: a pole, or the
+            root of a hidden mode.
+        digits : int
+            Correct digits, relative to the largest displacement.
+
+        Raises
+        ------
+        UsageError
+            SF902 when there is no such mode; SF904 when a pole has several shapes, see :meth:`mode_shapes`.
+        UncertifiedError
+            SF406 when the equations cannot be solved at the pole.
+        """
+        from symflex.modes import mode_shape
+
+        return ModeShape(mode_shape(self.bound, _mode(mode), digits))
+
+    def mode_shapes(self, mode: Mode, digits: int = 15) -> tuple[ModeShape, ...]:
+        """Return all independent shapes of a mode's pole: more than one where equal parts move alike.
+
+        Several are a basis: in each, one of as many places is at 1 and the others are at rest, before the
+        largest displacement is made 1. See :meth:`mode_shape`.
+        """
+        from symflex.modes import mode_shapes
+
+        return tuple(ModeShape(shape) for shape in mode_shapes(self.bound, _mode(mode), digits))
 
     def dcgain(self) -> float:
         """Return the limit for s -> 0 from the right, possibly infinite."""

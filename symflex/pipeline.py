@@ -18,9 +18,8 @@ from symflex import explanation as explanation_room
 from symflex import spec as spec_room
 from symflex import transfer as transfer_room
 from symflex.elimination import explain_singular, is_singular
-from symflex.errors import Diagnostic, ModelError, Source, SpecError, UsageError
+from symflex.errors import Diagnostic, Source, SpecError, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.kernels import Factored
 from symflex.model import Model, load_model, with_numbers
 from symflex.roots.locate import locate
 from symflex.sensitivity import differentiate
@@ -33,8 +32,6 @@ if TYPE_CHECKING:
     from symflex.audit import Audit
     from symflex.equations import Equations
     from symflex.explanation import ZeroExplanation
-    from symflex.kernels import Ring
-    from symflex.model import PlacedBlock
     from symflex.rational import RationalApproximation, Residue
     from symflex.roots import PoleZeroMap, Region
     from symflex.sensitivity import Sensitivity
@@ -65,22 +62,7 @@ def loads(text: str, name: str = "<string>") -> Model:
 
 def assemble(model: Model) -> Equations:
     """Return the model's equations ``A(s) x + B u = 0``; nested models are derived first."""
-    return equations_room.assemble(model, _nested_transfer)
-
-
-def _nested_transfer(block: PlacedBlock, ring: Ring) -> Factored:
-    """Return the transfer function of a ``model`` block over the outer model's ring."""
-    if block.submodel is None or block.tf is None:
-        message = f"block '{block.name}' holds no model"
-        raise ValueError(message)
-    tf = derive(assemble(block.submodel), *block.tf)
-    if tf.is_distributed:
-        message = f"block '{block.name}' stands for a distributed system, whose kernels cannot be taken over"
-        hint = "bring its elements and fields into this file"
-        raise ModelError(Diagnostic("SF910", message, block.span, hint))
-    inner = tf.ratio
-    images = [ring.generator(name) for name in inner.ring.names]
-    return inner.map_factors(ring, lambda factor: Factored.polynomial(ring, ring.compose(factor, images)))
+    return equations_room.assemble(model, transfer_room.nested_transfer)
 
 
 def check_solvable(equations: Equations) -> None:
@@ -104,7 +86,7 @@ def derive_all(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> 
     mixed = [i for i, tf in enumerate(found) if tf.is_mixed]
     if not mixed:
         return found
-    nameless = equations_room.assemble(model, _nested_transfer, is_nameless=True)
+    nameless = equations_room.assemble(model, transfer_room.nested_transfer, is_nameless=True)
     again = dict(zip(mixed, transfer_room.derive_all(nameless, [wanted[i] for i in mixed]), strict=True))
     return tuple(again.get(i, tf) for i, tf in enumerate(found))
 
@@ -218,7 +200,7 @@ def sensitivities(
 
 def explain_zeros(model: Model, bound: BoundTransferFunction, found: PoleZeroMap) -> ZeroExplanation:
     """Return what the zeros are the poles of; see :func:`symflex.explanation.explain_zeros`."""
-    return explanation_room.explain_zeros(model, bound, found, _nested_transfer)
+    return explanation_room.explain_zeros(model, bound, found, transfer_room.nested_transfer)
 
 
 def audit(model: Model, names: Sequence[str] = ()) -> tuple[Audit, ...]:

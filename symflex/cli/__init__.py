@@ -13,7 +13,7 @@ COMMANDS: dict[str, str] = {
     "derive": "Print transfer functions in closed form.",
     "roots": "Print poles and zeros with proved enclosures.",
     "rational": "Print rational approximations and where they are valid.",
-    "plot": "Draw a Bode plot or pole-zero array.",
+    "plot": "Draw a Bode plot, a pole-zero array or mode shapes.",
     "export": "Write numeric code or LaTeX.",
     "audit": "Compare printed formulas with derived ones.",
     "new": "Write a specification to start from.",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -17,11 +18,13 @@ SUFFIXES = (".pdf", ".png", ".svg")
 @click.argument("spec", type=click.Path())
 @click.argument("kind")
 @click.option("--tf", "tfs", multiple=True, metavar="OUT/IN", help="Draw this transfer function; repeatable.")
+@click.option("--modes", type=click.IntRange(1), help="How many modes are shown, the lowest ones.")
 @click.option("-o", "--output", type=click.Path(), help="File to write: .pdf, .svg or .png.")
 @reporting
-def command(spec: str, kind: str, *, tfs: tuple[str, ...], output: str | None) -> int:
-    """Draw KIND (bode, poles_zeros) or a figure that SPEC defines in [figures].
+def command(spec: str, kind: str, *, tfs: tuple[str, ...], modes: int | None, output: str | None) -> int:
+    """Draw KIND (bode, modes, poles_zeros) or a figure that SPEC defines in [figures].
 
+    modes draws the shapes of the lowest modes of the model, --modes or [analysis] modes of them, else five.
     Without -o the figure is written to the current folder as SPEC_KIND.pdf.
     """
     from symflex import pipeline
@@ -29,6 +32,8 @@ def command(spec: str, kind: str, *, tfs: tuple[str, ...], output: str | None) -
     from symflex.model.analysis import FIGURE_KINDS
 
     model = pipeline.load(spec)
+    if modes is not None:
+        model = replace(model, analysis=replace(model.analysis, modes=modes))
     figure = next((f for f in model.figures if f.name == kind), None)
     if figure is None and kind not in (*FIGURES, *FIGURE_KINDS):
         names = [*FIGURES, *(f.name for f in model.figures)]
@@ -41,6 +46,8 @@ def command(spec: str, kind: str, *, tfs: tuple[str, ...], output: str | None) -
     if path.suffix not in SUFFIXES:
         raise UsageError(Diagnostic("SF902", f"'{path.name}' must end in .pdf, .svg or .png"))
     pairs = figure.of if figure and figure.of and not tfs else pipeline.pick_pairs(model, tfs)
+    if drawn == "modes":
+        pairs = pairs[:1]  # all functions of a model have the same modes, seen or hidden
     bounds = pipeline.derive_bound(model, pairs)
     if not tfs and not figure:
         for bound in bounds:

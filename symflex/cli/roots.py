@@ -92,8 +92,7 @@ def command(
         if wanted:
             click.echo(sensitivity_text(moved, terminal_width()))
         if explained is not None:
-            click.echo("
-" + explanation_text(explained, terminal_width()))
+            click.echo("\n" + explanation_text(explained, terminal_width()))
     certificate = found.certificate
     if certificate.is_exceeded:
         return 5

@@ -52,9 +52,9 @@ class LineElement(Element):
         """
         one = use.one
         a, b = use.terminals["between"]
-        first = [use.unknown(f"{quantity}_a") for quantity in self.through]
+        first = self._delivered_first(use)
         second = [use.unknown(quantity) for quantity in self.through]
-        state_a: list[Variable | None] = [*self._across(a), *first]
+        state_a = self.initial_state(use)
         state_b = [*((v, one) for v in self._across(b)), *((v, -one) for v in second)]
         unknowns = (*first, *second)
         rows = [
@@ -68,6 +68,13 @@ class LineElement(Element):
             injections=tuple(Injection(node, LinearForm.of((v, one))) for node, v in delivered),
             through=tuple((v.component, LinearForm.of((v, one))) for v in second),
         )
+
+    def initial_state(self, use: ElementUse) -> tuple[Variable | None, ...]:
+        """Return the unknowns that are the state at x = 0, None where it is held to zero."""
+        return (*self._across(use.terminals["between"][0]), *self._delivered_first(use))
+
+    def _delivered_first(self, use: ElementUse) -> list[Variable]:
+        return [use.unknown(f"{quantity}_a") for quantity in self.through]
 
     def _across(self, terminal: Terminal) -> tuple[Variable | None, ...]:
         return tuple(getattr(terminal, end) for end in self.ends)

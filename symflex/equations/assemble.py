@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from symflex.elements import ElementUse, LinearForm, Stamp, Terminal, Variable
 from symflex.elements.line import LineElement
 from symflex.equations.distributed import survey
-from symflex.equations.equations import ConstantFunction, EquationRow, Equations, OutputRow
+from symflex.equations.equations import ConstantFunction, Continuum, EquationRow, Equations, OutputRow
 from symflex.equations.evaluate import Evaluator, Opener
 from symflex.equations.realisation import written_denominator
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
@@ -138,6 +138,7 @@ class _Assembly:
     unknowns: list[Variable] = field(default_factory=list)
     rows: list[EquationRow] = field(default_factory=list)
     through: dict[Variable, LinearForm] = field(default_factory=dict)
+    continua: list[Continuum] = field(default_factory=list)
 
     def survey(self, *, is_nameless: bool) -> Distributed | None:
         """Return the model's distributed parts; this assembly is over the ring without kernels."""
@@ -199,6 +200,7 @@ class _Assembly:
             tuple(o for o in outputs if o is not None),
             None if self.distributed is None else self.distributed.propagation,
             None if self.distributed is None else self._cleared(),
+            tuple(self.continua),
         )
 
     def _cleared(self) -> Factored:
@@ -219,6 +221,7 @@ class _Assembly:
     def _impose(self, solution: FieldSolution, evaluator: Evaluator) -> None:
         """Take a field's state at its start as unknowns, and its conditions as rows."""
         self.unknowns += solution.initial
+        self._extend_field(solution)
         for i, condition in enumerate(solution.field.conditions):
             try:
                 left, right = (evaluator.linear(e) for e in (condition.left, condition.right))
@@ -228,6 +231,25 @@ class _Assembly:
             form = left + right * Factored.number(self.ring, -1)
             about = Variable("field", solution.field.name, f"condition {i + 1}")
             self.rows.append(EquationRow(about, "condition", form))
+
+    def _extend_field(self, solution: FieldSolution) -> None:
+        """Note what a field's unknowns follow along x."""
+        if self.distributed is not None:
+            found, start = solution.field, solution.origin
+            length = self.distributed.evaluator.constant(found.end) - start
+            system, initial = solution.medium.system, solution.initial
+            self.continua.append(
+                Continuum(found.name, "field", system, start, length, initial, solution.inputs)
+            )
+
+    def _extend_line(self, element: LineElement, use: ElementUse) -> None:
+        """Note what the state of a line element follows along x."""
+        if self.distributed is not None:
+            medium, length = self.distributed.lines[use.name]
+            state = element.initial_state(use)
+            self.continua.append(
+                Continuum(use.name, element.type_name, medium.system, length * 0, length, state)
+            )
 
     @property
     def _definitions(self) -> dict[str, Expression]:
@@ -344,18 +366,19 @@ class _Assembly:
         }
         s = Factored.generator(self.ring, LAPLACE)
         transmissions = {} if self.distributed is None else self.distributed.transmissions
-        return use.element.stamp(
-            ElementUse(
-                use.name,
-                s,
-                terminals,
-                dict(use.domains),
-                constants,
-                forms,
-                dict(use.choices),
-                transmissions.get(use.name, ()),
-            )
+        element_use = ElementUse(
+            use.name,
+            s,
+            terminals,
+            dict(use.domains),
+            constants,
+            forms,
+            dict(use.choices),
+            transmissions.get(use.name, ()),
         )
+        if isinstance(use.element, LineElement):
+            self._extend_line(use.element, element_use)
+        return use.element.stamp(element_use)
 
     @staticmethod
     def _terminal(reference: NodeReference, domain: Placing, nodes: Mapping[str, Node]) -> Terminal:

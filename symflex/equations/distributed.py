@@ -114,6 +114,8 @@ class Distributed:
         Per unknown of a field, the solution of its field.
     evaluator : Evaluator
         Over the ring without kernels, for points.
+    lines : mapping of str to (Medium, Factored)
+        Per line element, its equations and its length.
     """
 
     propagation: Propagation
@@ -121,6 +123,7 @@ class Distributed:
     delays: Mapping[str, Factored]
     solutions: Mapping[str, FieldSolution]
     evaluator: Evaluator
+    lines: Mapping[str, tuple[Medium, Factored]]
 
     def value(self, call: Call) -> LinearForm:
         """Return a field's unknown, or a derivative of it, at the point a call names."""
@@ -232,6 +235,7 @@ def survey(
         },
         solutions,
         evaluator,
+        {name: (medium, length) for name, medium, length in lines},
     )
 
 

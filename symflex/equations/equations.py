@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     from symflex.elements import LinearForm, Variable
     from symflex.expressions import Call
+    from symflex.fields import FieldSystem
     from symflex.kernels import Factored, Propagation, Ring
     from symflex.model import Model
 
@@ -48,6 +49,35 @@ class OutputRow:
     divisor: Factored
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Continuum:
+    """One distributed part, for what goes on inside it: ``dz/dx = matrix z + load u`` from its start on.
+
+    Parameters
+    ----------
+    name : str
+        The element's or field's.
+    kind : str
+        The element's type, or ``field``.
+    system : FieldSystem
+        Over the ring without kernels.
+    start, length : Factored
+        Where x begins, and how far it reaches; over the same ring.
+    initial : tuple of Variable or None
+        Per state, the unknown it equals at the start; None where it is zero there.
+    loads : tuple of Variable
+        What acts all along it, per column of ``system.loads``.
+    """
+
+    name: str
+    kind: str
+    system: FieldSystem
+    start: Factored
+    length: Factored
+    initial: tuple[Variable | None, ...]
+    loads: tuple[Variable, ...] = ()
+
+
 @dataclass(frozen=True)
 class Equations:
     """``A(s) x + B u = 0``, ``y = C x + D u``, over an exact ring.
@@ -70,6 +100,8 @@ class Equations:
         The names of y and their forms.
     propagation : Propagation or None
         What the generators of distributed parts are; ``ring`` is its ring then.
+    continua : tuple of Continuum
+        The distributed parts.
     """
 
     model: Model
@@ -82,3 +114,4 @@ class Equations:
     outputs: tuple[OutputRow, ...]
     propagation: Propagation | None = None
     cleared: Factored | None = None
+    continua: tuple[Continuum, ...] = ()

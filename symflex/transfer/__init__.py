@@ -2,6 +2,7 @@
 
 from symflex.transfer.bind import BoundTransferFunction, EnclosedTransferFunction, bind, coefficients_in_s
 from symflex.transfer.derive import derive, derive_all
+from symflex.transfer.nested import nested_transfer
 from symflex.transfer.transfer_function import ClosedForm, HiddenFactor, TransferFunction
 
 __all__ = [
@@ -14,4 +15,5 @@ __all__ = [
     "coefficients_in_s",
     "derive",
     "derive_all",
+    "nested_transfer",
 ]

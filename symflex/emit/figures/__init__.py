@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from symflex.emit.figures.bode import draw_bode
 from symflex.emit.figures.drawing import Drawing
+from symflex.emit.figures.modes import draw_modes
 from symflex.emit.figures.poles_zeros import draw_poles_zeros
 from symflex.emit.figures.save import FORMATS, render, save
 from symflex.emit.figures.style import paper_style
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
 FIGURES: dict[str, Drawing] = {
     "bode": draw_bode,
+    "modes": draw_modes,
     "poles_zeros": draw_poles_zeros,
 }
 
@@ -51,7 +53,7 @@ def draw(
     band_hz : (number, number), optional
         Frequencies shown [Hz]. Without it a Bode plot takes the model's ``band``, or else one that shows all
         poles and zeros; a pole-zero plot focuses on the resonances that belong together and marks the rest at
-        its border.
+        its border; of the lowest modes, all are shown.
     title : str, optional
         Printed as it is, never read as mathematics.
 

@@ -17,6 +17,22 @@ def test_a_figure_is_written_in_the_format_of_its_name(shell, suffix, begin):
     assert (shell.folder / f"a.{suffix}").read_bytes().startswith(begin)
 
 
+def test_as_many_modes_are_drawn_as_asked_for(shell):
+    chain = (
+        'symflex = 1\ninputs.F = { force = "x" }\noutputs = { X = "x", Y = "y" }\n[elements]\n'
+        'a = { type = "mass", at = "x", m = "1 kg" }\nb = { type = "mass", at = "y", m = "1 kg" }\n'
+        'c = { type = "spring", between = ["x", "y"], k = "1 N/m" }\n'
+        'd = { type = "spring", between = ["x", "ground"], k = "1 N/m" }\n'
+    )
+    (shell.folder / "chain.toml").write_text(chain, encoding="utf-8")
+    sizes = []
+    for count in (1, 2):
+        done = shell("plot", "chain.toml", "modes", "--modes", count, "-o", f"{count}.svg")
+        assert (done.code, done.err) == (0, f"wrote {count}.svg\n")
+        sizes.append((shell.folder / f"{count}.svg").stat().st_size)
+    assert sizes[0] < sizes[1]
+
+
 def test_a_figure_is_named_after_specification_and_kind_by_default(shell):
     assert shell("plot", "x.toml", "bode", "--tf", "X/F").code == 0
     assert (shell.folder / "x_bode.pdf").exists()

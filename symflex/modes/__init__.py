@@ -1,0 +1,14 @@
+"""Mode shapes: the motion of everything at a pole, taken from the equations and enclosed in balls."""
+
+from symflex.modes.find import NumberedShape, lowest_mode_shapes, mode_shape, mode_shapes
+from symflex.modes.shape import DistributedShape, ModeShape, Motion
+
+__all__ = [
+    "DistributedShape",
+    "ModeShape",
+    "Motion",
+    "NumberedShape",
+    "lowest_mode_shapes",
+    "mode_shape",
+    "mode_shapes",
+]
