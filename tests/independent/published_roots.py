@@ -1,7 +1,7 @@
 """Roots that others have published: numbers no part of this project computed.
 
-``WAVENUMBERS`` are dimensionless, x = beta l of a beam with omega = x^2/l^2 sqrt(E I/(rho A)), or omega l/c of a
-string or rod.
+Wavenumbers are dimensionless, x = beta l of a beam with omega = x^2/l^2 sqrt(E I/(rho A)), or omega l/c of
+a string or rod.
 """
 
 from __future__ import annotations
@@ -100,8 +100,8 @@ EXPANSIONS = (
     ),
 )
 
-# Wavenumbers by the ends, Blevins 1979, Formulas for Natural Frequency and Mode Shape, table 8-1, modes 1 to 5,
-# without those at zero. Where the book gives multiples of pi/2 it gives them as formulas.
+# Wavenumbers by the ends, Blevins 1979, Formulas for Natural Frequency and Mode Shape, table 8-1, modes 1 to
+# 5, without those at zero. Where the book gives multiples of pi/2 it gives them as formulas.
 WAVENUMBERS = {
     ("free", "free"): ("4.73004074", "7.85320462", "10.9956078", "14.1371655", "17.2787597"),
     ("free", "sliding"): ("2.36502037", "5.49780392", "8.63937983", "11.78097245", "14.92256510"),
@@ -120,14 +120,15 @@ WAVENUMBERS = {
 CANTILEVER_WITH_ITS_OWN_MASS = ("1.557298", "16.25009", "50.89584", "105.1983", "179.2320")
 
 # NAFEMS 1989, Selected benchmarks for natural frequency analysis, test FV5: a simply supported beam of 10 m,
-# 2 m by 2 m, E = 200 GPa, nu = 0.3, rho = 8000 kg/m^3. Closed form, [Hz]. Extension is a rod with one end held.
+# 2 m by 2 m, E = 200 GPa, nu = 0.3, rho = 8000 kg/m^3. Closed form, [Hz]. Extension is a rod, one end held.
 # The shear coefficient is not stated; 0.85 gives the printed digits up to one in ten thousand.
 DEEP_BEAM_FLEXURE = ("42.650", "148.15", "283.47")
 DEEP_BEAM_EXTENSION = "125.00"
 
-# A string with a mass on a spring at its end, N = rho A = l = K = M = 1, by linear finite elements: n of them,
-# lambda = omega^2. Kressner 2009, A block Newton method for nonlinear eigenvalue problems, Numer. Math. 114 (the
-# problem of Solov'ev 2006; "loaded_string" in the NLEVP collection, Betcke et al. 2013). Only lambda > K/M is tabulated.
+# A string with a mass on a spring at its end, N = rho A = l = K = M = 1, by so many linear finite elements:
+# lambda = omega^2. Kressner 2009, A block Newton method for nonlinear eigenvalue problems, Numer. Math. 114.
+# The problem is of Solov'ev 2006, and "loaded_string" in the NLEVP collection (Betcke et al. 2013). Only
+# lambda > K/M is tabulated.
 LOADED_STRING = {
     100: ("4.4821765459", "24.223573113", "63.723821142", "123.03122107", "202.20089914"),
     400: ("4.4820338110", "24.219005847", "63.692138408", "122.91317036", "201.88234012"),

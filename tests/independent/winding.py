@@ -1,16 +1,17 @@
-"""Counts of roots that owe nothing to the program: windings of a determinant, and Wittrick and Williams' count.
+"""Counts of roots that owe nothing to the program: turns of a determinant, Wittrick and Williams' count.
 
 Both return integers that must come out the same as the number of poles or zeros found, with multiplicity.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-from mpmath import arg, lu, matrix, mp, mpc, mpf, pi
+from mpmath import arg, mpc, mpf, pi
 
 from tests.independent.boundary_value import Number, Problem, power_of_two
 
@@ -73,7 +74,7 @@ def count_inside(
     turns = mpf(0)
     for a, b in zip(corners, [*corners[1:], corners[0]], strict=True):
         points = [a + (b - a) * k / first_steps for k in range(first_steps + 1)]
-        turns += sum(_turning(at, p, q, 0) for p, q in zip(points, points[1:], strict=False))
+        turns += sum(_turning(at, p, q, 0) for p, q in itertools.pairwise(points))
     number = turns / (2 * pi)
     if abs(number - round(number)) > 1e-6:
         message = f"{number} turns"
@@ -86,7 +87,7 @@ def _turning(at: Callable[[Number], Number], a: Number, b: Number, depth: int) -
         message = f"the argument jumps at {a}"
         raise OnTheContourError(message)
     points = [a + (b - a) * part for part in PARTS]
-    changes = [arg(at(q) / at(p)) for p, q in zip(points, points[1:], strict=False)]
+    changes = [arg(at(q) / at(p)) for p, q in itertools.pairwise(points)]
     if max(map(abs, changes)) < pi / 4:
         return sum(changes)
     return _turning(at, a, points[2], depth + 1) + _turning(at, points[2], b, depth + 1)
@@ -95,26 +96,28 @@ def _turning(at: Callable[[Number], Number], a: Number, b: Number, depth: int) -
 def determinant(problem: Problem) -> Number:
     """Return the determinant of the conditions of a boundary-value problem, up to a positive factor.
 
-    Of the homogeneous problem it vanishes at all poles, hidden ones too; with the condition that bears the load
-    replaced by "the output vanishes", at all zeros and what is hidden.
+    Of the homogeneous problem it vanishes at all poles, hidden ones too; with the condition that bears the
+    load replaced by "the output vanishes", at all zeros and what is hidden. Conditions are scaled.
     """
-    n = problem.count
-    rows = matrix(n)
-    columns = [mpf(0)] * n
+    rows = []
     for form in problem.conditions:
-        for unknown, c in form.coefficients.items():
-            columns[unknown] = max(columns[unknown], abs(c))
-    for i, form in enumerate(problem.conditions):
-        scaled = {u: c / power_of_two(columns[u]) for u, c in form.coefficients.items()}
-        size = power_of_two(max(abs(c) for c in scaled.values()))
-        for unknown, c in scaled.items():
-            rows[i, unknown] = c / size
-    permutation, lower, upper = lu(rows)
-    del lower
-    product = mp.fprod(upper[i, i] for i in range(n))
-    order = [next(j for j in range(n) if permutation[i, j]) for i in range(n)]
-    inversions = sum(order[i] > order[j] for i in range(n) for j in range(i + 1, n))
-    return -product if inversions % 2 else product
+        row = [form.coefficients.get(unknown, mpf(0)) for unknown in range(problem.count)]
+        largest = power_of_two(max(map(abs, row)))
+        rows.append([c / largest for c in row])
+    product = mpc(1)
+    for i in range(len(rows)):
+        pivot = max(range(i, len(rows)), key=lambda k: abs(rows[k][i]))
+        if not rows[pivot][i]:
+            return mpc(0)
+        if pivot != i:
+            rows[i], rows[pivot] = rows[pivot], rows[i]
+            product = -product
+        product *= rows[i][i]
+        for k in range(i + 1, len(rows)):
+            if rows[k][i]:
+                factor = rows[k][i] / rows[i][i]
+                rows[k] = [c - factor * d for c, d in zip(rows[k], rows[i], strict=True)]
+    return product
 
 
 # --------------------------------------------------------------------------- Wittrick and Williams' count
@@ -139,7 +142,7 @@ class Member:
 
         Clough & Penzien 1993, section 20; numerators and denominator are divided by cosh lambda.
         """
-        x, l = self.wave(omega), self.length
+        x, length = self.wave(omega), self.length
         sine, cosine = math.sin(x), math.cos(x)
         tanh, sech = math.tanh(x), 1 / math.cosh(x)
         d = sech - cosine
@@ -151,13 +154,13 @@ class Member:
         g = x * (tanh - sine * sech) / d
         return (
             self.stiffness
-            / l**3
+            / length**3
             * np.array(
                 [
-                    [a, b * l, -e, f * l],
-                    [b * l, c * l**2, -f * l, g * l**2],
-                    [-e, -f * l, a, -b * l],
-                    [f * l, g * l**2, -b * l, c * l**2],
+                    [a, b * length, -e, f * length],
+                    [b * length, c * length**2, -f * length, g * length**2],
+                    [-e, -f * length, a, -b * length],
+                    [f * length, g * length**2, -b * length, c * length**2],
                 ]
             )
         )
@@ -165,7 +168,8 @@ class Member:
     def clamped_count(self, omega: float) -> int:
         """Return how many natural frequencies lie below omega with both ends clamped.
 
-        j = i - (1 - (-1)^i sign(1 - cos lambda cosh lambda))/2, i = floor(lambda/pi) (Williams & Wittrick 1970).
+        j = i - (1 - (-1)^i sign(1 - cos lambda cosh lambda))/2, i = floor(lambda/pi)
+        (Williams & Wittrick 1970).
         """
         x = self.wave(omega)
         whole = math.floor(x / math.pi)
@@ -210,7 +214,9 @@ class Frame:
     def dynamic_stiffness(self, omega: float) -> np.ndarray:
         """Return the stiffness matrix at a frequency, of the coordinates that move."""
         names = [(kind, j) for m in self.members for j in (m.first, m.second) for kind in ("y", "theta")]
-        names += [c for c, _ in (*self.masses, *self.supports)] + [c for a, b, _ in self.links for c in (a, b)]
+        names += [c for c, _ in (*self.masses, *self.supports)] + [
+            c for a, b, _ in self.links for c in (a, b)
+        ]
         index = {name: i for i, name in enumerate(n for n in dict.fromkeys(names) if n not in self.held)}
         matrix_ = np.zeros((len(index), len(index)))
 

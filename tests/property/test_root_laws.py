@@ -1,7 +1,8 @@
-"""Laws of poles and zeros: independent counts agree, and those of a driving point without losses alternate."""
+"""Laws of poles and zeros: independent counts agree, and those of a lossless driving point alternate."""
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -66,15 +67,17 @@ class Beams:
     def text(self) -> str:
         """Return the specification."""
         lines = [
-            f'beam_{k} = {{ type = "beam", between = ["n_{k}", "n_{k + 1}"], E = "{tenth(ei)} Pa", I = "1 m^4", '
-            f'rho = "{tenth(ra)} kg/m^3", A = "1 m^2", l = "{tenth(l)} m" }}'
-            for k, (ei, ra, l) in enumerate(self.beams)
+            f'beam_{k} = {{ type = "beam", between = ["n_{k}", "n_{k + 1}"], E = "{tenth(ei)} Pa", '
+            f'I = "1 m^4", rho = "{tenth(ra)} kg/m^3", A = "1 m^2", l = "{tenth(length)} m" }}'
+            for k, (ei, ra, length) in enumerate(self.beams)
         ]
         kinds = {
             "masses": 'type = "mass", at = "n_{k}", m = "{v} kg"',
             "inertias": 'type = "inertia", at = "n_{k}.theta", J = "{v} kg*m^2"',
             "springs": 'type = "spring", between = ["n_{k}", "ground"], k = "{v} N/m"',
-            "torsion_springs": 'type = "torsion_spring", between = ["n_{k}.theta", "ground"], k = "{v} N*m/rad"',
+            "torsion_springs": (
+                'type = "torsion_spring", between = ["n_{k}.theta", "ground"], k = "{v} N*m/rad"'
+            ),
         }
         for kind, entry in kinds.items():
             for k, value in enumerate(getattr(self, kind)):
@@ -91,7 +94,9 @@ class Beams:
 
     def frame(self) -> Frame:
         """Return the same for the independent count."""
-        members = [Member(k, k + 1, ei / 10, ra / 10, l / 10) for k, (ei, ra, l) in enumerate(self.beams)]
+        members = [
+            Member(k, k + 1, ei / 10, ra / 10, length / 10) for k, (ei, ra, length) in enumerate(self.beams)
+        ]
         masses = [
             ((axis, k), value / 10)
             for axis, values in (("y", self.masses), ("theta", self.inertias), ("h", self.hung))
@@ -161,8 +166,11 @@ def below(roots, omega):
 def lossless(text, omega):
     """Return poles, zeros and hidden roots up to omega, all proved to be on the imaginary axis."""
     try:
-        found = symflex.loads(text).transfer_function("X", "F").bind().pole_zero_map(
-            digits=DIGITS, band=(0.0, omega / (2 * math.pi))
+        found = (
+            symflex.loads(text)
+            .transfer_function("X", "F")
+            .bind()
+            .pole_zero_map(digits=DIGITS, band=(0.0, omega / (2 * math.pi)))
         )
     except BudgetError:
         assume(False)  # refusing is honest; the cases left are many
@@ -199,7 +207,7 @@ def alternate(poles, zeros):
         key=lambda mark: float(mark[0].mid()),
     )
     assert all(root.multiplicity == (2 if root.is_zero else 1) for root in (*poles, *zeros))
-    for (a, kind_a), (b, kind_b) in zip(marks, marks[1:], strict=False):
+    for (a, kind_a), (b, kind_b) in itertools.pairwise(marks):
         assert a < b
         assert kind_a != kind_b
 
@@ -297,7 +305,9 @@ def check_damped(drawn):
             problem = Problem()
             line = problem.line(bending(parameters, mpc(s)))
             w, _, moment, shear = line.at(mpf(1))
-            problem.require(line.start[0], line.start[1], moment, (m * s**2 + b * s) * w - shear if load else w)
+            problem.require(
+                line.start[0], line.start[1], moment, (m * s**2 + b * s) * w - shear if load else w
+            )
             return determinant(problem)
 
         return at
