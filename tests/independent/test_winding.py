@@ -122,7 +122,12 @@ def damped_cantilever(s, load=True):
 
 @pytest.mark.parametrize(
     ("low", "high"),
-    [(-60 + 1j, 1 + 150j), (-200 + 30j, -10 + 600j), (-5 - 40j, 5 + 40j), (-800 + 400j, -30 + 950j)],
+    [
+        (-60 + 1j, 1 + 150j),
+        (-5 - 40j, 5 + 40j),
+        pytest.param(-200 + 30j, -10 + 600j, marks=pytest.mark.slow),
+        pytest.param(-800 + 400j, -30 + 950j, marks=pytest.mark.slow),
+    ],
 )
 def test_the_program_finds_as_many_poles_and_zeros_as_the_argument_turns(low, high):
     bound = symflex.loads(KELVIN_VOIGT).transfer_function("X", "F").bind()

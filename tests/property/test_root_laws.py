@@ -14,6 +14,7 @@ from mpmath import mp, mpc, mpf
 
 import symflex
 from symflex.errors import BudgetError
+from symflex.roots.root import exact_fraction
 from tests.independent.boundary_value import Problem, bending
 from tests.independent.winding import Frame, Member, OnTheContourError, count_inside, determinant
 
@@ -204,23 +205,23 @@ def alternate(poles, zeros):
     marks = sorted(
         [(root.im, "pole") for root in poles if not root.im < 0]
         + [(root.im, "zero") for root in zeros if not root.im < 0],
-        key=lambda mark: float(mark[0].mid()),
+        key=lambda mark: exact_fraction(mark[0]),
     )
     assert all(root.multiplicity == (2 if root.is_zero else 1) for root in (*poles, *zeros))
     for (a, kind_a), (b, kind_b) in itertools.pairwise(marks):
-        assert a < b
+        assert exact_fraction(a) + exact_fraction(a.rad()) < exact_fraction(b) - exact_fraction(b.rad())
         assert kind_a != kind_b
 
 
 @given(beams())
-@quiet(12)
+@quiet(6)
 def test_a_driving_point_of_beams_has_as_many_poles_and_zeros_as_wittrick_and_williams_count(model):
     check_beams(model, 60.0)
 
 
 @pytest.mark.slow
 @given(beams(most=3))
-@quiet(100)
+@quiet(40)
 def test_driving_points_of_many_beams_have_as_many_poles_and_zeros_as_are_counted(model):
     check_beams(model, 400.0)
 
@@ -256,7 +257,8 @@ def check_chain(drawn):
     )
     held = frame.with_held(("y", driven))
     bound = symflex.loads(driven_point("\n".join(lines), f"x_{driven}")).transfer_function("X", "F").bind()
-    found = bound.pole_zero_map(digits=DIGITS)
+    # A mode that hardly moves the driven mass has its zero beside its pole, 1e-17 apart in fourteen masses.
+    found = bound.pole_zero_map(digits=5 * DIGITS)
     assert found.certificate.certified
     hidden = [h.root for h in found.hidden]
     assert all(root.on_imaginary_axis for root in (*found.poles, *found.zeros, *hidden))
@@ -332,13 +334,13 @@ def check_damped(drawn):
 
 
 @given(damped())
-@quiet(3)
+@quiet(2)
 def test_a_damped_beam_has_as_many_poles_and_zeros_in_a_rectangle_as_its_determinant_turns(drawn):
     check_damped(drawn)
 
 
 @pytest.mark.slow
 @given(damped())
-@quiet(40)
+@quiet(15)
 def test_damped_beams_have_as_many_poles_and_zeros_as_their_determinants_turn(drawn):
     check_damped(drawn)

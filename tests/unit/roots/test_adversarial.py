@@ -532,6 +532,7 @@ def check_three_beams(result):
                 assert abs(function(s)) < mpf(10) ** -6 * abs(function(s + mpf("0.001")))
 
 
+@pytest.mark.slow
 def test_the_modes_of_three_beams_are_those_of_twelve_states():
     bound = symflex.loads(THREE_BEAMS).transfer_function("X", "F").bind()
     check_three_beams(bound.pole_zero_map(digits=20, region=THEIR_REGION))
