@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from symflex.kernels.normal_form import split
 from symflex.kernels.ring import degree_in
-from symflex.kernels.taylor import BASE, PRIMES, TaylorField, random_values
+from symflex.kernels.taylor import BASE, TaylorField, primes, random_values
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 BRANCHES = 4
 TERMS = 80
-TRIALS = 40
+TRIALS = 4
 """Values of the parameters that are tried in each field."""
 
 
@@ -75,7 +75,9 @@ def _find_point(
         below = field.inverse(slope)
         if below is None:
             return False
-        values[name] = field.times(field.power(BRANCHES) - rest, below)
+        # The scale decides in which fields the roots of several wavenumbers exist together.
+        scale = int(values[name][0]) or 1
+        values[name] = field.times(field.power(BRANCHES) * scale - rest, below)
         return True
 
     return find_point(ring, table, TERMS, prepare)
@@ -101,7 +103,7 @@ def find_point(
         Sets values that are not random; False asks for other random ones.
     """
     random = Random(11)
-    for prime in PRIMES:
+    for prime in primes():
         field = TaylorField(terms, prime)
         for _ in range(TRIALS):
             values = random_values(ring.names, random, field)

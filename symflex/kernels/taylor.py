@@ -13,24 +13,25 @@ from typing import TYPE_CHECKING
 from flint import fmpz, nmod_poly
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from flint import fmpz_mpoly
 
     from symflex.kernels.factored import Factored
 
 
-def _primes(count: int) -> tuple[int, ...]:
-    found: list[int] = []
+def primes() -> Iterator[int]:
+    """Yield the sizes of fields that are tried, the same ones every time."""
     candidate = 2**61 + 1
-    while len(found) < count:
-        if fmpz(candidate).is_prime():
-            found.append(candidate)
+    for _ in range(FIELDS):
+        while not fmpz(candidate).is_prime():
+            candidate += 8
+        yield candidate
         candidate += 8
-    return tuple(found)
 
 
-PRIMES = _primes(16)
+FIELDS = 400
+FIRST_PRIME = next(primes())
 BASE = 3
 """Powers of it stand for exponentials."""
 
@@ -48,7 +49,7 @@ class TaylorField:
     """
 
     terms: int
-    prime: int = PRIMES[0]
+    prime: int = FIRST_PRIME
 
     def constant(self, value: int) -> nmod_poly:
         """Return a number as a series."""

@@ -366,9 +366,12 @@ def _is_accurate(shape: ModeShape, digits: int) -> bool:
         middle, end = (part.state_at_share(Fraction(1, n)) for n in (2, 1))
         for name, *values in zip(part.states, part.initial, middle, end, strict=True):
             groups.setdefault((part.name, name), []).extend(values)
-    for values in groups.values():
-        largest = max(float(abs(v.mid())) for v in values)
-        radius = max(float(v.rad()) for v in values)
-        if largest > radius > largest * 10.0**-digits:
-            return False
-    return True
+    sizes = [
+        (max(float(abs(v.mid())) for v in values), max(float(v.rad()) for v in values))
+        for values in groups.values()
+    ]
+    overall = max((largest for largest, radius in sizes if largest > radius), default=0.0)
+    # What vanishes altogether has no size of its own to be measured by.
+    return all(
+        radius <= 10.0**-digits * (largest if largest > radius else overall) for largest, radius in sizes
+    )

@@ -25,6 +25,8 @@ POINTS = 64
 MOST = 12
 """Roots one cluster may have."""
 NEARLY_WHOLE = 0.01
+ACCURACY = 2.0**-120
+"""Of the guesses, in radii: clusters are small in their circle."""
 
 
 def resolve(
@@ -62,7 +64,7 @@ def resolve(
         for guess in guesses:
             with precision(bits + GUARD_BITS):
                 start = (centre + radius * guess).mid()
-            root = prove_simple(function, start, digits, factor=i, even=even)
+            root = prove_simple(function, start, digits, factor=i, even=even, first_bits=bits)
             if root is None:
                 return None
             found.append(root)
@@ -110,7 +112,7 @@ def _guesses(weights: Sequence[acb], directions: Sequence[acb]) -> list[acb] | N
     if count == 0:
         return []
     try:
-        return [root.mid() for root in polynomial.roots()]
+        return [root.mid() for root in polynomial.roots(tol=ACCURACY)]
     except ValueError:
         return None
 

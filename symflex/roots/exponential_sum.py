@@ -6,7 +6,7 @@ that hardly changes, however fast the whole one turns.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import product
 from math import comb, inf
@@ -178,17 +178,28 @@ class ExponentialValues:
 
     def amplitudes(self, number: int, place: Place) -> list[Value]:
         """Return the coefficients of all terms of one sum."""
+        known = place.amplitudes.get(number)
+        if known is not None:
+            return known
         found = []
-        values = place.values
+        products = place.products
         for amplitude in self._amplitudes[number]:
             total: Value | None = None
             for coefficient, powers in amplitude:
-                term: Value = coefficient
-                for name, e in powers:
-                    term = term * (values[name] if e == 1 else power_of(values[name], e))
+                value = products.get(powers)
+                if value is None:
+                    value = products[powers] = self._product(powers, place)
+                term = coefficient * value
                 total = term if total is None else total + term
             found.append(acb(0) if total is None else total)
+        place.amplitudes[number] = found
         return found
+
+    def _product(self, powers: tuple[tuple[str, int], ...], place: Place) -> Value:
+        total: Value = acb(1)
+        for name, e in powers:
+            total = total * power_of(place.values[name], e)
+        return total
 
     def exponents(self, number: int, place: Place, less: int = NOTHING) -> list[Value | None]:
         """Return the exponents of all terms of one sum, less that of one of them; ``None`` for 0."""
@@ -230,10 +241,14 @@ class Place:
         Of s, constants and wavenumbers.
     arguments : sequence of acb or acb_series
         Of the exponentials.
+    products, amplitudes : dict
+        What is known already of products of generators, and of sums.
     """
 
     values: Mapping[str, Value]
     arguments: Sequence[Value]
+    products: dict[tuple[tuple[str, int], ...], Value] = field(default_factory=dict)
+    amplitudes: dict[int, list[Value]] = field(default_factory=dict)
 
 
 def _number(value: Value) -> acb:

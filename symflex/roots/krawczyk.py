@@ -26,7 +26,7 @@ DOUBLINGS = 5
 CLOSE = BOX_SHARE + 0.02
 """The last Newton step before a box is drawn is by so many of the bits smaller."""
 FIRST_BITS = 64
-STEPS = 24
+STEPS = 80
 SMALLER = 4
 
 
@@ -54,7 +54,13 @@ class Box:
 
 
 def prove_simple(
-    function: KernelFunction, s: acb, digits: int, *, factor: int | None = None, even: bool | None = None
+    function: KernelFunction,
+    s: acb,
+    digits: int,
+    *,
+    factor: int | None = None,
+    even: bool | None = None,
+    first_bits: int = FIRST_BITS,
 ) -> Root | None:
     """Return the root of a factor next to a point with an enclosure, or ``None`` where none is proved.
 
@@ -70,6 +76,8 @@ def prove_simple(
         Which factor; the nearest root by default.
     even : bool, optional
         Whether roots mirror each other in the imaginary axis.
+    first_bits : int
+        Precision of the first steps: next to other roots, few bits may lead astray.
 
     Returns
     -------
@@ -79,10 +87,10 @@ def prove_simple(
     """
     is_even = function.is_even if even is None else even
     wanted = bits_for_digits(digits + 2) + GUARD_BITS
-    bits = max(LEAST_BITS, wanted)
+    bits = max(LEAST_BITS, wanted, first_bits)
     found: Box | None = None
     for _ in range(DOUBLINGS):
-        box = _box(function, s, bits, factor, even=is_even)
+        box = _box(function, s, (first_bits, bits), factor, even=is_even)
         if box is not None:
             found = box
             with precision(bits):
@@ -96,7 +104,7 @@ def prove_simple(
         return None
     total = found.exponent
     for other in found.touching:
-        beside = _box(function, s, bits // 2, other, even=is_even)
+        beside = _box(function, s, (first_bits, bits // 2), other, even=is_even)
         if beside is None:
             return None
         total += beside.exponent
@@ -114,11 +122,14 @@ def _root(box: Box, multiplicity: int, *, certified: bool) -> Root:
     )
 
 
-def _box(function: KernelFunction, s: acb, bits: int, factor: int | None, *, even: bool) -> Box | None:
-    """Return a box about the root next to ``s``, after a few Newton steps at a precision."""
+def _box(
+    function: KernelFunction, s: acb, levels: tuple[int, int], factor: int | None, *, even: bool
+) -> Box | None:
+    """Return a box about the root next to ``s``, after Newton steps from a first to a last precision."""
+    bits = levels[1]
     with precision(bits):
         middle = acb(s.real.mid(), s.imag.mid())
-        approached = _approached(function, middle, bits, factor)
+        approached = _approached(function, middle, levels, factor)
         if approached is None:
             return None
         middle, chosen = approached
@@ -151,12 +162,15 @@ def _box(function: KernelFunction, s: acb, bits: int, factor: int | None, *, eve
         )
 
 
-def _approached(function: KernelFunction, s: acb, bits: int, factor: int | None) -> tuple[acb, int] | None:
+def _approached(
+    function: KernelFunction, s: acb, levels: tuple[int, int], factor: int | None
+) -> tuple[acb, int] | None:
     """Return a point close to a root to a share of the bits, by Newton steps at rising precision."""
-    level, chosen = min(FIRST_BITS, bits), factor
+    first, bits = min(levels), levels[1]
+    level, chosen = first, factor
     for _ in range(STEPS):
         factors = function.enclosed(s, level)
-        if chosen is None or level == FIRST_BITS:
+        if chosen is None or level == first:
             chosen = nearest_factor(factors) if factor is None else factor
         value, slope, _ = factors[chosen]
         with precision(level):

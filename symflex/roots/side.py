@@ -43,8 +43,8 @@ NEIGHBOURHOOD = 0.05
 """Of a point where roots accumulate: relative to its distance from 0."""
 ACCUMULATION_DIGITS = 20
 ROUNDING = 1e-15
-ORIGIN_DEPTH = 90.0
-"""How far below the lowest root, in ln, a circle about 0 is counted where the order is not known exactly."""
+ORIGIN_DEPTHS = (1.0, 4.0, 16.0, 64.0)
+"""How far below the lowest root, in ln, circles about 0 are counted where the order is not known exactly."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,15 +143,7 @@ class Side:
             total = powers if is_hidden else powers + exact // power
             root = Root(zero, zero, total, on_imaginary_axis=True, is_real=True)
             return [root for _ in range(total >= 1)], exact
-        left = pi / 2 if self.function.is_even else pi
-        z = self._winding.smallest(left, tuple(self.holes)) - ORIGIN_DEPTH
-        try:
-            turns, rest = divmod(self._winding.count_within(z, left), power)
-        except RootOnPathError:
-            turns, rest = 0, 1
-        if rest:
-            message = f"the order of the root of {self._bound.name} at s = 0 cannot be told"
-            raise UncertifiedError(Diagnostic("SF404", message))
+        z, turns = self._turns_about_zero(power)
         # Kernels without a formula: so many roots lie this close to 0, and nothing says that they are 0.
         with precision(FLOAT_BITS):
             box = arb(0, arb(z).exp().upper())
@@ -162,6 +154,25 @@ class Side:
         certified = is_zero or total == 1
         root = Root(box, box, total, on_imaginary_axis=is_zero, is_real=is_zero, certified=certified)
         return [root for _ in range(total >= 1)], turns * power
+
+    def _turns_about_zero(self, power: int) -> tuple[float, int]:
+        """Return ln of a small radius, and how many roots are proved to lie within it."""
+        left = pi / 2 if self.function.is_even else pi
+        lowest = self._winding.smallest(left, tuple(self.holes))
+        found: tuple[float, int] | None = None
+        for depth in ORIGIN_DEPTHS:
+            try:
+                turns, rest = divmod(self._winding.count_within(lowest - depth, left), power)
+            except RootOnPathError:
+                continue
+            if not rest:
+                found = (lowest - depth, turns)
+            if not turns:
+                break
+        if found is None:
+            message = f"the order of the root of {self._bound.name} at s = 0 cannot be told"
+            raise UncertifiedError(Diagnostic("SF404", message))
+        return found
 
     @property
     def is_finite(self) -> bool:

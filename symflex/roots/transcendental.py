@@ -41,6 +41,8 @@ CONVERGED = 1e-11
 FIRST_BITS = 128
 SMALL = 1e-9
 """Size of cells in which roots that cannot be told apart by splitting are told apart by their moments."""
+NEIGHBOURS = 1e-4
+"""Relative radius of the circle about one of several roots in a cell within which the others are sought."""
 CLUSTER_BITS = 256
 CLUSTER_DOUBLINGS = 4
 DISC_GROWTH = 100
@@ -308,9 +310,17 @@ class RootSearch:
         with precision(FIRST_BITS):
             s = acb(z.real, z.imag).exp().mid()
         root = prove_simple(self.function, s, self.digits, even=self.is_even)
-        if root is None or root.multiplicity * self.function.power != count or not _is_in(cell, root):
+        if root is not None and root.multiplicity * self.function.power == count and _is_in(cell, root):
+            return [root]
+        if root is not None and count <= self.function.power:
             return None
-        return [root]
+        # Several roots, perhaps too close to each other to be parted by cuts.
+        with precision(FIRST_BITS):
+            radius = (s.abs_upper() * NEIGHBOURS).mid()
+        found = resolve(self.function, s, radius, self.digits, CLUSTER_BITS, even=self.is_even)
+        if found is None or sum(each.multiplicity for each in found) * self.function.power != count:
+            return None
+        return found if all(_is_in(cell, each) for each in found) else None
 
     def _cluster(self, cell: Cell, count: int) -> list[Root] | None:
         """Return the roots in a small cell by their moments, or as one that could not be told apart."""

@@ -13,7 +13,7 @@ from flint import acb, ctx
 
 import symflex
 from symflex import pipeline
-from symflex.api import to_complex
+from symflex.roots.multiprecision import to_complex_mpmath as to_complex
 from symflex.errors import UsageError
 from symflex.quantities import unit_of
 from symflex.roots import Modes
