@@ -42,6 +42,9 @@ SUBDIVISION = "subdivision"
 NEIGHBOURHOOD = 0.05
 """Of a point where roots accumulate: relative to its distance from 0."""
 ACCUMULATION_DIGITS = 20
+FEW = 40
+WIDER = 1e-3
+"""How far beyond its limits, in ln, a ring is searched."""
 ROUNDING = 1e-15
 ORIGIN_DEPTHS = (1.0, 4.0, 16.0, 64.0)
 """How far below the lowest root, in ln, circles about 0 are counted where the order is not known exactly."""
@@ -240,10 +243,15 @@ class Side:
         low, high, right, left = limits
         smallest = self._search.smallest()
         low = max(low, smallest)
+        is_part = low > smallest or right > 0 or left < self._search.left
+        if is_part and not self.holes and self._is_sparse(self._search, high):
+            low, right, left = smallest, 0.0, pi
         if self._scans and right <= 0 and left >= self._search.left:
-            self._domain = Cell(-inf if low <= smallest else low, high, 0.0, pi)
+            # A little beyond, so that roots at the limits are met.
+            bottom, top = low - WIDER, high + 1.1 * WIDER
+            self._domain = Cell(-inf if low <= smallest else bottom, top, 0.0, pi)
             try:
-                self._set(self._search.on_axes(low, high))
+                self._set(self._search.on_axes(bottom, top))
             except RootOnPathError:
                 self._set(())
             if self.counted().is_complete:
@@ -256,6 +264,17 @@ class Side:
             # A whole disc is easier to count than a ring whose inner circle is very small.
             self._domain = replace(found.cell, low=-inf)
         self._set(found.roots)
+
+    def _is_sparse(self, search: RootSearch, high: float) -> bool:
+        """Tell whether a whole disc holds so few roots that it is searched rather than a part of it.
+
+        Close to 0, where functions with kernels are small differences of large terms, paths are hard to follow.
+        """
+        try:
+            turns = self._winding.count_within(high + WIDER, search.left)
+        except RootOnPathError:
+            return False
+        return turns <= FEW * self.function.power
 
     def prove(self, region: Region) -> Proof:
         """Count the roots of the domain that was searched; subdivide it with proof if one is missing."""
