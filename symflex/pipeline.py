@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from symflex.equations import Equations
     from symflex.explanation import ZeroExplanation
     from symflex.rational import RationalApproximation, Residue
-    from symflex.roots import PoleZeroMap, Region
+    from symflex.roots import Budget, PoleZeroMap, Region
     from symflex.sensitivity import Sensitivity
     from symflex.spec import Spec
     from symflex.transfer import BoundTransferFunction, TransferFunction
@@ -127,9 +127,14 @@ def bind(
     return transfer_room.bind(tf, values)
 
 
-def roots(bound: BoundTransferFunction, region: Region | None = None, digits: int = 15) -> PoleZeroMap:
+def roots(
+    bound: BoundTransferFunction,
+    region: Region | None = None,
+    digits: int = 15,
+    budget: Budget | None = None,
+) -> PoleZeroMap:
     """Return poles, zeros and hidden modes, proved; see :func:`symflex.roots.locate.locate`."""
-    return locate(bound, region, digits)
+    return locate(bound, region, digits, budget)
 
 
 def residues(

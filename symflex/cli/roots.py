@@ -20,6 +20,7 @@ DIGITS_LIMIT = 10_000
 @click.argument("spec", type=click.Path())
 @click.option("--tf", metavar="OUT/IN", help="The transfer function; the first one by default.")
 @click.option("--modes", type=click.IntRange(1), help="Only the N lowest modes, with roots at the origin.")
+@click.option("--mode", type=click.IntRange(1), help="Only mode number N, by natural frequency.")
 @click.option(
     "--band", nargs=2, metavar="LO HI", help='Only natural frequencies in a band: 0.1 1000, "1 kHz".'
 )
@@ -28,6 +29,12 @@ DIGITS_LIMIT = 10_000
     "--digits", type=click.IntRange(1, DIGITS_LIMIT), help="Correct significant digits.  [default: 15]"
 )
 @click.option("--explain", is_flag=True, help="Say which constrained system's poles the zeros are.")
+@click.option(
+    "--budget",
+    type=click.FloatRange(min=0, min_open=True),
+    metavar="SECONDS",
+    help="Stop the search then; what was proved is shown.",
+)
 @click.option(
     "--sensitivity",
     "wanted",
@@ -45,9 +52,11 @@ def command(
     *,
     tf: str | None,
     modes: int | None,
+    mode: int | None,
     band: tuple[str, str] | None,
     region: tuple[str, str, str, str] | None,
     digits: int | None,
+    budget: float | None,
     wanted: tuple[str, ...],
     strict: bool,
     explain: bool,
@@ -64,11 +73,13 @@ def command(
     per relative change of a parameter. It takes the next word as a name: put it after SPEC.
     """
     from symflex import pipeline
+    from symflex.cli.progress import ProgressBar
     from symflex.emit.sensitivity import sensitivity_text
     from symflex.emit.text import roots_text
     from symflex.explanation import explanation_json, explanation_text
+    from symflex.roots import Budget
 
-    chosen = _region(modes, band, region)
+    chosen = _region(modes, mode, band, region)
     model = pipeline.load(spec)
     pairs = pipeline.pick_pairs(model, [tf] if tf else [])
     if tf is None and len(pairs) > 1:
@@ -76,7 +87,8 @@ def command(
         note(f"showing {'/'.join(pairs[0])}; choose with --tf: {others}")
     shown = digits or model.analysis.digits or 15
     (bound,) = pipeline.derive_bound(model, pairs[:1])
-    found = pipeline.roots(bound, chosen, shown)
+    with ProgressBar() as bar:
+        found = pipeline.roots(bound, chosen, shown, Budget(budget, bar))
     names = [] if "" in wanted else wanted
     moved = pipeline.sensitivities(model, bound, found, names, shown) if wanted else ()
     explained = pipeline.explain_zeros(model, bound, found) if explain else None
@@ -102,14 +114,19 @@ def command(
 
 
 def _region(
-    modes: int | None, band: tuple[str, str] | None, region: tuple[str, str, str, str] | None
+    modes: int | None,
+    mode: int | None,
+    band: tuple[str, str] | None,
+    region: tuple[str, str, str, str] | None,
 ) -> Region | None:
-    from symflex.roots import Band, Modes, Rectangle
+    from symflex.roots import Band, Mode, Modes, Rectangle
 
-    if sum(choice is not None for choice in (modes, band, region)) > 1:
-        raise UsageError(Diagnostic("SF902", "give only one of --modes, --band and --region"))
+    if sum(choice is not None for choice in (modes, mode, band, region)) > 1:
+        raise UsageError(Diagnostic("SF902", "give only one of --modes, --mode, --band and --region"))
     if modes is not None:
         return Modes(modes)
+    if mode is not None:
+        return Mode(mode)
     if band is not None:
         low, high = (_limit(text, "--band", "0.1 or '1 kHz'", hertz=True) for text in band)
         if not 0 <= low < high:

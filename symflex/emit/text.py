@@ -14,7 +14,7 @@ from symflex.expressions import (
     format_expression,
     names,
 )
-from symflex.roots import Band, Modes, Rectangle
+from symflex.roots import Band, Mode, Modes, Rectangle
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -240,6 +240,8 @@ def _region_text(region: Region) -> str:
         case Modes(count):
             modes = "mode" if count == 1 else f"{count} modes"
             return f"the {modes} of lowest natural frequency, and roots at 0"
+        case Mode(number):
+            return f"mode number {number}, by natural frequency"
         case Band(low, high):
             return f"natural frequencies from {float(low):g} to {float(high):g} Hz"
         case Rectangle(re_low, re_high, im_low, im_high):

@@ -3,34 +3,45 @@
 A new engine is one file and one line in :data:`ROOT_FINDERS`.
 """
 
+from symflex.roots.budget import Budget, Progress
 from symflex.roots.durand_kerner import propose_by_durand_kerner
 from symflex.roots.finder import RootFinder
+from symflex.roots.kernel_finder import KernelRootFinder
 from symflex.roots.laguerre import propose_by_laguerre
 from symflex.roots.pole_zero_map import Certificate, HiddenRoot, PoleZeroMap, find_pole_zero_map
 from symflex.roots.polynomial import POLYNOMIAL, PolynomialRootFinder, find_polynomial_roots
 from symflex.roots.precision import precision
-from symflex.roots.problem import Constant, PolynomialInS, RootProblem
-from symflex.roots.region import Band, Everything, Modes, Position, Rectangle, Region
+from symflex.roots.problem import Constant, KernelProblem, PolynomialInS, Problem, RootProblem
+from symflex.roots.region import Band, Everything, Mode, Modes, Position, Rectangle, Region
 from symflex.roots.root import Root, RootDecimals, decimals
 
 ROOT_FINDERS: dict[str, RootFinder] = {
     "polynomial": POLYNOMIAL,
     "laguerre": PolynomialRootFinder("laguerre", (propose_by_laguerre,)),
     "durand-kerner": PolynomialRootFinder("durand-kerner", (propose_by_durand_kerner,)),
+    "lossless": KernelRootFinder("lossless"),
+    "guess-and-prove": KernelRootFinder("guess-and-prove"),
+    "subdivision": KernelRootFinder("subdivision"),
 }
 
 __all__ = [
     "ROOT_FINDERS",
     "Band",
+    "Budget",
     "Certificate",
     "Constant",
     "Everything",
     "HiddenRoot",
+    "KernelProblem",
+    "KernelRootFinder",
+    "Mode",
     "Modes",
     "PoleZeroMap",
     "PolynomialInS",
     "PolynomialRootFinder",
     "Position",
+    "Problem",
+    "Progress",
     "Rectangle",
     "Region",
     "Root",

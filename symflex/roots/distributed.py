@@ -14,10 +14,11 @@ from symflex.errors import BudgetError
 from symflex.kernels import Factored
 from symflex.roots.pole_zero_map import Certificate, Exclusion, HiddenRoot, PoleZeroMap
 from symflex.roots.polynomial import POLYNOMIAL, in_order
-from symflex.roots.region import Band, Everything, Modes, Position
+from symflex.roots.region import Band, Everything, Mode, Modes, Position
 from symflex.roots.root import overlap
 from symflex.roots.side import (
     ACCUMULATION_DIGITS,
+    LOSSLESS,
     NEIGHBOURHOOD,
     Side,
     groups,
@@ -120,6 +121,10 @@ class _Searched:
         if not bound.ratio.is_zero:
             self.sides.append(Side(bound, bound.den, digits, self.budget))
             self.sides.append(Side(bound, bound.num, digits, self.budget))
+        if isinstance(where, Mode):
+            for side in self.sides:
+                side.numbered(where.number)
+            return
         shared = _find(self.sides, where)
         highest = max((root.frequency_hz() for root in self.chosen()[0]), default=0.0)
         # Modes are of the poles; what cancelled has none of its own.
@@ -141,6 +146,15 @@ class _Searched:
     def prove(self) -> str | None:
         """Count the roots of all sides with proof; return what could not be proved."""
         reasons = []
+        if isinstance(self.region, Mode):
+            # Its number was counted, or all below it were found.
+            for side in self.sides:
+                if (
+                    side.engine != LOSSLESS
+                    and not (proof := side.prove(Modes(self.region.number))).is_complete
+                ):
+                    reasons.append(proof.reason or "roots were counted but not found")
+            return "; ".join(dict.fromkeys(reasons)) or None
         for i, side in enumerate(self.sides):
             self.budget.progress.report(i / len(self.sides), "proving that no root is missing")
             is_last = i == len(self.sides) - 1
@@ -213,6 +227,8 @@ def _match(poles: Side, zeros: Side) -> list[Root]:
 def _chosen(roots: Sequence[Root], region: Region) -> list[Root]:
     """Return the roots in a region in order of natural frequency."""
     ordered = in_order(roots)
+    if isinstance(region, Mode):
+        return list(ordered)
     if isinstance(region, Modes):
         return _lowest(ordered, region.count)
     positions = region.classify(ordered)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from symflex.roots.problem import RootProblem
+    from symflex.roots.problem import Problem
     from symflex.roots.region import Region
     from symflex.roots.root import Root
 
@@ -22,10 +22,16 @@ class RootFinder(Protocol):
         """Key in the registry."""
         ...
 
-    def accepts(self, problem: RootProblem) -> bool:
+    def accepts(self, problem: Problem) -> bool:
         """Return whether the engine can solve the problem."""
         ...
 
-    def find(self, problem: RootProblem, region: Region, digits: int) -> tuple[Root, ...]:
-        """Return at least all roots in the closed region, in the order of :func:`find_polynomial_roots`."""
+    def find(self, problem: Problem, region: Region, digits: int) -> tuple[Root, ...]:
+        """Return at least all roots in the closed region, in the order of :func:`find_polynomial_roots`.
+
+        Raises
+        ------
+        TypeError
+            For a problem it does not accept.
+        """
         ...

@@ -1,9 +1,9 @@
 """Functions without losses as functions of x, the square root of s.
 
-Where every wavenumber is a root of a multiple of s^2, those of bending are proportional to x and those of waves
-to x^2, and a polynomial in kernels is a sum of ``c(x) exp(p x + q x^2)``. On the real axis of s, x is t; on the
-imaginary one it is (1 + j) t, and the sum is real but for a constant factor: growing, decaying and oscillating
-terms with real coefficients.
+Where every wavenumber is a root of a multiple of s^2, those of bending are proportional to x and those of
+waves to x^2, and a polynomial in kernels is a sum of ``c(x) exp(p x + q x^2)``. On the real axis of s, x is
+t; on the imaginary one it is (1 + j) t, and the sum is real but for a constant factor: growing, decaying and
+oscillating terms with real coefficients.
 """
 
 from __future__ import annotations
@@ -25,18 +25,27 @@ from symflex.roots.winding import RootOnPathError
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from symflex.kernels import Dispersion
+    from symflex.kernels import Dispersion, Factored
     from symflex.roots.exponential_sum import Argument, ExponentialSum
     from symflex.roots.kernel_function import KernelFunction
     from symflex.transfer import BoundTransferFunction
+    from symflex.transfer.monomials import Value
 
 FLOAT_BITS = 64
-LOSSLESS: Mapping[str, int] = {"bending": 1, "wave": 2}
+LINEAR, QUADRATIC = 1, 2
+LOSSLESS: Mapping[str, int] = {"bending": LINEAR, "wave": QUADRATIC}
 """Power of x that wavenumbers are proportional to, by kind of dispersion."""
 ROTATIONS = 8
 BESIDE = 0.3
 """How far from the axes the largest terms are looked for, in x."""
 REAL, IMAGINARY = 0, 1
+WIDENED = 1 + 2.0**-40
+SPREAD = 2.0**-50
+"""Relative width that makes up for the rounding of a step's middle."""
+MOST = 0.97
+"""Largest share of its middle that a ball may have for its radius."""
+AIM = 0.85
+SHORTEST = 1e-12
 
 Key = tuple[tuple[int, int, int], ...]
 """Positions of arguments, and what they are multiplied with, a + j b."""
@@ -99,7 +108,7 @@ class LosslessFunction:
     constants: tuple[Callable[[], arb], ...]
 
     def on_axis(self, number: int, axis: int) -> AxisFunction | None:
-        """Return one factor as a real function on the real or the imaginary axis, ``None`` if it is not real."""
+        """Return one factor as a real function on an axis, ``None`` if it is not real there."""
         turned: Terms = {}
         for key, terms in self.factors[number][0].items():
             new_key = tuple((i, *self._turned(i, (a, b), axis)) for i, a, b in key)
@@ -162,7 +171,7 @@ class LosslessFunction:
             for key, terms in self.factors[number][0].items():
                 linear, square = acb(0), acb(0)
                 for i, a, b in key:
-                    if self.degrees[i] == 1:
+                    if self.degrees[i] == LINEAR:
                         linear += acb(a, b) * rates[i]
                     else:
                         square += acb(a, b) * rates[i]
@@ -252,13 +261,6 @@ def _turn(terms: list[tuple[acb, acb, list[tuple[int, acb]]]], radius: arb) -> a
     return total
 
 
-WIDENED = 1 + 2.0**-40
-SPREAD = 2.0**-50
-MOST = 0.99
-AIM = 0.9
-SHORTEST = 1e-12
-
-
 def _real_waves(turned: Terms, unit: Gaussian, arguments: int) -> tuple[_Wave, ...] | None:
     """Return real terms, if all complex ones times a unit come in conjugate pairs."""
     found: dict[tuple[tuple[int, ...], tuple[int, ...]], dict[tuple[int, Monomial], Gaussian]] = {}
@@ -271,29 +273,31 @@ def _real_waves(turned: Terms, unit: Gaussian, arguments: int) -> tuple[_Wave, .
             own[place] = _plus(own.get(place, (Fraction(0), Fraction(0))), _times(value, unit))
     waves = []
     done: set[tuple[tuple[int, ...], tuple[int, ...]]] = set()
-    for (growth, phase), own in found.items():
-        if (growth, phase) in done:
+    for place_of, own in found.items():
+        if place_of in done:
             continue
-        opposite = tuple(-p for p in phase)
-        other = found.get((growth, opposite), {})
-        done |= {(growth, phase), (growth, opposite)}
+        growing, turning = place_of
+        opposite = tuple(-p for p in turning)
+        other = found.get((growing, opposite), {})
+        done |= {place_of, (growing, opposite)}
         places = {*own, *other}
         zero = (Fraction(0), Fraction(0))
         if any(own.get(p, zero) != (other.get(p, zero)[0], -other.get(p, zero)[1]) for p in places):
             return None
-        weight = 1 if opposite == phase else 2
+        is_pair = opposite != turning
+        weight = 1 + is_pair
         even: dict[int, dict[Monomial, Fraction]] = {}
         odd: dict[int, dict[Monomial, Fraction]] = {}
         for (power, monomial), (re, im) in own.items():
             if re:
                 even.setdefault(power, {})[monomial] = weight * re
-            if im and weight == 2:
+            if im and is_pair:
                 odd.setdefault(power, {})[monomial] = -weight * im
-        if phase < opposite:
+        if turning < opposite:
             # One sign of every phase, so that sines and cosines are made once.
-            phase, odd = opposite, {n: {m: -v for m, v in o.items()} for n, o in odd.items()}
+            odd = {n: {m: -v for m, v in o.items()} for n, o in odd.items()}
         if even or odd:
-            waves.append(_Wave(growth, phase, even, odd))
+            waves.append(_Wave(growing, max(turning, opposite), even, odd))
     return tuple(waves)
 
 
@@ -362,8 +366,12 @@ class _Level:
         rates = [r() for r in owner.rates]
 
         def rate(key: tuple[int, ...]) -> tuple[arb, arb]:
-            linear = sum((k * r for k, r, d in zip(key, rates, owner.degrees, strict=True) if d == 1), arb(0))
-            square = sum((k * r for k, r, d in zip(key, rates, owner.degrees, strict=True) if d == 2), arb(0))
+            linear, square = arb(0), arb(0)
+            for k, value, degree in zip(key, rates, owner.degrees, strict=True):
+                if degree == LINEAR:
+                    linear += k * value
+                else:
+                    square += k * value
             return linear, square
 
         def polynomial(powers: dict[int, dict[Monomial, Fraction]]) -> dict[int, arb]:
@@ -394,7 +402,7 @@ class _Level:
         self.float_phases = [(float(p), float(q)) for p, q in self.phases]
         self._float_values = [_floats(term) for term in self.values]
         self._float_slopes = [_floats(term) for term in self.slopes]
-        self._has_squares = any(d == 2 for d in owner.degrees)
+        self._has_squares = any(degree != LINEAR for degree in owner.degrees)
 
     def sum(self, t: arb, terms: list[tuple[int, int, list[tuple[int, arb]], list[tuple[int, arb]]]]) -> arb:
         """Return a sum at a ball of t."""
@@ -493,7 +501,7 @@ def lossless_function(function: KernelFunction) -> LosslessFunction | None:
             constants.append(rate)
         length = argument.length
         degrees.append(degree)
-        rates.append(_later(bound, rate, length))
+        rates.append(_times_length(bound, rate, length))
     for law in bound.kernels.dispersions:
         for name in law.wavenumbers:
             used = any(f.degrees()[ring.index[name]] for f, _ in function.part.factors)
@@ -514,30 +522,37 @@ def _rate(bound: BoundTransferFunction, law: Dispersion) -> Callable[[], arb] | 
     s = bound.ratio.ring.context.gen(0)
     below = first.filter(lambda factor: factor == s)
     rest = first / below
-    if any(not other.is_zero for other in others) or first.exponent_of(s) != 2 or rest.depends_on("s"):
+    if (
+        any(not other.is_zero for other in others)
+        or first.exponent_of(s) != QUADRATIC
+        or rest.depends_on("s")
+    ):
         return None
     sign = -1 if law.kind == "wave" else 1
 
     def evaluate() -> arb:
-        values = {name: each() for name, each in bound.constants}
-        kernels = bound.kernel_values(values)
-        number = kernels.value(rest, {"s": acb(1), **{n: acb(v) for n, v in values.items()}})
-        size = sign * (number if isinstance(number, acb) else number[0]).real
+        size = sign * _real_value(bound, rest)
         return size.sqrt() if law.kind == "wave" else (size / 4).sqrt().sqrt()
 
     with precision(FLOAT_BITS):
         return evaluate if evaluate().is_finite() and evaluate() > 0 else None
 
 
-def _later(bound: BoundTransferFunction, rate: Callable[[], arb], length: object) -> Callable[[], arb]:
+def _times_length(
+    bound: BoundTransferFunction, rate: Callable[[], arb], length: Factored
+) -> Callable[[], arb]:
     def evaluate() -> arb:
-        values = {name: each() for name, each in bound.constants}
-        number = bound.kernel_values(values).value(
-            length, {"s": acb(1), **{n: acb(v) for n, v in values.items()}}
-        )  # type: ignore[arg-type]
-        return rate() * (number if isinstance(number, acb) else number[0]).real
+        return rate() * _real_value(bound, length)
 
     return evaluate
+
+
+def _real_value(bound: BoundTransferFunction, value: Factored) -> arb:
+    """Return what does not depend on s."""
+    constants = {name: each() for name, each in bound.constants}
+    places: dict[str, Value] = {"s": acb(1), **{name: acb(c) for name, c in constants.items()}}
+    number = bound.kernel_values(constants).value(value, places)
+    return (number if isinstance(number, acb) else number[0]).real
 
 
 def _terms(terms: ExponentialSum, position: Mapping[int, tuple[int, int]]) -> Terms:

@@ -231,6 +231,7 @@ class KernelFunction:
 
     @cached_property
     def arguments(self) -> tuple[Argument, ...]:
+        """What the exponentials of :attr:`exponentials` are taken of."""
         return arguments_of(self.bound.kernels) or ()
 
     @cached_property

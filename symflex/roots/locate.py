@@ -60,6 +60,7 @@ def locate(
         region,
         digits,
         [(_problem(bound, [factor]), "cancelled") for factor in hidden],
+        budget=budget,
     )
 
 

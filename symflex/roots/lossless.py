@@ -1,14 +1,15 @@
 """Roots of lossless functions on both axes, isolated in one dimension, and modes by their number.
 
 Sign changes on a grid, in doubles, give guesses; one interval Newton step proves that each is a root, and the
-only one in its interval; the count on an arc (the part of Wittrick and Williams 1971, for zeros as well as for
-poles) shows that there are no others. Nothing here grows with the number of a mode.
+only one in its interval; the count on an arc, which takes the part of that of Wittrick and Williams (1971)
+and serves zeros as well as poles, shows that there are no others. Nothing grows with the number of a mode.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import exp, log, log1p, pi
+from itertools import accumulate
+from math import exp, inf, log, log1p, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,12 +21,11 @@ from symflex.roots.root import GUARD_BITS, Root
 from symflex.roots.winding import RootOnPathError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
-    import numpy.typing as npt
-
-    from symflex.roots.harmonic_sum import AxisFunction, LosslessFunction
+    from symflex.roots.harmonic_sum import AxisFunction, Doubles, LosslessFunction
     from symflex.roots.kernel_function import KernelFunction
+    from symflex.roots.winding import Cell
 
 GRID = 0.5
 """Largest change of a phase [rad] from one sample to the next."""
@@ -42,6 +42,8 @@ MANY = 100
 """Turns from which on they are proportional to the root of the frequency."""
 FEW = 8
 CLOSE = 1e-9
+DEPTH = 30.0
+"""How far below the first resonances roots are sought, in ln."""
 HIGHEST = 1e130
 """abs(s) [rad/s] beyond which nothing is sought."""
 UNRELIABLE = 1e-10
@@ -83,12 +85,26 @@ class LosslessSearch:
         To which the function vanishes at s = 0.
     digits : int
         Significant digits of every root.
+
+    Attributes
+    ----------
+    roots : list of Root
+        What :meth:`scan` found, in the closed right upper quadrant.
+    reached : float
+        ln of the radius up to which it searched.
     """
 
     def __init__(self, function: LosslessFunction, order: int, digits: int) -> None:
         self.function = function
         self.order = order
         self.digits = digits
+        self.roots: list[Root] = []
+        self.reached = -inf
+        self.missing = 0
+        self.excluded: set[Cell] = set()
+        self.holes: tuple[Cell, ...] = ()
+        self.is_even = True
+        self.left = pi / 2
         self._sources: list[tuple[AxisFunction, int]] = []
         for number, (_, exponent) in enumerate(function.factors):
             if exponent <= 0:
@@ -113,9 +129,26 @@ class LosslessSearch:
             raise RootOnPathError
         return int(found) - self.order
 
+    def scan(self, modes: int, radius: float, is_complete: Callable[[], bool]) -> bool:
+        """Find the lowest modes, and all up to ln of a radius; tell whether these are all."""
+        self.roots, self.reached = self.lowest(modes) if modes else ([], self.smallest())
+        if self.reached < radius:
+            self.roots = self.on_axes(-inf, radius)
+            self.reached = radius
+        return is_complete()
+
+    def on_axes(self, low: float, high: float) -> list[Root]:
+        """Return the roots on both axes between ln of two radii."""
+        return self.between(exp(low), exp(high))
+
+    def smallest(self) -> float:
+        """Return ln of a radius within which no roots are sought."""
+        return log(self._first_frequency()) - DEPTH
+
     def lowest(self, modes: int) -> tuple[list[Root], float]:
-        """Return the lowest modes, one of each pair, and ln of a radius that holds no others of their kind."""
-        low, guesses = 0.0, []
+        """Return the lowest modes, one of each pair, and ln of a radius between them and the next."""
+        low = 0.0
+        guesses: list[Guess] = []
         high = self._first_frequency()
         samples = 0
         while sum(g.exponent for g in guesses) <= modes:
@@ -128,7 +161,8 @@ class LosslessSearch:
             known = len(guesses)
             low, high = high, high * (4.0 if known < FEW else max(1.05, (1.1 * modes / known) ** 2))
         guesses.sort(key=lambda guess: guess.frequency)
-        chosen, total = [], 0
+        chosen: list[Guess] = []
+        total = 0
         for guess in guesses:
             if total >= modes and guess.frequency > chosen[-1].frequency * (1 + CLOSE):
                 # The circle passes between the last mode wanted and the next.
@@ -138,7 +172,7 @@ class LosslessSearch:
         return self._proved(chosen), log(low)
 
     def between(self, low: float, high: float) -> list[Root]:
-        """Return the roots with abs(s) from ``low`` to ``high`` [rad/s] at which a factor changes its sign."""
+        """Return the roots with abs(s) between two [rad/s] at which a factor changes its sign."""
         found = []
         for source, exponent in self._sources:
             changes, _ = self._sign_changes(source, low, high)
@@ -259,12 +293,11 @@ class LosslessSearch:
             guesses += [Guess(source_frequency(source, t), t, source, exponent) for t in changes]
         guesses.sort(key=lambda guess: guess.frequency)
         reached = below - sum(g.exponent for g in guesses if log(g.frequency) < place)
-        for i, guess in enumerate(guesses):
-            reached += guess.exponent
-            if reached >= number:
-                break
-        else:
+        totals = accumulate((g.exponent for g in guesses), initial=reached)
+        i = next((k for k, total in enumerate(totals) if total >= number), 0) - 1
+        if i < 0:
             return None
+        guess = guesses[i]
         here = log(guess.frequency)
         below_it = log(guesses[i - 1].frequency) if i else here - log(2)
         above_it = log(guesses[i + 1].frequency) if i + 1 < len(guesses) else max(low, high, place)
@@ -285,7 +318,7 @@ class LosslessSearch:
         raise RootOnPathError
 
     def _place(self, turns: float, start: float) -> float:
-        """Return ln(abs(s)) where about so many roots lie below; they are evenly spread along the root of it."""
+        """Return ln(abs(s)) where about so many roots lie below, spread evenly along its root."""
         goal = turns * pi / 2
         here, there = start, start + 2.0
         before, value = self.function.estimate(here) - goal, self.function.estimate(there) - goal
@@ -315,13 +348,13 @@ def source_frequency(source: AxisFunction, t: float) -> float:
 
 def _polished(
     source: AxisFunction,
-    low: npt.NDArray[np.float64],
-    high: npt.NDArray[np.float64],
-    below: npt.NDArray[np.float64],
-    above: npt.NDArray[np.float64],
-) -> npt.NDArray[np.float64]:
+    low: Doubles,
+    high: Doubles,
+    below: Doubles,
+    above: Doubles,
+) -> Doubles:
     """Return roots of a function between pairs of points of opposite sign, by safeguarded Newton steps."""
-    t = low + (high - low) * np.abs(below) / (np.abs(below) + np.abs(above))
+    t: Doubles = low + (high - low) * np.abs(below) / (np.abs(below) + np.abs(above))
     negative = np.signbit(below)
     for _ in range(NEWTON_STEPS):
         values, slopes, _ = source.sampled(t)

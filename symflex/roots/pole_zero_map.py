@@ -5,12 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from symflex.errors import BudgetError
 from symflex.roots.polynomial import POLYNOMIAL
 from symflex.roots.region import Everything, Modes, Position, Region
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from symflex.roots.budget import Budget
     from symflex.roots.finder import RootFinder
     from symflex.roots.problem import RootProblem
     from symflex.roots.root import Root
@@ -154,6 +156,7 @@ def find_pole_zero_map(
     digits: int = 30,
     hidden: Sequence[tuple[RootProblem, str]] = (),
     finder: RootFinder = POLYNOMIAL,
+    budget: Budget | None = None,
 ) -> PoleZeroMap:
     """Find poles and zeros in a region.
 
@@ -172,6 +175,8 @@ def find_pole_zero_map(
         modes, else those in the region.
     finder : RootFinder
         The engine.
+    budget : Budget, optional
+        When it is exceeded, polynomials that were not yet solved are left out.
 
     Returns
     -------
@@ -188,21 +193,34 @@ def find_pole_zero_map(
     """
     where = region if region is not None else Everything()
     whole = Everything() if isinstance(where, Modes) else where
-    pole_roots, pole_found, poles_apart = _locate(poles, where, digits, finder)
-    zero_roots, zero_found, zeros_apart = _locate(zeros, where, digits, finder)
-    counted, found = poles.degree + zeros.degree, pole_found + zero_found
-    apart = poles_apart and zeros_apart
-    concealed: list[HiddenRoot] = []
-    for problem, cause in hidden:
-        roots, number, hidden_apart = _locate(problem, whole, digits, finder)
-        concealed.extend(HiddenRoot(root, cause) for root in roots)
-        counted, found, apart = counted + problem.degree, found + number, apart and hidden_apart
-    reason = None
-    if counted != found:
+    sought = [(poles, where), (zeros, where), *((problem, whole) for problem, _ in hidden)]
+    counted = sum(problem.degree for problem, _ in sought)
+    located: list[tuple[Root, ...]] = []
+    found, apart, exceeded = 0, True, None
+    for i, (problem, within) in enumerate(sought):
+        try:
+            if budget is not None:
+                budget.progress.report(i / len(sought), f"polynomial {i + 1} of {len(sought)}")
+                budget.spend()
+        except BudgetError as error:
+            exceeded = error.diagnostics[0].message
+            break
+        roots, number, all_apart = _locate(problem, within, digits, finder)
+        located.append(roots)
+        found, apart = found + number, apart and all_apart
+    located += [()] * (len(sought) - len(located))
+    pole_roots, zero_roots, *others = located
+    concealed = [
+        HiddenRoot(root, cause) for (_, cause), roots in zip(hidden, others, strict=True) for root in roots
+    ]
+    reason = exceeded
+    if reason is None and counted != found:
         reason = f"{counted} roots exist, {found} were found"
-    elif not apart:
+    elif reason is None and not apart:
         reason = "some roots could not be told apart; each such group is enclosed as one"
-    certificate = Certificate(finder.name, reason is None, counted, found, reason)
+    certificate = Certificate(
+        finder.name, reason is None, counted, found, reason, is_exceeded=exceeded is not None
+    )
     return PoleZeroMap(tf, where, pole_roots, zero_roots, tuple(concealed), certificate, digits)
 
 

@@ -13,6 +13,7 @@ from symflex.roots.durand_kerner import propose_by_durand_kerner
 from symflex.roots.isolation import isolate
 from symflex.roots.laguerre import propose_by_laguerre
 from symflex.roots.precision import bits_for_digits, precision
+from symflex.roots.problem import RootProblem
 from symflex.roots.root import GUARD_BITS, Root
 from symflex.roots.squarefree import Part, split
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.roots.discs import Proposer
-    from symflex.roots.problem import RootProblem
+    from symflex.roots.problem import Problem
     from symflex.roots.region import Region
 
 DURAND_KERNER_DEGREE = 12
@@ -43,13 +44,16 @@ class PolynomialRootFinder:
     name: str
     proposers: tuple[Proposer, ...] = ()
 
-    def accepts(self, problem: RootProblem) -> bool:
+    def accepts(self, problem: Problem) -> bool:
         """Return whether the engine can solve the problem; every product of polynomials will do."""
-        return problem.degree >= 0
+        return isinstance(problem, RootProblem)
 
-    def find(self, problem: RootProblem, region: Region, digits: int) -> tuple[Root, ...]:
+    def find(self, problem: Problem, region: Region, digits: int) -> tuple[Root, ...]:
         """Return all roots of the problem, those outside the region too: polynomials have finitely many."""
         del region
+        if not isinstance(problem, RootProblem):
+            message = f"{self.name} is for products of polynomials"
+            raise TypeError(message)
         return find_polynomial_roots(problem, digits, self.proposers)
 
 

@@ -1,4 +1,4 @@
-"""The input of the polynomial root finders: a product of polynomials in s with exact coefficients."""
+"""The input of root finders: a product of polynomials in s with exact coefficients, or one with kernels."""
 
 from __future__ import annotations
 
@@ -14,6 +14,9 @@ from symflex.roots.precision import precision
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from fractions import Fraction
+
+    from symflex.kernels import Factored
+    from symflex.transfer import BoundTransferFunction
 
 ZERO_TEST_BITS = (64, 256, 1024, 4096)
 
@@ -180,3 +183,22 @@ class RootProblem:
     def degree(self) -> int:
         """Number of roots, counted with multiplicity."""
         return sum(polynomial.degree * exponent for polynomial, exponent in self.factors)
+
+
+@dataclass(frozen=True)
+class KernelProblem:
+    """A product of powers of polynomials in s, wavenumbers and kernels, entire in s.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        Whose kernels they are.
+    part : Factored
+        Its numerator or denominator.
+    """
+
+    bound: BoundTransferFunction
+    part: Factored
+
+
+Problem = RootProblem | KernelProblem

@@ -166,7 +166,38 @@ class Modes:
         return {"kind": "modes", "count": self.count}
 
 
-Region = Everything | Band | Rectangle | Modes
+@dataclass(frozen=True, slots=True)
+class Mode:
+    """The mode of one number, from 1, in order of natural frequency; see :class:`Modes` for what is one mode.
+
+    Examples
+    --------
+    >>> Mode(1000).to_json_dict()
+    {'kind': 'mode', 'number': 1000}
+    """
+
+    number: int
+
+    def __post_init__(self) -> None:
+        if self.number < 1:
+            message = f"modes are numbered from 1, not {self.number}"
+            raise ValueError(message)
+
+    def classify(self, roots: Sequence[Root]) -> tuple[Position, ...]:
+        """Return the position of every root; the roots are in order of natural frequency."""
+        below = Modes(self.number - 1).classify(roots)
+        upto = Modes(self.number).classify(roots)
+        return tuple(
+            Position.OUTSIDE if root.is_zero or before is Position.INSIDE else position
+            for root, before, position in zip(roots, below, upto, strict=True)
+        )
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return the region as JSON data."""
+        return {"kind": "mode", "number": self.number}
+
+
+Region = Everything | Band | Rectangle | Modes | Mode
 
 
 def _by_frequency(roots: Sequence[Root]) -> list[list[int]]:

@@ -18,7 +18,8 @@ from symflex.kernels import Factored, Ring, degree_in
 from symflex.kernels.origin import Origin
 from symflex.roots.argument_principle import CertifiedWinding
 from symflex.roots.kernel_function import KernelFunction, has_kernels, split_off_kernels
-from symflex.roots.polynomial import find_polynomial_roots
+from symflex.roots.lossless import LosslessSearch, lossless_search
+from symflex.roots.polynomial import find_polynomial_roots, in_order
 from symflex.roots.precision import precision
 from symflex.roots.problem import Constant, PolynomialInS, RootProblem
 from symflex.roots.region import Band, Modes, Rectangle
@@ -39,6 +40,10 @@ if TYPE_CHECKING:
 
 GUESS_AND_PROVE = "guess-and-prove"
 SUBDIVISION = "subdivision"
+LOSSLESS = "lossless"
+ENGINES = (LOSSLESS, GUESS_AND_PROVE, SUBDIVISION)
+UNPROVED = "the number of roots could not be proved"
+TOUCHING = "some roots could not be told apart"
 NEIGHBOURHOOD = 0.05
 """Of a point where roots accumulate: relative to its distance from 0."""
 ACCUMULATION_DIGITS = 20
@@ -89,6 +94,8 @@ class Side:
         Of the search.
     is_hidden : bool
         Only powers of s count as roots at 0, not what kernels vanish like.
+    engines : sequence of str
+        How roots may be found; what one cannot do is left to the next.
 
     Attributes
     ----------
@@ -108,28 +115,30 @@ class Side:
         budget: Budget,
         *,
         is_hidden: bool = False,
+        engines: Sequence[str] = ENGINES,
     ) -> None:
         self._bound = bound
+        self._engines = tuple(engines)
         self._digits = digits
         self._budget = budget
         self.holes = {hole_about(point): point for point in accumulation_points(bound)}
         plain, mixed = split_off_kernels(part, bound.kernels)
         exact = polynomial_roots(bound, plain, digits)
         self._exact = [root for root in exact if not any(_within(root, hole) for hole in self.holes)]
-        self._search: RootSearch | None = None
+        self._search: RootSearch | LosslessSearch | None = None
         self._origin: list[Root] = []
         self._order = 0
         self._domain: Cell | None = None
         self._scans = False
-        self.engine = GUESS_AND_PROVE
+        self._tried = 0
+        self.engine = self._engines[0]
+        self._lossless: LosslessSearch | None = None
         if has_kernels(mixed, bound.kernels):
             # Kernels may have poles where polynomials vanish: only together are they entire.
             self.function = KernelFunction(*without_squares(bound, _without_laplace(plain) * mixed))
             self._winding = CertifiedWinding(self.function, budget)
-            self._search = self._searching(Winding(self.function, budget))
-            # Samples next to the axis are of one branch only if all branches are alike.
-            self._scans = self.function.is_even and self.function.power == 1 and not self.holes
             self._origin, self._order = self._roots_at_zero(part, is_hidden=is_hidden)
+            self._next_search()
         self._located = self._origin if self._search else self._exact
         self.roots = list(self._located)
         self.missing = 0
@@ -200,30 +209,61 @@ class Side:
         if modes > MODES_LIMIT:
             message = f"at most {MODES_LIMIT} modes of a distributed function are searched, not {modes}"
             raise BudgetError(Diagnostic("SF505", message, None, "ask for a band"))
-        if self._scans:
-            self._extend_scan(self._search, modes, radius)
-        if not self._scans:
+        while self._scans and self._search is not None:
+            if self._scanned(self._search, modes, radius):
+                return
+            self._next_search()
+        search = self._search
+        if isinstance(search, RootSearch):
             try:
-                self._search.extend(modes, radius)
+                search.extend(modes, radius)
             finally:
-                self._take(self._search)
+                self._take(search)
 
-    def _extend_scan(self, search: RootSearch, modes: int, radius: float) -> None:
-        """Look for roots on the axes; where there are others, subdivide instead."""
+    def _scanned(self, search: RootSearch | LosslessSearch, modes: int, radius: float) -> bool:
+        """Look for roots on the axes; tell whether these are all."""
 
         def is_complete() -> bool:
             self._take(search)
             return self.counted().is_complete
 
         try:
-            done = search.scan(modes, radius, is_complete)
+            return search.scan(modes, radius, is_complete)
         finally:
             self._take(search)
-        if not done:
+
+    def _next_search(self) -> None:
+        """Turn to a search that also finds what the last one did not."""
+        if self._scans and isinstance(self._search, RootSearch):
+            # Samples next to the axes come before cells of the plane.
             self._scans = False
             self._search = self._searching(Winding(self.function, self._budget))
+            return
+        for name in self._engines[self._tried :]:
+            self._tried += 1
+            if name == LOSSLESS:
+                self._lossless = self._lossless_search()
+                if self._lossless is not None:
+                    self.engine, self._search, self._scans = name, self._lossless, True
+                    return
+            elif name == GUESS_AND_PROVE:
+                self.engine, self._search = name, self._searching(Winding(self.function, self._budget))
+                self._scans = self._mirrors
+                return
+            else:
+                self.engine, self._search, self._scans = name, self._searching(self._winding), False
+                return
+        self._scans = False
 
-    def _take(self, search: RootSearch) -> None:
+    @property
+    def _mirrors(self) -> bool:
+        # Samples next to the axis are of one branch only if all branches are alike.
+        return self.function.is_even and self.function.power == 1 and not self.holes
+
+    def _lossless_search(self) -> LosslessSearch | None:
+        return lossless_search(self.function, self._order, self._digits) if self._mirrors else None
+
+    def _take(self, search: RootSearch | LosslessSearch) -> None:
         self.missing = search.missing
         self._set(search.roots)
         self._domain = Cell(-inf, min(search.reached, HIGHEST), 0.0, pi)
@@ -246,7 +286,7 @@ class Side:
         is_part = low > smallest or right > 0 or left < self._search.left
         if is_part and not self.holes and self._is_sparse(self._search, high):
             low, right, left = smallest, 0.0, pi
-        if self._scans and right <= 0 and left >= self._search.left:
+        while self._scans and right <= 0 and left >= self._search.left:
             # A little beyond, so that roots at the limits are met.
             bottom, top = low - WIDER, high + 1.1 * WIDER
             self._domain = Cell(-inf if low <= smallest else bottom, top, 0.0, pi)
@@ -256,6 +296,11 @@ class Side:
                 self._set(())
             if self.counted().is_complete:
                 return
+            self._next_search()
+        if isinstance(self._search, LosslessSearch):
+            self._next_search()
+        if not isinstance(self._search, RootSearch):
+            return
         self._scans = False
         found = self._search.ring(low, high, right, left)
         self.missing = found.missing
@@ -265,13 +310,41 @@ class Side:
             self._domain = replace(found.cell, low=-inf)
         self._set(found.roots)
 
-    def _is_sparse(self, search: RootSearch, high: float) -> bool:
+    def numbered(self, number: int) -> Root | None:
+        """Return one mode by its number, from 1, in order of natural frequency; ``None`` without so many.
+
+        Of a lossless function, neither the modes below it are found nor does its number matter; of any other,
+        all below are.
+        """
+        if self._search is None:
+            ordered = [root for root in in_order(self._exact) if not root.is_zero]
+        else:
+            if isinstance(self._search, LosslessSearch):
+                try:
+                    root = self._search.numbered(number)
+                except RootOnPathError:
+                    root = None
+                if root is not None:
+                    self._set((root,))
+                    return root
+            self.extend(number)
+            ordered = [root for root in in_order(self.roots) if not root.is_zero]
+        before = 0
+        for group in groups(ordered):
+            before += group[0].multiplicity
+            if before >= number:
+                self.roots = group
+                return group[0]
+        self.roots = []
+        return None
+
+    def _is_sparse(self, search: RootSearch | LosslessSearch, high: float) -> bool:
         """Tell whether a whole disc holds so few roots that it is searched rather than a part of it.
 
-        Close to 0, where functions with kernels are small differences of large terms, paths are hard to follow.
+        Close to 0, where functions with kernels are differences of large terms, paths are hard to follow.
         """
         try:
-            turns = self._winding.count_within(high + WIDER, search.left)
+            turns = self._count_within(high + WIDER, search.left)
         except RootOnPathError:
             return False
         return turns <= FEW * self.function.power
@@ -281,20 +354,42 @@ class Side:
         if self._search is None:
             found = sum(root.multiplicity for root in self.roots)
             return Proof(found, found)
-        proof = self.counted()
-        if proof.is_complete:
-            return proof
-        self.engine = SUBDIVISION
-        reached, modes = self._search.reached, self.modes
-        self._search = self._searching(self._winding)
+        if self.engine != SUBDIVISION:
+            proof = self.counted()
+            if proof.is_complete or SUBDIVISION not in self._engines:
+                return proof
+            self._subdivide(region)
+        return self._subdivided()
+
+    def _subdivide(self, region: Region) -> None:
+        """Search again, every count proved."""
+        reached, modes = self.reached, self.modes
+        self._scans, self.engine, self._search = False, SUBDIVISION, self._searching(self._winding)
         if isinstance(region, Modes):
             self.extend(modes, reached)
         else:
             self.search(region)
-        # Every cell was counted with proof.
+
+    def _subdivided(self) -> Proof:
+        """Return what was found in cells that were all counted with proof."""
         found = sum(root.multiplicity for root in self._located)
+        if not isinstance(self._search, RootSearch):
+            return Proof(found, found, UNPROVED)
+        try:
+            # Within this disc none was sought.
+            innermost = self._winding.count_within(self._search.smallest(), self._search.left)
+        except RootOnPathError:
+            return Proof(found, found, UNPROVED)
+        if innermost != self._order:
+            return Proof(found, found, UNPROVED)
+        if not _are_apart(self._located):
+            return Proof(found, found, TOUCHING)
         reason = None if not self.missing else f"{self.missing} roots were counted but not found"
         return Proof(found + self.missing, found, reason)
+
+    def in_order(self) -> tuple[Root, ...]:
+        """Return the roots by natural frequency."""
+        return in_order(self.roots)
 
     def excluded(self) -> tuple[complex, ...]:
         """Return the points about which nothing was searched."""
@@ -319,7 +414,7 @@ class Side:
             return Proof(0, 0, "nothing was searched")
         if not _are_apart(self._located):
             found = sum(root.multiplicity for root in self._located)
-            return Proof(found, found, "some roots could not be told apart")
+            return Proof(found, found, TOUCHING)
         cells, holes = self._parts(self._domain, search)
         found, unsure = 0, False
         for root in self._located:
@@ -332,25 +427,34 @@ class Side:
         try:
             turns = self._turns(self._domain, cells, holes, search)
         except RootOnPathError:
-            return Proof(found, found, "the number of roots could not be proved")
+            return Proof(found, found, UNPROVED)
         if self._domain.low == -inf:
             turns -= self._order
         counted, rest = divmod(turns, self.function.power)
         if rest:
-            return Proof(found, found, "the number of roots could not be proved")
+            return Proof(found, found, UNPROVED)
         if self._domain.low == -inf:
             counted += sum(root.multiplicity for root in self._origin)
         return Proof(counted, found)
 
-    def _turns(self, domain: Cell, cells: Sequence[Cell], holes: Sequence[Cell], search: RootSearch) -> int:
+    def _count_within(self, z: float, left: float) -> int:
+        if self._lossless is not None:
+            return self._lossless.count(z) + self._order
+        return self._winding.count_within(z, left)
+
+    def _turns(
+        self, domain: Cell, cells: Sequence[Cell], holes: Sequence[Cell], search: RootSearch | LosslessSearch
+    ) -> int:
         if not _is_whole_ring(domain, search):
             return sum(self._winding.count(cell) for cell in cells)
-        turns = self._winding.count_within(domain.high, search.left)
+        turns = self._count_within(domain.high, search.left)
         if domain.low > -inf:
-            turns -= self._winding.count_within(domain.low, search.left)
+            turns -= self._count_within(domain.low, search.left)
         return turns - sum(self._winding.count(hole) for hole in holes)
 
-    def _parts(self, domain: Cell, search: RootSearch) -> tuple[tuple[Cell, ...], tuple[Cell, ...]]:
+    def _parts(
+        self, domain: Cell, search: RootSearch | LosslessSearch
+    ) -> tuple[tuple[Cell, ...], tuple[Cell, ...]]:
         """Return the cells that were searched, and the holes in them, mirror images included."""
         if _is_whole_ring(domain, search):
             cell = Cell(domain.low, domain.high, -pi, pi)
@@ -376,7 +480,7 @@ def _are_apart(roots: Sequence[Root]) -> bool:
     return True
 
 
-def _is_whole_ring(cell: Cell, search: RootSearch) -> bool:
+def _is_whole_ring(cell: Cell, search: RootSearch | LosslessSearch) -> bool:
     return (
         cell.right <= 0
         and cell.left >= search.left
@@ -418,7 +522,7 @@ def _position(cell: Cell, root: Root) -> bool | None:
         return True if decided and bool(turned < half) and bool(turned > -half) else None
 
 
-def _limits(search: RootSearch, region: Region) -> tuple[float, float, float, float] | None:
+def _limits(search: RootSearch | LosslessSearch, region: Region) -> tuple[float, float, float, float] | None:
     """Return ln(abs(s)) and arg(s) between which a region lies, folded into the upper half plane."""
     match region:
         case Band(low, high):
@@ -433,7 +537,7 @@ def _limits(search: RootSearch, region: Region) -> tuple[float, float, float, fl
 
 
 def _limits_of_rectangle(
-    search: RootSearch, re_low: float, re_high: float, im_low: float, im_high: float
+    search: RootSearch | LosslessSearch, re_low: float, re_high: float, im_low: float, im_high: float
 ) -> tuple[float, float, float, float] | None:
     across_real, across_imaginary = im_low <= 0 <= im_high, re_low <= 0 <= re_high
     bottom = 0.0 if across_real else min(abs(im_low), abs(im_high))
