@@ -156,7 +156,7 @@ class KernelFunction:
         self._spend(bits)
         with precision(bits):
             found = []
-            if self._exponentials is not None:
+            if self.exponentials is not None:
                 sums = self._sums(bits)
                 wide = sums.at(expansion(ball))
                 exact = sums.at(centre, wide)
@@ -176,7 +176,7 @@ class KernelFunction:
 
     def fastest(self, z: complex) -> float:
         """Return the largest exponent at ``s = exp(z)``, in absolute value; 0 where none is known."""
-        if self._exponentials is None:
+        if self.exponentials is None:
             return self.reach(abs(cexp(z)))
         with precision(FIRST_BITS):
             sums = self._sums(FIRST_BITS)
@@ -207,7 +207,7 @@ class KernelFunction:
             A measure of how far F may turn anywhere on the ball, infinite where nothing is proved, and the
             turn. ``None`` when the function is no sum of exponentials.
         """
-        if self._exponentials is None:
+        if self.exponentials is None:
             return None
         self._spend(bits)
         sums = self._sums(bits)
@@ -227,20 +227,20 @@ class KernelFunction:
         return widest, total * self.power
 
     def _exponential_values(self, bits: int) -> ExponentialValues:
-        return ExponentialValues(self._values(bits), self._arguments, self._exponentials or ())
+        return ExponentialValues(self._values(bits), self.arguments, self.exponentials or ())
 
     @cached_property
-    def _arguments(self) -> tuple[Argument, ...]:
+    def arguments(self) -> tuple[Argument, ...]:
         return arguments_of(self.bound.kernels) or ()
 
     @cached_property
-    def _exponentials(self) -> tuple[tuple[ExponentialSum, int], ...] | None:
+    def exponentials(self) -> tuple[tuple[ExponentialSum, int], ...] | None:
         """The factors as sums of exponentials, where all wavenumbers have formulas and the sums are short."""
         if arguments_of(self.bound.kernels) is None:
             return None
         found = []
         for factor, exponent in self.part.factors:
-            terms = exponential_sum(self.part.ring, self.bound.kernels, self._arguments, factor)
+            terms = exponential_sum(self.part.ring, self.bound.kernels, self.arguments, factor)
             if terms is None:
                 return None
             found.append((terms, exponent))
@@ -313,7 +313,7 @@ class KernelFunction:
         """Return value, derivative and exponent of every factor, at the current precision."""
         self._spend(bits)
         found = []
-        if self._exponentials is not None:
+        if self.exponentials is not None:
             sums = self._sums(bits)
             place = sums.at(expansion(s))
             for i, (_, exponent) in enumerate(sums.sums):

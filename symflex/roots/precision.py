@@ -3,19 +3,13 @@
 from __future__ import annotations
 
 import math
-from contextlib import contextmanager
-from typing import TYPE_CHECKING
 
 import flint
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 BITS_PER_DIGIT = math.log2(10)
 
 
-@contextmanager
-def precision(bits: int) -> Iterator[None]:
+class precision:  # noqa: N801 (reads as a statement)
     """Compute with ``bits`` bits inside the block; restore the former precision on every exit.
 
     Parameters
@@ -33,12 +27,18 @@ def precision(bits: int) -> Iterator[None]:
     >>> flint.ctx.prec == before
     True
     """
-    former = flint.ctx.prec
-    flint.ctx.prec = bits
-    try:
-        yield
-    finally:
-        flint.ctx.prec = former
+
+    __slots__ = ("_bits", "_former")
+
+    def __init__(self, bits: int) -> None:
+        self._bits = bits
+
+    def __enter__(self) -> None:
+        self._former = flint.ctx.prec
+        flint.ctx.prec = self._bits
+
+    def __exit__(self, *raised: object) -> None:
+        flint.ctx.prec = self._former
 
 
 def bits_for_digits(digits: int) -> int:

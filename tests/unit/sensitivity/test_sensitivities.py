@@ -13,10 +13,10 @@ from flint import acb, ctx
 
 import symflex
 from symflex import pipeline
-from symflex.roots.multiprecision import to_complex_mpmath as to_complex
 from symflex.errors import UsageError
 from symflex.quantities import unit_of
 from symflex.roots import Modes
+from symflex.roots.multiprecision import to_complex_mpmath as to_complex
 from tests.unit.roots.distributed import DELAY_LOOP, FREE, KELVIN_VOIGT, ON_A_FOUNDATION
 
 MODELS = sorted(Path(__file__).parents[3].glob("derivations/*/*.toml"))

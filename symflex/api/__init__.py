@@ -1,0 +1,27 @@
+"""The classes a user meets: thin faces over the pipeline, with SymPy and mpmath at the surface."""
+
+from symflex.api.bound import BoundTransferFunction
+from symflex.api.form import Form
+from symflex.api.mode import Mode
+from symflex.api.mode_shape import ModeShape
+from symflex.api.model import Model, Table, load, loads
+from symflex.api.residue import Residue
+from symflex.api.root import Root
+from symflex.api.sensitivity import Sensitivity
+from symflex.api.transfer_function import Number, TransferFunction
+
+__all__ = [
+    "BoundTransferFunction",
+    "Form",
+    "Mode",
+    "ModeShape",
+    "Model",
+    "Number",
+    "Residue",
+    "Root",
+    "Sensitivity",
+    "Table",
+    "TransferFunction",
+    "load",
+    "loads",
+]

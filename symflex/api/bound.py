@@ -1,0 +1,242 @@
+"""A transfer function with numbers: its values, and everything found at its poles and zeros."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from symflex import pipeline
+from symflex.api.mode import Mode, plain_mode
+from symflex.api.mode_shape import ModeShape
+from symflex.api.regions import chosen_region
+from symflex.api.residue import Residue
+from symflex.api.root import Root
+from symflex.api.sensitivity import Sensitivity
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    from symflex import rational as rational_room
+    from symflex import roots as roots_room
+    from symflex import transfer as transfer_room
+    from symflex.explanation import ZeroExplanation
+    from symflex.response import FrequencyResponse
+
+
+@dataclass(frozen=True)
+class BoundTransferFunction:
+    """A transfer function with numbers: evaluates, and finds its poles and zeros.
+
+    Each is proved. A distributed system has infinitely many; they are found in a region.
+    """
+
+    bound: transfer_room.BoundTransferFunction
+
+    @property
+    def name(self) -> str:
+        """``OUT/IN``."""
+        return self.bound.name
+
+    @property
+    def is_distributed(self) -> bool:
+        """True when the function is transcendental."""
+        return self.bound.is_distributed
+
+    def __repr__(self) -> str:
+        return f"<BoundTransferFunction {self.name}>"
+
+    def __call__(self, s: ArrayLike) -> complex | NDArray[np.complex128]:
+        """Return the value at s [rad/s], a number or an array, to double precision."""
+        import numpy as np
+
+        points = np.asarray(s, dtype=complex)
+        if points.ndim == 0:
+            return self.bound(complex(points))
+        values = np.array([self.bound(complex(p)) for p in points.ravel()], dtype=complex)
+        return values.reshape(points.shape)
+
+    def frequency_response(self, omega: ArrayLike) -> FrequencyResponse:
+        """Return the response at real angular frequencies [rad/s]."""
+        from symflex.response import respond
+
+        return respond(self.bound, omega)
+
+    def poles(
+        self, modes: int | None = None, *, band: tuple[float, float] | None = None, digits: int = 15
+    ) -> tuple[Root, ...]:
+        """Return the poles by natural frequency, both members of each conjugate pair.
+
+        Parameters
+        ----------
+        modes : int, optional
+            Only the lowest modes, with the roots at the origin. For a distributed system the model's
+            ``[analysis]`` decides when neither modes nor band are given, and else the number is five.
+        band : (float, float), optional
+            Only natural frequencies in this band [Hz].
+        digits : int
+            Correct significant digits.
+        """
+        return tuple(Root(r) for r in self.pole_zero_map(digits, modes=modes, band=band).poles)
+
+    def zeros(
+        self, modes: int | None = None, *, band: tuple[float, float] | None = None, digits: int = 15
+    ) -> tuple[Root, ...]:
+        """Return the zeros; see :meth:`poles`."""
+        return tuple(Root(r) for r in self.pole_zero_map(digits, modes=modes, band=band).zeros)
+
+    def pole_zero_map(
+        self,
+        digits: int = 15,
+        *,
+        modes: int | None = None,
+        band: tuple[float, float] | None = None,
+        region: tuple[float, float, float, float] | None = None,
+    ) -> roots_room.PoleZeroMap:
+        """Return poles, zeros and hidden modes with their certificate.
+
+        Parameters
+        ----------
+        digits : int
+            Correct significant digits.
+        modes : int, optional
+            Only the lowest modes, with the roots at the origin.
+        band : (float, float), optional
+            Only natural frequencies in this band [Hz].
+        region : (float, float, float, float), optional
+            Only the rectangle ``(re_low, re_high, im_low, im_high)`` [rad/s].
+        """
+        return pipeline.roots(self.bound, chosen_region(modes, band, region), digits)
+
+    def residues(
+        self, modes: int | None = None, *, band: tuple[float, float] | None = None, digits: int = 15
+    ) -> tuple[Residue, ...]:
+        """Return the residues at the poles, in their order; see :meth:`poles`.
+
+        Parameters
+        ----------
+        modes : int, optional
+            Only at the poles of the lowest modes and at the origin.
+        band : (float, float), optional
+            Only at poles with natural frequencies in this band [Hz].
+        digits : int
+            Correct significant digits.
+
+        Raises
+        ------
+        UncertifiedError
+            SF405 when poles cannot be told apart, or the behaviour at one cannot be told.
+        """
+        return tuple(Residue(r) for r in pipeline.residues(self.bound, chosen_region(modes, band), digits))
+
+    def rational(
+        self,
+        modes: int | None = None,
+        form: str = "product",
+        *,
+        band: tuple[float, float] | None = None,
+    ) -> rational_room.RationalApproximation:
+        """Return a rational approximation, with its error along the imaginary axis.
+
+        Parameters
+        ----------
+        modes : int, optional
+            How many modes are kept, besides roots at the origin. By default those up to the end of ``band``,
+            else as many as the model's ``[analysis]`` says, else five.
+        form : str
+            ``product``: the poles and zeros, right to the leading order at s = 0; ``modal``: the principal
+            parts at the poles, and a constant that makes the finite part at s = 0 exact.
+        band : (float, float), optional
+            Where the error is stated [Hz].
+
+        Raises
+        ------
+        UsageError
+            SF902 for an unknown form, SF227 for a band that is empty or not positive.
+        UncertifiedError
+            SF405 when residues, or the behaviour near s = 0, cannot be told.
+        """
+        return pipeline.rational(self.bound, modes, form, band)
+
+    def sensitivities(
+        self,
+        modes: int | None = None,
+        *,
+        parameters: Sequence[str] = (),
+        band: tuple[float, float] | None = None,
+        digits: int = 15,
+    ) -> tuple[Sensitivity, ...]:
+        """Return how poles, and then zeros, move with parameters.
+
+        Parameters
+        ----------
+        modes, band : optional
+            As for :meth:`poles`.
+        parameters : sequence of str
+            All on which the function depends when none is given.
+        digits : int
+            Correct significant digits of every derivative.
+
+        Raises
+        ------
+        UsageError
+            SF902 for an unknown parameter.
+        """
+        found = self.pole_zero_map(digits, modes=modes, band=band)
+        model = self.bound.source.model
+        return tuple(
+            Sensitivity(m) for m in pipeline.sensitivities(model, self.bound, found, parameters, digits)
+        )
+
+    def explain_zeros(
+        self, modes: int | None = None, *, band: tuple[float, float] | None = None, digits: int = 15
+    ) -> ZeroExplanation:
+        """Return what the zeros are the poles of; print it to read it.
+
+        Parameters
+        ----------
+        modes, band, digits
+            As for :meth:`zeros`: which zeros are spoken of one by one.
+        """
+        found = self.pole_zero_map(digits, modes=modes, band=band)
+        return pipeline.explain_zeros(self.bound.source.model, self.bound, found)
+
+    def mode_shape(self, mode: Mode, digits: int = 15) -> ModeShape:
+        """Return how everything moves in one mode; the largest displacement is 1.
+
+        The shape is taken from the model's equations, not from the transfer function: hidden modes have one.
+
+        Parameters
+        ----------
+        mode : int, Root or HiddenRoot
+            1 is the lowest pole other than 0, 2 the next: a conjugate pair or a real pole is one mode, and
+            one of multiplicity m counts as m. 0 is the rigid-body motion at s = 0. Or a root: a pole, or the
+            root of a hidden mode.
+        digits : int
+            Correct digits, relative to the largest displacement.
+
+        Raises
+        ------
+        UsageError
+            SF902 when there is no such mode; SF904 when a pole has several shapes, see :meth:`mode_shapes`.
+        UncertifiedError
+            SF406 when the equations cannot be solved at the pole.
+        """
+        from symflex.modes import mode_shape
+
+        return ModeShape(mode_shape(self.bound, plain_mode(mode), digits))
+
+    def mode_shapes(self, mode: Mode, digits: int = 15) -> tuple[ModeShape, ...]:
+        """Return all independent shapes of a mode's pole: more than one where equal parts move alike.
+
+        Several are a basis: in each, one of as many places is at 1 and the others are at rest, before the
+        largest displacement is made 1. See :meth:`mode_shape`.
+        """
+        from symflex.modes import mode_shapes
+
+        return tuple(ModeShape(shape) for shape in mode_shapes(self.bound, plain_mode(mode), digits))
+
+    def dcgain(self) -> float:
+        """Return the limit for s -> 0 from the right, possibly infinite."""
+        return self.bound.limit_at_zero()

@@ -1,0 +1,174 @@
+"""The motion in one mode as mpmath numbers and numpy arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import mpmath
+
+from symflex.api.radius import radius_of
+from symflex.api.root import Root
+from symflex.errors import Diagnostic, UsageError
+from symflex.roots import precision
+from symflex.roots.multiprecision import to_complex_mpmath
+
+if TYPE_CHECKING:
+    import numpy as np
+    from flint import acb
+    from numpy.typing import ArrayLike, NDArray
+
+    from symflex import modes as modes_room
+
+END_TOLERANCE = 1e-12
+"""Relative distance by which rounding may put a place beyond the end of a beam."""
+
+
+@dataclass(frozen=True)
+class ModeShape:
+    """The motion of everything at one pole, up to a common factor; the largest displacement found is 1.
+
+    Displacements are those of nodes in translation, along beams, rods and strings, and of each field's first
+    unknown [m]; where none of them moves, the largest angle is 1, else the largest voltage. At an undamped
+    pole a shape is real, as far as all that moves depends on s^2 alone.
+
+    Parameters
+    ----------
+    enclosed : symflex.modes.ModeShape
+        With a ball around every amplitude.
+
+    Examples
+    --------
+    >>> from symflex import Model
+    >>> model = Model(
+    ...     elements={
+    ...         "bar": {"type": "rod", "between": ["ground", "x"], "E": "1 Pa", "A": "1 m^2",
+    ...                 "rho": "1 kg/m^3", "l": "1 m"},
+    ...     },
+    ...     inputs={"F": {"force": "x"}},
+    ...     outputs={"X": "x"},
+    ... )
+    >>> shape = model.transfer_function("X", "F").bind().mode_shape(1)  # sin(pi x/2)
+    >>> shape.names, shape.along("bar", [0, 0.5, 1]).round(6)
+    (('x', 'bar.f_a', 'bar.f'), array([0.      , 0.707107, 1.      ]))
+    """
+
+    enclosed: modes_room.ModeShape
+
+    @property
+    def pole(self) -> Root:
+        """Where."""
+        return Root(self.enclosed.pole)
+
+    @property
+    def frequency_hz(self) -> float:
+        """Natural frequency [Hz]."""
+        return self.enclosed.pole.frequency_hz()
+
+    @property
+    def damping_ratio(self) -> float | None:
+        """``-re/abs(s)`` of the pole, None at the origin."""
+        return self.enclosed.pole.damping_ratio()
+
+    @property
+    def certified(self) -> bool:
+        """True when the pole is proved and has one shape: every amplitude lies within its radius."""
+        return self.enclosed.certified
+
+    @property
+    def reference(self) -> str:
+        """What is 1: a node, or ``beam(0.3)``, a place along an element or field."""
+        return self.enclosed.reference
+
+    @property
+    def is_real(self) -> bool:
+        """True when the pole is undamped and everything moves in phase."""
+        return self.enclosed.is_real
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The nodes, element quantities and signals that have an amplitude."""
+        return tuple(motion.name for motion in self.enclosed.motions)
+
+    def __getitem__(self, name: str) -> mpmath.mpc:
+        """Return the amplitude of a node, element quantity or signal; a planar node's is its deflection.
+
+        Raises
+        ------
+        UsageError
+            SF902 when there is none of that name.
+        """
+        return to_complex_mpmath(self.enclosed.motion(name).value)
+
+    def radius(self, name: str) -> mpmath.mpf:
+        """Return a bound on the distance from ``shape[name]`` to the amplitude; an estimate if unproved."""
+        return radius_of(self.enclosed.motion(name).value)
+
+    @property
+    def distributed(self) -> tuple[str, ...]:
+        """The beams, rods, shafts, strings and fields."""
+        return tuple(part.name for part in self.enclosed.distributed)
+
+    def quantities(self, part: str) -> tuple[str, ...]:
+        """Return what is known along a part: ``y theta f tau`` of a beam, ``w w' w'' w'''`` of a field."""
+        return self.enclosed.along(part).states
+
+    def domain(self, part: str) -> tuple[float, float]:
+        """Return where a part begins and ends [m]; an element begins at 0."""
+        found = self.enclosed.along(part)
+        with precision(found.bits):
+            return float(found.start.mid()), float((found.start + found.length).mid())
+
+    def along(
+        self, part: str, x: ArrayLike, quantity: str | None = None
+    ) -> NDArray[np.float64] | NDArray[np.complex128]:
+        """Return a quantity of a distributed part at x [m]; real when the shape is.
+
+        Parameters
+        ----------
+        part : str
+            A distributed element or a field.
+        x : array_like
+            Places within :meth:`domain`.
+        quantity : str, optional
+            One of :meth:`quantities`; the first one, a displacement, by default. ``theta`` is a beam's slope
+            (in the Timoshenko theory the rotation of its section), ``f`` and ``tau`` are the force and moment
+            that the part beyond x exerts on the part before it.
+
+        Raises
+        ------
+        UsageError
+            SF902 no such part or quantity; SF240 a place outside the domain.
+        """
+        import numpy as np
+
+        places = np.asarray(x, dtype=float)
+        balls = self._balls(part, places, quantity)
+        values = np.array([complex(float(b.real.mid()), float(b.imag.mid())) for b in balls], dtype=complex)
+        values = values.reshape(places.shape)
+        return values.real if self.is_real else values
+
+    def radius_along(self, part: str, x: ArrayLike, quantity: str | None = None) -> NDArray[np.float64]:
+        """Return bounds on the error of :meth:`along`, but for the rounding to double precision."""
+        import numpy as np
+
+        places = np.asarray(x, dtype=float)
+        found = [float(radius_of(ball)) for ball in self._balls(part, places, quantity)]
+        return np.array(found, dtype=float).reshape(places.shape)
+
+    def _balls(self, part: str, places: NDArray[np.float64], quantity: str | None) -> list[acb]:
+        found = self.enclosed.along(part)
+        position = found.position(quantity)
+        start, end = self.domain(part)
+        slack = END_TOLERANCE * (end - start)
+        for place in places.ravel():
+            if not start - slack <= place <= end + slack:
+                message = f"x = {place:g} lies outside '{part}', which reaches from {start:g} to {end:g}"
+                raise UsageError(Diagnostic("SF240", message))
+        return [found.at(Fraction(float(place)))[position] for place in places.ravel()]
+
+    def __repr__(self) -> str:
+        damping = self.damping_ratio
+        damped = f", damping ratio {damping:.4g}" if damping else ""
+        return f"<ModeShape at {self.frequency_hz:.6g} Hz{damped}, {self.reference} = 1>"

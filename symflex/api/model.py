@@ -1,0 +1,162 @@
+"""A model as a Python user holds it: read, built of mappings, asked for its transfer functions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from symflex import pipeline
+from symflex.api.transfer_function import TransferFunction
+from symflex.spec import write
+
+if TYPE_CHECKING:
+    from symflex import model as model_room
+
+Table = Mapping[str, object]
+SHOWN_PAIRS = 6
+
+
+@dataclass(frozen=True, init=False)
+class Model:
+    """A resolved model.
+
+    Parameters
+    ----------
+    parameters, definitions, elements, signals, blocks, fields, inputs, outputs : mapping
+    analysis, figures, published : mapping
+        The tables of the specification language, as Python mappings of the same shape.
+    title, source : str
+        What the model is and where it comes from.
+
+    Raises
+    ------
+    SpecError
+        With every problem; positions refer to the specification text the mappings stand for.
+
+    Examples
+    --------
+    >>> model = Model(
+    ...     parameters={"m": "2 kg"},
+    ...     elements={"body": {"type": "mass", "at": "x", "m": "m"}},
+    ...     inputs={"F": {"force": "x"}},
+    ...     outputs={"X": "x"},
+    ... )
+    >>> print(model.transfer_function("X", "F"))
+    X/F = 1/(m*s^2)
+    """
+
+    resolved: model_room.Model
+
+    def __init__(
+        self,
+        *,
+        parameters: Table | None = None,
+        definitions: Table | None = None,
+        elements: Table | None = None,
+        signals: Table | None = None,
+        blocks: Table | None = None,
+        fields: Table | None = None,
+        inputs: Table | None = None,
+        outputs: Table | None = None,
+        analysis: Table | None = None,
+        figures: Table | None = None,
+        published: Table | None = None,
+        title: str = "",
+        source: str = "",
+    ) -> None:
+        tables = {
+            "parameters": parameters,
+            "definitions": definitions,
+            "elements": elements,
+            "signals": signals,
+            "blocks": blocks,
+            "fields": fields,
+            "inputs": inputs,
+            "outputs": outputs,
+            "analysis": analysis,
+            "figures": figures,
+            "published": published,
+        }
+        header = {"symflex": 1, **{k: v for k, v in (("title", title), ("source", source)) if v}}
+        text = write({**header, **{name: table for name, table in tables.items() if table}})
+        object.__setattr__(self, "resolved", pipeline.loads(text, "<python>"))
+
+    @staticmethod
+    def of(resolved: model_room.Model) -> Model:
+        """Return the face of an already resolved model."""
+        model = object.__new__(Model)
+        object.__setattr__(model, "resolved", resolved)
+        return model
+
+    def __repr__(self) -> str:
+        names = ", ".join("/".join(pair) for pair in self.resolved.transfer_functions[:SHOWN_PAIRS])
+        more = ", ..." if len(self.resolved.transfer_functions) > SHOWN_PAIRS else ""
+        return f"<Model {self.title or 'without title'}: {names}{more}>"
+
+    @property
+    def title(self) -> str:
+        """What the model is."""
+        return self.resolved.title
+
+    @property
+    def parameters(self) -> tuple[model_room.Parameter, ...]:
+        """The parameters in declared order, with exact values in SI units."""
+        return self.resolved.parameters
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the inputs."""
+        return tuple(i.name for i in self.resolved.inputs)
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of the outputs."""
+        return tuple(o.name for o in self.resolved.outputs)
+
+    def transfer_function(self, output: str, input: str) -> TransferFunction:
+        """Derive output over input.
+
+        Raises
+        ------
+        UsageError
+            SF902 when there is no such output or input.
+        ModelError
+            SF30x when the equations are singular, with the reason.
+        """
+        (pair,) = pipeline.pick_pairs(self.resolved, [f"{output}/{input}"])
+        return TransferFunction(pipeline.derive_all(self.resolved, [pair])[0])
+
+    def transfer_functions(self) -> tuple[TransferFunction, ...]:
+        """Derive every output over every input, sharing one elimination."""
+        return tuple(TransferFunction(tf) for tf in pipeline.derive_all(self.resolved))
+
+    def export_numpy(self) -> str:
+        """Return a numpy module with a function per transfer function."""
+        return self._export("numpy")
+
+    def export_latex(self) -> str:
+        """Return a standalone LaTeX document of the model."""
+        return self._export("latex")
+
+    def _export(self, target: str) -> str:
+        from symflex.emit.exporters import EXPORTERS  # the numeric exporters import numpy
+
+        return EXPORTERS[target].export(self.resolved, pipeline.derive_all(self.resolved)).text
+
+
+def load(path: str | Path) -> Model:
+    """Read a specification file.
+
+    Raises
+    ------
+    SpecError
+        With every problem of the file as ``file:line:col``.
+    """
+    return Model.of(pipeline.load(path))
+
+
+def loads(text: str, name: str = "<string>") -> Model:
+    """Read a specification given as text; ``name`` is what messages call it."""
+    return Model.of(pipeline.loads(text, name))

@@ -1,0 +1,165 @@
+"""An exact transfer function, its parts as SymPy expressions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from symflex import pipeline
+from symflex.api.bound import BoundTransferFunction
+from symflex.api.form import Form
+from symflex.emit.forms import counts_of, hidden_expressions, print_form
+from symflex.emit.json_format import derive_json
+from symflex.emit.sympy_expression import symbols_of, to_sympy
+from symflex.errors import Diagnostic, UsageError
+from symflex.errors.diagnostic import nearest
+from symflex.expressions import Name
+
+if TYPE_CHECKING:
+    import sympy
+
+    from symflex import transfer as transfer_room
+
+Number = int | float | Fraction | Decimal | str
+
+
+@dataclass(frozen=True)
+class TransferFunction:
+    """An exact transfer function; its parts are SymPy expressions in the shortest form."""
+
+    exact: transfer_room.TransferFunction
+
+    @property
+    def name(self) -> str:
+        """``OUT/IN``."""
+        return self.exact.name
+
+    @property
+    def quantity(self) -> str:
+        """Receptance, mobility, accelerance, impedance, ..."""
+        return self.exact.quantity
+
+    @property
+    def unit(self) -> str:
+        """SI unit, empty when unknown."""
+        return self.exact.unit
+
+    @property
+    def is_distributed(self) -> bool:
+        """True when waves or delays make the function transcendental, with infinitely many poles or zeros."""
+        return self.exact.is_distributed
+
+    @cached_property
+    def _shortest(self) -> Form:
+        return self.form()
+
+    @property
+    def num(self) -> sympy.Expr:
+        """Numerator of the shortest form."""
+        return self._shortest.num
+
+    @property
+    def den(self) -> sympy.Expr:
+        """Denominator of the shortest form."""
+        return self._shortest.den
+
+    @property
+    def expr(self) -> sympy.Expr:
+        """Numerator over denominator; closed names are explained by :attr:`where`."""
+        return self._shortest.expr
+
+    @property
+    def where(self) -> tuple[tuple[sympy.Symbol, sympy.Expr], ...]:
+        """The definitions that occur in :attr:`expr`."""
+        return self._shortest.where
+
+    @property
+    def hidden(self) -> tuple[tuple[sympy.Expr, int], ...]:
+        """The factors in s that cancelled, with multiplicity: uncontrollable or unobservable modes."""
+        symbols = symbols_of(self.exact.model)
+        return tuple((to_sympy(e, symbols), m) for e, m in hidden_expressions(self.exact))
+
+    def form(self, name: str | None = None, digits: int = 6) -> Form:
+        """Return the function in one of the forms of ``symflex derive``.
+
+        ``polynomial``, ``monic``, ``factored``, ``zpk`` and ``definitions`` for rational functions,
+        ``hyperbolic``, ``krylov``, ``vaughan``, ``factored`` and ``polynomial`` for those of beams, rods and
+        delays, ``frequency`` for all.
+
+        Parameters
+        ----------
+        name : str, optional
+            The shortest symbolic form when missing.
+        digits : int
+            Significant digits of ``zpk``.
+        """
+        return Form(self.exact, print_form(self.exact, name, digits))
+
+    def latex(self, form: str | None = None) -> str:
+        """Return the equation in LaTeX."""
+        return self.form(form).latex()
+
+    def to_json_dict(self, form: str | None = None) -> dict[str, object]:
+        """Return the transfer function as ``symflex derive --json`` lists it."""
+        return derive_json(self.exact, print_form(self.exact, form))
+
+    def bind(self, **values: Number) -> BoundTransferFunction:
+        """Return the function with the declared values, or the given ones in their place.
+
+        Numbers are in SI units; strings may carry a unit, ``l="80 cm"``.
+
+        Raises
+        ------
+        ModelError
+            SF229 when a parameter has no value.
+        UsageError
+            SF902 for an unknown parameter.
+        """
+        return BoundTransferFunction(pipeline.bind(self.exact, values))
+
+    def sensitivity_formula(self, parameter: str, of: str = "pole") -> tuple[sympy.Expr, sympy.Expr]:
+        """Return numerator and denominator of ds/dp for a pole s, a formula in s and the parameters.
+
+        With D the denominator it is ``-(dD/dp)/(dD/ds)``, valid at every simple root of D that moves with the
+        parameter; those that do not are left out of D. The derivative goes through all definitions,
+        wavenumbers and kernels, whose names are replaced by what they stand for.
+
+        Parameters
+        ----------
+        parameter : str
+            A parameter of the model.
+        of : str
+            ``"pole"``, or ``"zero"`` for the numerator's roots.
+
+        Raises
+        ------
+        UsageError
+            SF902 for an unknown parameter, or where wavenumbers have no formula.
+        """
+        from symflex.emit.sensitivity_formula import sensitivity_formula  # needs all of SymPy
+
+        symbols = symbols_of(self.exact.model)
+        if parameter not in symbols or of not in ("pole", "zero"):
+            what = f"parameter '{parameter[:64]}'" if parameter not in symbols else f"root called '{of[:64]}'"
+            raise UsageError(Diagnostic("SF902", f"there is no {what}", None, nearest(parameter, symbols)))
+        form = self.form("hyperbolic") if self.is_distributed else self._shortest
+        if form.printed.laws:
+            message = f"the waves of {self.name} have no formula, and so neither have its sensitivities"
+            raise UsageError(Diagnostic("SF902", message, None, "use sensitivities() of the bound function"))
+        part = form.den if of == "pole" else form.num
+        return sensitivity_formula(part, form.where, to_sympy(Name("s"), symbols), symbols[parameter])
+
+    def __repr__(self) -> str:
+        if self.is_distributed:
+            return f"<TransferFunction {self.name}: {self.quantity}, distributed>"
+        zeros, poles = ("infinitely many" if n is None else n for n in counts_of(self.exact))
+        return f"<TransferFunction {self.name}: {self.quantity}, {zeros} zeros, {poles} poles>"
+
+    def _repr_latex_(self) -> str:
+        return self._shortest._repr_latex_()
+
+    def __str__(self) -> str:
+        return str(self._shortest)
