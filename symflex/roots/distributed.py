@@ -5,12 +5,13 @@ Input: a bound transfer function with kernels. Output: a :class:`PoleZeroMap` wi
 
 from __future__ import annotations
 
+from cmath import exp as cexp
 from dataclasses import replace
 from fractions import Fraction
 from math import exp, inf, isfinite, pi
 from typing import TYPE_CHECKING
 
-from symflex.errors import BudgetError
+from symflex.errors import BudgetError, Diagnostic
 from symflex.kernels import Factored
 from symflex.roots.pole_zero_map import Certificate, Exclusion, HiddenRoot, PoleZeroMap
 from symflex.roots.polynomial import POLYNOMIAL, in_order
@@ -19,7 +20,7 @@ from symflex.roots.root import overlap
 from symflex.roots.side import (
     ACCUMULATION_DIGITS,
     LOSSLESS,
-    NEIGHBOURHOOD,
+    ROUNDING,
     Side,
     groups,
     polynomial_roots,
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from symflex.roots.budget import Budget
     from symflex.roots.region import Region
     from symflex.roots.root import Root
+    from symflex.roots.winding import Cell
     from symflex.transfer import BoundTransferFunction
 
 DEFAULT_MODES = 5
@@ -92,7 +94,7 @@ def locate_distributed(
     certificate = Certificate(
         ", ".join(engines), reason is None, found + missing, found, reason, is_exceeded=is_exceeded
     )
-    excluded = {point for side in searched.sides for point in side.excluded()}
+    excluded = {hole for side in searched.sides for hole in side.excluded()}
     return PoleZeroMap(
         bound.name,
         where,
@@ -101,7 +103,7 @@ def locate_distributed(
         tuple(searched.hidden),
         certificate,
         digits,
-        tuple(_exclusion(point) for point in sorted(excluded, key=abs)),
+        tuple(_exclusion(hole) for hole in sorted(excluded, key=lambda hole: hole.low)),
         is_default,
         is_infinite=True,
     )
@@ -135,8 +137,13 @@ class _Searched:
         self._within = within
         self.sides.append(cancelled)
         _find((cancelled,), within)
-        self.hidden = [HiddenRoot(root) for root in _chosen(cancelled.roots, within)]
         degenerate = _degenerate_points(bound)
+        self.hidden = [
+            HiddenRoot(root)
+            for root in _chosen(cancelled.roots, within)
+            # Where two wavenumbers meet or vanish, what cancels belongs to how the function is written.
+            if root.is_zero or not any(overlap(root, other) for other in degenerate)
+        ]
         self.hidden += [
             HiddenRoot(root, "coincident")
             for root in _chosen(shared, within)
@@ -175,8 +182,9 @@ class _Searched:
         reached = self.sides[0].reached if self.sides else -inf
         if not isinstance(self.region, Modes) or not isfinite(reached):
             return ""
-        count = sum(root.multiplicity for root in self.sides[0].roots if not root.im < 0)
-        return f"; {count} modes were found up to {exp(reached) / (2 * pi):g} Hz"
+        count = self.sides[0].modes
+        modes = "1 mode was" if count == 1 else f"{count} modes were"
+        return f"; {modes} found up to {exp(reached) / (2 * pi):g} Hz"
 
 
 def _find(sides: Sequence[Side], region: Region) -> list[Root]:
@@ -200,6 +208,8 @@ def _find(sides: Sequence[Side], region: Region) -> list[Root]:
         if lacking <= 0:
             break
         wanted += lacking
+    else:
+        raise BudgetError(Diagnostic("SF505", "too many poles and zeros coincide to tell the modes"))
     return shared
 
 
@@ -209,19 +219,28 @@ def _match(poles: Side, zeros: Side) -> list[Root]:
     kept: list[Root] = []
     shared: list[Root] = []
     for pole in poles.roots:
-        i = next((i for i, zero in enumerate(left) if overlap(pole, zero)), None)
+        i = next((i for i, zero in enumerate(left) if _coincide(poles, pole, zeros, zero)), None)
         if i is None:
             kept.append(pole)
             continue
         zero = left.pop(i)
         multiplicity = min(pole.multiplicity, zero.multiplicity)
-        shared.append(replace(pole, multiplicity=multiplicity))
+        certified = pole.certified and zero.certified
+        shared.append(replace(pole, multiplicity=multiplicity, certified=certified))
         if pole.multiplicity > multiplicity:
             kept.append(replace(pole, multiplicity=pole.multiplicity - multiplicity))
         if zero.multiplicity > multiplicity:
             left.insert(i, replace(zero, multiplicity=zero.multiplicity - multiplicity))
     poles.roots, zeros.roots = kept, left
     return shared
+
+
+def _coincide(poles: Side, pole: Root, zeros: Side, zero: Root) -> bool:
+    """Tell whether a pole and a zero agree in more than twice the digits asked for."""
+    if not overlap(pole, zero):
+        return False
+    closer = [side.refined(root) for side, root in ((poles, pole), (zeros, zero))]
+    return overlap(*closer)
 
 
 def _chosen(roots: Sequence[Root], region: Region) -> list[Root]:
@@ -257,6 +276,7 @@ def _degenerate_points(bound: BoundTransferFunction) -> list[Root]:
     for law in bound.kernels.dispersions:
         values = list(law.characteristic[:1])
         if law.kind == "pair":
+            values.append(law.characteristic[2])
             values.append(law.characteristic[2] ** 2 - law.characteristic[0] * 4)
         for value in values:
             if not value.is_zero:
@@ -264,6 +284,11 @@ def _degenerate_points(bound: BoundTransferFunction) -> list[Root]:
     return roots
 
 
-def _exclusion(point: complex) -> Exclusion:
-    reason = "infinitely many roots accumulate there"
-    return Exclusion(point.real, point.imag, NEIGHBOURHOOD * abs(point), reason)
+def _exclusion(hole: Cell) -> Exclusion:
+    """Return a disc that holds a neighbourhood, which is a rectangle of ln(s)."""
+    centre = cexp(hole.centre)
+    corners = [complex(x, y) for x in (hole.low, hole.high) for y in (hole.right, hole.left)]
+    radius = max(abs(cexp(corner) - centre) for corner in corners)
+    im = 0.0 if hole.right <= pi <= hole.left or hole.right <= 0 <= hole.left else centre.imag
+    re = 0.0 if abs(centre.real) < ROUNDING * abs(centre) else centre.real
+    return Exclusion(re, im, radius, "infinitely many roots accumulate there")

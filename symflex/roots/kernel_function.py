@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Final
 
 from flint import acb, acb_series, arb
 
-from symflex.errors import Diagnostic, ModelError
+from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.kernels import Factored, degree_in
 from symflex.roots.exponential_sum import ExponentialValues, arguments_of, exponential_sum
 from symflex.roots.precision import precision
@@ -256,7 +256,7 @@ class KernelFunction:
                 evaluator = self._values(bits)
                 values = evaluator.at(acb(*ANYWHERE))
                 value = _number(evaluator.value(self.part, values))
-            if value.is_finite() and not value.contains(0):
+            if value.is_finite() and value.rel_accuracy_bits() >= FIRST_BITS:
                 break
             bits *= 4
             if bits > LAST_BITS:
@@ -267,7 +267,10 @@ class KernelFunction:
             for law in self.bound.kernels.dispersions:
                 for other in other_branches(law, self.bound.kernels, values):
                     turned = _number(evaluator.value(self.part, {**values, **other})) / value
-                    found = next((n for n in BRANCHES if (turned**n - 1).contains(0)), BRANCHES[-1])
+                    found = next((n for n in BRANCHES if (turned**n - 1).contains(0)), None)
+                    if found is None or not turned.rel_accuracy_bits() >= SETTLED_BITS:
+                        message = f"a part of {self.bound.name} has no value of its own for every s"
+                        raise UncertifiedError(Diagnostic("SF404", message))
                     order = lcm(order, found)
         return order
 

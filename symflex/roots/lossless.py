@@ -141,12 +141,18 @@ class LosslessSearch:
         """Return the roots on both axes between ln of two radii."""
         return self.between(exp(low), exp(high))
 
+    def passing(self, radius: float) -> float:
+        """Return ln of the radius itself: nothing is left out."""
+        return radius
+
     def smallest(self) -> float:
         """Return ln of a radius within which no roots are sought."""
         return log(self._first_frequency()) - DEPTH
 
     def lowest(self, modes: int) -> tuple[list[Root], float]:
         """Return the lowest modes, one of each pair, and ln of a radius between them and the next."""
+        if not self._sources:
+            return [], self.smallest()
         low = 0.0
         guesses: list[Guess] = []
         high = self._first_frequency()

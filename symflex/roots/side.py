@@ -18,6 +18,7 @@ from symflex.kernels import Factored, Ring, degree_in
 from symflex.kernels.origin import Origin
 from symflex.roots.argument_principle import CertifiedWinding
 from symflex.roots.kernel_function import KernelFunction, has_kernels, split_off_kernels
+from symflex.roots.krawczyk import prove_simple
 from symflex.roots.lossless import LosslessSearch, lossless_search
 from symflex.roots.polynomial import find_polynomial_roots, in_order
 from symflex.roots.precision import precision
@@ -51,6 +52,7 @@ FEW = 40
 WIDER = 1e-3
 """How far beyond its limits, in ln, a ring is searched."""
 ROUNDING = 1e-15
+MORE_DIGITS = 30
 ORIGIN_DEPTHS = (1.0, 4.0, 16.0, 64.0)
 """How far below the lowest root, in ln, circles about 0 are counted where the order is not known exactly."""
 
@@ -121,30 +123,31 @@ class Side:
         self._engines = tuple(engines)
         self._digits = digits
         self._budget = budget
-        self.holes = {hole_about(point): point for point in accumulation_points(bound)}
+        self.holes = _holes(accumulation_points(bound))
         plain, mixed = split_off_kernels(part, bound.kernels)
         exact = polynomial_roots(bound, plain, digits)
-        self._exact = [root for root in exact if not any(_within(root, hole) for hole in self.holes)]
+        self._exact = exact
         self._search: RootSearch | LosslessSearch | None = None
         self._origin: list[Root] = []
         self._order = 0
         self._domain: Cell | None = None
+        self._innermost: float | None = None
         self._scans = False
         self._tried = 0
         self.engine = self._engines[0]
         self._lossless: LosslessSearch | None = None
-        if has_kernels(mixed, bound.kernels):
+        if is_kernel := has_kernels(mixed, bound.kernels):
             # Kernels may have poles where polynomials vanish: only together are they entire.
             self.function = KernelFunction(*without_squares(bound, _without_laplace(plain) * mixed))
             self._winding = CertifiedWinding(self.function, budget)
             self._origin, self._order = self._roots_at_zero(part, is_hidden=is_hidden)
             self._next_search()
-        self._located = self._origin if self._search else self._exact
+        self._located = self._origin if is_kernel else self._exact
         self.roots = list(self._located)
         self.missing = 0
 
     def _searching(self, winding: Winding) -> RootSearch:
-        return RootSearch(winding, self._winding, tuple(self.holes), self._digits)
+        return RootSearch(winding, self._winding, self.holes, self._digits)
 
     def _roots_at_zero(self, part: Factored, *, is_hidden: bool) -> tuple[list[Root], int]:
         """Return the root at s = 0, and how often the function without powers of s winds about 0 there."""
@@ -170,7 +173,7 @@ class Side:
     def _turns_about_zero(self, power: int) -> tuple[float, int]:
         """Return ln of a small radius, and how many roots are proved to lie within it."""
         left = pi / 2 if self.function.is_even else pi
-        lowest = self._winding.smallest(left, tuple(self.holes))
+        lowest = self._winding.smallest(left, self.holes)
         found: tuple[float, int] | None = None
         for depth in ORIGIN_DEPTHS:
             try:
@@ -215,6 +218,7 @@ class Side:
             self._next_search()
         search = self._search
         if isinstance(search, RootSearch):
+            self._innermost = search.smallest()
             try:
                 search.extend(modes, radius)
             finally:
@@ -275,17 +279,14 @@ class Side:
         if isinstance(region, Modes):
             self.extend(region.count)
             return
-        limits = _limits(self._search, region)
-        if limits is None:
-            self._domain = Cell(0.0, 0.0, 0.0, 0.0)
-            self._set(())
-            return
-        low, high, right, left = limits
+        low, high, right, left = _limits(self._search, region)
         smallest = self._search.smallest()
-        low = max(low, smallest)
+        # Within the smallest disc none is sought; that there are none is counted.
+        self._innermost = smallest if low < smallest else None
+        low, high = max(low, smallest), max(self._search.passing(high), smallest + WIDER)
         is_part = low > smallest or right > 0 or left < self._search.left
         if is_part and not self.holes and self._is_sparse(self._search, high):
-            low, right, left = smallest, 0.0, pi
+            low, right, left, self._innermost = smallest, 0.0, pi, smallest
         while self._scans and right <= 0 and left >= self._search.left:
             # A little beyond, so that roots at the limits are met.
             bottom, top = low - WIDER, high + 1.1 * WIDER
@@ -326,6 +327,7 @@ class Side:
                     root = None
                 if root is not None:
                     self._set((root,))
+                    self.roots = [image for image in self.roots if not image.is_zero]
                     return root
             self.extend(number)
             ordered = [root for root in in_order(self.roots) if not root.is_zero]
@@ -370,17 +372,25 @@ class Side:
         else:
             self.search(region)
 
+    def _is_empty_inside(self) -> bool:
+        """Tell whether it is proved that no roots but those at 0 lie in the disc that was not searched."""
+        if self._innermost is None:
+            return True
+        try:
+            return self._winding.count_within(self._innermost, self._left) == self._order
+        except RootOnPathError:
+            return False
+
+    @property
+    def _left(self) -> float:
+        return pi / 2 if self.function.is_even else pi
+
     def _subdivided(self) -> Proof:
         """Return what was found in cells that were all counted with proof."""
         found = sum(root.multiplicity for root in self._located)
         if not isinstance(self._search, RootSearch):
             return Proof(found, found, UNPROVED)
-        try:
-            # Within this disc none was sought.
-            innermost = self._winding.count_within(self._search.smallest(), self._search.left)
-        except RootOnPathError:
-            return Proof(found, found, UNPROVED)
-        if innermost != self._order:
+        if not self._is_empty_inside():
             return Proof(found, found, UNPROVED)
         if not _are_apart(self._located):
             return Proof(found, found, TOUCHING)
@@ -391,14 +401,27 @@ class Side:
         """Return the roots by natural frequency."""
         return in_order(self.roots)
 
-    def excluded(self) -> tuple[complex, ...]:
-        """Return the points about which nothing was searched."""
+    def refined(self, root: Root) -> Root:
+        """Return a root to more than twice the digits, itself where that is not proved."""
+        if self._search is None or root.is_zero or not root.certified:
+            return root
+        with precision(root.working_bits()):
+            s = acb(root.re.mid(), root.im.mid())
+        closer = prove_simple(self.function, s, 2 * self._digits + MORE_DIGITS)
+        return closer if closer is not None and closer.certified and overlap(closer, root) else root
+
+    def excluded(self) -> tuple[Cell, ...]:
+        """Return the neighbourhoods in which nothing was searched."""
         met = set() if self._search is None else self._search.excluded
-        return tuple(point for hole, point in self.holes.items() if hole in met)
+        return tuple(hole for hole in self.holes if hole in met)
 
     def _set(self, located: Sequence[Root]) -> None:
         even = self._search is not None and self._search.is_even
-        found = [self._proved(root) for root in mirrored(located, even=even)]
+        found: list[Root] = []
+        for root in (self._proved(root) for root in mirrored(located, even=even)):
+            # What could not be told apart may have been met more than once.
+            if root.certified or not any(overlap(root, other) for other in found if not other.certified):
+                found.append(root)
         self._located = [*self._origin, *found]
         self.roots = list(self._located)
 
@@ -430,6 +453,8 @@ class Side:
             return Proof(found, found, UNPROVED)
         if self._domain.low == -inf:
             turns -= self._order
+        elif not self._is_empty_inside():
+            return Proof(found, found, UNPROVED)
         counted, rest = divmod(turns, self.function.power)
         if rest:
             return Proof(found, found, UNPROVED)
@@ -522,13 +547,11 @@ def _position(cell: Cell, root: Root) -> bool | None:
         return True if decided and bool(turned < half) and bool(turned > -half) else None
 
 
-def _limits(search: RootSearch | LosslessSearch, region: Region) -> tuple[float, float, float, float] | None:
+def _limits(search: RootSearch | LosslessSearch, region: Region) -> tuple[float, float, float, float]:
     """Return ln(abs(s)) and arg(s) between which a region lies, folded into the upper half plane."""
     match region:
         case Band(low, high):
-            bottom = log(2 * pi * low) if low else search.smallest()
-            top = log(2 * pi * high) if high else -inf
-            return (bottom, top, 0.0, pi) if bottom < top else None
+            return _log(2 * pi * low) - WIDER, _log(2 * pi * high) + WIDER, 0.0, pi
         case Rectangle(re_low, re_high, im_low, im_high):
             sides = (float(re_low), float(re_high), float(im_low), float(im_high))
             return _limits_of_rectangle(search, *sides)
@@ -538,20 +561,21 @@ def _limits(search: RootSearch | LosslessSearch, region: Region) -> tuple[float,
 
 def _limits_of_rectangle(
     search: RootSearch | LosslessSearch, re_low: float, re_high: float, im_low: float, im_high: float
-) -> tuple[float, float, float, float] | None:
+) -> tuple[float, float, float, float]:
     across_real, across_imaginary = im_low <= 0 <= im_high, re_low <= 0 <= re_high
     bottom = 0.0 if across_real else min(abs(im_low), abs(im_high))
     top = max(abs(im_low), abs(im_high))
     corners = [complex(re, im) for re in (re_low, re_high) for im in (bottom, top)]
-    high = max(abs(corner) for corner in corners)
-    if high == 0:
-        return None
     nearest = complex(0.0 if across_imaginary else min(abs(re_low), abs(re_high)), bottom)
-    low = log(abs(nearest)) if nearest else search.smallest()
+    low, high = _log(abs(nearest)) - WIDER, _log(max(abs(corner) for corner in corners)) + WIDER
     right, left = min(map(phase, corners)), max(map(phase, corners))
     if search.is_even or not nearest:
         right, left = 0.0, pi
-    return (low, log(high), right, left) if low < log(high) else None
+    return low, high, right, left
+
+
+def _log(size: float) -> float:
+    return log(size) if size > 0 else -inf
 
 
 def groups(roots: Sequence[Root]) -> list[list[Root]]:
@@ -602,13 +626,29 @@ def accumulation_points(bound: BoundTransferFunction) -> tuple[complex, ...]:
     return tuple(points)
 
 
-def hole_about(point: complex) -> Cell:
-    """Return the neighbourhood of a point that is left out."""
+def _holes(points: Sequence[complex]) -> tuple[Cell, ...]:
+    """Return neighbourhoods of points, those that meet as one."""
+    found: list[Cell] = []
+    for hole in map(_hole_about, points):
+        joined = hole
+        while meeting := next((h for h in found if _meet(h, joined)), None):
+            found.remove(meeting)
+            joined = Cell(
+                min(meeting.low, joined.low),
+                max(meeting.high, joined.high),
+                min(meeting.right, joined.right),
+                max(meeting.left, joined.left),
+            )
+        found.append(joined)
+    return tuple(found)
+
+
+def _meet(a: Cell, b: Cell) -> bool:
+    along = a.low <= b.high and b.low <= a.high
+    return along and a.right <= b.left and b.right <= a.left
+
+
+def _hole_about(point: complex) -> Cell:
     z = complex(log(abs(point)), phase(point))
     e = NEIGHBOURHOOD
     return Cell(z.real - e, z.real + e, z.imag - e, z.imag + e)
-
-
-def _within(root: Root, hole: Cell) -> bool:
-    point = complex(float(root.re.mid()), abs(float(root.im.mid())))
-    return bool(point) and hole.holds(complex(log(abs(point)), phase(point)))

@@ -140,7 +140,7 @@ class RootSearch:
                 break
             if self.reached >= radius:
                 self._winding.budget.progress.report(known / modes, f"{known} of {modes} modes located")
-            high, found = self._ring(self.reached, self._passing(self.reached + RING))
+            high, found = self._ring(self.reached, self.passing(self.reached + RING))
             self.roots.extend(found.roots)
             self.missing += found.missing
             self.reached = high
@@ -202,8 +202,8 @@ class RootSearch:
     def _modes(self) -> int:
         return sum(root.multiplicity for root in self.roots)
 
-    def _passing(self, radius: float) -> float:
-        """Return ln of a radius whose circle passes all holes."""
+    def passing(self, radius: float) -> float:
+        """Return ln of a radius, at least the one given, whose circle passes all holes."""
         for hole in sorted(self.holes, key=lambda hole: hole.low):
             if hole.low - max(NUDGES) <= radius <= hole.high:
                 radius = hole.high + MARGIN

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 SIGNS = (1, -1)
 ZERO = acb(0)
+NOWHERE = acb("nan", "nan")
 NARROW = 2.0**-30
 """Relative radius of balls whose square root needs no special care."""
 FINER = 2**30
@@ -225,8 +226,11 @@ def _root(x: Value) -> Value:
     if middle == 0:
         return x.sqrt()
     reach = (base / middle - 1).abs_upper()
-    if reach < NARROW or not reach < 1:
+    if reach < NARROW:
         return (x / middle).sqrt() * middle.sqrt()
+    if not reach < 1:
+        # Of a ball that holds 0 no branch is analytic.
+        return NOWHERE if isinstance(x, acb) else acb_series([NOWHERE, NOWHERE], 2)
     # sqrt(m) sqrt(1 + e) with abs(e) <= d differs from sqrt(m) by at most (1 - sqrt(1 - d)) sqrt(m).
     off = (1 - (1 - reach).sqrt()).upper()
     root = middle.sqrt() * acb(arb(1, off), arb(0, off))
