@@ -42,6 +42,8 @@ BRANCH_BITS = 256
 ANYWHERE = (0.7, 1.3)
 """Real and imaginary part of a frequency like any other."""
 BRANCHES = (1, 2, 4)
+SINGLE: Final = {"wave": 2, "bending": 4}
+"""Dispersions of one wavenumber, and how many branches it has."""
 TWINS: Final = {"cosh": "cos", "cos": "cosh", "sinh": "sin", "sin": "sinh"}
 RIGHT_ANGLE = 1.57
 MODAL_WORK = 0.75
@@ -100,6 +102,7 @@ class KernelFunction:
         self._cost = terms + int(MODAL_WORK * sum(law.order**4 for law in laws if law.kind == "general"))
         self._values = lru_cache(maxsize=None)(self._kernel_values)
         self._sums = lru_cache(maxsize=None)(self._exponential_values)
+        self.part = self._without_branch_factors()
         self.power = self._branch_order()
 
     @property
@@ -247,23 +250,47 @@ class KernelFunction:
             found.append((terms, exponent))
         return tuple(found)
 
-    def _branch_order(self) -> int:
-        """Return the power in which the choice of the wavenumbers does not matter."""
-        order = 1
+    def _anywhere(self) -> tuple[int, dict[str, Value], acb]:
+        """Return a precision, the generators' values at a frequency like any other, and the product's."""
         bits = BRANCH_BITS
-        while True:
+        while bits <= LAST_BITS:
             with precision(bits):
                 evaluator = self._values(bits)
                 values = evaluator.at(acb(*ANYWHERE))
                 value = _number(evaluator.value(self.part, values))
             if value.is_finite() and value.rel_accuracy_bits() >= FIRST_BITS:
-                break
+                return bits, values, value
             bits *= 4
-            if bits > LAST_BITS:
-                message = f"a part of {self.bound.name} is 0/0 or 0 at every s for these values"
-                hint = "a rigid or massless limit has its own equations"
-                raise ModelError(Diagnostic("SF231", message, None, hint))
+        message = f"a part of {self.bound.name} is 0/0 or 0 at every s for these values"
+        hint = "a rigid or massless limit has its own equations"
+        raise ModelError(Diagnostic("SF231", message, None, hint))
+
+    def _without_branch_factors(self) -> Factored:
+        """Return the product divided by those powers of wavenumbers that change with the branch.
+
+        Where a wavenumber vanishes they are roots of half or quarter order; numerator and denominator share
+        them, and they are no roots of a transfer function.
+        """
+        part = self.part
+        bits, values, value = self._anywhere()
         with precision(bits):
+            for law in self.bound.kernels.dispersions:
+                if law.kind not in SINGLE:
+                    continue
+                (branch,) = other_branches(law, self.bound.kernels, values)
+                turned = _number(self._values(bits).value(self.part, {**values, **branch})) / value
+                step = acb(0, 1) if law.kind == "bending" else acb(-1)
+                power = next((k for k in range(SINGLE[law.kind]) if (turned - step**k).contains(0)), 0)
+                if power:
+                    part = part * Factored.generator(part.ring, law.wavenumbers[0]) ** -power
+        return part
+
+    def _branch_order(self) -> int:
+        """Return the power in which the choice of the wavenumbers does not matter."""
+        order = 1
+        bits, values, value = self._anywhere()
+        with precision(bits):
+            evaluator = self._values(bits)
             for law in self.bound.kernels.dispersions:
                 for other in other_branches(law, self.bound.kernels, values):
                     turned = _number(evaluator.value(self.part, {**values, **other})) / value

@@ -41,6 +41,8 @@ CONVERGED = 1e-11
 FIRST_BITS = 128
 SMALL = 1e-9
 """Size of cells in which roots that cannot be told apart by splitting are told apart by their moments."""
+NEAR = 0.1
+"""Size of cells in which a root without a box is enclosed by a circle."""
 NEIGHBOURS = 1e-4
 """Relative radius of the circle about one of several roots in a cell within which the others are sought."""
 CLUSTER_BITS = 256
@@ -312,8 +314,9 @@ class RootSearch:
         root = prove_simple(self.function, s, self.digits, even=self.is_even)
         if root is not None and root.multiplicity * self.function.power == count and _is_in(cell, root):
             return [root]
-        if root is not None and count <= self.function.power:
-            return None
+        if count <= self.function.power:
+            # No box about it: perhaps a wavenumber vanishes there, which has two branches.
+            return None if root is not None or cell.size > NEAR else self._about(s, count)
         # Several roots, perhaps too close to each other to be parted by cuts.
         with precision(FIRST_BITS):
             radius = (s.abs_upper() * NEIGHBOURS).mid()
@@ -338,23 +341,51 @@ class RootSearch:
             bits *= 2
         return self._as_one(centre, radius, count)
 
+    def _about(self, s: acb, count: int) -> list[Root] | None:
+        """Return the only root in a circle that is not small: next to a branch, no small one can be followed."""
+        with precision(FIRST_BITS):
+            size = (s.abs_upper() * NEIGHBOURS).mid()
+            return self._in_disc(self._snapped(s, size), size, count)
+
+    def _snapped(self, s: acb, close: arb) -> acb:
+        """Return a point, on an axis of symmetry if it is closer to that than a distance."""
+        on_axis = self.is_even and bool(abs(s.real) < close)
+        return acb(arb(0) if on_axis else s.real, arb(0) if abs(s.imag) < close else s.imag)
+
+    def _in_disc(self, centre: acb, size: arb, count: int) -> list[Root] | None:
+        """Return all roots in a disc as one if there are so many."""
+        try:
+            if self._proof.count_in_disc(centre, size) != count:
+                return None
+        except RootOnPathError:
+            return None
+        whole = count // self.function.power
+        # One root alone in a disc that mirrors itself is its own mirror image.
+        on_axis, is_real = (whole == 1 and bool(part == 0) for part in (centre.real, centre.imag))
+        re = arb(0) if on_axis and self.is_even else arb(centre.real, size)
+        im = arb(0) if is_real else arb(centre.imag, size)
+        return [
+            Root(
+                re,
+                im,
+                whole,
+                on_imaginary_axis=on_axis and self.is_even,
+                is_real=is_real,
+                certified=whole == 1,
+            )
+        ]
+
     def _as_one(self, centre: acb, radius: arb, count: int) -> list[Root] | None:
         """Return the smallest disc that is proved to hold all roots of a cluster."""
         bits = max(CLUSTER_BITS, 2 * bits_for_digits(self.digits))
         centre = middle_of(self.function, centre, radius, bits) or centre
         with precision(bits):
             size = (centre.abs_upper() * arb(10) ** -self.digits).mid()
-        whole = count // self.function.power
-        while size < radius:
-            try:
-                if self._proof.count_in_disc(centre, size) == count:
-                    with precision(bits):
-                        re, im = arb(centre.real, size), arb(centre.imag, size)
-                    alone = whole == 1
-                    return [Root(re, im, whole, on_imaginary_axis=False, is_real=False, certified=alone)]
-            except RootOnPathError:
-                pass
-            with precision(bits):
+            centre = self._snapped(centre, size)
+            while size < radius:
+                found = self._in_disc(centre, size, count)
+                if found is not None:
+                    return found
                 size = (size * DISC_GROWTH).mid()
         return None
 

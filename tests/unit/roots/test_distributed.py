@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import json
 import re
 from fractions import Fraction
@@ -12,7 +13,8 @@ from mpmath import cos, cosh, findroot, mp, mpc, mpf, pi, sin, sinh, sqrt, tan
 
 from symflex import pipeline
 from symflex.errors import BudgetError
-from symflex.roots import Band, Everything, Modes, Rectangle, winding
+from symflex.roots import Band, Budget, Everything, Modes, Rectangle, winding
+from symflex.roots.locate import locate
 from tests.unit.roots.distributed import (
     DELAY_LOOP,
     FREE,
@@ -120,7 +122,9 @@ def test_overdamped_poles_of_a_kelvin_voigt_beam_are_found_outside_the_neighbour
 def test_the_point_where_kelvin_voigt_poles_accumulate_is_left_out_and_said():
     region = Rectangle(Fraction(-1000), Fraction(0), Fraction(-100), Fraction(100))
     (part,) = found(KELVIN_VOIGT, region, digits=12).excluded
-    assert (part.re, part.im, part.radius) == pytest.approx((-250, 0, 12.5))
+    # A rectangle of 5 % each way in ln(s), and the disc that holds it.
+    assert (part.re, part.im) == pytest.approx((-250, 0))
+    assert part.radius == pytest.approx(250 * abs(cmath.exp(0.05 + 0.05j) - 1))
 
 
 def test_nothing_is_left_out_of_a_region_far_from_the_accumulation():
@@ -215,14 +219,23 @@ y = "p_2"
 
 
 def test_a_search_beyond_its_budget_says_what_it_found(monkeypatch):
-    monkeypatch.setattr(winding, "WORK_LIMIT", 5000)
-    result = found(SLIDING_FREE, Modes(30), digits=12)
-    x = [findroot(lambda x: tan(x) + mpmath.tanh(x), (n - mpf(1) / 4) * pi) for n in range(1, 31)]
-    agree(upper(result.poles), [mpc(0, each**2) for each in x[: len(upper(result.poles))]], 11)
-    assert 0 < len(upper(result.poles)) < 30
+    monkeypatch.setattr(winding, "WORK_LIMIT", 12_000)
+    result = found(DELAY_LOOP, Modes(30), digits=12)
+    expected = sorted((2 * mpmath.lambertw(-1, k) for k in range(31)), key=abs)
+    poles = upper(result.poles)
+    agree(poles, expected[: len(poles)], 11)
+    assert 0 < len(poles) < 30
     assert result.certificate.is_exceeded
     assert not result.certificate.certified
     assert re.search(r"takes too long; \d+ modes were found up to .* Hz", result.certificate.reason)
+
+
+def test_no_time_is_said_to_be_over_and_keeps_what_was_found():
+    times = iter([0.0] * 400 + [10.0] * 100_000)
+    region = Modes(30)
+    result = locate(bound(DELAY_LOOP), region, 12, Budget(5, clock=lambda: next(times)))
+    assert result.certificate.is_exceeded
+    assert "the time given is over" in result.certificate.reason
 
 
 def test_a_million_modes_are_refused_at_once():
