@@ -21,14 +21,14 @@ from mpmath import mp, mpc, mpf
 
 import symflex
 from benchmarks.measure import Claim, Measurement, run_snippet
-from symflex.roots import Band, Modes, Rectangle
+from symflex.roots import ROOT_FINDERS, KernelProblem, Mode, Modes, Rectangle
 from symflex.roots.locate import locate
 from symflex.roots.root import exact_fraction
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from symflex.roots import PoleZeroMap, Region, Root
+    from symflex.roots import Region, Root
     from symflex.transfer import BoundTransferFunction
 
 CXROOTS_PYTHON = "SYMFLEX_CXROOTS_PYTHON"
@@ -64,22 +64,24 @@ LOSS = Fraction(3, 10)
 # ------------------------------------------------------------------------------------ what is measured
 
 
-def solve(model: BoundTransferFunction, region: Region, digits: int) -> PoleZeroMap:
-    """Return poles and zeros in a region by the engine that the program chooses itself."""
-    return locate(model, region, digits)
+def solve(model: BoundTransferFunction, region: Region, digits: int) -> tuple[Root, ...]:
+    """Return the poles in a region by the engine for lossless functions."""
+    return _poles("lossless", model, region, digits)
 
 
-def solve_generally(model: BoundTransferFunction, modes: int, digits: int) -> PoleZeroMap:
-    """Return the lowest modes by the engine for any distributed function, not one made for lossless beams."""
-    return locate(model, Modes(modes), digits)
+def solve_generally(model: BoundTransferFunction, modes: int, digits: int) -> tuple[Root, ...]:
+    """Return the lowest poles by the engine for any distributed function, not the one for lossless ones."""
+    return _poles("guess-and-prove", model, Modes(modes), digits)
 
 
 def solve_one(model: BoundTransferFunction, mode: int, digits: int) -> Root:
-    """Return the pole of the sliding-free beam with the given number, alone in a narrow band."""
-    # omega = (n - 1/4)^2 pi^2, half way to the neighbours on both sides.
-    band = Band(*((mode - end) ** 2 * Fraction(math.pi) / 2 for end in (Fraction(3, 4), Fraction(-1, 4))))
-    (root,) = (root for root in locate(model, band, digits).poles if root.im > 0)
+    """Return the pole of one number, without those below it."""
+    (root,) = (root for root in _poles("lossless", model, Mode(mode), digits) if root.im > 0)
     return root
+
+
+def _poles(engine: str, model: BoundTransferFunction, region: Region, digits: int) -> tuple[Root, ...]:
+    return ROOT_FINDERS[engine].find(KernelProblem(model, model.den), region, digits)
 
 
 # ------------------------------------------------------------------------------------------- the models
@@ -121,9 +123,9 @@ def seconds(model: BoundTransferFunction, task: Callable[[BoundTransferFunction]
     return time.process_time() - begin, result
 
 
-def upper(result: PoleZeroMap) -> list[mpc]:
-    """Return the poles with a positive imaginary part, exactly."""
-    return [_exact(root) for root in result.poles if root.im > 0]
+def upper(poles: Sequence[Root]) -> list[mpc]:
+    """Return those with a positive imaginary part, exactly."""
+    return [_exact(root) for root in poles if root.im > 0]
 
 
 def _exact(root: Root) -> mpc:
@@ -188,10 +190,12 @@ def time_findroot(modes: int, digits: int, first: int = 1) -> float:
 
 
 def time_damped_box(digits: int) -> float:
-    """Return the seconds for the damped cantilever's poles and zeros in the box that holds 24 poles."""
+    """Return the seconds for the damped cantilever's poles in the box that holds 24."""
     region = Rectangle(*(Fraction(side) for side in DAMPED_BOX))
-    taken, result = seconds(damped_cantilever(), lambda model: solve(model, region, digits))
-    number = sum(root.multiplicity for root in result.poles)
+    taken, poles = seconds(
+        damped_cantilever(), lambda model: _poles("guess-and-prove", model, region, digits)
+    )
+    number = sum(root.multiplicity for root in poles)
     if number != DAMPED_POLES:
         message = f"{number} poles in the box"
         raise RuntimeError(message)
@@ -202,7 +206,7 @@ def time_chain(digits: int, *, damped: bool) -> float:
     """Return the seconds for all poles and zeros of the chain."""
     taken, result = seconds(chain(damped=damped), lambda model: locate(model, None, digits))
     with mp.workdps(digits + 10):
-        found = sorted(upper(result), key=abs)
+        found = sorted(upper(result.poles), key=abs)
         _agree(found, sorted((s for s in chain_poles(damped=damped) if s.imag > 0), key=abs), digits)
     return taken
 
@@ -280,7 +284,7 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
 
     for digits in (50, 1000):
         task = f"sliding-free beam, {MODES} pairs of poles at {digits} digits"
-        ours = run(task, "symflex, with the zeros", f"time_beam({MODES}, {digits})")
+        ours = run(task, "symflex", f"time_beam({MODES}, {digits})")
         theirs = run(task, "`mpmath.findroot`, guesses given", f"time_findroot({MODES}, {digits})")
         claims.append(_ratio(f"{task}: times as fast as `findroot`", FASTER_THAN_FINDROOT, theirs, ours))
     task = f"sliding-free beam, pole number {MILLION} at 50 digits"
@@ -292,12 +296,12 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
     interpreter = os.environ.get(CXROOTS_PYTHON, sys.executable)
     if _has_cxroots(interpreter):
         task = "sliding-free beam by the general engine, ten poles"
-        ours = run(task, "symflex, with the zeros, 15 digits", "time_generally(10, 15)")
+        ours = run(task, "symflex, 15 digits", "time_generally(10, 15)")
         theirs = _run(task, "cxroots, doubles", CXROOTS, limit, interpreter)
         measurements.extend([theirs] if theirs else [])
         claims.append(_ratio("ten poles: times as fast as cxroots", FASTER_THAN_CXROOTS, theirs, ours))
     task = f"Kelvin-Voigt cantilever with mass and dashpot, box of {DAMPED_POLES} poles at 50 digits"
-    run(task, "symflex, with the zeros", "time_damped_box(50)")
+    run(task, "symflex", "time_damped_box(50)")
     for kind, ceiling in CEILINGS.items():
         task = f"{kind} chain of {MASSES} masses at 50 digits"
         found = run(task, "symflex, with the zeros", f"time_chain(50, damped={kind == 'damped'})")

@@ -62,7 +62,7 @@ def rational_text(found: RationalApproximation) -> str:
         lines += ["", _counted("poles", found.poles), *_root_table(found.poles)]
     lines += ["", _counted("zeros", found.zeros), *_root_table(found.zeros)]
     if found.is_estimate:
-        lines += ["", f"{INDENT}poles and zeros were located numerically and are not proved"]
+        lines += ["", f"{INDENT}some poles or zeros could not be told apart, or are not proved"]
     return "\n".join(lines)
 
 

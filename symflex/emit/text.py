@@ -28,6 +28,10 @@ WIDTH = 80
 INDENT = "  "
 NARROWEST = 12
 """Columns below which breaking a line further would not help to read it."""
+CAUSES = {
+    "cancelled": "cancelled between numerator and denominator",
+    "coincident": "poles and zeros that agree in all digits",
+}
 SHALLOW = 8
 """Columns up to which a broken sum stands to the right of its parenthesis."""
 
@@ -221,9 +225,10 @@ def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
     for title, roots in (("poles", found.poles), ("zeros", found.zeros)):
         lines += ["", _counted(title, roots), *_root_table(roots, digits, width)]
     if found.hidden:
-        hidden = [h.root for h in found.hidden]
-        title = _counted("hidden", hidden) + ", cancelled between numerator and denominator"
-        lines += ["", title, *_root_table(hidden, digits, width)]
+        for cause, meaning in CAUSES.items():
+            hidden = [h.root for h in found.hidden if h.cause == cause]
+            if hidden:
+                lines += ["", f"{_counted('hidden', hidden)}, {meaning}", *_root_table(hidden, digits, width)]
     everything = [*found.poles, *found.zeros, *(h.root for h in found.hidden)]
     if everything:
         lines += ["", "  radius bounds the distance from the printed value to the root [rad/s]"]

@@ -38,11 +38,15 @@ class Origin:
         Wavenumbers and kernels; general dispersions are not covered.
     at : fmpz_mpoly, optional
         What vanishes instead of s; linear in s or in a parameter.
+    terms : int
+        Length of the series in the fourth root of s; higher orders are not found.
     """
 
-    def __init__(self, ring: Ring, table: KernelTable, at: fmpz_mpoly | None = None) -> None:
+    def __init__(
+        self, ring: Ring, table: KernelTable, at: fmpz_mpoly | None = None, terms: int = TERMS
+    ) -> None:
         self.ring = ring
-        self._found = _find_point(ring, table, ring.context.gen(0) if at is None else at)
+        self._found = _find_point(ring, table, ring.context.gen(0) if at is None else at, terms)
 
     def order(self, value: Factored) -> int | None:
         """Return the order of the zero (negative: of the pole), ``None`` when it is not found."""
@@ -59,7 +63,7 @@ class Origin:
 
 
 def _find_point(
-    ring: Ring, table: KernelTable, at: fmpz_mpoly
+    ring: Ring, table: KernelTable, at: fmpz_mpoly, terms: int
 ) -> tuple[TaylorField, dict[str, nmod_poly]] | None:
     """Return series for all generators near where a polynomial vanishes."""
     if any(d.kind == "general" for d in table.dispersions):
@@ -80,7 +84,7 @@ def _find_point(
         values[name] = field.times(field.power(BRANCHES) * scale - rest, below)
         return True
 
-    return find_point(ring, table, TERMS, prepare)
+    return find_point(ring, table, terms, prepare)
 
 
 def find_point(

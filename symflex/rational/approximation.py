@@ -113,7 +113,7 @@ class RationalApproximation:
     is_exact : bool
         R is G: a lumped system with all its modes.
     is_estimate : bool
-        Poles, zeros or residues were located numerically: nothing of them is proved.
+        Some pole, zero or residue is not proved.
     omitted_hz : float or None
         Natural frequency of the first pole left out [Hz]; ``None`` when no pole is.
     scan : ErrorScan

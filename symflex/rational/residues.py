@@ -37,7 +37,7 @@ class Residue:
     coefficients : tuple of acb
         Enclosures of the coefficients of ``1/(s - p)``, ``1/(s - p)^2``, ... up to the pole's order.
     is_estimate : bool
-        The pole was located numerically: nothing is proved.
+        The pole could not be told from others, or the residue is not proved.
     """
 
     root: Root

@@ -208,7 +208,8 @@ def _find(sides: Sequence[Side], region: Region) -> list[Root]:
         if lacking <= 0:
             break
         wanted += lacking
-    else:
+    if shared and sides[0].modes < region.count:
+        # Of zeros there may be none that no pole takes with it; poles are what was asked for.
         raise BudgetError(Diagnostic("SF505", "too many poles and zeros coincide to tell the modes"))
     return shared
 

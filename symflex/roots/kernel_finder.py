@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from symflex.roots.budget import Budget
 from symflex.roots.problem import KernelProblem
-from symflex.roots.region import Everything, Position
+from symflex.roots.region import Everything, Mode, Position
 from symflex.roots.side import ENGINES, LOSSLESS, Side
 
 if TYPE_CHECKING:
@@ -58,6 +58,9 @@ class KernelRootFinder:
             message = "a transcendental function has infinitely many roots"
             raise ValueError(message)
         side = self._side(problem, digits)
+        if isinstance(region, Mode):
+            side.numbered(region.number)
+            return side.in_order() if side.engine == LOSSLESS else ()
         side.search(region)
         if not side.prove(region).is_complete:
             return ()

@@ -53,6 +53,8 @@ WIDER = 1e-3
 """How far beyond its limits, in ln, a ring is searched."""
 ROUNDING = 1e-15
 MORE_DIGITS = 30
+ORIGIN_TERMS = (20, 80)
+"""Lengths of the series about 0 in which the first term is sought."""
 ORIGIN_DEPTHS = (1.0, 4.0, 16.0, 64.0)
 """How far below the lowest root, in ln, circles about 0 are counted where the order is not known exactly."""
 
@@ -132,6 +134,7 @@ class Side:
         self._order = 0
         self._domain: Cell | None = None
         self._innermost: float | None = None
+        self._known: Proof | None = None
         self._scans = False
         self._tried = 0
         self.engine = self._engines[0]
@@ -153,7 +156,13 @@ class Side:
         """Return the root at s = 0, and how often the function without powers of s winds about 0 there."""
         power, zero = self.function.power, arb(0)
         powers = part.exponent_of(part.ring.context.gen(0))
-        exact = Origin(part.ring, self.function.bound.kernels).order(self.function.part**power)
+        exact = None
+        for terms in ORIGIN_TERMS:
+            exact = Origin(part.ring, self.function.bound.kernels, terms=terms).order(
+                self.function.part**power
+            )
+            if exact is not None:
+                break
         if exact is not None and (is_hidden or exact % power == 0):
             total = powers if is_hidden else powers + exact // power
             root = Root(zero, zero, total, on_imaginary_axis=True, is_real=True)
@@ -233,8 +242,9 @@ class Side:
 
         try:
             return search.scan(modes, radius, is_complete)
-        finally:
+        except BudgetError:
             self._take(search)
+            raise
 
     def _next_search(self) -> None:
         """Turn to a search that also finds what the last one did not."""
@@ -269,8 +279,8 @@ class Side:
 
     def _take(self, search: RootSearch | LosslessSearch) -> None:
         self.missing = search.missing
-        self._set(search.roots)
         self._domain = Cell(-inf, min(search.reached, HIGHEST), 0.0, pi)
+        self._set(search.roots)
 
     def search(self, region: Region) -> None:
         """Find at least the roots in a region."""
@@ -423,6 +433,7 @@ class Side:
             if root.certified or not any(overlap(root, other) for other in found if not other.certified):
                 found.append(root)
         self._located = [*self._origin, *found]
+        self._known = None
         self.roots = list(self._located)
 
     def _proved(self, root: Root) -> Root:
@@ -432,6 +443,11 @@ class Side:
 
     def counted(self) -> Proof:
         """Count the domain that was searched by its boundary."""
+        if self._known is None:
+            self._known = self._counted()
+        return self._known
+
+    def _counted(self) -> Proof:
         search = self._search
         if search is None or self._domain is None:
             return Proof(0, 0, "nothing was searched")

@@ -50,6 +50,8 @@ CLUSTER_DOUBLINGS = 4
 DISC_GROWTH = 100
 FEW = 8
 """Modes from which on a search goes on in smaller rings."""
+UNCHECKED = 8
+"""Octaves searched along the axes between two counts."""
 HIGHEST = 300.0
 """ln of the radius [rad/s] beyond which nothing is sought."""
 MODES_LIMIT = 2000
@@ -180,7 +182,7 @@ class RootSearch:
             except RootOnPathError:
                 return False
             self.reached = high
-            if high - checked > 2 * RING:
+            if high - checked > UNCHECKED * RING:
                 if not is_complete():
                     return False
                 checked = high
@@ -342,7 +344,7 @@ class RootSearch:
         return self._as_one(centre, radius, count)
 
     def _about(self, s: acb, count: int) -> list[Root] | None:
-        """Return the only root in a circle that is not small: next to a branch, no small one can be followed."""
+        """Return the only root in a circle that is not small: next to a branch, small ones fail."""
         with precision(FIRST_BITS):
             size = (s.abs_upper() * NEIGHBOURS).mid()
             return self._in_disc(self._snapped(s, size), size, count)
