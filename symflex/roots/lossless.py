@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     from symflex.roots.kernel_function import KernelFunction
     from symflex.roots.winding import Cell
 
-GRID = 0.5
+GRID = 0.8
 """Largest change of a phase [rad] from one sample to the next."""
 BATCH = 4096
 MOST_SAMPLES = 2_000_000
-NEWTON_STEPS = 8
+NEWTON_STEPS = 6
 WIDTH = 2.0**-46
 """Relative width of the interval in which a guess is proved to be the only root."""
 SLOPE_BITS = 64
