@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from symflex.roots.budget import Budget
 from symflex.roots.problem import KernelProblem
 from symflex.roots.region import Everything, Mode, Position
-from symflex.roots.side import ENGINES, LOSSLESS, Side
+from symflex.roots.side import ENGINES, LOSSLESS, NoEngineError, Side
 
 if TYPE_CHECKING:
     from symflex.roots.problem import Problem
@@ -37,7 +37,11 @@ class KernelRootFinder:
         """Return whether the engine can solve the problem; one of them has to be without losses."""
         if not isinstance(problem, KernelProblem):
             return False
-        return self.name != LOSSLESS or self._side(problem, 15).engine == LOSSLESS
+        try:
+            self._side(problem, 15)
+        except NoEngineError:
+            return False
+        return True
 
     def find(self, problem: Problem, region: Region, digits: int) -> tuple[Root, ...]:
         """Return all roots in the closed region, by natural frequency; none where they cannot be proved.

@@ -83,6 +83,10 @@ class Proof:
         return self.reason is None and self.counted == self.found
 
 
+class NoEngineError(TypeError):
+    """None of the engines allowed can search a function."""
+
+
 class Side:
     """The numerator, the denominator, or what cancelled between them.
 
@@ -100,6 +104,11 @@ class Side:
         Only powers of s count as roots at 0, not what kernels vanish like.
     engines : sequence of str
         How roots may be found; what one cannot do is left to the next.
+
+    Raises
+    ------
+    NoEngineError
+        When none of them can.
 
     Attributes
     ----------
@@ -145,6 +154,9 @@ class Side:
             self._winding = CertifiedWinding(self.function, budget)
             self._origin, self._order = self._roots_at_zero(part, is_hidden=is_hidden)
             self._next_search()
+            if self.is_finite:
+                message = f"not for the engine {', '.join(self._engines)}"
+                raise NoEngineError(message)
         self._located = self._origin if is_kernel else self._exact
         self.roots = list(self._located)
         self.missing = 0
@@ -290,7 +302,7 @@ class Side:
             self.extend(region.count)
             return
         low, high, right, left = _limits(self._search, region)
-        smallest = self._search.smallest()
+        smallest = self._winding.smallest(self._left, self.holes)
         # Within the smallest disc none is sought; that there are none is counted.
         self._innermost = smallest if low < smallest else None
         low, high = max(low, smallest), max(self._search.passing(high), smallest + WIDER)
