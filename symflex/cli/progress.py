@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from math import isnan
 from time import monotonic
 from typing import TYPE_CHECKING, Protocol
 
@@ -108,7 +109,7 @@ class ProgressBar:
 
 
 def _line(done: float, text: str) -> str:
-    part = min(max(done, 0.0), 1.0) if done == done else 0.0  # noqa: PLR0124 - only NaN differs from itself
+    part = 0.0 if isnan(done) else min(max(done, 0.0), 1.0)
     filled = int(part * BAR)
     shown = "".join(c if " " <= c <= "~" else "?" for c in text)
     line = f"[{'#' * filled}{'-' * (BAR - filled)}] {int(part * 100):3d} %  {shown}"

@@ -9,12 +9,13 @@ step; where that is less than abs(F(m)), the argument stays within the arc sine 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import asin, inf, pi
+from math import inf, pi
 from typing import TYPE_CHECKING, Protocol
 
 from flint import acb, arb
 
 from symflex.roots.precision import precision
+from symflex.roots.stepping import ROOM, SPREAD, WIDENED, angle, total_turn
 from symflex.roots.winding import Cell, RootOnPathError, Winding
 
 if TYPE_CHECKING:
@@ -25,15 +26,6 @@ BITS = 64
 LAST_BITS = 2048
 FIRST_STEP = 0.2
 """Of the first step [in z]."""
-ROOM = 1.5
-"""Largest deviation of the argument [rad] from the middle to an end of a step; less than pi/2."""
-GOAL = 1.15
-"""Deviation that the next step aims at."""
-GROWTH = 2.5
-SHORTEST = 0.3
-WIDENED = 1 + 2.0**-40
-SPREAD = 2.0**-50
-"""Relative width that makes up for the rounding of a step's middle."""
 SMALLEST = 1e-12
 SMALLEST_TURN = 1e-6
 
@@ -133,17 +125,11 @@ class CertifiedWinding(Winding):
         RootOnPathError
             A root lies on the cell's boundary, or too close to it.
         """
-        corners = (
-            complex(cell.low, cell.right),
-            complex(cell.high, cell.right),
-            complex(cell.high, cell.left),
-            complex(cell.low, cell.left),
-        )
         smallest = max(SMALLEST, 1e-9 * cell.size)
         with precision(BITS):
             total = arb(0)
-            for i in range(4):
-                total += self.certified_turn(corners[i - 1], corners[i], smallest)
+            for start, end in cell.edges:
+                total += self.certified_turn(start, end, smallest)
             return _whole(total / (2 * arb.pi()))
 
     def count_within(self, z: float, left: float) -> int:
@@ -198,49 +184,39 @@ class CertifiedWinding(Winding):
 
     def _follow(self, path: Path, length: float, smallest: float, bits: int) -> tuple[arb, int]:
         """Return the change of the argument along a path, and the precision that it took."""
-        total = arb(0)
-        t, step = 0.0, min(1.0, FIRST_STEP / length)
-        here = path.point(0.0)
-        while t < 1:
-            end = min(1.0, t + step)
-            there = path.point(end)
+
+        def change(start: float, end: float) -> tuple[float, arb]:
+            nonlocal bits
             self.spend()
             with precision(bits):
-                spread, turn = self._change(path, t, end, here, there, bits)
-            if spread > ROOM:
-                if spread == inf:
-                    # Perhaps it is not the step that is too long, but the precision that is too low.
-                    bits = self._sufficient(path.point((t + end) / 2), bits)
-                step = (end - t) * max(SHORTEST, min(0.7, GOAL / spread))
-                if step < smallest:
-                    raise RootOnPathError
-                continue
-            total += turn
-            step = (end - t) * max(1 / GROWTH, min(GROWTH, GOAL / max(spread, 0.1)))
-            t, here = end, there
-        return total, bits
+                off, turn = self._change(path, start, end, bits)
+            if off == inf:
+                # Perhaps it is not the step that is too long, but the precision that is too low.
+                bits = self._sufficient(path.point((start + end) / 2), bits)
+            return off, turn
 
-    def _change(
-        self, path: Path, start: float, end: float, here: acb, there: acb, bits: int
-    ) -> tuple[float, arb]:
+        turn = total_turn(change, FIRST_STEP / length, smallest)
+        return turn, bits
+
+    def _change(self, path: Path, start: float, end: float, bits: int) -> tuple[float, arb]:
         """Return a bound on how far arg F may turn on a step, and how far it turns from end to end."""
         ball, centre, reach = path.step(start, end)
+        here, there = path.point(start), path.point(end)
         by_exponentials = self.function.turn_of_exponentials(ball, here, there, bits)
         if by_exponentials is not None:
             return by_exponentials
         found = self.function.enclosed_about(ball, centre, bits)
-        deviation = 0.0
+        off = 0.0
         for value, slope, exponent in found:
             size, change = value.abs_lower(), (slope * reach).abs_upper()
             if not change.is_finite() or not size > 0:
                 return inf, arb(0)
-            ratio = float((change / size).upper())
-            deviation += abs(exponent) * (asin(ratio) if ratio < 1 else ratio * pi / 2)
-        deviation *= self.function.power
-        if deviation > ROOM:
-            return deviation, arb(0)
+            off += abs(exponent) * angle(change, size)
+        off *= self.function.power
+        if off > ROOM:
+            return off, arb(0)
         # Both ends lie within a right angle of the middle.
-        return deviation, _principal(self._phase(there, bits) - self._phase(here, bits))
+        return off, _principal(self._phase(there, bits) - self._phase(here, bits))
 
     def _phase(self, s: acb, bits: int) -> arb:
         """Return a ball around arg F at a point, up to whole turns."""

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 MOST_EXPONENTIALS = 1500
 NOTHING = -1
+Combination = tuple[tuple[int, acb], ...]
+"""Positions of arguments, and what they are multiplied with."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,27 +85,19 @@ class ExponentialSum:
     arguments: tuple[Argument, ...]
     terms: tuple[Exponential, ...]
 
-    @cached_property
-    def differences(self) -> Mapping[int, tuple[tuple[tuple[int, acb], ...], ...]]:
-        """Per term the exponents of all terms less its own: positions of arguments, and factors."""
-        return _Differences([{i: complex(a, b) for i, a, b in term.powers} for term in self.terms])
+    _known: dict[int, tuple[Combination, ...]] = field(default_factory=dict, repr=False)
 
-
-class _Differences(dict[int, "tuple[tuple[tuple[int, acb], ...], ...]"]):
-    """Made when asked for; ``NOTHING`` is less nothing."""
-
-    def __init__(self, powers: Sequence[Mapping[int, complex]]) -> None:
-        super().__init__()
-        self._powers = powers
-
-    def __missing__(self, largest: int) -> tuple[tuple[tuple[int, acb], ...], ...]:
-        own = {} if largest == NOTHING else self._powers[largest]
-        found = []
-        for powers in self._powers:
-            factors = {i: powers.get(i, 0) - own.get(i, 0) for i in {**powers, **own}}
-            found.append(tuple((i, acb(f.real, f.imag)) for i, f in sorted(factors.items()) if f))
-        self[largest] = tuple(found)
-        return self[largest]
+    def exponents(self, less: int = NOTHING) -> tuple[Combination, ...]:
+        """Return the exponents of all terms, less that of one of them, as combinations of the arguments."""
+        if less not in self._known:
+            powers = [{i: complex(a, b) for i, a, b in term.powers} for term in self.terms]
+            own = {} if less == NOTHING else powers[less]
+            found = []
+            for each in powers:
+                factors = {i: each.get(i, 0) - own.get(i, 0) for i in {**each, **own}}
+                found.append(tuple((i, acb(f.real, f.imag)) for i, f in sorted(factors.items()) if f))
+            self._known[less] = tuple(found)
+        return self._known[less]
 
 
 Amplitude = tuple[tuple[acb, tuple[tuple[str, int], ...]], ...]
@@ -204,7 +198,7 @@ class ExponentialValues:
     def exponents(self, number: int, place: Place, less: int = NOTHING) -> list[Value | None]:
         """Return the exponents of all terms of one sum, less that of one of them; ``None`` for 0."""
         found: list[Value | None] = []
-        for factors in self.sums[number][0].differences[less]:
+        for factors in self.sums[number][0].exponents(less):
             total: Value | None = None
             for i, factor in factors:
                 term = place.arguments[i] * factor

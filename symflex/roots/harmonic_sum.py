@@ -11,16 +11,16 @@ from __future__ import annotations
 from cmath import phase, rect
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
-from math import exp, pi
-from typing import TYPE_CHECKING
+from functools import cached_property
+from math import exp, pi, sqrt
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 import numpy.typing as npt
 from flint import acb, arb
 
 from symflex.roots.precision import precision
-from symflex.roots.winding import RootOnPathError
+from symflex.roots.stepping import ROOM, SPREAD, WIDENED, deviation, total_turn
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -39,12 +39,7 @@ ROTATIONS = 8
 BESIDE = 0.3
 """How far from the axes the largest terms are looked for, in x."""
 REAL, IMAGINARY = 0, 1
-WIDENED = 1 + 2.0**-40
-SPREAD = 2.0**-50
-"""Relative width that makes up for the rounding of a step's middle."""
-MOST = 0.97
-"""Largest share of its middle that a ball may have for its radius."""
-AIM = 0.85
+FIRST_STEP = 0.5
 SHORTEST = 1e-12
 
 Key = tuple[tuple[int, int, int], ...]
@@ -53,6 +48,8 @@ Monomial = tuple[tuple[int, int], ...]
 """Positions of constants, and exponents."""
 Gaussian = tuple[Fraction, Fraction]
 Doubles = npt.NDArray[np.float64]
+Exponential = tuple[acb, acb, list[tuple[int, acb]]]
+"""Rates of x and of x^2, and the coefficients of powers of x before it."""
 Terms = dict[Key, dict[tuple[int, Monomial], Gaussian]]
 """Per exponential, per power of x and monomial of constants, a number."""
 
@@ -139,7 +136,7 @@ class LosslessFunction:
             radius = (arb(z) / 2).exp()
             total = arb(0)
             for i, (_, exponent) in enumerate(self.factors):
-                total += exponent * _turn(self._complex(i), radius)
+                total += exponent * _turn(self._sums[i], radius)
             return total
 
     def estimate(self, z: float) -> float:
@@ -153,7 +150,7 @@ class LosslessFunction:
                 turned = []
                 for x in ends:
                     found = []
-                    for p, q, powers in self._complex(i):
+                    for p, q, powers in self._sums[i]:
                         value = complex(p) * x + complex(q) * x * x
                         n, c = max(powers, key=lambda power: power[0])
                         found.append((value.real + n * z / 2, value.imag + n * phase(x) + phase(complex(c))))
@@ -161,37 +158,34 @@ class LosslessFunction:
                 total += exponent * (turned[1] - turned[0])
             return total
 
-    def _complex(self, number: int) -> list[tuple[acb, acb, list[tuple[int, acb]]]]:
-        """Return rates of x and x^2 and the coefficients of every exponential of a factor."""
-        known = self._known.get(number)
-        if known is None:
+    @cached_property
+    def _sums(self) -> tuple[list[Exponential], ...]:
+        """Per factor the rates of x and x^2 and the coefficients of every exponential, in balls."""
+        with precision(FLOAT_BITS):
             constants = [c() for c in self.constants]
             rates = [r() for r in self.rates]
-            known = []
-            for key, terms in self.factors[number][0].items():
-                linear, square = acb(0), acb(0)
-                for i, a, b in key:
-                    if self.degrees[i] == LINEAR:
-                        linear += acb(a, b) * rates[i]
-                    else:
-                        square += acb(a, b) * rates[i]
-                powers: dict[int, acb] = {}
-                for (power, monomial), value in terms.items():
-                    number_of = acb(_ball(value[0]), _ball(value[1])) * _product(monomial, constants)
-                    powers[power] = powers.get(power, acb(0)) + number_of
-                known.append((linear, square, sorted(powers.items())))
-            self._known[number] = known
-        return known
+            return tuple(
+                [self._exponential(*item, rates, constants) for item in f.items()] for f, _ in self.factors
+            )
 
-    @property
-    def _known(self) -> dict[int, list[tuple[acb, acb, list[tuple[int, acb]]]]]:
-        return _complex_forms(self)
-
-
-@lru_cache(maxsize=64)
-def _complex_forms(function: LosslessFunction) -> dict[int, list[tuple[acb, acb, list[tuple[int, acb]]]]]:
-    del function
-    return {}
+    def _exponential(
+        self,
+        key: Key,
+        terms: dict[tuple[int, Monomial], Gaussian],
+        rates: Sequence[arb],
+        constants: Sequence[arb],
+    ) -> Exponential:
+        linear, square = acb(0), acb(0)
+        for i, a, b in key:
+            if self.degrees[i] == LINEAR:
+                linear += acb(a, b) * rates[i]
+            else:
+                square += acb(a, b) * rates[i]
+        powers: dict[int, acb] = {}
+        for (power, monomial), (re, im) in terms.items():
+            number = acb(_ball(re), _ball(im)) * _product(monomial, constants)
+            powers[power] = powers.get(power, acb(0)) + number
+        return linear, square, sorted(powers.items())
 
 
 def _ball(value: Fraction) -> arb:
@@ -205,13 +199,21 @@ def _product(monomial: Monomial, constants: Sequence[arb]) -> arb:
     return total
 
 
-def _turn(terms: list[tuple[acb, acb, list[tuple[int, acb]]]], radius: arb) -> arb:
+def _turn(terms: Sequence[Exponential], radius: arb) -> arb:
     """Return how far the argument of a sum of exponentials turns on the arc of x from 0 to 45 degrees."""
     slopes = [(complex(p), complex(q)) for p, q, _ in terms]
     sizes = [max((float(abs(c.mid()).log()), n) for n, c in powers) for _, _, powers in terms]
-    size = float(radius.log())
+    size, reach = float(radius.log()), float(radius.mid())
     differences: dict[int, list[tuple[acb, acb]]] = {}
     eighth = arb.pi() / 4
+    known: dict[tuple[float, int], acb] = {}
+
+    def largest_at(t: float) -> int:
+        x = reach * rect(1.0, pi / 4 * t)
+        growths = [
+            (p * x + q * x * x).real + c + n * size for (p, q), (c, n) in zip(slopes, sizes, strict=True)
+        ]
+        return growths.index(max(growths))
 
     def ratio(x: acb, largest: int) -> acb:
         square = x * x
@@ -223,42 +225,27 @@ def _turn(terms: list[tuple[acb, acb, list[tuple[int, acb]]]], radius: arb) -> a
             total += amplitude if i == largest else amplitude * (p * x + q * square).exp()
         return total
 
-    def point(share: float) -> acb:
-        return radius * acb(0, eighth * share).exp()
+    def ratio_at(t: float, x: acb, largest: int) -> acb:
+        if (t, largest) not in known:
+            known[t, largest] = ratio(x, largest)
+        return known[t, largest]
 
-    total = arb(0)
-    start, step = 0.0, 0.5
-    here, known, known_largest = point(0.0), None, -1
-    while start < 1:
-        end = min(1.0, start + step)
-        there = point(end)
+    def change(start: float, end: float) -> tuple[float, arb]:
         middle, half = (start + end) / 2, (end - start) / 2
-        ball = radius * acb(0, eighth * arb(middle, half * WIDENED + SPREAD)).exp()
-        at = complex(float(radius.mid()), 0) * np.exp(1j * pi / 4 * middle)
-        growths = [
-            (p * at + q * at * at).real + c + n * size for (p, q), (c, n) in zip(slopes, sizes, strict=True)
-        ]
-        largest = growths.index(max(growths))
+        largest = largest_at(middle)
+        p, q, _ = terms[largest]
         if largest not in differences:
-            p0, q0, _ = terms[largest]
-            differences[largest] = [(p - p0, q - q0) for p, q, _ in terms]
-        enclosed = ratio(ball, largest)
-        off = (enclosed - enclosed.mid()).abs_upper()
-        room = enclosed.mid().abs_lower()
-        share = float((off / room).upper()) if room > 0 and off.is_finite() else 9.0
-        if not share < MOST:
-            step = (end - start) * max(0.3, min(0.7, AIM / share))
-            if step < SHORTEST:
-                raise RootOnPathError
-            continue
-        first = known if known is not None and known_largest == largest else ratio(here, largest)
-        known_largest, known = largest, ratio(there, largest)
-        p0, q0, _ = terms[largest]
-        leading = p0 * (there - here) + q0 * (there * there - here * here)
-        total += leading.imag + (known / first).arg()
-        start, here = end, there
-        step = (end - middle) * 2 * max(0.4, min(3.0, AIM / max(share, 0.05)))
-    return total
+            differences[largest] = [(own_p - p, own_q - q) for own_p, own_q, _ in terms]
+        ball = radius * acb(0, eighth * arb(middle, half * WIDENED + SPREAD)).exp()
+        off = deviation(ratio(ball, largest))
+        if off > ROOM:
+            return off, arb(0)
+        here, there = (radius * acb(0, eighth * t).exp() for t in (start, end))
+        turned = ratio_at(end, there, largest) / ratio_at(start, here, largest)
+        leading = p * (there - here) + q * (there * there - here * here)
+        return off, leading.imag + turned.arg()
+
+    return total_turn(change, FIRST_STEP, SHORTEST)
 
 
 def _real_waves(turned: Terms, unit: Gaussian, arguments: int) -> tuple[_Wave, ...] | None:
@@ -319,42 +306,52 @@ class AxisFunction:
     waves: tuple[_Wave, ...]
     axis: int
 
-    def natural_frequency(self, t: arb) -> arb:
+    @overload
+    def natural_frequency(self, t: arb) -> arb: ...
+    @overload
+    def natural_frequency(self, t: float) -> float: ...
+    def natural_frequency(self, t: arb | float) -> arb | float:
         """Return abs(s)."""
         return t * t if self.axis == REAL else 2 * t * t
 
     def at_frequency(self, frequency: float) -> float:
         """Return t at an abs(s)."""
-        return float(np.sqrt(frequency if self.axis == REAL else frequency / 2))
+        return sqrt(frequency if self.axis == REAL else frequency / 2)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "_at", lru_cache(maxsize=None)(self._level))
+    @cached_property
+    def _levels(self) -> dict[int, _Level]:
+        return {}
 
     def _level(self, bits: int) -> _Level:
-        with precision(bits):
-            return _Level(self)
+        if bits not in self._levels:
+            with precision(bits):
+                self._levels[bits] = _Level(self)
+        return self._levels[bits]
 
     def value(self, t: arb, bits: int) -> arb:
         """Return a ball around the values on a ball of t."""
-        level: _Level = self._at(bits)  # type: ignore[attr-defined]
+        level = self._level(bits)
         with precision(bits):
             return level.sum(t, level.values)
 
     def slope(self, t: arb, bits: int) -> arb:
         """Return a ball around the derivatives on a ball of t."""
-        level: _Level = self._at(bits)  # type: ignore[attr-defined]
+        level = self._level(bits)
         with precision(bits):
             return level.sum(t, level.slopes)
 
     def sampled(self, t: Doubles) -> tuple[Doubles, Doubles, Doubles]:
         """Return values, derivatives, and the sizes of what is summed, all scaled alike, in doubles."""
-        level: _Level = self._at(FLOAT_BITS)  # type: ignore[attr-defined]
-        return level.sampled(t)
+        return self._level(FLOAT_BITS).sampled(t)
 
     def fastest(self, t: float) -> float:
         """Return the largest rate of any phase [rad per unit of t]."""
-        level: _Level = self._at(FLOAT_BITS)  # type: ignore[attr-defined]
-        return max((abs(p + 2 * q * t) for p, q in level.float_phases), default=0.0)
+        phases = self._level(FLOAT_BITS).float_phases
+        return max((abs(p + 2 * q * t) for p, q in phases), default=0.0)
+
+
+RealTerm = tuple[int, int, list[tuple[int, arb]], list[tuple[int, arb]]]
+"""Positions of growth and phase, and the polynomials before cosine and sine."""
 
 
 class _Level:
@@ -382,8 +379,8 @@ class _Level:
 
         growths: dict[tuple[int, ...], int] = {}
         phases: dict[tuple[int, ...], int] = {}
-        self.values: list[tuple[int, int, list[tuple[int, arb]], list[tuple[int, arb]]]] = []
-        self.slopes: list[tuple[int, int, list[tuple[int, arb]], list[tuple[int, arb]]]] = []
+        self.values: list[RealTerm] = []
+        self.slopes: list[RealTerm] = []
         for wave in source.waves:
             g = growths.setdefault(wave.growth, len(growths))
             p = phases.setdefault(wave.phase, len(phases))
@@ -404,7 +401,7 @@ class _Level:
         self._float_slopes = [_floats(term) for term in self.slopes]
         self._has_squares = any(degree != LINEAR for degree in owner.degrees)
 
-    def sum(self, t: arb, terms: list[tuple[int, int, list[tuple[int, arb]], list[tuple[int, arb]]]]) -> arb:
+    def sum(self, t: arb, terms: list[RealTerm]) -> arb:
         """Return a sum at a ball of t."""
         square = t * t if self._has_squares else None
         growths: list[arb] = []
@@ -470,7 +467,7 @@ def _sum(*polynomials: dict[int, arb]) -> dict[int, arb]:
 
 
 def _floats(
-    term: tuple[int, int, list[tuple[int, arb]], list[tuple[int, arb]]],
+    term: RealTerm,
 ) -> tuple[int, int, list[tuple[int, float]], list[tuple[int, float]]]:
     g, p, even, odd = term
     return g, p, [(n, float(c)) for n, c in even], [(n, float(c)) for n, c in odd]

@@ -10,15 +10,16 @@ from cmath import exp as cexp
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property, lru_cache
-from math import asin, inf, lcm, pi
+from math import lcm
 from typing import TYPE_CHECKING, Final
 
 from flint import acb, acb_series, arb
 
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.kernels import Factored, degree_in
-from symflex.roots.exponential_sum import ExponentialValues, arguments_of, exponential_sum
+from symflex.roots.exponential_sum import ExponentialValues, Place, arguments_of, exponential_sum
 from symflex.roots.precision import precision
+from symflex.roots.stepping import ROOM, deviation
 from symflex.transfer.enclose_kernels import expansion
 
 if TYPE_CHECKING:
@@ -45,7 +46,6 @@ BRANCHES = (1, 2, 4)
 SINGLE: Final = {"wave": 2, "bending": 4}
 """Dispersions of one wavenumber, and how many branches it has."""
 TWINS: Final = {"cosh": "cos", "cos": "cosh", "sinh": "sin", "sin": "sinh"}
-RIGHT_ANGLE = 1.57
 MODAL_WORK = 0.75
 """What sums over characteristic roots cost, in multiplications of a term, over the order to the fourth."""
 
@@ -105,7 +105,7 @@ class KernelFunction:
         self.part = self._without_branch_factors()
         self.power = self._branch_order()
 
-    @property
+    @cached_property
     def is_even(self) -> bool:
         """Proved: F(-s) is F(s) or -F(s), so that roots mirror each other in the imaginary axis too."""
         kernels = [k for k in self.bound.kernels.kernels if self.part.depends_on(k.generator)]
@@ -158,24 +158,14 @@ class KernelFunction:
         """
         self._spend(bits)
         with precision(bits):
-            found = []
-            if self.exponentials is not None:
-                sums = self._sums(bits)
-                wide = sums.at(expansion(ball))
-                exact = sums.at(centre, wide)
-                for i, (_, exponent) in enumerate(sums.sums):
-                    series = sums.value(i, wide)
-                    if isinstance(series, acb_series):
-                        found.append((_number(sums.value(i, exact)), series[1], exponent))
-                return found
-            evaluator = self._values(bits)
-            around = evaluator.at(expansion(ball))
-            at_centre = evaluator.at(centre, around)
-            for factor, exponent in self.part.factors:
-                series = evaluator.polynomial(factor, around)
-                if isinstance(series, acb_series):
-                    found.append((_number(evaluator.polynomial(factor, at_centre)), series[1], exponent))
-            return found
+            values = self._evaluator(bits)
+            wide = values.at(expansion(ball))
+            exact = values.at(centre, wide)
+            return [
+                (_number(values.value(i, exact)), series[1], exponent)
+                for i, (_, exponent) in enumerate(self.part.factors)
+                if isinstance(series := values.value(i, wide), acb_series)
+            ]
 
     def fastest(self, z: complex) -> float:
         """Return the largest exponent at ``s = exp(z)``, in absolute value; 0 where none is known."""
@@ -219,8 +209,8 @@ class KernelFunction:
         total, widest = arb(0), 0.0
         for i, (terms, exponent) in enumerate(sums.sums):
             largest = sums.largest(i, around) if len(terms.terms) > 1 else 0
-            widest = max(widest, _spread(_number(sums.value(i, around, largest))))
-            if widest > RIGHT_ANGLE:
+            widest = max(widest, deviation(_number(sums.value(i, around, largest))))
+            if widest > ROOM:
                 return widest, total
             ratio = _number(sums.value(i, last, largest)) / _number(sums.value(i, first, largest))
             own = [sums.exponents(i, place)[largest] for place in (first, last)]
@@ -343,22 +333,19 @@ class KernelFunction:
     def _factors(self, s: acb, bits: int) -> list[FactorBall]:
         """Return value, derivative and exponent of every factor, at the current precision."""
         self._spend(bits)
-        found = []
+        values = self._evaluator(bits)
+        place = values.at(expansion(s))
+        return [
+            (series[0], series[1], exponent)
+            for i, (_, exponent) in enumerate(self.part.factors)
+            if isinstance(series := values.value(i, place), acb_series)
+        ]
+
+    def _evaluator(self, bits: int) -> ExponentialValues | _KernelFactors:
+        """Return what evaluates the factors: as sums of exponentials where they are."""
         if self.exponentials is not None:
-            sums = self._sums(bits)
-            place = sums.at(expansion(s))
-            for i, (_, exponent) in enumerate(sums.sums):
-                series = sums.value(i, place)
-                if isinstance(series, acb_series):
-                    found.append((series[0], series[1], exponent))
-            return found
-        evaluator = self._values(bits)
-        values = evaluator.at(expansion(s))
-        for factor, exponent in self.part.factors:
-            series = evaluator.polynomial(factor, values)
-            if isinstance(series, acb_series):
-                found.append((series[0], series[1], exponent))
-        return found
+            return self._sums(bits)
+        return _KernelFactors(self._values(bits), [factor for factor, _ in self.part.factors])
 
     def _kernel_values(self, bits: int) -> KernelValues:
         with precision(bits):
@@ -366,16 +353,20 @@ class KernelFunction:
             return self.bound.kernel_values(constants)
 
 
-def _spread(ratio: acb) -> float:
-    """Return how far the argument may turn on a ball [rad], infinite where it holds 0 or anything."""
-    if not ratio.is_finite():
-        return inf
-    middle = ratio.mid()
-    off, size = (ratio - middle).abs_upper(), middle.abs_lower()
-    if not size > 0:
-        return inf
-    share = float((off / size).upper())
-    return 2 * asin(share) if share < 1 else pi * share
+@dataclass(frozen=True, slots=True)
+class _KernelFactors:
+    """Polynomials in kernels, evaluated as they stand."""
+
+    evaluator: KernelValues
+    factors: Sequence[fmpz_mpoly]
+
+    def at(self, s: Value, near: Place | None = None) -> Place:
+        """Return the values of the generators, of the branch that others have."""
+        return Place(self.evaluator.at(s, None if near is None else near.values), ())
+
+    def value(self, number: int, place: Place) -> Value:
+        """Return the value of one polynomial."""
+        return self.evaluator.polynomial(self.factors[number], place.values)
 
 
 def other_branches(

@@ -158,15 +158,13 @@ class LosslessSearch:
         high = self._first_frequency()
         samples = 0
         while sum(g.exponent for g in guesses) <= modes:
-            for source, exponent in self._sources:
-                found, used = self._sign_changes(source, low, high)
-                samples += used
-                guesses += [Guess(float(source_frequency(source, t)), t, source, exponent) for t in found]
-            if samples > MOST_SAMPLES or high > HIGHEST or not self._sources:
+            found, used = self._guesses(low, high)
+            guesses += found
+            samples += used
+            if samples > MOST_SAMPLES or high > HIGHEST:
                 break
             known = len(guesses)
             low, high = high, high * (4.0 if known < FEW else max(1.05, (1.1 * modes / known) ** 2))
-        guesses.sort(key=lambda guess: guess.frequency)
         chosen: list[Guess] = []
         total = 0
         for guess in guesses:
@@ -179,12 +177,18 @@ class LosslessSearch:
 
     def between(self, low: float, high: float) -> list[Root]:
         """Return the roots with abs(s) between two [rad/s] at which a factor changes its sign."""
-        found = []
+        return self._proved(self._guesses(low, high)[0])
+
+    def _guesses(self, low: float, high: float) -> tuple[list[Guess], int]:
+        """Return all sign changes between two abs(s), ascending, and how many samples it took."""
+        found: list[Guess] = []
+        samples = 0
         for source, exponent in self._sources:
-            changes, _ = self._sign_changes(source, low, high)
-            found += [Guess(source_frequency(source, t), t, source, exponent) for t in changes]
+            changes, used = self._sign_changes(source, low, high)
+            samples += used
+            found += [Guess(source.natural_frequency(t), t, source, exponent) for t in changes]
         found.sort(key=lambda guess: guess.frequency)
-        return self._proved(found)
+        return found, samples
 
     def _first_frequency(self) -> float:
         """Return an abs(s) below which no argument is large."""
@@ -293,11 +297,7 @@ class LosslessSearch:
             low, high = (place + 2 * log1p((further + side) / turns) for side in (-6, 6))
         else:
             low, high = (self._place(turns + further + side, place) for side in (-6, 6))
-        guesses = []
-        for source, exponent in self._sources:
-            changes, _ = self._sign_changes(source, exp(min(low, place)), exp(max(high, place)))
-            guesses += [Guess(source_frequency(source, t), t, source, exponent) for t in changes]
-        guesses.sort(key=lambda guess: guess.frequency)
+        guesses, _ = self._guesses(exp(min(low, place)), exp(max(high, place)))
         reached = below - sum(g.exponent for g in guesses if log(g.frequency) < place)
         totals = accumulate((g.exponent for g in guesses), initial=reached)
         i = next((k for k, total in enumerate(totals) if total >= number), 0) - 1
@@ -345,11 +345,6 @@ def _level(bits: int, most: int) -> int:
     while level < bits:
         level += max(SLOPE_BITS, level // 4)
     return min(level, most)
-
-
-def source_frequency(source: AxisFunction, t: float) -> float:
-    """Return abs(s) at a place on an axis."""
-    return t * t if source.axis == REAL else 2 * t * t
 
 
 def _polished(

@@ -61,6 +61,17 @@ class Cell:
         """The longer side."""
         return max(self.high - self.low, self.left - self.right)
 
+    @property
+    def edges(self) -> tuple[tuple[complex, complex], ...]:
+        """The four sides, counterclockwise about the cell."""
+        corners = (
+            complex(self.low, self.right),
+            complex(self.high, self.right),
+            complex(self.high, self.left),
+            complex(self.low, self.left),
+        )
+        return tuple((corners[i - 1], corners[i]) for i in range(4))
+
     def holds(self, z: complex, margin: float = 0.0) -> bool:
         """Tell whether a point lies inside, or at most ``margin`` outside."""
         along = self.low - margin < z.real < self.high + margin
@@ -224,14 +235,8 @@ class Winding:
         RootOnPathError
             A root lies on the cell's boundary, or too close to it.
         """
-        corners = (
-            complex(cell.low, cell.right),
-            complex(cell.high, cell.right),
-            complex(cell.high, cell.left),
-            complex(cell.low, cell.left),
-        )
         smallest = max(SMALLEST_STEP, 1e-7 * cell.size)
-        turns = sum(self.turn(corners[i - 1], corners[i], smallest) for i in range(4)) / (2 * pi)
+        turns = sum(self.turn(start, end, smallest) for start, end in cell.edges) / (2 * pi)
         if abs(turns - round(turns)) > NEARLY_WHOLE:
             raise RootOnPathError
         return round(turns)
