@@ -87,13 +87,17 @@ class ExponentialSum:
 
     _known: dict[int, tuple[Combination, ...]] = field(default_factory=dict, repr=False)
 
+    @cached_property
+    def combinations(self) -> tuple[dict[int, complex], ...]:
+        """The exponent of every term: positions of arguments, and what they are multiplied with."""
+        return tuple({i: complex(a, b) for i, a, b in term.powers} for term in self.terms)
+
     def exponents(self, less: int = NOTHING) -> tuple[Combination, ...]:
         """Return the exponents of all terms, less that of one of them, as combinations of the arguments."""
         if less not in self._known:
-            powers = [{i: complex(a, b) for i, a, b in term.powers} for term in self.terms]
-            own = {} if less == NOTHING else powers[less]
+            own = {} if less == NOTHING else self.combinations[less]
             found = []
-            for each in powers:
+            for each in self.combinations:
                 factors = {i: each.get(i, 0) - own.get(i, 0) for i in {**each, **own}}
                 found.append(tuple((i, acb(f.real, f.imag)) for i, f in sorted(factors.items()) if f))
             self._known[less] = tuple(found)
@@ -123,17 +127,21 @@ class ExponentialValues:
     sums: tuple[tuple[ExponentialSum, int], ...]
 
     @cached_property
-    def _amplitudes(self) -> tuple[tuple[Amplitude, ...], ...]:
-        return tuple(tuple(self._amplitude(term) for term in terms.terms) for terms, _ in self.sums)
+    def coefficients(self) -> tuple[tuple[Amplitude, ...], ...]:
+        """Per sum the coefficients of its terms."""
+        return tuple(
+            tuple(self.amplitude(term.re, term.im, term.halvings) for term in terms.terms)
+            for terms, _ in self.sums
+        )
 
-    def _amplitude(self, term: Exponential) -> Amplitude:
-        """Return a coefficient with the values of all constants in place."""
+    def amplitude(self, re: fmpz_mpoly, im: fmpz_mpoly | None = None, halvings: int = 0) -> Amplitude:
+        """Return ``(re + j im)/2^halvings`` with the values of all constants in place."""
         evaluator = self.evaluator
         varying = {0, *(evaluator.names.index(name) for name in evaluator.table.wavenumbers)}
         numbers: dict[tuple[tuple[str, int], ...], acb] = {}
-        for polynomial, unit in ((term.re, acb(1)), (term.im, acb(0, 1))):
-            for monomial, coefficient in polynomial.terms():
-                number = unit * arb(int(coefficient)) * arb(2) ** -term.halvings
+        for polynomial, unit in ((re, acb(1)), (im, acb(0, 1))):
+            for monomial, coefficient in () if polynomial is None else polynomial.terms():
+                number = unit * arb(int(coefficient)) * arb(2) ** -halvings
                 moving = []
                 for i, e in enumerate(monomial):
                     if e and i in varying:
@@ -145,9 +153,10 @@ class ExponentialValues:
         return tuple((number, key) for key, number in numbers.items())
 
     @cached_property
-    def _lengths(self) -> tuple[Value, ...]:
+    def lengths(self) -> tuple[acb, ...]:
+        """Of the arguments [m], for delays [s]."""
         values = {"s": acb(1), **{n: acb(c) for n, c in self.evaluator.constants.items()}}
-        return tuple(self.evaluator.value(argument.length, values) for argument in self.arguments)
+        return tuple(_number(self.evaluator.value(a.length, values)) for a in self.arguments)
 
     def at(self, s: Value, near: Place | None = None) -> Place:
         """Return what sums are made of at a point or on a ball, or as series about these.
@@ -161,7 +170,7 @@ class ExponentialValues:
         """
         values = self.evaluator.generators_at(s, None if near is None else near.values)
         arguments = []
-        for argument, length in zip(self.arguments, self._lengths, strict=True):
+        for argument, length in zip(self.arguments, self.lengths, strict=True):
             rate = (
                 values[argument.wavenumber]
                 if argument.wavenumber
@@ -177,7 +186,7 @@ class ExponentialValues:
             return known
         found = []
         products = place.products
-        for amplitude in self._amplitudes[number]:
+        for amplitude in self.coefficients[number]:
             total: Value | None = None
             for coefficient, powers in amplitude:
                 value = products.get(powers)

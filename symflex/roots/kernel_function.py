@@ -17,6 +17,7 @@ from flint import acb, acb_series, arb
 
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.kernels import Factored, degree_in
+from symflex.roots.double_sums import DoubleSums
 from symflex.roots.exponential_sum import ExponentialValues, Place, arguments_of, exponential_sum
 from symflex.roots.precision import precision
 from symflex.roots.stepping import ROOM, deviation
@@ -169,18 +170,7 @@ class KernelFunction:
 
     def fastest(self, z: complex) -> float:
         """Return the largest exponent at ``s = exp(z)``, in absolute value; 0 where none is known."""
-        if self.exponentials is None:
-            return self.reach(abs(cexp(z)))
-        with precision(FIRST_BITS):
-            sums = self._sums(FIRST_BITS)
-            place = sums.at(acb(z.real, z.imag).exp())
-            sizes = [
-                float(abs(_number(exponent)).mid())
-                for i in range(len(sums.sums))
-                for exponent in sums.exponents(i, place)
-                if exponent is not None
-            ]
-        return max(sizes, default=0.0)
+        return self.reach(abs(cexp(z))) if self.in_doubles is None else self.in_doubles.fastest(z)
 
     def turn_of_exponentials(self, ball: acb, start: acb, end: acb, bits: int) -> tuple[float, arb] | None:
         """Return how far arg F, of :attr:`power`, turns between two points of a ball.
@@ -239,6 +229,14 @@ class KernelFunction:
                 return None
             found.append((terms, exponent))
         return tuple(found)
+
+    @cached_property
+    def in_doubles(self) -> DoubleSums | None:
+        """The factors for guesses at many points; ``None`` where they are no sums of exponentials."""
+        if self.exponentials is None:
+            return None
+        with precision(FIRST_BITS):
+            return DoubleSums(self._sums(FIRST_BITS))
 
     def _anywhere(self) -> tuple[int, dict[str, Value], acb]:
         """Return a precision, the generators' values at a frequency like any other, and the product's."""

@@ -18,8 +18,12 @@ ROOM = 1.5
 """Largest deviation of the argument [rad] from the middle to an end of a step; less than pi/2."""
 GOAL = 1.15
 """Deviation that the next step aims at."""
-GROWTH = 2.5
-SHORTEST = 0.3
+GROWTH = 1.5
+SHRINKING = 0.5
+NEARER = 0.5
+"""Of the last step that was too long, what is tried next: deviations grow exponentially."""
+FORGETTING = 1.1
+"""Growth of that bound with every step."""
 WIDENED = 1 + 2.0**-40
 SPREAD = 2.0**-50
 """Relative width that makes up for the rounding of a step's middle."""
@@ -61,15 +65,18 @@ def total_turn(change: Callable[[float, float], tuple[float, arb]], first: float
     """
     total = arb(0)
     t, step = 0.0, min(1.0, first)
+    longest = 1 / NEARER
     while t < 1:
         end = min(1.0, t + step)
         off, turn = change(t, end)
         if off > ROOM:
-            step = (end - t) * max(SHORTEST, min(0.7, GOAL / off))
+            longest = end - t
+            step = longest * max(SHRINKING, min(0.7, GOAL / off))
             if step < smallest:
                 raise RootOnPathError
             continue
         total += turn
-        step = (end - t) * max(1 / GROWTH, min(GROWTH, GOAL / max(off, 0.1)))
+        longest *= FORGETTING
+        step = min((end - t) * max(1 / GROWTH, min(GROWTH, GOAL / max(off, 0.1))), NEARER * longest)
         t = end
     return total

@@ -50,7 +50,7 @@ CLUSTER_DOUBLINGS = 4
 DISC_GROWTH = 100
 FEW = 8
 """Modes from which on a search goes on in smaller rings."""
-UNCHECKED = 8
+UNCHECKED = 12
 """Octaves searched along the axes between two counts."""
 HIGHEST = 300.0
 """ln of the radius [rad/s] beyond which nothing is sought."""
