@@ -75,13 +75,14 @@ def locate_distributed(
     is_default = region is None or isinstance(region, Everything)
     where = default_region(bound) if region is None or isinstance(region, Everything) else region
     searched = _Searched(bound, where, digits, budget)
-    reason, is_exceeded = None, False
+    reason, code = None, None
     try:
         searched.find()
         reason = searched.prove()
     except BudgetError as error:
         # What was found stays; the roots are proved one by one, only their number is not.
-        reason, is_exceeded = "; ".join(d.message for d in error.diagnostics) + searched.extent(), True
+        reason = "; ".join(d.message for d in error.diagnostics) + searched.extent()
+        code = error.diagnostics[0].code
         if all(root.is_zero for side in searched.sides for root in side.roots):
             raise
     chosen = searched.chosen()
@@ -92,7 +93,13 @@ def locate_distributed(
     missing = sum(side.missing for side in searched.sides)
     engines = sorted({side.engine for side in searched.sides if not side.is_finite}) or [POLYNOMIAL.name]
     certificate = Certificate(
-        ", ".join(engines), reason is None, found + missing, found, reason, is_exceeded=is_exceeded
+        ", ".join(engines),
+        reason is None,
+        found + missing,
+        found,
+        reason,
+        is_exceeded=code is not None,
+        code=code,
     )
     excluded = {hole for side in searched.sides for hole in side.excluded()}
     return PoleZeroMap(

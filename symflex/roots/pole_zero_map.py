@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from symflex.errors import BudgetError
+from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.polynomial import POLYNOMIAL
 from symflex.roots.region import Everything, Modes, Position, Region
 
@@ -39,6 +39,8 @@ class Certificate:
         Why it is not certified.
     is_exceeded : bool
         The budget was exceeded: every root shown is proved, and others may be missing.
+    code : str, optional
+        The error code of what was exceeded.
     """
 
     engine: str
@@ -47,6 +49,7 @@ class Certificate:
     found: int
     reason: str | None = None
     is_exceeded: bool = False
+    code: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,6 +129,28 @@ class PoleZeroMap:
     is_default_region: bool = False
     is_infinite: bool = False
 
+    def complete(self) -> PoleZeroMap:
+        """Return the map if the budget sufficed.
+
+        Raises
+        ------
+        BudgetError
+            SF505, SF506 when it did not; ``found`` is this map.
+
+        Examples
+        --------
+        >>> from symflex.roots.problem import RootProblem
+        >>> pole = RootProblem.from_rationals([1, 1])
+        >>> find_pole_zero_map("x/F", pole, RootProblem(())).complete().certificate.certified
+        True
+        """
+        certificate = self.certificate
+        if certificate.is_exceeded:
+            message = certificate.reason or "the budget was exceeded"
+            hint = "what was proved until then is in the attribute 'found' of this error"
+            raise BudgetError(Diagnostic(certificate.code or "SF506", message, None, hint), found=self)
+        return self
+
     def to_json_dict(self) -> dict[str, object]:
         """Return the map in the schema ``symflex.roots/1``, ready for :func:`json.dumps`."""
         certificate = self.certificate
@@ -203,7 +228,7 @@ def find_pole_zero_map(
                 budget.progress.report(i / len(sought), f"polynomial {i + 1} of {len(sought)}")
                 budget.spend()
         except BudgetError as error:
-            exceeded = error.diagnostics[0].message
+            exceeded = error.diagnostics[0]
             break
         roots, number, all_apart = _locate(problem, within, digits, finder)
         located.append(roots)
@@ -213,13 +238,19 @@ def find_pole_zero_map(
     concealed = [
         HiddenRoot(root, cause) for (_, cause), roots in zip(hidden, others, strict=True) for root in roots
     ]
-    reason = exceeded
+    reason = None if exceeded is None else exceeded.message
     if reason is None and counted != found:
         reason = f"{counted} roots exist, {found} were found"
     elif reason is None and not apart:
         reason = "some roots could not be told apart; each such group is enclosed as one"
     certificate = Certificate(
-        finder.name, reason is None, counted, found, reason, is_exceeded=exceeded is not None
+        finder.name,
+        reason is None,
+        counted,
+        found,
+        reason,
+        is_exceeded=exceeded is not None,
+        code=None if exceeded is None else exceeded.code,
     )
     return PoleZeroMap(tf, where, pole_roots, zero_roots, tuple(concealed), certificate, digits)
 
