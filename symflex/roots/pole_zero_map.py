@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.polynomial import POLYNOMIAL
-from symflex.roots.region import Everything, Modes, Position, Region
+from symflex.roots.region import Everything, Mode, Modes, Position, Region
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -201,7 +201,7 @@ def find_pole_zero_map(
     finder : RootFinder
         The engine.
     budget : Budget, optional
-        When it is exceeded, polynomials that were not yet solved are left out.
+        When it is exceeded, what was proved so far is returned.
 
     Returns
     -------
@@ -221,18 +221,16 @@ def find_pole_zero_map(
     sought = [(poles, where), (zeros, where), *((problem, whole) for problem, _ in hidden)]
     counted = sum(problem.degree for problem, _ in sought)
     located: list[tuple[Root, ...]] = []
-    found, apart, exceeded = 0, True, None
+    found, apart = 0, True
+    exceeded: Diagnostic | None = None
     for i, (problem, within) in enumerate(sought):
-        try:
-            if budget is not None:
-                budget.progress.report(i / len(sought), f"polynomial {i + 1} of {len(sought)}")
-                budget.spend()
-        except BudgetError as error:
-            exceeded = error.diagnostics[0]
-            break
-        roots, number, all_apart = _locate(problem, within, digits, finder)
+        if budget is not None:
+            budget.progress.report(i / len(sought), f"polynomial {i + 1} of {len(sought)}")
+        roots, number, all_apart, exceeded = _locate(problem, within, digits, finder, budget)
         located.append(roots)
         found, apart = found + number, apart and all_apart
+        if exceeded is not None:
+            break
     located += [()] * (len(sought) - len(located))
     pole_roots, zero_roots, *others = located
     concealed = [
@@ -256,11 +254,25 @@ def find_pole_zero_map(
 
 
 def _locate(
-    problem: RootProblem, region: Region, digits: int, finder: RootFinder
-) -> tuple[tuple[Root, ...], int, bool]:
-    """Return the roots in the region, the number of roots enclosed in all, and whether all are told apart."""
+    problem: RootProblem, region: Region, digits: int, finder: RootFinder, budget: Budget | None
+) -> tuple[tuple[Root, ...], int, bool, Diagnostic | None]:
+    """Return the roots in the region, the number enclosed in all, whether all are told apart, what failed."""
+    roots: tuple[Root, ...] = ()
+    positions: tuple[Position, ...] = ()
+    exceeded = None
     for doubling in range(REFINEMENTS):
-        roots = finder.find(problem, region, digits << doubling)
+        try:
+            if budget is not None:
+                budget.spend()
+            roots = finder.find(problem, region, digits << doubling, budget)
+        except BudgetError as error:
+            exceeded = error.diagnostics[0]
+            if doubling == 0:
+                roots = error.found if isinstance(error.found, tuple) else ()
+                # Which is the n-th cannot be told where others may be missing.
+                unknown = isinstance(region, Mode)
+                positions = (Position.OUTSIDE,) * len(roots) if unknown else region.classify(roots)
+            break
         positions = region.classify(roots)
         if Position.UNDECIDED not in positions:
             break
@@ -269,7 +281,8 @@ def _locate(
         for root, position in zip(roots, positions, strict=True)
         if position is not Position.OUTSIDE
     )
-    return inside, sum(root.multiplicity for root in roots), all(root.certified for root in roots)
+    number = sum(root.multiplicity for root in roots)
+    return inside, number, all(root.certified for root in roots), exceeded
 
 
 def _root_to_json(root: Root, digits: int) -> dict[str, object]:
