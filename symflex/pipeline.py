@@ -138,12 +138,15 @@ def roots(
 
 
 def residues(
-    bound: BoundTransferFunction, region: Region | None = None, digits: int = 15
+    bound: BoundTransferFunction,
+    region: Region | None = None,
+    digits: int = 15,
+    budget: Budget | None = None,
 ) -> tuple[Residue, ...]:
     """Return the principal parts at the poles; see :func:`symflex.rational.find_residues`."""
     from symflex import rational as rational_room  # imports numpy
 
-    return rational_room.find_residues(bound, region, digits)
+    return rational_room.find_residues(bound, region, digits, budget)
 
 
 def rational(

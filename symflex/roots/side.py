@@ -419,6 +419,10 @@ class Side:
         reason = None if not self.missing else f"{self.missing} roots were counted but not found"
         return Proof(found + self.missing, found, reason)
 
+    def restore(self) -> None:
+        """Put back what was taken out of :attr:`roots`."""
+        self.roots = list(self._located)
+
     def in_order(self) -> tuple[Root, ...]:
         """Return the roots by natural frequency."""
         return in_order(self.roots)
