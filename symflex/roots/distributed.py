@@ -296,8 +296,8 @@ def _coincide(poles: Side, pole: Root, zeros: Side, zero: Root) -> bool:
     """Tell whether a pole and a zero agree in more than twice the digits asked for."""
     if not overlap(pole, zero):
         return False
-    closer = [side.refined(root) for side, root in ((poles, pole), (zeros, zero))]
-    return overlap(*closer)
+    closer = poles.refined(pole)
+    return overlap(closer, zero) and overlap(closer, zeros.refined(zero))
 
 
 def _chosen(roots: Sequence[Root], region: Region) -> list[Root]:
