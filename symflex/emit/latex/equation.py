@@ -10,6 +10,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+from symflex.emit.latex.column import NARROWEST_MM
 from symflex.emit.latex.expression import Piece, Style, Writer
 from symflex.emit.latex.label import labels_of, symbol
 from symflex.emit.latex.lines import break_lines
@@ -24,8 +25,7 @@ if TYPE_CHECKING:
     from symflex.model import Input, Model, Output
     from symflex.transfer import TransferFunction
 
-NARROWEST_MM: Final = 80.0
-"""Narrower columns are treated as this wide."""
+_OVER: Final = "_over_"
 
 RESERVED: Final = {LAPLACE: "s", "pi": r"\pi"}
 
@@ -56,14 +56,19 @@ def model_labels(model: Model) -> dict[str, str]:
 
 
 def equation_label(name: str) -> str:
-    r"""Return the ``\label`` of a transfer function, in characters that every package leaves alone.
+    r"""Return the ``\label`` of a transfer function: that of the exported functions of its name.
+
+    Different names have different labels: a slash remains where ``_over_`` could be read in two ways.
 
     Examples
     --------
-    >>> equation_label("V_tip/V_cmd")
-    'eq:V-tip/V-cmd'
+    >>> equation_label("V_tip/F"), equation_label("a/b_over_c")
+    ('eq:V_tip_over_F', 'eq:a/b_over_c')
     """
-    return "eq:" + re.sub(r"[^A-Za-z0-9/]", lambda m: "-" if m[0] == "_" else f".{ord(m[0]):x}.", name)
+    plain = re.sub(r"[^A-Za-z0-9_/]", lambda m: f".{ord(m[0]):x}.", name)
+    joined = plain.replace("/", _OVER)
+    is_unique = len(re.findall(f"(?={_OVER})", joined)) == 1
+    return f"eq:{joined if is_unique else plain}"
 
 
 def ratio_latex(tf: TransferFunction) -> str:
@@ -82,7 +87,7 @@ def transfer_function_latex(tf: TransferFunction, form: PrintedForm, *, width_mm
     form : PrintedForm
         Its numerator, denominator and definitions.
     width_mm : float or None
-        Width of the text, set in ten points; ``None`` never breaks a line.
+        Width of the text, set in ten points, treated as 80 mm when it is less; ``None`` never breaks a line.
 
     Returns
     -------
