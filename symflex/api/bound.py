@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from symflex import pipeline
 from symflex.api.mode import Mode, plain_mode
 from symflex.api.mode_shape import ModeShape
+from symflex.api.pole_zero_map import PoleZeroMap
 from symflex.api.regions import chosen_region
 from symflex.api.residue import Residue
 from symflex.api.root import Root
@@ -19,10 +20,9 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from symflex import rational as rational_room
-    from symflex import roots as roots_room
     from symflex import transfer as transfer_room
+    from symflex.api.frequency_response import FrequencyResponse
     from symflex.explanation import ZeroExplanation
-    from symflex.response import FrequencyResponse
 
 
 @dataclass(frozen=True)
@@ -47,6 +47,11 @@ class BoundTransferFunction:
     def __repr__(self) -> str:
         return f"<BoundTransferFunction {self.name}>"
 
+    def _repr_html_(self) -> str:
+        from symflex.emit.html import bound_html  # only notebooks ask
+
+        return bound_html(self.bound)
+
     def __call__(self, s: ArrayLike) -> complex | NDArray[np.complex128]:
         """Return the value at s [rad/s], a number or an array, to double precision."""
         import numpy as np
@@ -59,9 +64,10 @@ class BoundTransferFunction:
 
     def frequency_response(self, omega: ArrayLike) -> FrequencyResponse:
         """Return the response at real angular frequencies [rad/s]."""
+        from symflex.api.frequency_response import FrequencyResponse
         from symflex.response import respond
 
-        return respond(self.bound, omega)
+        return FrequencyResponse.of(respond(self.bound, omega))
 
     def poles(
         self, modes: int | None = None, *, band: tuple[float, float] | None = None, digits: int = 15
@@ -93,7 +99,7 @@ class BoundTransferFunction:
         modes: int | None = None,
         band: tuple[float, float] | None = None,
         region: tuple[float, float, float, float] | None = None,
-    ) -> roots_room.PoleZeroMap:
+    ) -> PoleZeroMap:
         """Return poles, zeros and hidden modes with their certificate.
 
         Parameters
@@ -107,7 +113,7 @@ class BoundTransferFunction:
         region : (float, float, float, float), optional
             Only the rectangle ``(re_low, re_high, im_low, im_high)`` [rad/s].
         """
-        return pipeline.roots(self.bound, chosen_region(modes, band, region), digits)
+        return PoleZeroMap.of(pipeline.roots(self.bound, chosen_region(modes, band, region), digits))
 
     def residues(
         self, modes: int | None = None, *, band: tuple[float, float] | None = None, digits: int = 15

@@ -8,7 +8,13 @@ from symflex.emit.latex.document import (
     latex_files,
     latex_fragment,
 )
-from symflex.emit.latex.equation import equation_label, inline_latex, model_labels, transfer_function_latex
+from symflex.emit.latex.equation import (
+    equation_label,
+    inline_latex,
+    model_labels,
+    notebook_latex,
+    transfer_function_latex,
+)
 from symflex.emit.latex.expression import latex_expression
 from symflex.emit.latex.label import label_of
 from symflex.emit.latex.table import mode_table, parameter_table, root_table
@@ -29,6 +35,7 @@ __all__ = [
     "latex_fragment",
     "mode_table",
     "model_labels",
+    "notebook_latex",
     "parameter_table",
     "root_table",
     "transfer_function_latex",

@@ -184,7 +184,7 @@ def _blocks(
             for kind in KINDS:
                 if getattr(found, kind):
                     title = f"{kind.capitalize() if kind != 'hidden' else 'Hidden roots'}"
-                    yield _Block(f"\\noindent {title}:{_BEFORE_TABLE}")
+                    yield _Block(f"\\medskip\\noindent {title}:{_BEFORE_TABLE}")
                     table = root_table(found, kind, width_mm=width_mm)
                     yield _table(table, f"{_stem(tf)}_{kind}", f"{title} of {_comment(tf.name)}")
     if any(found.poles for found in maps):

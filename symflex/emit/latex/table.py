@@ -89,7 +89,10 @@ def parameter_table(model: Model, *, width_mm: float = COLUMNS_MM["a4"]) -> str:
     # Without room beside each other, a value stands below its meaning.
     setting = SETTINGS[-1]
     left = room - setting.width((first, Column("p", ("",), (0.0,), (), 0.0)))
-    both = tuple(rf"{meaning}\newline {value}" for meaning, value in zip(meanings, values, strict=True))
+    both = tuple(
+        rf"{meaning}\newline {value}" if meaning else value
+        for meaning, value in zip(meanings, values, strict=True)
+    )
     below = Column("l", ("Meaning, value",), natural.head_widths, both, 0.0)
     heights = [1 + height for height in _heights(texts, left, setting)]
     return tabular((first, _wrapped(below, left)), setting, heights)
@@ -126,7 +129,7 @@ def root_table(
         Width of the column.
     """
     roots = tuple(h.root for h in found.hidden) if kind == "hidden" else getattr(found, kind)
-    entries = _one_of_each_pair(roots)
+    entries = one_of_each_pair(roots)
     heads = (
         (("Re $s$", r"(\unit{\radian\per\second})"), ("Re s", "(rad/s)"), _real_part),
         (("Im $s$", r"(\unit{\radian\per\second})"), ("Im s", "(rad/s)"), _imaginary_part),
@@ -148,9 +151,9 @@ def mode_table(
     maps : sequence of PoleZeroMap
         Of transfer functions of one model.
     """
-    modes: list[_Entry] = []
+    modes: list[Entry] = []
     for found in maps:
-        for entry in _one_of_each_pair(found.poles):
+        for entry in one_of_each_pair(found.poles):
             same = [i for i, m in enumerate(modes) if overlap(m.root, entry.root)]
             if not same:
                 modes.append(entry)
@@ -170,11 +173,11 @@ def mode_table(
     return _table_of(modes, heads, digits, width_mm / EM_MM, ("Mode", numbers))
 
 
-_Head = tuple[tuple[str, ...], tuple[str, ...], "Callable[[_Entry, int], str]"]
+_Head = tuple[tuple[str, ...], tuple[str, ...], "Callable[[Entry, int], str]"]
 
 
 def _table_of(
-    entries: Sequence[_Entry],
+    entries: Sequence[Entry],
     heads: Sequence[_Head],
     digits: int,
     room: float,
@@ -242,7 +245,7 @@ def _value(parameter: Parameter) -> str:
     if parameter.value is None:
         unit = parameter.unit
         return f"symbolic, in {unit_latex(unit)}" if unit and unit != "1" else "symbolic"
-    return quantity_latex(decimal_text(_rational(parameter.value)), parameter.unit)
+    return quantity_latex(decimal_text(rational_value(parameter.value)), parameter.unit)
 
 
 def _value_width(parameter: Parameter) -> float:
@@ -250,23 +253,23 @@ def _value_width(parameter: Parameter) -> float:
     width = text_width(unit) * (1.0 if siunitx_unit(parameter.unit) is None else 1.1) + 0.4
     if parameter.value is None:
         return text_width("symbolic, in ") + width
-    return number_width(decimal_text(_rational(parameter.value))) + width
+    return number_width(decimal_text(rational_value(parameter.value))) + width
 
 
-def _rational(value: ExactValue) -> Fraction:
+def rational_value(value: ExactValue) -> Fraction:
     """Return the value with pi to eighty digits."""
     return value.rational * _PI**value.pi_power
 
 
 @dataclass(frozen=True, slots=True)
-class _Entry:
-    """A root to print, alone or for its pair."""
+class Entry:
+    """A root to print, alone or for its conjugate pair."""
 
     root: Root
     is_pair: bool
 
 
-def _one_of_each_pair(roots: Sequence[Root]) -> list[_Entry]:
+def one_of_each_pair(roots: Sequence[Root]) -> list[Entry]:
     """Return every root once, a conjugate pair as the member above the real axis."""
     lower = [r for r in roots if r.im < 0]
     entries = []
@@ -275,45 +278,57 @@ def _one_of_each_pair(roots: Sequence[Root]) -> list[_Entry]:
             partner = next((r for r in lower if r.im.overlaps(-root.im) and r.re.overlaps(root.re)), None)
             if partner is not None:
                 lower.remove(partner)
-            entries.append(_Entry(root, partner is not None))
+            entries.append(Entry(root, partner is not None))
         elif not root.im < 0:
-            entries.append(_Entry(root, is_pair=False))
-    return entries + [_Entry(root, is_pair=False) for root in lower]
+            entries.append(Entry(root, is_pair=False))
+    return entries + [Entry(root, is_pair=False) for root in lower]
 
 
-def _real_part(entry: _Entry, digits: int) -> str:
+def _real_part(entry: Entry, digits: int) -> str:
     root = entry.root
     return _certified(root.decimal(digits).re, is_exact=root.on_imaginary_axis)
 
 
-def _imaginary_part(entry: _Entry, digits: int) -> str:
+def _imaginary_part(entry: Entry, digits: int) -> str:
     root = entry.root
     shown = _certified(root.decimal(digits).im, is_exact=root.is_real)
     return rf"\pm {shown}" if entry.is_pair and not shown.startswith("{") else shown
 
 
-def _angular_frequency(entry: _Entry, digits: int) -> str:
+def _angular_frequency(entry: Entry, digits: int) -> str:
     return _certified(
         decimals(entry.root.natural_frequency(), arb(0), digits).re, is_exact=entry.root.is_zero
     )
 
 
-def _frequency(entry: _Entry, digits: int) -> str:
-    with precision(max(_FREQUENCY_BITS, entry.root.working_bits())):
-        frequency = entry.root.natural_frequency() / (2 * arb.pi())
-    return _certified(decimals(frequency, arb(0), digits).re, is_exact=entry.root.is_zero)
+def _frequency(entry: Entry, digits: int) -> str:
+    return _certified(frequency_text(entry.root, digits), is_exact=entry.root.is_zero)
 
 
-def _damping(entry: _Entry, digits: int) -> str:
-    root = entry.root
+def _damping(entry: Entry, digits: int) -> str:
+    shown = damping_text(entry.root, digits)
+    return _certified(shown, is_exact=entry.root.on_imaginary_axis) if shown else "{--}"
+
+
+def frequency_text(root: Root, digits: int) -> str:
+    """Return the natural frequency abs(s)/(2 pi) of a root [Hz] with at most so many certified digits."""
+    with precision(max(_FREQUENCY_BITS, root.working_bits())):
+        frequency = root.natural_frequency() / (2 * arb.pi())
+    return decimals(frequency, arb(0), digits).re
+
+
+def damping_text(root: Root, digits: int) -> str:
+    """Return ``-re/abs(s)`` with at most so many certified digits, empty at 0 and where s may be 0."""
     frequency = root.natural_frequency()
     if root.is_zero or not frequency > 0:
-        return "{--}"
-    if root.on_imaginary_axis or root.is_real:
-        return "0" if root.on_imaginary_axis else "1" if root.re < 0 else "-1"
+        return ""
+    if root.on_imaginary_axis:
+        return "0"
+    if root.is_real:
+        return "1" if root.re < 0 else "-1"
     with precision(max(_FREQUENCY_BITS, root.working_bits())):
         ratio = -root.re / frequency
-    return _certified(decimals(ratio, arb(0), digits).re, is_exact=False)
+    return decimals(ratio, arb(0), digits).re
 
 
 def _certified(decimal: str, *, is_exact: bool) -> str:

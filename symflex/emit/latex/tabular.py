@@ -168,7 +168,7 @@ def _head(column: Column, setting: Setting) -> str:
     if setting.is_stacked:
         stacked = r"\\".join(lines)
         return rf"{{\shortstack{{{stacked}}}}}"
-    return f"{{{' '.join(lines)}}}"
+    return f"{{{' '.join(lines).replace('- ', '')}}}"
 
 
 def _parts(heights: Sequence[int]) -> list[tuple[int, int]]:
