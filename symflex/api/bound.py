@@ -10,6 +10,7 @@ from symflex import pipeline
 from symflex.api.budget import budget_of
 from symflex.api.mode import Mode, plain_mode
 from symflex.api.mode_shape import ModeShape
+from symflex.api.pole_zero_map import PoleZeroMap
 from symflex.api.regions import chosen_region
 from symflex.api.residue import Residue
 from symflex.api.root import Root
@@ -20,10 +21,9 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from symflex import rational as rational_room
-    from symflex import roots as roots_room
     from symflex import transfer as transfer_room
+    from symflex.api.frequency_response import FrequencyResponse
     from symflex.explanation import ZeroExplanation
-    from symflex.response import FrequencyResponse
 
 
 @dataclass(frozen=True)
@@ -48,6 +48,11 @@ class BoundTransferFunction:
     def __repr__(self) -> str:
         return f"<BoundTransferFunction {self.name}>"
 
+    def _repr_html_(self) -> str:
+        from symflex.emit.html import bound_html  # only notebooks ask
+
+        return bound_html(self.bound)
+
     def __call__(self, s: ArrayLike) -> complex | NDArray[np.complex128]:
         """Return the value at s [rad/s], a number or an array, to double precision."""
         import numpy as np
@@ -60,9 +65,10 @@ class BoundTransferFunction:
 
     def frequency_response(self, omega: ArrayLike) -> FrequencyResponse:
         """Return the response at real angular frequencies [rad/s]."""
+        from symflex.api.frequency_response import FrequencyResponse
         from symflex.response import respond
 
-        return respond(self.bound, omega)
+        return FrequencyResponse.of(respond(self.bound, omega))
 
     def poles(
         self,
@@ -159,7 +165,7 @@ class BoundTransferFunction:
         band: tuple[float, float] | None = None,
         region: tuple[float, float, float, float] | None = None,
         budget: float | None = None,
-    ) -> roots_room.PoleZeroMap:
+    ) -> PoleZeroMap:
         r"""Return poles, zeros and hidden modes with their certificate.
 
         Parameters
@@ -195,7 +201,8 @@ class BoundTransferFunction:
         (['3.00000', '-3.00000'], False)
         """
         time = budget_of(budget)
-        return pipeline.roots(self.bound, chosen_region(modes, band, region, mode), digits, time)
+        found = pipeline.roots(self.bound, chosen_region(modes, band, region, mode), digits, time)
+        return PoleZeroMap.of(found)
 
     def residues(
         self,

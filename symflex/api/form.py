@@ -73,8 +73,12 @@ class Form:
     def __repr__(self) -> str:
         return f"<Form {self.name} of {self.source.name}>"
 
-    def _repr_latex_(self) -> str:
-        return f"$\\displaystyle {self.latex()}$"
+    def _repr_latex_(self) -> str | None:
+        """Return the equation for a notebook, in lines where one would be too long; None for a huge one."""
+        from symflex.emit.latex import notebook_latex
+
+        latex = notebook_latex(self.source, self.printed)
+        return None if latex is None else f"$\\displaystyle {latex}$"
 
     def __str__(self) -> str:
         return form_text(self.source, self.printed)

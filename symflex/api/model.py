@@ -95,6 +95,11 @@ class Model:
         more = ", ..." if len(self.resolved.transfer_functions) > SHOWN_PAIRS else ""
         return f"<Model {self.title or 'without title'}: {names}{more}>"
 
+    def _repr_html_(self) -> str:
+        from symflex.emit.html import model_html  # only notebooks ask
+
+        return model_html(self.resolved)
+
     @property
     def title(self) -> str:
         """What the model is."""

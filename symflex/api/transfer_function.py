@@ -158,7 +158,7 @@ class TransferFunction:
         zeros, poles = ("infinitely many" if n is None else n for n in counts_of(self.exact))
         return f"<TransferFunction {self.name}: {self.quantity}, {zeros} zeros, {poles} poles>"
 
-    def _repr_latex_(self) -> str:
+    def _repr_latex_(self) -> str | None:
         return self._shortest._repr_latex_()
 
     def __str__(self) -> str:

@@ -6,20 +6,28 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import TYPE_CHECKING, Protocol
 
-from symflex.emit.forms import print_form
-from symflex.emit.latex import latex_document
+from symflex.emit.forms import print_forms
+from symflex.emit.latex import TEXT_WIDTH_MM, latex_document, latex_files
 from symflex.emit.numpy_module import numpy_module
+from symflex.errors import ModelError, SymflexError
+from symflex.roots.locate import locate
+from symflex.transfer import bind
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from symflex.emit.forms import PrintedForm
     from symflex.emit.program import Verification
     from symflex.model import Model
+    from symflex.roots import PoleZeroMap
     from symflex.transfer import TransferFunction
 
 
 ACCURACY = 1e-13
 """Relative error of exported code above which the user is warned."""
+
+ROOT_DIGITS = 15
+"""Digits to which roots are found for a table; it prints fewer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,15 +87,53 @@ def _shortfall(verification: Verification) -> str:
     return f"{name} is accurate to {error:.1e} only, over {low:g} Hz to {high:g} Hz"
 
 
+@dataclass(frozen=True, slots=True)
 class LatexExporter:
-    """A standalone LaTeX document."""
+    """A standalone LaTeX document, or the files it is made of.
+
+    Parameters
+    ----------
+    width_mm : float
+        Width of the column.
+    form : str, optional
+        Of the transfer functions; the shortest symbolic one by default.
+    """
+
+    width_mm: float = TEXT_WIDTH_MM
+    form: str | None = None
 
     suffix = ".tex"
-    summary = "standalone LaTeX document: parameters, transfer functions, hidden modes"
+    summary = "standalone LaTeX document: parameters, transfer functions, poles, zeros, modes"
 
     def export(self, model: Model, tfs: Sequence[TransferFunction]) -> Export:
         """Return the document."""
-        return Export(latex_document(model, tfs, [print_form(tf) for tf in tfs]))
+        forms, maps, warnings = self._parts(tfs)
+        text = latex_document(model, tfs, forms, pole_zero_maps=maps, width_mm=self.width_mm)
+        return Export(text, warnings)
+
+    def export_files(
+        self, model: Model, tfs: Sequence[TransferFunction]
+    ) -> tuple[dict[str, str], tuple[str, ...]]:
+        """Return the files by name, to be written into one folder, and the warnings."""
+        forms, maps, warnings = self._parts(tfs)
+        return latex_files(model, tfs, forms, pole_zero_maps=maps, width_mm=self.width_mm), warnings
+
+    def _parts(
+        self, tfs: Sequence[TransferFunction]
+    ) -> tuple[tuple[PrintedForm, ...], list[PoleZeroMap], tuple[str, ...]]:
+        """Return forms, poles and zeros of functions whose parameters all have values, and warnings."""
+        forms, sentences = print_forms(tfs, self.form)
+        maps, warnings = [], list(sentences)
+        for tf in tfs:
+            try:
+                bound = bind(tf)
+            except ModelError:
+                continue  # symbolic, which is no fault
+            try:
+                maps.append(locate(bound, digits=ROOT_DIGITS))
+            except SymflexError as error:
+                warnings.append(f"poles and zeros of {tf.name} are left out: {error.diagnostics[0].message}")
+        return forms, maps, tuple(warnings)
 
 
 EXPORTERS: dict[str, Exporter] = {"numpy": NumpyExporter(), "latex": LatexExporter()}

@@ -214,7 +214,7 @@ def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
     certificate = found.certificate
     status = "certified" if certificate.certified else f"NOT CERTIFIED: {certificate.reason}"
     lines = [f"{found.tf}   {status}: {certificate.found} of {certificate.counted} roots enclosed"]
-    if shown := _region_text(found.region):
+    if shown := region_text(found.region):
         lines.append(f"{INDENT}shown: {shown}")
     if found.is_default_region:
         lines.append(f"{INDENT}by default: a distributed system has infinitely many poles")
@@ -239,7 +239,7 @@ def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
     return "\n".join(lines)
 
 
-def _region_text(region: Region) -> str:
+def region_text(region: Region) -> str:
     """Say what was asked for, nothing when it was everything."""
     match region:
         case Modes(count):

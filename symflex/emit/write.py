@@ -6,8 +6,12 @@ import os
 import secrets
 import stat
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 PERMISSIONS = 0o666
 
@@ -45,6 +49,40 @@ def write_atomically(path: Path, data: bytes) -> None:
         raise _unwritable(name, error.strerror or "input/output error") from None
     except ValueError:
         raise _unwritable(name, "the name holds a character no file name can have") from None
+
+
+def write_folder(folder: Path, files: Mapping[str, str]) -> None:
+    """Write text files into a folder, which is made when it is missing, each as a whole or not at all.
+
+    Parameters
+    ----------
+    folder : Path
+        In a folder that exists.
+    files : mapping of str to str
+        Text by name of file; names lead nowhere else.
+
+    Raises
+    ------
+    ValueError
+        For a name that is a path.
+    UsageError
+        SF903 when something cannot be written, see :func:`write_atomically`.
+    """
+    for name in files:
+        if name in ("", ".", "..") or Path(name).name != name or "\\" in name or "\0" in name:
+            message = f"{name!r} is no name of a file"
+            raise ValueError(message)
+    try:
+        Path(folder).mkdir(exist_ok=True)
+    except FileNotFoundError:
+        parent = os.path.dirname(os.fspath(folder).rstrip("/")) or "."
+        raise _unwritable(os.fspath(folder), f"there is no folder '{parent}'") from None
+    except OSError as error:
+        raise _unwritable(os.fspath(folder), error.strerror or "input/output error") from None
+    except ValueError:
+        raise _unwritable(os.fspath(folder), "the name holds a character no file name can have") from None
+    for name, text in files.items():
+        write_atomically(Path(folder) / name, text.encode())
 
 
 def _write(path: Path, data: bytes) -> None:

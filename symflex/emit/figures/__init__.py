@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symflex.emit.figures.bode import draw_bode
+from symflex.emit.figures.bode import draw_bode, draw_response
 from symflex.emit.figures.drawing import Drawing
 from symflex.emit.figures.modes import draw_modes
 from symflex.emit.figures.poles_zeros import draw_poles_zeros
@@ -31,7 +31,7 @@ FIGURES: dict[str, Drawing] = {
     "poles_zeros": draw_poles_zeros,
 }
 
-__all__ = ["FIGURES", "FORMATS", "Drawing", "draw", "render", "save"]
+__all__ = ["FIGURES", "FORMATS", "Drawing", "draw", "draw_response", "render", "save"]
 
 
 def draw(

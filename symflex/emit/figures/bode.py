@@ -18,6 +18,7 @@ from symflex.emit.figures.style import (
     TITLE_POINTS,
     TITLE_SPACING,
     new_figure,
+    paper_style,
     title_lines,
 )
 from symflex.response import adaptive_grid, default_band, respond
@@ -102,6 +103,40 @@ def draw_bode(
         borderpad=0.1,
     )
     if lines:
+        figure.suptitle("\n".join(lines), fontsize=TITLE_POINTS, linespacing=TITLE_SPACING, parse_math=False)
+    return figure
+
+
+def draw_response(response: FrequencyResponse) -> Figure | None:
+    """Draw magnitude and phase of one frequency response, at its own frequencies.
+
+    Returns
+    -------
+    matplotlib.figure.Figure or None
+        None when it has less than two positive frequencies.
+    """
+    frequency = response.frequency_hz
+    kept = frequency > 0
+    order = np.argsort(frequency[kept], kind="stable")
+    frequency = frequency[kept][order]
+    if not frequency.size or frequency[0] == frequency[-1]:
+        return None
+    level = response.magnitude_db[kept][order]
+    level = np.where(np.isfinite(level), level, np.nan)
+    with paper_style():
+        figure = new_figure(COLUMN_INCHES, HEIGHT_INCHES + LINE_INCHES)
+        figure.set_layout_engine("constrained", h_pad=0.02, w_pad=0.03, hspace=0.03)
+        top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[1.25, 1])
+        top.plot(frequency, level, color=COLOURS[0])
+        bottom.plot(frequency, np.degrees(response.phase[kept][order]), color=COLOURS[0])
+        unit = label_of_unit(response.unit)
+        top.set_ylabel(f"Magnitude [dB re 1 {unit}]" if unit else "Magnitude [dB]")
+        _set_phase_axis(bottom, [response])
+        _set_frequency_axis(bottom, float(frequency[0]), float(frequency[-1]))
+        for axes in (top, bottom):
+            axes.grid(visible=True)
+        figure.align_ylabels([top, bottom])
+        lines = title_lines(response.tf, COLUMN_INCHES)
         figure.suptitle("\n".join(lines), fontsize=TITLE_POINTS, linespacing=TITLE_SPACING, parse_math=False)
     return figure
 

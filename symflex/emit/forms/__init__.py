@@ -12,7 +12,7 @@ from symflex.emit.forms.frequency import frequency_form
 from symflex.emit.forms.hidden import hidden_expressions
 from symflex.emit.forms.hyperbolic import hyperbolic_form
 from symflex.emit.forms.krylov import krylov_form
-from symflex.emit.forms.polynomial import factored_form, monic_form, polynomial_form
+from symflex.emit.forms.polynomial import constant_form, factored_form, monic_form, polynomial_form
 from symflex.emit.forms.printed import Form, PrintedForm
 from symflex.emit.forms.usage import forms_of
 from symflex.emit.forms.vaughan import vaughan_form
@@ -22,11 +22,14 @@ from symflex.errors.diagnostic import nearest
 from symflex.expressions import format_expression
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from symflex.transfer import TransferFunction
 
 FORMS: dict[str, Form] = {
     "polynomial": polynomial_form,
     "monic": monic_form,
+    "constant": constant_form,
     "factored": factored_form,
     "definitions": definitions_form,
     "zpk": zpk_form,
@@ -73,6 +76,36 @@ def print_form(tf: TransferFunction, form: str | None = None, digits: int = 6) -
     return FORMS[form](tf, digits)
 
 
+def print_forms(
+    tfs: Sequence[TransferFunction], form: str | None = None, digits: int = 6
+) -> tuple[tuple[PrintedForm, ...], tuple[str, ...]]:
+    """Return all functions in the named form, and a sentence on each that lacks it, in its default form.
+
+    Parameters
+    ----------
+    tfs, form, digits
+        See :func:`print_form`.
+
+    Raises
+    ------
+    UsageError
+        SF902 when none of them has the form.
+    """
+    found: list[PrintedForm] = []
+    sentences: list[str] = []
+    refusal: UsageError | None = None
+    for tf in tfs:
+        try:
+            found.append(print_form(tf, form, digits))
+        except UsageError as error:
+            refusal = refusal or error
+            found.append(print_form(tf, None, digits))
+            sentences.append(f"{tf.name} has no {form} form: printed in its {found[-1].name} form")
+    if refusal is not None and len(sentences) == len(found):
+        raise refusal
+    return tuple(found), tuple(sentences)
+
+
 def _candidates(tf: TransferFunction) -> tuple[str, ...]:
     found: tuple[str, ...] = CANDIDATES
     if tf.is_distributed:
@@ -95,4 +128,5 @@ __all__ = [
     "counts_of",
     "hidden_expressions",
     "print_form",
+    "print_forms",
 ]

@@ -1,4 +1,4 @@
-"""Forms over the expanded ring: polynomial, monic, factored."""
+"""Forms over the expanded ring: polynomial, monic, constant, factored."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ from symflex.expressions import Expression, Name, number, power, product_of, quo
 from symflex.kernels import LAPLACE, Factored, Ring, degree_in
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
     from flint import fmpz_mpoly
 
     from symflex.transfer import TransferFunction
@@ -45,16 +47,35 @@ def monic_form(tf: TransferFunction, digits: int) -> PrintedForm:
         SF902 for a function with kernels.
     """
     del digits
-    require_rational(tf, "monic")
+    return _normalised(tf, "monic", max)
+
+
+def constant_form(tf: TransferFunction, digits: int) -> PrintedForm:
+    """Return the polynomial form divided by the coefficient of the denominator's lowest power of s.
+
+    Without poles at 0 the denominator's constant term is 1, and that of the numerator the static gain.
+
+    Raises
+    ------
+    UsageError
+        SF902 for a function with kernels.
+    """
+    del digits
+    return _normalised(tf, "constant", min)
+
+
+def _normalised(tf: TransferFunction, name: str, choose: Callable[[Iterable[int]], int]) -> PrintedForm:
+    """Return the polynomial form divided by the coefficient of one of the denominator's powers of s."""
+    require_rational(tf, name)
     ring = tf.ratio.ring
     arranger = Arranger.plain(ring, constant_symbols(tf))
     den = tf.ratio.denominator().expand()
     parts = coefficients(ring, den)
-    leading = parts[max(parts)]
+    divisor = parts[choose(parts)]
     return PrintedForm(
-        "monic",
-        _divided(arranger, ring, tf.ratio.numerator().expand(), leading),
-        _divided(arranger, ring, den, leading),
+        name,
+        _divided(arranger, ring, tf.ratio.numerator().expand(), divisor),
+        _divided(arranger, ring, den, divisor),
     )
 
 

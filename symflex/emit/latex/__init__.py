@@ -1,23 +1,42 @@
 """LaTeX: expressions, equations that fit the column, tables, documents that compile without warnings."""
 
-from symflex.emit.latex.document import TEXT_WIDTH_MM, latex_document, latex_fragment
-from symflex.emit.latex.equation import equation_label, inline_latex, model_labels, transfer_function_latex
+from symflex.emit.latex.column import COLUMNS_MM, column_width
+from symflex.emit.latex.document import (
+    DOCUMENT,
+    TEXT_WIDTH_MM,
+    latex_document,
+    latex_files,
+    latex_fragment,
+)
+from symflex.emit.latex.equation import (
+    equation_label,
+    inline_latex,
+    model_labels,
+    notebook_latex,
+    transfer_function_latex,
+)
 from symflex.emit.latex.expression import latex_expression
 from symflex.emit.latex.label import label_of
-from symflex.emit.latex.table import parameter_table, pole_zero_table
+from symflex.emit.latex.table import mode_table, parameter_table, root_table
 from symflex.emit.latex.text import escape_text
 
 __all__ = [
+    "COLUMNS_MM",
+    "DOCUMENT",
     "TEXT_WIDTH_MM",
+    "column_width",
     "equation_label",
     "escape_text",
     "inline_latex",
     "label_of",
     "latex_document",
     "latex_expression",
+    "latex_files",
     "latex_fragment",
+    "mode_table",
     "model_labels",
+    "notebook_latex",
     "parameter_table",
-    "pole_zero_table",
+    "root_table",
     "transfer_function_latex",
 ]

@@ -1,25 +1,30 @@
-r"""A whole article about a model, and the fragment for a paper of one's own.
+r"""A whole article about a model, in one file or in files to ``\input``, and the fragment for a paper.
 
-The document compiles with pdflatex and only amsmath, array, booktabs, geometry, longtable and siunitx;
-lmodern and microtype are used where they are installed.
+Documents compile with pdflatex and lualatex and only amsmath, array, booktabs, geometry and siunitx
+(version 3); lmodern and microtype are used where they are installed. All of it is ASCII.
 """
 
 from __future__ import annotations
 
+import re
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from symflex.emit.forms import counts_of, hidden_expressions
+from symflex.emit.latex.column import COLUMNS_MM
 from symflex.emit.latex.equation import equation_label, model_labels, ratio_latex, transfer_function_latex
 from symflex.emit.latex.expression import Writer
-from symflex.emit.latex.table import VALUE_DIGITS, parameter_table, pole_zero_table
+from symflex.emit.latex.preamble import preamble
+from symflex.emit.latex.table import KINDS, VALUE_DIGITS, mode_table, parameter_table, root_table
 from symflex.emit.latex.text import escape_text
 from symflex.emit.latex.units import unit_latex
 from symflex.emit.latex.width import EM_MM
+from symflex.emit.text import region_text
 from symflex.errors import Diagnostic, UsageError
 from symflex.kernels import LAPLACE
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from symflex.emit.forms import PrintedForm
     from symflex.expressions import Expression
@@ -27,25 +32,26 @@ if TYPE_CHECKING:
     from symflex.roots import PoleZeroMap
     from symflex.transfer import HiddenFactor, TransferFunction
 
-TEXT_WIDTH_MM: Final = 170.0
+TEXT_WIDTH_MM: Final = COLUMNS_MM["a4"]
 """Width of the text of the document, and of fragments unless asked otherwise."""
+
+DOCUMENT: Final = "document.tex"
+"""Of the files of a document, the one to compile."""
 
 _LONGEST_HIDDEN: Final = 0.5
 _COUNTS: Final = "no one two three four five six seven eight nine ten eleven twelve".split()
+_FOR_EQUATIONS: Final = "amsmath"
+_FOR_TABLES: Final = "amsmath,array,booktabs,siunitx"
 
-_PREAMBLE: Final = r"""\documentclass[10pt,a4paper]{article}
-\usepackage[T1]{fontenc}
-\usepackage[utf8]{inputenc}
-\IfFileExists{lmodern.sty}{\usepackage{lmodern}}{}
-\IfFileExists{microtype.sty}{\usepackage{microtype}}{}
-\usepackage[textwidth=170mm,textheight=245mm]{geometry}
-\usepackage{amsmath}
-\usepackage{array}
-\usepackage{booktabs}
-\usepackage{longtable}
-\usepackage{siunitx}
-\sisetup{per-mode=symbol}
-\raggedbottom"""
+
+@dataclass(frozen=True, slots=True)
+class _Block:
+    """A part of a document: running text, or what a file of its own may hold."""
+
+    text: str
+    file: str = ""
+    packages: str = ""
+    title: str = ""
 
 
 def latex_fragment(tf: TransferFunction, form: PrintedForm, *, width_mm: float = TEXT_WIDTH_MM) -> str:
@@ -58,9 +64,7 @@ def latex_fragment(tf: TransferFunction, form: PrintedForm, *, width_mm: float =
     width_mm : float, optional
         Width of the column, set in ten points.
     """
-    display = transfer_function_latex(tf, form, width_mm=width_mm)
-    head = f"% {_comment(tf.name)}, {_comment(tf.quantity)}: \\eqref{{{equation_label(tf.name)}}}"
-    return f"{head}\n{display}\n"
+    return _file(_equation(tf, form, width_mm, ""), width_mm)
 
 
 def latex_document(
@@ -69,8 +73,9 @@ def latex_document(
     forms: Sequence[PrintedForm],
     *,
     pole_zero_maps: Sequence[PoleZeroMap] = (),
+    width_mm: float = TEXT_WIDTH_MM,
 ) -> str:
-    r"""Return an article with the model's parameters, transfer functions, poles and zeros.
+    r"""Return an article with the model's parameters, transfer functions, poles, zeros and modes.
 
     Parameters
     ----------
@@ -80,43 +85,130 @@ def latex_document(
         In pairs, in the order of print.
     pole_zero_maps : sequence of PoleZeroMap, optional
         Each is printed after the transfer function of its name.
+    width_mm : float, optional
+        Width of the text.
 
     Returns
     -------
     str
-        Encoded in UTF-8 it compiles with two runs of pdflatex, without warnings.
+        It compiles with two runs of pdflatex or lualatex, without warnings.
 
     Raises
     ------
     UsageError
         SF902 when a map belongs to none of the transfer functions.
     """
+    blocks = _blocks(model, tfs, forms, pole_zero_maps, width_mm)
+    return "".join((*_opening(model, width_mm), *(block.text for block in blocks), "\\end{document}\n"))
+
+
+def latex_files(
+    model: Model,
+    tfs: Sequence[TransferFunction],
+    forms: Sequence[PrintedForm],
+    *,
+    pole_zero_maps: Sequence[PoleZeroMap] = (),
+    width_mm: float = TEXT_WIDTH_MM,
+) -> dict[str, str]:
+    r"""Return the same article as files to ``\input`` into a paper, and the document that inputs them all.
+
+    A file holds one transfer function (``V_tip_over_F.tex``), the table of its poles, zeros or hidden roots
+    (``V_tip_over_F_poles.tex``), of the parameters or of the modes, and names the packages that it needs. See
+    :func:`latex_document`.
+
+    Returns
+    -------
+    dict of str to str
+        Text by name of file; :data:`DOCUMENT` is the one to compile.
+    """
+    files: dict[str, str] = {}
+    parts = list(_opening(model, width_mm))
+    for block in _blocks(model, tfs, forms, pole_zero_maps, width_mm):
+        if not block.file:
+            parts.append(block.text)
+            continue
+        name = _free_name(block.file, files)
+        files[name] = _file(block, width_mm)
+        after = block.text[len(block.text.rstrip("\n")) :]
+        parts.append(f"\\input{{{name.removesuffix('.tex')}}}{after}")
+    files[DOCUMENT] = "".join((*parts, "\\end{document}\n"))
+    return files
+
+
+def _free_name(stem: str, files: Mapping[str, str]) -> str:
+    """Return a name that none of the files has, not even where capitals count as small letters."""
+    taken = {DOCUMENT, *(name.lower() for name in files)}
+    name, number = f"{stem}.tex", 2
+    while name.lower() in taken:
+        name, number = f"{stem}_{number}.tex", number + 1
+    return name
+
+
+def _file(block: _Block, width_mm: float) -> str:
+    head = f"% {block.title}\n% Needs \\usepackage{{{block.packages}}}; for a column of {width_mm:g} mm.\n"
+    return f"{head}{block.text.rstrip()}\n"
+
+
+def _opening(model: Model, width_mm: float) -> Iterator[str]:
+    yield f"% To be compiled twice, with pdflatex or lualatex.\n{preamble(width_mm)}\n\n"
+    yield f"\\begin{{document}}\n\n{_heading(model)}\n\n"
+
+
+def _blocks(
+    model: Model,
+    tfs: Sequence[TransferFunction],
+    forms: Sequence[PrintedForm],
+    maps: Sequence[PoleZeroMap],
+    width_mm: float,
+) -> Iterator[_Block]:
     known = [tf.name for tf in tfs]
-    for found in pole_zero_maps:
+    for found in maps:
         if found.tf not in known:
             message = f"poles and zeros of '{found.tf[:64]}', which is not among the transfer functions"
             raise UsageError(Diagnostic("SF902", message))
-    parts = [
-        _PREAMBLE,
-        r"\begin{document}",
-        _heading(model),
-    ]
     if model.parameters:
-        parts += [r"\section{Parameters}", _with_table(_about_values(model), parameter_table(model))]
+        yield _Block(f"\\section{{Parameters}}\n\n{_about_values(model)}{_BEFORE_TABLE}")
+        yield _table(parameter_table(model, width_mm=width_mm), "parameters", "Parameters")
     if tfs:
-        parts.append(r"\section{Transfer functions}")
+        yield _Block("\\section{Transfer functions}\n\n")
     for tf, form in zip(tfs, forms, strict=True):
-        display = transfer_function_latex(tf, form, width_mm=TEXT_WIDTH_MM)
+        yield _Block(_introduction(tf))
         # Without a blank line: a display belongs to the paragraph before it.
-        parts.append(f"{_introduction(tf)}\n{display}")
-        hidden = _hidden_modes(tf)
-        maps = [found for found in pole_zero_maps if found.tf == tf.name]
-        if hidden and not maps:
-            parts.append("\n".join((r"\noindent", *hidden)))
-        for found in maps:
-            parts.append("\n".join((r"\noindent", *hidden, *_roots(tf, found))))
-    parts.append(r"\end{document}")
-    return "\n\n".join(parts) + "\n"
+        yield _equation(tf, form, width_mm, "\n\n")
+        hidden = _hidden_modes(tf, width_mm)
+        of_tf = [found for found in maps if found.tf == tf.name]
+        if hidden and not of_tf:
+            yield _Block("\n".join((r"\noindent", *hidden)) + "\n\n")
+        for found in of_tf:
+            yield _Block("\n".join((r"\noindent", *hidden, *_about_roots(tf, found))) + "\n\n")
+            for kind in KINDS:
+                if getattr(found, kind):
+                    title = f"{kind.capitalize() if kind != 'hidden' else 'Hidden roots'}"
+                    yield _Block(f"\\medskip\\noindent {title}:{_BEFORE_TABLE}")
+                    table = root_table(found, kind, width_mm=width_mm)
+                    yield _table(table, f"{_stem(tf)}_{kind}", f"{title} of {_comment(tf.name)}")
+    if any(found.poles for found in maps):
+        yield _Block(f"\\section{{Modes}}\n\n{_about_modes(maps)}{_BEFORE_TABLE}")
+        yield _table(mode_table(maps, width_mm=width_mm), "modes", "Modes")
+
+
+_PROVED: Final = "Every pole and zero listed is enclosed to the digits printed, and their count is proved."
+_BEFORE_TABLE: Final = "\n\n\\nopagebreak\\medskip\n"
+
+
+def _table(table: str, file: str, title: str) -> _Block:
+    return _Block(f"{table}\n\\medskip\n\n", file, _FOR_TABLES, title)
+
+
+def _equation(tf: TransferFunction, form: PrintedForm, width_mm: float, after: str) -> _Block:
+    display = transfer_function_latex(tf, form, width_mm=width_mm)
+    title = f"{_comment(tf.name)}, {_comment(tf.quantity)}: \\eqref{{{equation_label(tf.name)}}}"
+    return _Block(f"{display}{after}", _stem(tf), _FOR_EQUATIONS, title)
+
+
+def _stem(tf: TransferFunction) -> str:
+    """Return a file's name without its suffix, of letters that every file system has."""
+    return re.sub(r"[^A-Za-z0-9_]", "_", tf.name.replace("/", "_over_"))
 
 
 def _heading(model: Model) -> str:
@@ -140,7 +232,7 @@ def _introduction(tf: TransferFunction) -> str:
     counts = f"{_counted(zeros, 'zero')} and {_counted(poles, 'pole')}"
     if zeros is None and poles is None:
         counts = "infinitely many zeros and poles"
-    return f"\\subsection{{${ratio_latex(tf)}$}}\n\nThe {escape_text(tf.quantity)}{unit}, with {counts}:"
+    return f"\\subsection{{${ratio_latex(tf)}$}}\n\nThe {escape_text(tf.quantity)}{unit}, with {counts}:\n"
 
 
 def _counted(count: int | None, noun: str) -> str:
@@ -150,14 +242,16 @@ def _counted(count: int | None, noun: str) -> str:
     return f"{number} {noun}{'' if count == 1 else 's'}"
 
 
-def _hidden_modes(tf: TransferFunction) -> list[str]:
+def _hidden_modes(tf: TransferFunction, width_mm: float) -> list[str]:
     """Return a sentence for every factor in s that cancelled."""
     writer = Writer(model_labels(tf.model))
     printed = hidden_expressions(tf)
-    return [_hidden_mode(h, e, tf, writer) for h, (e, _) in zip(tf.hidden, printed, strict=True)]
+    return [_hidden_mode(h, e, tf, writer, width_mm) for h, (e, _) in zip(tf.hidden, printed, strict=True)]
 
 
-def _hidden_mode(factor: HiddenFactor, printed: Expression, tf: TransferFunction, writer: Writer) -> str:
+def _hidden_mode(
+    factor: HiddenFactor, printed: Expression, tf: TransferFunction, writer: Writer, width_mm: float
+) -> str:
     ring = tf.ratio.ring
     degrees = factor.polynomial.degrees()
     count = int(degrees[ring.index[LAPLACE]])
@@ -168,7 +262,7 @@ def _hidden_mode(factor: HiddenFactor, printed: Expression, tf: TransferFunction
         what, where = "The factor $s$", rf"the {noun} at $s = 0$"
     else:
         piece = writer.piece(printed)
-        if piece.width <= _LONGEST_HIDDEN * TEXT_WIDTH_MM / EM_MM:
+        if piece.width <= _LONGEST_HIDDEN * width_mm / EM_MM:
             what = f"The factor ${piece.latex}$"
         else:
             what = "A transcendental factor" if is_transcendental else f"A factor of degree {count} in $s$"
@@ -180,19 +274,26 @@ def _hidden_mode(factor: HiddenFactor, printed: Expression, tf: TransferFunction
     )
 
 
-def _roots(tf: TransferFunction, found: PoleZeroMap) -> list[str]:
+def _about_roots(tf: TransferFunction, found: PoleZeroMap) -> list[str]:
     if not (found.poles or found.zeros or found.hidden):
         return [f"${ratio_latex(tf)}$ has neither poles nor zeros in the region searched."]
+    sentences = []
+    if shown := region_text(found.region):
+        sentences.append(f"Listed are {escape_text(shown)}.")
     if found.certificate.certified:
-        sentence = "Every pole and zero listed is enclosed to the digits printed, and their count is proved."
+        sentences.append(
+            "Every pole and zero listed is enclosed to the digits printed, and their count is proved."
+        )
     else:
-        sentence = f"The list is not certified: {escape_text(found.certificate.reason or 'no reason given')}."
-    return [_with_table(sentence, pole_zero_table(found))]
+        reason = escape_text(found.certificate.reason or "no reason given")
+        sentences.append(f"The list is not certified: {reason}.")
+    return sentences
 
 
-def _with_table(sentence: str, table: str) -> str:
-    """Return a table with the sentence above it on the same page."""
-    return f"{sentence}\n\n\\nopagebreak\\medskip\n{table}\n\\medskip"
+def _about_modes(maps: Sequence[PoleZeroMap]) -> str:
+    shown = "" if all(found.certificate.certified for found in maps) else " The lists are not all certified."
+    whose = "the transfer function" if len(maps) == 1 else "at least one of the transfer functions"
+    return f"The modes that are poles of {whose}; number 0 is motion as a rigid body.{shown}"
 
 
 def _comment(text: str) -> str:

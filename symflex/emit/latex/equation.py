@@ -10,6 +10,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+from symflex.emit.latex.column import NARROWEST_MM
 from symflex.emit.latex.expression import Piece, Style, Writer
 from symflex.emit.latex.label import labels_of, symbol
 from symflex.emit.latex.lines import break_lines
@@ -24,10 +25,14 @@ if TYPE_CHECKING:
     from symflex.model import Input, Model, Output
     from symflex.transfer import TransferFunction
 
-NARROWEST_MM: Final = 80.0
-"""Narrower columns are treated as this wide."""
+_OVER: Final = "_over_"
 
 RESERVED: Final = {LAPLACE: "s", "pi": r"\pi"}
+
+NOTEBOOK_MM: Final = 190.0
+"""Width of an equation in a notebook, in type of ten points."""
+
+LONGEST_IN_NOTEBOOK: Final = 20_000
 
 # TeX keeps a whole display in its memory.
 _LINES_PER_DISPLAY: Final = 300
@@ -56,14 +61,19 @@ def model_labels(model: Model) -> dict[str, str]:
 
 
 def equation_label(name: str) -> str:
-    r"""Return the ``\label`` of a transfer function, in characters that every package leaves alone.
+    r"""Return the ``\label`` of a transfer function: that of the exported functions of its name.
+
+    Different names have different labels: a slash remains where ``_over_`` could be read in two ways.
 
     Examples
     --------
-    >>> equation_label("V_tip/V_cmd")
-    'eq:V-tip/V-cmd'
+    >>> equation_label("V_tip/F"), equation_label("a/b_over_c")
+    ('eq:V_tip_over_F', 'eq:a/b_over_c')
     """
-    return "eq:" + re.sub(r"[^A-Za-z0-9/]", lambda m: "-" if m[0] == "_" else f".{ord(m[0]):x}.", name)
+    plain = re.sub(r"[^A-Za-z0-9_/]", lambda m: f".{ord(m[0]):x}.", name)
+    joined = plain.replace("/", _OVER)
+    is_unique = len(re.findall(f"(?={_OVER})", joined)) == 1
+    return f"eq:{joined if is_unique else plain}"
 
 
 def ratio_latex(tf: TransferFunction) -> str:
@@ -82,7 +92,7 @@ def transfer_function_latex(tf: TransferFunction, form: PrintedForm, *, width_mm
     form : PrintedForm
         Its numerator, denominator and definitions.
     width_mm : float or None
-        Width of the text, set in ten points; ``None`` never breaks a line.
+        Width of the text, set in ten points, treated as 80 mm when it is less; ``None`` never breaks a line.
 
     Returns
     -------
@@ -92,7 +102,7 @@ def transfer_function_latex(tf: TransferFunction, form: PrintedForm, *, width_mm
     """
     writer = Writer(_labels(tf, form))
     width = None if width_mm is None else max(width_mm, NARROWEST_MM) / EM_MM
-    parts = [_formula(tf, form, writer, None if width is None else width - _TAG)]
+    parts = [_formula(tf, form, writer, width)]
     if form.where or form.laws:
         parts.append(_where(form, writer, width))
     return "\n".join(parts)
@@ -107,6 +117,32 @@ def inline_latex(tf: TransferFunction, form: PrintedForm) -> str:
     where = [f"{writer.label(n).latex} = {writer.piece(e).latex}" for n, e in form.where]
     where += [f"{law.latex} = {value}" for law, value in _laws(form, writer)]
     return rf"{formula},\quad \text{{where }} " + r",\; ".join(where)
+
+
+def notebook_latex(tf: TransferFunction, form: PrintedForm) -> str | None:
+    r"""Return a transfer function as mathematics without delimiters, in lines where one would be too long.
+
+    Only commands that KaTeX and MathJax share are used.
+
+    Returns
+    -------
+    str or None
+        :func:`inline_latex`, or an ``aligned`` environment. None when it would be longer than
+        :data:`LONGEST_IN_NOTEBOOK` characters, which a page takes seconds to set.
+    """
+    writer = Writer(_labels(tf, form))
+    width = NOTEBOOK_MM / EM_MM
+    one_line = _left_side(tf)[1] + RELATION + _right_side(form, writer)[1]
+    if not (form.where or form.laws) and one_line <= width:
+        return inline_latex(tf, form)
+    rows = [*_rows(tf, form, writer, width), *_where_rows(form, writer, width)]
+    lines = []
+    for row in rows:
+        first, *more = row.right if row.right[0] else row.right[1:]
+        lines += [f"{row.left} &= {first}", *(rf"&\quad {line}" for line in more)]
+    body = " \\\\ ".join(lines)
+    latex = rf"\begin{{aligned}} {body} \end{{aligned}}"
+    return latex if len(latex) <= LONGEST_IN_NOTEBOOK else None
 
 
 def _labels(tf: TransferFunction, form: PrintedForm) -> dict[str, str]:
@@ -149,13 +185,17 @@ def _formula(tf: TransferFunction, form: PrintedForm, writer: Writer, width: flo
     right, right_width = _right_side(form, writer)
     label = rf"\label{{{equation_label(tf.name)}}}"
     # Where only the number lacks room, it stands below the formula by itself.
-    if width is None or left_width + RELATION + right_width <= width + _TAG:
+    if width is None or left_width + RELATION + right_width <= width:
         return f"\\begin{{equation}}\n  {label}\n  {left} = {right}\n\\end{{equation}}"
+    return _align(_rows(tf, form, writer, width), "align", label)
+
+
+def _rows(tf: TransferFunction, form: PrintedForm, writer: Writer, width: float) -> list[_Row]:
+    """Return the equations that a formula too wide for one line is made of."""
+    left, left_width = _left_side(tf)
     if _is_one(form.den):
-        rows = [_row(left, left_width, form.num, writer, width, left_width)]
-    else:
-        rows = _named_parts(form, writer, width, left, left_width)
-    return _align(rows, "align", label)
+        return [_row(left, left_width, form.num, writer, width, left_width, _TAG)]
+    return _named_parts(form, writer, width, left, left_width)
 
 
 def _named_parts(form: PrintedForm, writer: Writer, width: float, left: str, left_width: float) -> list[_Row]:
@@ -165,7 +205,7 @@ def _named_parts(form: PrintedForm, writer: Writer, width: float, left: str, lef
     parts = []
     for name, expression in zip(_free_names(form, writer), (num, form.den), strict=True):
         piece = writer.piece(expression, Style.TEXT)
-        is_long = left_width + RELATION + MINUS + _FRACTION_EDGES + piece.width > width
+        is_long = left_width + RELATION + MINUS + _FRACTION_EDGES + piece.width + _TAG > width
         depends = any(n.name in varying for n in names(expression))
         head = f"{name}(s)" if depends else name
         parts.append((head if is_long else piece.latex, expression, is_long))
@@ -199,12 +239,18 @@ def _free_names(form: PrintedForm, writer: Writer) -> tuple[str, str]:
 
 
 def _where(form: PrintedForm, writer: Writer, width: float | None) -> str:
+    return _align(_where_rows(form, writer, width), "align*", "")
+
+
+def _where_rows(form: PrintedForm, writer: Writer, width: float | None) -> list[_Row]:
+    if not (form.where or form.laws):
+        return []
     room = None if width is None else width - _WHERE_WIDTH
     rows = _broken_rows(form.where, writer, room) if form.where else []
     rows += [_Row(left.latex, left.width, (value,)) for left, value in _laws(form, writer)]
     first = rows[0]
     rows[0] = _Row(f"{_WHERE}{first.left}", first.left_width, first.right)
-    return _align(rows, "align*", "")
+    return rows
 
 
 def _laws(form: PrintedForm, writer: Writer) -> list[tuple[Piece, str]]:
@@ -230,18 +276,40 @@ def _broken_rows(
 
 
 def _row(
-    left: str, left_width: float, expression: Expression, writer: Writer, width: float | None, column: float
+    left: str,
+    left_width: float,
+    expression: Expression,
+    writer: Writer,
+    width: float | None,
+    column: float,
+    tag: float = 0.0,
 ) -> _Row:
-    """Return an equation with its right side broken; ``column`` is the width of the widest left side."""
+    """Return an equation with its right side broken.
+
+    Parameters
+    ----------
+    left, left_width : str, float
+        Its left side.
+    expression : Expression
+        Its right side.
+    writer : Writer
+        Gives names their labels.
+    width : float or None
+        Of a line [em]; None never breaks one.
+    column : float
+        Width of the widest left side.
+    tag : float
+        Room that the first line leaves for its number.
+    """
     if width is None:
         return _Row(left, left_width, (writer.piece(expression).latex,))
     room = width - column - RELATION
-    if room < _LEAST_ROOM:
+    if room - tag < _LEAST_ROOM:
         # The left side stands in a line of its own.
         room = width - RELATION - QUAD
         lines = break_lines(expression, writer, room, room - QUAD + RELATION)
         return _Row(left, left_width, ("", *lines))
-    return _Row(left, left_width, tuple(break_lines(expression, writer, room, room - QUAD)))
+    return _Row(left, left_width, tuple(break_lines(expression, writer, room - tag, room - QUAD)))
 
 
 def _align(rows: Sequence[_Row], environment: str, label: str) -> str:

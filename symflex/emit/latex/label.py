@@ -11,7 +11,6 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from symflex.emit.latex.text import escape_text
 from symflex.emit.latex.width import (
     BOLD_AND_OTHERS,
     DIGIT,
@@ -173,12 +172,20 @@ def _verbatim(name: str) -> Label:
     if _NAME.fullmatch(name) and _typewriter_width(name.replace("_", r"\_")) <= WIDEST_LABEL:
         text = name.replace("_", r"\_")
         return Label(rf"\mathtt{{{text}}}", _typewriter_width(text), is_wordy=True)
-    pieces = [escape_text(name[i : i + _STACKED]) for i in range(0, len(name), _STACKED)]
-    pieces = [piece.replace(r"\allowbreak{}", "") for piece in pieces]
-    lines = [rf"\text{{\tiny\ttfamily {piece}}}" for piece in pieces]
+    plain = re.sub(r"[^A-Za-z0-9_]", ".", name)
+    pieces = [plain[i : i + _STACKED].replace("_", r"\_") for i in range(0, len(plain), _STACKED)]
+    lines = [rf"\scriptscriptstyle\mathtt{{{piece}}}" for piece in pieces]
     stacked = r"\\".join(lines)
-    latex = lines[0] if len(lines) == 1 else rf"\substack{{{stacked}}}"
-    return Label(latex, _STACKED * TYPEWRITER * _TINY_SIZE, is_wordy=True)
+    return Label(rf"\substack{{{stacked}}}", _stacked_width(stacked), is_wordy=True)
+
+
+def _stacked_width(latex: str) -> float:
+    # An underscore is a rule that hardly shrinks.
+    lines: list[str] = re.findall(r"\\mathtt\{([^}]*)\}", latex)
+    return max(
+        _TINY_SIZE * TYPEWRITER * len(line.replace(r"\_", "")) + _UNDERSCORE * line.count(r"\_")
+        for line in lines
+    )
 
 
 def _typewriter_width(text: str) -> float:
@@ -192,7 +199,7 @@ def _read(latex: str) -> Label | None:
         text = latex.removeprefix(r"\mathtt{").removesuffix("}")
         return Label(latex, _typewriter_width(text), is_wordy=True)
     if _SMALL.fullmatch(latex):
-        return Label(latex, _STACKED * TYPEWRITER * _TINY_SIZE, is_wordy=True)
+        return Label(latex, _stacked_width(latex), is_wordy=True)
     try:
         whole, _ = _read_list(latex, 0, ITALIC, 0)
     except _UnsoundError:
@@ -213,12 +220,13 @@ _STACKED: Final = 22
 """Characters in a line of a stacked name."""
 
 _TINY_SIZE: Final = 0.55
+_UNDERSCORE: Final = 0.5
 
 # What `_verbatim` writes of a proper name, sound by construction.
 _TYPEWRITER: Final = re.compile(r"\\mathtt\{(?:[A-Za-z0-9]|\\_)+\}")
 _SMALL: Final = re.compile(
-    r"\\substack\{\\text\{\\tiny\\ttfamily (?:[A-Za-z0-9]|\\_)+\}"
-    r"(?:\\\\\\text\{\\tiny\\ttfamily (?:[A-Za-z0-9]|\\_)+\})+\}"
+    r"\\substack\{\\scriptscriptstyle\\mathtt\{(?:[A-Za-z0-9.]|\\_)+\}"
+    r"(?:\\\\\\scriptscriptstyle\\mathtt\{(?:[A-Za-z0-9.]|\\_)+\})*\}"
 )
 
 

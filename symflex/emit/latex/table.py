@@ -1,4 +1,4 @@
-r"""Tables of parameters and of poles and zeros, with booktabs and siunitx; long ones break across pages."""
+r"""Tables of parameters, poles, zeros and modes, with booktabs and siunitx, as wide as a column allows."""
 
 from __future__ import annotations
 
@@ -7,12 +7,28 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Final
 
+from flint import arb
+
+from symflex.emit.latex.column import COLUMNS_MM
 from symflex.emit.latex.equation import model_labels
+from symflex.emit.latex.label import symbol
+from symflex.emit.latex.tabular import (
+    SETTINGS,
+    Column,
+    Setting,
+    fitting,
+    number_column,
+    number_width,
+    tabular,
+)
 from symflex.emit.latex.text import escape_text, text_width
-from symflex.emit.latex.units import quantity_latex, unit_latex
+from symflex.emit.latex.units import quantity_latex, siunitx_unit, unit_latex
+from symflex.emit.latex.width import EM_MM
+from symflex.roots import decimals, precision
+from symflex.roots.root import overlap
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from symflex.model import ExactValue, Model, Parameter
     from symflex.roots import PoleZeroMap, Root
@@ -20,68 +36,170 @@ if TYPE_CHECKING:
 VALUE_DIGITS: Final = 7
 """Significant digits of a value that is not a shorter decimal."""
 
-LINES_PER_PAGE: Final = 40
-"""A table with more lines becomes a longtable."""
+ROOT_DIGITS: Final = 6
+"""Significant digits of a root, where its radius certifies them and the column has room."""
 
 LONGEST_MEANING: Final = 400
 """Characters of a description that a table prints; a row must fit a page."""
 
-_SETUP: Final = r"\sisetup{per-mode=symbol,group-digits=integer}"
+KINDS: Final = {"poles": "pole", "zeros": "zero", "hidden": "hidden root"}
+"""What a :class:`~symflex.roots.PoleZeroMap` holds, and what one of it is called."""
+
+_FEWEST_DIGITS: Final = 3
 _PI: Final = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899")
 _LARGEST_PLAIN: Final = 5
 _SMALLEST_PLAIN: Final = -4
-_ONE_LINE: Final = 22.0
-_WRAPPED: Final = r"l>{\raggedright\arraybackslash}p{0.5\linewidth}l"
+_NARROWEST_MEANING: Final = 12.5
+_WRAPPED: Final = r">{{\raggedright\arraybackslash}}p{{{:.1f}mm}}"
+_FREQUENCY_BITS: Final = 256
 
 
-def parameter_table(model: Model) -> str:
+def parameter_table(model: Model, *, width_mm: float = COLUMNS_MM["a4"]) -> str:
     r"""Return the table of a model's parameters: symbol, meaning, value in SI units.
 
     Values that are not short decimals are rounded to :data:`VALUE_DIGITS` significant digits; a parameter
-    without a value is called symbolic. Needs booktabs, siunitx, longtable and array.
+    without a value is called symbolic. Needs booktabs, siunitx and array.
+
+    Parameters
+    ----------
+    model : Model
+        Whose parameters, in declared order.
+    width_mm : float, optional
+        Width of the column; meanings are broken into lines where they must be.
     """
     labels = model_labels(model)
-    has_meanings = any(p.doc for p in model.parameters)
-    rows = []
-    for parameter in model.parameters:
-        meaning = (escape_text(_cut(parameter.doc)),) if has_meanings else ()
-        rows.append((f"${labels[parameter.name]}$", *meaning, _value(parameter)))
-    if has_meanings:
-        widest = max(text_width(p.doc) for p in model.parameters)
-        columns = "lll" if widest <= _ONE_LINE else _WRAPPED
-        lines = sum(1 + int(text_width(_cut(p.doc)) / _ONE_LINE) for p in model.parameters)
-        return _table(columns, ("Symbol", "Meaning", "Value"), (rows,), lines)
-    return _table("ll", ("Symbol", "Value"), (rows,), len(rows))
+    widths = [symbol(p.name, labels).width for p in model.parameters]
+    symbols = tuple(f"${labels[p.name]}$" for p in model.parameters)
+    first = Column("l", ("Symbol",), (text_width("Symbol"),), symbols, max(widths, default=0.0))
+    values = tuple(map(_value, model.parameters))
+    widest = max(map(_value_width, model.parameters), default=0.0)
+    last = Column("l", ("Value",), (text_width("Value"),), values, widest)
+    room = width_mm / EM_MM
+    if not any(p.doc for p in model.parameters):
+        return tabular((first, last), fitting((first, last), room) or SETTINGS[-1])
+    texts = tuple(_cut(p.doc) for p in model.parameters)
+    meanings = tuple(map(escape_text, texts))
+    natural = Column("l", ("Meaning",), (text_width("Meaning"),), meanings, max(map(text_width, texts)))
+    if SETTINGS[0].width((first, natural, last)) <= room:
+        return tabular((first, natural, last), SETTINGS[0])
+    for setting in SETTINGS:
+        left = room - setting.width((first, Column("p", ("",), (0.0,), (), 0.0), last))
+        if left >= _NARROWEST_MEANING * setting.scale:
+            return tabular((first, _wrapped(natural, left), last), setting, _heights(texts, left, setting))
+    # Without room beside each other, a value stands below its meaning.
+    setting = SETTINGS[-1]
+    left = room - setting.width((first, Column("p", ("",), (0.0,), (), 0.0)))
+    both = tuple(
+        rf"{meaning}\newline {value}" if meaning else value
+        for meaning, value in zip(meanings, values, strict=True)
+    )
+    below = Column("l", ("Meaning, value",), natural.head_widths, both, 0.0)
+    heights = [1 + height for height in _heights(texts, left, setting)]
+    return tabular((first, _wrapped(below, left)), setting, heights)
 
 
-def pole_zero_table(found: PoleZeroMap, digits: int = 6) -> str:
-    r"""Return the table of poles, zeros and hidden modes: real and imaginary part, frequency, damping ratio.
+def _wrapped(column: Column, width: float) -> Column:
+    """Return a column of paragraphs of a width [em]."""
+    return Column(_WRAPPED.format(width * EM_MM), column.head, column.head_widths, column.cells, width)
 
-    A conjugate pair is one row with a plus-minus sign. Needs booktabs, siunitx and longtable.
+
+def _heights(texts: Iterable[str], width: float, setting: Setting) -> list[int]:
+    """Return how many lines paragraphs take in a column [em], words being kept whole."""
+    return [1 + int(setting.scale * text_width(text) / (0.8 * width)) for text in texts]
+
+
+def root_table(
+    found: PoleZeroMap, kind: str, *, digits: int = ROOT_DIGITS, width_mm: float = COLUMNS_MM["a4"]
+) -> str:
+    r"""Return the table of poles, zeros or hidden roots: both parts, frequency, damping ratio, multiplicity.
+
+    A conjugate pair is one row with a plus-minus sign. Each number has the digits that the root's enclosure
+    certifies, at most ``digits``; where a narrow column has no room for them fewer, but not less than three.
+    Needs booktabs and siunitx.
 
     Parameters
     ----------
     found : PoleZeroMap
         Certified roots.
+    kind : str
+        A key of :data:`KINDS`.
     digits : int, optional
         Significant digits.
+    width_mm : float, optional
+        Width of the column.
     """
-    groups = (
-        ("pole", found.poles),
-        ("zero", found.zeros),
-        ("hidden", tuple(h.root for h in found.hidden)),
+    roots = tuple(h.root for h in found.hidden) if kind == "hidden" else getattr(found, kind)
+    entries = one_of_each_pair(roots)
+    heads = (
+        (("Re $s$", r"(\unit{\radian\per\second})"), ("Re s", "(rad/s)"), _real_part),
+        (("Im $s$", r"(\unit{\radian\per\second})"), ("Im s", "(rad/s)"), _imaginary_part),
+        (("Frequency", r"(\unit{\hertz})"), ("Frequency", "(Hz)"), _frequency),
+        (("Damping", "ratio"), ("Damping", "ratio"), _damping),
     )
-    rows = [[_root_cells(word, root, digits) for root in _one_of_each_pair(roots)] for word, roots in groups]
-    flat = [row for group in rows for row in group]
-    columns = "l" + "".join(_number_column([row[i] for row in flat]) for i in range(1, 5))
-    head = (
-        "",
-        r"{Re $s$ (\unit{\radian\per\second})}",
-        r"{Im $s$ (\unit{\radian\per\second})}",
-        r"{Frequency (\unit{\hertz})}",
-        "{Damping ratio}",
+    return _table_of(entries, heads, digits, width_mm / EM_MM)
+
+
+def mode_table(
+    maps: Sequence[PoleZeroMap], *, digits: int = ROOT_DIGITS, width_mm: float = COLUMNS_MM["a4"]
+) -> str:
+    r"""Return the table of the modes that are poles of any of several functions: frequencies and damping.
+
+    Rigid-body motions come first; a conjugate pair, or a real pole, is one mode. See :func:`root_table`.
+
+    Parameters
+    ----------
+    maps : sequence of PoleZeroMap
+        Of transfer functions of one model.
+    """
+    modes: list[Entry] = []
+    for found in maps:
+        for entry in one_of_each_pair(found.poles):
+            same = [i for i, m in enumerate(modes) if overlap(m.root, entry.root)]
+            if not same:
+                modes.append(entry)
+            elif entry.root.multiplicity > modes[same[0]].root.multiplicity:
+                modes[same[0]] = entry
+    modes.sort(key=lambda m: float(m.root.natural_frequency().mid()))
+    heads = (
+        (("Frequency", r"(\unit{\hertz})"), ("Frequency", "(Hz)"), _frequency),
+        (("Frequency", r"(\unit{\radian\per\second})"), ("Frequency", "(rad/s)"), _angular_frequency),
+        (("Damping", "ratio"), ("Damping", "ratio"), _damping),
     )
-    return _table(columns, head, [group for group in rows if group], len(flat))
+    numbers, before = [], 0
+    for mode in modes:
+        # Rigid-body motions are number 0, as mode_shape() counts.
+        numbers.append("0" if mode.root.is_zero else str(before + 1))
+        before += 0 if mode.root.is_zero else mode.root.multiplicity
+    return _table_of(modes, heads, digits, width_mm / EM_MM, ("Mode", numbers))
+
+
+_Head = tuple[tuple[str, ...], tuple[str, ...], "Callable[[Entry, int], str]"]
+
+
+def _table_of(
+    entries: Sequence[Entry],
+    heads: Sequence[_Head],
+    digits: int,
+    room: float,
+    first: tuple[str, Sequence[str]] | None = None,
+) -> str:
+    """Return a table of roots with as many digits as there is room for [em]."""
+    for count in range(digits, min(digits, _FEWEST_DIGITS) - 1, -1):
+        columns = []
+        if first is not None:
+            title, numbers = first
+            columns.append(Column("r", (title,), (text_width(title),), tuple(numbers), 2.0))
+        for head, plain, cell in heads:
+            cells = [cell(entry, count) for entry in entries]
+            columns.append(number_column(head, tuple(map(text_width, plain)), cells))
+        if any(entry.root.multiplicity > 1 for entry in entries):
+            times = tuple(str(entry.root.multiplicity) for entry in entries)
+            head = ("Multi-", "plicity")
+            columns.append(Column("r", head, tuple(map(text_width, head)), times, 1.0))
+        setting = fitting(columns, room)
+        if setting is not None:
+            break
+    return tabular(columns, setting or SETTINGS[-1])
 
 
 def decimal_text(value: Fraction, digits: int = VALUE_DIGITS, *, is_rounded: bool = False) -> str:
@@ -127,23 +245,31 @@ def _value(parameter: Parameter) -> str:
     if parameter.value is None:
         unit = parameter.unit
         return f"symbolic, in {unit_latex(unit)}" if unit and unit != "1" else "symbolic"
-    return quantity_latex(decimal_text(_rational(parameter.value)), parameter.unit)
+    return quantity_latex(decimal_text(rational_value(parameter.value)), parameter.unit)
 
 
-def _rational(value: ExactValue) -> Fraction:
+def _value_width(parameter: Parameter) -> float:
+    unit = "" if parameter.unit == "1" else parameter.unit
+    width = text_width(unit) * (1.0 if siunitx_unit(parameter.unit) is None else 1.1) + 0.4
+    if parameter.value is None:
+        return text_width("symbolic, in ") + width
+    return number_width(decimal_text(rational_value(parameter.value))) + width
+
+
+def rational_value(value: ExactValue) -> Fraction:
     """Return the value with pi to eighty digits."""
     return value.rational * _PI**value.pi_power
 
 
 @dataclass(frozen=True, slots=True)
-class _Entry:
-    """A root to print, alone or for its pair."""
+class Entry:
+    """A root to print, alone or for its conjugate pair."""
 
     root: Root
     is_pair: bool
 
 
-def _one_of_each_pair(roots: Sequence[Root]) -> list[_Entry]:
+def one_of_each_pair(roots: Sequence[Root]) -> list[Entry]:
     """Return every root once, a conjugate pair as the member above the real axis."""
     lower = [r for r in roots if r.im < 0]
     entries = []
@@ -152,54 +278,59 @@ def _one_of_each_pair(roots: Sequence[Root]) -> list[_Entry]:
             partner = next((r for r in lower if r.im.overlaps(-root.im) and r.re.overlaps(root.re)), None)
             if partner is not None:
                 lower.remove(partner)
-            entries.append(_Entry(root, partner is not None))
+            entries.append(Entry(root, partner is not None))
         elif not root.im < 0:
-            entries.append(_Entry(root, is_pair=False))
-    return entries + [_Entry(root, is_pair=False) for root in lower]
+            entries.append(Entry(root, is_pair=False))
+    return entries + [Entry(root, is_pair=False) for root in lower]
 
 
-def _root_cells(word: str, entry: _Entry, digits: int) -> tuple[str, ...]:
+def _real_part(entry: Entry, digits: int) -> str:
     root = entry.root
-    decimals = root.decimal(digits)
-    times = rf" ($\times {root.multiplicity}$)" if root.multiplicity > 1 else ""
-    damping = root.damping_ratio()
-    imaginary = rf"\pm {decimals.im}" if entry.is_pair else decimals.im
-    ratio = "{--}"
-    if damping is not None:
-        ratio = decimal_text(Fraction(damping), digits, is_rounded=not root.is_real)
-    frequency = decimal_text(Fraction(root.frequency_hz()), digits, is_rounded=True)
-    return word + times, decimals.re, imaginary, frequency, ratio
+    return _certified(root.decimal(digits).re, is_exact=root.on_imaginary_axis)
 
 
-def _number_column(cells: Sequence[str]) -> str:
-    """Return an S column wide enough for its numbers."""
-    numbers = [cell for cell in cells if not cell.startswith("{")]
-    signed = any(cell.startswith(("-", r"\pm")) for cell in numbers)
-    whole = places = exponent = 0
-    negative_exponent = False
-    for cell in numbers:
-        mantissa, _, power = cell.removeprefix(r"\pm ").removeprefix("-").partition("e")
-        before, _, after = mantissa.partition(".")
-        whole, places = max(whole, len(before)), max(places, len(after))
-        exponent = max(exponent, len(power.removeprefix("-")))
-        negative_exponent = negative_exponent or power.startswith("-")
-    power = f"e{'-' if negative_exponent else ''}{exponent}" if exponent else ""
-    return f"S[table-format={'+' if signed else ''}{max(whole, 1)}.{places}{power}]"
+def _imaginary_part(entry: Entry, digits: int) -> str:
+    root = entry.root
+    shown = _certified(root.decimal(digits).im, is_exact=root.is_real)
+    return rf"\pm {shown}" if entry.is_pair and not shown.startswith("{") else shown
 
 
-def _table(columns: str, head: Sequence[str], groups: Sequence[Sequence[Sequence[str]]], lines: int) -> str:
-    """Return a table of groups of rows with a rule between them."""
-    title = " & ".join(head) + r" \\"
-    body = "\n    \\midrule\n".join(
-        "\n".join(f"    {' & '.join(row)} \\\\" for row in group) for group in groups if group
+def _angular_frequency(entry: Entry, digits: int) -> str:
+    return _certified(
+        decimals(entry.root.natural_frequency(), arb(0), digits).re, is_exact=entry.root.is_zero
     )
-    if lines > LINES_PER_PAGE:
-        return (
-            f"\\begingroup{_SETUP}\n\\begin{{longtable}}{{{columns}}}\n    \\toprule\n    {title}\n"
-            "    \\midrule\n    \\endhead\n    \\bottomrule\n    \\endfoot\n"
-            f"{body}\n\\end{{longtable}}\n\\endgroup"
-        )
-    return (
-        f"{{\\centering{_SETUP}\n  \\begin{{tabular}}{{{columns}}}\n    \\toprule\n    {title}\n"
-        f"    \\midrule\n{body}\n    \\bottomrule\n  \\end{{tabular}}\\par}}"
-    )
+
+
+def _frequency(entry: Entry, digits: int) -> str:
+    return _certified(frequency_text(entry.root, digits), is_exact=entry.root.is_zero)
+
+
+def _damping(entry: Entry, digits: int) -> str:
+    shown = damping_text(entry.root, digits)
+    return _certified(shown, is_exact=entry.root.on_imaginary_axis) if shown else "{--}"
+
+
+def frequency_text(root: Root, digits: int) -> str:
+    """Return the natural frequency abs(s)/(2 pi) of a root [Hz] with at most so many certified digits."""
+    with precision(max(_FREQUENCY_BITS, root.working_bits())):
+        frequency = root.natural_frequency() / (2 * arb.pi())
+    return decimals(frequency, arb(0), digits).re
+
+
+def damping_text(root: Root, digits: int) -> str:
+    """Return ``-re/abs(s)`` with at most so many certified digits, empty at 0 and where s may be 0."""
+    frequency = root.natural_frequency()
+    if root.is_zero or not frequency > 0:
+        return ""
+    if root.on_imaginary_axis:
+        return "0"
+    if root.is_real:
+        return "1" if root.re < 0 else "-1"
+    with precision(max(_FREQUENCY_BITS, root.working_bits())):
+        ratio = -root.re / frequency
+    return decimals(ratio, arb(0), digits).re
+
+
+def _certified(decimal: str, *, is_exact: bool) -> str:
+    """Return a decimal as a cell; a zero that is not exact is nearly zero."""
+    return decimal if decimal != "0" or is_exact else r"{$\approx 0$}"

@@ -1,7 +1,8 @@
 r"""Plain text made safe for LaTeX: nothing in a title or description can reach a command.
 
-The result holds the text's own letters and only the commands written here. It is meant for text mode with
-T1 encoded fonts, which have every Latin letter of Latin-1 and Latin Extended-A that is let through.
+The result is ASCII, so that it means the same in every engine and input encoding: accented letters are
+commands. It is meant for text mode with T1 encoded fonts, or those of Unicode, which have every letter of
+Latin-1 and Latin Extended-A that is let through.
 """
 
 from __future__ import annotations
@@ -54,8 +55,26 @@ _PUNCTUATION: Final = {
     "…": r"\ldots{}", "•": r"\textbullet{}", "†": r"\dag{}", "‡": r"\ddag{}", "€": r"\texteuro{}",
     "™": r"\texttrademark{}",
 }  # fmt: skip
-# Latin Extended-A without the few letters that T1 fonts lack.
-_EXTENDED_A: Final = frozenset(map(chr, range(0x100, 0x180))) - frozenset("ĦħĸĿŀŉŦŧſ")
+# Accents by their combining characters; T1 has all letters of Latin-1 and Latin Extended-A made of them.
+_ACCENTS: Final = dict(
+    zip(
+        map(chr, (0x300, 0x301, 0x302, 0x303, 0x304, 0x306, 0x307, 0x308, 0x30A, 0x30B, 0x30C, 0x327, 0x328)),
+        ("`", "'", "^", "~", "=", "u", ".", '"', "r", "H", "v", "c", "k"),
+        strict=True,
+    )
+)
+_DOTLESS: Final = {"i": r"\i", "j": r"\j"}
+_LETTERS: Final = {
+    "ß": "ss", "æ": "ae", "Æ": "AE", "œ": "oe", "Œ": "OE", "ø": "o", "Ø": "O", "ł": "l", "Ł": "L",
+    "đ": "dj", "Đ": "DJ", "ð": "dh", "Ð": "DH", "þ": "th", "Þ": "TH", "ŋ": "ng", "Ŋ": "NG", "ı": "i",
+    "ĳ": "ij", "Ĳ": "IJ",
+    "¡": "textexclamdown", "¿": "textquestiondown", "«": "guillemotleft", "»": "guillemotright",
+    "£": "textsterling", "§": "textsection", "¶": "textparagraph", "©": "textcopyright",
+    "®": "textregistered", "ª": "textordfeminine", "º": "textordmasculine", "¢": "textcent",
+    "¤": "textcurrency", "¥": "textyen", "¦": "textbrokenbar", "¨": "textasciidieresis",
+    "¯": "textasciimacron", "´": "textasciiacute", "¸": "c", "¼": "textonequarter", "½": "textonehalf",
+    "¾": "textthreequarters",
+}  # fmt: skip
 
 _WORD: Final = re.compile(r"[^\s\u00a0\u202f]+")
 _LAST_LATIN: Final = 0x17F
@@ -119,8 +138,11 @@ def _character(c: str) -> str:
         return rf"\ensuremath{{{'' if not command.isalpha() else chr(92)}{command}}}"
     if c in _GREEK_AS_LATIN:
         return _GREEK_AS_LATIN[c]
-    if "\u00a1" <= c <= "\u00ff" or c in _EXTENDED_A:
-        return c
+    if c in _LETTERS:
+        return rf"\{_LETTERS[c]}{{}}"
+    accented = unicodedata.normalize("NFD", c)
+    if c <= chr(_LAST_LATIN) and accented[1:] in _ACCENTS:
+        return rf"\{_ACCENTS[accented[1]]}{{{_DOTLESS.get(accented[0], accented[0])}}}"
     return _replacement(c)
 
 

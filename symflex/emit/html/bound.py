@@ -1,0 +1,44 @@
+"""A transfer function with numbers in HTML: the formula, and the value of each symbol in it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symflex.emit.forms import print_form
+from symflex.emit.html.model import escape_label
+from symflex.emit.html.table import NUMBER, TEXT, html_table
+from symflex.emit.html.text import escape_html
+from symflex.emit.latex import model_labels, notebook_latex
+from symflex.emit.latex.table import decimal_text, rational_value
+
+if TYPE_CHECKING:
+    from symflex.transfer import BoundTransferFunction
+
+
+def bound_html(bound: BoundTransferFunction) -> str:
+    """Return a transfer function with numbers as HTML, in the shortest symbolic form.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        With numbers.
+    """
+    tf = bound.source
+    parameters = {p.name: p for p in tf.model.parameters}
+    labels = model_labels(tf.model)
+    formula = notebook_latex(tf, print_form(tf))
+    lines = [f"<div><div>{escape_html(bound.name)}, {escape_html(tf.quantity)}</div>"]
+    if formula is not None:
+        lines.append(f"<div>$\\displaystyle {escape_label(formula)}$</div>")
+    rows = [
+        (
+            f"${escape_label(labels[name])}$" if name in labels else "",
+            f"<code>{escape_html(name)}</code>",
+            decimal_text(rational_value(value)),
+            escape_html(parameters[name].unit if name in parameters and parameters[name].unit != "1" else ""),
+        )
+        for name, value in bound.values
+    ]
+    if rows:
+        lines.append(html_table(("Symbol", "Name", "Value", "Unit"), (TEXT, TEXT, NUMBER, TEXT), rows))
+    return "\n".join((*lines, "</div>"))

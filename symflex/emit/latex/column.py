@@ -1,0 +1,49 @@
+"""Widths of the columns that papers are set in."""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+from symflex.errors import Diagnostic, UsageError
+
+COLUMNS_MM: Final = {"ieee": 88.5, "a4": 170.0}
+"""A column of IEEE journals (252 points) and the text of a page of A4 with margins of 20 mm [mm]."""
+
+NARROWEST_MM: Final = 80.0
+"""In a narrower column formulas of ten points need more than one column."""
+
+WIDEST_MM: Final = 1000.0
+
+_MILLIMETRES: Final = re.compile(r"([0-9]{1,6}(?:\.[0-9]{1,6})?) ?(?:mm)?")
+
+
+def column_width(text: str) -> float:
+    """Return the width of a column [mm] from its name or from millimetres.
+
+    Parameters
+    ----------
+    text : str
+        ``ieee``, ``a4``, or a number such as ``120`` or ``120mm``.
+
+    Raises
+    ------
+    UsageError
+        SF902 when it is neither, or not between 80 and 1000 mm.
+
+    Examples
+    --------
+    >>> column_width("ieee"), column_width("120 mm")
+    (88.5, 120.0)
+    """
+    if text in COLUMNS_MM:
+        return COLUMNS_MM[text]
+    match = _MILLIMETRES.fullmatch(text)
+    if match is None:
+        hint = f"{', '.join(COLUMNS_MM)} or millimetres such as 120mm"
+        raise UsageError(Diagnostic("SF902", f"'{text[:32]}' is no width of a column", None, hint))
+    width = float(match[1])
+    if not NARROWEST_MM <= width <= WIDEST_MM:
+        message = f"a column is from {NARROWEST_MM:g} to {WIDEST_MM:g} mm wide, found {width:g} mm"
+        raise UsageError(Diagnostic("SF902", message))
+    return width
