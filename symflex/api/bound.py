@@ -18,12 +18,14 @@ from symflex.api.sensitivity import Sensitivity
 
 if TYPE_CHECKING:
     import numpy as np
+    import sympy
     from numpy.typing import ArrayLike, NDArray
 
     from symflex import rational as rational_room
     from symflex import transfer as transfer_room
     from symflex.api.frequency_response import FrequencyResponse
     from symflex.explanation import ZeroExplanation
+    from symflex.state_space.numeric import BoundStateSpace
 
 
 @dataclass(frozen=True)
@@ -366,6 +368,111 @@ class BoundTransferFunction:
         from symflex.modes import mode_shapes
 
         return tuple(ModeShape(shape) for shape in mode_shapes(self.bound, plain_mode(mode), digits))
+
+    def state_space(self, *, minimal: bool = False) -> BoundStateSpace:
+        """Return state equations of the model's network as arrays, every entry rounded once.
+
+        The states are displacements and velocities of nodes, currents, voltages; see :class:`StateSpace`.
+
+        Parameters
+        ----------
+        minimal : bool
+            Leave out what the input does not reach or the output does not show. The states left are
+            quantities of the model, or differences and other combinations of them.
+
+        Raises
+        ------
+        ModelError
+            SF235 for beams, rods and delays, SF236 when the function grows with s.
+        """
+        from symflex.rational.toolboxes import ExactFunction
+
+        return ExactFunction(self.bound, is_minimal=minimal).state_space()
+
+    def to_control(self, form: str = "transfer-function", *, minimal: bool = False) -> object:
+        """Return a system of python-control with named input, output and states.
+
+        Parameters
+        ----------
+        form : str
+            ``transfer-function``; or ``state-space``, see :meth:`state_space`, which loses far fewer digits
+            where the degree is high.
+        minimal : bool
+            For ``state-space``.
+
+        Returns
+        -------
+        control.TransferFunction or control.StateSpace
+            Coefficients are the doubles nearest to the exact ones. The attribute ``metadata`` holds units and
+            ``coefficients_error``, what rounding coefficients does to the function.
+
+        Raises
+        ------
+        ModelError
+            SF235 for beams, rods and delays: :meth:`rational` first; SF233 when a coefficient does not fit in
+            double precision; SF236 as for :meth:`state_space`.
+        UsageError
+            SF902 when python-control is not installed, and for an unknown form.
+        """
+        from symflex.rational.toolboxes import ExactFunction
+
+        return ExactFunction(self.bound, is_minimal=minimal).to_control(form)
+
+    def to_frd(self, omega: ArrayLike) -> object:
+        """Return a ``control.FrequencyResponseData``, of beams and delays too, without approximation.
+
+        Parameters
+        ----------
+        omega : array_like of float
+            Increasing angular frequencies [rad/s], none of them negative or at a pole.
+
+        Raises
+        ------
+        UsageError
+            SF902 when python-control is not installed, for other frequencies, and at a pole.
+        """
+        from symflex.rational.toolboxes import end_units, frequency_response_data
+
+        source = self.bound.source
+        label = f"{source.output.name}_over_{source.input.name}"
+        return frequency_response_data(source, self.bound, omega, label, end_units(source))
+
+    def to_scipy(self, form: str = "zeros-poles-gain", *, minimal: bool = False) -> object:
+        """Return a system of ``scipy.signal``.
+
+        Parameters
+        ----------
+        form : str
+            ``zeros-poles-gain``, from the proved roots, which loses no digits; ``transfer-function``;
+            ``state-space``.
+        minimal : bool
+            For ``state-space``.
+
+        Returns
+        -------
+        scipy.signal.ZerosPolesGain, TransferFunction or StateSpace
+            Its attribute ``metadata`` holds names and units.
+
+        Raises
+        ------
+        ModelError, UsageError
+            As :meth:`to_control`.
+        """
+        from symflex.rational.toolboxes import ExactFunction
+
+        return ExactFunction(self.bound, is_minimal=minimal).to_scipy(form)
+
+    def to_sympy(self) -> sympy.Basic:
+        """Return a ``sympy.physics.control.TransferFunction`` of ``s`` with exact coefficients.
+
+        Raises
+        ------
+        ModelError
+            SF235 for beams, rods and delays.
+        """
+        from symflex.emit.sympy_system import sympy_system
+
+        return sympy_system(self.bound)
 
     def dcgain(self) -> float:
         """Return the limit for s -> 0 from the right, possibly infinite."""

@@ -6,7 +6,6 @@ Output: a :class:`NumpyExport`, the module's text and how well each function agr
 
 from __future__ import annotations
 
-import keyword
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -16,7 +15,6 @@ from symflex.emit.module_text import (
     described,
     formula_lines,
     headline,
-    origin_lines,
 )
 from symflex.emit.numpy_expression import WIDTH, Printer, statement
 from symflex.emit.numpy_pieces import LINTS, PiecesText, support
@@ -29,6 +27,7 @@ from symflex.emit.program import (
     inert,
     wrapped,
 )
+from symflex.emit.python_text import RESERVED, docstring, literal, origin, parameter_table
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -36,11 +35,6 @@ if TYPE_CHECKING:
 
     from symflex.model import Model
     from symflex.transfer import TransferFunction
-
-LITERAL_WIDTH = 60
-
-RESERVED = frozenset({*keyword.kwlist, "np", "s", "arguments", "complex", "ArrayLike", "NDArray"})
-"""Names a parameter cannot take in the generated code."""
 
 LINTS_OF_NAMES = "E501, E741, N802, N803, N806, PLR0915, RUF001, RUF002, RUF100"
 
@@ -161,7 +155,7 @@ def numpy_module(
     real = {key: made for key, (_, _, made) in chosen.items() if made is not None}
     taken = {*RESERVED, *functions.values()}
     responses = identifiers({key: f"{functions[key]}_at" for key in real}, taken)
-    blocks = [_parameter_table(model, names)]
+    blocks = [parameter_table(model, names)]
     for key, (tf, (program, verification), _) in chosen.items():
         blocks.append(_Function(tf, program, functions[key], names, verification.text(digits)).text())
         if key in real:
@@ -183,61 +177,18 @@ def numpy_module(
 
 def _header(model: Model, verified: Sequence[Verification], digits: int) -> str:
     lines = ["Transfer functions of a linear system as functions of numpy arrays.", ""]
-    lines += _origin(model, "")
+    lines += origin(model, "")
     lines.append("Written by symflex. Each function evaluates OUT/IN at the Laplace variable s [rad/s].")
     if verified:
         lines.append("")
     for verification in verified:
         lines += wrapped(inert(f"{verification.name}: {verification.text(digits)}"), WIDTH, "", "    ")
-    return _docstring(lines, "")
-
-
-def _origin(model: Model, indent: str) -> list[str]:
-    lines = [f"{indent}{line}" for line in origin_lines(model, WIDTH - len(indent))]
-    return [*lines, ""] if lines else []
-
-
-def _docstring(lines: Sequence[str], indent: str) -> str:
-    """Return lines, which hold no double quote, as a docstring, raw when a backslash is in them."""
-    text = "\n".join(line.rstrip() for line in lines)
-    return f'{indent}{"r" if chr(92) in text else ""}"""{text.lstrip()}\n{indent}"""\n'
-
-
-def _parameter_table(model: Model, names: Mapping[str, str]) -> str:
-    lines = ["PARAMETERS: dict[str, dict[str, float | str | None]] = {"]
-    for parameter in model.parameters:
-        entries = [
-            f'"value": {default_value(parameter) or None}',
-            f'"unit": {_literal(parameter.unit)}',
-            f'"doc": {_literal(parameter.doc)}',
-        ]
-        one_line = f'    "{names[parameter.name]}": {{{", ".join(entries)}}},'
-        if len(one_line) <= WIDTH and "\n" not in one_line:
-            lines.append(one_line)
-        else:
-            inside = [f"        {entry}," for entry in entries]
-            lines += [f'    "{names[parameter.name]}": {{', *inside, "    },"]
-    return "\n".join([*lines, "}"] if model.parameters else [lines[0] + "}"]) + "\n"
+    return docstring(lines, "")
 
 
 def _function_table(name: str, functions: Mapping[str, str]) -> str:
-    lines = [f"    {_literal(key)}: {function}," for key, function in functions.items()]
+    lines = [f"    {literal(key)}: {function}," for key, function in functions.items()]
     return "\n".join([f"{name} = {{", *lines, "}"] if lines else [f"{name} = {{}}"]) + "\n"
-
-
-def _literal(text: str) -> str:
-    """Return a string literal, in pieces on lines of their own when it is long; only printable characters."""
-    pieces = [text[i : i + LITERAL_WIDTH] for i in range(0, len(text), LITERAL_WIDTH)] or [""]
-    quoted = ['"' + "".join(_character(c) for c in piece) + '"' for piece in pieces]
-    if len(quoted) == 1:
-        return quoted[0]
-    return "(\n" + "".join(f"            {q}\n" for q in quoted) + "        )"
-
-
-def _character(c: str) -> str:
-    if c in '"\\':
-        return f"\\{c}"
-    return c if c.isprintable() else c.encode("unicode_escape").decode("ascii")
 
 
 # ---------------------------------------------------------------------------------------- one function
@@ -269,8 +220,8 @@ class _Function:
             *(["    *,"] if parameters else []),
         ]
         for parameter, name in parameters:
-            default = default_value(parameter)
-            signature.append(f"    {name}: ArrayLike{f' = {default}' if default else ''},")
+            value = default_value(parameter)
+            signature.append(f"    {name}: ArrayLike{f' = {value}' if value else ''},")
         body = [
             *statement("arguments", f"{'_real' if self.program.is_real else ''}_numbers({values})", "    "),
             '    with np.errstate(all="ignore"):',
@@ -345,8 +296,8 @@ class _Function:
         lines += ["", "    Returns", "    -------", "    complex or ndarray of complex"]
         lines.append("        A number when all arguments are numbers. Not finite at poles.")
         lines += ["", "    Notes", "    -----"]
-        lines += _origin(tf.model, "    ")
+        lines += origin(tf.model, "    ")
         lines += wrapped(inert(self.sentence), WIDTH, "    ")
         if isinstance(self.program, Piecewise) and self.program.solves:
             lines += wrapped(COST, WIDTH, "    ")
-        return _docstring(lines, "    ")
+        return docstring(lines, "    ")

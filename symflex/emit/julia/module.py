@@ -255,7 +255,10 @@ def _public(member: _Member, functions: PrivateFunctions, digits: int) -> str:
     tf, variable = member.tf, functions.variable
     kind = "Real" if member.program.is_real else "Number"
     parameters = [(p, functions.parameters[p.name]) for p in tf.parameters]
-    signature, arguments = [], [f"float({variable})" if member.program.is_real else f"complex(float({variable}))"]
+    signature, arguments = (
+        [],
+        [f"float({variable})" if member.program.is_real else f"complex(float({variable}))"],
+    )
     for p, name in parameters:
         default = default_value(p)
         signature.append(f"{name}::{kind}{f' = {default}' if default else ''}")

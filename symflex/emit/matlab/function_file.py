@@ -21,7 +21,15 @@ from symflex.emit.module_text import (
     headline,
     origin_lines,
 )
-from symflex.emit.program import Piecewise, Program, Verification, choose_programs, identifiers, inert, wrapped
+from symflex.emit.program import (
+    Piecewise,
+    Program,
+    Verification,
+    choose_programs,
+    identifiers,
+    inert,
+    wrapped,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -165,7 +173,9 @@ def matlab_function_file(
     return MatlabExport("\n".join(blocks), main, (*others, *of_axis))
 
 
-_OTHER_FIELDS = frozenset({"parameters", "units", "descriptions", "transfer_functions", "frequency_responses"})
+_OTHER_FIELDS = frozenset(
+    {"parameters", "units", "descriptions", "transfer_functions", "frequency_responses"}
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -263,7 +273,9 @@ def _usage(
             "Functions",
         ]
     for m, field in members:
-        lines += wrapped(f"{field}: {_disarmed(headline(m.tf, is_real=m.program.is_real))}", _ROOM, "  ", "      ")
+        lines += wrapped(
+            f"{field}: {_disarmed(headline(m.tf, is_real=m.program.is_real))}", _ROOM, "  ", "      "
+        )
         lines += wrapped(_text(m.sentence), _ROOM, "      ")
     if model.parameters:
         lines += ["", "Parameters"]
@@ -279,9 +291,7 @@ def _usage(
 _ROOM = WIDTH - 4
 
 
-def _examples(
-    main: str, members: Sequence[tuple[_Member, str]], parameters: Mapping[str, str]
-) -> list[str]:
+def _examples(main: str, members: Sequence[tuple[_Member, str]], parameters: Mapping[str, str]) -> list[str]:
     member, field = members[0]
     rows = [(f"G = {main}();", ""), (f"G.{field}(s)", "s: Laplace variable [rad/s], of any size")]
     if member.tf.parameters:
@@ -327,4 +337,3 @@ def _public(member: _Member, name: str, functions: LocalFunctions) -> str:
     names = ", ".join(f"'{functions.parameters[p]}'" for p in member.program.parameters)
     lines += continued(f"given = numbers(varargin, {{{names}}});", "  ")
     return "\n".join([*lines, *functions.call(), "end", ""])
-

@@ -19,7 +19,6 @@ from symflex.emit.program import (
     Program,
     Roots,
     Solutions,
-    Straight,
     identifiers,
 )
 
@@ -76,9 +75,7 @@ class LocalFunctions:
         arguments = f"@{self.names['number']}, {{{pieces}}}, {self.variable}, given"
         if not self.program.is_real:
             return statement("value", f"in_pieces({arguments})")
-        return statement(
-            "value", f"in_real_pieces({arguments}, {'true' if self.program.turn else 'false'})"
-        )
+        return statement("value", f"in_real_pieces({arguments}, {'true' if self.program.turn else 'false'})")
 
     def blocks(self) -> list[str]:
         """Return the functions, each as text that ends with a line end."""
