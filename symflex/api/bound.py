@@ -153,7 +153,7 @@ class BoundTransferFunction:
         mode: int | None,
         band: tuple[float, float] | None,
         budget: float | None,
-    ) -> roots_room.PoleZeroMap:
+    ) -> PoleZeroMap:
         """Return the map if the budget suffices: a tuple of roots could not say that it did not."""
         found = self.pole_zero_map(digits, modes=modes, mode=mode, band=band, budget=budget)
         return found.complete()
