@@ -10,7 +10,7 @@ import keyword
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from symflex.emit.forms import print_form
+from symflex.emit.module_text import default, formula, origin
 from symflex.emit.numpy_expression import WIDTH, Printer, statement
 from symflex.emit.numpy_pieces import LINTS, PiecesText, support
 from symflex.emit.program import (
@@ -20,20 +20,16 @@ from symflex.emit.program import (
     choose_programs,
     identifiers,
     inert,
-    nearest_double,
     wrapped,
 )
-from symflex.expressions import Number, Quotient, format_expression
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
-    from symflex.model import Model, Parameter
+    from symflex.model import Model
     from symflex.transfer import TransferFunction
 
-FORMULA_LINES = 20
-FORMULA_TERMS = 1000
 LITERAL_WIDTH = 60
 
 RESERVED = frozenset({*keyword.kwlist, "np", "s", "arguments", "complex", "ArrayLike", "NDArray"})
@@ -184,21 +180,13 @@ def numpy_module(
 
 def _header(model: Model, verified: Sequence[Verification], digits: int) -> str:
     lines = ["Transfer functions of a linear system as functions of numpy arrays.", ""]
-    lines += _origin(model, "")
+    lines += origin(model, WIDTH)
     lines.append("Written by symflex. Each function evaluates OUT/IN at the Laplace variable s [rad/s].")
     if verified:
         lines.append("")
     for verification in verified:
         lines += wrapped(inert(f"{verification.name}: {verification.text(digits)}"), WIDTH, "", "    ")
     return _docstring(lines, "")
-
-
-def _origin(model: Model, indent: str) -> list[str]:
-    lines: list[str] = []
-    for word, text in (("Model", model.title), ("Source", model.source)):
-        if text.strip():
-            lines += wrapped(f"{word}: {inert(text)}", WIDTH, indent)
-    return [*lines, ""] if lines else []
 
 
 def _docstring(lines: Sequence[str], indent: str) -> str:
@@ -211,7 +199,7 @@ def _parameter_table(model: Model, names: Mapping[str, str]) -> str:
     lines = ["PARAMETERS: dict[str, dict[str, float | str | None]] = {"]
     for parameter in model.parameters:
         entries = [
-            f'"value": {_default(parameter) or None}',
+            f'"value": {default(parameter) or None}',
             f'"unit": {_literal(parameter.unit)}',
             f'"doc": {_literal(parameter.doc)}',
         ]
@@ -227,11 +215,6 @@ def _parameter_table(model: Model, names: Mapping[str, str]) -> str:
 def _function_table(name: str, functions: Mapping[str, str]) -> str:
     lines = [f"    {_literal(key)}: {function}," for key, function in functions.items()]
     return "\n".join([f"{name} = {{", *lines, "}"] if lines else [f"{name} = {{}}"]) + "\n"
-
-
-def _default(parameter: Parameter) -> str:
-    value = parameter.value
-    return "" if value is None else repr(nearest_double(value.rational, value.pi_power))
 
 
 def _literal(text: str) -> str:
@@ -278,8 +261,8 @@ class _Function:
             *(["    *,"] if parameters else []),
         ]
         for parameter, name in parameters:
-            default = _default(parameter)
-            signature.append(f"    {name}: ArrayLike{f' = {default}' if default else ''},")
+            value = default(parameter)
+            signature.append(f"    {name}: ArrayLike{f' = {value}' if value else ''},")
         body = [
             *statement("arguments", f"{'_real' if self.program.is_real else ''}_numbers({values})", "    "),
             '    with np.errstate(all="ignore"):',
@@ -343,7 +326,7 @@ class _Function:
         unit = f" [{tf.unit}]" if tf.unit else ""
         at = " at s = j omega, in real arithmetic" if self.program.is_real else ""
         lines = [inert(f"{tf.quantity[:1].upper()}{tf.quantity[1:]} {tf.name}{unit}{at}."), ""]
-        lines += [f"    {line}" if line else "" for line in _formula(tf)]
+        lines += [f"    {line}" if line else "" for line in formula(tf, WIDTH - 4)]
         kind = "float" if self.program.is_real else "complex"
         lines += ["", "    Parameters", "    ----------", f"    {self.variable} : array_like of {kind}"]
         what = "Angular frequency" if self.program.is_real else "Laplace variable"
@@ -360,31 +343,8 @@ class _Function:
         lines += ["", "    Returns", "    -------", "    complex or ndarray of complex"]
         lines.append("        A number when all arguments are numbers. Not finite at poles.")
         lines += ["", "    Notes", "    -----"]
-        lines += _origin(tf.model, "    ")
+        lines += origin(tf.model, WIDTH, "    ")
         lines += wrapped(inert(self.sentence), WIDTH, "    ")
         if isinstance(self.program, Piecewise) and self.program.solves:
             lines += wrapped(COST, WIDTH, "    ")
         return _docstring(lines, "    ")
-
-
-def _formula(tf: TransferFunction) -> list[str]:
-    """Return the formula in lines of text, shortened when it is long."""
-    above, below = tf.order
-    if sum(len(f) for f, _ in tf.ratio.factors) <= FORMULA_TERMS:
-        form = print_form(tf)
-    elif tf.closed is not None and len(tf.closed.num) + len(tf.closed.den) <= FORMULA_TERMS:
-        form = print_form(tf, "definitions")
-    else:
-        kind = "sums of kernels" if tf.is_distributed else f"polynomials of degree {above} and {below}"
-        return [f"A quotient of {kind} in s."]
-    is_whole = isinstance(form.den, Number) and form.den.value == 1
-    whole = format_expression(form.num if is_whole else Quotient(form.num, form.den))
-    width = WIDTH - 4
-    lines = wrapped(inert(f"{tf.name} = {whole}"), width, "", "    ")
-    for i, (name, expression) in enumerate(form.where):
-        word = "where" if i == 0 else "     "
-        lines += wrapped(f"{word} {inert(f'{name} = {format_expression(expression)}')}", width, "", "    ")
-    if len(lines) <= FORMULA_LINES:
-        return lines
-    kept = lines[: FORMULA_LINES - 1]
-    return [*kept, f"    ... and {len(lines) - len(kept)} lines more."]
