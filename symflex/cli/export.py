@@ -21,7 +21,17 @@ if TYPE_CHECKING:
     from symflex.transfer import TransferFunction
 
 
-@click.command("export")
+class _ExportCommand(click.Command):
+    """Lists the targets in its help; they are imported when that is asked for."""
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        from symflex.emit.exporters import EXPORTERS
+
+        with formatter.section("Targets"):
+            formatter.write_dl([(name, exporter.summary) for name, exporter in EXPORTERS.items()])
+
+
+@click.command("export", cls=_ExportCommand)
 @click.argument("spec", type=click.Path())
 @click.option("--to", "target", required=True, metavar="TARGET", help="What to write; see below.")
 @click.option("--tf", "tfs", multiple=True, metavar="OUT/IN", help="Only this transfer function; repeatable.")
@@ -45,7 +55,8 @@ def command(
     """Write the transfer functions of SPEC for another program.
 
     Numeric code is verified against ball arithmetic before it is written; the worst error stands in its
-    documentation.
+    documentation. A target that consists of several files, as c does with its header, writes them beside
+    the one named with -o; on standard output it is one file.
 
     With --to latex and -o FOLDER/ every transfer function and table becomes a file for a paper to input, and
     document.tex inputs them all.
@@ -73,15 +84,21 @@ def command(
         raise UsageError(Diagnostic("SF902", "--minimal is for --to state-space"))
     model = pipeline.load(spec)
     derived = pipeline.derive_all(model, pipeline.pick_pairs(model, tfs))
-    if isinstance(exporter, LatexExporter):
-        if output and _is_folder(output):
-            return _write_fragments(exporter, model, derived, output, strict=strict)
-    made = exporter.export(model, derived)
+    if isinstance(exporter, LatexExporter) and output and _is_folder(output):
+        return _write_fragments(exporter, model, derived, output, strict=strict)
+    made = exporter.export(model, derived, Path(output).stem if output else None)
     for warning in made.warnings:
         note(f"warning: {warning}")
     if output:
-        write_atomically(Path(output), made.text.encode())
-        note(f"wrote {output}")
+        path = Path(output)
+        files = {path: made.text} | {path.with_suffix(s): text for s, text in made.companions.items()}
+        if len(files) <= len(made.companions):
+            message = f"'{output}' is the name of a file that belongs beside it"
+            hint = f"end its name with {EXPORTERS[target].suffix}"
+            raise UsageError(Diagnostic("SF902", message, None, hint))
+        for file, text in files.items():
+            write_atomically(file, text.encode())
+            note(f"wrote {file}")
     else:
         click.echo(made.text, nl=False)
     return 4 if strict and made.warnings else 0

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import isfinite
 from typing import TYPE_CHECKING, Protocol
 
+from symflex.emit.c import c_files
 from symflex.emit.forms import print_forms
 from symflex.emit.latex import TEXT_WIDTH_MM, latex_document, latex_files
 from symflex.emit.numpy_module import numpy_module
@@ -16,7 +17,7 @@ from symflex.state_space import minimal, realise
 from symflex.transfer import bind
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from symflex.emit.forms import PrintedForm
     from symflex.emit.program import Verification
@@ -42,10 +43,13 @@ class Export:
         The file's content.
     warnings : tuple of str
         What the user should know, for instance an accuracy that was not reached.
+    companions : mapping of str to str
+        Files that belong beside it, by suffix; without a name for the files there are none.
     """
 
     text: str
     warnings: tuple[str, ...] = ()
+    companions: Mapping[str, str] = field(default_factory=dict)
 
 
 class Exporter(Protocol):
@@ -54,8 +58,8 @@ class Exporter(Protocol):
     suffix: str
     summary: str
 
-    def export(self, model: Model, tfs: Sequence[TransferFunction]) -> Export:
-        """Return the file."""
+    def export(self, model: Model, tfs: Sequence[TransferFunction], name: str | None = None) -> Export:
+        """Return the file; ``name`` is what it will be called, without suffix, where that is known."""
         ...
 
 
@@ -65,15 +69,32 @@ class NumpyExporter:
     suffix = ".py"
     summary = "numpy module, one function per transfer function, verified against ball arithmetic"
 
-    def export(self, model: Model, tfs: Sequence[TransferFunction]) -> Export:
+    def export(self, model: Model, tfs: Sequence[TransferFunction], name: str | None = None) -> Export:
         """Return the module; accuracy that was not reached is a warning."""
         made = numpy_module(tfs, model, model.analysis.band)
-        # A function and its frequency response in real arithmetic: the worse one is told of, once.
-        worst: dict[str, Verification] = {}
-        for v in made.verified:
-            if v.name not in worst or (v.error or 0.0) > (worst[v.name].error or 0.0):
-                worst[v.name] = v
-        return Export(made.text, tuple(w for v in worst.values() if (w := _shortfall(v))))
+        return Export(made.text, _shortfalls(made.verified))
+
+
+class CExporter:
+    """A C99 source file and its header."""
+
+    suffix = ".c"
+    summary = "C99 source and header, values at s and arrays of frequencies, verified against ball arithmetic"
+
+    def export(self, model: Model, tfs: Sequence[TransferFunction], name: str | None = None) -> Export:
+        """Return the source, with the header as its companion; accuracy that was not reached is a warning."""
+        made = c_files(tfs, model, model.analysis.band, name=name)
+        companions = {".h": made.header} if made.header else {}
+        return Export(made.source, _shortfalls(made.verified), companions)
+
+
+def _shortfalls(verified: Sequence[Verification]) -> tuple[str, ...]:
+    """Return what falls short: of a function and its response in real arithmetic the worse one, once."""
+    worst: dict[str, Verification] = {}
+    for v in verified:
+        if v.name not in worst or (v.error or 0.0) > (worst[v.name].error or 0.0):
+            worst[v.name] = v
+    return tuple(w for v in worst.values() if (w := _shortfall(v)))
 
 
 def _shortfall(verification: Verification) -> str:
@@ -104,7 +125,7 @@ class StateSpaceExporter:
     def __init__(self, *, is_minimal: bool = False) -> None:
         self.is_minimal = is_minimal
 
-    def export(self, model: Model, tfs: Sequence[TransferFunction]) -> Export:
+    def export(self, model: Model, tfs: Sequence[TransferFunction], name: str | None = None) -> Export:
         """Return the module; accuracy that was not reached is a warning."""
         system = realise(model, [(tf.output.name, tf.input.name) for tf in tfs])
         made = state_space_module(minimal(system) if self.is_minimal else system, tfs, model.analysis.band)
@@ -129,7 +150,7 @@ class LatexExporter:
     suffix = ".tex"
     summary = "standalone LaTeX document: parameters, transfer functions, poles, zeros, modes"
 
-    def export(self, model: Model, tfs: Sequence[TransferFunction]) -> Export:
+    def export(self, model: Model, tfs: Sequence[TransferFunction], name: str | None = None) -> Export:
         """Return the document."""
         forms, maps, warnings = self._parts(tfs)
         text = latex_document(model, tfs, forms, pole_zero_maps=maps, width_mm=self.width_mm)
@@ -162,6 +183,7 @@ class LatexExporter:
 
 EXPORTERS: dict[str, Exporter] = {
     "numpy": NumpyExporter(),
+    "c": CExporter(),
     "latex": LatexExporter(),
     "state-space": StateSpaceExporter(),
 }

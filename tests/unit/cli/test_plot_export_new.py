@@ -93,10 +93,29 @@ def test_code_that_could_not_be_verified_ends_with_code_4_when_strict(shell):
     assert shell("export", "symbolic.toml", "--to", "numpy", "--strict").code == 4
 
 
+def test_a_target_of_two_files_writes_both(shell):
+    done = shell("export", "x.toml", "--to", "c", "--tf", "X/F", "-o", "plant.c")
+    assert (done.code, done.err) == (0, "wrote plant.c\nwrote plant.h\n")
+    assert '#include "plant.h"' in (shell.folder / "plant.c").read_text()
+    assert "plant_X_over_F_freq(" in (shell.folder / "plant.h").read_text()
+
+
+def test_the_name_of_a_file_that_belongs_beside_is_refused(shell):
+    done = shell("export", "x.toml", "--to", "c", "-o", "plant.h")
+    assert done.code == 2
+    assert "end its name with .c" in done.err
+    assert not (shell.folder / "plant.h").exists()
+
+
+def test_the_help_lists_all_targets(shell):
+    out = shell("export", "--help").out
+    assert all(f"\n  {name} " in out for name in EXPORTERS)
+
+
 def test_an_unknown_target_is_a_usage_error_that_lists_the_targets(shell):
     done = shell("export", "x.toml", "--to", "fortran")
     assert done.code == 2
-    assert "targets: numpy, latex" in done.err
+    assert "targets: numpy, c, latex" in done.err
 
 
 def test_templates_are_listed_with_a_summary(shell):
