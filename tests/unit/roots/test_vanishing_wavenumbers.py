@@ -63,7 +63,7 @@ def check(roots, expected, digits):
     return root
 
 
-@pytest.mark.parametrize("digits", [15, 100, 340])
+@pytest.mark.parametrize("digits", [15, 100, pytest.param(340, marks=pytest.mark.slow)])
 def test_translation_of_a_free_beam_on_a_foundation(digits):
     result = solved(AXIAL, digits, Modes(1))
     root = check(result.poles, lambda: mpc(0, sqrt(7)), digits)
@@ -85,6 +85,7 @@ def test_translation_with_rotary_inertia():
     assert result.certificate.certified
 
 
+@pytest.mark.slow
 def test_where_two_wavenumbers_meet_there_is_no_mode():
     # w'''' - (3/4) w'' + (s^2 + 7)/2 w = 0 has double wavenumbers where (3/4)^2 = 2 (s^2 + 7).
     result = solved(AXIAL, 40, Modes(3), output="c.y")
@@ -101,6 +102,7 @@ def test_sections_of_a_pinned_timoshenko_beam_turn_alike_at_the_cut_off_frequenc
     assert result.certificate.certified
 
 
+@pytest.mark.slow
 def test_a_free_timoshenko_beam_has_no_mode_at_the_cut_off_frequency():
     # Its shear force, kappa G A (w' - phi), is not zero at the ends.
     result = solved(TIMOSHENKO, 20, Modes(2), output="c.y")
