@@ -70,7 +70,7 @@ class LocalSeries:
             sizes.append(abs(coefficient) * power)
             power *= radius
         rest = self.bound * share ** len(sizes) / (1 - share)
-        largest = max(range(len(sizes)), key=lambda k: float((sizes[k] / self.bound).mid()))
+        largest = max(range(len(sizes)), key=lambda k: sizes[k].mid())
         others = sum((size for k, size in enumerate(sizes) if k != largest), rest)
         return largest if sizes[largest] > others else None
 
