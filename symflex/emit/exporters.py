@@ -7,8 +7,11 @@ from math import isfinite
 from typing import TYPE_CHECKING, Protocol
 
 from symflex.emit.forms import print_form
+from symflex.emit.julia import julia_module
 from symflex.emit.latex import latex_document
+from symflex.emit.matlab import matlab_function_file
 from symflex.emit.numpy_module import numpy_module
+from symflex.emit.program import inert
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,6 +23,10 @@ if TYPE_CHECKING:
 
 ACCURACY = 1e-13
 """Relative error of exported code above which the user is warned."""
+
+
+LONGEST_STEM = 64
+"""Characters of a file's name that a message shows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,8 +51,8 @@ class Exporter(Protocol):
     suffix: str
     summary: str
 
-    def export(self, model: Model, tfs: Sequence[TransferFunction]) -> Export:
-        """Return the file."""
+    def export(self, model: Model, tfs: Sequence[TransferFunction], stem: str = "") -> Export:
+        """Return the file; ``stem`` is its name without suffix, where that is known."""
         ...
 
 
@@ -55,15 +62,47 @@ class NumpyExporter:
     suffix = ".py"
     summary = "numpy module, one function per transfer function, verified against ball arithmetic"
 
-    def export(self, model: Model, tfs: Sequence[TransferFunction]) -> Export:
+    def export(self, model: Model, tfs: Sequence[TransferFunction], stem: str = "") -> Export:
         """Return the module; accuracy that was not reached is a warning."""
         made = numpy_module(tfs, model, model.analysis.band)
-        # A function and its frequency response in real arithmetic: the worse one is told of, once.
-        worst: dict[str, Verification] = {}
-        for v in made.verified:
-            if v.name not in worst or (v.error or 0.0) > (worst[v.name].error or 0.0):
-                worst[v.name] = v
-        return Export(made.text, tuple(w for v in worst.values() if (w := _shortfall(v))))
+        return Export(made.text, _shortfalls(made.verified))
+
+
+class MatlabExporter:
+    """One function file for MATLAB and Octave."""
+
+    suffix = ".m"
+    summary = "MATLAB and Octave function file, a handle per transfer function, verified likewise"
+
+    def export(self, model: Model, tfs: Sequence[TransferFunction], stem: str = "") -> Export:
+        """Return the file; a warning says so when MATLAB cannot call a file of this name."""
+        made = matlab_function_file(tfs, model, stem, model.analysis.band)
+        warnings = _shortfalls(made.verified)
+        if stem and made.name != stem:
+            shown = inert(stem[:LONGEST_STEM])
+            warnings += (f"MATLAB cannot call a file '{shown}.m': name it '{made.name}.m', as its function",)
+        return Export(made.text, warnings)
+
+
+class JuliaExporter:
+    """One Julia module without dependencies."""
+
+    suffix = ".jl"
+    summary = "Julia module, one function per transfer function, verified likewise"
+
+    def export(self, model: Model, tfs: Sequence[TransferFunction], stem: str = "") -> Export:
+        """Return the module; accuracy that was not reached is a warning."""
+        made = julia_module(tfs, model, stem, model.analysis.band)
+        return Export(made.text, _shortfalls(made.verified))
+
+
+def _shortfalls(verified: Sequence[Verification]) -> tuple[str, ...]:
+    """Return what falls short, of a function and its response in real arithmetic the worse one once."""
+    worst: dict[str, Verification] = {}
+    for v in verified:
+        if v.name not in worst or (v.error or 0.0) > (worst[v.name].error or 0.0):
+            worst[v.name] = v
+    return tuple(w for v in worst.values() if (w := _shortfall(v)))
 
 
 def _shortfall(verification: Verification) -> str:
@@ -85,9 +124,14 @@ class LatexExporter:
     suffix = ".tex"
     summary = "standalone LaTeX document: parameters, transfer functions, hidden modes"
 
-    def export(self, model: Model, tfs: Sequence[TransferFunction]) -> Export:
+    def export(self, model: Model, tfs: Sequence[TransferFunction], stem: str = "") -> Export:
         """Return the document."""
         return Export(latex_document(model, tfs, [print_form(tf) for tf in tfs]))
 
 
-EXPORTERS: dict[str, Exporter] = {"numpy": NumpyExporter(), "latex": LatexExporter()}
+EXPORTERS: dict[str, Exporter] = {
+    "numpy": NumpyExporter(),
+    "matlab": MatlabExporter(),
+    "julia": JuliaExporter(),
+    "latex": LatexExporter(),
+}

@@ -67,7 +67,9 @@ class Julia:
 
     def value(self, key):
         """Return what was asked for."""
-        return np.array([
-            complex(*map(float, line.split()))
-            for line in (self.folder / f"{key}.out").read_text().splitlines()
-        ])
+        return np.array(
+            [
+                complex(*map(float, line.split()))
+                for line in (self.folder / f"{key}.out").read_text().splitlines()
+            ]
+        )

@@ -72,7 +72,9 @@ class Octave:
 
     def value(self, key):
         """Return what was asked for."""
-        return np.array([
-            complex(*map(float, line.split()))
-            for line in (self.folder / f"{key}.out").read_text().splitlines()
-        ])
+        return np.array(
+            [
+                complex(*map(float, line.split()))
+                for line in (self.folder / f"{key}.out").read_text().splitlines()
+            ]
+        )

@@ -35,7 +35,9 @@ class MatlabPrinter(InfixPrinter):
         """Return a number as text that needs no parentheses."""
         if not imaginary:
             return repr(real) if real >= 0 else f"({real!r})"
-        return f"({real!r} {'-' if imaginary < 0 else '+'} {abs(imaginary)!r}i)" if real else f"({imaginary!r}i)"
+        return (
+            f"({real!r} {'-' if imaginary < 0 else '+'} {abs(imaginary)!r}i)" if real else f"({imaginary!r}i)"
+        )
 
     def power(self, base: str, exponent: int) -> str:
         """Return a power of text that needs no parentheses."""

@@ -21,7 +21,15 @@ from symflex.emit.module_text import (
     headline,
     origin_lines,
 )
-from symflex.emit.program import Piecewise, Program, Verification, choose_programs, identifiers, inert, wrapped
+from symflex.emit.program import (
+    Piecewise,
+    Program,
+    Verification,
+    choose_programs,
+    identifiers,
+    inert,
+    wrapped,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -32,18 +40,19 @@ if TYPE_CHECKING:
 
 KEYWORDS = frozenset(
     "__FILE__ __LINE__ arguments break case catch classdef continue do else elseif end end_try_catch "
-    "end_unwind_protect endarguments endclassdef endenumeration endevents endfor endfunction endif endmethods "
-    "endparfor endproperties endspmd endswitch endwhile enumeration events for function global if methods "
+    "end_unwind_protect endarguments endclassdef endenumeration endevents endfor endfunction endif "
+    "endmethods endparfor "
+    "endproperties endspmd endswitch endwhile enumeration events for function global if methods "
     "otherwise parfor persistent properties return spmd switch try until unwind_protect "
     "unwind_protect_cleanup while".split()
 )
 """Of both languages."""
 
 FUNCTIONS = frozenset(
-    "i j pi e eps Inf inf NaN nan NA ans true false end nargin nargout varargin varargout exp log sqrt sin cos "
-    "tan sinh cosh tanh abs real imag conj complex any all size zeros ones reshape numel unique isempty "
-    "isnumeric islogical isreal isscalar isstruct isfield isa ischar char double error cell cellfun fieldnames "
-    "struct2cell mod max min find repmat eye eig diag ceil log2 isfinite sum struct".split()
+    "i j pi e eps Inf inf NaN nan NA ans true false end nargin nargout varargin varargout exp log sqrt sin "
+    "cos tan sinh cosh tanh abs real imag conj complex any all size zeros ones reshape numel unique isempty "
+    "isnumeric islogical isreal isscalar isstruct isfield isa ischar char double error cell cellfun "
+    "fieldnames struct2cell mod max min find repmat eye eig diag ceil log2 isfinite sum struct".split()
 )
 """What generated code uses, and constants that a reader would miss."""
 
@@ -53,6 +62,11 @@ WORDS = frozenset({"s", "G", "given", "value"})
 RESERVED = KEYWORDS | FUNCTIONS | NAMES | WORDS
 
 TITLE_LENGTH = 30
+
+EXPANSION = (
+    "s and parameters are expanded against each other, as operators expand them. "
+    "Values are not finite at poles."
+)
 
 _LINK = re.compile(r"<(?=[A-Za-z/])")
 
@@ -165,7 +179,9 @@ def matlab_function_file(
     return MatlabExport("\n".join(blocks), main, (*others, *of_axis))
 
 
-_OTHER_FIELDS = frozenset({"parameters", "units", "descriptions", "transfer_functions", "frequency_responses"})
+_OTHER_FIELDS = frozenset(
+    {"parameters", "units", "descriptions", "transfer_functions", "frequency_responses"}
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -251,19 +267,19 @@ def _usage(
     """Return the body of the help text."""
     lines: list[str] = []
     if members:
-        member, field = members[0]
         lines += [
             f"G = {main.upper()}() is a struct of functions and of the model's parameters.",
             "",
             *_examples(main, members, parameters),
             "",
-            "s and parameters are expanded against each other, as operators expand them. Values are",
-            "not finite at poles.",
+            *wrapped(EXPANSION, _ROOM),
             "",
             "Functions",
         ]
     for m, field in members:
-        lines += wrapped(f"{field}: {_disarmed(headline(m.tf, is_real=m.program.is_real))}", _ROOM, "  ", "      ")
+        lines += wrapped(
+            f"{field}: {_disarmed(headline(m.tf, is_real=m.program.is_real))}", _ROOM, "  ", "      "
+        )
         lines += wrapped(_text(m.sentence), _ROOM, "      ")
     if model.parameters:
         lines += ["", "Parameters"]
@@ -279,9 +295,7 @@ def _usage(
 _ROOM = WIDTH - 4
 
 
-def _examples(
-    main: str, members: Sequence[tuple[_Member, str]], parameters: Mapping[str, str]
-) -> list[str]:
+def _examples(main: str, members: Sequence[tuple[_Member, str]], parameters: Mapping[str, str]) -> list[str]:
     member, field = members[0]
     rows = [(f"G = {main}();", ""), (f"G.{field}(s)", "s: Laplace variable [rad/s], of any size")]
     if member.tf.parameters:
@@ -289,7 +303,7 @@ def _examples(
         name, value = parameters[first.name], default_value(first) or "1.0"
         rows += [
             (f"G.{field}(s, '{name}', {value})", "another value, or an array of values"),
-            ("p = G.parameters;", "values in SI units, [] where there is none"),
+            ("p = G.parameters;", "in SI units, [] where there is none"),
             (f"p.{name} = {value};", ""),
             (f"G.{field}(s, p)", "a struct of values, all or some"),
         ]
@@ -327,4 +341,3 @@ def _public(member: _Member, name: str, functions: LocalFunctions) -> str:
     names = ", ".join(f"'{functions.parameters[p]}'" for p in member.program.parameters)
     lines += continued(f"given = numbers(varargin, {{{names}}});", "  ")
     return "\n".join([*lines, *functions.call(), "end", ""])
-

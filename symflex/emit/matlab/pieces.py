@@ -19,7 +19,6 @@ from symflex.emit.program import (
     Program,
     Roots,
     Solutions,
-    Straight,
     identifiers,
 )
 
@@ -76,9 +75,7 @@ class LocalFunctions:
         arguments = f"@{self.names['number']}, {{{pieces}}}, {self.variable}, given"
         if not self.program.is_real:
             return statement("value", f"in_pieces({arguments})")
-        return statement(
-            "value", f"in_real_pieces({arguments}, {'true' if self.program.turn else 'false'})"
-        )
+        return statement("value", f"in_real_pieces({arguments}, {'true' if self.program.turn else 'false'})")
 
     def blocks(self) -> list[str]:
         """Return the functions, each as text that ends with a line end."""
@@ -155,8 +152,8 @@ class LocalFunctions:
                 lines += statement(name, printer.print(node))
             parts = self._function(f"[{', '.join(results)}]", f"{number}_parts", variable, lines)
             return [parts, self._mean(number, piece.circle)]
-        words = (self.variable, "value", "num", "den", *(["s"] if piece.is_complex else []))
-        printer, (variable, value, num, den, *place) = self._scope(assignments, *words)
+        wanted = [self.variable, "value", "num", "den", *(["s"] if piece.is_complex else [])]
+        printer, (variable, value, num, den, *place) = self._scope(assignments, *wanted)
         lines = []
         for s in place:
             printer = replace(printer, variable=s)
