@@ -16,24 +16,26 @@ from symflex.errors.diagnostic import nearest
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.emit.exporters import LatexExporter
+    from symflex.emit.export import Exporter
+    from symflex.emit.targets.latex import LatexExporter
     from symflex.model import Model
     from symflex.transfer import TransferFunction
 
 
-class _ExportCommand(click.Command):
-    """Lists the targets in its help; they are imported when that is asked for."""
+class ExportCommand(click.Command):
+    """A command whose help lists the targets."""
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the targets and what they are."""
         from symflex.emit.exporters import EXPORTERS
 
         with formatter.section("Targets"):
             formatter.write_dl([(name, exporter.summary) for name, exporter in EXPORTERS.items()])
 
 
-@click.command("export", cls=_ExportCommand)
+@click.command("export", cls=ExportCommand)
 @click.argument("spec", type=click.Path())
-@click.option("--to", "target", required=True, metavar="TARGET", help="What to write; see below.")
+@click.option("--to", "target", required=True, metavar="TARGET", help="One of the targets below.")
 @click.option("--tf", "tfs", multiple=True, metavar="OUT/IN", help="Only this transfer function; repeatable.")
 @click.option("--form", metavar="FORM", help="latex: form of the functions, as for derive.")
 @click.option("--width", metavar="ieee|a4|MM", help="latex: width of the column; a4 (170 mm) by default.")
@@ -66,27 +68,21 @@ def command(
     infinitely many states, and what has more zeros than poles has no output equation.
     """
     from symflex import pipeline
-    from symflex.emit.exporters import EXPORTERS, LatexExporter, StateSpaceExporter
-    from symflex.emit.latex import column_width
+    from symflex.emit.exporters import EXPORTERS
+    from symflex.emit.program import identifiers
+    from symflex.emit.targets.latex import LatexExporter
     from symflex.emit.write import write_atomically
 
     if target not in EXPORTERS:
         hint = nearest(target, EXPORTERS) or "targets: " + ", ".join(EXPORTERS)
         raise UsageError(Diagnostic("SF902", f"there is no export target '{target[:64]}'", None, hint))
-    exporter = EXPORTERS[target]
-    if isinstance(exporter, LatexExporter):
-        exporter = replace(exporter, form=form, width_mm=column_width(width or "a4"))
-    elif form is not None or width is not None:
-        raise UsageError(Diagnostic("SF902", "--form and --width are for --to latex"))
-    if isinstance(exporter, StateSpaceExporter):
-        exporter = StateSpaceExporter(is_minimal=is_minimal)
-    elif is_minimal:
-        raise UsageError(Diagnostic("SF902", "--minimal is for --to state-space"))
+    exporter = _chosen(EXPORTERS[target], form, width, is_minimal=is_minimal)
     model = pipeline.load(spec)
     derived = pipeline.derive_all(model, pipeline.pick_pairs(model, tfs))
     if isinstance(exporter, LatexExporter) and output and _is_folder(output):
         return _write_fragments(exporter, model, derived, output, strict=strict)
-    made = exporter.export(model, derived, Path(output).stem if output else None)
+    stem = Path(output).stem if output else identifiers({"": Path(spec).stem}, ())[""]
+    made = exporter.export(model, derived, stem, is_alone=not output)
     for warning in made.warnings:
         note(f"warning: {warning}")
     if output:
@@ -102,6 +98,23 @@ def command(
     else:
         click.echo(made.text, nl=False)
     return 4 if strict and made.warnings else 0
+
+
+def _chosen(exporter: Exporter, form: str | None, width: str | None, *, is_minimal: bool) -> Exporter:
+    """Return an exporter with the options that are its own."""
+    from symflex.emit.latex import column_width
+    from symflex.emit.targets.latex import LatexExporter
+    from symflex.emit.targets.state_space import StateSpaceExporter
+
+    if isinstance(exporter, LatexExporter):
+        exporter = replace(exporter, form=form, width_mm=column_width(width or "a4"))
+    elif form is not None or width is not None:
+        raise UsageError(Diagnostic("SF902", "--form and --width are for --to latex"))
+    if isinstance(exporter, StateSpaceExporter):
+        exporter = replace(exporter, is_minimal=is_minimal)
+    elif is_minimal:
+        raise UsageError(Diagnostic("SF902", "--minimal is for --to state-space"))
+    return exporter
 
 
 def _is_folder(output: str) -> bool:

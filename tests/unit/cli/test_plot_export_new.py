@@ -115,7 +115,31 @@ def test_the_help_lists_all_targets(shell):
 def test_an_unknown_target_is_a_usage_error_that_lists_the_targets(shell):
     done = shell("export", "x.toml", "--to", "fortran")
     assert done.code == 2
-    assert "targets: numpy, c, latex" in done.err
+    assert f"targets: {', '.join(EXPORTERS)}" in done.err
+
+
+def test_the_help_of_export_lists_the_targets(shell):
+    shown = " ".join(shell("export", "--help").out.split())
+    assert all(f"{name} {exporter.summary}" in shown for name, exporter in EXPORTERS.items())
+
+
+def test_a_function_file_s_main_function_is_called_as_the_file(shell):
+    assert shell("export", "x.toml", "--to", "matlab", "-o", "beam.m").err == "wrote beam.m\n"
+    assert (shell.folder / "beam.m").read_text().startswith("function G = beam()\n%BEAM ")
+    assert shell("export", "x.toml", "--to", "matlab").out.startswith("function G = x()\n")
+
+
+@pytest.mark.parametrize(("file", "name"), [("my-beam.m", "my_beam"), ("exp.m", "exp_"), ("2x.m", "p_2x")])
+def test_a_file_that_matlab_could_not_call_is_warned_of(shell, file, name):
+    done = shell("export", "x.toml", "--to", "matlab", "-o", file, "--strict")
+    assert done.code == 4
+    assert f"warning: MATLAB cannot call a file '{file}': name it '{name}.m'" in done.err
+    assert (shell.folder / file).read_text().startswith(f"function G = {name}()\n")
+
+
+def test_a_julia_module_is_called_after_its_file(shell):
+    assert shell("export", "x.toml", "--to", "julia", "-o", "my_beam.jl").code == 0
+    assert "\nmodule MyBeam\n" in (shell.folder / "my_beam.jl").read_text()
 
 
 def test_templates_are_listed_with_a_summary(shell):
