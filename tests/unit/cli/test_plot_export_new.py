@@ -112,6 +112,47 @@ def test_the_help_lists_all_targets(shell):
     assert all(f"\n  {name} " in out for name in EXPORTERS)
 
 
+def test_state_equations_are_written_and_run(shell):
+    assert shell("export", "x.toml", "--to", "state-space", "-o", "states.py").err == "wrote states.py\n"
+    space = {}
+    exec(compile((shell.folder / "states.py").read_text(), "states.py", "exec"), space)  # noqa: S102
+    a, b, c, _ = space["state_space"]()
+    # m x'' + k x = F with m = 2 and k = 18
+    assert (a.tolist(), b.tolist()) == ([[0, 1], [-9, 0]], [[0], [0.5]])
+    assert c[0].tolist() == [1, 0]
+
+
+def test_hidden_states_are_left_out_when_asked_for(shell):
+    text = 'symflex = 1\ninputs.F = { force = "x" }\noutputs.V = "s*x"\n[elements]\n'
+    (shell.folder / "free.toml").write_text(text + 'a = { type = "mass", at = "x", m = "2 kg" }\n', "utf-8")
+    whole = shell("export", "free.toml", "--to", "state-space").out
+    small = shell("export", "free.toml", "--to", "state-space", "--minimal").out
+    assert "np.zeros((2, 2))" in whole
+    assert "np.zeros((1, 1))" in small
+    assert "Every state is controllable and observable" in small
+
+
+def test_minimal_goes_with_state_equations_only(shell):
+    done = shell("export", "x.toml", "--to", "numpy", "--minimal")
+    assert done.code == 2
+    assert "--minimal is for --to state-space" in done.err
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ('blocks.D = { type = "delay", T = "1 s" }\ninputs.u = {}\noutputs.y = "D*u"', "SF235"),
+        ('inputs.u = {}\noutputs.y = "s*u"', "SF236"),
+    ],
+)
+def test_what_has_no_state_equations_ends_with_code_3_and_a_hint(shell, text, code):
+    (shell.folder / "none.toml").write_text(f"symflex = 1\n{text}\n", encoding="utf-8")
+    done = shell("export", "none.toml", "--to", "state-space")
+    assert (done.code, done.out) == (3, "")
+    assert f"error[{code}]" in done.err
+    assert "hint: " in done.err
+
+
 def test_an_unknown_target_is_a_usage_error_that_lists_the_targets(shell):
     done = shell("export", "x.toml", "--to", "fortran")
     assert done.code == 2
