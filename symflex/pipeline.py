@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from symflex.roots import Budget, PoleZeroMap, Region
     from symflex.sensitivity import Sensitivity
     from symflex.spec import Spec
+    from symflex.state_space import StateSpace
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
 
@@ -138,12 +139,15 @@ def roots(
 
 
 def residues(
-    bound: BoundTransferFunction, region: Region | None = None, digits: int = 15
+    bound: BoundTransferFunction,
+    region: Region | None = None,
+    digits: int = 15,
+    budget: Budget | None = None,
 ) -> tuple[Residue, ...]:
     """Return the principal parts at the poles; see :func:`symflex.rational.find_residues`."""
     from symflex import rational as rational_room  # imports numpy
 
-    return rational_room.find_residues(bound, region, digits)
+    return rational_room.find_residues(bound, region, digits, budget)
 
 
 def rational(
@@ -156,6 +160,19 @@ def rational(
     from symflex import rational as rational_room  # imports numpy
 
     return rational_room.approximate(bound, modes, form, band)
+
+
+def state_space(
+    model: Model, pairs: Sequence[tuple[str, str]] | None = None, *, is_minimal: bool = False
+) -> StateSpace:
+    """Return one realisation with the outputs and inputs of the given pairs, all by default.
+
+    See :func:`symflex.state_space.realise` and, for ``is_minimal``, :func:`symflex.state_space.minimal`.
+    """
+    from symflex import state_space as state_space_room  # most commands need none of it
+
+    found = state_space_room.realise(model, model.transfer_functions if pairs is None else pairs)
+    return state_space_room.minimal(found) if is_minimal else found
 
 
 def sensitivities(

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symflex import pipeline
+from symflex.api.budget import budget_of
 from symflex.api.mode import Mode, plain_mode
 from symflex.api.mode_shape import ModeShape
 from symflex.api.pole_zero_map import PoleZeroMap
@@ -17,12 +18,14 @@ from symflex.api.sensitivity import Sensitivity
 
 if TYPE_CHECKING:
     import numpy as np
+    import sympy
     from numpy.typing import ArrayLike, NDArray
 
     from symflex import rational as rational_room
     from symflex import transfer as transfer_room
     from symflex.api.frequency_response import FrequencyResponse
     from symflex.explanation import ZeroExplanation
+    from symflex.state_space.numeric import BoundStateSpace
 
 
 @dataclass(frozen=True)
@@ -70,7 +73,13 @@ class BoundTransferFunction:
         return FrequencyResponse.of(respond(self.bound, omega))
 
     def poles(
-        self, modes: int | None = None, *, band: tuple[float, float] | None = None, digits: int = 15
+        self,
+        modes: int | None = None,
+        *,
+        mode: int | None = None,
+        band: tuple[float, float] | None = None,
+        digits: int = 15,
+        budget: float | None = None,
     ) -> tuple[Root, ...]:
         """Return the poles by natural frequency, both members of each conjugate pair.
 
@@ -78,29 +87,88 @@ class BoundTransferFunction:
         ----------
         modes : int, optional
             Only the lowest modes, with the roots at the origin. For a distributed system the model's
-            ``[analysis]`` decides when neither modes nor band are given, and else the number is five.
+            ``[analysis]`` decides when nothing else is asked for, and else the number is five.
+        mode : int, optional
+            Only the mode of this number, from 1 by natural frequency, both members of a conjugate pair; of a
+            lossless system it is found without those below it.
         band : (float, float), optional
             Only natural frequencies in this band [Hz].
         digits : int
             Correct significant digits.
+        budget : float, optional
+            Time the search may take [s].
+
+        Raises
+        ------
+        BudgetError
+            SF505, SF506 when the search takes too long: its ``found`` is a
+            :class:`~symflex.roots.PoleZeroMap` with all that was proved until then, ``None`` if that is
+            nothing.
+        UsageError
+            SF902 for more than one choice, or one that is impossible.
+
+        Examples
+        --------
+        >>> from symflex import Model
+        >>> from symflex.errors import BudgetError
+        >>> rod = Model(
+        ...     elements={
+        ...         "bar": {"type": "rod", "between": ["ground", "x"], "E": "1 Pa", "A": "1 m^2",
+        ...                 "rho": "1 kg/m^3", "l": "1 m"},
+        ...     },
+        ...     inputs={"F": {"force": "x"}},
+        ...     outputs={"X": "x"},
+        ... ).transfer_function("X", "F").bind()
+        >>> upper, lower = rod.poles(mode=1000)  # (1000 - 1/2) pi
+        >>> upper
+        <Root 0, 3140.02185726 j, radius ...
+        >>> try:
+        ...     poles = rod.poles(modes=2, budget=60)
+        ... except BudgetError as error:
+        ...     poles = () if error.found is None else error.found.poles
+        >>> [round(float(p.im), 6) for p in poles]
+        [1.570796, -1.570796, 4.712389, -4.712389]
         """
-        return tuple(Root(r) for r in self.pole_zero_map(digits, modes=modes, band=band).poles)
+        found = self._found(digits, modes=modes, mode=mode, band=band, budget=budget)
+        return tuple(Root(r) for r in found.poles)
 
     def zeros(
-        self, modes: int | None = None, *, band: tuple[float, float] | None = None, digits: int = 15
+        self,
+        modes: int | None = None,
+        *,
+        mode: int | None = None,
+        band: tuple[float, float] | None = None,
+        digits: int = 15,
+        budget: float | None = None,
     ) -> tuple[Root, ...]:
         """Return the zeros; see :meth:`poles`."""
-        return tuple(Root(r) for r in self.pole_zero_map(digits, modes=modes, band=band).zeros)
+        found = self._found(digits, modes=modes, mode=mode, band=band, budget=budget)
+        return tuple(Root(r) for r in found.zeros)
+
+    def _found(
+        self,
+        digits: int,
+        *,
+        modes: int | None,
+        mode: int | None,
+        band: tuple[float, float] | None,
+        budget: float | None,
+    ) -> PoleZeroMap:
+        """Return the map if the budget suffices: a tuple of roots could not say that it did not."""
+        found = self.pole_zero_map(digits, modes=modes, mode=mode, band=band, budget=budget)
+        return found.complete()
 
     def pole_zero_map(
         self,
         digits: int = 15,
         *,
         modes: int | None = None,
+        mode: int | None = None,
         band: tuple[float, float] | None = None,
         region: tuple[float, float, float, float] | None = None,
+        budget: float | None = None,
     ) -> PoleZeroMap:
-        """Return poles, zeros and hidden modes with their certificate.
+        r"""Return poles, zeros and hidden modes with their certificate.
 
         Parameters
         ----------
@@ -108,33 +176,76 @@ class BoundTransferFunction:
             Correct significant digits.
         modes : int, optional
             Only the lowest modes, with the roots at the origin.
+        mode : int, optional
+            Only the pole and the zero of this number, from 1 by natural frequency, with their conjugates.
         band : (float, float), optional
             Only natural frequencies in this band [Hz].
         region : (float, float, float, float), optional
             Only the rectangle ``(re_low, re_high, im_low, im_high)`` [rad/s].
+        budget : float, optional
+            Time the search may take [s]. When it is over, what was proved is returned: every root is, but not
+            that none is missing, and ``certificate.is_exceeded`` is true. Without it, the search of a
+            distributed system is limited by the work it does.
+
+        Raises
+        ------
+        BudgetError
+            SF505, SF506 when nothing but roots at 0 was found of a distributed system.
+        UsageError
+            SF902 for more than one choice, or one that is impossible.
+
+        Examples
+        --------
+        >>> from symflex import loads
+        >>> loop = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/((s^2 + 1)*(s^2 + 9))"')
+        >>> found = loop.transfer_function("y", "u").bind().pole_zero_map(6, mode=2, budget=60)
+        >>> [root.decimal(6).im for root in found.poles], found.certificate.is_exceeded
+        (['3.00000', '-3.00000'], False)
         """
-        return PoleZeroMap.of(pipeline.roots(self.bound, chosen_region(modes, band, region), digits))
+        time = budget_of(budget)
+        found = pipeline.roots(self.bound, chosen_region(modes, band, region, mode), digits, time)
+        return PoleZeroMap.of(found)
 
     def residues(
-        self, modes: int | None = None, *, band: tuple[float, float] | None = None, digits: int = 15
+        self,
+        modes: int | None = None,
+        *,
+        mode: int | None = None,
+        band: tuple[float, float] | None = None,
+        digits: int = 15,
+        budget: float | None = None,
     ) -> tuple[Residue, ...]:
-        """Return the residues at the poles, in their order; see :meth:`poles`.
+        r"""Return the residues at the poles, in their order; see :meth:`poles`.
 
         Parameters
         ----------
         modes : int, optional
             Only at the poles of the lowest modes and at the origin.
+        mode : int, optional
+            Only at the pole of this number and its conjugate.
         band : (float, float), optional
             Only at poles with natural frequencies in this band [Hz].
         digits : int
             Correct significant digits.
+        budget : float, optional
+            Time the search for the poles may take [s].
 
         Raises
         ------
         UncertifiedError
             SF405 when poles cannot be told apart, or the behaviour at one cannot be told.
+        BudgetError
+            As for :meth:`poles`.
+
+        Examples
+        --------
+        >>> from symflex import loads
+        >>> loop = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/((s + 1)*(s + 3))"')
+        >>> [complex(r) for r in loop.transfer_function("y", "u").bind().residues(mode=2)]
+        [(-0.5+0j)]
         """
-        return tuple(Residue(r) for r in pipeline.residues(self.bound, chosen_region(modes, band), digits))
+        region = chosen_region(modes, band, None, mode)
+        return tuple(Residue(r) for r in pipeline.residues(self.bound, region, digits, budget_of(budget)))
 
     def rational(
         self,
@@ -170,15 +281,17 @@ class BoundTransferFunction:
         modes: int | None = None,
         *,
         parameters: Sequence[str] = (),
+        mode: int | None = None,
         band: tuple[float, float] | None = None,
         digits: int = 15,
+        budget: float | None = None,
     ) -> tuple[Sensitivity, ...]:
         """Return how poles, and then zeros, move with parameters.
 
         Parameters
         ----------
-        modes, band : optional
-            As for :meth:`poles`.
+        modes, mode, band, budget : optional
+            As for :meth:`poles`; the budget is for the search for the roots.
         parameters : sequence of str
             All on which the function depends when none is given.
         digits : int
@@ -188,24 +301,37 @@ class BoundTransferFunction:
         ------
         UsageError
             SF902 for an unknown parameter.
+        BudgetError
+            As for :meth:`poles`.
         """
-        found = self.pole_zero_map(digits, modes=modes, band=band)
+        found = self._found(digits, modes=modes, mode=mode, band=band, budget=budget)
         model = self.bound.source.model
         return tuple(
             Sensitivity(m) for m in pipeline.sensitivities(model, self.bound, found, parameters, digits)
         )
 
     def explain_zeros(
-        self, modes: int | None = None, *, band: tuple[float, float] | None = None, digits: int = 15
+        self,
+        modes: int | None = None,
+        *,
+        mode: int | None = None,
+        band: tuple[float, float] | None = None,
+        digits: int = 15,
+        budget: float | None = None,
     ) -> ZeroExplanation:
         """Return what the zeros are the poles of; print it to read it.
 
         Parameters
         ----------
-        modes, band, digits
+        modes, mode, band, digits, budget : optional
             As for :meth:`zeros`: which zeros are spoken of one by one.
+
+        Raises
+        ------
+        BudgetError
+            As for :meth:`poles`.
         """
-        found = self.pole_zero_map(digits, modes=modes, band=band)
+        found = self._found(digits, modes=modes, mode=mode, band=band, budget=budget)
         return pipeline.explain_zeros(self.bound.source.model, self.bound, found)
 
     def mode_shape(self, mode: Mode, digits: int = 15) -> ModeShape:
@@ -242,6 +368,111 @@ class BoundTransferFunction:
         from symflex.modes import mode_shapes
 
         return tuple(ModeShape(shape) for shape in mode_shapes(self.bound, plain_mode(mode), digits))
+
+    def state_space(self, *, minimal: bool = False) -> BoundStateSpace:
+        """Return state equations of the model's network as arrays, every entry rounded once.
+
+        The states are displacements and velocities of nodes, currents, voltages; see :class:`StateSpace`.
+
+        Parameters
+        ----------
+        minimal : bool
+            Leave out what the input does not reach or the output does not show. The states left are
+            quantities of the model, or differences and other combinations of them.
+
+        Raises
+        ------
+        ModelError
+            SF235 for beams, rods and delays, SF236 when the function grows with s.
+        """
+        from symflex.rational.toolboxes import ExactFunction
+
+        return ExactFunction(self.bound, is_minimal=minimal).state_space()
+
+    def to_control(self, form: str = "transfer-function", *, minimal: bool = False) -> object:
+        """Return a system of python-control with named input, output and states.
+
+        Parameters
+        ----------
+        form : str
+            ``transfer-function``; or ``state-space``, see :meth:`state_space`, which loses far fewer digits
+            where the degree is high.
+        minimal : bool
+            For ``state-space``.
+
+        Returns
+        -------
+        control.TransferFunction or control.StateSpace
+            Coefficients are the doubles nearest to the exact ones. The attribute ``metadata`` holds units and
+            ``coefficients_error``, what rounding coefficients does to the function.
+
+        Raises
+        ------
+        ModelError
+            SF235 for beams, rods and delays: :meth:`rational` first; SF233 when a coefficient does not fit in
+            double precision; SF236 as for :meth:`state_space`.
+        UsageError
+            SF902 when python-control is not installed, and for an unknown form.
+        """
+        from symflex.rational.toolboxes import ExactFunction
+
+        return ExactFunction(self.bound, is_minimal=minimal).to_control(form)
+
+    def to_frd(self, omega: ArrayLike) -> object:
+        """Return a ``control.FrequencyResponseData``, of beams and delays too, without approximation.
+
+        Parameters
+        ----------
+        omega : array_like of float
+            Increasing angular frequencies [rad/s], none of them negative or at a pole.
+
+        Raises
+        ------
+        UsageError
+            SF902 when python-control is not installed, for other frequencies, and at a pole.
+        """
+        from symflex.rational.toolboxes import end_units, frequency_response_data
+
+        source = self.bound.source
+        label = f"{source.output.name}_over_{source.input.name}"
+        return frequency_response_data(source, self.bound, omega, label, end_units(source))
+
+    def to_scipy(self, form: str = "zeros-poles-gain", *, minimal: bool = False) -> object:
+        """Return a system of ``scipy.signal``.
+
+        Parameters
+        ----------
+        form : str
+            ``zeros-poles-gain``, from the proved roots, which loses no digits; ``transfer-function``;
+            ``state-space``.
+        minimal : bool
+            For ``state-space``.
+
+        Returns
+        -------
+        scipy.signal.ZerosPolesGain, TransferFunction or StateSpace
+            Its attribute ``metadata`` holds names and units.
+
+        Raises
+        ------
+        ModelError, UsageError
+            As :meth:`to_control`.
+        """
+        from symflex.rational.toolboxes import ExactFunction
+
+        return ExactFunction(self.bound, is_minimal=minimal).to_scipy(form)
+
+    def to_sympy(self) -> sympy.Basic:
+        """Return a ``sympy.physics.control.TransferFunction`` of ``s`` with exact coefficients.
+
+        Raises
+        ------
+        ModelError
+            SF235 for beams, rods and delays.
+        """
+        from symflex.emit.sympy_system import sympy_system
+
+        return sympy_system(self.bound)
 
     def dcgain(self) -> float:
         """Return the limit for s -> 0 from the right, possibly infinite."""

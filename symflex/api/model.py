@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symflex import pipeline
+from symflex.api.state_space import StateSpace
 from symflex.api.transfer_function import TransferFunction
 from symflex.spec import write
 
@@ -137,9 +138,44 @@ class Model:
         """Derive every output over every input, sharing one elimination."""
         return tuple(TransferFunction(tf) for tf in pipeline.derive_all(self.resolved))
 
+    def state_space(
+        self,
+        outputs: Sequence[str] | None = None,
+        inputs: Sequence[str] | None = None,
+        *,
+        minimal: bool = False,
+    ) -> StateSpace:
+        """Return one realisation with several outputs and inputs, all by default.
+
+        Parameters
+        ----------
+        outputs, inputs : sequence of str, optional
+            Names; inputs that are not named are zero.
+        minimal : bool
+            Leave out what no input reaches or no output shows.
+
+        Raises
+        ------
+        UsageError
+            SF902 for an unknown name.
+        ModelError
+            SF235 for beams, rods and delays, SF236 when an output grows with s.
+        """
+        wanted = [
+            f"{output}/{source}"
+            for output in (self.outputs if outputs is None else outputs)
+            for source in (self.inputs if inputs is None else inputs)
+        ]
+        pairs = pipeline.pick_pairs(self.resolved, wanted)
+        return StateSpace(pipeline.state_space(self.resolved, pairs, is_minimal=minimal))
+
     def export_numpy(self) -> str:
         """Return a numpy module with a function per transfer function."""
         return self._export("numpy")
+
+    def export_state_space(self) -> str:
+        """Return a numpy module with the state equations as a function of the parameters."""
+        return self._export("state-space")
 
     def export_latex(self) -> str:
         """Return a standalone LaTeX document of the model."""

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from symflex import pipeline
 from symflex.api.bound import BoundTransferFunction
 from symflex.api.form import Form
+from symflex.api.state_space import StateSpace
 from symflex.emit.forms import counts_of, hidden_expressions, print_form
 from symflex.emit.json_format import derive_json
 from symflex.emit.sympy_expression import symbols_of, to_sympy
@@ -119,6 +120,39 @@ class TransferFunction:
             SF902 for an unknown parameter.
         """
         return BoundTransferFunction(pipeline.bind(self.exact, values))
+
+    def state_space(self, *, minimal: bool = False) -> StateSpace:
+        """Return state equations of the model's network with SymPy matrices.
+
+        Parameters
+        ----------
+        minimal : bool
+            Leave out what the input does not reach or the output does not show, at almost all values of the
+            parameters.
+
+        Raises
+        ------
+        ModelError
+            SF235 for beams, rods and delays, SF236 when the function grows with s.
+        BudgetError
+            SF502 when the matrices become too large.
+        """
+        pair = (self.exact.output.name, self.exact.input.name)
+        return StateSpace(pipeline.state_space(self.exact.model, [pair], is_minimal=minimal))
+
+    def to_sympy(self) -> sympy.Basic:
+        """Return a ``sympy.physics.control.TransferFunction`` of ``s`` with the parameters as symbols.
+
+        Raises
+        ------
+        ModelError
+            SF235 for beams, rods and delays.
+        BudgetError
+            SF501 when numerator or denominator are too large to be multiplied out.
+        """
+        from symflex.emit.sympy_system import sympy_system
+
+        return sympy_system(self.exact)
 
     def sensitivity_formula(self, parameter: str, of: str = "pole") -> tuple[sympy.Expr, sympy.Expr]:
         """Return numerator and denominator of ds/dp for a pole s, a formula in s and the parameters.

@@ -23,11 +23,12 @@ if TYPE_CHECKING:
 
 @click.command("export")
 @click.argument("spec", type=click.Path())
-@click.option("--to", "target", required=True, metavar="TARGET", help="numpy or latex.")
+@click.option("--to", "target", required=True, metavar="TARGET", help="What to write; see below.")
 @click.option("--tf", "tfs", multiple=True, metavar="OUT/IN", help="Only this transfer function; repeatable.")
 @click.option("--form", metavar="FORM", help="latex: form of the functions, as for derive.")
 @click.option("--width", metavar="ieee|a4|MM", help="latex: width of the column; a4 (170 mm) by default.")
 @click.option("-o", "--output", type=click.Path(), help="File to write; standard output by default.")
+@click.option("--minimal", "is_minimal", is_flag=True, help="state-space: without hidden states.")
 @click.option("--strict", is_flag=True, help="Exit with 4 when the verified accuracy falls short.")
 @reporting
 def command(
@@ -38,6 +39,7 @@ def command(
     form: str | None,
     width: str | None,
     output: str | None,
+    is_minimal: bool,
     strict: bool,
 ) -> int:
     """Write the transfer functions of SPEC for another program.
@@ -47,9 +49,13 @@ def command(
 
     With --to latex and -o FOLDER/ every transfer function and table becomes a file for a paper to input, and
     document.tex inputs them all.
+
+    With --to state-space all of them get one realisation, whose states are displacements, velocities,
+    currents and the like of the model. Exit code 3 says that there is none: beams, rods and delays have
+    infinitely many states, and what has more zeros than poles has no output equation.
     """
     from symflex import pipeline
-    from symflex.emit.exporters import EXPORTERS, LatexExporter
+    from symflex.emit.exporters import EXPORTERS, LatexExporter, StateSpaceExporter
     from symflex.emit.latex import column_width
     from symflex.emit.write import write_atomically
 
@@ -61,6 +67,10 @@ def command(
         exporter = replace(exporter, form=form, width_mm=column_width(width or "a4"))
     elif form is not None or width is not None:
         raise UsageError(Diagnostic("SF902", "--form and --width are for --to latex"))
+    if isinstance(exporter, StateSpaceExporter):
+        exporter = StateSpaceExporter(is_minimal=is_minimal)
+    elif is_minimal:
+        raise UsageError(Diagnostic("SF902", "--minimal is for --to state-space"))
     model = pipeline.load(spec)
     derived = pipeline.derive_all(model, pipeline.pick_pairs(model, tfs))
     if isinstance(exporter, LatexExporter):

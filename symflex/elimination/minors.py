@@ -50,24 +50,39 @@ class Minors:
 
     def determinant(self, columns: int) -> fmpz_mpoly:
         """Return the determinant over the columns whose bits are set, taken in increasing order."""
+        self._find(columns)
         return self._minor(0, columns)
 
     def bordered(self, top: SparseRow, columns: int) -> fmpz_mpoly:
         """Return the determinant with one more row on top."""
+        for left in self._left(top, columns):
+            self._find(left)
         return self._expand(top, 0, columns)
 
     def _minor(self, row: int, columns: int) -> fmpz_mpoly:
-        if row == len(self.rows):
-            return self.ring.constant(1)
         # The number of columns left tells the row, so the columns alone are the key.
-        known = self._known.get(columns)
-        if known is None:
-            known = self._expand(self.rows[row], row + 1, columns)
-            self._known[columns] = known
-            self._bytes += self.ring.bytes_of(len(known))
-            if len(self._known) > MINOR_LIMIT or self._bytes > MEMORY_LIMIT:
+        return self.ring.constant(1) if row == len(self.rows) else self._known[columns]
+
+    def _left(self, entries: SparseRow, columns: int) -> set[int]:
+        return {columns & ~(1 << column) for column in entries if columns >> column & 1}
+
+    def _find(self, columns: int) -> None:
+        """Compute a determinant and all its minors, the smallest first: calls go less deep than chains."""
+        wanted = [{columns} - self._known.keys()]
+        count = len(self._known)
+        for entries in self.rows:
+            count += len(wanted[-1])
+            if count > MINOR_LIMIT:
                 raise _too_large("the determinant has too many minors or terms")
-        return known
+            below = {left for each in wanted[-1] for left in self._left(entries, each)}
+            wanted.append(below - self._known.keys())
+        for row in reversed(range(len(self.rows))):
+            for each in wanted[row]:
+                known = self._expand(self.rows[row], row + 1, each)
+                self._known[each] = known
+                self._bytes += self.ring.bytes_of(len(known))
+                if self._bytes > MEMORY_LIMIT:
+                    raise _too_large("the determinant has too many minors or terms")
 
     def _expand(self, entries: SparseRow, below: int, columns: int) -> fmpz_mpoly:
         total = self.ring.constant(0)

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Protocol
 from symflex.emit.forms import print_forms
 from symflex.emit.latex import TEXT_WIDTH_MM, latex_document, latex_files
 from symflex.emit.numpy_module import numpy_module
+from symflex.emit.state_space_module import state_space_module
 from symflex.errors import ModelError, SymflexError
 from symflex.roots.locate import locate
+from symflex.state_space import minimal, realise
 from symflex.transfer import bind
 
 if TYPE_CHECKING:
@@ -87,6 +89,28 @@ def _shortfall(verification: Verification) -> str:
     return f"{name} is accurate to {error:.1e} only, over {low:g} Hz to {high:g} Hz"
 
 
+class StateSpaceExporter:
+    """State equations as a function of the parameters, in one numpy module.
+
+    Parameters
+    ----------
+    is_minimal : bool
+        Leave out what no input reaches or no output shows.
+    """
+
+    suffix = ".py"
+    summary = "numpy module with A, B, C, D as a function of the parameters, states named"
+
+    def __init__(self, *, is_minimal: bool = False) -> None:
+        self.is_minimal = is_minimal
+
+    def export(self, model: Model, tfs: Sequence[TransferFunction]) -> Export:
+        """Return the module; accuracy that was not reached is a warning."""
+        system = realise(model, [(tf.output.name, tf.input.name) for tf in tfs])
+        made = state_space_module(minimal(system) if self.is_minimal else system, tfs, model.analysis.band)
+        return Export(made.text, tuple(w for v in made.verified if (w := _shortfall(v))))
+
+
 @dataclass(frozen=True, slots=True)
 class LatexExporter:
     """A standalone LaTeX document, or the files it is made of.
@@ -136,4 +160,8 @@ class LatexExporter:
         return forms, maps, tuple(warnings)
 
 
-EXPORTERS: dict[str, Exporter] = {"numpy": NumpyExporter(), "latex": LatexExporter()}
+EXPORTERS: dict[str, Exporter] = {
+    "numpy": NumpyExporter(),
+    "latex": LatexExporter(),
+    "state-space": StateSpaceExporter(),
+}

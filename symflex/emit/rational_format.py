@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import mpmath
 
-from symflex.rational.approximation import PERCENTS
+from symflex.rational.toolboxes import PERCENTS
 from symflex.roots.multiprecision import to_complex_mpmath
 
 if TYPE_CHECKING:

@@ -57,6 +57,18 @@ class UncertifiedError(SymflexError):
 
 
 class BudgetError(SymflexError):
-    """A limit on time, memory or size was exceeded."""
+    """A limit on time, memory or size was exceeded.
+
+    Parameters
+    ----------
+    *diagnostics : Diagnostic
+        What was exceeded.
+    found : object, optional
+        What was proved until then: of a search for roots a ``PoleZeroMap``.
+    """
 
     exit_code = 5
+
+    def __init__(self, *diagnostics: Diagnostic, found: object = None) -> None:
+        super().__init__(*diagnostics)
+        self.found = found

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import mpmath
 import numpy as np
 
-from symflex.errors import Diagnostic, ModelError, UsageError
+from symflex.rational.toolboxes import PERCENTS, ApproximateFunction, doubles
+from symflex.state_space.numeric import BoundStateSpace, not_installed
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -18,9 +19,6 @@ if TYPE_CHECKING:
     from symflex.rational.approximation_error import BandError, ErrorScan
     from symflex.rational.residues import Residue
     from symflex.transfer import BoundTransferFunction
-
-PERCENTS = (1, 5)
-"""What the validity of an approximation is stated for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,59 +208,89 @@ class RationalApproximation:
         ModelError
             SF233 when a coefficient is too large or too small for double precision.
         """
-        return _doubles(self.num, self.tf), _doubles(self.den, self.tf)
+        return doubles(self.num, self.tf), doubles(self.den, self.tf)
 
     def label(self) -> str:
-        """Return a name that says what this is and where it is valid.
+        """Return a name that says what this is and up to which frequency it is within 1 %.
 
         Only letters, digits and underscores, as programs for control design want names.
         """
         name = self.tf.replace("/", "_over_")
         if self.is_exact:
             return f"{name}_exact"
-        valid = (
-            f"{self.valid_to(PERCENTS[-1] / 100):.3g}".replace(".", "p").replace("+", "").replace("-", "m")
-        )
-        return f"{name}_{self.form}_{self.modes}_modes_{PERCENTS[-1]}_percent_to_{valid}_Hz"
+        valid = f"{self.valid_to(PERCENTS[0] / 100):.3g}".replace(".", "p").replace("+", "").replace("-", "m")
+        return f"{name}_{self.form}_{self.modes}_modes_{PERCENTS[0]}_percent_to_{valid}_Hz"
 
-    def to_control(self) -> object:
-        """Return a ``control.TransferFunction``, named by :meth:`label`, with named input and output.
+    def state_space(self) -> BoundStateSpace:
+        """Return state equations: sections of second order in series, each with the poles of one pair.
+
+        Raises
+        ------
+        ModelError
+            SF236 when there are more zeros than poles, SF233 when a number does not fit in double precision.
+        """
+        return ApproximateFunction(self).state_space()
+
+    def to_control(self, form: str = "transfer-function") -> object:
+        """Return a system of python-control, named by :meth:`label`, with named input and output.
+
+        Parameters
+        ----------
+        form : str
+            ``transfer-function``; or ``state-space``, see :meth:`state_space`, which loses no digits.
+
+        Returns
+        -------
+        control.TransferFunction or control.StateSpace
+            Its attribute ``metadata`` holds units, the frequencies up to which it is valid, and what
+            rounding coefficients does to it.
 
         Raises
         ------
         UsageError
-            SF902 when python-control is not installed.
+            SF902 when python-control is not installed, and for an unknown form.
         ModelError
-            SF233 when a coefficient is too large or too small for double precision.
+            SF233 when a coefficient is too large or too small for double precision, SF236 as
+            :meth:`state_space`.
         """
-        try:
-            import control
-        except ImportError:
-            raise _not_installed("control", "pip install 'symflex[control]'") from None
-        source = self.bound.source
-        names = {"inputs": [source.input.name], "outputs": [source.output.name]}
-        return control.TransferFunction(*self.coefficients(), name=self.label(), **names)
+        return ApproximateFunction(self).to_control(form)
 
-    def to_scipy(self) -> object:
-        """Return a ``scipy.signal.ZerosPolesGain``, which keeps the digits that coefficients lose.
+    def to_frd(self, omega: npt.ArrayLike) -> object:
+        """Return a ``control.FrequencyResponseData`` at angular frequencies [rad/s]; named as the others.
 
         Raises
         ------
         UsageError
-            SF902 when scipy is not installed.
-        ModelError
-            SF233 when the gain is too large or too small for double precision.
+            SF902 when python-control is not installed, when frequencies do not increase, and at a pole.
         """
-        try:
-            from scipy.signal import ZerosPolesGain
-        except ImportError:
-            raise _not_installed("scipy", "pip install scipy") from None
-        zeros, poles = ([complex(root) for root in roots] for roots in (self.zeros, self.poles))
-        (gain,) = _doubles((self.gain,), self.tf)
-        return ZerosPolesGain(zeros, poles, gain)
+        return ApproximateFunction(self).to_frd(omega)
 
-    def to_sympy(self, digits: int = 15) -> sympy.Expr:
-        """Return numerator over denominator as a SymPy expression of the symbol ``s``.
+    def to_scipy(self, form: str = "zeros-poles-gain") -> object:
+        """Return a system of ``scipy.signal``.
+
+        Parameters
+        ----------
+        form : str
+            ``zeros-poles-gain``, which keeps the digits that coefficients lose; ``transfer-function``;
+            ``state-space``.
+
+        Returns
+        -------
+        scipy.signal.ZerosPolesGain, TransferFunction or StateSpace
+            Its attribute ``metadata`` holds name, units and the frequencies up to which it is valid.
+
+        Raises
+        ------
+        UsageError
+            SF902 when scipy is not installed, and for an unknown form.
+        ModelError
+            SF233 when a number is too large or too small for double precision, SF236 as
+            :meth:`state_space`.
+        """
+        return ApproximateFunction(self).to_scipy(form)
+
+    def to_sympy(self, digits: int = 15) -> sympy.Basic:
+        """Return a ``sympy.physics.control.TransferFunction`` of the symbol ``s``.
 
         Parameters
         ----------
@@ -276,8 +304,9 @@ class RationalApproximation:
         """
         try:
             import sympy
+            from sympy.physics.control import TransferFunction
         except ImportError:
-            raise _not_installed("sympy", "pip install sympy") from None
+            raise not_installed("sympy") from None
         s = sympy.Symbol("s")
 
         def polynomial(coefficients: tuple[mpmath.mpf, ...]) -> sympy.Expr:
@@ -286,16 +315,4 @@ class RationalApproximation:
                 *(sympy.Float(c, digits) * s ** (last - i) for i, c in enumerate(coefficients) if c)
             )
 
-        return polynomial(self.num) / polynomial(self.den)
-
-
-def _doubles(numbers: tuple[mpmath.mpf, ...], name: str) -> npt.NDArray[np.float64]:
-    values = np.array([float(number) for number in numbers])
-    if not np.isfinite(values).all() or any(n != 0 and v == 0 for n, v in zip(numbers, values, strict=True)):
-        message = f"a coefficient of the approximation of {name} does not fit into double precision"
-        raise ModelError(Diagnostic("SF233", message, None, "poles, zeros and gain may; or take fewer modes"))
-    return values
-
-
-def _not_installed(package: str, hint: str) -> UsageError:
-    return UsageError(Diagnostic("SF902", f"{package} is not installed", None, hint))
+        return TransferFunction(polynomial(self.num), polynomial(self.den), s)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from flint import acb
 
-    from symflex.roots import Region, Root
+    from symflex.roots import Budget, Region, Root
     from symflex.transfer import BoundTransferFunction
 
 
@@ -59,7 +59,10 @@ class Residue:
 
 
 def find_residues(
-    bound: BoundTransferFunction, region: Region | None = None, digits: int = 15
+    bound: BoundTransferFunction,
+    region: Region | None = None,
+    digits: int = 15,
+    budget: Budget | None = None,
 ) -> tuple[Residue, ...]:
     r"""Return the principal parts at the poles in a region.
 
@@ -71,6 +74,8 @@ def find_residues(
         As for :func:`symflex.roots.locate.locate`.
     digits : int
         Significant digits of every coefficient that is not zero.
+    budget : Budget, optional
+        Limits the search for the poles.
 
     Returns
     -------
@@ -81,6 +86,9 @@ def find_residues(
     ------
     UncertifiedError
         SF405 when poles cannot be told apart, or the behaviour at one cannot be told.
+    BudgetError
+        SF505, SF506 when the search for the poles takes too long; see
+        :meth:`symflex.roots.PoleZeroMap.complete`.
 
     Examples
     --------
@@ -92,7 +100,7 @@ def find_residues(
     [2.0]
     """
     bound = without_lengths_of_zero(bound)
-    return residues_at(bound, locate(bound, region, digits).poles, digits)
+    return residues_at(bound, locate(bound, region, digits, budget).complete().poles, digits)
 
 
 def residues_at(bound: BoundTransferFunction, poles: Sequence[Root], digits: int) -> tuple[Residue, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from time import monotonic
 from typing import TYPE_CHECKING, Protocol
 
@@ -57,6 +57,18 @@ class Budget:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "_start", self.clock())
+
+    def share(self, fraction: float) -> Budget:
+        """Return a budget that began when this one did and ends after a fraction of its time.
+
+        Examples
+        --------
+        >>> Budget(seconds=2).share(0.75).seconds
+        1.5
+        """
+        part = replace(self, seconds=None if self.seconds is None else fraction * self.seconds)
+        object.__setattr__(part, "_start", self._start)
+        return part
 
     def spend(self) -> None:
         """Go on if there is time left.

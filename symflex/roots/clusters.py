@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, arb
 
+from symflex.roots.branch_points import prove_together
 from symflex.roots.krawczyk import prove_simple
 from symflex.roots.precision import precision
 from symflex.roots.root import GUARD_BITS
@@ -65,6 +66,8 @@ def resolve(
             with precision(bits + GUARD_BITS):
                 start = (centre + radius * guess).mid()
             root = prove_simple(function, start, digits, factor=i, even=even, first_bits=bits)
+            if root is None:
+                root = prove_together(function, start, radius, digits, function.power, even=even)
             if root is None:
                 return None
             found.append(root)

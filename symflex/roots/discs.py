@@ -11,11 +11,13 @@ holds a real one. Guesses are therefore listed in the closed upper half plane on
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 from flint import acb, acb_poly, arb, ctx
+
+from symflex.roots.budget import Budget
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -66,16 +68,19 @@ class LevelPolynomial:
         The polynomial, its coefficients real balls, and its derivative.
     degree : int
         Of the polynomial, known exactly.
+    budget : Budget
+        Heeded between evaluations: no limit by default.
     """
 
     value: acb_poly
     slope: acb_poly
     degree: int
+    budget: Budget = field(default_factory=Budget)
 
     @classmethod
-    def of(cls, polynomial: acb_poly) -> LevelPolynomial:
+    def of(cls, polynomial: acb_poly, budget: Budget | None = None) -> LevelPolynomial:
         """Return the polynomial with its derivative."""
-        return cls(polynomial, polynomial.derivative(), int(polynomial.degree()))
+        return cls(polynomial, polynomial.derivative(), int(polynomial.degree()), budget or Budget())
 
     def shifted(self, centre: acb) -> acb_poly:
         """Return p(centre + x) as a polynomial in x."""
@@ -86,6 +91,7 @@ class LevelPolynomial:
         best = Disc(guess, arb("+inf"))
         centre = guess
         for _ in range(NEWTON_STEPS):
+            self.budget.spend()
             step = self.value(centre) / self.slope(centre)
             if not step.is_finite():
                 break
@@ -105,6 +111,7 @@ class LevelPolynomial:
         is_real = centre.imag == 0
         shifted = self.shifted(centre)
         for _ in range(CENTRE_STEPS):
+            self.budget.spend()
             step = shifted[count - 1] / (count * shifted[count])
             if not step.is_finite():
                 return None

@@ -75,15 +75,17 @@ def locate_distributed(
     is_default = region is None or isinstance(region, Everything)
     where = default_region(bound) if region is None or isinstance(region, Everything) else region
     searched = _Searched(bound, where, digits, budget)
-    reason, is_exceeded = None, False
+    reason, code = None, None
     try:
         searched.find()
         reason = searched.prove()
     except BudgetError as error:
         # What was found stays; the roots are proved one by one, only their number is not.
-        reason, is_exceeded = "; ".join(d.message for d in error.diagnostics) + searched.extent(), True
+        reason = "; ".join(d.message for d in error.diagnostics) + searched.extent()
+        code = error.diagnostics[0].code
         if all(root.is_zero for side in searched.sides for root in side.roots):
             raise
+        searched.settle()
     chosen = searched.chosen()
     found = sum(root.multiplicity for roots in chosen for root in roots)
     every = [root for roots in chosen for root in roots]
@@ -92,7 +94,13 @@ def locate_distributed(
     missing = sum(side.missing for side in searched.sides)
     engines = sorted({side.engine for side in searched.sides if not side.is_finite}) or [POLYNOMIAL.name]
     certificate = Certificate(
-        ", ".join(engines), reason is None, found + missing, found, reason, is_exceeded=is_exceeded
+        ", ".join(engines),
+        reason is None,
+        found + missing,
+        found,
+        reason,
+        is_exceeded=code is not None,
+        code=code,
     )
     excluded = {hole for side in searched.sides for hole in side.excluded()}
     return PoleZeroMap(
@@ -116,6 +124,7 @@ class _Searched:
         self.bound, self.region, self.digits, self.budget = bound, region, digits, budget
         self.sides: list[Side] = []
         self.hidden: list[HiddenRoot] = []
+        self._within: Region = region
 
     def find(self) -> None:
         """Find the roots of all sides."""
@@ -137,17 +146,25 @@ class _Searched:
         self._within = within
         self.sides.append(cancelled)
         _find((cancelled,), within)
-        degenerate = _degenerate_points(bound)
+        self._hide(shared)
+
+    def _hide(self, shared: Sequence[Root]) -> None:
+        """List what cancelled, and what poles and zeros share, as hidden."""
+        within = self._within
+        cancelled = [root for side in self.sides[2:] for root in side.roots]
+        if self.bound.ratio.is_zero:
+            cancelled = [root for side in self.sides for root in side.roots]
+        degenerate = _degenerate_points(self.bound)
         self.hidden = [
             HiddenRoot(root)
-            for root in _chosen(cancelled.roots, within)
+            for root in _chosen(cancelled, within)
             # Where two wavenumbers meet or vanish, what cancels belongs to how the function is written.
             if root.is_zero or not any(overlap(root, other) for other in degenerate)
         ]
         self.hidden += [
             HiddenRoot(root, "coincident")
             for root in _chosen(shared, within)
-            if not any(overlap(root, other) for other in (*degenerate, *cancelled.roots))
+            if not any(overlap(root, other) for other in (*degenerate, *cancelled))
         ]
 
     def prove(self) -> str | None:
@@ -162,6 +179,7 @@ class _Searched:
                 ):
                     reasons.append(proof.reason or "roots were counted but not found")
             return "; ".join(dict.fromkeys(reasons)) or None
+        engines = [side.engine for side in self.sides]
         for i, side in enumerate(self.sides):
             self.budget.progress.report(i / len(self.sides), "proving that no root is missing")
             is_last = i == len(self.sides) - 1
@@ -169,7 +187,45 @@ class _Searched:
             if not proof.is_complete:
                 missing = proof.counted - proof.found
                 reasons.append(proof.reason or f"{abs(missing)} roots were counted but not found")
+        if engines != [side.engine for side in self.sides]:
+            reasons += self._match_again()
         return "; ".join(dict.fromkeys(reasons)) or None
+
+    def _match_again(self) -> list[str]:
+        """Take out what poles and zeros share where roots were searched anew; return what is lost by it."""
+        pair = self._pair
+        for side in self.sides:
+            side.restore()
+        self._hide(_match(*pair) if pair else [])
+        if isinstance(self.region, Modes) and pair and pair[0].modes < self.region.count:
+            return ["too many poles and zeros coincide to tell the modes"]
+        return []
+
+    def settle(self) -> None:
+        """Take out what may be no pole or zero where a search was broken off."""
+        pair = self._pair
+        if not pair or isinstance(self.region, Mode):
+            return
+        for side in self.sides:
+            side.restore()
+        shared = _match(*pair)
+        # Where wavenumbers vanish or meet, both may have a root; one of them was perhaps not yet met.
+        degenerate = _degenerate_points(self.bound)
+        for side, other in (pair, pair[::-1]):
+            side.roots = [
+                root
+                for root in side.roots
+                if root.is_zero
+                or other.is_finite
+                or float(root.natural_frequency().log().mid()) < other.reached
+                or not any(overlap(root, point) for point in degenerate)
+            ]
+        self._hide(shared)
+
+    @property
+    def _pair(self) -> list[Side]:
+        """Denominator and numerator; nothing when the function is zero."""
+        return self.sides[:2] if len(self.sides) > 1 else []
 
     def chosen(self) -> tuple[list[Root], list[Root], list[Root]]:
         """Return the poles, zeros and hidden modes of the region."""
@@ -240,8 +296,8 @@ def _coincide(poles: Side, pole: Root, zeros: Side, zero: Root) -> bool:
     """Tell whether a pole and a zero agree in more than twice the digits asked for."""
     if not overlap(pole, zero):
         return False
-    closer = [side.refined(root) for side, root in ((poles, pole), (zeros, zero))]
-    return overlap(*closer)
+    closer = poles.refined(pole)
+    return overlap(closer, zero) and overlap(closer, zeros.refined(zero))
 
 
 def _chosen(roots: Sequence[Root], region: Region) -> list[Root]:

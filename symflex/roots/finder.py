@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
+    from symflex.roots.budget import Budget
     from symflex.roots.problem import Problem
     from symflex.roots.region import Region
     from symflex.roots.root import Root
@@ -26,12 +27,16 @@ class RootFinder(Protocol):
         """Return whether the engine can solve the problem."""
         ...
 
-    def find(self, problem: Problem, region: Region, digits: int) -> tuple[Root, ...]:
+    def find(
+        self, problem: Problem, region: Region, digits: int, budget: Budget | None = None
+    ) -> tuple[Root, ...]:
         """Return at least all roots in the closed region, in the order of :func:`find_polynomial_roots`.
 
         Raises
         ------
         TypeError
             For a problem it does not accept.
+        BudgetError
+            When the budget is exceeded; ``found`` is a tuple of the roots proved until then, or ``None``.
         """
         ...

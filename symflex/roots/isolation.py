@@ -24,10 +24,11 @@ from symflex.roots.discs import (
 from symflex.roots.precision import bits_for_digits, precision
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from flint import acb
 
+    from symflex.roots.budget import Budget
     from symflex.roots.discs import Proposer
     from symflex.roots.problem import PolynomialInS
 
@@ -44,7 +45,30 @@ GROWTH_FLOOR = 2048
 def isolate(
     polynomial: PolynomialInS, digits: int, *, in_square: bool, proposers: Sequence[Proposer]
 ) -> tuple[Disc, ...]:
-    """Enclose every root of a square-free polynomial.
+    """Enclose every root of a square-free polynomial; the last one of :func:`isolations`.
+
+    Examples
+    --------
+    >>> from symflex.roots.durand_kerner import propose_by_durand_kerner
+    >>> from symflex.roots.problem import PolynomialInS
+    >>> polynomial = PolynomialInS.from_integers([-2, 0, 1])
+    >>> discs = isolate(polynomial, 10, in_square=False, proposers=[propose_by_durand_kerner])
+    >>> [disc.is_real for disc in discs]
+    [True, True]
+    """
+    *_, discs = isolations(polynomial, digits, in_square=in_square, proposers=proposers)
+    return discs
+
+
+def isolations(
+    polynomial: PolynomialInS,
+    digits: int,
+    *,
+    in_square: bool,
+    proposers: Sequence[Proposer],
+    budget: Budget | None = None,
+) -> Iterator[tuple[Disc, ...]]:
+    """Enclose every root of a square-free polynomial, ever closer.
 
     Parameters
     ----------
@@ -56,39 +80,47 @@ def isolate(
         The variable is z = s^2.
     proposers : sequence of callables
         Engines that guess roots; the next one is asked when a guess does not certify.
+    budget : Budget, optional
+        Heeded between evaluations; no limit by default.
 
-    Returns
-    -------
+    Yields
+    ------
     tuple of Disc
-        A ``count`` above one marks roots that could not be told apart within the bound on precision.
+        All roots; at last with all digits wanted, or at the bound on precision. A ``count`` above one marks
+        roots that could not be told apart within that bound.
 
     Raises
     ------
     UncertifiedError
         SF404 when the bound on precision is reached without isolating discs.
+    BudgetError
+        SF506 when the time is over.
 
     Examples
     --------
     >>> from symflex.roots.durand_kerner import propose_by_durand_kerner
     >>> from symflex.roots.problem import PolynomialInS
     >>> polynomial = PolynomialInS.from_integers([-2, 0, 1])
-    >>> discs = isolate(polynomial, 10, in_square=False, proposers=[propose_by_durand_kerner])
-    >>> [disc.is_real for disc in discs]
-    [True, True]
+    >>> [found] = isolations(polynomial, 10, in_square=False, proposers=[propose_by_durand_kerner])
+    >>> len(found)
+    2
     """
-    bits = bits_for_digits(digits) + 2 * polynomial.degree + EXTRA_BITS
+    bits = first_bits(polynomial, digits)
     growth = GROWTH_EXACT if polynomial.is_exact else GROWTH_WITH_CONSTANTS
     limit = growth * bits + GROWTH_FLOOR
-    goal = _goal(digits, in_square=in_square)
+    goal = goal_of(digits, in_square=in_square)
     known: tuple[acb, ...] | None = None
     while True:
         with precision(bits):
-            level = LevelPolynomial.of(acb_poly(polynomial.enclosure()))
+            level = LevelPolynomial.of(acb_poly(polynomial.enclosure()), budget)
             discs = _solve(level, goal, proposers, known, last=bits >= limit)
-            if discs is not None:
-                if bits >= limit or all(disc.radius <= goal(disc.centre) for disc in discs):
-                    return discs
-                known = tuple(disc.centre for disc in discs)
+            enough = discs is not None and all(disc.radius <= goal(disc.centre) for disc in discs)
+        if discs is not None:
+            # Outside the block: what takes the discs has its own precision.
+            yield discs
+            if enough or bits >= limit:
+                return
+            known = tuple(disc.centre for disc in discs)
         if bits >= limit:
             message = f"roots of a polynomial of degree {polynomial.degree} do not separate at {limit} bits"
             hint = (
@@ -100,10 +132,28 @@ def isolate(
         bits = min(2 * bits, limit)
 
 
-def _goal(digits: int, *, in_square: bool) -> Goal:
+def first_bits(polynomial: PolynomialInS, digits: int) -> int:
+    """Return the precision to begin with, for so many digits.
+
+    Examples
+    --------
+    >>> from symflex.roots.problem import PolynomialInS
+    >>> first_bits(PolynomialInS.from_integers([-2, 0, 1]), 10)
+    118
+    """
+    return bits_for_digits(digits) + 2 * polynomial.degree + EXTRA_BITS
+
+
+def goal_of(digits: int, *, in_square: bool) -> Goal:
     """Return the largest radius about z that leaves each component of s the digits wanted.
 
     For s = sqrt(z) an error e of z moves s by e / (2 abs(s)), and abs(im z) = 2 abs(re s) abs(im s).
+
+    Examples
+    --------
+    >>> from flint import acb
+    >>> goal_of(1, in_square=False)(acb(4, 5))
+    [0.00400000000000000 +/- ...]
     """
 
     def goal(z: acb) -> arb:

@@ -43,7 +43,9 @@ class KernelRootFinder:
             return False
         return True
 
-    def find(self, problem: Problem, region: Region, digits: int) -> tuple[Root, ...]:
+    def find(
+        self, problem: Problem, region: Region, digits: int, budget: Budget | None = None
+    ) -> tuple[Root, ...]:
         """Return all roots in the closed region, by natural frequency; none where they cannot be proved.
 
         Raises
@@ -53,7 +55,7 @@ class KernelRootFinder:
         ValueError
             For everything: there are infinitely many.
         BudgetError
-            SF505 when the search takes too long.
+            SF505, SF506 when the search takes too long.
         """
         if not isinstance(problem, KernelProblem):
             message = f"{self.name} is for functions with kernels"
@@ -61,7 +63,7 @@ class KernelRootFinder:
         if isinstance(region, Everything):
             message = "a transcendental function has infinitely many roots"
             raise ValueError(message)
-        side = self._side(problem, digits)
+        side = self._side(problem, digits, budget)
         if isinstance(region, Mode):
             side.numbered(region.number)
             return side.in_order() if side.engine == LOSSLESS else ()
@@ -72,5 +74,5 @@ class KernelRootFinder:
         positions = region.classify(ordered)
         return tuple(r for r, p in zip(ordered, positions, strict=True) if p is not Position.OUTSIDE)
 
-    def _side(self, problem: KernelProblem, digits: int) -> Side:
-        return Side(problem.bound, problem.part, digits, Budget(), engines=(self.name,))
+    def _side(self, problem: KernelProblem, digits: int, budget: Budget | None = None) -> Side:
+        return Side(problem.bound, problem.part, digits, budget or Budget(), engines=(self.name,))

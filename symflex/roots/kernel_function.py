@@ -168,6 +168,27 @@ class KernelFunction:
                 if isinstance(series := values.value(i, wide), acb_series)
             ]
 
+    def value(self, s: acb, bits: int) -> acb:
+        """Return a ball around F, to the :attr:`power` that makes it one function, on a ball ``s``."""
+        self._spend(bits)
+        total = acb(1)
+        with precision(bits):
+            values = self._evaluator(bits)
+            place = values.at(s)
+            for i, (_, exponent) in enumerate(self.part.factors):
+                total *= _number(values.value(i, place)) ** (exponent * self.power)
+        return total
+
+    def is_analytic_on(self, disc: acb, bits: int) -> bool:
+        """Tell whether no law of waves has a pole on a ball, as far as its coefficients show there."""
+        with precision(bits):
+            evaluator = self._values(bits)
+            values: dict[str, Value] = {"s": disc, **{n: acb(c) for n, c in evaluator.constants.items()}}
+            laws = [
+                value for law in evaluator.table.dispersions for value in (*law.characteristic, law.shift)
+            ]
+            return all(_number(evaluator.value(value, values)).is_finite() for value in laws)
+
     def fastest(self, z: complex) -> float:
         """Return the largest exponent at ``s = exp(z)``, in absolute value; 0 where none is known."""
         return self.reach(abs(cexp(z))) if self.in_doubles is None else self.in_doubles.fastest(z)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
+from symflex.roots.local_series import BITS_A_POINT, REACH, SERIES_BITS, SERIES_POINTS, local_series
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.root import GUARD_BITS, Root
 
@@ -28,6 +29,12 @@ CLOSE = BOX_SHARE + 0.02
 FIRST_BITS = 64
 STEPS = 80
 SMALLER = 4
+PATIENCE = 10
+"""Newton steps at one precision, after the first, beyond which they converge too slowly for a simple root."""
+
+
+class _SlowError(Exception):
+    """Newton steps do not double their digits: next to the root the factor is not like a simple one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +97,10 @@ def prove_simple(
     bits = max(LEAST_BITS, wanted, first_bits)
     found: Box | None = None
     for _ in range(DOUBLINGS):
-        box = _box(function, s, (first_bits, bits), factor, even=is_even)
+        try:
+            box = _box(function, s, (first_bits, bits), factor, even=is_even)
+        except _SlowError:
+            break
         if box is not None:
             found = box
             with precision(bits):
@@ -104,7 +114,10 @@ def prove_simple(
         return None
     total = found.exponent
     for other in found.touching:
-        beside = _box(function, s, (first_bits, bits // 2), other, even=is_even)
+        try:
+            beside = _box(function, s, (first_bits, bits // 2), other, even=is_even)
+        except _SlowError:
+            return None
         if beside is None:
             return None
         total += beside.exponent
@@ -150,6 +163,8 @@ def _box(
             for i, (other, change, _) in enumerate(factors)
             if i != chosen and not other.abs_lower() > (change * farthest).abs_upper()
         )
+        if touching and _is_alone(function, middle, farthest, exponent, bits):
+            touching = ()
         root = middle - step
         # The only root of the product in a box that mirrors itself is its own mirror image.
         alone = not touching
@@ -162,12 +177,20 @@ def _box(
         )
 
 
+def _is_alone(function: KernelFunction, middle: acb, radius: arb, exponent: int, bits: int) -> bool:
+    """Tell whether a function has so many roots near a point: where wavenumbers vanish, boxes do not say."""
+    within = (radius.upper() * SMALLER).mid()
+    reach = within.max((middle.abs_upper() * REACH).mid())
+    series = local_series(function, middle, reach, bits + SERIES_BITS, SERIES_POINTS + bits // BITS_A_POINT)
+    return series is not None and series.count(within) == exponent * function.power
+
+
 def _approached(
     function: KernelFunction, s: acb, levels: tuple[int, int], factor: int | None
 ) -> tuple[acb, int] | None:
     """Return a point close to a root to a share of the bits, by Newton steps at rising precision."""
     first, bits = min(levels), levels[1]
-    level, chosen = first, factor
+    level, chosen, patience = first, factor, STEPS
     for _ in range(STEPS):
         factors = function.enclosed(s, level)
         if chosen is None or level == first:
@@ -178,14 +201,21 @@ def _approached(
             if not step.is_finite():
                 if level >= bits:
                     return None
-                level = min(2 * level, bits)
+                level, patience = min(2 * level, bits), PATIENCE
                 continue
             s = (s - step).mid()
             size, least = step.abs_upper(), s.abs_lower()
         if level >= bits and size < least * 2.0 ** (-CLOSE * bits):
             return s, chosen
-        if size < least * 2.0 ** (-level / 3):
-            level = min(2 * level, bits)
+        if size < least * 2.0 ** (-level / 3) and level < bits:
+            level, patience = min(2 * level, bits), PATIENCE
+            continue
+        patience -= 1
+        if patience < 0:
+            # Steps of unknown sign ask for more digits; others are right, and too short.
+            if step.contains(0):
+                return None
+            raise _SlowError
     return None
 
 

@@ -18,8 +18,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from flint import acb, acb_poly, arb
 
+from symflex.roots.budget import Budget
+from symflex.roots.precision import precision
+
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     import numpy.typing as npt
+
+    from symflex.roots.discs import Proposer
 
 ITERATIONS = 80
 CONVERGED = 1e-13
@@ -29,6 +36,7 @@ RESTART = 1e-3
 FRESH_ANGLES = (0.7, 2.5, 1.6)
 LARGEST_LOGARITHM = 600.0
 KICK_EVERY = 20
+DOUBLE_BITS = 64
 
 
 def propose_by_laguerre(polynomial: acb_poly) -> tuple[acb, ...] | None:
@@ -49,22 +57,66 @@ def propose_by_laguerre(polynomial: acb_poly) -> tuple[acb, ...] | None:
     >>> [f"{float(g.imag):.12f}" for g in propose_by_laguerre(acb_poly([-2, 1, -2, 1]))]
     ['1.000000000000', '0.000000000000']
     """
+    return within_budget(Budget())(polynomial)
+
+
+def within_budget(budget: Budget) -> Proposer:
+    """Return :func:`propose_by_laguerre` with a limit on its time, heeded before each step.
+
+    Examples
+    --------
+    >>> propose = within_budget(Budget(seconds=0, clock=iter([0, 1]).__next__))
+    >>> propose(acb_poly([-2, 1, -2, 1]))
+    Traceback (most recent call last):
+    ...
+    symflex.errors.exceptions.BudgetError: error[SF506]: the time given is over
+      hint: allow more time, or ask for fewer roots
+    """
+
+    def propose(polynomial: acb_poly) -> tuple[acb, ...] | None:
+        guesses = tuple(guess_by_laguerre(polynomial, budget))
+        found = sum(1 if guess.imag == 0 else 2 for guess in guesses)
+        return guesses if found == polynomial.degree() else None
+
+    return propose
+
+
+def guess_by_laguerre(polynomial: acb_poly, budget: Budget) -> Iterator[acb]:
+    """Yield one guess after the other, until there are all or it does not settle.
+
+    Parameters
+    ----------
+    polynomial : acb_poly
+        As for :func:`propose_by_laguerre`.
+    budget : Budget
+        Heeded before each step.
+
+    Raises
+    ------
+    BudgetError
+        SF506 when the time is over.
+
+    Examples
+    --------
+    >>> next(guess_by_laguerre(acb_poly([-1, 1]), Budget())).real
+    1.00000000000000
+    """
     degree = int(polynomial.degree())
     shift = _central_exponent(polynomial, degree)
     scaled = acb_poly([polynomial[i] * arb(2) ** (shift * i) for i in range(degree + 1)])
     first, second = scaled.derivative(), scaled.derivative().derivative()
     moduli = _polygon_moduli(scaled, degree)
     found = np.empty(degree, dtype=np.complex128)
-    guesses: list[complex] = []
+    scale = arb(2) ** shift
     known = 0
     start = 0j
     while known < degree:
         # A start next to a cluster drowns in rounding; the Newton polygon tells where the next root may lie.
         starts = (start, *(cmath.rect(moduli[known], angle) for angle in FRESH_ANGLES))
-        attempts = (_find_one(scaled, first, second, found[:known], each) for each in starts)
+        attempts = (_find_one((scaled, first, second), found[:known], each, budget) for each in starts)
         root = next((each for each in attempts if each is not None), None)
         if root is None:
-            return None
+            return
         if known == degree - 1:
             root = complex(root.real, 0.0)
         found[known] = root
@@ -73,10 +125,8 @@ def propose_by_laguerre(polynomial: acb_poly) -> tuple[acb, ...] | None:
             root = complex(root.real, abs(root.imag))
             found[known - 1 : known + 1] = root, root.conjugate()
             known += 1
-        guesses.append(root)
+        yield acb(arb(root.real) * scale, arb(root.imag) * scale)
         start = root * (1 + RESTART) or complex(RESTART)
-    scale = arb(2) ** shift
-    return tuple(acb(arb(g.real) * scale, arb(g.imag) * scale) for g in guesses)
 
 
 def _central_exponent(polynomial: acb_poly, degree: int) -> int:
@@ -84,8 +134,9 @@ def _central_exponent(polynomial: acb_poly, degree: int) -> int:
     low = next((i for i in range(degree) if polynomial[i].abs_lower() > 0), degree)
     if low == degree:
         return 0
-    ratio = polynomial[low].abs_upper() / polynomial[degree].abs_upper()
-    return round(float(ratio.log().mid()) / math.log(2) / (degree - low))
+    with precision(DOUBLE_BITS):
+        ratio = polynomial[low].abs_upper() / polynomial[degree].abs_upper()
+        return round(float(ratio.log().mid()) / math.log(2) / (degree - low))
 
 
 def _polygon_moduli(polynomial: acb_poly, degree: int) -> list[float]:
@@ -95,7 +146,8 @@ def _polygon_moduli(polynomial: acb_poly, degree: int) -> list[float]:
         size = polynomial[i].abs_lower()
         if not size > 0:
             continue
-        height = float(size.log().mid())
+        with precision(DOUBLE_BITS):
+            height = float(size.log().mid())
         while len(hull) > 1 and _turns_up(hull[-2], hull[-1], (i, height)):
             hull.pop()
         hull.append((i, height))
@@ -111,12 +163,17 @@ def _turns_up(a: tuple[int, float], b: tuple[int, float], c: tuple[int, float]) 
 
 
 def _find_one(
-    p: acb_poly, first: acb_poly, second: acb_poly, found: npt.NDArray[np.complex128], start: complex
+    derivatives_of: tuple[acb_poly, acb_poly, acb_poly],
+    found: npt.NDArray[np.complex128],
+    start: complex,
+    budget: Budget,
 ) -> complex | None:
-    """Return one more root of p than those found, snapped to the real axis when it is nearly real."""
+    """Return one more root than those found, snapped to the real axis when it is nearly real."""
+    p, first, second = derivatives_of
     remaining = int(p.degree()) - len(found)
     z, last = start, complex(math.inf)
     for iteration in range(ITERATIONS):
+        budget.spend()
         derivatives = _log_derivatives(p, first, second, z)
         if derivatives is None:
             break

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from symflex.errors import BudgetError
+from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.polynomial import POLYNOMIAL
-from symflex.roots.region import Everything, Modes, Position, Region
+from symflex.roots.region import Everything, Mode, Modes, Position, Region
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -39,6 +39,8 @@ class Certificate:
         Why it is not certified.
     is_exceeded : bool
         The budget was exceeded: every root shown is proved, and others may be missing.
+    code : str, optional
+        The error code of what was exceeded.
     """
 
     engine: str
@@ -47,6 +49,7 @@ class Certificate:
     found: int
     reason: str | None = None
     is_exceeded: bool = False
+    code: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,6 +129,28 @@ class PoleZeroMap:
     is_default_region: bool = False
     is_infinite: bool = False
 
+    def complete(self) -> PoleZeroMap:
+        """Return the map if the budget sufficed.
+
+        Raises
+        ------
+        BudgetError
+            SF505, SF506 when it did not; ``found`` is this map.
+
+        Examples
+        --------
+        >>> from symflex.roots.problem import RootProblem
+        >>> pole = RootProblem.from_rationals([1, 1])
+        >>> find_pole_zero_map("x/F", pole, RootProblem(())).complete().certificate.certified
+        True
+        """
+        certificate = self.certificate
+        if certificate.is_exceeded:
+            message = certificate.reason or "the budget was exceeded"
+            hint = "what was proved until then is in the attribute 'found' of this error"
+            raise BudgetError(Diagnostic(certificate.code or "SF506", message, None, hint), found=self)
+        return self
+
     def to_json_dict(self) -> dict[str, object]:
         """Return the map in the schema ``symflex.roots/1``, ready for :func:`json.dumps`."""
         certificate = self.certificate
@@ -176,7 +201,7 @@ def find_pole_zero_map(
     finder : RootFinder
         The engine.
     budget : Budget, optional
-        When it is exceeded, polynomials that were not yet solved are left out.
+        When it is exceeded, what was proved so far is returned.
 
     Returns
     -------
@@ -196,40 +221,58 @@ def find_pole_zero_map(
     sought = [(poles, where), (zeros, where), *((problem, whole) for problem, _ in hidden)]
     counted = sum(problem.degree for problem, _ in sought)
     located: list[tuple[Root, ...]] = []
-    found, apart, exceeded = 0, True, None
+    found, apart = 0, True
+    exceeded: Diagnostic | None = None
     for i, (problem, within) in enumerate(sought):
-        try:
-            if budget is not None:
-                budget.progress.report(i / len(sought), f"polynomial {i + 1} of {len(sought)}")
-                budget.spend()
-        except BudgetError as error:
-            exceeded = error.diagnostics[0].message
-            break
-        roots, number, all_apart = _locate(problem, within, digits, finder)
+        if budget is not None:
+            budget.progress.report(i / len(sought), f"polynomial {i + 1} of {len(sought)}")
+        roots, number, all_apart, exceeded = _locate(problem, within, digits, finder, budget)
         located.append(roots)
         found, apart = found + number, apart and all_apart
+        if exceeded is not None:
+            break
     located += [()] * (len(sought) - len(located))
     pole_roots, zero_roots, *others = located
     concealed = [
         HiddenRoot(root, cause) for (_, cause), roots in zip(hidden, others, strict=True) for root in roots
     ]
-    reason = exceeded
+    reason = None if exceeded is None else exceeded.message
     if reason is None and counted != found:
         reason = f"{counted} roots exist, {found} were found"
     elif reason is None and not apart:
         reason = "some roots could not be told apart; each such group is enclosed as one"
     certificate = Certificate(
-        finder.name, reason is None, counted, found, reason, is_exceeded=exceeded is not None
+        finder.name,
+        reason is None,
+        counted,
+        found,
+        reason,
+        is_exceeded=exceeded is not None,
+        code=None if exceeded is None else exceeded.code,
     )
     return PoleZeroMap(tf, where, pole_roots, zero_roots, tuple(concealed), certificate, digits)
 
 
 def _locate(
-    problem: RootProblem, region: Region, digits: int, finder: RootFinder
-) -> tuple[tuple[Root, ...], int, bool]:
-    """Return the roots in the region, the number of roots enclosed in all, and whether all are told apart."""
+    problem: RootProblem, region: Region, digits: int, finder: RootFinder, budget: Budget | None
+) -> tuple[tuple[Root, ...], int, bool, Diagnostic | None]:
+    """Return the roots in the region, the number enclosed in all, whether all are told apart, what failed."""
+    roots: tuple[Root, ...] = ()
+    positions: tuple[Position, ...] = ()
+    exceeded = None
     for doubling in range(REFINEMENTS):
-        roots = finder.find(problem, region, digits << doubling)
+        try:
+            if budget is not None:
+                budget.spend()
+            roots = finder.find(problem, region, digits << doubling, budget)
+        except BudgetError as error:
+            exceeded = error.diagnostics[0]
+            if doubling == 0:
+                roots = error.found if isinstance(error.found, tuple) else ()
+                # Which is the n-th cannot be told where others may be missing.
+                unknown = isinstance(region, Mode)
+                positions = (Position.OUTSIDE,) * len(roots) if unknown else region.classify(roots)
+            break
         positions = region.classify(roots)
         if Position.UNDECIDED not in positions:
             break
@@ -238,7 +281,8 @@ def _locate(
         for root, position in zip(roots, positions, strict=True)
         if position is not Position.OUTSIDE
     )
-    return inside, sum(root.multiplicity for root in roots), all(root.certified for root in roots)
+    number = sum(root.multiplicity for root in roots)
+    return inside, number, all(root.certified for root in roots), exceeded
 
 
 def _root_to_json(root: Root, digits: int) -> dict[str, object]:

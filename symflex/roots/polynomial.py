@@ -8,14 +8,17 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
+from symflex.errors import BudgetError
+from symflex.roots.budget import Budget
 from symflex.roots.discs import Disc, connected
 from symflex.roots.durand_kerner import propose_by_durand_kerner
-from symflex.roots.isolation import isolate
-from symflex.roots.laguerre import propose_by_laguerre
+from symflex.roots.isolation import first_bits, isolations
+from symflex.roots.laguerre import within_budget
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.problem import RootProblem
 from symflex.roots.root import GUARD_BITS, Root
-from symflex.roots.squarefree import Part, split
+from symflex.roots.singly import differs_from_zero, prove_singly
+from symflex.roots.squarefree import Part, Splitting, split
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,6 +30,10 @@ if TYPE_CHECKING:
 DURAND_KERNER_DEGREE = 12
 LARGEST_DURAND_KERNER_DEGREE = 64
 DISTINCTION_ROUNDS = 5
+SEARCH_SHARE = 0.8
+"""Of the time given; the rest is for proving one by one what a search that takes longer leaves."""
+SINGLE_DIGITS = 50
+"""Most digits of a root proved on its own: more roots say more than more digits do."""
 ROUNDING = 1e-12
 
 
@@ -49,13 +56,15 @@ class PolynomialRootFinder:
         """Return whether the engine can solve the problem; every product of polynomials will do."""
         return isinstance(problem, RootProblem)
 
-    def find(self, problem: Problem, region: Region, digits: int) -> tuple[Root, ...]:
+    def find(
+        self, problem: Problem, region: Region, digits: int, budget: Budget | None = None
+    ) -> tuple[Root, ...]:
         """Return all roots of the problem, those outside the region too: polynomials have finitely many."""
         del region
         if not isinstance(problem, RootProblem):
             message = f"{self.name} is for products of polynomials"
             raise TypeError(message)
-        return find_polynomial_roots(problem, digits, self.proposers)
+        return find_polynomial_roots(problem, digits, self.proposers, budget)
 
 
 #: Chooses its engine by degree.
@@ -63,7 +72,10 @@ POLYNOMIAL = PolynomialRootFinder("polynomial")
 
 
 def find_polynomial_roots(
-    problem: RootProblem, digits: int, proposers: tuple[Proposer, ...] = ()
+    problem: RootProblem,
+    digits: int,
+    proposers: tuple[Proposer, ...] = (),
+    budget: Budget | None = None,
 ) -> tuple[Root, ...]:
     """Enclose every root of a product of polynomials.
 
@@ -75,6 +87,8 @@ def find_polynomial_roots(
         Correct significant digits wanted in the real and in the imaginary part of every root.
     proposers : tuple of callables, optional
         Engines that guess roots, tried in turn; by default chosen by degree.
+    budget : Budget, optional
+        Heeded between evaluations; no limit by default.
 
     Returns
     -------
@@ -86,6 +100,8 @@ def find_polynomial_roots(
     ------
     UncertifiedError
         SF401 when a leading coefficient cannot be told from zero, SF404 when roots do not separate.
+    BudgetError
+        SF506 when the time is over; ``found`` is a tuple of the roots proved until then.
 
     Notes
     -----
@@ -104,31 +120,102 @@ def find_polynomial_roots(
         raise ValueError(message)
     for polynomial, _ in problem.factors:
         polynomial.require_leading_coefficient()
-    splitting = split(problem)
-    wanted = digits
-    for _ in range(DISTINCTION_ROUNDS):
-        roots: list[Root] = []
-        if splitting.zeros:
-            roots.append(Root(arb(0), arb(0), splitting.zeros, on_imaginary_axis=True, is_real=True))
-        for part in splitting.parts:
-            roots.extend(_roots_of(part, wanted, proposers or _by_degree(part.polynomial.degree)))
-        clusters = _touching(roots)
-        if len(clusters) == len(roots):
-            break
-        wanted *= 2
-    return in_order([_merge([roots[i] for i in cluster]) for cluster in clusters])
+    search = _Search(problem, digits, proposers, budget or Budget())
+    return search.run()
 
 
-def _by_degree(degree: int) -> tuple[Proposer, ...]:
+class _Search:
+    """Solves the parts of a product one after the other."""
+
+    def __init__(
+        self, problem: RootProblem, digits: int, proposers: tuple[Proposer, ...], budget: Budget
+    ) -> None:
+        self.problem, self.digits, self.proposers, self.budget = problem, digits, proposers, budget
+        self.splitting = Splitting(0, ())
+        self.solved: dict[int, list[Root]] = {}
+
+    def run(self) -> tuple[Root, ...]:
+        """Return all roots."""
+        limited = self.budget.share(SEARCH_SHARE)
+        wanted = self.digits
+        try:
+            self.splitting = split(self.problem, limited)
+            for _ in range(DISTINCTION_ROUNDS):
+                for i in range(len(self.splitting.parts)):
+                    self._solve(i, wanted, limited)
+                merged = self._merged()
+                if len(merged) == len(self._all()):
+                    break
+                wanted *= 2
+        except BudgetError as error:
+            self._prove_singly()
+            raise BudgetError(*error.diagnostics, found=in_order(self._merged())) from None
+        return in_order(merged)
+
+    def _solve(self, i: int, digits: int, budget: Budget) -> None:
+        part = self.splitting.parts[i]
+        proposers = self.proposers or _by_degree(part.polynomial.degree, budget)
+        for discs in isolations(
+            part.polynomial, digits, in_square=part.in_square, proposers=proposers, budget=budget
+        ):
+            self.solved[i] = _roots_of(part, discs, digits)
+
+    def _prove_singly(self) -> None:
+        """Prove roots of the parts that are not solved, as long as there is time."""
+        unsolved = [i for i in range(len(self.splitting.parts)) if i not in self.solved]
+        for i, part in enumerate(self.splitting.parts):
+            roots = self.solved[i] if i in self.solved else self._singles(part)
+            others = [self.splitting.parts[j] for j in unsolved if j != i]
+            self.solved[i] = [root for root in roots if _is_apart(root, others, self.digits)]
+
+    def _singles(self, part: Part) -> list[Root]:
+        found: list[Root] = []
+        digits = min(self.digits, SINGLE_DIGITS)
+        singles = prove_singly(part.polynomial, digits, self.budget, in_square=part.in_square)
+        while True:
+            try:
+                disc = next(singles, None)
+            except BudgetError:
+                return found
+            if disc is None:
+                return found
+            found += _roots_of(part, [disc], self.digits)
+
+    def _all(self) -> list[Root]:
+        roots = [root for part in self.solved.values() for root in part]
+        if self.splitting.zeros:
+            zero = Root(arb(0), arb(0), self.splitting.zeros, on_imaginary_axis=True, is_real=True)
+            roots.insert(0, zero)
+        return roots
+
+    def _merged(self) -> list[Root]:
+        """Return the roots, those that may be the same as one."""
+        roots = self._all()
+        return [_merge([roots[i] for i in cluster]) for cluster in _touching(roots)]
+
+
+def _is_apart(root: Root, others: Sequence[Part], digits: int) -> bool:
+    """Tell whether polynomials whose roots are not known have none where a root is: its multiplicity is."""
+    for part in others:
+        bits = max(first_bits(part.polynomial, digits), root.working_bits())
+        with precision(bits):
+            box = root.enclosure()
+            place = box * box if part.in_square else box
+        if not differs_from_zero(part.polynomial, place, bits):
+            return False
+    return True
+
+
+def _by_degree(degree: int, budget: Budget) -> tuple[Proposer, ...]:
+    laguerre = within_budget(budget)
     if degree <= DURAND_KERNER_DEGREE:
-        return (propose_by_durand_kerner, propose_by_laguerre)
+        return (propose_by_durand_kerner, laguerre)
     if degree <= LARGEST_DURAND_KERNER_DEGREE:
-        return (propose_by_laguerre, propose_by_durand_kerner)
-    return (propose_by_laguerre,)
+        return (laguerre, propose_by_durand_kerner)
+    return (laguerre,)
 
 
-def _roots_of(part: Part, digits: int, proposers: tuple[Proposer, ...]) -> list[Root]:
-    discs = isolate(part.polynomial, digits, in_square=part.in_square, proposers=proposers)
+def _roots_of(part: Part, discs: Sequence[Disc], digits: int) -> list[Root]:
     convert = _square_roots if part.in_square else _conjugates
     roots: list[Root] = []
     for disc in discs:

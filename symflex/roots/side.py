@@ -17,6 +17,7 @@ from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.kernels import Factored, Ring, degree_in
 from symflex.kernels.origin import Origin
 from symflex.roots.argument_principle import CertifiedWinding
+from symflex.roots.branch_points import prove_together
 from symflex.roots.kernel_function import KernelFunction, has_kernels, split_off_kernels
 from symflex.roots.krawczyk import prove_simple
 from symflex.roots.lossless import LosslessSearch, lossless_search
@@ -419,6 +420,10 @@ class Side:
         reason = None if not self.missing else f"{self.missing} roots were counted but not found"
         return Proof(found + self.missing, found, reason)
 
+    def restore(self) -> None:
+        """Put back what was taken out of :attr:`roots`."""
+        self.roots = list(self._located)
+
     def in_order(self) -> tuple[Root, ...]:
         """Return the roots by natural frequency."""
         return in_order(self.roots)
@@ -429,7 +434,11 @@ class Side:
             return root
         with precision(root.working_bits()):
             s = acb(root.re.mid(), root.im.mid())
-        closer = prove_simple(self.function, s, 2 * self._digits + MORE_DIGITS)
+            within = (2 * (root.re.rad() + root.im.rad())).upper()
+        digits, even = 2 * self._digits + MORE_DIGITS, self.function.is_even
+        closer = prove_simple(self.function, s, digits)
+        if closer is None:
+            closer = prove_together(self.function, s, within, digits, self.function.power, even=even)
         return closer if closer is not None and closer.certified and overlap(closer, root) else root
 
     def excluded(self) -> tuple[Cell, ...]:

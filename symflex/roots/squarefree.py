@@ -14,6 +14,7 @@ from functools import reduce
 
 from flint import fmpz_mpoly, fmpz_mpoly_ctx
 
+from symflex.roots.budget import Budget
 from symflex.roots.problem import Constant, PolynomialInS, RootProblem
 
 
@@ -52,18 +53,25 @@ class Splitting:
     parts: tuple[Part, ...]
 
 
-def split(problem: RootProblem) -> Splitting:
+def split(problem: RootProblem, budget: Budget | None = None) -> Splitting:
     """Take a product of polynomials apart into coprime square-free parts.
 
     Parameters
     ----------
     problem : RootProblem
         Any factors.
+    budget : Budget, optional
+        Heeded between factors; no limit by default.
 
     Returns
     -------
     Splitting
         Exact over Q(constants), the constants taken as algebraically independent.
+
+    Raises
+    ------
+    BudgetError
+        SF506 when the time is over.
 
     Examples
     --------
@@ -71,10 +79,12 @@ def split(problem: RootProblem) -> Splitting:
     >>> splitting.zeros, [(part.polynomial.integers(), part.in_square) for part in splitting.parts]
     (2, [((4, 1), True), ((1, 1), False)])
     """
+    time = budget or Budget()
     ring = _Ring.of(problem)
     zeros = 0
     base: list[tuple[fmpz_mpoly, int]] = []
     for polynomial, exponent in problem.factors:
+        time.spend()
         low = next(i for i, c in enumerate(polynomial.coefficients) if not c.is_zero())
         zeros += low * exponent
         for factor, power in ring.lift(polynomial, low).factor_squarefree()[1]:
@@ -82,6 +92,7 @@ def split(problem: RootProblem) -> Splitting:
                 base = _insert(base, factor, int(power) * exponent)
     parts: list[Part] = []
     for element, multiplicity in base:
+        time.spend()
         even = element.gcd(ring.reflect(element))
         odd = element // even
         if _degree(even) > 0:

@@ -15,6 +15,7 @@ from flint import acb, arb
 
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.axis_scan import sign_changes
+from symflex.roots.branch_points import in_disc, is_branched, prove_together, snapped
 from symflex.roots.clusters import middle_of, resolve
 from symflex.roots.krawczyk import prove_simple
 from symflex.roots.precision import bits_for_digits, precision
@@ -48,6 +49,8 @@ NEIGHBOURS = 1e-4
 CLUSTER_BITS = 256
 CLUSTER_DOUBLINGS = 4
 DISC_GROWTH = 100
+APART = 8
+"""Radii of a disc about several roots at which the circle goes by whose moments they are told apart."""
 FEW = 8
 """Modes from which on a search goes on in smaller rings."""
 UNCHECKED = 12
@@ -324,8 +327,25 @@ class RootSearch:
             radius = (s.abs_upper() * NEIGHBOURS).mid()
         found = resolve(self.function, s, radius, self.digits, CLUSTER_BITS, even=self.is_even)
         if found is None or sum(each.multiplicity for each in found) * self.function.power != count:
-            return None
+            if not is_branched(self.function, s, radius):
+                return None
+            one = prove_together(
+                self.function, s, radius, self.digits, count, even=self.is_even, is_close=True
+            )
+            if one is None:
+                return None
+            found = self._apart(one) or [one]
         return found if all(_is_in(cell, each) for each in found) else None
+
+    def _apart(self, root: Root) -> list[Root] | None:
+        """Return the roots that agree in all digits wanted, by more digits."""
+        bits = 2 * max(CLUSTER_BITS, root.working_bits())
+        with precision(bits):
+            centre = acb(root.re.mid(), root.im.mid())
+            radius = ((root.re.rad() + root.im.rad()) * APART).upper()
+        found = resolve(self.function, centre, radius, self.digits, bits, even=self.is_even)
+        total = 0 if found is None else sum(each.multiplicity for each in found)
+        return found if total == root.multiplicity else None
 
     def _cluster(self, cell: Cell, count: int) -> list[Root] | None:
         """Return the roots in a small cell by their moments, or as one that could not be told apart."""
@@ -347,12 +367,10 @@ class RootSearch:
         """Return the only root in a circle that is not small: next to a branch, small ones fail."""
         with precision(FIRST_BITS):
             size = (s.abs_upper() * NEIGHBOURS).mid()
-            return self._in_disc(self._snapped(s, size), size, count)
-
-    def _snapped(self, s: acb, close: arb) -> acb:
-        """Return a point, on an axis of symmetry if it is closer to that than a distance."""
-        on_axis = self.is_even and bool(abs(s.real) < close)
-        return acb(arb(0) if on_axis else s.real, arb(0) if abs(s.imag) < close else s.imag)
+        found = prove_together(self.function, s, size, self.digits, count, even=self.is_even)
+        if found is not None:
+            return [found]
+        return self._in_disc(snapped(s, size, even=self.is_even), size, count)
 
     def _in_disc(self, centre: acb, size: arb, count: int) -> list[Root] | None:
         """Return all roots in a disc as one if there are so many."""
@@ -361,29 +379,18 @@ class RootSearch:
                 return None
         except RootOnPathError:
             return None
-        whole = count // self.function.power
-        # One root alone in a disc that mirrors itself is its own mirror image.
-        on_axis, is_real = (whole == 1 and bool(part == 0) for part in (centre.real, centre.imag))
-        re = arb(0) if on_axis and self.is_even else arb(centre.real, size)
-        im = arb(0) if is_real else arb(centre.imag, size)
-        return [
-            Root(
-                re,
-                im,
-                whole,
-                on_imaginary_axis=on_axis and self.is_even,
-                is_real=is_real,
-                certified=whole == 1,
-            )
-        ]
+        return [in_disc(centre, size, count // self.function.power, even=self.is_even)]
 
     def _as_one(self, centre: acb, radius: arb, count: int) -> list[Root] | None:
         """Return the smallest disc that is proved to hold all roots of a cluster."""
+        together = prove_together(self.function, centre, radius, self.digits, count, even=self.is_even)
+        if together is not None:
+            return [together]
         bits = max(CLUSTER_BITS, 2 * bits_for_digits(self.digits))
         centre = middle_of(self.function, centre, radius, bits) or centre
         with precision(bits):
             size = (centre.abs_upper() * arb(10) ** -self.digits).mid()
-            centre = self._snapped(centre, size)
+            centre = snapped(centre, size, even=self.is_even)
             while size < radius:
                 found = self._in_disc(centre, size, count)
                 if found is not None:

@@ -12,8 +12,11 @@ import pytest
 import sympy
 
 import symflex
+from symflex.api import budget as api_budget
 from symflex.emit.forms.usage import RATIONAL
-from tests.unit.roots.distributed import ROD, SLIDING_FREE
+from symflex.errors import BudgetError, UsageError
+from symflex.roots import Budget, winding
+from tests.unit.roots.distributed import DELAY_LOOP, ROD, SLIDING_FREE
 
 TABLES = {
     "parameters": {
@@ -81,6 +84,34 @@ def tip(model):
 @pytest.fixture(scope="module")
 def nothing(model):
     return model.transfer_function("None", "F")
+
+
+@pytest.fixture(scope="module")
+def rod():
+    return (
+        symflex.Model(
+            parameters={"l": "1 m"},
+            elements={
+                "bar": {
+                    "type": "rod",
+                    "between": ["ground", "x"],
+                    "E": "1 Pa",
+                    "A": "1 m^2",
+                    "rho": "1 kg/m^3",
+                    "l": "l",
+                },
+            },
+            inputs={"F": {"force": "x"}},
+            outputs={"X": "x"},
+        )
+        .transfer_function("X", "F")
+        .bind()
+    )
+
+
+@pytest.fixture(scope="module")
+def loop():
+    return symflex.loads(DELAY_LOOP).transfer_function("out", "r").bind()
 
 
 def receptance(s):
@@ -267,6 +298,88 @@ def test_a_band_keeps_natural_frequencies_in_hertz(colocated):
 def test_modes_and_band_together_are_a_usage_error(colocated):
     with pytest.raises(symflex.SymflexError, match="SF902"):
         colocated.bind().poles(1, band=(1, 2))
+
+
+def test_one_mode_by_its_number(colocated):
+    # s^2 (m_1 m_2 s^2 + (b s + k)(m_1 + m_2)): one mode but for the roots at 0
+    bound = colocated.bind()
+    exact = complex(-4 / 3, math.sqrt(19000 / 3 - 16 / 9))
+    assert [complex(p) for p in bound.poles(mode=1)] == pytest.approx([exact, exact.conjugate()])
+    assert bound.poles(mode=2) == ()
+    assert [z.frequency_hz for z in bound.zeros(mode=1)] == pytest.approx(
+        [math.sqrt(K / M_2) / (2 * math.pi)] * 2
+    )
+
+
+def test_a_mode_of_a_distributed_system_has_its_own_residue_and_sensitivities(rod):
+    # X/F = tanh(s)/s: poles (n - 1/2) pi j, residues 1/s; abs(s) is proportional to 1/l and sqrt(E).
+    omega = 999.5 * math.pi
+    assert [complex(p) for p in rod.poles(mode=1000)] == pytest.approx([omega * 1j, -omega * 1j])
+    assert [complex(z) for z in rod.zeros(mode=1000)] == pytest.approx([1000j * math.pi, -1000j * math.pi])
+    assert [complex(r) for r in rod.residues(mode=1000)] == pytest.approx([1 / (1j * omega), 1j / omega])
+    moved = [m for m in rod.sensitivities(mode=1000, parameters=["l"]) if m.kind == "pole"]
+    assert [complex(m.normalised) for m in moved] == pytest.approx([-1, -1])
+    assert len(rod.pole_zero_map(mode=1000).poles) == 2
+
+
+def test_an_explanation_of_one_zero(colocated):
+    assert colocated.bind().explain_zeros(mode=1).held == "x_act = 0"
+
+
+@pytest.mark.parametrize("choice", [{"mode": 1, "modes": 2}, {"mode": 1, "band": (1, 2)}, {"mode": 0}])
+def test_an_impossible_mode_is_a_usage_error(colocated, choice):
+    with pytest.raises(UsageError, match="SF902"):
+        colocated.bind().pole_zero_map(**choice)
+
+
+@pytest.mark.parametrize("seconds", [0, -1, math.nan])
+def test_an_impossible_budget_is_a_usage_error(colocated, seconds):
+    with pytest.raises(UsageError, match="SF902"):
+        colocated.bind().poles(budget=seconds)
+
+
+def test_a_map_says_that_a_budget_was_exceeded(colocated):
+    certificate = colocated.bind().pole_zero_map(budget=1e-9).certificate
+    assert (certificate.is_exceeded, certificate.certified, certificate.code) == (True, False, "SF506")
+
+
+def test_a_sufficient_budget_changes_nothing(colocated):
+    bound = colocated.bind()
+    assert bound.pole_zero_map(budget=600).to_json_dict() == bound.pole_zero_map().to_json_dict()
+
+
+@pytest.mark.parametrize("method", ["poles", "zeros", "residues", "sensitivities", "explain_zeros"])
+def test_what_cannot_say_that_a_budget_was_exceeded_raises_with_the_map(colocated, method):
+    with pytest.raises(BudgetError, match="SF506") as caught:
+        getattr(colocated.bind(), method)(budget=1e-9)
+    assert caught.value.found.certificate.is_exceeded
+    assert caught.value.exit_code == 5
+
+
+def test_what_was_proved_within_a_budget_is_not_lost(loop, monkeypatch):
+    # out/r = 1/(s + 2 exp(-s/2)): s = 2 W_k(-1)
+    times = iter([0.0] * 400 + [10.0] * 100_000)
+    monkeypatch.setattr(api_budget, "Budget", lambda seconds: Budget(seconds, clock=lambda: next(times)))
+    with pytest.raises(BudgetError, match="modes were found up to") as caught:
+        loop.poles(modes=30, budget=5)
+    found = [symflex.Root(root) for root in caught.value.found.poles if root.im > 0]
+    expected = sorted((2 * mpmath.lambertw(-1, k) for k in range(31)), key=abs)
+    assert 0 < len(found) < 30
+    for root, value in zip(found, expected, strict=False):
+        assert abs(complex(root) - complex(value)) < 1e-12 * abs(value)
+
+
+def test_nothing_proved_is_nothing_found(loop):
+    with pytest.raises(BudgetError, match="SF506") as caught:
+        loop.poles(modes=1000, budget=1e-9)
+    assert caught.value.found is None
+
+
+def test_work_without_end_is_not_taken_for_a_result(loop, monkeypatch):
+    monkeypatch.setattr(winding, "WORK_LIMIT", 12_000)
+    with pytest.raises(BudgetError, match="SF505") as caught:
+        loop.poles(modes=30)
+    assert caught.value.found.poles
 
 
 def test_the_static_gain_is_the_limit(model, colocated, tip):

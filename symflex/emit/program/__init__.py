@@ -32,7 +32,13 @@ from symflex.emit.program.nodes import (
     Straight,
 )
 from symflex.emit.program.prose import inert, wrapped
-from symflex.emit.program.verify import References, Verification, choose_program, choose_programs
+from symflex.emit.program.verify import (
+    References,
+    Verification,
+    choose_program,
+    choose_programs,
+    measure_values,
+)
 
 __all__ = [
     "Add",
@@ -71,6 +77,7 @@ __all__ = [
     "evaluate",
     "identifiers",
     "inert",
+    "measure_values",
     "nearest_double",
     "wrapped",
 ]

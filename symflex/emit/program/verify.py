@@ -24,7 +24,7 @@ from symflex.transfer import bind
 from symflex.transfer.bind import EnclosedTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from numpy.typing import NDArray
 
@@ -231,6 +231,32 @@ def choose_programs(
     """
     gauge = _gauge(tf, band_hz, samples)
     return _choose(gauge), _choose_real(gauge)
+
+
+def measure_values(
+    tf: TransferFunction,
+    values: Callable[[NDArray[np.complex128]], Sequence[complex]],
+    form: str,
+    band_hz: tuple[Fraction, Fraction] | None = None,
+    samples: int = SAMPLES,
+) -> Verification:
+    """Return how well values that are computed in some other way agree with a transfer function.
+
+    Parameters
+    ----------
+    tf : TransferFunction
+        Derived.
+    values : callable
+        Takes an array of s [rad/s]; not called when nothing can be measured.
+    form : str
+        What the other way is called.
+    band_hz, samples
+        As for :func:`choose_program`.
+    """
+    gauge = _gauge(tf, band_hz, samples)
+    if gauge.references is None:
+        return gauge.verified(form, None)
+    return gauge.verified(form, gauge.references.worst_of(values(gauge.references.s)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -472,6 +498,11 @@ class References:
     def worst_error(self, program: Program | Piecewise) -> float:
         """Return a bound of the error at all frequencies, for a program that gets the nearest doubles."""
         return max(self._errors(program), default=0.0)
+
+    def worst_of(self, values: Sequence[complex]) -> float:
+        """Return a bound of the error of values at all frequencies."""
+        pairs = zip(self._references, values, strict=True)
+        return max((r.error_of(complex(v)) for r, v in pairs), default=0.0)
 
     def reach(self, program: Program | Piecewise, band_hz: tuple[Fraction, Fraction]) -> Reach:
         """Return up to which frequency every sample was measured and is accurate."""

@@ -139,6 +139,13 @@ def test_the_default_region_of_a_distributed_system_is_explained(beam):
     assert "by default: a distributed system has infinitely many poles" in beam("roots", "beam.toml").out
 
 
+def test_a_budget_is_for_lumped_systems_too(shell):
+    document = shell("roots", "x.toml", "--budget", "1e-9", "--json")
+    certificate = document.json["certificate"]
+    assert (document.code, certificate["budget_exceeded"], certificate["found"]) == (5, True, 0)
+    assert certificate["counted"] > 0
+
+
 def test_a_million_modes_exceed_a_budget(beam):
     done = beam("roots", "beam.toml", "--modes", "1000000")
     assert (done.code, "SF505" in done.err) == (5, True)

@@ -202,6 +202,15 @@ def test_more_rows_than_the_limit_are_refused():
     assert caught.value.diagnostics[0].code == "SF502"
 
 
+def test_a_chain_may_be_longer_than_calls_may_be_deep():
+    # The determinant of tridiagonal (-1, 2, -1) with n rows is n + 1.
+    n = 520
+    rows = tuple(
+        {j: RING.constant(2 if j == i else -1) for j in range(max(i - 1, 0), min(i + 2, n))} for i in range(n)
+    )
+    assert Minors(RING, rows).determinant((1 << n) - 1) == RING.constant(n + 1)
+
+
 def test_a_dense_matrix_with_too_many_minors_is_refused(monkeypatch):
     monkeypatch.setattr("symflex.elimination.minors.MINOR_LIMIT", 50)
     rows = tuple({j: RING.generator("a") + i + j for j in range(8)} for i in range(8))

@@ -1,0 +1,155 @@
+"""State equations with SymPy matrices."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from symflex.emit.state_equations import StateEquations
+from symflex.emit.sympy_expression import symbols_of, to_sympy
+from symflex.transfer.bind import read_values
+
+if TYPE_CHECKING:
+    from decimal import Decimal
+    from fractions import Fraction
+
+    import sympy
+
+    from symflex import state_space as state_space_room
+    from symflex.state_space.numeric import BoundStateSpace
+    from symflex.state_space.quotients import Vector
+
+
+@dataclass(frozen=True)
+class StateSpace:
+    """``w' = A w + B u``, ``y = C w + D u`` with the parameters as symbols.
+
+    The states w are quantities of the model: displacements and velocities of nodes, currents, voltages. That
+    the matrices satisfy the model's equations is proved when they are made.
+
+    Parameters
+    ----------
+    exact : symflex.state_space.StateSpace
+        The exact realisation.
+
+    Examples
+    --------
+    >>> import symflex
+    >>> model = symflex.Model(
+    ...     parameters={"m": "2 kg", "k": "8 N/m"},
+    ...     elements={
+    ...         "body": {"type": "mass", "at": "x", "m": "m"},
+    ...         "wall": {"type": "spring", "between": ["x", "ground"], "k": "k"},
+    ...     },
+    ...     inputs={"F": {"force": "x"}},
+    ...     outputs={"X": "x"},
+    ... )
+    >>> system = model.state_space()
+    >>> system.states, system.A
+    (('x', 'x_dot'), Matrix([
+    [   0, 1],
+    [-k/m, 0]]))
+    >>> system.bind(k="18 N/m").A
+    array([[ 0.,  1.],
+           [-9.,  0.]])
+    """
+
+    exact: state_space_room.StateSpace
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names of the states: letters, digits and underscores."""
+        return tuple(x.name for x in self.exact.states)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the inputs."""
+        return tuple(x.name for x in self.exact.inputs)
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of the outputs."""
+        return tuple(x.name for x in self.exact.outputs)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """SI units of states, inputs and outputs by name; empty when unknown."""
+        groups = (self.exact.states, self.exact.inputs, self.exact.outputs)
+        return {item.name: item.unit for group in groups for item in group}
+
+    @property
+    def is_minimal(self) -> bool:
+        """True when hidden states were left out."""
+        return self.exact.is_minimal
+
+    @cached_property
+    def meanings(self) -> dict[str, sympy.Expr]:
+        """What each state is, in quantities of the model: ``x_dot`` is ``s*x``."""
+        return {x.name: to_sympy(self._printed.meaning(x), self._symbols) for x in self.exact.states}
+
+    @cached_property
+    def _printed(self) -> StateEquations:
+        return StateEquations(self.exact)
+
+    @cached_property
+    def _symbols(self) -> dict[str, sympy.Symbol]:
+        return symbols_of(self.exact.model)
+
+    def _matrix(self, rows: tuple[Vector, ...], columns: int) -> sympy.Matrix:
+        import sympy
+
+        matrix = sympy.zeros(len(rows), columns)
+        for i, row in enumerate(rows):
+            for j, value in row.items():
+                matrix[i, j] = to_sympy(self._printed.entry(value), self._symbols)
+        return matrix.as_immutable()
+
+    @cached_property
+    def A(self) -> sympy.Matrix:  # noqa: N802
+        """Immutable matrix of shape (n, n)."""
+        return self._matrix(self.exact.a, len(self.exact.states))
+
+    @cached_property
+    def B(self) -> sympy.Matrix:  # noqa: N802
+        """Immutable matrix of shape (n, inputs)."""
+        return self._matrix(self.exact.b, len(self.exact.inputs))
+
+    @cached_property
+    def C(self) -> sympy.Matrix:  # noqa: N802
+        """Immutable matrix of shape (outputs, n)."""
+        return self._matrix(self.exact.c, len(self.exact.states))
+
+    @cached_property
+    def D(self) -> sympy.Matrix:  # noqa: N802
+        """Immutable matrix of shape (outputs, inputs)."""
+        return self._matrix(self.exact.d, len(self.exact.inputs))
+
+    def bind(self, **values: int | float | Fraction | Decimal | str) -> BoundStateSpace:
+        """Return the matrices with the declared values, or the given ones in their place, as arrays.
+
+        Every entry is the double nearest to its exact value.
+
+        Raises
+        ------
+        ModelError
+            SF229 when a parameter has no value, SF231 when entries divide by zero, SF233 when one does not
+            fit in double precision.
+        UsageError
+            SF902 for an unknown parameter.
+        """
+        from symflex.state_space.numeric import bound_state_space  # numpy
+
+        model = self.exact.model
+        # One without value may be a parameter that does not occur.
+        valued = tuple(p for p in model.parameters if p.value is not None or p.name in values)
+        names = {p.name for p in model.parameters}
+        known = read_values(valued if values.keys() <= names else model.parameters, values)
+        return bound_state_space(self.exact, dict(known))
+
+    def __str__(self) -> str:
+        return "\n".join(self._printed.lines())
+
+    def __repr__(self) -> str:
+        counts = f"{len(self.states)} states, {len(self.inputs)} inputs, {len(self.outputs)} outputs"
+        return f"<StateSpace: {counts}>"

@@ -1,0 +1,349 @@
+"""The functions that generated MATLAB code calls, as text."""
+
+from __future__ import annotations
+
+NUMBERS = """\
+function given = numbers(overrides, names)
+%NUMBERS  Values of parameters: those given, and the defaults for the others.
+  values = default_parameters();
+  if numel(overrides) == 1 && isstruct(overrides{1}) && isscalar(overrides{1})
+    fields = fieldnames(overrides{1});
+    found = struct2cell(overrides{1});
+  elseif mod(numel(overrides), 2) == 0
+    fields = overrides(1:2:end);
+    found = overrides(2:2:end);
+  else
+    error('symflex:parameter', 'parameters are a struct, or names and values in turn');
+  end
+  for k = 1:numel(fields)
+    if ~(ischar(fields{k}) || isa(fields{k}, 'string')) || ~isfield(values, fields{k})
+      error('symflex:parameter', 'there is no parameter ''%s''', char(fields{k}));
+    end
+    values.(char(fields{k})) = found{k};
+  end
+  given = cell(1, numel(names));
+  for k = 1:numel(names)
+    x = values.(names{k});
+    if isempty(x)
+      error('symflex:parameter', 'parameter ''%s'' has no value', names{k});
+    elseif ~(isnumeric(x) || islogical(x))
+      error('symflex:parameter', 'parameter ''%s'' is not a number', names{k});
+    end
+    given{k} = double(x);
+  end
+end
+"""
+
+COLUMNS = """\
+function [s, given, shape] = columns(s, given)
+%COLUMNS  Arguments of one size as columns, numbers among the parameters as they are.
+  if ~(isnumeric(s) || islogical(s))
+    error('symflex:argument', 'the first argument is not a number');
+  end
+  total = zeros(size(s));
+  for k = 1:numel(given)
+    total = total + zeros(size(given{k}));
+  end
+  shape = size(total);
+  s = double(s) .* ones(shape);
+  s = s(:);
+  for k = 1:numel(given)
+    if ~isscalar(given{k})
+      x = given{k} .* ones(shape);
+      given{k} = x(:);
+    end
+  end
+end
+"""
+
+EVERYWHERE = """\
+function value = everywhere(formula, s, given)
+%EVERYWHERE  What one formula gives for all elements.
+  [s, given, shape] = columns(s, given);
+  value = reshape(formula(s, given{:}) .* ones(size(s)), shape);
+end
+"""
+
+IN_PIECES = """\
+function value = in_pieces(number_of, pieces, s, given)
+%IN_PIECES  What the piece that serves gives, element by element.
+  [s, given, shape] = columns(s, given);
+  number = number_of(s, given{:}) + zeros(size(s));
+  value = complex(zeros(size(s)));
+  for k = unique(number(:)).'
+    where = number == k;
+    own = chosen(given, where);
+    value(where) = pieces{k + 1}(s(where), own{:});
+  end
+  value = reshape(value, shape);
+end
+"""
+
+IN_REAL_PIECES = """\
+function value = in_real_pieces(number_of, pieces, omega, given, is_turned)
+%IN_REAL_PIECES  The response at angular frequencies of any sign.
+%   Pieces give numerator and denominator at a positive frequency, without the
+%   factor 1i of a response that is_turned; at a negative one it is conjugate.
+  [omega, given, shape] = columns(omega, given);
+  if ~(isreal(omega) && all(cellfun(@isreal, given)))
+    error('symflex:argument', 'angular frequency and parameters must be real');
+  end
+  is_negative = omega < 0;
+  omega = abs(omega);
+  number = number_of(omega, given{:}) + zeros(size(omega));
+  value = complex(zeros(size(omega)));
+  for k = unique(number(:)).'
+    where = number == k;
+    own = chosen(given, where);
+    [num, den] = pieces{k + 1}(omega(where), own{:});
+    found = num ./ den;
+    if ~is_turned
+      value(where) = found;
+    elseif isreal(found)
+      value(where) = complex(zeros(size(found)), found);
+    else
+      value(where) = 1i .* found;
+    end
+  end
+  value(is_negative) = conj(value(is_negative));
+  value = reshape(value, shape);
+end
+"""
+
+CHOSEN = """\
+function given = chosen(given, where)
+%CHOSEN  Elements of columns; numbers stay as they are.
+  for k = 1:numel(given)
+    if ~isscalar(given{k})
+      given{k} = given{k}(where);
+    end
+  end
+end
+"""
+
+MEAN_OVER_CIRCLE = """\
+function value = mean_over_circle(parts, s, points)
+%MEAN_OVER_CIRCLE  Numerator over denominator, each the mean of its values on a circle.
+%   Both are analytic, so the mean is the value at the center s, where the formula
+%   itself cancels. parts gives numerator, denominator, the logarithm of what both
+%   were divided by, and the radius.
+  [~, ~, center, radius] = parts(s);
+  num = 0;
+  den = 0;
+  for k = 0:points - 1
+    turn = exp(2i .* pi .* (k + 0.5) ./ points);
+    [above, below, growth] = parts(s + radius .* turn);
+    scale = exp(growth - center);
+    num = num + above .* scale;
+    den = den + below .* scale;
+  end
+  value = num ./ den;
+end
+"""
+
+SERIES_SOLUTIONS = """\
+function found = series_solutions(c, terms)
+%SERIES_SOLUTIONS  Solutions of a linear differential equation at 1, by Taylor series.
+%   The equation is y^(n) + c{n} y^(n-1) + ... + c{1} y = 0; solution k starts from
+%   y^(k-1)(0) = 1 and zeros for the other derivatives below n.
+  n = numel(c);
+  zero = 0 .* c{1};
+  used = find(cellfun(@(x) any(x(:) ~= 0), c));
+  found = cell(1, n);
+  first = 1;
+  for k = 1:n
+    derivatives = repmat({zero}, 1, n);
+    derivatives{k} = zero + 1;
+    total = derivatives{k} ./ first;
+    first = first .* k;
+    divisor = 1;
+    for m = 1:terms - 1
+      divisor = divisor .* m;
+      if m >= n
+        following = zero;
+        for i = used
+          following = following - c{i} .* derivatives{i};
+        end
+        derivatives = [derivatives(2:end), {following}];
+        total = total + following ./ divisor;
+      end
+    end
+    found{k} = total;
+  end
+end
+"""
+
+ROWS = """\
+function [rows, largest] = rows_of(c)
+%ROWS_OF  Coefficients as rows of a matrix, and about the largest root of each row.
+  n = numel(c);
+  total = 0;
+  for k = 1:n
+    total = total + zeros(size(c{k}));
+  end
+  rows = complex(zeros(numel(total), n));
+  for k = 1:n
+    rows(:, k) = c{k}(:);
+  end
+  largest = max(abs(rows) .^ (1 ./ (n:-1:1)), [], 2);
+  largest = max(largest, 1e-30);
+end
+"""
+
+PROPAGATED = """\
+function found = propagated(c)
+%PROPAGATED  h, h', ..., h^(n-1) at 1 for coefficients of any size.
+%   h solves h^(n) + c{n} h^(n-1) + ... + c{1} h = 0 and starts from h^(n-1)(0) = 1 and
+%   zeros. The exponential of the companion matrix, by scaling and squaring.
+  n = numel(c);
+  [rows, largest] = rows_of(c);
+  values = complex(NaN(size(rows)));
+  for e = 1:size(rows, 1)
+    r = largest(e);
+    if ~all(isfinite(rows(e, :)))
+      continue;
+    end
+    companion = zeros(n);
+    for i = 1:n - 1
+      companion(i, i + 1) = r;
+    end
+    companion(n, :) = companion(n, :) - rows(e, :) ./ r .^ (n - 1:-1:0);
+    halvings = ceil(log2(max(r, 1))) + 3;
+    small = companion ./ 2 .^ halvings;
+    grown = eye(n);
+    for m = 18:-1:1
+      grown = eye(n) + small * grown ./ m;
+    end
+    for k = 1:halvings
+      grown = grown * grown;
+    end
+    values(e, :) = grown(:, n).' .* r .^ (1 - n:0);
+  end
+  found = cell(1, n);
+  for k = 1:n
+    found{k} = values(:, k);
+  end
+end
+"""
+
+CHARACTERISTIC_ROOTS = """\
+function found = characteristic_roots(c)
+%CHARACTERISTIC_ROOTS  Roots of x^n + c{n} x^(n-1) + ... + c{1}, and the least distance of two.
+%   Eigenvalues of the companion matrix, then steps of Aberth and Ehrlich, which give
+%   small roots besides large ones their digits.
+  n = numel(c);
+  [rows, largest] = rows_of(c);
+  values = complex(NaN(size(rows)));
+  least = NaN(size(largest));
+  for e = 1:size(rows, 1)
+    r = largest(e);
+    if ~all(isfinite(rows(e, :)))
+      continue;
+    end
+    scaled = rows(e, :) ./ r .^ (n:-1:1);
+    companion = zeros(n);
+    for i = 1:n - 1
+      companion(i, i + 1) = 1;
+    end
+    companion(n, :) = companion(n, :) - scaled;
+    x = eig(companion);
+    for step = 1:8 * (n > 1)
+      value = ones(n, 1);
+      slope = zeros(n, 1);
+      for k = n:-1:1
+        slope = slope .* x + value;
+        value = value .* x + scaled(k);
+      end
+      away = 1 ./ (x - x.');
+      away(~isfinite(away)) = 0;
+      change = value ./ (slope - value .* sum(away, 2));
+      change(~(abs(change) < 1)) = 0;
+      x = x - change;
+    end
+    values(e, :) = x.' .* r;
+    apart = abs(x - x.') + diag(Inf(1, n));
+    least(e) = min(apart(:)) .* r;
+  end
+  found = cell(1, n + 1);
+  for k = 1:n
+    found{k} = values(:, k);
+  end
+  found{n + 1} = least;
+end
+"""
+
+MODAL = """\
+function modes = mode_values(roots, len)
+%MODE_VALUES  Exponents of all roots at a length, and x^k/chi'(x) of each for k = 0, 1, ...
+%   The last of roots is their least distance, which is left out.
+  n = numel(roots) - 1;
+  modes.exponents = cell(1, n);
+  modes.powers = cell(n, n);
+  for i = 1:n
+    slope = 1;
+    for k = [1:i - 1, i + 1:n]
+      slope = slope .* (roots{i} - roots{k});
+    end
+    own = 1 ./ slope;
+    for k = 1:n
+      modes.powers{i, k} = own;
+      own = own .* roots{i};
+    end
+    modes.exponents{i} = roots{i} .* len;
+  end
+end
+
+function found = modal_value(modes, coefficients, frames)
+%MODAL_VALUE  A sum of exponentials over the largest one, and the logarithm of that.
+  amplitudes = {};
+  exponents = {};
+  for f = 1:numel(frames)
+    frame = frames{f};
+    [slots, orders, positions, keys, divisors] = frame{:};
+    for k = 1:size(keys, 1)
+      % One slot after the other; terms with the same orders left are summed.
+      rest = orders;
+      values = coefficients(positions);
+      exponent = 0;
+      for at = 1:numel(slots)
+        mode = modes{slots(at)};
+        root = keys(k, at);
+        exponent = exponent + mode.exponents{root};
+        label = rest(:, 2:end) * 1000 .^ (0:size(rest, 2) - 2).';
+        kept = [];
+        sums = {};
+        for t = 1:size(rest, 1)
+          term = values{t} .* mode.powers{root, rest(t, 1)};
+          same = find(label(kept) == label(t), 1);
+          if isempty(same)
+            kept(end + 1) = t;
+            sums{end + 1} = term;
+          else
+            sums{same} = sums{same} + term;
+          end
+        end
+        rest = rest(kept, 2:end);
+        values = sums;
+      end
+      amplitudes{end + 1} = values{1} ./ divisors(k);
+      exponents{end + 1} = exponent;
+    end
+  end
+  growth = real(exponents{1});
+  for k = 2:numel(exponents)
+    growth = max(growth, real(exponents{k}));
+  end
+  total = 0;
+  for k = 1:numel(exponents)
+    total = total + amplitudes{k} .* exp(exponents{k} - growth);
+  end
+  found = {total, growth};
+end
+"""
+
+NAMES = frozenset({
+    "numbers", "columns", "everywhere", "in_pieces", "in_real_pieces", "chosen", "mean_over_circle",
+    "series_solutions", "rows_of", "propagated", "characteristic_roots", "mode_values", "modal_value",
+    "default_parameters",
+})  # fmt: skip
+"""Names of these functions, and of the one with the model's values."""

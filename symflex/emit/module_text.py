@@ -1,0 +1,115 @@
+"""What generated code says about a model, whatever its language: formulas, origins, descriptions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symflex.emit.forms import print_form
+from symflex.emit.program import inert, nearest_double, wrapped
+from symflex.expressions import Number, Quotient, format_expression
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from symflex.emit.program import Node, Straight
+    from symflex.model import Model, Parameter
+    from symflex.transfer import TransferFunction
+
+FORMULA_LINES = 20
+FORMULA_TERMS = 1000
+
+COST = (
+    "Exponents without a formula are found numerically, which costs some hundred times a complex exponential."
+)
+"""What is said of functions that solve for their exponents."""
+
+
+def formula_lines(tf: TransferFunction, width: int) -> list[str]:
+    """Return the formula in lines of inert text, shortened when it is long.
+
+    Parameters
+    ----------
+    tf : TransferFunction
+        Derived.
+    width : int
+        Columns of a line.
+    """
+    above, below = tf.order
+    if sum(len(f) for f, _ in tf.ratio.factors) <= FORMULA_TERMS:
+        form = print_form(tf)
+    elif tf.closed is not None and len(tf.closed.num) + len(tf.closed.den) <= FORMULA_TERMS:
+        form = print_form(tf, "definitions")
+    else:
+        kind = "sums of kernels" if tf.is_distributed else f"polynomials of degree {above} and {below}"
+        return [f"A quotient of {kind} in s."]
+    is_whole = isinstance(form.den, Number) and form.den.value == 1
+    whole = format_expression(form.num if is_whole else Quotient(form.num, form.den))
+    lines = wrapped(inert(f"{tf.name} = {whole}"), width, "", "    ")
+    for i, (name, expression) in enumerate(form.where):
+        word = "where" if i == 0 else "     "
+        lines += wrapped(f"{word} {inert(f'{name} = {format_expression(expression)}')}", width, "", "    ")
+    if len(lines) <= FORMULA_LINES:
+        return lines
+    kept = lines[: FORMULA_LINES - 1]
+    return [*kept, f"    ... and {len(lines) - len(kept)} lines more."]
+
+
+def origin_lines(model: Model, width: int) -> list[str]:
+    """Return title and source of a model in lines of inert text, none for what is not given."""
+    lines: list[str] = []
+    for word, text in (("Model", model.title), ("Source", model.source)):
+        if text.strip():
+            lines += wrapped(f"{word}: {inert(text)}", width)
+    return lines
+
+
+def headline(tf: TransferFunction, *, is_real: bool = False) -> str:
+    """Return what a function computes, in one inert line.
+
+    Parameters
+    ----------
+    tf : TransferFunction
+        Derived.
+    is_real : bool
+        True for its response at an angular frequency in real arithmetic.
+    """
+    unit = f" [{tf.unit}]" if tf.unit else ""
+    at = " at s = j omega, in real arithmetic" if is_real else ""
+    return inert(f"{tf.quantity[:1].upper()}{tf.quantity[1:]} {tf.name}{unit}{at}.")
+
+
+def described(parameter: Parameter, name: str) -> str:
+    """Return what a parameter is, with its unit, as inert text that ends with a full stop.
+
+    Parameters
+    ----------
+    parameter : Parameter
+        Of the model.
+    name : str
+        What it is called in the generated code.
+    """
+    parts = [inert(parameter.doc).rstrip(".")] if parameter.doc.strip() else []
+    parts += [f"'{inert(parameter.name)}' in the model"] if name != parameter.name else []
+    text = f"{', '.join(parts) or 'parameter of the model'}"
+    return f"{text} [{inert(parameter.unit)}]." if parameter.unit else f"{text}."
+
+
+def default_value(parameter: Parameter) -> str:
+    """Return the double nearest to a parameter's value as text, empty without a value.
+
+    Raises
+    ------
+    ModelError
+        SF233 when it does not fit in double precision.
+    """
+    value = parameter.value
+    return "" if value is None else repr(nearest_double(value.rational, value.pi_power))
+
+
+def all_nodes(code: Straight) -> Iterator[Node]:
+    """Yield every node of straight-line code, in no particular order."""
+    pending = [*code.values, *(a.value for a in (*code.constants, *code.assignments))]
+    while pending:
+        node = pending.pop()
+        yield node
+        pending += node.children

@@ -1,0 +1,255 @@
+"""State equations without what no input reaches or no output shows.
+
+Input: a :class:`StateSpace`. Output: a minimal one with the same transfer functions, proved so (Kalman 1963,
+SIAM J. Control 1, 152).
+
+What inputs reach is a subspace in which some states determine the others: these stay, under their names. What
+outputs show are combinations of states: the simplest ones that do become the new states.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from flint import nmod_mat
+
+from symflex.errors import BudgetError, Diagnostic
+from symflex.kernels import PRIME, Factored, random_point, residue
+from symflex.state_space.quotients import FieldElement, Vector, applied, combined, transposed
+from symflex.state_space.state_space import State
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from symflex.state_space.state_space import Combination, StateSpace
+
+SIZE_LIMIT = 5_000
+"""Terms that a basis may hold on the way."""
+
+LARGEST = 1000
+"""Numerators and denominators up to this size are looked for before anything is solved with symbols."""
+
+Basis = dict[int, Vector]
+"""Vectors in reduced echelon form, by pivot."""
+
+FEW = 2
+"""Terms of a combination that is named after them."""
+
+
+def minimal(system: StateSpace) -> StateSpace:
+    """Return the controllable and observable part.
+
+    Parameters
+    ----------
+    system : StateSpace
+        Of any kind.
+
+    Returns
+    -------
+    StateSpace
+        Minimal for almost all values of its parameters; special values may hide more.
+
+    Raises
+    ------
+    BudgetError
+        SF502 when the combinations of states become too large.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> from symflex.state_space.realise import realise
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... parameters = {m_1 = "1 kg", m_2 = "2 kg", k = "3 N/m"}
+    ... elements.left = {type = "mass", at = "x", m = "m_1"}
+    ... elements.right = {type = "mass", at = "y", m = "m_2"}
+    ... elements.joint = {type = "spring", between = ["x", "y"], k = "k"}
+    ... inputs.F = {force = "x"}
+    ... outputs.V = "s*y"
+    ... ''')
+    >>> [state.name for state in minimal(realise(model, [("V", "F")])).states]
+    ['x_minus_y', 'x_dot', 'y_dot']
+    """
+    columns = transposed(system.a, system.order)
+    reached = _closed(transposed(system.b, len(system.inputs)), columns, system)
+    if len(reached) < system.order:
+        system = _controllable(system, reached)
+    shown = _closed(system.c, system.a, system)
+    if len(shown) < system.order:
+        system = _observable(system, shown)
+    return replace(system, is_minimal=True)
+
+
+def _controllable(system: StateSpace, basis: Basis) -> StateSpace:
+    """Return the part that inputs reach; its states are some of the system's."""
+    columns = transposed(system.a, system.order)
+    kept = sorted(basis)
+    place = {k: i for i, k in enumerate(kept)}
+    # Column i of A on the subspace: where A takes basis vector i, read off at the states that are kept.
+    moved = [applied(basis[k], columns) for k in kept]
+    a = transposed([{place[j]: v for j, v in vector.items() if j in place} for vector in moved], len(kept))
+    c = [
+        {place[k]: value for k in kept if not (value := _dot(row, basis[k], system)).is_zero}
+        for row in system.c
+    ]
+    states = tuple(system.states[k] for k in kept)
+    b = tuple(system.b[k] for k in kept)
+    return replace(system, states=states, a=tuple(a), b=b, c=tuple(c))
+
+
+def _observable(system: StateSpace, basis: Basis) -> StateSpace:
+    """Return the part that outputs show; its states are combinations of the system's."""
+    kept = sorted(basis)
+    place = {k: i for i, k in enumerate(kept)}
+    moved = [applied(basis[k], system.a) for k in kept]
+    a = tuple({place[j]: v for j, v in vector.items() if j in place} for vector in moved)
+    c = tuple({place[j]: v for j, v in row.items() if j in place} for row in system.c)
+    b = tuple(applied(basis[k], system.b) for k in kept)
+    taken: set[str] = set()
+    states = tuple(_state(basis[k], k, i, system.states, taken) for i, k in enumerate(kept))
+    return replace(system, states=states, a=a, b=b, c=c)
+
+
+def _closed(start: Sequence[Vector], rows: Sequence[Vector], system: StateSpace) -> Basis:
+    """Return the least space that holds the given vectors and that a matrix maps into itself."""
+    points = [_at_random_point(start, rows, system, seed) for seed in (0, 1)]
+    dimension = max(len(point) for point in points)
+    one = FieldElement.number(system.ring, 1)
+    if dimension == system.order:
+        # With numbers in place of parameters a dimension can only be lost, so this is a proof.
+        return {j: {j: one} for j in range(system.order)}
+    guess = _constants(points, system)
+    if guess is not None and all(_is_inside(v, guess) for v in start):
+        moved = (applied(vector, rows) for vector in guess.values())
+        if all(_is_inside(vector, guess) for vector in moved):
+            return guess
+    return _generated(start, rows, system)
+
+
+def _constants(points: Sequence[Mapping[int, Mapping[int, int]]], system: StateSpace) -> Basis | None:
+    """Return a basis of small numbers that is the same at all random points, ``None`` when there is none."""
+    first, *others = points
+    if any(other != first for other in others):
+        return None
+    ring = system.ring
+    basis: Basis = {}
+    for pivot, entries in first.items():
+        basis[pivot] = {}
+        for j, entry in entries.items():
+            fraction = _reconstructed(entry)
+            if fraction is None:
+                return None
+            basis[pivot][j] = FieldElement(ring.constant(fraction[0]), ring.constant(fraction[1]))
+    return basis
+
+
+def _reconstructed(value: int) -> tuple[int, int] | None:
+    """Return the small fraction that a residue is (Wang 1981), ``None`` when it is none."""
+    (above, below), (left, right) = (PRIME, value), (0, 1)
+    while below > LARGEST:
+        quotient = above // below
+        above, below = below, above - quotient * below
+        left, right = right, left - quotient * right
+    if not 0 < abs(right) <= LARGEST:
+        return None
+    return (below, right) if right > 0 else (-below, -right)
+
+
+def _generated(start: Sequence[Vector], rows: Sequence[Vector], system: StateSpace) -> Basis:
+    """Return the least such space as products of the vectors with powers of the matrix.
+
+    What is multiplied next is what a vector adds to those before, so that entries stay small.
+    """
+    basis: Basis = {}
+    waiting = list(reversed(start))
+    while waiting:
+        vector = _rest(waiting.pop(), basis)
+        if not vector:
+            continue
+        pivot = min(vector)
+        lead = vector[pivot]
+        vector = {j: value / lead for j, value in vector.items()}
+        for p, known in basis.items():
+            if pivot in known:
+                basis[p] = combined(known, vector, -known[pivot])
+        basis[pivot] = vector
+        if sum(v.size for known in basis.values() for v in known.values()) > SIZE_LIMIT:
+            message = f"the states of a minimal form are combinations of more than {SIZE_LIMIT} terms"
+            hint = "give parameters numbers: bind() first; or keep all states"
+            raise BudgetError(Diagnostic("SF502", message, None, hint))
+        waiting.insert(0, applied(vector, rows))
+    return basis
+
+
+def _rest(vector: Vector, basis: Basis) -> Vector:
+    """Return a vector without its part in the space."""
+    for pivot, known in basis.items():
+        if pivot in vector:
+            vector = combined(vector, known, -vector[pivot])
+    return vector
+
+
+def _is_inside(vector: Vector, basis: Basis) -> bool:
+    return not _rest(vector, basis)
+
+
+def _dot(left: Vector, right: Vector, system: StateSpace) -> FieldElement:
+    total = FieldElement.number(system.ring, 0)
+    for j, value in left.items():
+        if j in right:
+            total = total + value * right[j]
+    return total
+
+
+def _state(vector: Vector, pivot: int, number: int, states: Sequence[State], taken: set[str]) -> State:
+    """Return a combination of states as one."""
+    parts = sorted(vector.items(), key=lambda item: (item[0] != pivot, item[0]))
+    terms: Combination = tuple(
+        (quantity, factor * value) for j, value in parts for quantity, factor in states[j].terms
+    )
+    first = states[pivot]
+    name = first.name
+    if len(parts) > 1:
+        is_difference = len(parts) == FEW and (-parts[1][1]).is_one
+        name = f"{name}_minus_{states[parts[1][0]].name}" if is_difference else f"z_{number + 1}"
+    while name in taken:
+        name += "_"
+    taken.add(name)
+    return State(name, terms, first.unit)
+
+
+def _at_random_point(
+    start: Sequence[Vector], rows: Sequence[Vector], system: StateSpace, seed: int
+) -> dict[int, dict[int, int]]:
+    """Return the least such space with random numbers in place of parameters, as residues by pivot."""
+    n = system.order
+    point = {name: value + seed for name, value in random_point(system.ring.names).items()}
+    step = _residues(rows, n, point, system)
+    found = _independent(_residues(start, n, point, system))
+    length = 1
+    while found.nrows() and length < n:
+        found = _independent(_stacked(found, found * step))
+        step, length = step * step, 2 * length
+    table = [[int(x) for x in row] for row in found.tolist()]
+    vectors = [{j: x for j, x in enumerate(row) if x} for row in table]
+    return {min(vector): vector for vector in vectors}
+
+
+def _residues(rows: Sequence[Vector], columns: int, point: Mapping[str, int], system: StateSpace) -> nmod_mat:
+    matrix = nmod_mat(len(rows), columns, PRIME)
+    for i, row in enumerate(rows):
+        for j, value in row.items():
+            quotient = Factored(system.ring, Fraction(1), ((value.num, 1), (value.den, -1)))
+            matrix[i, j] = residue(quotient, point)
+    return matrix
+
+
+def _stacked(above: nmod_mat, below: nmod_mat) -> nmod_mat:
+    return nmod_mat(above.nrows() + below.nrows(), above.ncols(), [*above.entries(), *below.entries()], PRIME)
+
+
+def _independent(matrix: nmod_mat) -> nmod_mat:
+    reduced, rank = matrix.rref()
+    return nmod_mat(rank, matrix.ncols(), reduced.entries()[: rank * matrix.ncols()], PRIME)

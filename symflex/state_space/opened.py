@@ -1,0 +1,214 @@
+"""A model written so that every filter's states are its own.
+
+Input: a model. Output: the same model without definitions, and with a signal for what each filter puts out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, TypeGuard
+
+from symflex.errors import BudgetError, Diagnostic
+from symflex.expressions import (
+    Attribute,
+    Expression,
+    Name,
+    Negative,
+    Product,
+    Quotient,
+    Sum,
+    format_expression,
+    names,
+    negative,
+    product_of,
+    quotient,
+    substitute,
+    sum_of,
+)
+from symflex.kernels import LAPLACE
+from symflex.model import Signal
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from symflex.model import Model
+
+PARTS_LIMIT = 100_000
+"""Parts that an expression may have once its definitions are opened."""
+
+
+def opened(model: Model) -> Model:
+    """Return a model of the same behaviour without definitions.
+
+    A definition may hold a denominator in s that only shows when it is opened.
+
+    Parameters
+    ----------
+    model : Model
+        Resolved, and not distributed.
+
+    Raises
+    ------
+    BudgetError
+        SF501 when the definitions are too large to be opened.
+    """
+    if not model.definitions:
+        return model
+    known: dict[str, Expression] = {}
+    sizes: dict[str, int] = {}
+    for definition in model.definitions:
+        known[definition.name] = _opened(definition.expression, known, sizes)
+        sizes[definition.name] = _parts(known[definition.name])
+
+    def put_in(given: tuple[tuple[str, Expression], ...]) -> tuple[tuple[str, Expression], ...]:
+        return tuple((name, _opened(e, known, sizes)) for name, e in given)
+
+    return replace(
+        model,
+        definitions=(),
+        elements=tuple(replace(e, values=put_in(e.values)) for e in model.elements),
+        signals=tuple(replace(x, expression=_opened(x.expression, known, sizes)) for x in model.signals),
+        blocks=tuple(replace(b, values=put_in(b.values)) for b in model.blocks),
+        outputs=tuple(replace(o, expression=_opened(o.expression, known, sizes)) for o in model.outputs),
+    )
+
+
+def with_filters_apart(model: Model) -> Model:
+    """Return a model of the same behaviour in which blocks and filters stand one after, or beside, another.
+
+    ``y = G_1*G_2*u`` becomes a signal for ``G_2*u`` and one for ``G_1`` times that; in ``c = k*e + k_i/s*e``
+    the integral becomes a signal of its own.
+
+    Parameters
+    ----------
+    model : Model
+        Without definitions.
+    """
+    splitter = _Splitter(model)
+    signals = tuple(replace(x, expression=splitter.apart(x.name, x.expression)) for x in model.signals)
+    outputs = tuple(replace(o, expression=splitter.apart(o.name, o.expression)) for o in model.outputs)
+    elements = tuple(
+        replace(
+            e,
+            values=tuple(
+                (name, splitter.apart(e.name, value) if name in driven else value) for name, value in e.values
+            ),
+        )
+        for e in model.elements
+        for driven in [{p.name for p in e.element.parameters if p.signal}]
+    )
+    if not splitter.added:
+        return model
+    return replace(model, elements=elements, signals=(*signals, *splitter.added), outputs=outputs)
+
+
+def _opened(expression: Expression, known: Mapping[str, Expression], sizes: Mapping[str, int]) -> Expression:
+    used = [n.name for n in names(expression) if isinstance(n, Name) and n.name in known]
+    if sum(sizes[name] for name in used) > PARTS_LIMIT:
+        message = f"an expression would have more than {PARTS_LIMIT} parts with its definitions opened"
+        raise BudgetError(Diagnostic("SF501", message, expression.span))
+    return substitute(expression, known) if used else expression
+
+
+def _parts(expression: Expression) -> int:
+    count, pending = 0, [expression]
+    while pending:
+        node = pending.pop()
+        count += 1
+        pending.extend(node.children)
+    return count
+
+
+class _Splitter:
+    """Puts what each block or filter makes of something into a signal of its own."""
+
+    def __init__(self, model: Model) -> None:
+        self.added: list[Signal] = []
+        self._blocks = {b.name for b in model.blocks}
+        groups = (model.nodes, model.signals, model.inputs)
+        self._varying = {item.name for group in groups for item in group}
+        fixed = (model.parameters, model.elements, model.outputs, model.blocks)
+        self._taken = self._varying | {item.name for group in fixed for item in group}
+
+    def apart(self, owner: str, expression: Expression) -> Expression:
+        """Return an expression with new signals in place of blocks, and of filters in a sum, times something.
+
+        Parameters
+        ----------
+        owner : str
+            What the expression is the value of; signals in a sum are named after it.
+        expression : Expression
+            Of signals, nodes and inputs.
+        """
+        match expression:
+            case Sum(terms):
+                known = [_denominators(t) for t in terms]
+                parts: list[Expression] = []
+                for i, term in enumerate(terms):
+                    part = self.apart(owner, term)
+                    others = {d for j, found in enumerate(known) if j != i for d in found}
+                    # Filters that share a denominator have its states together.
+                    if self._varies(term) and known[i] and not known[i] & others:
+                        is_negative = isinstance(part, Negative)
+                        inner = part.operand if isinstance(part, Negative) else part
+                        name = Name(self._signal(f"{owner}_{i + 1}", inner))
+                        part = negative(name) if is_negative else name
+                    parts.append(part)
+                return sum_of(parts)
+            case Negative(operand):
+                return negative(self.apart(owner, operand))
+            case Quotient(numerator, denominator):
+                return quotient(self.apart(owner, numerator), denominator)
+            case Product(factors) if any(self._varies(f) for f in factors):
+                applied = [f.name for f in factors if self._is_block(f)]
+                value = product_of(
+                    self.apart(owner, f) if self._varies(f) else f for f in factors if not self._is_block(f)
+                )
+                for name in reversed(applied):
+                    value = Name(self._signal(f"{name}_out", product_of([Name(name), value])))
+                return value
+        return expression
+
+    def _is_block(self, expression: Expression) -> TypeGuard[Name]:
+        return isinstance(expression, Name) and expression.name in self._blocks
+
+    def _varies(self, expression: Expression) -> bool:
+        return any(
+            isinstance(n, Attribute) or (isinstance(n, Name) and n.name in self._varying)
+            for n in names(expression)
+        )
+
+    def _signal(self, wanted: str, expression: Expression) -> str:
+        """Add a signal with a name that nothing has."""
+        name = wanted
+        number = 2
+        while name in self._taken:
+            name = f"{wanted}_{number}"
+            number += 1
+        self._taken.add(name)
+        self.added.append(Signal(name, expression))
+        return name
+
+
+def _denominators(expression: Expression) -> set[str]:
+    """Return the factors in s that a term of a sum is divided by, as text."""
+    found: set[str] = set()
+    pending = [expression]
+    while pending:
+        node = pending.pop()
+        match node:
+            case Negative(operand):
+                pending.append(operand)
+            case Product(factors):
+                pending.extend(factors)
+            case Quotient(numerator, Product(factors)):
+                pending.append(numerator)
+                found |= {format_expression(f) for f in factors if _holds_s(f)}
+            case Quotient(numerator, denominator):
+                pending.append(numerator)
+                found |= {format_expression(denominator)} if _holds_s(denominator) else set()
+    return found
+
+
+def _holds_s(expression: Expression) -> bool:
+    return any(isinstance(n, Name) and n.name == LAPLACE for n in names(expression))

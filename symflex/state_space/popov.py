@@ -1,0 +1,182 @@
+"""Equations that are polynomial in s, solved for the highest derivatives that stand in them.
+
+Input: rows ``A(s) x + B(s) u = 0``. Output: :class:`SolvedRows`, the same in Popov form: per unknown, the
+lowest of its derivatives that is a combination of lower ones and of inputs. What is lower still is a state.
+
+The form is that of Popov (1972, SIAM J. Control 10, 252), with weights on the unknowns as in Beckermann,
+Labahn and Villard (2006, J. Symb. Comp. 41, 708): which derivatives count as higher decides what the states
+are. It is found as the Groebner basis of the rows' module over the polynomials in s.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from symflex.errors import BudgetError, Diagnostic
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.state_space.quotients import FieldElement
+
+Key = tuple[int, int]
+"""A column and a power of s. Unknowns come first, then inputs."""
+
+Row = dict[Key, "FieldElement"]
+"""A sum of ``coefficient * s^power * column``, without coefficients that are zero."""
+
+DERIVATIVE = 4
+"""What a derivative adds to the weight of an unknown."""
+
+SIZE_LIMIT = 100_000
+"""Terms that the coefficients of one row may hold together."""
+
+
+@dataclass(frozen=True, eq=False)
+class SolvedRows:
+    """Equations solved for the derivatives that are no states.
+
+    Parameters
+    ----------
+    orders : tuple of int
+        Per unknown, how many of its derivatives, itself first, are states.
+    tails : sequence of Row
+        Per unknown, what its derivative of that order equals: states, and powers of s times inputs.
+    """
+
+    orders: tuple[int, ...]
+    tails: Sequence[Row]
+    _known: dict[Key, Row] = field(default_factory=dict, repr=False)
+
+    @property
+    def states(self) -> tuple[Key, ...]:
+        """The derivatives that are states: all unknowns that are, then all first derivatives, and so on."""
+        keys = [(j, i) for j, order in enumerate(self.orders) for i in range(order)]
+        return tuple(sorted(keys, key=lambda key: (key[1], key[0])))
+
+    def is_final(self, key: Key) -> bool:
+        """Tell whether a key is a state or a derivative of an input."""
+        column, power = key
+        return column >= len(self.orders) or power < self.orders[column]
+
+    def reduced(self, row: Row) -> Row:
+        """Return states and inputs alone, equal to the given row by the equations."""
+        result: Row = {}
+        for key, value in row.items():
+            if self.is_final(key):
+                add_term(result, key, value)
+            else:
+                add(result, self._equal(key), value)
+        return result
+
+    def _equal(self, key: Key) -> Row:
+        """Return what a derivative that is no state equals."""
+        column, power = key
+        self._known.setdefault((column, self.orders[column]), self.tails[column])
+        start = power
+        while (column, start) not in self._known:
+            start -= 1
+        for i in range(start, power):
+            raised: Row = {}
+            for (other, below), value in self._known[column, i].items():
+                above = (other, below + 1)
+                if self.is_final(above):
+                    add_term(raised, above, value)
+                else:
+                    add(raised, self.tails[other], value)
+            self._known[column, i + 1] = raised
+        return self._known[key]
+
+
+def solve(rows: Sequence[Row], weights: Sequence[tuple[int, int]]) -> SolvedRows | None:
+    """Return the Popov form of as many rows as unknowns, ``None`` when they do not determine these.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+        Each a sum that is zero.
+    weights : sequence of (int, int)
+        Per unknown its weight, to which a derivative adds 4, and its rank among equal weights; ranks differ.
+        What weighs most in a row is solved for.
+
+    Raises
+    ------
+    BudgetError
+        SF502 when coefficients become too large.
+
+    Examples
+    --------
+    >>> from symflex.kernels import Ring
+    >>> from symflex.state_space.quotients import FieldElement
+    >>> ring = Ring(("s",))
+    >>> one, two = (FieldElement.number(ring, n) for n in (1, 2))
+    >>> mass = {(0, 2): two, (1, 0): -one, (2, 0): -one}  # 2 s^2 x - y - u = 0
+    >>> held = {(0, 0): one, (1, 0): -one}  # x = y
+    >>> solve([mass, held], [(0, 0), (0, 1)]).orders
+    (2, 0)
+    """
+    count = len(weights)
+
+    def order(key: Key) -> tuple[int, int]:
+        weight, rank = weights[key[0]]
+        return DERIVATIVE * key[1] + weight, rank
+
+    def leading(row: Row) -> Key | None:
+        return max((key for key in row if key[0] < count), key=order, default=None)
+
+    basis: dict[int, tuple[int, Row]] = {}
+    waiting = [dict(row) for row in rows]
+    waiting.sort(key=lambda row: ((-1, -1) if (top := leading(row)) is None else order(top), len(row)))
+    waiting.reverse()
+    while waiting:
+        row = waiting.pop()
+        while (top := leading(row)) is not None:
+            column, power = top
+            if column not in basis:
+                basis[column] = (power, _monic(row, top))
+                break
+            below, known = basis[column]
+            if power < below:
+                basis[column] = (power, _monic(row, top))
+                waiting.append(known)
+                break
+            add(row, {(c, i + power - below): v for (c, i), v in known.items()}, -row[top])
+            _check(row)
+        else:
+            return None
+    tails: list[Row] = [{} for _ in range(count)]
+    solved = SolvedRows(tuple(basis[j][0] for j in range(count)), tails)
+    # What stands in a tail is lower in order than what it equals, so its own tails are known by then.
+    for column in sorted(range(count), key=lambda j: order((j, basis[j][0]))):
+        power, row = basis[column]
+        rest = {key: -value for key, value in row.items() if key != (column, power)}
+        tails[column] = solved.reduced(rest)
+        _check(tails[column])
+    return solved
+
+
+def _monic(row: Row, top: Key) -> Row:
+    lead = row[top]
+    return row if lead.is_one else {key: value / lead for key, value in row.items()}
+
+
+def _check(row: Row) -> None:
+    if sum(value.size for value in row.values()) > SIZE_LIMIT:
+        message = f"state equations whose coefficients would exceed {SIZE_LIMIT} terms"
+        raise BudgetError(Diagnostic("SF502", message, None, "give parameters numbers: bind() first"))
+
+
+def add(target: Row, source: Row, factor: FieldElement) -> None:
+    """Add ``factor*source`` to a row in place."""
+    for key, value in source.items():
+        add_term(target, key, value * factor)
+
+
+def add_term(target: Row, key: Key, value: FieldElement) -> None:
+    """Add one term to a row in place."""
+    total = target[key] + value if key in target else value
+    if total.is_zero:
+        target.pop(key, None)
+    else:
+        target[key] = total

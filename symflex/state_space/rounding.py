@@ -1,0 +1,252 @@
+"""Exact matrices as arrays of doubles, each entry rounded once and to the nearest.
+
+Input: a :class:`StateSpace`, and values for the parameters that are left in it. Output: :class:`Arrays`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import inf, isfinite
+from sys import float_info
+from typing import TYPE_CHECKING
+
+import numpy as np
+from flint import acb, acb_mat, arb, ctx
+
+from symflex.errors import Diagnostic, ModelError, UncertifiedError
+from symflex.transfer.balls import ball, enclose
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    import numpy.typing as npt
+    from flint import fmpz_mpoly
+
+    from symflex.expressions import Expression
+    from symflex.model import ExactValue
+    from symflex.state_space.quotients import FieldElement
+    from symflex.state_space.state_space import StateSpace
+
+FIRST_BITS, LAST_BITS = 128, 4096
+RESPONSE_BITS = 192
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Arrays:
+    """The matrices of state equations in double precision.
+
+    Parameters
+    ----------
+    a, b, c, d : array of float
+        Shapes (n, n), (n, m), (p, n), (p, m) for n states, m inputs, p outputs. Read-only.
+    """
+
+    a: npt.NDArray[np.float64]
+    b: npt.NDArray[np.float64]
+    c: npt.NDArray[np.float64]
+    d: npt.NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        for array in (self.a, self.b, self.c, self.d):
+            array.setflags(write=False)
+
+
+def rounded(system: StateSpace, values: Mapping[str, ExactValue] | None = None) -> Arrays:
+    """Return the matrices with every entry the double nearest to its exact value.
+
+    Parameters
+    ----------
+    system : StateSpace
+        Exact.
+    values : mapping of str to ExactValue, optional
+        Of the parameters that occur in it.
+
+    Raises
+    ------
+    ModelError
+        SF229 for a parameter without value, SF231 when these values divide by zero, SF233 when an entry is
+        too large or too small for double precision.
+    UncertifiedError
+        SF401 when it cannot be told whether an entry is zero.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> from symflex.model import with_numbers
+    >>> from symflex.state_space.realise import realise
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... parameters = {m = "3 kg", b = "1 N*s/m"}
+    ... elements.body = {type = "mass", at = "x", m = "m"}
+    ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
+    ... inputs.F = {force = "x"}
+    ... outputs.X = "x"
+    ... ''')
+    >>> rounded(realise(with_numbers(model), [("X", "F")])).a.tolist()
+    [[0.0, 1.0], [0.0, -0.3333333333333333]]
+    """
+    rounding = rounding_of(system, values)
+    arrays = []
+    for letter, rows, shape in system.matrices:
+        array = np.zeros(shape)
+        for i, row in enumerate(rows):
+            for j, value in row.items():
+                what = f"entry {letter}[{i + 1}, {j + 1}] of the state equations"
+                array[i, j] = rounding.nearest(value, what)
+        arrays.append(array)
+    return Arrays(*arrays)
+
+
+def rounding_of(system: StateSpace, values: Mapping[str, ExactValue] | None = None) -> Rounding:
+    """Return what rounds the entries of a realisation."""
+    known = values or {}
+    later: dict[str, Callable[[], arb]] = {n: _enclosure(v) for n, v in known.items()}
+    constants = {c.generator: _later(c.expression, later) for c in system.constants}
+    exact = {name: v.rational for name, v in known.items() if not v.pi_power}
+    return Rounding(system.ring.names, {"pi": arb.pi, **later, **constants}, exact)
+
+
+class Rounding:
+    """Rounds quotients of polynomials to the nearest double.
+
+    Parameters
+    ----------
+    names : sequence of str
+        The ring's generators.
+    constants : mapping of str to callable
+        Encloses a generator at the current precision.
+    exact : mapping of str to Fraction
+        Those that are rational.
+    """
+
+    def __init__(
+        self,
+        names: Sequence[str],
+        constants: Mapping[str, Callable[[], arb]],
+        exact: Mapping[str, Fraction] | None = None,
+    ) -> None:
+        self._names = names
+        self._constants = constants
+        self._exact = exact or {}
+        self._balls: dict[int, dict[str, arb]] = {}
+
+    def nearest(self, value: FieldElement, what: str) -> float:
+        """Return the nearest double; ``what`` is what messages call it.
+
+        Raises
+        ------
+        ModelError, UncertifiedError
+            As :func:`rounded` does.
+        """
+        exact = self._rational(value)
+        found = self._of_ball(value, what) if exact is None else _float(exact)
+        if found == exact:
+            return found
+        if not isfinite(found) or abs(found) < float_info.min:
+            size = "large" if abs(found) > 1 else "small"
+            message = f"{what} is too {size} for double precision"
+            raise ModelError(Diagnostic("SF233", message))
+        return found
+
+    def _rational(self, value: FieldElement) -> Fraction | None:
+        above, below = (self._exact_value(part) for part in (value.num, value.den))
+        if above is None or below is None:
+            return None
+        if not below:
+            raise _zero_denominator()
+        return above / below
+
+    def _exact_value(self, polynomial: fmpz_mpoly) -> Fraction | None:
+        total = Fraction(0)
+        for monomial, coefficient in polynomial.terms():
+            term = Fraction(int(coefficient))
+            for name, exponent in zip(self._names, monomial, strict=True):
+                if exponent:
+                    if name not in self._exact:
+                        return None
+                    term *= self._exact[name] ** int(exponent)
+            total += term
+        return total
+
+    def _of_ball(self, value: FieldElement, what: str) -> float:
+        bits = FIRST_BITS
+        while bits <= LAST_BITS:
+            with ctx.workprec(bits):
+                below = self._enclosed(value.den, bits)
+                if not below.contains(0):
+                    quotient = self._enclosed(value.num, bits) / below
+                    low, high = float(quotient.lower()), float(quotient.upper())
+                    if low == high:
+                        return low
+            bits *= 2
+        message = f"it cannot be told whether {what} is zero"
+        raise UncertifiedError(Diagnostic("SF401", message))
+
+    def _enclosed(self, polynomial: fmpz_mpoly, bits: int) -> arb:
+        known = self._balls.setdefault(bits, {})
+        total = arb(0)
+        for monomial, coefficient in polynomial.terms():
+            term = arb(int(coefficient))
+            for name, exponent in zip(self._names, monomial, strict=True):
+                if exponent:
+                    if name not in known:
+                        known[name] = self._constant(name)
+                    term = term * known[name] ** int(exponent)
+            total = total + term
+        return total
+
+    def _constant(self, name: str) -> arb:
+        if name not in self._constants:
+            raise ModelError(Diagnostic("SF229", f"parameter '{name}' has no value"))
+        return self._constants[name]()
+
+
+def _enclosure(value: ExactValue) -> Callable[[], arb]:
+    return lambda: ball(value.rational) * arb.pi() ** value.pi_power
+
+
+def _later(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> Callable[[], arb]:
+    return lambda: enclose(expression, values)
+
+
+def _float(value: Fraction) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        return inf if value > 0 else -inf
+
+
+def _zero_denominator() -> ModelError:
+    message = "the state equations divide by zero for these values"
+    hint = "a rigid or massless limit has its own equations: bind() first, then state_space()"
+    return ModelError(Diagnostic("SF231", message, None, hint))
+
+
+def response(arrays: Arrays, points: Sequence[complex]) -> list[tuple[tuple[complex, ...], ...]]:
+    """Return ``C (s - A)^-1 B + D`` at each s [rad/s], per output a row; not a number at poles.
+
+    The matrices count as exact, and what is computed with them is enclosed and then rounded.
+    """
+    with ctx.workprec(RESPONSE_BITS):
+        a, b, c, d = (_acb_matrix(array) for array in (arrays.a, arrays.b, arrays.c, arrays.d))
+        n = len(arrays.a)
+        found = []
+        for s in points:
+            value = d
+            if n:
+                shifted = (
+                    acb_mat(n, n, [acb(s) if i == j else acb(0) for i in range(n) for j in range(n)]) - a
+                )
+                try:
+                    value = d + c * shifted.solve(b)
+                except ZeroDivisionError:
+                    value = d * acb("nan")
+            rows = value.tolist()
+            found.append(tuple(tuple(complex(x.mid()) for x in row) for row in rows))
+        return found
+
+
+def _acb_matrix(array: npt.NDArray[np.float64]) -> acb_mat:
+    rows, columns = array.shape
+    return acb_mat(rows, columns, [acb(float(x)) for x in array.ravel()])
