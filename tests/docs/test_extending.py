@@ -94,8 +94,8 @@ def test_the_low_pass_multiplies_the_displacement(extended):
     assert derived(extended, "factored")["Y/F"] == ("1", "(T*s + 1)*((m + B)*s^2 + k)")
 
 
-def test_the_new_form_has_unit_constant_term(extended):
-    assert derived(extended, "unit_constant")["X/F"] == ("1/k", "(m + B)/k*s^2 + 1")
+def test_the_new_form_multiplies_by_s_once_at_a_time(extended):
+    assert derived(extended, "nested")["Y/F"] == ("1", "((T*(m + B)*s + m + B)*s + k*T)*s + k")
 
 
 def test_the_new_target_writes_a_module_that_runs(extended):

@@ -205,8 +205,13 @@ def test_what_cancelled_is_a_sympy_expression(tip, colocated):
 
 
 def test_latex_has_no_display_of_its_own_and_the_notebook_adds_it(colocated):
-    assert colocated._repr_latex_() == f"$\\displaystyle {colocated.latex()}$"
     assert colocated.form("monic")._repr_latex_() == f"$\\displaystyle {colocated.latex('monic')}$"
+    above, below = colocated._repr_latex_().split(r" \\ ")  # definitions stand below
+    assert below == r"\text{where}\quad Z &= b s + k \end{aligned}$"
+    assert (
+        above
+        == rf"$\displaystyle \begin{{aligned}} {colocated.latex().partition(',')[0].replace(' = ', ' &= ')}"
+    )
     assert r"\frac{X_{\mathrm{act}}(s)}{F(s)}" in colocated.latex()
 
 

@@ -9,7 +9,7 @@ from symflex.errors import Diagnostic, UsageError
 if TYPE_CHECKING:
     from symflex.transfer import TransferFunction
 
-RATIONAL = ("definitions", "factored", "polynomial", "monic", "zpk", "frequency")
+RATIONAL = ("definitions", "factored", "polynomial", "monic", "constant", "zpk", "frequency")
 """The forms of a rational function."""
 DISTRIBUTED = ("hyperbolic", "factored", "krylov", "vaughan", "frequency", "polynomial")
 """The forms of a function with kernels of wavenumbers that have a formula."""

@@ -132,7 +132,10 @@ def notebook_latex(tf: TransferFunction, form: PrintedForm) -> str | None:
     """
     writer = Writer(_labels(tf, form))
     width = NOTEBOOK_MM / EM_MM
-    one_line = _left_side(tf)[1] + RELATION + _right_side(form, writer)[1]
+    right, right_width = _right_side(form, writer)
+    if len(right) > LONGEST_IN_NOTEBOOK:
+        return None
+    one_line = _left_side(tf)[1] + RELATION + right_width
     if not (form.where or form.laws) and one_line <= width:
         return inline_latex(tf, form)
     rows = [*_rows(tf, form, writer, width), *_where_rows(form, writer, width)]

@@ -120,7 +120,7 @@ def tabular(columns: Sequence[Column], setting: Setting, heights: Sequence[int] 
             f"{body}\n    \\bottomrule\n  \\end{{tabular}}\\par"
         )
     dense = r"\setlength{\tabcolsep}{3pt}" if setting.is_dense else ""
-    return f"{{\\centering{setting.size}{_SETUP}{dense}\n" + "\\medskip\n".join(parts) + "}"
+    return f"\\par{{\\centering{setting.size}{_SETUP}{dense}\n" + "\\medskip\n".join(parts) + "}"
 
 
 def number_column(head: tuple[str, ...], head_widths: tuple[float, ...], cells: Sequence[str]) -> Column:

@@ -271,7 +271,7 @@ def test_a_form_that_needs_formulas_is_refused_without_them(form):
         print_form(tf, form)
 
 
-@pytest.mark.parametrize("form", ["monic", "zpk"])
+@pytest.mark.parametrize("form", ["monic", "constant", "zpk"])
 def test_a_form_of_rational_functions_is_refused_for_a_beam(form):
     with pytest.raises(UsageError, match="not a rational function of s"):
         print_form(case("sliding_free_beam", "V_act/F"), form)
@@ -287,13 +287,15 @@ F = { force = "x" }
 X = "x"
 """
     (tf,) = pipeline.derive_all(pipeline.loads(spec("m", text)))
-    with pytest.raises(UsageError, match="forms of X/F: definitions, factored, polynomial, monic, zpk"):
+    with pytest.raises(
+        UsageError, match="forms of X/F: definitions, factored, polynomial, monic, constant, zpk"
+    ):
         print_form(tf, form)
 
 
 def test_every_form_is_one_of_some_function():
     found = {form for name in ("third order", "numbers") for form in forms_of(of_case(name)[0])}
-    assert set(FORMS) - found == {"definitions", "monic", "zpk"}
+    assert set(FORMS) - found == {"definitions", "monic", "constant", "zpk"}
 
 
 def test_a_hidden_factor_of_kernels_is_written_out():

@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 
 from symflex import pipeline
-from symflex.emit.exporters import EXPORTERS, StateSpaceExporter
+from symflex.emit.exporters import EXPORTERS
 from symflex.emit.state_equations import StateEquations
 from symflex.emit.state_space_module import state_space_module
+from symflex.emit.targets.state_space import StateSpaceExporter
 from symflex.errors import BudgetError, ModelError
 from tests.unit.emit.test_numpy_hostile import HOSTILE, NAMES, SPEC, loaded, renamed, ring_takes, skeleton
 

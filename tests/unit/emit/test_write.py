@@ -5,7 +5,7 @@ import stat
 
 import pytest
 
-from symflex.emit.write import write_atomically
+from symflex.emit.write import write_atomically, write_folder
 from symflex.errors import UsageError
 
 
@@ -118,3 +118,34 @@ def test_a_new_file_gets_the_permissions_of_the_umask(tmp_path):
     write_atomically(tmp_path / "a.svg", b"new")
     os.umask(before)
     assert stat.S_IMODE((tmp_path / "a.svg").stat().st_mode) == 0o640
+
+
+def test_a_folder_is_made_and_filled(tmp_path):
+    write_folder(tmp_path / "new", {"a.tex": "first", "b.tex": "größer"})
+    assert (tmp_path / "new" / "b.tex").read_text(encoding="utf-8") == "größer"
+    write_folder(tmp_path / "new", {"a.tex": "second"})
+    assert sorted(p.name for p in (tmp_path / "new").iterdir()) == ["a.tex", "b.tex"]
+    assert (tmp_path / "new" / "a.tex").read_text(encoding="utf-8") == "second"
+
+
+@pytest.mark.parametrize("name", ["", ".", "..", "../a", "/a", "b/c", "a\\b", "a\0"])
+def test_a_name_that_leads_elsewhere_is_refused_before_anything_is_written(tmp_path, name):
+    with pytest.raises(ValueError, match="no name of a file"):
+        write_folder(tmp_path / "new", {"a.tex": "", name: ""})
+    assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.parametrize("folder", ["file", "no/such/folder", "a\0"])
+def test_a_folder_that_cannot_be_made_is_a_usage_error(tmp_path, folder):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(UsageError, match="SF903"):
+        write_folder(tmp_path / folder, {"a.tex": ""})
+
+
+def test_nothing_is_written_through_a_link_in_a_folder(tmp_path):
+    (tmp_path / "elsewhere").write_text("old")
+    (tmp_path / "new").mkdir()
+    (tmp_path / "new" / "a.tex").symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(UsageError, match="symbolic link"):
+        write_folder(tmp_path / "new", {"a.tex": "new"})
+    assert (tmp_path / "elsewhere").read_text() == "old"

@@ -1,0 +1,93 @@
+"""What a notebook shows: a kernel runs it, and its outputs are read back."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import math
+import os
+import subprocess
+import sys
+
+import pytest
+
+from tests.conftest import REASON, REQUIRE_TOOLS
+from tests.house.repository import ROOT
+
+PACKAGES = ("nbclient", "ipykernel")
+CELLS = (
+    "import numpy as np, symflex\n"
+    "model = symflex.load('derivations/eppinger1988/sliding_free_beam.toml'); model",
+    "G = model.transfer_function('V_act', 'F'); G",
+    "H = G.bind(); H",
+    "H.pole_zero_map(modes=2)",
+    "H.frequency_response(2*np.pi*np.geomspace(1, 500, 400))",
+    "H.frequency_response(2*np.pi*np.geomspace(1, 500, 4001))",
+    "H.frequency_response([1.0])",
+)
+# In a process of its own: what runs a kernel warns of much that is not ours.
+RUN = """
+import sys, nbclient, nbformat
+notebook = nbformat.read("shown.ipynb", as_version=4)
+where = {"metadata": {"path": sys.argv[1]}}
+nbclient.NotebookClient(notebook, timeout=120, kernel_name="python3", resources=where).execute()
+nbformat.write(notebook, "shown.ipynb")
+"""
+
+
+@pytest.fixture(scope="module")
+def outputs(tmp_path_factory):
+    """The data of each cell's result, by MIME type."""
+    lacking = [name for name in PACKAGES if importlib.util.find_spec(name) is None]
+    if lacking and os.environ.get(REQUIRE_TOOLS) == "1":
+        pytest.fail(f"{REASON} {lacking[0]}, which is not installed, and {REQUIRE_TOOLS}=1", pytrace=False)
+    if lacking:
+        pytest.skip(f"{REASON} {lacking[0]}, which is not installed")
+    folder = tmp_path_factory.mktemp("notebook")
+    cell = {"cell_type": "code", "metadata": {}, "execution_count": None, "outputs": []}
+    cells = [{**cell, "id": f"c{i}", "source": source} for i, source in enumerate(CELLS)]
+    notebook = {"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": cells}
+    (folder / "shown.ipynb").write_text(json.dumps(notebook), encoding="utf-8")
+    own = {"PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "ignore", "IPYTHONDIR": str(folder)}
+    environment = {**os.environ, **own}
+    command = [sys.executable, "-c", RUN, str(ROOT)]
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    shown = json.loads((folder / "shown.ipynb").read_text(encoding="utf-8"))["cells"]
+    return [
+        next(o["data"] for o in cell["outputs"] if o["output_type"] == "execute_result") for cell in shown
+    ]
+
+
+def text(lines):
+    return "".join(lines)
+
+
+def test_each_object_shows_in_its_own_way(outputs):
+    kinds = [set(data) - {"text/plain"} for data in outputs]
+    html, latex, svg, png = {"text/html"}, {"text/latex"}, {"image/svg+xml"}, {"image/png"}
+    assert kinds == [html, latex, html, html, svg, png, set()]
+
+
+def test_a_model_shows_its_parameters(outputs):
+    assert "<code>rho</code>" in text(outputs[0]["text/html"])
+
+
+def test_a_transfer_function_shows_as_an_equation(outputs):
+    latex = text(outputs[1]["text/latex"])
+    assert latex.startswith(r"$\displaystyle \begin{aligned}")
+    assert r"\text{where}\quad q &= \mu l" in latex
+
+
+def test_poles_and_zeros_show_as_a_table(outputs):
+    html = text(outputs[3]["text/html"])
+    # tan q + tanh q = 0 first at q = 2.365020372, omega = q^2 sqrt(E I/(rho A))/l^2
+    first = 2.365020372**2 * math.sqrt(2e11 * 4e-9 / (7850 * 0.00048)) / 1.086**2
+    assert f">&pm;{first:.6f}" in html
+    assert "certified" in html
+
+
+def test_a_response_shows_as_a_drawing_and_a_long_one_as_a_raster(outputs):
+    assert "<svg" in text(outputs[4]["image/svg+xml"])
+    assert text(outputs[5]["image/png"]).startswith("iVBORw0KGgo")  # the signature of PNG in base 64
+    assert text(outputs[6]["text/plain"]).startswith("<FrequencyResponse V_act/F")
