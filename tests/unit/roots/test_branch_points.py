@@ -76,6 +76,7 @@ def test_a_cantilever_on_a_critically_damped_foundation(damping):
     assert poles(text, 3) == pytest.approx(expected, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_pole_is_not_taken_for_a_zero_close_to_it():
     # w = const is a free motion: m s^2 + c s + k = 0. A zero that numerator and denominator share lies
     # 5e-9 rad/s beside it.
@@ -86,6 +87,7 @@ def test_a_pole_is_not_taken_for_a_zero_close_to_it():
         assert min(abs(acb(r.re, r.im) - expected).upper() for r in found.poles) < 1e-11
 
 
+@pytest.mark.slow
 def test_two_viscous_poles_of_a_free_timoshenko_beam_are_told_apart():
     text = beam(f'c_f = "40 N*s/m^2", {TIMOSHENKO}', '["tip", "end"]')
     assert poles(text, 2)[-1] == pytest.approx(-10, rel=1e-12)
@@ -117,6 +119,7 @@ def test_a_timoshenko_cantilever_on_a_damped_foundation_against_shooting():
             assert complex(mpmath.findroot(moment_and_force, pole)) == pytest.approx(pole, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_two_beams_of_which_one_is_on_a_damped_foundation_against_shooting():
     tail = f'tail = {{ type = "beam", between = ["tip", "middle"], {STEEL} }}'
     text = beam('k_f = "20 kN/m^2", c_f = "40 N*s/m^2"', '["middle", "ground"]', tail)

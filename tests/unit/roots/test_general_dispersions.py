@@ -132,6 +132,7 @@ slope = "w'(l)"
 """
 
 
+@pytest.mark.slow
 def test_a_simply_supported_sandwich_beam_has_modes_of_sines():
     # Mead and Markus 1969: D k^6 + D g (1 + Y) k^4 = m omega^2 (k^2 + g), k = n pi.
     k = np.arange(1, 6) * pi

@@ -79,6 +79,7 @@ def test_translation_on_a_damped_foundation():
     assert result.certificate.certified
 
 
+@pytest.mark.slow
 def test_translation_with_rotary_inertia():
     result = solved(RAYLEIGH, 60, Modes(2))
     assert check(result.poles, lambda: mpc(0, sqrt(7)), 60).on_imaginary_axis
