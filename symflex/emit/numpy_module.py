@@ -10,8 +10,7 @@ import keyword
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from symflex.emit.forms import print_form
-from symflex.emit.numpy_expression import WIDTH, Printer, statement
+from symflex.emit.numpy_expression import Printer, statement
 from symflex.emit.numpy_pieces import LINTS, PiecesText, support
 from symflex.emit.program import (
     Piecewise,
@@ -19,22 +18,24 @@ from symflex.emit.program import (
     Verification,
     choose_programs,
     identifiers,
-    inert,
-    nearest_double,
-    wrapped,
 )
-from symflex.expressions import Number, Quotient, format_expression
+from symflex.emit.python_text import (
+    Signature,
+    default,
+    function_docstring,
+    function_table,
+    header,
+    parameter_table,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
-    from symflex.model import Model, Parameter
+    from symflex.model import Model
     from symflex.transfer import TransferFunction
 
-FORMULA_LINES = 20
-FORMULA_TERMS = 1000
-LITERAL_WIDTH = 60
+FIRST = "Transfer functions of a linear system as functions of numpy arrays."
 
 RESERVED = frozenset({*keyword.kwlist, "np", "s", "arguments", "complex", "ArrayLike", "NDArray"})
 """Names a parameter cannot take in the generated code."""
@@ -162,7 +163,7 @@ def numpy_module(
     real = {key: made for key, (_, _, made) in chosen.items() if made is not None}
     taken = {*RESERVED, *functions.values()}
     responses = identifiers({key: f"{functions[key]}_at" for key in real}, taken)
-    blocks = [_parameter_table(model, names)]
+    blocks = [parameter_table(model, names)]
     for key, (tf, (program, verification), _) in chosen.items():
         blocks.append(_Function(tf, program, functions[key], names, verification.text(digits)).text())
         if key in real:
@@ -170,83 +171,16 @@ def numpy_module(
             blocks.append(_Function(tf, response, responses[key], names, measured.text(digits)).text())
     made = [*(first for _, first, _ in chosen.values()), *real.values()]
     pieces = [program for program, _ in made if isinstance(program, Piecewise)]
-    blocks += [SUPPORT, *support(pieces), _function_table("TRANSFER_FUNCTIONS", functions)]
+    blocks += [SUPPORT, *support(pieces), function_table("TRANSFER_FUNCTIONS", functions)]
     if pieces:
-        blocks.append(_function_table("FREQUENCY_RESPONSES", responses))
+        blocks.append(function_table("FREQUENCY_RESPONSES", responses))
     lints = f"{LINTS_OF_NAMES}, {LINTS}" if pieces else LINTS_OF_NAMES
     verified = tuple(verification for _, verification in made)
-    header = _header(model, verified[: len(chosen)], digits)
-    return NumpyExport(f"{header}{IMPORTS.format(lints=lints)}\n" + "\n\n".join(blocks), verified)
+    text = header(FIRST, model, verified[: len(chosen)], digits)
+    return NumpyExport(f"{text}{IMPORTS.format(lints=lints)}\n" + "\n\n".join(blocks), verified)
 
 
 # ------------------------------------------------------------------------------------------ the module
-
-
-def _header(model: Model, verified: Sequence[Verification], digits: int) -> str:
-    lines = ["Transfer functions of a linear system as functions of numpy arrays.", ""]
-    lines += _origin(model, "")
-    lines.append("Written by symflex. Each function evaluates OUT/IN at the Laplace variable s [rad/s].")
-    if verified:
-        lines.append("")
-    for verification in verified:
-        lines += wrapped(inert(f"{verification.name}: {verification.text(digits)}"), WIDTH, "", "    ")
-    return _docstring(lines, "")
-
-
-def _origin(model: Model, indent: str) -> list[str]:
-    lines: list[str] = []
-    for word, text in (("Model", model.title), ("Source", model.source)):
-        if text.strip():
-            lines += wrapped(f"{word}: {inert(text)}", WIDTH, indent)
-    return [*lines, ""] if lines else []
-
-
-def _docstring(lines: Sequence[str], indent: str) -> str:
-    """Return lines, which hold no double quote, as a docstring, raw when a backslash is in them."""
-    text = "\n".join(line.rstrip() for line in lines)
-    return f'{indent}{"r" if chr(92) in text else ""}"""{text.lstrip()}\n{indent}"""\n'
-
-
-def _parameter_table(model: Model, names: Mapping[str, str]) -> str:
-    lines = ["PARAMETERS: dict[str, dict[str, float | str | None]] = {"]
-    for parameter in model.parameters:
-        entries = [
-            f'"value": {_default(parameter) or None}',
-            f'"unit": {_literal(parameter.unit)}',
-            f'"doc": {_literal(parameter.doc)}',
-        ]
-        one_line = f'    "{names[parameter.name]}": {{{", ".join(entries)}}},'
-        if len(one_line) <= WIDTH and "\n" not in one_line:
-            lines.append(one_line)
-        else:
-            inside = [f"        {entry}," for entry in entries]
-            lines += [f'    "{names[parameter.name]}": {{', *inside, "    },"]
-    return "\n".join([*lines, "}"] if model.parameters else [lines[0] + "}"]) + "\n"
-
-
-def _function_table(name: str, functions: Mapping[str, str]) -> str:
-    lines = [f"    {_literal(key)}: {function}," for key, function in functions.items()]
-    return "\n".join([f"{name} = {{", *lines, "}"] if lines else [f"{name} = {{}}"]) + "\n"
-
-
-def _default(parameter: Parameter) -> str:
-    value = parameter.value
-    return "" if value is None else repr(nearest_double(value.rational, value.pi_power))
-
-
-def _literal(text: str) -> str:
-    """Return a string literal, in pieces on lines of their own when it is long; only printable characters."""
-    pieces = [text[i : i + LITERAL_WIDTH] for i in range(0, len(text), LITERAL_WIDTH)] or [""]
-    quoted = ['"' + "".join(_character(c) for c in piece) + '"' for piece in pieces]
-    if len(quoted) == 1:
-        return quoted[0]
-    return "(\n" + "".join(f"            {q}\n" for q in quoted) + "        )"
-
-
-def _character(c: str) -> str:
-    if c in '"\\':
-        return f"\\{c}"
-    return c if c.isprintable() else c.encode("unicode_escape").decode("ascii")
 
 
 # ---------------------------------------------------------------------------------------- one function
@@ -278,8 +212,8 @@ class _Function:
             *(["    *,"] if parameters else []),
         ]
         for parameter, name in parameters:
-            default = _default(parameter)
-            signature.append(f"    {name}: ArrayLike{f' = {default}' if default else ''},")
+            value = default(parameter)
+            signature.append(f"    {name}: ArrayLike{f' = {value}' if value else ''},")
         body = [
             *statement("arguments", f"{'_real' if self.program.is_real else ''}_numbers({values})", "    "),
             '    with np.errstate(all="ignore"):',
@@ -339,52 +273,10 @@ class _Function:
         return [*lines, *statement(own["value"], whole, "        "), f"    return {own['value']}"]
 
     def _docstring(self) -> str:
-        tf = self.tf
-        unit = f" [{tf.unit}]" if tf.unit else ""
-        at = " at s = j omega, in real arithmetic" if self.program.is_real else ""
-        lines = [inert(f"{tf.quantity[:1].upper()}{tf.quantity[1:]} {tf.name}{unit}{at}."), ""]
-        lines += [f"    {line}" if line else "" for line in _formula(tf)]
-        kind = "float" if self.program.is_real else "complex"
-        lines += ["", "    Parameters", "    ----------", f"    {self.variable} : array_like of {kind}"]
-        what = "Angular frequency" if self.program.is_real else "Laplace variable"
-        lines.append(f"        {what} [rad/s]; it and all parameters are broadcast together.")
-        for parameter in tf.parameters:
-            name = self.names[parameter.name]
-            is_needed = parameter.value is None
-            lines.append(f"    {name} : array_like{'' if is_needed else ', optional'}")
-            described = [inert(parameter.doc).rstrip(".")] if parameter.doc.strip() else []
-            described += [f"'{inert(parameter.name)}' in the model"] if name != parameter.name else []
-            text = f"{', '.join(described) or 'parameter of the model'}"
-            text += f" [{inert(parameter.unit)}]." if parameter.unit else "."
-            lines += wrapped(text, WIDTH, "        ")
-        lines += ["", "    Returns", "    -------", "    complex or ndarray of complex"]
-        lines.append("        A number when all arguments are numbers. Not finite at poles.")
-        lines += ["", "    Notes", "    -----"]
-        lines += _origin(tf.model, "    ")
-        lines += wrapped(inert(self.sentence), WIDTH, "    ")
-        if isinstance(self.program, Piecewise) and self.program.solves:
-            lines += wrapped(COST, WIDTH, "    ")
-        return _docstring(lines, "    ")
-
-
-def _formula(tf: TransferFunction) -> list[str]:
-    """Return the formula in lines of text, shortened when it is long."""
-    above, below = tf.order
-    if sum(len(f) for f, _ in tf.ratio.factors) <= FORMULA_TERMS:
-        form = print_form(tf)
-    elif tf.closed is not None and len(tf.closed.num) + len(tf.closed.den) <= FORMULA_TERMS:
-        form = print_form(tf, "definitions")
-    else:
-        kind = "sums of kernels" if tf.is_distributed else f"polynomials of degree {above} and {below}"
-        return [f"A quotient of {kind} in s."]
-    is_whole = isinstance(form.den, Number) and form.den.value == 1
-    whole = format_expression(form.num if is_whole else Quotient(form.num, form.den))
-    width = WIDTH - 4
-    lines = wrapped(inert(f"{tf.name} = {whole}"), width, "", "    ")
-    for i, (name, expression) in enumerate(form.where):
-        word = "where" if i == 0 else "     "
-        lines += wrapped(f"{word} {inert(f'{name} = {format_expression(expression)}')}", width, "", "    ")
-    if len(lines) <= FORMULA_LINES:
-        return lines
-    kept = lines[: FORMULA_LINES - 1]
-    return [*kept, f"    ... and {len(lines) - len(kept)} lines more."]
+        returned = (
+            "complex or ndarray of complex",
+            "A number when all arguments are numbers. Not finite at poles.",
+        )
+        signature = Signature(self.variable, self.names, self.program.is_real, "array_like", returned)
+        solves = isinstance(self.program, Piecewise) and self.program.solves
+        return function_docstring(self.tf, signature, [self.sentence, *([COST] if solves else [])])
