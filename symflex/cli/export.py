@@ -11,9 +11,20 @@ from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 
 
-@click.command("export")
+class ExportCommand(click.Command):
+    """A command whose help lists the targets."""
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the targets and what they are."""
+        from symflex.emit.exporters import EXPORTERS
+
+        with formatter.section("Targets"):
+            formatter.write_dl([(name, exporter.summary) for name, exporter in EXPORTERS.items()])
+
+
+@click.command("export", cls=ExportCommand)
 @click.argument("spec", type=click.Path())
-@click.option("--to", "target", required=True, metavar="TARGET", help="numpy or latex.")
+@click.option("--to", "target", required=True, metavar="TARGET", help="One of the targets below.")
 @click.option("--tf", "tfs", multiple=True, metavar="OUT/IN", help="Only this transfer function; repeatable.")
 @click.option("-o", "--output", type=click.Path(), help="File to write; standard output by default.")
 @click.option("--strict", is_flag=True, help="Exit with 4 when the verified accuracy falls short.")

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import TYPE_CHECKING, Protocol
 
+from symflex.emit.array_module import ARRAY_API, JAX, Dialect, array_module
 from symflex.emit.forms import print_form
 from symflex.emit.latex import latex_document
 from symflex.emit.numpy_module import numpy_module
@@ -41,8 +42,15 @@ class Export:
 class Exporter(Protocol):
     """Turns the transfer functions of a model into a file of some language."""
 
-    suffix: str
-    summary: str
+    @property
+    def suffix(self) -> str:
+        """Of the file's name."""
+        ...
+
+    @property
+    def summary(self) -> str:
+        """What is made, in a line."""
+        ...
 
     def export(self, model: Model, tfs: Sequence[TransferFunction]) -> Export:
         """Return the file."""
@@ -58,12 +66,30 @@ class NumpyExporter:
     def export(self, model: Model, tfs: Sequence[TransferFunction]) -> Export:
         """Return the module; accuracy that was not reached is a warning."""
         made = numpy_module(tfs, model, model.analysis.band)
-        # A function and its frequency response in real arithmetic: the worse one is told of, once.
-        worst: dict[str, Verification] = {}
-        for v in made.verified:
-            if v.name not in worst or (v.error or 0.0) > (worst[v.name].error or 0.0):
-                worst[v.name] = v
-        return Export(made.text, tuple(w for v in worst.values() if (w := _shortfall(v))))
+        return Export(made.text, _shortfalls(made.verified))
+
+
+@dataclass(frozen=True, slots=True)
+class ArrayExporter:
+    """One self-contained module over libraries of arrays that its arguments decide on, or over jax."""
+
+    dialect: Dialect
+    summary: str
+    suffix: str = ".py"
+
+    def export(self, model: Model, tfs: Sequence[TransferFunction]) -> Export:
+        """Return the module; accuracy that was not reached is a warning."""
+        made = array_module(tfs, model, self.dialect, model.analysis.band)
+        return Export(made.text, _shortfalls(made.verified))
+
+
+def _shortfalls(verified: Sequence[Verification]) -> tuple[str, ...]:
+    """Return warnings, of a function and its response in real arithmetic about the worse one only."""
+    worst: dict[str, Verification] = {}
+    for v in verified:
+        if v.name not in worst or (v.error or 0.0) > (worst[v.name].error or 0.0):
+            worst[v.name] = v
+    return tuple(w for v in worst.values() if (w := _shortfall(v)))
 
 
 def _shortfall(verification: Verification) -> str:
@@ -90,4 +116,11 @@ class LatexExporter:
         return Export(latex_document(model, tfs, [print_form(tf) for tf in tfs]))
 
 
-EXPORTERS: dict[str, Exporter] = {"numpy": NumpyExporter(), "latex": LatexExporter()}
+EXPORTERS: dict[str, Exporter] = {
+    "numpy": NumpyExporter(),
+    "array-api": ArrayExporter(
+        ARRAY_API, "the same for numpy, torch, jax.numpy, cupy: whatever library the arguments are of"
+    ),
+    "jax": ArrayExporter(JAX, "the same for jax: jit, grad and vmap work through it"),
+    "latex": LatexExporter(),
+}
