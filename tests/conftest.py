@@ -1,28 +1,32 @@
-"""What all tests share: how a test that runs a program outside Python asks for it."""
+"""What all tests share: how a test asks for a program outside Python or a library."""
 
 from __future__ import annotations
 
 import os
 import shutil
+from importlib.util import find_spec
 
 import pytest
 
 REQUIRE_TOOLS = "SYMFLEX_REQUIRE_TOOLS"
-REASON = "needs the program"
+REASON = "which is not installed"
 
 
 def pytest_runtest_setup(item):
     for marker in item.iter_markers("needs_tool"):
         for name in marker.args:
-            _require(name)
+            _require("program", name, shutil.which(name) is not None)
+    for marker in item.iter_markers("needs_module"):
+        for name in marker.args:
+            _require("library", name, find_spec(name) is not None)
 
 
-def _require(name):
-    if shutil.which(name) is not None:
+def _require(kind, name, is_there):
+    if is_there:
         return
     if os.environ.get(REQUIRE_TOOLS) == "1":
-        pytest.fail(f"{REASON} {name}, which is not installed, and {REQUIRE_TOOLS}=1", pytrace=False)
-    pytest.skip(f"{REASON} {name}, which is not installed")
+        pytest.fail(f"needs the {kind} {name}, {REASON}, and {REQUIRE_TOOLS}=1", pytrace=False)
+    pytest.skip(f"needs the {kind} {name}, {REASON}")
 
 
 def pytest_terminal_summary(terminalreporter):
@@ -34,5 +38,5 @@ def pytest_terminal_summary(terminalreporter):
     ]
     if lacking:
         terminalreporter.write_sep(
-            "=", f"{len(lacking)} tests did not run for want of a program outside Python", yellow=True
+            "=", f"{len(lacking)} tests did not run for want of a program or library", yellow=True
         )

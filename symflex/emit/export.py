@@ -39,8 +39,15 @@ class Export:
 class Exporter(Protocol):
     """Turns the transfer functions of a model into a file of some language."""
 
-    suffix: str
-    summary: str
+    @property
+    def suffix(self) -> str:
+        """Of the file's name."""
+        ...
+
+    @property
+    def summary(self) -> str:
+        """What is made, in a line."""
+        ...
 
     def export(
         self, model: Model, tfs: Sequence[TransferFunction], stem: str = "", *, is_alone: bool = True

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from symflex.emit.targets.array import ARRAY_API_EXPORTER, JAX_EXPORTER
 from symflex.emit.targets.c import CExporter
 from symflex.emit.targets.julia import JuliaExporter
 from symflex.emit.targets.latex import LatexExporter
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
 
 EXPORTERS: dict[str, Exporter] = {
     "numpy": NumpyExporter(),
+    "array-api": ARRAY_API_EXPORTER,
+    "jax": JAX_EXPORTER,
     "c": CExporter(),
     "matlab": MatlabExporter(),
     "julia": JuliaExporter(),

@@ -50,12 +50,15 @@ class Printer:
         Identifier of 1/s.
     variable : str
         Identifier of s, or of what takes its place.
+    space : str
+        What functions are looked up in.
     """
 
     parameters: Mapping[str, str]
     locals: Mapping[str, str]
     inverse: str
     variable: str = "s"
+    space: str = "np"
 
     def assignment(self, name: str, value: Node, indent: str) -> list[str]:
         """Return the lines of an assignment."""
@@ -69,12 +72,18 @@ class Printer:
         """Return the text of a quotient."""
         return f"{self._within(numerator, _PRODUCT)} / {self._within(denominator, _SIGN)}"
 
+    def applied(self, function: str, argument: Node) -> str:
+        """Return the text of a function's value."""
+        if function == "complex_exp":
+            return f"_complex_exp({self.print(argument)})"
+        return f"{self.space}.{NUMPY_FUNCTIONS[function]}({self.print(argument)})"
+
     def _print(self, node: Node) -> tuple[str, int]:  # noqa: PLR0912
         """Return the text and how tightly it binds."""
         match node:
             case Constant(value, pi_power):
                 is_pi = value == 1 and pi_power == 1
-                return "np.pi" if is_pi else repr(nearest_double(value, pi_power)), _LEAF
+                return f"{self.space}.pi" if is_pi else repr(nearest_double(value, pi_power)), _LEAF
             case ComplexNumber(real, imaginary):
                 return _complex(real, imaginary), _LEAF
             case ParameterNode(name):
@@ -96,10 +105,8 @@ class Printer:
                 return f"{self._within(base, _LEAF)}**{exponent}", _POWER
             case Negate(operand):
                 return f"-{self._within(operand, _POWER)}", _SIGN
-            case Apply("complex_exp", argument):
-                return f"_complex_exp({self.print(argument)})", _LEAF
             case Apply(function, argument):
-                return f"np.{NUMPY_FUNCTIONS[function]}({self.print(argument)})", _LEAF
+                return self.applied(function, argument), _LEAF
             case Solutions(coefficients, terms):
                 given = ", ".join(self.print(c) for c in coefficients)
                 if terms:

@@ -9,14 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from symflex.emit.module_text import (
-    COST,
-    default_value,
-    described,
-    formula_lines,
-    headline,
-)
-from symflex.emit.numpy_expression import WIDTH, Printer, statement
+from symflex.emit.module_text import COST, default_value
+from symflex.emit.numpy_expression import Printer, statement
 from symflex.emit.numpy_pieces import LINTS, PiecesText, support
 from symflex.emit.program import (
     Piecewise,
@@ -24,10 +18,15 @@ from symflex.emit.program import (
     Verification,
     choose_programs,
     identifiers,
-    inert,
-    wrapped,
 )
-from symflex.emit.python_text import RESERVED, docstring, literal, origin, parameter_table
+from symflex.emit.python_text import (
+    RESERVED,
+    Signature,
+    function_docstring,
+    function_table,
+    header,
+    parameter_table,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -35,6 +34,8 @@ if TYPE_CHECKING:
 
     from symflex.model import Model
     from symflex.transfer import TransferFunction
+
+FIRST = "Transfer functions of a linear system as functions of numpy arrays."
 
 LINTS_OF_NAMES = "E501, E741, N802, N803, N806, PLR0915, RUF001, RUF002, RUF100"
 
@@ -163,32 +164,16 @@ def numpy_module(
             blocks.append(_Function(tf, response, responses[key], names, measured.text(digits)).text())
     made = [*(first for _, first, _ in chosen.values()), *real.values()]
     pieces = [program for program, _ in made if isinstance(program, Piecewise)]
-    blocks += [SUPPORT, *support(pieces), _function_table("TRANSFER_FUNCTIONS", functions)]
+    blocks += [SUPPORT, *support(pieces), function_table("TRANSFER_FUNCTIONS", functions)]
     if pieces:
-        blocks.append(_function_table("FREQUENCY_RESPONSES", responses))
+        blocks.append(function_table("FREQUENCY_RESPONSES", responses))
     lints = f"{LINTS_OF_NAMES}, {LINTS}" if pieces else LINTS_OF_NAMES
     verified = tuple(verification for _, verification in made)
-    header = _header(model, verified[: len(chosen)], digits)
-    return NumpyExport(f"{header}{IMPORTS.format(lints=lints)}\n" + "\n\n".join(blocks), verified)
+    text = header(FIRST, model, verified[: len(chosen)], digits)
+    return NumpyExport(f"{text}{IMPORTS.format(lints=lints)}\n" + "\n\n".join(blocks), verified)
 
 
 # ------------------------------------------------------------------------------------------ the module
-
-
-def _header(model: Model, verified: Sequence[Verification], digits: int) -> str:
-    lines = ["Transfer functions of a linear system as functions of numpy arrays.", ""]
-    lines += origin(model, "")
-    lines.append("Written by symflex. Each function evaluates OUT/IN at the Laplace variable s [rad/s].")
-    if verified:
-        lines.append("")
-    for verification in verified:
-        lines += wrapped(inert(f"{verification.name}: {verification.text(digits)}"), WIDTH, "", "    ")
-    return docstring(lines, "")
-
-
-def _function_table(name: str, functions: Mapping[str, str]) -> str:
-    lines = [f"    {literal(key)}: {function}," for key, function in functions.items()]
-    return "\n".join([f"{name} = {{", *lines, "}"] if lines else [f"{name} = {{}}"]) + "\n"
 
 
 # ---------------------------------------------------------------------------------------- one function
@@ -281,23 +266,10 @@ class _Function:
         return [*lines, *statement(own["value"], whole, "        "), f"    return {own['value']}"]
 
     def _docstring(self) -> str:
-        tf = self.tf
-        lines = [headline(tf, is_real=self.program.is_real), ""]
-        lines += [f"    {line}" if line else "" for line in formula_lines(tf, WIDTH - 4)]
-        kind = "float" if self.program.is_real else "complex"
-        lines += ["", "    Parameters", "    ----------", f"    {self.variable} : array_like of {kind}"]
-        what = "Angular frequency" if self.program.is_real else "Laplace variable"
-        lines.append(f"        {what} [rad/s]; it and all parameters are broadcast together.")
-        for parameter in tf.parameters:
-            name = self.names[parameter.name]
-            is_needed = parameter.value is None
-            lines.append(f"    {name} : array_like{'' if is_needed else ', optional'}")
-            lines += wrapped(described(parameter, name), WIDTH, "        ")
-        lines += ["", "    Returns", "    -------", "    complex or ndarray of complex"]
-        lines.append("        A number when all arguments are numbers. Not finite at poles.")
-        lines += ["", "    Notes", "    -----"]
-        lines += origin(tf.model, "    ")
-        lines += wrapped(inert(self.sentence), WIDTH, "    ")
-        if isinstance(self.program, Piecewise) and self.program.solves:
-            lines += wrapped(COST, WIDTH, "    ")
-        return docstring(lines, "    ")
+        returned = (
+            "complex or ndarray of complex",
+            "A number when all arguments are numbers. Not finite at poles.",
+        )
+        signature = Signature(self.variable, self.names, self.program.is_real, "array_like", returned)
+        solves = isinstance(self.program, Piecewise) and self.program.solves
+        return function_docstring(self.tf, signature, [self.sentence, *([COST] if solves else [])])

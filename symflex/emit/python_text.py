@@ -1,17 +1,24 @@
-"""What all generated Python modules share: names that are taken, docstrings, literals, parameters."""
+"""What Python modules made from a model have in common: docstrings, tables of parameters and functions.
+
+Text of the model stands in them only as inert strings, whatever it says.
+"""
 
 from __future__ import annotations
 
 import keyword
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from symflex.emit.module_text import default_value, origin_lines
+from symflex.emit.module_text import default_value, described, formula_lines, headline, origin_lines
 from symflex.emit.numpy_expression import WIDTH
+from symflex.emit.program import inert, wrapped
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from symflex.emit.program import Verification
     from symflex.model import Model
+    from symflex.transfer import TransferFunction
 
 LITERAL_WIDTH = 60
 
@@ -19,8 +26,81 @@ RESERVED = frozenset({*keyword.kwlist, "np", "s", "arguments", "complex", "Array
 """Names a parameter cannot take in the generated code."""
 
 
+@dataclass(frozen=True, slots=True)
+class Signature:
+    """What a generated function takes, and what its docstring says about it.
+
+    Parameters
+    ----------
+    variable : str
+        Identifier of the first argument.
+    names : mapping of str to str
+        Identifiers of the parameters.
+    is_real : bool
+        True for a response at an angular frequency.
+    array : str
+        What the docstring calls an argument, ``array_like``.
+    returned : tuple of str
+        Type of the value, and a sentence about it.
+    more : tuple of str
+        Lines of the docstring about arguments after the parameters.
+    """
+
+    variable: str
+    names: Mapping[str, str]
+    is_real: bool
+    array: str
+    returned: tuple[str, str]
+    more: tuple[str, ...] = ()
+
+
+def header(first: str, model: Model, verified: Sequence[Verification], digits: int) -> str:
+    """Return a module's docstring: a first line, origin, and the verified error of every function."""
+    lines = [first, "", *origin(model, "")]
+    lines.append("Written by symflex. Each function evaluates OUT/IN at the Laplace variable s [rad/s].")
+    if verified:
+        lines.append("")
+    for verification in verified:
+        lines += wrapped(inert(f"{verification.name}: {verification.text(digits)}"), WIDTH, "", "    ")
+    return docstring(lines, "")
+
+
+def function_docstring(tf: TransferFunction, signature: Signature, notes: Sequence[str]) -> str:
+    """Return the docstring of a transfer function.
+
+    Parameters
+    ----------
+    tf : TransferFunction
+        What the function computes.
+    signature : Signature
+        Its arguments.
+    notes : sequence of str
+        Sentences that end it: how far it was verified, and what it costs.
+    """
+    array, variable = signature.array, signature.variable
+    lines = [headline(tf, is_real=signature.is_real), ""]
+    lines += [f"    {line}" if line else "" for line in formula_lines(tf, WIDTH - 4)]
+    kind = "float" if signature.is_real else "complex"
+    lines += ["", "    Parameters", "    ----------", f"    {variable} : {array} of {kind}"]
+    what = "Angular frequency" if signature.is_real else "Laplace variable"
+    lines.append(f"        {what} [rad/s]; it and all parameters are broadcast together.")
+    for parameter in tf.parameters:
+        name = signature.names[parameter.name]
+        is_needed = parameter.value is None
+        lines.append(f"    {name} : {array}{'' if is_needed else ', optional'}")
+        lines += wrapped(described(parameter, name), WIDTH, "        ")
+    kind, sentence = signature.returned
+    lines += [*signature.more, "", "    Returns", "    -------", f"    {kind}"]
+    lines.append(f"        {sentence}")
+    lines += ["", "    Notes", "    -----"]
+    lines += origin(tf.model, "    ")
+    for note in notes:
+        lines += wrapped(inert(note), WIDTH, "    ")
+    return docstring(lines, "    ")
+
+
 def origin(model: Model, indent: str) -> list[str]:
-    """Return the lines with title and source."""
+    """Return lines that tell title and source of a model, and an empty one if there are any."""
     lines = [f"{indent}{line}" for line in origin_lines(model, WIDTH - len(indent))]
     return [*lines, ""] if lines else []
 
@@ -32,7 +112,7 @@ def docstring(lines: Sequence[str], indent: str) -> str:
 
 
 def parameter_table(model: Model, names: Mapping[str, str]) -> str:
-    """Return the dictionary of parameters, by the identifiers they have."""
+    """Return the dictionary of all parameters: value, unit and description."""
     lines = ["PARAMETERS: dict[str, dict[str, float | str | None]] = {"]
     for parameter in model.parameters:
         entries = [
@@ -47,6 +127,12 @@ def parameter_table(model: Model, names: Mapping[str, str]) -> str:
             inside = [f"        {entry}," for entry in entries]
             lines += [f'    "{names[parameter.name]}": {{', *inside, "    },"]
     return "\n".join([*lines, "}"] if model.parameters else [lines[0] + "}"]) + "\n"
+
+
+def function_table(name: str, functions: Mapping[str, str]) -> str:
+    """Return a dictionary of functions by the names of what they compute."""
+    lines = [f"    {literal(key)}: {function}," for key, function in functions.items()]
+    return "\n".join([f"{name} = {{", *lines, "}"] if lines else [f"{name} = {{}}"]) + "\n"
 
 
 def literal(text: str) -> str:

@@ -134,15 +134,8 @@ def _piecewise(
     columns = [np.broadcast_to(v, shape).reshape(-1) if np.ndim(v) else v for v in (point, *given.values())]
     turn = 1 if program.turn is None else (1, 1j, -1, -1j)[program.turn % 4]
     with np.errstate(all="ignore"):
-        run = _Run(columns[0], dict(zip(given, columns[1:], strict=True)))
-        run.assign(program.tests.constants)
-        run.assign(program.tests.assignments)
-        number = np.zeros(np.prod(shape, dtype=int), dtype=int)
-        for i, condition in enumerate(program.conditions):
-            tested = run.value(condition.quantity)
-            scale = run.value(condition.scale)
-            is_small = np.abs(tested) < condition.limit / np.abs(scale)
-            number += 2**i * (is_small if condition.limit else np.real(scale * tested) < 0.0)
+        number = numbers_of_pieces(program, columns[0], dict(zip(given, columns[1:], strict=True)))
+        number = np.broadcast_to(number, (np.prod(shape, dtype=int),))
         result = np.empty(number.shape, dtype=complex)
         for n in np.unique(number):
             where = number == n
@@ -152,12 +145,44 @@ def _piecewise(
             ]
             piece = program.code[program.pieces[int(n)]]
             place = 1j * chosen[0] if piece.is_complex else chosen[0]
-            found = _piece(piece, place, dict(zip(given, chosen[1:], strict=True)))
+            found = value_of_piece(piece, place, dict(zip(given, chosen[1:], strict=True)))
             result[where] = found if piece.is_complex else turn * found
     return result.reshape(shape)
 
 
-def _piece(piece: Piece, point: Any, given: Mapping[str, Any]) -> Any:  # noqa: ANN401
+def numbers_of_pieces(program: Piecewise, point: Any, given: Mapping[str, Any]) -> NDArray[np.int64]:  # noqa: ANN401
+    """Return, for every value of s, the number that the conditions make of it.
+
+    Parameters
+    ----------
+    program : Piecewise
+        The program.
+    point, given
+        Its argument, and the parameters by name: numbers or arrays that broadcast.
+    """
+    run = _Run(point, given)
+    run.assign(program.tests.constants)
+    run.assign(program.tests.assignments)
+    number = np.zeros(np.shape(point), dtype=int)
+    for i, condition in enumerate(program.conditions):
+        tested = run.value(condition.quantity)
+        scale = run.value(condition.scale)
+        is_small = np.abs(tested) < condition.limit / np.abs(scale)
+        number = number + 2**i * (is_small if condition.limit else np.real(scale * tested) < 0.0)
+    return number
+
+
+def value_of_piece(piece: Piece, point: Any, given: Mapping[str, Any]) -> Any:  # noqa: ANN401
+    """Return the quotient that a piece computes, wherever its argument lies.
+
+    Parameters
+    ----------
+    piece : Piece
+        Of a program.
+    point, given
+        As for :func:`numbers_of_pieces`.
+    """
+
     def parts(s: Any) -> tuple[Any, ...]:  # noqa: ANN401
         run = _Run(s, given)
         run.assign(piece.code.constants)
@@ -168,6 +193,36 @@ def _piece(piece: Piece, point: Any, given: Mapping[str, Any]) -> Any:  # noqa: 
         return mean_over_circle(parts, point, piece.circle)
     num, den = parts(point)
     return num / den
+
+
+def number_of(node: Node, known: Mapping[str, Any]) -> Any:  # noqa: ANN401
+    """Return the value of an expression that depends on no argument, ``None`` for one that does.
+
+    Parameters
+    ----------
+    node : Node
+        The expression.
+    known : mapping of str to number
+        Values of assignments that depend on no argument either.
+
+    Examples
+    --------
+    >>> number_of(Add((Constant(Fraction(1)), Reference("c_1"))), {"c_1": 2.0})
+    3.0
+    >>> number_of(Parameter("m"), {}) is None
+    True
+    """
+    pending = [node]
+    while pending:
+        part = pending.pop()
+        if isinstance(part, (Parameter, Laplace, InverseLaplace)):
+            return None
+        if isinstance(part, Reference) and part.name not in known:
+            return None
+        pending += part.children
+    run = _Run(None, {})
+    run.assigned.update(known)
+    return run.value(node)
 
 
 def _number(value: ArrayLike) -> Any:  # noqa: ANN401
@@ -181,11 +236,11 @@ class _Run:
     def __init__(self, s: Any, parameters: Mapping[str, Any]) -> None:  # noqa: ANN401
         self._s = s
         self._parameters = parameters
-        self._assigned: dict[str, Any] = {}
+        self.assigned: dict[str, Any] = {}
 
     def assign(self, assignments: tuple[Assignment, ...]) -> None:
         for assignment in assignments:
-            self._assigned[assignment.name] = self.value(assignment.value)
+            self.assigned[assignment.name] = self.value(assignment.value)
 
     def branch(self, branch: Branch) -> Any:  # noqa: ANN401
         self.assign(branch.assignments)
@@ -201,7 +256,7 @@ class _Run:
             case Parameter(name):
                 return self._parameters[name]
             case Reference(name):
-                return self._assigned[name]
+                return self.assigned[name]
             case Laplace():
                 return self._s
             case InverseLaplace():

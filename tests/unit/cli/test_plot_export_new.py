@@ -83,6 +83,11 @@ def test_an_exported_module_computes_the_receptance(shell):
     assert space["X_over_F"](1j) == pytest.approx(1 / 16)
 
 
+def test_the_help_lists_the_targets(shell):
+    text = shell("export", "--help").out
+    assert all(f"  {target} " in text for target in EXPORTERS)
+
+
 def test_code_that_could_not_be_verified_is_a_warning(shell):
     done = shell("export", "symbolic.toml", "--to", "numpy")
     assert done.code == 0

@@ -1,0 +1,352 @@
+"""Transfer functions as one self-contained Python module over any library of arrays, or over jax.
+
+Input: transfer functions and the model they come from.
+Output: an :class:`ArrayModule`, the module's text and how well each function agrees with ball arithmetic.
+
+Both kinds of module are the same text but for its preamble: where functions of arrays come from, and how
+arguments become arrays.
+"""
+
+from __future__ import annotations
+
+import keyword
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from symflex.emit import array_support
+from symflex.emit.array_pieces import ArrayPieces
+from symflex.emit.module_text import default_value
+from symflex.emit.numpy_expression import statement
+from symflex.emit.program import (
+    Piecewise,
+    Solutions,
+    Verification,
+    choose_programs,
+    identifiers,
+    inert,
+    nearest_double,
+)
+from symflex.emit.program.everywhere import every_node, in_pieces
+from symflex.emit.python_text import (
+    Signature,
+    function_docstring,
+    function_table,
+    header,
+    parameter_table,
+)
+from symflex.errors import Diagnostic, ModelError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from fractions import Fraction
+
+    from symflex.model import Model
+    from symflex.transfer import TransferFunction
+
+NAMES_IN_USE = frozenset({"s", "space", "arguments", "complex", "float"})
+
+LINTS = (
+    "ANN001, ANN201, ANN202, ANN401, B905, E501, E741, N802, N803, N806, N816, PLR0912, PLR0914, PLR0915, "
+    "PLR2004, PLW2901, RUF001, RUF002, RUF005, RUF100"
+)
+
+MEASURED = (
+    "The error is that of the same operations in numpy; another library's rounding differs in the last digit."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Dialect:
+    """What distinguishes modules over different libraries of arrays.
+
+    Parameters
+    ----------
+    name : str
+        The export target.
+    first : str
+        First lines of the module's docstring.
+    imports : str
+        Import statements.
+    space : str
+        What functions are looked up in.
+    is_argument : bool
+        True when ``space`` is an argument of every function.
+    argument, result : str
+        Annotations.
+    array : str
+        What docstrings call an argument.
+    returned : tuple of str
+        What docstrings call the value, and a sentence about it.
+    numbers, real_numbers, idle, in_front, series, size : str
+        Support that differs between dialects; ``size`` is empty when magnitudes are differentiated.
+    """
+
+    name: str
+    first: str
+    imports: str
+    space: str
+    is_argument: bool
+    argument: str
+    result: str
+    array: str
+    returned: tuple[str, str]
+    numbers: str
+    real_numbers: str
+    idle: str
+    in_front: str
+    series: str
+    size: str = ""
+
+    @property
+    def reserved(self) -> frozenset[str]:
+        """Names a parameter cannot take in the generated code."""
+        modules = {"jax", "sys", "cmath", "math", "importlib", "Any", "Array", "ArrayLike"}
+        return frozenset({*keyword.kwlist, *NAMES_IN_USE, *modules, self.space})
+
+    def support(self, text: str) -> str:
+        """Return support in the words of this dialect."""
+        return text if self.is_argument else array_support.for_one_library(text, self.space)
+
+
+ARRAY_API = Dialect(
+    "array-api",
+    "Transfer functions of a linear system over any library of arrays with the array API.",
+    "import cmath\nimport importlib\nimport sys\nfrom typing import Any\n",
+    "xp",
+    True,
+    "Any",
+    "Any",
+    "number or array",
+    ("array of complex", "Of the same library; a number when numbers alone are given. Not finite at poles."),
+    array_support.NAMESPACE,
+    array_support.REAL_NUMBERS,
+    array_support.IDLE,
+    array_support.IN_FRONT,
+    array_support.SERIES,
+)
+
+JAX = Dialect(
+    "jax",
+    "Transfer functions of a linear system as functions that jax compiles, maps and differentiates.",
+    "import cmath\nimport math\n\nimport jax\nimport jax.numpy as jnp\n"
+    "from jax import Array\nfrom jax.typing import ArrayLike\n",
+    "jnp",
+    False,
+    "ArrayLike",
+    "Array",
+    "array_like",
+    ("Array of complex", "Not finite at poles."),
+    array_support.JAX_NUMBERS,
+    array_support.JAX_REAL_NUMBERS,
+    array_support.JAX_IDLE,
+    array_support.JAX_IN_FRONT,
+    array_support.JAX_SERIES,
+    array_support.JAX_SIZE,
+)
+
+DOUBLE_PRECISION = """\
+Accuracy holds in double precision, which jax has to be told to use before anything else:
+
+    jax.config.update("jax_enable_x64", True)
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class ArrayModule:
+    """A generated module.
+
+    Parameters
+    ----------
+    text : str
+        The module's source.
+    verified : tuple of Verification
+        One per transfer function, in the order of the module, then one per frequency response.
+    """
+
+    text: str
+    verified: tuple[Verification, ...]
+
+
+def array_module(
+    tfs: Sequence[TransferFunction],
+    model: Model,
+    dialect: Dialect = ARRAY_API,
+    band_hz: tuple[Fraction, Fraction] | None = None,
+    *,
+    samples: int = 400,
+    digits: int = 2,
+) -> ArrayModule:
+    """Return a module with one function ``OUT_over_IN(s, *, parameter=default, ...)`` per transfer function.
+
+    Lossless distributed systems get a second one, ``OUT_over_IN_at(omega, *, ...)``: the frequency response
+    in real arithmetic. Functions are those of :func:`symflex.emit.numpy_module.numpy_module`, verified in the
+    same way, but without branches on values: what is not selected is evaluated where it is regular, so that
+    derivatives are finite.
+
+    Parameters
+    ----------
+    tfs : sequence of TransferFunction
+        Of ``model``; a transfer function given twice is written once.
+    model : Model
+        Title, source and parameters.
+    dialect : Dialect
+        :data:`ARRAY_API` or :data:`JAX`.
+    band_hz : tuple of Fraction, optional
+        Where the error is measured [Hz]; by default the model's ``[analysis]`` band, else 0.1 Hz to 10 kHz.
+    samples : int
+        Number of frequencies at which it is measured, besides those around poles and zeros.
+    digits : int
+        Significant digits of the printed error.
+
+    Returns
+    -------
+    ArrayModule
+        The same text on every run. Names that cannot be Python's are altered; text of the model stands in it
+        only as inert strings.
+
+    Raises
+    ------
+    BudgetError
+        SF503 when a function's text would be too long.
+    ModelError
+        SF233 when a number does not fit in double precision; SF234 for a function whose wavenumbers have no
+        formula: finding these takes eigenvalues of matrices.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... parameters = {m = "2 kg", b = "3 N*s/m"}
+    ... elements.body = {type = "mass", at = "x", m = "m"}
+    ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
+    ... inputs.F = {force = "x"}
+    ... outputs.V = "s*x"
+    ... ''')
+    >>> "def V_over_F(" in array_module(pipeline.derive_all(model), model, JAX).text
+    True
+    """
+    nameless = [tf.name for tf in tfs if tf.is_nameless]
+    if nameless:
+        name = inert(nameless[0])
+        message = f"the wavenumbers of {name} have no formula, and {dialect.name} code does not find them"
+        raise ModelError(Diagnostic("SF234", message, None, "the code of the target numpy does"))
+    chosen = {tf.name: (tf, *choose_programs(tf, band_hz, samples)) for tf in tfs}
+    reserved = dialect.reserved
+    names = identifiers({p.name: p.name for p in model.parameters}, reserved)
+    functions = identifiers(
+        {key: f"{tf.output.name}_over_{tf.input.name}" for key, (tf, _, _) in chosen.items()}, reserved
+    )
+    real = {key: made for key, (_, _, made) in chosen.items() if made is not None}
+    responses = identifiers({key: f"{functions[key]}_at" for key in real}, {*reserved, *functions.values()})
+    values = {
+        p.name: nearest_double(p.value.rational, p.value.pi_power)
+        for p in model.parameters
+        if p.value is not None
+    }
+    printed: list[_Function] = []
+    for key, (tf, (program, verification), _) in chosen.items():
+        named = (functions[key], names, values, dialect)
+        printed.append(_Function(tf, in_pieces(program), verification.text(digits), *named))
+        if key in real:
+            response, measured = real[key]
+            named = (responses[key], names, values, dialect)
+            printed.append(_Function(tf, response, measured.text(digits), *named))
+    made = [*(first for _, first, _ in chosen.values()), *real.values()]
+    texts = [function.text() for function in printed]
+    used = _support([f.program for f in printed], dialect)
+    used += [array_support.LARGER] if any("_larger(" in text for text in texts) else []
+    blocks = [parameter_table(model, names), *texts, *(dialect.support(text) for text in used)]
+    blocks.append(function_table("TRANSFER_FUNCTIONS", functions))
+    if any(isinstance(program, Piecewise) for program, _ in made):
+        blocks.append(function_table("FREQUENCY_RESPONSES", responses))
+    verified = tuple(verification for _, verification in made)
+    text = header(dialect.first, model, verified[: len(chosen)], digits)
+    if dialect is JAX:
+        text = text.rstrip().removesuffix('"""') + f'\n{DOUBLE_PRECISION}"""\n'
+    lints = f"# ruff: noqa: {LINTS}  (names and texts are the model's)\n\n"
+    start = f"{text}{lints}from __future__ import annotations\n\n{dialect.imports}\n"
+    return ArrayModule(start + "\n\n".join(blocks), verified)
+
+
+def _support(programs: Sequence[Piecewise], dialect: Dialect) -> list[str]:
+    """Return the functions that generated pieces call, those in use only."""
+    blocks = [dialect.numbers]
+    code = [piece for p in programs for piece in p.code]
+    if any(p.is_real for p in programs):
+        blocks += [dialect.real_numbers, array_support.REAL_PIECES]
+    if any(p.conditions for p in programs):
+        blocks += [array_support.PIECES, dialect.idle]
+        if dialect.size:
+            blocks.append(dialect.size)
+    if any(isinstance(node, Solutions) for piece in code for node in every_node(piece.code)):
+        blocks.append(dialect.series)
+    if any(piece.circle for piece in code):
+        blocks += [array_support.CIRCLE, dialect.in_front]
+    return blocks
+
+
+@dataclass(frozen=True)
+class _Function:
+    """Prints one transfer function: what a user calls, and the arithmetic behind it."""
+
+    tf: TransferFunction
+    program: Piecewise
+    sentence: str
+    name: str
+    names: Mapping[str, str]
+    values: Mapping[str, float]
+    dialect: Dialect
+
+    @property
+    def variable(self) -> str:
+        """The first argument's name."""
+        if not self.program.is_real:
+            return "s"
+        return "omega_" if "omega" in self.names.values() else "omega"
+
+    def text(self) -> str:
+        dialect = self.dialect
+        parameters = [(p, self.names[p.name]) for p in self.tf.parameters]
+        arguments = [self.variable, *(name for _, name in parameters)]
+        lines = [f"def {self.name}(", f"    {self.variable}: {dialect.argument},"]
+        lines += ["    *,"] if parameters or dialect.is_argument else []
+        for parameter, name in parameters:
+            value = default_value(parameter)
+            lines.append(f"    {name}: {dialect.argument}{f' = {value}' if value else ''},")
+        lines += [f"    {dialect.space}: {dialect.argument} = None,"] if dialect.is_argument else []
+        lines += [f") -> {dialect.result}:", self._docstring().rstrip("\n")]
+        converter = "_real_numbers" if self.program.is_real else "_numbers"
+        given = ", ".join([*([dialect.space] if dialect.is_argument else []), *arguments])
+        target = f"{dialect.space}, arguments" if dialect.is_argument else "arguments"
+        lines += statement(target, f"{converter}({given})", "    ")
+        pieces = ArrayPieces(
+            self.program,
+            self.name,
+            self.variable,
+            self.names,
+            dialect.reserved,
+            self.values,
+            dialect.space,
+            dialect.is_argument,
+            bool(dialect.size) and bool(self.program.conditions),
+        )
+        leading = f"{dialect.space}, " if dialect.is_argument else ""
+        lines += statement("return", f"_shaped({leading}{pieces.call()}, arguments)", "    ")
+        return "\n".join([*lines, "", "", *pieces.functions(), ""])
+
+    def _docstring(self) -> str:
+        dialect = self.dialect
+        more = (
+            f"    {dialect.space} : module, optional",
+            "        Library of arrays; by default that of the arguments.",
+        )
+        signature = Signature(
+            self.variable,
+            self.names,
+            self.program.is_real,
+            dialect.array,
+            dialect.returned,
+            more if dialect.is_argument else (),
+        )
+        return function_docstring(self.tf, signature, [self.sentence, MEASURED])

@@ -1,0 +1,329 @@
+"""Functions that modules over any library of arrays contain, as text.
+
+They are written for the array API, where the library ``xp`` is an argument; for a single library the argument
+is left out.
+"""
+
+from __future__ import annotations
+
+import re
+
+NAMESPACE = '''\
+def _namespace(arguments):
+    """Return the library that arrays belong to: numpy where there are numbers alone."""
+    found = {}
+    for value in arguments:
+        if isinstance(value, (int, float, complex)):
+            continue
+        root = type(value).__module__.partition(".")[0]
+        if root in ("numpy", "torch"):
+            space = sys.modules[root]
+        elif hasattr(value, "__array_namespace__"):
+            space = value.__array_namespace__()
+        else:
+            message = f"numbers or arrays are wanted, not {type(value).__name__}"
+            raise TypeError(message)
+        found[space.__name__] = space
+    if len(found) > 1:
+        # Other libraries take numpy's arrays for their own.
+        found.pop("numpy", None)
+    if len(found) > 1:
+        message = f"arrays of {' and '.join(found)} together"
+        raise TypeError(message)
+    return next(iter(found.values())) if found else importlib.import_module("numpy")
+
+
+def _place(xp, arguments):
+    """Return on which device numbers become arrays, as a keyword; none where libraries know."""
+    if xp.__name__.partition(".")[0] not in ("numpy", "cupy", "jax"):
+        for value in arguments:
+            if type(value).__module__.partition(".")[0] != "numpy" and hasattr(value, "device"):
+                return {"device": value.device}
+    return {}
+
+
+def _numbers(xp, *arguments):
+    """Return the library, s as complex and every parameter as real or complex numbers."""
+    xp = _namespace(arguments) if xp is None else xp
+    place = _place(xp, arguments)
+    arrays = []
+    for i, value in enumerate(arguments):
+        if isinstance(value, (int, float, complex)):
+            is_complex = isinstance(value, complex)
+            device = place
+        elif hasattr(value, "dtype"):
+            value = xp.asarray(value)
+            is_complex = value.dtype in (xp.complex64, xp.complex128)
+            device = {}
+        else:
+            message = f"numbers or arrays are wanted, not {type(value).__name__}"
+            raise TypeError(message)
+        dtype = xp.complex128 if is_complex or i == 0 else xp.float64
+        arrays.append(xp.asarray(value, dtype=dtype, **device))
+    return xp, arrays
+
+
+def _shape(arguments):
+    """Return the shape of all arguments together."""
+    shapes = [tuple(argument.shape) for argument in arguments]
+    together = []
+    for sizes in zip(*((1,) * (max(map(len, shapes)) - len(x)) + x for x in shapes)):
+        others = {size for size in sizes if size != 1}
+        if len(others) > 1:
+            message = f"shapes {', '.join(map(str, shapes))} do not go together"
+            raise ValueError(message)
+        together.append(others.pop() if others else 1)
+    return tuple(together)
+
+
+def _shaped(xp, value, arguments):
+    """Return a value in the shape of all arguments together; a number of numpy's as one of Python's."""
+    shape = _shape(arguments)
+    if tuple(value.shape) != shape:
+        value = xp.broadcast_to(value, shape)
+    return complex(value) if not shape and xp.__name__ == "numpy" else value
+'''
+
+REAL_NUMBERS = '''\
+def _real_numbers(xp, *arguments):
+    """Return the library, and real numbers."""
+    xp, arrays = _numbers(xp, 0.0, *arguments)
+    if any(array.dtype == xp.complex128 for array in arrays[1:]):
+        message = "real numbers or arrays of them are wanted"
+        raise TypeError(message)
+    return xp, arrays[1:]
+'''
+
+JAX_NUMBERS = '''\
+def _numbers(*arguments):
+    """Return s as complex and every parameter as real or complex numbers."""
+    arrays = [jnp.asarray(value) for value in arguments]
+    kinds = [jnp.issubdtype(array.dtype, jnp.complexfloating) for array in arrays]
+    kinds[0] = True
+    return [
+        array.astype(jnp.complex128 if is_complex else jnp.float64)
+        for array, is_complex in zip(arrays, kinds)
+    ]
+
+
+def _shape(arguments):
+    """Return the shape of all arguments together."""
+    return jnp.broadcast_shapes(*(argument.shape for argument in arguments))
+
+
+def _shaped(value, arguments):
+    """Return a value in the shape of all arguments together."""
+    return jnp.broadcast_to(value, _shape(arguments))
+'''
+
+JAX_REAL_NUMBERS = '''\
+def _real_numbers(*arguments):
+    """Return real numbers."""
+    arrays = [jnp.asarray(value) for value in arguments]
+    if any(jnp.issubdtype(array.dtype, jnp.complexfloating) for array in arrays):
+        message = "real numbers or arrays of them are wanted"
+        raise TypeError(message)
+    return [array.astype(jnp.float64) for array in arrays]
+'''
+
+PIECES = '''\
+def _in_pieces(xp, tests, pieces, arguments):
+    """Return the value of the piece that serves, element by element.
+
+    A piece comes with a place where it is regular and with the results of tests under
+    which it serves. Elsewhere it is evaluated at its place, so that neither its value
+    nor its derivatives spoil anything.
+    """
+    s, *parameters = arguments
+    held = tests(xp, s, *parameters)
+    value = None
+    for piece, place, cases in pieces:
+        serves = _serves(held, cases)
+        if _is_idle(xp, serves):
+            continue
+        safe = xp.where(serves, s, xp.full_like(s, place))
+        found = _found(xp, piece, serves, [safe, *parameters])
+        value = found if value is None else xp.where(serves, found, value)
+    return (1+0j) * s if value is None else value
+
+
+def _serves(held, cases):
+    """Tell where tests have the results of one of some cases."""
+    serves = None
+    for case in cases:
+        own = None
+        for test, result in case:
+            part = held[test] if result else ~held[test]
+            own = part if own is None else own & part
+        serves = own if serves is None else serves | own
+    return serves
+'''
+
+IDLE = '''\
+def _is_idle(xp, serves):
+    """Tell that a piece serves no element; False where values are not known yet."""
+    try:
+        return not bool(xp.any(serves))
+    except (TypeError, RuntimeError):
+        # A function that is being traced: its arrays have no values.
+        return False
+
+
+def _found(xp, piece, serves, arguments):
+    """Return what a piece computes."""
+    return piece(xp, *arguments)
+'''
+
+JAX_IDLE = '''\
+def _is_idle(serves):
+    """Tell that a piece serves no element; False where values are not known yet."""
+    return not isinstance(serves, jax.core.Tracer) and not bool(jnp.any(serves))
+
+
+def _found(piece, serves, arguments):
+    """Return what a piece computes; compiled, zeros where it turns out to serve nothing."""
+    if not isinstance(serves, jax.core.Tracer):
+        return piece(*arguments)
+    shape, kind = _shape(arguments), jnp.result_type(arguments[0], jnp.complex64)
+
+    def whole():
+        return jnp.broadcast_to(piece(*arguments), shape).astype(kind)
+
+    return jax.lax.cond(jnp.any(serves), whole, lambda: jnp.zeros(shape, kind))
+'''
+
+JAX_SIZE = '''\
+def _size(x):
+    """Return the magnitude of what only keeps something else from vanishing."""
+    return jax.lax.stop_gradient(jnp.abs(x))
+'''
+
+LARGER = '''\
+def _larger(xp, middle, product):
+    """Return the larger root of x^2 - 2 middle x + product, without cancellation."""
+    root = xp.sqrt(middle * middle - product)
+    is_opposite = xp.real(root * xp.conj(middle)) < 0.0
+    return middle + xp.where(is_opposite, -root, root)
+'''
+
+REAL_PIECES = '''\
+def _in_real_pieces(xp, tests, pieces, arguments):
+    """Return the response at angular frequencies of any sign: conjugate at negative ones."""
+    omega, *parameters = arguments
+    is_negative = omega < 0.0
+    positive = xp.where(is_negative, -omega, omega)
+    value = _in_pieces(xp, tests, pieces, [positive, *parameters])
+    return xp.where(is_negative, xp.conj(value), value)
+'''
+
+CIRCLE = '''\
+def _mean_over_circle(xp, parts, arguments, points):
+    """Return numerator over denominator, each the mean of its values on a circle.
+
+    Both are analytic, so the mean is the value at the center s, where the formula
+    itself cancels. parts returns numerator, denominator, the logarithm of what both
+    were divided by, and the radius.
+    """
+    s, *parameters = arguments
+    s = xp.broadcast_to(s, _shape(arguments))
+    _, _, center, radius = parts(xp, s, *parameters)
+    turns = [cmath.exp(2j * cmath.pi * (k + 0.5) / points) for k in range(points)]
+    circle = _in_front(xp, turns, s)
+    num, den, growth, _ = parts(xp, s + radius * circle, *parameters)
+    scale = xp.exp(growth - center)
+    return xp.sum(num * scale, axis=0) / xp.sum(den * scale, axis=0)
+'''
+
+IN_FRONT = '''\
+def _in_front(xp, values, array):
+    """Return numbers along an axis in front of those of an array."""
+    made = xp.asarray(values, dtype=xp.complex128, **_place(xp, [array]))
+    return xp.reshape(made, (len(values), *(1 for _ in array.shape)))
+'''
+
+JAX_IN_FRONT = '''\
+def _in_front(values, array):
+    """Return numbers along an axis in front of those of an array."""
+    made = jnp.asarray(values, dtype=jnp.complex128)
+    return jnp.reshape(made, (len(values), *(1 for _ in array.shape)))
+'''
+
+SERIES = '''\
+def _series_solutions(coefficients, terms):
+    """Return the solutions of a linear differential equation at 1, by Taylor series.
+
+    The equation is y^(n) + c_(n-1) y^(n-1) + ... + c_0 y = 0; solution k starts from
+    y^(k)(0) = 1 and zeros for the other derivatives below n.
+    """
+    n = len(coefficients)
+    used = [i for i in range(n) if not _is_zero(coefficients[i])]
+    found = []
+    first = 1.0
+    for k in range(n):
+        derivatives = [1.0 if i == k else 0.0 for i in range(n)]
+        total = 1.0 / first
+        first *= k + 1
+        factorial = 1.0
+        for m in range(1, terms):
+            factorial *= m
+            if m >= n:
+                following = 0.0
+                for i in used:
+                    if not _is_zero(derivatives[i]):
+                        following = following - coefficients[i] * derivatives[i]
+                derivatives = [*derivatives[1:], following]
+                if not _is_zero(following):
+                    total = total + following / factorial
+        found.append(total)
+    return found
+
+
+def _is_zero(x):
+    """Tell that a value is the number zero whatever the arguments are."""
+    return isinstance(x, float) and x == 0.0
+'''
+
+
+JAX_SERIES = '''\
+def _series_solutions(coefficients, terms):
+    """Return the solutions of a linear differential equation at 1, by Taylor series.
+
+    The equation is y^(n) + c_(n-1) y^(n-1) + ... + c_0 y = 0; solution k starts from
+    y^(k)(0) = 1 and zeros for the other derivatives below n.
+    """
+    n = len(coefficients)
+    given = [jnp.asarray(c, dtype=jnp.complex128) for c in coefficients]
+    stacked = jnp.stack(jnp.broadcast_arrays(*given))
+    shape = (n, n, *stacked.shape[1:])
+    identity = jnp.eye(n, dtype=jnp.complex128)
+    factorials = [math.factorial(m) for m in range(terms)]
+    first = jnp.asarray([1.0 / f for f in factorials[:n]], dtype=jnp.complex128)
+    ones = (1,) * (len(shape) - 2)
+    state = (
+        jnp.broadcast_to(jnp.reshape(identity, (n, n, *ones)), shape),
+        jnp.broadcast_to(jnp.reshape(first, (n, *ones)), shape[1:]),
+        stacked,
+    )
+    later = jnp.asarray([float(f) for f in factorials[n:]], dtype=jnp.float64)
+    (_, total, _), _ = jax.lax.scan(_next_term, state, later)
+    return list(total)
+
+
+def _next_term(state, factorial):
+    """Add a term to the series of all solutions; a loop is compiled faster than its terms."""
+    derivatives, total, coefficients = state
+    following = -jnp.sum(coefficients[:, None] * derivatives, axis=0)
+    derivatives = jnp.concatenate([derivatives[1:], following[None]])
+    return (derivatives, total + following / factorial, coefficients), None
+'''
+
+
+def for_one_library(text: str, name: str) -> str:
+    """Return the text of functions with the argument ``xp`` replaced by a library's name.
+
+    Examples
+    --------
+    >>> for_one_library("def _f(xp, x): return g(xp, xp.exp(x))", "jnp")
+    'def _f(x): return g(jnp.exp(x))'
+    """
+    return re.sub(r"\bxp\.", f"{name}.", re.sub(r"\bxp, ", "", text))

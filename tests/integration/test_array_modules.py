@@ -1,0 +1,501 @@
+"""Modules over libraries of arrays: array-api-strict, numpy and jax compute, compile and differentiate."""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+import sys
+from functools import cache
+from pathlib import Path
+
+import mpmath as mp
+import numpy as np
+import pytest
+import sympy
+from flint import acb
+
+from symflex import pipeline
+from symflex.emit.array_module import ARRAY_API, JAX, array_module
+from symflex.emit.numpy_module import numpy_module
+from symflex.errors import ModelError
+from tests.unit.emit.test_numpy_distributed import beam, clamped_end_compliance, specification
+
+ROOT = Path(__file__).parents[2]
+SPECS = {path.stem: path for path in sorted((ROOT / "derivations").glob("*/*.toml"))}
+
+needs_strict = pytest.mark.needs_module("array_api_strict")
+needs_jax = pytest.mark.needs_module("jax")
+
+CHAIN = "\n".join(
+    [
+        'symflex = 1\n[parameters]\nm = "2 kg"\nk = "3 kN/m"\nb = "4 N*s/m"\n[elements]',
+        *(f'M{i} = {{ type = "mass", at = "x{i}", m = "m" }}' for i in range(8)),
+        *(f'K{i} = {{ type = "spring", between = ["x{i}", "x{i + 1}"], k = "k" }}' for i in range(7)),
+        *(f'B{i} = {{ type = "damper", between = ["x{i}", "x{i + 1}"], b = "b" }}' for i in range(7)),
+        '[inputs]\nF = { force = "x0" }\n[outputs]\nA = "s^2*x0"\nX = "x7"',
+    ]
+)
+
+CONSTANT = """
+symflex = 1
+parameters = { m = "2 kg", k = "50 N/m" }
+elements.body = { type = "mass", at = "x", m = "m" }
+elements.spring = { type = "spring", between = ["x", "ground"], k = "k" }
+inputs = { F = { force = "x" }, u = {} }
+outputs = { X = "x", gain = "k*u", half = "u/2" }
+"""
+
+PIPE = """
+symflex = 1
+parameters = { EI = "100 N*m^2", m = "3 kg/m", m_f = "1 kg/m", U = "5 m/s", l = "2 m" }
+[fields.w]
+domain = ["0", "l"]
+equation = "EI*w'''' + m_f*U^2*w'' + 2*m_f*U*s*w' + m*s^2*w = p"
+conditions = ["w(0) = 0", "w''(0) = 0", "w(l) = 0", "w''(l) = 0"]
+[inputs]
+p = { unit = "N/m" }
+[outputs]
+Y = "w(l/2)"
+"""
+
+
+def model_of(name):
+    return pipeline.load(SPECS[name]) if name in SPECS else pipeline.loads(name)
+
+
+@cache
+def made(name, dialect, folder):
+    """Export a derivation, or a specification given as text, and import what comes of it."""
+    model = model_of(name)
+    write = numpy_module if dialect is None else array_module
+    arguments = () if dialect is None else (dialect,)
+    text = write(pipeline.derive_all(model), model, *arguments, samples=10).text
+    kind = "numpy" if dialect is None else dialect.space
+    stem = f"over_{kind}_{name if name in SPECS else abs(hash(name))}"
+    path = folder / f"{stem}.py"
+    path.write_text(text, encoding="utf-8")
+    spec = importlib.util.spec_from_file_location(stem, path)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[stem] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="session")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("array_modules")
+
+
+@pytest.fixture
+def over_any(folder):
+    return lambda name: made(name, ARRAY_API, folder)
+
+
+@pytest.fixture
+def over_jax(jnp, folder):
+    return lambda name: made(name, JAX, folder)
+
+
+@pytest.fixture
+def over_numpy(folder):
+    return lambda name: made(name, None, folder)
+
+
+@pytest.fixture
+def strict():
+    import array_api_strict
+
+    return array_api_strict
+
+
+@pytest.fixture
+def jax():
+    import jax
+
+    jax.config.update("jax_enable_x64", True)
+    return jax
+
+
+@pytest.fixture
+def jnp(jax):
+    import jax.numpy
+
+    return jax.numpy
+
+
+# ------------------------------------------------------------------------------------------------ values
+
+
+@cache
+def references(name):
+    """Return points over the band and in the plane, and of every function its values and log-derivatives."""
+    model = model_of(name)
+    low, high = (float(f) for f in model.analysis.band or (0.1, 1e4))
+    random = np.random.default_rng(1)
+    turned = np.geomspace(low, high, 20) * 2 * np.pi * np.exp(1j * random.uniform(0, 2 * np.pi, 20))
+    s = np.concatenate([2j * np.pi * np.geomspace(low, high, 100), turned, [1e-6j, -1e-6 + 1e-6j]])
+    found = {}
+    for tf in pipeline.derive_all(model):
+        bound = pipeline.bind(tf)
+        enclosed = bound.enclosed(512)
+        slopes = [complex(enclosed.logarithmic_derivative(acb(z.real, z.imag))) for z in s]
+        found[tf.name] = np.array([bound(complex(z)) for z in s]), np.array(slopes)
+    return s, found
+
+
+def error(computed, name, function, where=slice(None)):
+    """Return the worst relative error beyond what one rounding of s causes."""
+    s, found = references(name)
+    value, slope = (x[where] for x in found[function])
+    return np.max(np.abs(np.asarray(computed) - value) / np.abs(value) / (1 + np.abs(s[where] * slope)))
+
+
+@needs_strict
+@pytest.mark.parametrize("name", SPECS)
+def test_array_api_strict_agrees_with_ball_arithmetic(name, over_any, strict):
+    module, (s, found) = over_any(name), references(name)
+    on_axis = slice(0, 100)
+    for key in found:
+        computed = module.TRANSFER_FUNCTIONS[key](strict.asarray(s))
+        assert type(computed) is type(strict.asarray(s))
+        assert error(computed, name, key) < 1e-13
+        if key in getattr(module, "FREQUENCY_RESPONSES", {}):
+            response = np.asarray(module.FREQUENCY_RESPONSES[key](strict.asarray(s.imag)))
+            assert error(response[on_axis], name, key, on_axis) < 1e-13
+
+
+@needs_jax
+@pytest.mark.parametrize("name", SPECS)
+def test_jax_agrees_with_ball_arithmetic(name, over_jax, jnp):
+    module, (s, found) = over_jax(name), references(name)
+    on_axis = slice(0, 100)
+    for key in found:
+        assert error(module.TRANSFER_FUNCTIONS[key](jnp.asarray(s)), name, key) < 1e-13
+        if key in getattr(module, "FREQUENCY_RESPONSES", {}):
+            # Of the same shape as s: jax compiles every operation once for each shape.
+            response = np.asarray(module.FREQUENCY_RESPONSES[key](jnp.asarray(s.imag)))
+            assert error(response[on_axis], name, key, on_axis) < 1e-13
+
+
+@pytest.mark.parametrize("name", ["robot_axis", "timoshenko_cantilever", "shaft_discs", CHAIN])
+def test_numpy_s_arrays_get_what_the_numpy_module_gives(name, over_any, over_numpy):
+    s = np.concatenate([1j * np.logspace(-9, 12, 60), 10.0 ** np.arange(-3, 6) * np.exp(2j)])
+    for key, function in over_any(name).TRANSFER_FUNCTIONS.items():
+        expected = over_numpy(name).TRANSFER_FUNCTIONS[key](s)
+        near = np.abs(s) < 1e5
+        assert np.all(np.isfinite(function(s)))
+        assert np.max(np.abs(function(s) / expected - 1)[near]) < 1e-9
+
+
+def test_a_chain_of_eight_masses_neither_over_nor_underflows(over_any):
+    s = np.concatenate([1j * np.logspace(-9, 13, 50), 10.0 ** np.arange(5, 14)])
+    model = pipeline.loads(CHAIN)
+    for tf in pipeline.derive_all(model):
+        bound = pipeline.bind(tf)
+        expected = np.array([bound(complex(z)) for z in s])
+        assert np.max(np.abs(over_any(CHAIN).TRANSFER_FUNCTIONS[tf.name](s) / expected - 1)) < 1e-12
+
+
+# --------------------------------------------------------------------------------- libraries of arrays
+
+
+def test_numbers_alone_give_a_number(over_any):
+    value = over_any("rod_tip_mass").X_tip_over_F(3j, m=2)
+    assert type(value) is complex
+    assert value == over_any("rod_tip_mass").X_tip_over_F(np.array([3j]), m=2)[0]
+
+
+@needs_strict
+def test_the_library_can_be_given(over_any, strict):
+    value = over_any("two_mass").X_tip_over_F(3j, xp=strict)
+    assert type(value) is type(strict.asarray(1.0))
+    assert value.shape == ()
+
+
+@needs_strict
+def test_the_library_is_found_from_a_parameter(over_any, strict):
+    value = over_any("two_mass").X_tip_over_F(3j, m_1=strict.asarray([1.0, 2.0, 3.0]))
+    assert type(value) is type(strict.asarray(1.0))
+    assert value.shape == (3,)
+
+
+@needs_strict
+@pytest.mark.parametrize("name", ["two_mass", "rod_tip_mass", "timoshenko_cantilever"])
+def test_values_stay_on_the_device_of_the_arguments(name, over_any, strict):
+    device = strict.Device("device1")
+    for function in over_any(name).TRANSFER_FUNCTIONS.values():
+        assert function(strict.asarray([1e-3j, 3j, 1e4j], device=device)).device == device
+
+
+@needs_strict
+@needs_jax
+def test_arrays_of_two_libraries_are_refused(over_any, strict, jnp):
+    with pytest.raises(TypeError, match="together"):
+        over_any("two_mass").X_tip_over_F(strict.asarray(1j), k=jnp.asarray(2.0))
+
+
+@needs_strict
+def test_arrays_of_numpy_go_with_any_library(over_any, strict):
+    value = over_any("two_mass").X_tip_over_F(strict.asarray(1j), k=np.array([2.0, 3.0]))
+    assert type(value) is type(strict.asarray(1.0))
+
+
+@pytest.mark.parametrize("value", [None, "1", [1.0], object()])
+def test_what_is_neither_number_nor_array_is_refused(value, over_any):
+    with pytest.raises(TypeError, match="numbers or arrays"):
+        over_any("two_mass").X_tip_over_F(1j, k=value)
+
+
+def test_a_complex_frequency_is_refused_by_a_response_in_real_arithmetic(over_any):
+    with pytest.raises(TypeError, match="real"):
+        over_any("rod_tip_mass").X_tip_over_F_at(1j)
+
+
+@needs_strict
+@pytest.mark.parametrize("dtype", ["float32", "complex64", "int32"])
+def test_other_types_of_numbers_become_double_precision(dtype, over_any, strict):
+    value = over_any("two_mass").X_tip_over_F(strict.asarray([2], dtype=getattr(strict, dtype)))
+    assert value.dtype == strict.complex128
+    assert complex(value[0]) == over_any("two_mass").X_tip_over_F(2.0)
+
+
+@pytest.mark.parametrize("name", ["two_mass", "rod_tip_mass", "timoshenko_cantilever"])
+def test_s_and_every_parameter_are_broadcast_together(name, over_any, over_numpy):
+    s = 1j * np.logspace(0, 4, 5)
+    for key, function in over_any(name).TRANSFER_FUNCTIONS.items():
+        (first, one), (second, two) = list(over_any(name).PARAMETERS.items())[:2]
+        given = {first: one["value"] * np.array([[1.0], [2.0]]), second: two["value"] * np.ones((3, 1, 1))}
+        expected = over_numpy(name).TRANSFER_FUNCTIONS[key](s, **given)
+        assert function(s, **given).shape == (3, 2, 5)
+        assert np.allclose(function(s, **given), expected, rtol=1e-12, atol=0)
+
+
+def test_shapes_that_do_not_go_together_are_refused(over_any):
+    with pytest.raises(ValueError, match="shape"):
+        over_any(CONSTANT).gain_over_u(np.ones(2), k=np.ones(3))
+
+
+@pytest.mark.parametrize("name", ["two_mass", "rod_tip_mass"])
+def test_empty_arrays_give_empty_arrays(name, over_any):
+    for function in over_any(name).TRANSFER_FUNCTIONS.values():
+        assert function(np.zeros((0, 3))).shape == (0, 3)
+
+
+@needs_strict
+@pytest.mark.parametrize("k", [None, [[1.0], [2.0], [3.0]]])
+def test_constants_have_the_shape_of_all_arguments(k, over_any, strict):
+    module, s = over_any(CONSTANT), strict.asarray([1j, 2j])
+    given = {} if k is None else {"k": strict.asarray(k)}
+    assert np.asarray(module.gain_over_u(s, **given)).tolist() == (
+        [50, 50] if k is None else [[1, 1], [2, 2], [3, 3]]
+    )
+    assert np.asarray(module.half_over_u(s)).tolist() == [0.5, 0.5]
+    assert np.asarray(module.X_over_u(s)).tolist() == [0, 0]
+
+
+def test_the_response_at_negative_frequencies_is_conjugate(over_any):
+    omega = np.array([-300.0, -1e-3, 1e-3, 300.0])
+    value = over_any("sliding_free_beam").V_act_over_F_at(omega)
+    assert np.all(value[:2] == np.conj(value[:1:-1]))
+
+
+def test_a_function_without_a_formula_for_its_wavenumbers_is_refused():
+    model = pipeline.loads(PIPE)
+    for dialect in (ARRAY_API, JAX):
+        with pytest.raises(ModelError, match="SF234"):
+            array_module(pipeline.derive_all(model), model, dialect)
+
+
+# -------------------------------------------------------------------------------------------------- jax
+
+
+@needs_jax
+@pytest.mark.parametrize(
+    ("name", "function"),
+    [
+        ("six_mass", "X_tip_over_F"),
+        ("sliding_free_beam", "V_tip_over_F"),
+        pytest.param("timoshenko_cantilever", "W_tip_over_F", marks=pytest.mark.slow),
+    ],
+)
+def test_compiled_functions_give_what_others_give(name, function, over_jax, jax):
+    given = getattr(over_jax(name), function)
+    s = np.array([*(1j * np.logspace(-6, 5, 45)), 3.0, -200 + 10j, 0.1j])
+    compiled, eager = np.asarray(jax.jit(given)(s)), np.asarray(given(s))
+    assert np.max(np.abs(compiled / eager - 1)) < 1e-11
+
+
+@needs_jax
+def test_the_array_api_module_can_be_compiled_by_jax(over_any, jax, jnp):
+    function = over_any("rod_tip_mass").X_tip_over_F
+    s = jnp.asarray(1j * np.logspace(-6, 5, 20))
+    assert np.allclose(jax.jit(function)(s), function(s), rtol=1e-11, atol=0)
+
+
+@needs_jax
+@pytest.mark.parametrize(
+    ("name", "function"),
+    [("six_mass", "X_tip/F"), ("rod_tip_mass", "X_tip/F"), ("sliding_free_beam", "V_tip/F")],
+)
+def test_the_derivative_by_s_agrees_with_ball_arithmetic(name, function, over_jax, jax):
+    s, found = references(name)
+    value, slope = found[function]
+    derivative = jax.grad(over_jax(name).TRANSFER_FUNCTIONS[function], holomorphic=True)
+    computed = np.asarray(jax.jit(jax.vmap(derivative))(s))
+    # Where G' itself is nearly zero what counts is G/s.
+    size = np.abs(value) * np.maximum(np.abs(slope), np.abs(1 / s)) * (1 + np.abs(s * slope))
+    assert np.max(np.abs(computed - value * slope) / size) < 1e-12
+
+
+@needs_jax
+def test_the_derivative_by_a_parameter_is_that_of_the_formula(over_jax, jax, jnp):
+    # Eppinger & Seering 1988, fig. 8a: X_tip/F = (b s + k)/(s^2 (m_1 m_2 s^2 + (m_1 + m_2)(b s + k))).
+    names = sympy.symbols("m_1 m_2 k b", positive=True)
+    m_1, m_2, k, b = names
+    point = 2j
+    formula = (b * point + k) / (point**2 * (m_1 * m_2 * point**2 + (m_1 + m_2) * (b * point + k)))
+    numbers = dict(zip(names, (60, 20, 71653, 41), strict=True))
+
+    def size(parameters):
+        return jnp.abs(over_jax("two_mass").X_tip_over_F(point, **parameters))
+
+    computed = jax.grad(size)({str(n): float(v) for n, v in numbers.items()})
+    value = sympy.N(formula.subs(numbers), 30)
+    for name in names:
+        slope = sympy.N(formula.diff(name).subs(numbers), 30)
+        expected = float(sympy.re(slope * sympy.conjugate(value)) / sympy.Abs(value))
+        assert float(computed[str(name)]) == pytest.approx(expected, rel=1e-12)
+
+
+ROD = {"E": "200e9", "A": "0.00048", "rho": "7850", "l": "1", "m": "3"}
+
+
+@needs_jax
+@pytest.mark.parametrize("omega", [1e-3, 50.0, 3e4, 2e6])
+def test_the_derivative_of_a_rod_by_its_parameters_is_that_of_the_formula(omega, over_jax, jax, jnp):
+    # Rao 2007, chapter 9: 1/(E A g coth(g l) + m s^2), g = s sqrt(rho/E).
+    def exact(**changed):
+        p = {n: changed.get(n, mp.mpf(v)) for n, v in ROD.items()}
+        s = mp.mpc(0, omega)
+        g = s * mp.sqrt(p["rho"] / p["E"])
+        return mp.log(abs(1 / (p["E"] * p["A"] * g * mp.coth(g * p["l"]) + p["m"] * s**2)))
+
+    def level(parameters):
+        return jnp.log(jnp.abs(over_jax("rod_tip_mass").X_tip_over_F(1j * omega, **parameters)))
+
+    computed = jax.grad(level)({n: float(v) for n, v in ROD.items()})
+    with mp.workdps(60):
+        for name, text in ROD.items():
+            center = mp.mpf(text)
+            step = center * mp.mpf(10) ** -20
+            slope = (exact(**{name: center + step}) - exact(**{name: center - step})) / (2 * step)
+            swing = 1 + omega * np.sqrt(7850 / 200e9)
+            # Relative to 1/p: what a relative change of the parameter does to the logarithm.
+            assert abs(float(computed[name]) - float(slope)) * float(center) < 1e-11 * swing
+
+
+@needs_jax
+@pytest.mark.parametrize("force", ["0", "1e-6", "500"])
+def test_the_derivative_by_an_axial_force_is_that_of_the_boundary_value_problem(force, over_jax, jax):
+    function, s = over_jax(specification("tension")).X_over_F, 300j
+    computed = jax.jit(jax.jacfwd(lambda n: function(s, N=n)))(float(force))
+    with mp.workdps(60):
+        ends = [
+            clamped_end_compliance(beam(mp.mpc(s), n=mp.mpf(force) + step, k_f="1000"))
+            for step in (mp.mpf("1e-20"), mp.mpf("-1e-20"))
+        ]
+        slope = complex((ends[0] - ends[1]) / mp.mpf("2e-20"))
+    assert complex(computed) == pytest.approx(slope, rel=1e-12)
+
+
+@needs_jax
+@pytest.mark.parametrize(
+    ("name", "function"), [("sliding_free_beam", "V_act_over_F"), ("six_mass", "X_tip_over_F")]
+)
+def test_derivatives_are_finite_wherever_values_are(name, function, over_jax, jax, jnp):
+    module = over_jax(name)
+    given = getattr(module, function)
+    random = np.random.default_rng(2)
+    s = np.concatenate(
+        [10.0 ** random.uniform(-9, 9, 40) * np.exp(1j * random.uniform(0, 7, 40)), [1e-9j, 1e12j]]
+    )
+    parameters = {n: p["value"] * 10 ** random.uniform(-3, 3, len(s)) for n, p in module.PARAMETERS.items()}
+
+    def size(parameters, s):
+        return jnp.abs(given(s, **parameters))
+
+    values, slopes = jax.jit(jax.vmap(jax.value_and_grad(size)))(parameters, s)
+    has_value = np.isfinite(values) & (np.asarray(values) > 1e-290)
+    assert np.count_nonzero(has_value) > 30
+    for slope in slopes.values():
+        assert np.all(np.isfinite(np.asarray(slope)[has_value]))
+
+
+@needs_jax
+def test_the_derivative_at_rest_is_finite(over_jax, jax, jnp):
+    module = over_jax("rod_tip_mass")
+    value, slope = jax.value_and_grad(lambda x: jnp.real(module.X_tip_over_F(0.0, l=x)))(1.0)
+    assert float(value) == pytest.approx(1 / (200e9 * 0.00048), rel=1e-15)
+    assert float(slope) == pytest.approx(1 / (200e9 * 0.00048), rel=1e-15)
+
+
+@needs_jax
+@pytest.mark.parametrize(
+    ("name", "function"), [("two_mass", "X_tip_over_F"), ("sliding_free_beam", "V_act_over_F")]
+)
+def test_functions_are_mapped_over_parameters(name, function, over_jax, over_numpy, jax):
+    parameter = next(iter(over_jax(name).PARAMETERS))
+    values = over_jax(name).PARAMETERS[parameter]["value"] * np.array([0.5, 1.0, 7.0])
+    given = getattr(over_jax(name), function)
+    mapped = jax.vmap(lambda p, s: given(s, **{parameter: p}), in_axes=(0, None))(values, 40j)
+    expected = getattr(over_numpy(name), function)(40j, **{parameter: values})
+    assert np.allclose(mapped, expected, rtol=1e-12, atol=0)
+
+
+@needs_jax
+def test_a_response_in_real_arithmetic_is_differentiated_by_frequency(over_jax, jax, jnp):
+    module, omega = over_jax("sliding_free_beam"), 200.0
+    found = jax.jvp(module.V_act_over_F_at, (omega,), (1.0,))[1]
+    expected = 1j * jax.grad(module.V_act_over_F, holomorphic=True)(jnp.asarray(1j * omega))
+    assert complex(found) == pytest.approx(complex(expected), rel=1e-11)
+
+
+@needs_jax
+def test_single_precision_is_told_of(over_jax, jax):
+    jax.config.update("jax_enable_x64", False)
+    try:
+        with pytest.warns(UserWarning, match="is not available"):
+            over_jax("two_mass").X_tip_over_F(1j)
+    finally:
+        jax.config.update("jax_enable_x64", True)
+
+
+# --------------------------------------------------------------------------------------------- the text
+
+
+@pytest.mark.parametrize(
+    ("dialect", "roots"),
+    [
+        (ARRAY_API, {"__future__", "cmath", "importlib", "sys", "typing"}),
+        (JAX, {"__future__", "cmath", "jax", "math"}),
+    ],
+    ids=["array-api", "jax"],
+)
+def test_a_module_imports_what_it_is_for_only(dialect, roots):
+    model = model_of("timoshenko_cantilever")
+    text = array_module(pipeline.derive_all(model), model, dialect, samples=2).text
+    found = set()
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import):
+            found |= {alias.name.split(".")[0] for alias in node.names}
+        if isinstance(node, ast.ImportFrom):
+            found.add(node.module.split(".")[0])
+    assert found == roots
+    assert " np." not in text
+
+
+def test_the_docstring_says_whose_arithmetic_was_verified():
+    model = model_of("two_mass")
+    text = " ".join(array_module(pipeline.derive_all(model), model).text.split())
+    assert "against ball arithmetic" in text
+    assert "The error is that of the same operations in numpy" in text
