@@ -10,7 +10,7 @@ from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 
-from benchmarks import chains, distributed, roots, startup
+from benchmarks import chains, distributed, exports, roots, startup
 from benchmarks.measure import Claim, Measurement
 from symflex import __version__
 
@@ -30,6 +30,9 @@ def main(arguments: list[str] | None = None) -> int:
     beam_measurements, beam_claims = distributed.measure(asked.limit)
     measurements += beam_measurements
     claims += beam_claims
+    export_measurements, export_claims = exports.measure(asked.limit)
+    measurements += export_measurements
+    claims += export_claims
     root_measurements, root_claims = roots.measure(asked.limit)
     measurements += root_measurements
     claims += root_claims

@@ -89,7 +89,7 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
 
 def _ways(s: NDArray[Any], omega: NDArray[Any]) -> dict[str, Callable[[], Any]]:
     """Return the ways to compute the values, without arguments."""
-    module = _exported()
+    module = exported_module()
     values = [module.PARAMETERS[name]["value"] for name in ("E", "I", "rho", "A", "l")]
     closed, symbols = _closed_form()
     common = sympy.lambdify(symbols, closed, cse=True)
@@ -103,7 +103,7 @@ def _ways(s: NDArray[Any], omega: NDArray[Any]) -> dict[str, Callable[[], Any]]:
     }
 
 
-def _exported() -> Any:  # noqa: ANN401
+def exported_module() -> Any:  # noqa: ANN401
     """Return the exported module, imported."""
     model = pipeline.load(SPECIFICATION)
     text = numpy_module(pipeline.derive_all(model), model).text

@@ -86,6 +86,7 @@ def _command(name: str, command: click.Command, parent: click.Context) -> str:
     usage = command.get_usage(context).removeprefix("Usage: ")
     formatter = context.make_formatter()
     command.format_options(context, formatter)
+    command.format_epilog(context, formatter)
     options = textwrap.dedent(formatter.getvalue().partition("\n")[2])
     about = inspect.cleandoc(command.help or "").replace("\b\n", "")
     return "\n\n".join([f"## `symflex {name}`", _text(usage), about, _text(options)])

@@ -177,14 +177,34 @@ class Model:
         """Return a numpy module with the state equations as a function of the parameters."""
         return self._export("state-space")
 
+    def export_matlab(self, name: str = "") -> str:
+        """Return a MATLAB function file, which Octave runs as well.
+
+        Parameters
+        ----------
+        name : str
+            Of its main function, which has to be the file's; by default made from the title.
+        """
+        return self._export("matlab", name)
+
+    def export_julia(self, name: str = "") -> str:
+        """Return a Julia module.
+
+        Parameters
+        ----------
+        name : str
+            From which the module's name is made; by default the title.
+        """
+        return self._export("julia", name)
+
     def export_latex(self) -> str:
         """Return a standalone LaTeX document of the model."""
         return self._export("latex")
 
-    def _export(self, target: str) -> str:
+    def _export(self, target: str, name: str = "") -> str:
         from symflex.emit.exporters import EXPORTERS  # the numeric exporters import numpy
 
-        return EXPORTERS[target].export(self.resolved, pipeline.derive_all(self.resolved)).text
+        return EXPORTERS[target].export(self.resolved, pipeline.derive_all(self.resolved), name).text
 
 
 def load(path: str | Path) -> Model:

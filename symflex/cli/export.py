@@ -16,14 +16,26 @@ from symflex.errors.diagnostic import nearest
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.emit.exporters import LatexExporter
+    from symflex.emit.export import Exporter
+    from symflex.emit.targets.latex import LatexExporter
     from symflex.model import Model
     from symflex.transfer import TransferFunction
 
 
-@click.command("export")
+class ExportCommand(click.Command):
+    """A command whose help lists the targets."""
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the targets and what they are."""
+        from symflex.emit.exporters import EXPORTERS
+
+        with formatter.section("Targets"):
+            formatter.write_dl([(name, exporter.summary) for name, exporter in EXPORTERS.items()])
+
+
+@click.command("export", cls=ExportCommand)
 @click.argument("spec", type=click.Path())
-@click.option("--to", "target", required=True, metavar="TARGET", help="What to write; see below.")
+@click.option("--to", "target", required=True, metavar="TARGET", help="One of the targets below.")
 @click.option("--tf", "tfs", multiple=True, metavar="OUT/IN", help="Only this transfer function; repeatable.")
 @click.option("--form", metavar="FORM", help="latex: form of the functions, as for derive.")
 @click.option("--width", metavar="ieee|a4|MM", help="latex: width of the column; a4 (170 mm) by default.")
@@ -45,7 +57,8 @@ def command(
     """Write the transfer functions of SPEC for another program.
 
     Numeric code is verified against ball arithmetic before it is written; the worst error stands in its
-    documentation.
+    documentation. A target that consists of several files, as c does with its header, writes them beside
+    the one named with -o; on standard output it is one file.
 
     With --to latex and -o FOLDER/ every transfer function and table becomes a file for a paper to input, and
     document.tex inputs them all.
@@ -55,36 +68,53 @@ def command(
     infinitely many states, and what has more zeros than poles has no output equation.
     """
     from symflex import pipeline
-    from symflex.emit.exporters import EXPORTERS, LatexExporter, StateSpaceExporter
-    from symflex.emit.latex import column_width
+    from symflex.emit.exporters import EXPORTERS
+    from symflex.emit.program import identifiers
+    from symflex.emit.targets.latex import LatexExporter
     from symflex.emit.write import write_atomically
 
     if target not in EXPORTERS:
         hint = nearest(target, EXPORTERS) or "targets: " + ", ".join(EXPORTERS)
         raise UsageError(Diagnostic("SF902", f"there is no export target '{target[:64]}'", None, hint))
-    exporter = EXPORTERS[target]
+    exporter = _chosen(EXPORTERS[target], form, width, is_minimal=is_minimal)
+    model = pipeline.load(spec)
+    derived = pipeline.derive_all(model, pipeline.pick_pairs(model, tfs))
+    if isinstance(exporter, LatexExporter) and output and _is_folder(output):
+        return _write_fragments(exporter, model, derived, output, strict=strict)
+    stem = Path(output).stem if output else identifiers({"": Path(spec).stem}, ())[""]
+    made = exporter.export(model, derived, stem, is_alone=not output)
+    for warning in made.warnings:
+        note(f"warning: {warning}")
+    if output:
+        path = Path(output)
+        files = {path: made.text} | {path.with_suffix(s): text for s, text in made.companions.items()}
+        if len(files) <= len(made.companions):
+            message = f"'{output}' is the name of a file that belongs beside it"
+            hint = f"end its name with {EXPORTERS[target].suffix}"
+            raise UsageError(Diagnostic("SF902", message, None, hint))
+        for file, text in files.items():
+            write_atomically(file, text.encode())
+            note(f"wrote {file}")
+    else:
+        click.echo(made.text, nl=False)
+    return 4 if strict and made.warnings else 0
+
+
+def _chosen(exporter: Exporter, form: str | None, width: str | None, *, is_minimal: bool) -> Exporter:
+    """Return an exporter with the options that are its own."""
+    from symflex.emit.latex import column_width
+    from symflex.emit.targets.latex import LatexExporter
+    from symflex.emit.targets.state_space import StateSpaceExporter
+
     if isinstance(exporter, LatexExporter):
         exporter = replace(exporter, form=form, width_mm=column_width(width or "a4"))
     elif form is not None or width is not None:
         raise UsageError(Diagnostic("SF902", "--form and --width are for --to latex"))
     if isinstance(exporter, StateSpaceExporter):
-        exporter = StateSpaceExporter(is_minimal=is_minimal)
+        exporter = replace(exporter, is_minimal=is_minimal)
     elif is_minimal:
         raise UsageError(Diagnostic("SF902", "--minimal is for --to state-space"))
-    model = pipeline.load(spec)
-    derived = pipeline.derive_all(model, pipeline.pick_pairs(model, tfs))
-    if isinstance(exporter, LatexExporter):
-        if output and _is_folder(output):
-            return _write_fragments(exporter, model, derived, output, strict=strict)
-    made = exporter.export(model, derived)
-    for warning in made.warnings:
-        note(f"warning: {warning}")
-    if output:
-        write_atomically(Path(output), made.text.encode())
-        note(f"wrote {output}")
-    else:
-        click.echo(made.text, nl=False)
-    return 4 if strict and made.warnings else 0
+    return exporter
 
 
 def _is_folder(output: str) -> bool:

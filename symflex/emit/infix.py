@@ -1,4 +1,4 @@
-"""Expressions of a program tree as infix text; what a language writes in its own way is a method to override."""
+"""Expressions of a program tree as infix text; what a language writes in its own way is overridden."""
 
 from __future__ import annotations
 
@@ -169,14 +169,14 @@ class InfixPrinter:
 
 
 def in_lines(text: str, width: int) -> list[str]:
-    """Return code as lines that end after an operator, a comma or an opening parenthesis.
+    """Return code as lines that end after an operator or a comma.
 
     Only blanks are broken at, so a name longer than a line stays whole.
 
     Examples
     --------
-    >>> in_lines("a * (b + c) / d", 9)
-    ['a *', '(b + c) /', 'd']
+    >>> in_lines("a * (b + c) / d", 10)
+    ['a * (b +', 'c) / d']
     """
     glued = text
     for operator in ("+", "-", "*", "/", ".*", "./", "<"):

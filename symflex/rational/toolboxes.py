@@ -5,6 +5,7 @@ Input: a bound transfer function, or an approximation of one. Output: what these
 
 from __future__ import annotations
 
+import warnings
 from abc import ABC, abstractmethod
 from functools import cached_property
 from math import tau
@@ -42,6 +43,9 @@ SCIPY_FORMS = (ZEROS_POLES_GAIN, TRANSFER_FUNCTION, STATE_SPACE)
 
 PERCENTS = (1, 5)
 """What the validity of an approximation is stated for."""
+
+SCIPY_ZERO = 1e-14
+"""Leading coefficients of a numerator that ``scipy.signal.normalize`` takes away."""
 
 DEFAULT_BAND_HZ = (0.1, 1e4)
 SAMPLES = 200
@@ -125,7 +129,15 @@ class RationalFunction(ABC):
             return self.state_space().to_scipy(self.metadata())
         more: dict[str, object] = {}
         if form == TRANSFER_FUNCTION:
-            system, more = Polynomials(*self.coefficients()), self.loss_of_digits()
+            num, den = self.coefficients()
+            if num[0] and abs(num[0]) <= SCIPY_ZERO:
+                message = f"scipy takes the first coefficient of {self.source.name}, {num[0]:.3g}, for zero"
+                raise ModelError(Diagnostic("SF233", message, None, "zeros-poles-gain keeps it"))
+            with warnings.catch_warnings():
+                if not num.any():
+                    # It finds nothing but zeros suspicious.
+                    warnings.simplefilter("ignore")
+                system, more = Polynomials(num, den), self.loss_of_digits()
         else:
             system = Roots(*self.zeros_poles_gain())
         system.metadata = {"name": self.label(), **self.metadata(), **more}

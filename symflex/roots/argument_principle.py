@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Protocol
 from flint import acb, arb
 
 from symflex.roots.precision import precision
+from symflex.roots.series_steps import SeriesSteps
 from symflex.roots.stepping import ROOM, SPREAD, WIDENED, angle, total_turn
 from symflex.roots.winding import Cell, RootOnPathError, Winding
 
@@ -116,6 +117,7 @@ class CertifiedWinding(Winding):
         super().__init__(function, budget)
         self._bits = BITS
         self._turns: dict[tuple[complex, complex], arb] = {}
+        self._series = SeriesSteps(function)
 
     def count(self, cell: Cell) -> int:
         """Return the number of roots in a cell, with multiplicity: proved.
@@ -205,6 +207,8 @@ class CertifiedWinding(Winding):
         by_exponentials = self.function.turn_of_exponentials(ball, here, there, bits)
         if by_exponentials is not None:
             return by_exponentials
+        if self.function.has_fundamental:
+            return self._series.change(centre, reach, here, there, bits)
         found = self.function.enclosed_about(ball, centre, bits)
         off = 0.0
         for value, slope, exponent in found:

@@ -5,6 +5,7 @@ The function itself is as smooth there as elsewhere. Its power series says how m
 
 from __future__ import annotations
 
+from math import ceil, log2
 from typing import TYPE_CHECKING
 
 from flint import acb, arb
@@ -17,9 +18,13 @@ if TYPE_CHECKING:
     from symflex.roots.kernel_function import KernelFunction
 
 MOST_POINTS = 400
+"""Enough for some 600 digits of one root."""
 CENTRINGS = 3
+GUESSED_DIGITS = 14
+"""Of a centre to begin with; like Newton's, every step doubles them."""
 GROWTH = 100
 SHRINKINGS = 5
+WIDER = 5
 DIGITS_A_SHRINKING = 2
 FIRST_BITS = 128
 
@@ -59,12 +64,14 @@ def prove_together(
     with precision(bits):
         reach = within.max(s.abs_upper() * REACH).mid()
     centre = s
-    for last in reversed(range(CENTRINGS)):
+    steps = ceil(log2((digits + DIGITS_A_SHRINKING * SHRINKINGS) / GUESSED_DIGITS))
+    centrings = max(CENTRINGS, steps + 1)
+    for last in reversed(range(centrings)):
         with precision(bits):
             size = (centre.abs_upper() * arb(10) ** -digits).mid()
             centre = snapped(centre, size, even=even)
         # Like Newton's, the first step need not be as accurate as the last.
-        points = (SERIES_POINTS + most) // 2 if last == CENTRINGS - 1 else most
+        points = (SERIES_POINTS + most) // 2 if last == centrings - 1 else most
         series = local_series(function, centre, reach, bits, points)
         if series is None:
             return None
@@ -76,6 +83,10 @@ def prove_together(
                 size = (size / GROWTH).mid()
             while not (last or is_close) and size < within:
                 if series.count(size) == count:
+                    place = snapped(centre, size, even=even)
+                    if place != centre and series.count(WIDER * size) == count:
+                        # About a point of the axis: it holds the disc, and is held by the wider one.
+                        centre, size = place, (2 * size).mid()
                     return in_disc(centre, size, count // function.power, even=even)
                 size = (size * GROWTH).mid()
             centre = series.middle(count) or centre

@@ -47,7 +47,7 @@ BRANCHES = (1, 2, 4)
 SINGLE: Final = {"wave": 2, "bending": 4}
 """Dispersions of one wavenumber, and how many branches it has."""
 TWINS: Final = {"cosh": "cos", "cos": "cosh", "sinh": "sin", "sin": "sinh"}
-MODAL_WORK = 0.75
+MODAL_WORK = 0.15
 """What sums over characteristic roots cost, in multiplications of a term, over the order to the fourth."""
 
 
@@ -125,6 +125,14 @@ class KernelFunction:
             sum((_parity(f) or 0) * e for f, e in value.factors) % 2 == 0 for value in laws
         )
         return even and not shifted and all(_parity(f) is not None for f, _ in self.part.factors)
+
+    @cached_property
+    def has_fundamental(self) -> bool:
+        """Some kernels are fundamental functions: sums over roots that have no names."""
+        return any(
+            kernel.function == "fundamental" and self.part.depends_on(kernel.generator)
+            for kernel in self.bound.kernels.kernels
+        )
 
     def at_logarithm(self, z: complex, *, is_simple: bool = False) -> Sample | None:
         """Return the sample at ``s = exp(z)``, with the slope in z; ``None`` on a root.

@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from flint import acb, arb
+from flint import acb, acb_poly, arb
 
 from symflex.roots.precision import precision
 
@@ -70,9 +70,22 @@ class LocalSeries:
             sizes.append(abs(coefficient) * power)
             power *= radius
         rest = self.bound * share ** len(sizes) / (1 - share)
-        largest = max(range(len(sizes)), key=lambda k: float((sizes[k] / self.bound).mid()))
+        largest = max(range(len(sizes)), key=lambda k: sizes[k].mid())
         others = sum((size for k, size in enumerate(sizes) if k != largest), rest)
         return largest if sizes[largest] > others else None
+
+    def around(self, centre: acb, radius: arb) -> tuple[tuple[acb, ...], arb] | None:
+        """Return a polynomial's coefficients about another point, and what it may miss closer than a radius.
+
+        ``None`` where the radius goes beyond the reach.
+        """
+        off = centre - self.centre
+        share = (off.abs_upper() + radius).upper() / self.reach
+        if not share < 1:
+            return None
+        rest = (self.bound * share ** len(self.coefficients) / (1 - share)).upper()
+        shifted = acb_poly(list(self.coefficients))(acb_poly([off, acb(1)]))
+        return tuple(shifted.coeffs()), rest
 
     def middle(self, count: int) -> acb | None:
         """Return about the mean of so many roots next to the centre, ``None`` where it cannot be told."""
@@ -100,11 +113,39 @@ def local_series(
     points : int
         Where values are taken; each makes the error that comes of their number smaller by ``2^-6``.
     """
-    bound = _bound(function, centre, reach)
+    bound = bound_on_circle(function, centre, reach, ARCS)
     if bound is None:
         return None
+    return sampled_series(function, centre, reach, bound, bits, points, TERMS, SHRUNK)
+
+
+def sampled_series(
+    function: KernelFunction,
+    centre: acb,
+    reach: arb,
+    bound: arb,
+    bits: int,
+    points: int,
+    terms: int,
+    shrunk: float,
+) -> LocalSeries | None:
+    """Return a function's series about a point from values on a circle, ``None`` where these are not finite.
+
+    Parameters
+    ----------
+    function, centre, reach, bits
+        See :func:`local_series`.
+    bound : arb
+        Of the function on the circle of radius ``reach``.
+    points : int
+        Where values are taken; each makes the error that comes of their number smaller by ``shrunk``.
+    terms : int
+        Coefficients wanted; not more than points.
+    shrunk : float
+        Radius of the circle where values are taken, over ``reach``.
+    """
     with precision(bits):
-        radius = (reach * SHRUNK).mid()
+        radius = (reach * shrunk).mid()
         roots = [(acb(0, 2) * arb.pi() * k / points).exp() for k in range(points)]
         values = [function.value(centre + radius * root, bits) for root in roots]
         if not all(value.is_finite() for value in values):
@@ -113,7 +154,7 @@ def local_series(
         aliased = bound * share**points / (1 - share**points)
         coefficients = []
         power, limit = arb(1), arb(1)
-        for n in range(min(TERMS, points)):
+        for n in range(min(terms, points)):
             total = sum((v * roots[-n * k % points] for k, v in enumerate(values)), acb(0)) / points
             # a_n + a_(n + points) r^points + ... is what the values give.
             error = (aliased / limit).upper()
@@ -123,14 +164,26 @@ def local_series(
         return LocalSeries(centre, tuple(coefficients), reach, bound)
 
 
-def _bound(function: KernelFunction, centre: acb, reach: arb) -> arb | None:
-    """Return at least the size of an analytic function on a circle, ``None`` where none is found."""
+def bound_on_circle(function: KernelFunction, centre: acb, reach: arb, arcs: int) -> arb | None:
+    """Return at least the size of an analytic function on a circle, ``None`` where none is found.
+
+    Parameters
+    ----------
+    function : KernelFunction
+        Its :attr:`~symflex.roots.kernel_function.KernelFunction.power` is bounded.
+    centre : acb
+        Exact [rad/s].
+    reach : arb
+        Exact radius [rad/s].
+    arcs : int
+        Into which the circle is cut at first.
+    """
     with precision(WIDE_BITS):
         disc = centre + acb(arb(0, reach), arb(0, reach))
         if not function.is_analytic_on(disc, WIDE_BITS):
             return None
         largest = arb(0)
-        pending = [(k, ARCS) for k in range(ARCS)]
+        pending = [(k, arcs) for k in range(arcs)]
         while pending:
             k, parts = pending.pop()
             half = (arb.pi() / parts).upper()

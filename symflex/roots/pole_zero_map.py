@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.polynomial import POLYNOMIAL
@@ -129,7 +129,7 @@ class PoleZeroMap:
     is_default_region: bool = False
     is_infinite: bool = False
 
-    def complete(self) -> PoleZeroMap:
+    def complete(self) -> Self:
         """Return the map if the budget sufficed.
 
         Raises

@@ -1,7 +1,7 @@
 """State equations whose states are quantities of the model, exact, and rounded once."""
 
-from symflex.state_space.minimal import minimal
 from symflex.state_space.realise import not_rational, realise, realise_quotient
+from symflex.state_space.reduction import minimal
 from symflex.state_space.state_space import Signal, State, StateSpace
 
 __all__ = ["Signal", "State", "StateSpace", "minimal", "not_rational", "realise", "realise_quotient"]

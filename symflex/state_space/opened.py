@@ -164,8 +164,8 @@ class _Splitter:
                 value = product_of(
                     self.apart(owner, f) if self._varies(f) else f for f in factors if not self._is_block(f)
                 )
-                for name in reversed(applied):
-                    value = Name(self._signal(f"{name}_out", product_of([Name(name), value])))
+                for block in reversed(applied):
+                    value = Name(self._signal(f"{block}_out", product_of([Name(block), value])))
                 return value
         return expression
 

@@ -10,11 +10,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_mat, acb_poly, acb_series, arb, ctx
+from flint import acb, acb_mat, acb_series, arb
 
 from symflex.kernels import ModalSums, modal_amplitudes, mode_values
 from symflex.transfer.balls import ball
+from symflex.transfer.characteristic_roots import characteristic_roots
 from symflex.transfer.monomials import Value
+from symflex.transfer.square_root import NARROW, square_root
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -26,11 +28,6 @@ if TYPE_CHECKING:
 
 SIGNS = (1, -1)
 ZERO = acb(0)
-NOWHERE = acb("nan", "nan")
-NARROW = 2.0**-30
-"""Relative radius of balls whose square root needs no special care."""
-FINER = 2**30
-"""Parts of the least distance of two roots to which they are isolated at the second try."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +76,7 @@ class KernelValues:
                 shifts[id(law)] = self.value(law.shift, values)
             values.update(_wavenumbers(law, found, near))
         fundamental: dict[tuple[int, int], tuple[Value, ...]] = {}
-        roots = self._roots(coefficients)
+        roots = self._roots(coefficients, values)
         values.update(roots)
         for kernel in self.table.kernels:
             law = kernel.dispersion
@@ -116,15 +113,32 @@ class KernelValues:
         used = {id(m.dispersion) for m in self.sums.modes if not m.is_decay}
         return tuple((n, law) for n, law in enumerate(self.table.dispersions) if id(law) in used)
 
-    def _roots(self, coefficients: Mapping[int, Sequence[Value]]) -> dict[str, Value]:
+    def _roots(
+        self, coefficients: Mapping[int, Sequence[Value]], values: Mapping[str, Value]
+    ) -> dict[str, Value]:
         """Return the roots of all dispersions that have fundamental functions; none if some nearly meet."""
         found: dict[str, Value] = {}
         for number, law in self._laws:
-            roots = characteristic_roots(coefficients[id(law)])
+            centred = self._centred(law, values)
+            roots = characteristic_roots(coefficients[id(law)], centred, even=_is_even(law))
             if roots is None:
                 return {}
             found.update({_root_name(number, i): root for i, root in enumerate(roots)})
         return found
+
+    def _centred(self, law: Dispersion, values: Mapping[str, Value]) -> list[acb] | None:
+        """Return a law's coefficients in the middle of a wide ball of s, and how they move on it."""
+        s = values["s"]
+        ball = s[0] if isinstance(s, acb_series) else s
+        if ball.rad() < abs(ball).mid() * NARROW:
+            return None
+        middle = ball.mid()
+        there = {**values, "s": middle}
+        along = {**values, "s": expansion(ball)}
+        central = [_number(self.value(c, there)) for c in law.characteristic]
+        slopes = [self.value(c, along) for c in law.characteristic]
+        drift = [c[1] * (ball - middle) if isinstance(c, acb_series) else ZERO for c in slopes]
+        return [*central, *drift]
 
     def _modal_sum(self, polynomial: fmpz_mpoly, values: Mapping[str, Value]) -> Value:
         """Return a polynomial in fundamental functions without the cancellation of what grows fastest."""
@@ -197,16 +211,16 @@ def _wavenumbers(law: Dispersion, c: Sequence[Value], near: Mapping[str, Value] 
     found: tuple[Value, ...] = ()
     match law.kind:
         case "wave":
-            found = (_root(-c[0]),)
+            found = (square_root(-c[0]),)
         case "bending":
-            found = (_root(_root(c[0] / 4)),)
+            found = (square_root(square_root(c[0] / 4)),)
         case "pair":
             middle = -c[2] / 2
-            root = _root(middle * middle - c[0])
+            root = square_root(middle * middle - c[0])
             if near is not None:
                 first, second = (_middle(near[name]) for name in law.wavenumbers)
                 root = _closest((root, -root), (first * first - second * second) / 2)
-            found = (_root(middle + root), _root(middle - root))
+            found = (square_root(middle + root), square_root(middle - root))
     named = dict(zip(law.wavenumbers, found, strict=True))
     if near is None:
         return named
@@ -214,27 +228,6 @@ def _wavenumbers(law: Dispersion, c: Sequence[Value], near: Mapping[str, Value] 
         name: _closest(_turned(value, 4 if law.kind == "bending" else 2), _middle(near[name]))
         for name, value in named.items()
     }
-
-
-def _root(x: Value) -> Value:
-    """Return a square root that is analytic on the ball, tight where the ball is wide.
-
-    Whether the ball crosses the cut of the principal root does not matter then.
-    """
-    base = x[0] if isinstance(x, acb_series) else x
-    middle = base.mid()
-    if middle == 0:
-        return x.sqrt()
-    reach = (base / middle - 1).abs_upper()
-    if reach < NARROW:
-        return (x / middle).sqrt() * middle.sqrt()
-    if not reach < 1:
-        # Of a ball that holds 0 no branch is analytic.
-        return NOWHERE if isinstance(x, acb) else acb_series([NOWHERE, NOWHERE], 2)
-    # sqrt(m) sqrt(1 + e) with abs(e) <= d differs from sqrt(m) by at most (1 - sqrt(1 - d)) sqrt(m).
-    off = (1 - (1 - reach).sqrt()).upper()
-    root = middle.sqrt() * acb(arb(1, off), arb(0, off))
-    return acb_series([root, x[1] / (2 * root)], 2) if isinstance(x, acb_series) else root
 
 
 def _middle(value: Value) -> acb:
@@ -261,54 +254,17 @@ def _kernel(kernel: Kernel, argument: Value) -> Value:
     return argument.cos() if kernel.function == "cos" else argument.sin()
 
 
+def _is_even(law: Dispersion) -> bool:
+    """Tell whether waves of both directions are alike: roots come in pairs x, -x."""
+    return law.order % 2 == 0 and all(c.is_zero for c in law.characteristic[1::2])
+
+
+def _number(value: Value) -> acb:
+    return value[0] if isinstance(value, acb_series) else value
+
+
 def _root_name(dispersion: int, i: int) -> str:
     return f"x_{i}[{dispersion}]"
-
-
-def characteristic_roots(coefficients: Sequence[Value]) -> tuple[Value, ...] | None:
-    """Return enclosures of all roots of ``x^n + ... + c_0``, ``None`` where they cannot be told apart."""
-    base = [c[0] if isinstance(c, acb_series) else c for c in coefficients]
-    polynomial = acb_poly([*base, acb(1)])
-    slope = polynomial.derivative()
-    roots = _isolated(polynomial, slope)
-    if roots is None:
-        return None
-    found: list[Value] = []
-    for root in roots:
-        moving = [c[1] * root**i for i, c in enumerate(coefficients) if isinstance(c, acb_series)]
-        if moving:
-            found.append(acb_series([root, -sum(moving, acb(0)) / slope(root)], 2))
-        else:
-            found.append(root)
-    return tuple(found)
-
-
-def _isolated(polynomial: acb_poly, slope: acb_poly) -> list[acb] | None:
-    try:
-        discs = polynomial.roots()
-        found = [_refined(polynomial, slope, disc) for disc in discs]
-        gap = min((abs(a.mid() - b.mid()) for i, a in enumerate(discs) for b in discs[:i]), default=arb(1))
-        if not all(root is not None and root.rad() < gap / FINER for root in found):
-            # Told apart, but too roughly for Newton's method.
-            found = [_refined(polynomial, slope, disc) for disc in polynomial.roots(tol=gap.mid() / FINER)]
-    except ValueError:
-        return None
-    roots = [root for root in found if root is not None]
-    return roots if len(roots) == len(found) else None
-
-
-def _refined(polynomial: acb_poly, slope: acb_poly, disc: acb) -> acb | None:
-    """Return an isolated root to the working precision, by interval Newton steps (Moore 1966)."""
-    root = disc
-    for _ in range(ctx.prec.bit_length() + 2):
-        middle = root.mid()
-        step = middle - polynomial(middle) / slope(root)
-        if not step.is_finite():
-            return None
-        if step.rad() >= root.rad() / 2:
-            return step if step.rad() < root.rad() else root
-        root = step
-    return root
 
 
 def fundamental_functions(coefficients: Sequence[Value], length: Value) -> tuple[Value, ...]:

@@ -17,6 +17,7 @@ COMMANDS = (
     ("derive", "--format", "latex"),
     ("roots", "--json"),
     ("export", "--to", "numpy"),
+    ("export", "--to", "state-space"),
 )
 # One process runs all commands on one file: starting Python is most of the cost.
 CODE = """

@@ -14,8 +14,8 @@ from pathlib import Path
 import pytest
 
 from symflex import pipeline
-from symflex.emit.exporters import LatexExporter
 from symflex.emit.latex import DOCUMENT
+from symflex.emit.targets.latex import LatexExporter
 from tests.integration.test_latex_compiles import COMPLAINT, HOSTILE, LABELS, SAFE, UNITS
 from tests.unit.emit.test_numpy_hostile import HOSTILE as TEXTS
 

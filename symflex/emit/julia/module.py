@@ -10,6 +10,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from symflex.emit.infix import in_lines
 from symflex.emit.julia.expression import WIDTH
 from symflex.emit.julia.pieces import PrivateFunctions, support_of
 from symflex.emit.module_text import (
@@ -20,7 +21,15 @@ from symflex.emit.module_text import (
     headline,
     origin_lines,
 )
-from symflex.emit.program import Piecewise, Program, Verification, choose_programs, identifiers, wrapped
+from symflex.emit.program import (
+    Piecewise,
+    Program,
+    Verification,
+    choose_programs,
+    identifiers,
+    inert,
+    wrapped,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -37,9 +46,10 @@ KEYWORDS = frozenset(
 
 NAMES = frozenset(
     "pi im e Inf NaN Inf64 NaN64 nothing missing exp log sqrt sin cos tan sinh cosh tanh abs abs2 real imag "
-    "conj complex float signbit cis zero one zeros length eltype iszero isfinite all max min maximum ceil log2 "
-    "fill push findfirst zip Base Core Main LinearAlgebra Number Real Complex ComplexF64 Float64 Int Tuple Vector "
-    "Vararg Dict String NamedTuple eval include PARAMETERS TRANSFER_FUNCTIONS FREQUENCY_RESPONSES".split()
+    "conj complex float signbit cis zero one zeros length eltype iszero isfinite all max min maximum ceil "
+    "log2 fill push findfirst zip Base Core Main LinearAlgebra Number Real Complex ComplexF64 Float64 Int "
+    "Tuple Vector Vararg Dict String NamedTuple eval include PARAMETERS TRANSFER_FUNCTIONS "
+    "FREQUENCY_RESPONSES".split()
 )
 """What generated code uses, and names that a reader or the module itself would miss."""
 
@@ -217,13 +227,13 @@ def _header(model: Model, members: Sequence[_Member], digits: int) -> list[str]:
     if origin := origin_lines(model, WIDTH):
         lines += [*(_disarmed(line) for line in origin), ""]
     lines += wrapped(
-        "Written by symflex. Each function evaluates OUT/IN at the Laplace variable s [rad/s], a number; with "
-        "a dot, as in OUT_over_IN.(s), it takes arrays.",
+        "Written by symflex. Each function evaluates OUT/IN at the Laplace variable s [rad/s], a number; "
+        "with a dot, as in OUT_over_IN.(s), it takes arrays.",
         WIDTH,
     )
     own = [m for m in members if not m.program.is_real]
     for m in own:
-        text = _disarmed(f"{m.tf.name}: {m.verification.text(digits)}")
+        text = _disarmed(inert(f"{m.tf.name}: {m.verification.text(digits)}"))
         lines += ["", *wrapped(text, WIDTH)]
     return lines
 
@@ -247,7 +257,8 @@ def _function_table(table: str, members: Sequence[_Member], public: Mapping[str,
 
 
 def _exported(names: Sequence[str]) -> list[str]:
-    return wrapped(f"export {', '.join(names)}", WIDTH, "", "    ")
+    first, *others = in_lines(", ".join(names), WIDTH - len("export "))
+    return [f"export {first}", *(f"    {line}" for line in others)]
 
 
 def _public(member: _Member, functions: PrivateFunctions, digits: int) -> str:
@@ -273,7 +284,7 @@ def _public(member: _Member, functions: PrivateFunctions, digits: int) -> str:
         value = default_value(p)
         text = f"- {name}{f' = {value}' if value else ''}: {_disarmed(described(p, name))}"
         lines += wrapped(text, WIDTH, "", "  ")
-    lines += ["", *wrapped(_disarmed(f"{member.verification.text(digits)}."), WIDTH)]
+    lines += ["", *wrapped(_disarmed(inert(f"{member.verification.text(digits)}.")), WIDTH)]
     lines.append("Not finite at poles.")
     if isinstance(member.program, Piecewise) and member.program.solves:
         lines += wrapped(COST, WIDTH)

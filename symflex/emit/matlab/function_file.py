@@ -40,18 +40,19 @@ if TYPE_CHECKING:
 
 KEYWORDS = frozenset(
     "__FILE__ __LINE__ arguments break case catch classdef continue do else elseif end end_try_catch "
-    "end_unwind_protect endarguments endclassdef endenumeration endevents endfor endfunction endif endmethods "
-    "endparfor endproperties endspmd endswitch endwhile enumeration events for function global if methods "
+    "end_unwind_protect endarguments endclassdef endenumeration endevents endfor endfunction endif "
+    "endmethods endparfor "
+    "endproperties endspmd endswitch endwhile enumeration events for function global if methods "
     "otherwise parfor persistent properties return spmd switch try until unwind_protect "
     "unwind_protect_cleanup while".split()
 )
 """Of both languages."""
 
 FUNCTIONS = frozenset(
-    "i j pi e eps Inf inf NaN nan NA ans true false end nargin nargout varargin varargout exp log sqrt sin cos "
-    "tan sinh cosh tanh abs real imag conj complex any all size zeros ones reshape numel unique isempty "
-    "isnumeric islogical isreal isscalar isstruct isfield isa ischar char double error cell cellfun fieldnames "
-    "struct2cell mod max min find repmat eye eig diag ceil log2 isfinite sum struct".split()
+    "i j pi e eps Inf inf NaN nan NA ans true false end nargin nargout varargin varargout exp log sqrt sin "
+    "cos tan sinh cosh tanh abs real imag conj complex any all size zeros ones reshape numel unique isempty "
+    "isnumeric islogical isreal isscalar isstruct isfield isa ischar char double error cell cellfun "
+    "fieldnames struct2cell mod max min find repmat eye eig diag ceil log2 isfinite sum struct".split()
 )
 """What generated code uses, and constants that a reader would miss."""
 
@@ -61,6 +62,11 @@ WORDS = frozenset({"s", "G", "given", "value"})
 RESERVED = KEYWORDS | FUNCTIONS | NAMES | WORDS
 
 TITLE_LENGTH = 30
+
+EXPANSION = (
+    "s and parameters are expanded against each other, as operators expand them. "
+    "Values are not finite at poles."
+)
 
 _LINK = re.compile(r"<(?=[A-Za-z/])")
 
@@ -261,14 +267,12 @@ def _usage(
     """Return the body of the help text."""
     lines: list[str] = []
     if members:
-        member, field = members[0]
         lines += [
             f"G = {main.upper()}() is a struct of functions and of the model's parameters.",
             "",
             *_examples(main, members, parameters),
             "",
-            "s and parameters are expanded against each other, as operators expand them. Values are",
-            "not finite at poles.",
+            *wrapped(EXPANSION, _ROOM),
             "",
             "Functions",
         ]
@@ -299,7 +303,7 @@ def _examples(main: str, members: Sequence[tuple[_Member, str]], parameters: Map
         name, value = parameters[first.name], default_value(first) or "1.0"
         rows += [
             (f"G.{field}(s, '{name}', {value})", "another value, or an array of values"),
-            ("p = G.parameters;", "values in SI units, [] where there is none"),
+            ("p = G.parameters;", "in SI units, [] where there is none"),
             (f"p.{name} = {value};", ""),
             (f"G.{field}(s, p)", "a struct of values, all or some"),
         ]

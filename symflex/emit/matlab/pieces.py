@@ -152,8 +152,8 @@ class LocalFunctions:
                 lines += statement(name, printer.print(node))
             parts = self._function(f"[{', '.join(results)}]", f"{number}_parts", variable, lines)
             return [parts, self._mean(number, piece.circle)]
-        words = (self.variable, "value", "num", "den", *(["s"] if piece.is_complex else []))
-        printer, (variable, value, num, den, *place) = self._scope(assignments, *words)
+        wanted = [self.variable, "value", "num", "den", *(["s"] if piece.is_complex else [])]
+        printer, (variable, value, num, den, *place) = self._scope(assignments, *wanted)
         lines = []
         for s in place:
             printer = replace(printer, variable=s)

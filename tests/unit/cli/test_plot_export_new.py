@@ -93,10 +93,94 @@ def test_code_that_could_not_be_verified_ends_with_code_4_when_strict(shell):
     assert shell("export", "symbolic.toml", "--to", "numpy", "--strict").code == 4
 
 
+def test_a_target_of_two_files_writes_both(shell):
+    done = shell("export", "x.toml", "--to", "c", "--tf", "X/F", "-o", "plant.c")
+    assert (done.code, done.err) == (0, "wrote plant.c\nwrote plant.h\n")
+    assert '#include "plant.h"' in (shell.folder / "plant.c").read_text()
+    assert "plant_X_over_F_freq(" in (shell.folder / "plant.h").read_text()
+
+
+def test_the_name_of_a_file_that_belongs_beside_is_refused(shell):
+    done = shell("export", "x.toml", "--to", "c", "-o", "plant.h")
+    assert done.code == 2
+    assert "end its name with .c" in done.err
+    assert not (shell.folder / "plant.h").exists()
+
+
+def test_the_help_lists_all_targets(shell):
+    out = shell("export", "--help").out
+    assert all(f"\n  {name} " in out for name in EXPORTERS)
+
+
+def test_state_equations_are_written_and_run(shell):
+    assert shell("export", "x.toml", "--to", "state-space", "-o", "states.py").err == "wrote states.py\n"
+    space = {}
+    exec(compile((shell.folder / "states.py").read_text(), "states.py", "exec"), space)  # noqa: S102
+    a, b, c, _ = space["state_space"]()
+    # m x'' + k x = F with m = 2 and k = 18
+    assert (a.tolist(), b.tolist()) == ([[0, 1], [-9, 0]], [[0], [0.5]])
+    assert c[0].tolist() == [1, 0]
+
+
+def test_hidden_states_are_left_out_when_asked_for(shell):
+    text = 'symflex = 1\ninputs.F = { force = "x" }\noutputs.V = "s*x"\n[elements]\n'
+    (shell.folder / "free.toml").write_text(text + 'a = { type = "mass", at = "x", m = "2 kg" }\n', "utf-8")
+    whole = shell("export", "free.toml", "--to", "state-space").out
+    small = shell("export", "free.toml", "--to", "state-space", "--minimal").out
+    assert "np.zeros((2, 2))" in whole
+    assert "np.zeros((1, 1))" in small
+    assert "Every state is controllable and observable" in small
+
+
+def test_minimal_goes_with_state_equations_only(shell):
+    done = shell("export", "x.toml", "--to", "numpy", "--minimal")
+    assert done.code == 2
+    assert "--minimal is for --to state-space" in done.err
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ('blocks.D = { type = "delay", T = "1 s" }\ninputs.u = {}\noutputs.y = "D*u"', "SF235"),
+        ('inputs.u = {}\noutputs.y = "s*u"', "SF236"),
+    ],
+)
+def test_what_has_no_state_equations_ends_with_code_3_and_a_hint(shell, text, code):
+    (shell.folder / "none.toml").write_text(f"symflex = 1\n{text}\n", encoding="utf-8")
+    done = shell("export", "none.toml", "--to", "state-space")
+    assert (done.code, done.out) == (3, "")
+    assert f"error[{code}]" in done.err
+    assert "hint: " in done.err
+
+
 def test_an_unknown_target_is_a_usage_error_that_lists_the_targets(shell):
     done = shell("export", "x.toml", "--to", "fortran")
     assert done.code == 2
-    assert "targets: numpy, latex" in done.err
+    assert f"targets: {', '.join(EXPORTERS)}" in done.err
+
+
+def test_the_help_of_export_lists_the_targets(shell):
+    shown = " ".join(shell("export", "--help").out.split())
+    assert all(f"{name} {exporter.summary}" in shown for name, exporter in EXPORTERS.items())
+
+
+def test_a_function_file_s_main_function_is_called_as_the_file(shell):
+    assert shell("export", "x.toml", "--to", "matlab", "-o", "beam.m").err == "wrote beam.m\n"
+    assert (shell.folder / "beam.m").read_text().startswith("function G = beam()\n%BEAM ")
+    assert shell("export", "x.toml", "--to", "matlab").out.startswith("function G = x()\n")
+
+
+@pytest.mark.parametrize(("file", "name"), [("my-beam.m", "my_beam"), ("exp.m", "exp_"), ("2x.m", "p_2x")])
+def test_a_file_that_matlab_could_not_call_is_warned_of(shell, file, name):
+    done = shell("export", "x.toml", "--to", "matlab", "-o", file, "--strict")
+    assert done.code == 4
+    assert f"warning: MATLAB cannot call a file '{file}': name it '{name}.m'" in done.err
+    assert (shell.folder / file).read_text().startswith(f"function G = {name}()\n")
+
+
+def test_a_julia_module_is_called_after_its_file(shell):
+    assert shell("export", "x.toml", "--to", "julia", "-o", "my_beam.jl").code == 0
+    assert "\nmodule MyBeam\n" in (shell.folder / "my_beam.jl").read_text()
 
 
 def test_templates_are_listed_with_a_summary(shell):

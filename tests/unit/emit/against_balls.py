@@ -1,4 +1,4 @@
-"""What exported code of other languages is compared with: ball arithmetic over a band and beside resonances."""
+"""What exported code of other languages is compared with: balls over a band and beside resonances."""
 
 from __future__ import annotations
 
@@ -12,28 +12,28 @@ BITS = 400
 FREQUENCIES = 400
 
 
-def band_of(model):
-    return model.analysis.band or DEFAULT_BAND
-
-
 def axis_points(tf, samples=FREQUENCIES):
     """Return angular frequencies [rad/s]: evenly on a logarithmic scale, and beside poles and zeros."""
-    return 2 * np.pi * sample_frequencies(bind(tf), band_of(tf.model), samples)
+    band = tf.model.analysis.band or DEFAULT_BAND
+    return 2 * np.pi * sample_frequencies(bind(tf), band, samples)
 
 
-def errors(tf, points, values, given=None):
-    """Return upper bounds of |dG| / (|G| (1 + |s G'/G|)) at every point that is no pole or zero."""
+def worst_errors(tf, points, *computed, given=None):
+    """Return bounds of |dG| / (|G| (1 + |s G'/G|)), one for each list of values, not at poles and zeros."""
     enclosed = bind(tf, given or {}).enclosed(BITS)
-    found = []
+    worst, count = [0.0] * len(computed), 0
     with ctx.workprec(BITS):
-        for s, value in zip(points, values, strict=True):
-            s, value = acb(complex(s).real, complex(s).imag), complex(value)
-            exact = enclosed(s)
-            size = abs(exact) * (1 + abs(s * enclosed.logarithmic_derivative(s)))
+        for s, *values in zip(map(complex, points), *computed, strict=True):
+            point = acb(s.real, s.imag)
+            exact = enclosed(point)
+            size = abs(exact) * (1 + abs(point * enclosed.logarithmic_derivative(point)))
             if not (size.is_finite() and size > 0):
                 continue
-            if not np.isfinite(value):
-                found.append(float("inf"))
-                continue
-            found.append(float((abs(acb(value.real, value.imag) - exact) / size).upper()))
-    return found
+            count += 1
+            for i, value in enumerate(map(complex, values)):
+                error = float("inf")
+                if np.isfinite(value):
+                    error = float((abs(acb(value.real, value.imag) - exact) / size).upper())
+                worst[i] = max(worst[i], error)
+    assert count > len(points) / 2
+    return worst

@@ -8,9 +8,9 @@ from dataclasses import replace
 import pytest
 
 from symflex import pipeline
-from symflex.emit.exporters import LatexExporter
 from symflex.emit.forms import print_form
 from symflex.emit.latex import DOCUMENT, latex_files
+from symflex.emit.targets.latex import LatexExporter
 from tests.unit.emit.test_html import MARKUP, SPEC
 from tests.unit.emit.test_latex_text import COMMANDS as OF_TEXT
 from tests.unit.emit.test_numpy_hostile import HOSTILE

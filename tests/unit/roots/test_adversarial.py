@@ -488,6 +488,7 @@ def test_certified_roots_on_the_boundary_are_in_and_say_so(case):
         assert root.on_boundary == at_a_limit
 
 
+@pytest.mark.slow
 def test_certified_no_mode_of_three_beams_is_missing():
     bound = symflex.loads(THREE_BEAMS).transfer_function("X", "F").bind()
     result = bound.pole_zero_map(digits=30, region=THEIR_REGION)

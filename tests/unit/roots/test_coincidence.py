@@ -52,7 +52,7 @@ def upper(roots):
     return [float(root.im.mid()) for root in roots if root.im > 0]
 
 
-@pytest.mark.parametrize("is_counted_at_once", [True, False])
+@pytest.mark.parametrize("is_counted_at_once", [True, pytest.param(False, marks=pytest.mark.slow)])
 def test_a_search_repeated_with_proof_keeps_hidden_modes_hidden(rods, monkeypatch, is_counted_at_once):
     if not is_counted_at_once:
         monkeypatch.setattr(Side, "counted", lambda self: Proof(0, 0, "for this test"))

@@ -1,0 +1,188 @@
+"""Exported code against other ways: C on the frequency axis, against numpy and against C by hand.
+
+The function is V_act/F of the sliding-free beam (derivations/eppinger1988). What is exported and what is
+written by hand are compiled with the same flags, once for any processor and once for this one, whose vector
+instructions numpy finds by itself when it runs. All ways run in one process and take turns; each counts with
+its fastest run, in processor time. C by hand is what a careful person would write: one sine, cosine and
+decaying exponential per frequency, and a series near zero.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import math
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from benchmarks.distributed import AGREEMENT, BAND_HZ, POINTS, ROUNDS, SPECIFICATION, exported_module
+from benchmarks.measure import Claim, Measurement
+from symflex import pipeline
+from symflex.emit.c import c_files
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+TASK = "exported C: sliding-free beam at a million frequencies"
+FLAGS = {"-O2": ["-std=c99", "-O2"], "-O2 -march=native": ["-std=c99", "-O2", "-march=native"]}
+
+FASTER_THAN_NUMPY = 2.5
+SLOWER_THAN_BY_HAND = 1.3
+
+BY_HAND = r"""
+#include <math.h>
+#include <stddef.h>
+
+void by_hand(const double *omega, double *real, double *imag, size_t n,
+             double E, double I, double rho, double A, double l)
+{
+    const double c = l * sqrt(sqrt(rho * A / (E * I))), m = rho * A * l;
+    for (size_t i = 0; i < n; i++) {
+        const double x = c * sqrt(omega[i]);
+        real[i] = 0.0;
+        if (x < 1.0) {
+            const double z = x * x * x * x / 4.0;
+            const double above = 1.0 - z * (1.0 / 3 - z * (1.0 / 315 - z * (2.0 / 467775)));
+            const double below = 1.0 - z * (2.0 / 15 - z * (2.0 / 2835 - z * (4.0 / 6081075)));
+            imag[i] = -above / (m * omega[i] * below);
+        } else {
+            const double e = exp(-x), sine = sin(x), cosine = cos(x), square = e * e;
+            const double above = 2.0 * e + (1.0 + square) * cosine;
+            const double below = (1.0 - square) * cosine + (1.0 + square) * sine;
+            imag[i] = -x * above / (m * omega[i] * below);
+        }
+    }
+}
+"""
+"""V_act/F = (x/(j omega m)) (1 + cosh x cos x)/(cosh x sin x + sinh x cos x), over cosh x."""
+
+
+def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
+    """Measure all ways, as many rounds as fit in ``limit`` seconds, and compare; nothing without ``cc``.
+
+    Raises
+    ------
+    RuntimeError
+        When the ways do not compute the same function.
+    """
+    if shutil.which("cc") is None:
+        print("skipped, there is no C compiler `cc`: exported C", file=sys.stderr)
+        return [], []
+    omega = 2.0 * math.pi * np.geomspace(*BAND_HZ, POINTS)
+    with tempfile.TemporaryDirectory() as folder:
+        ways = _ways(omega, Path(folder))
+        best = _fastest(ways, limit)
+    found = [Measurement(TASK, name, seconds, limit) for name, seconds in best.items()]
+    by_numpy, _, ours, by_hand, ours_native, by_hand_native = (m.at_least for m in found)
+    return found, [
+        # Code for any processor has vectors of two numbers only: too near the bound to enforce it.
+        Claim(
+            "exported C (`-O2`): times as fast as the numpy module",
+            FASTER_THAN_NUMPY,
+            by_numpy / ours,
+            is_ratio=False,
+        ),
+        Claim(
+            "exported C (`-O2 -march=native`): times as fast as the numpy module",
+            FASTER_THAN_NUMPY,
+            by_numpy / ours_native,
+        ),
+        Claim(
+            "exported C (`-O2`): times as long as C by hand",
+            SLOWER_THAN_BY_HAND,
+            ours / by_hand,
+            larger_is_better=False,
+        ),
+        Claim(
+            "exported C (`-O2 -march=native`): times as long as C by hand",
+            SLOWER_THAN_BY_HAND,
+            ours_native / by_hand_native,
+            larger_is_better=False,
+        ),
+    ]
+
+
+def _fastest(ways: dict[str, Callable[[], NDArray[Any]]], limit: float) -> dict[str, float]:
+    """Return the fastest run of every way, in seconds."""
+    best = dict.fromkeys(ways, math.inf)
+    begin = time.process_time()
+    with np.errstate(all="ignore"):
+        first, *others = (way() for way in ways.values())
+        for name, other in zip(list(ways)[1:], others, strict=True):
+            if np.median(np.abs(other - first) / np.abs(first)) > AGREEMENT:
+                message = f"{name} does not agree"
+                raise RuntimeError(message)
+        for _ in range(ROUNDS):
+            for name, way in ways.items():
+                started = time.process_time()
+                way()
+                best[name] = min(best[name], time.process_time() - started)
+            if time.process_time() - begin > limit:
+                break
+    return best
+
+
+def _ways(omega: NDArray[Any], folder: Path) -> dict[str, Callable[[], NDArray[Any]]]:
+    """Return the ways to compute the imaginary parts, without arguments."""
+    model = pipeline.load(SPECIFICATION)
+    files = c_files(pipeline.derive_all(model), model, name="exported_beam")
+    module = exported_module()
+    (folder / "exported_beam.c").write_text(files.source, encoding="utf-8")
+    (folder / "exported_beam.h").write_text(files.header, encoding="utf-8")
+    (folder / "by_hand.c").write_text(BY_HAND, encoding="utf-8")
+    s = 1j * omega
+    ways: dict[str, Callable[[], NDArray[Any]]] = {
+        "`--to numpy`, `V_act_over_F(1j*omega)`": lambda: module.V_act_over_F(s).imag,
+        "`--to numpy`, `V_act_over_F_at(omega)` in real arithmetic": lambda: (
+            module.V_act_over_F_at(omega).imag
+        ),
+    }
+    values = [module.PARAMETERS[name]["value"] for name in ("E", "I", "rho", "A", "l")]
+    for number, (name, flags) in enumerate(FLAGS.items()):
+        library = folder / f"beam_{number}.so"
+        sources = ["exported_beam.c", "by_hand.c"]
+        command = ["cc", *flags, "-shared", "-fPIC", "-o", str(library), *sources, "-lm"]
+        subprocess.run(command, cwd=folder, check=True)
+        loaded = ctypes.CDLL(str(library))
+        ways[f"`--to c`, `V_act_over_F_freq`, {name}"] = _exported(loaded, omega)
+        ways[f"C by hand, {name}"] = _by_hand(loaded, omega, values)
+    return ways
+
+
+def _exported(library: ctypes.CDLL, omega: NDArray[Any]) -> Callable[[], NDArray[Any]]:
+    real, imag = np.empty_like(omega), np.empty_like(omega)
+    defaults = ctypes.c_double.in_dll(library, "exported_beam_defaults")
+    arguments = (*map(_pointer, (omega, real, imag)), ctypes.c_size_t(omega.size), ctypes.byref(defaults))
+
+    def run() -> NDArray[Any]:
+        library.exported_beam_V_act_over_F_freq(*arguments)
+        return imag
+
+    return run
+
+
+def _by_hand(library: ctypes.CDLL, omega: NDArray[Any], values: list[float]) -> Callable[[], NDArray[Any]]:
+    real, imag = np.empty_like(omega), np.empty_like(omega)
+    arguments = (
+        *map(_pointer, (omega, real, imag)),
+        ctypes.c_size_t(omega.size),
+        *map(ctypes.c_double, values),
+    )
+
+    def run() -> NDArray[Any]:
+        library.by_hand(*arguments)
+        return imag
+
+    return run
+
+
+def _pointer(array: NDArray[Any]) -> Any:  # noqa: ANN401
+    return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))

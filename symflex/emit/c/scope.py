@@ -1,0 +1,173 @@
+"""The body of a C function while it is printed: its variables, and the statements that make them."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field, replace
+from itertools import count
+from textwrap import TextWrapper
+from typing import TYPE_CHECKING
+
+from symflex.emit.c.expression import Kind, Printer, Term, complex_term
+from symflex.emit.c.names import TAKEN
+from symflex.emit.program import Assignment, Node, Solutions, identifiers
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+WIDTH = 88
+STEP = "    "
+
+S = Term("s", Kind.COMPLEX, varies=True)
+AXIS = Term("w", Kind.IMAGINARY, varies=True)
+POSITIVE = Term("w", Kind.REAL, varies=True)
+LANE = Term("w[j]", Kind.REAL, varies=True)
+"""What s is: complex; j w; the frequency w of a response in real arithmetic, alone or one of several."""
+
+_NUMBERED = re.compile(r"[a-z]_\d{1,9}")
+
+
+def statement(opening: str, value: str, depth: int) -> list[str]:
+    """Return ``opening value;`` on as many lines as it needs.
+
+    Examples
+    --------
+    >>> statement("return", "a + b", 1)
+    ['    return a + b;']
+    """
+    indent = STEP * depth
+    line = f"{indent}{opening} {value};"
+    if len(line) <= WIDTH:
+        return [line]
+    # Only between operators: an identifier longer than a line stays whole.
+    wrapper = TextWrapper(
+        width=WIDTH,
+        initial_indent=indent,
+        subsequent_indent=indent + STEP,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+    return wrapper.wrap(f"{opening} {value};")
+
+
+@dataclass
+class Scope:
+    """The variables of one C function, and the statements that make them.
+
+    Parameters
+    ----------
+    parameters : mapping of str to str
+        Identifiers of the variables that hold parameters, by the names in the model.
+    s : Term
+        What s is.
+    depth : int
+        How far statements are indented.
+    lines : list of str
+        The statements so far.
+    known : dict of str to Term
+        Assigned values by their names in the program.
+    used : set of str
+        Names of the parameters in use.
+    orders : set of int
+        Orders of the differential equations solved.
+    """
+
+    parameters: Mapping[str, str]
+    s: Term
+    depth: int = 1
+    lines: list[str] = field(default_factory=list)
+    known: dict[str, Term] = field(default_factory=dict)
+    used: set[str] = field(default_factory=set)
+    orders: set[int] = field(default_factory=set)
+    _taken: set[str] = field(default_factory=set)
+    _shared: dict[tuple[str, Kind], Term] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, members: Mapping[str, str], s: Term) -> Scope:
+        """Return the scope of a function of parameters that are members of a structure."""
+        own = cls(identifiers(members, TAKEN), s)
+        own._taken |= {*TAKEN, *own.parameters.values()}
+        return own
+
+    def within(self, depth: int | None = None) -> Scope:
+        """Return the scope of a block: it sees these variables, and what it makes stays known to itself."""
+        return replace(self, depth=depth or self.depth + 1, lines=[], known=dict(self.known))
+
+    def name(self, wanted: str) -> str:
+        """Return an identifier that nothing else in the function has."""
+        found = wanted
+        if not _NUMBERED.fullmatch(wanted):
+            found = identifiers({"": wanted}, self._taken)[""]
+        elif wanted in self._taken:
+            stem, _, number = wanted.partition("_")
+            others = (f"{stem}_{n}" for n in count(int(number)))
+            found = next(other for other in others if other not in self._taken)
+        self._taken.add(found)
+        return found
+
+    @property
+    def printer(self) -> Printer:
+        """Prints expressions of these variables."""
+        in_lanes = self.s == LANE
+        return Printer(self._parameter, self.known, self.s, self._array, self._hold, in_lanes)
+
+    def term(self, node: Node) -> Term:
+        """Return an expression of these variables."""
+        return self.printer.print(node)
+
+    def say(self, opening: str, value: str) -> None:
+        """Add a statement."""
+        self.lines += statement(opening, value, self.depth)
+
+    def add(self, *lines: str) -> None:
+        """Add lines as they are, indented."""
+        self.lines += [STEP * self.depth + line for line in lines]
+
+    def assign(self, assignments: Sequence[Assignment]) -> None:
+        """Make variables; what is free of s and made already is not made again."""
+        for assignment in assignments:
+            if isinstance(assignment.value, Solutions):
+                self.known[assignment.name] = self._array(assignment.value, assignment.name)
+                continue
+            term = self.printer.whole(assignment.value)
+            key = (term.text, term.kind)
+            if term.varies:
+                self.known[assignment.name] = self.hold(assignment.name, term)
+                continue
+            if key not in self._shared:
+                self._shared[key] = self.hold(assignment.name, term)
+            self.known[assignment.name] = self._shared[key]
+
+    def hold(self, wanted: str, term: Term) -> Term:
+        """Make a variable with a value."""
+        name = self.name(wanted)
+        self.say(f"const {term.kind.type} {name} =", term.text)
+        return Term(name, term.kind, term.varies, is_signed=term.is_signed)
+
+    def opening(self, members: Mapping[str, str]) -> list[str]:
+        """Return the lines that take the parameters in use out of their structure."""
+        lines = [
+            f"{STEP}const double {variable} = p->{members[name]};"
+            for name, variable in self.parameters.items()
+            if name in self.used
+        ]
+        return lines or [f"{STEP}(void)p;"]
+
+    def _hold(self, term: Term) -> Term:
+        return self.hold("t_1" if term.varies else "c_1", term)
+
+    def _parameter(self, name: str) -> str:
+        self.used.add(name)
+        return self.parameters[name]
+
+    def _array(self, node: Node, wanted: str = "solutions") -> Term:
+        if not isinstance(node, Solutions):
+            message = f"no text for {type(node).__name__}"
+            raise TypeError(message)
+        terms = [self.term(c) for c in node.coefficients]
+        order = len(terms)
+        self.orders.add(order)
+        given, found = self.name("coefficients"), self.name(wanted)
+        self.say(f"const cx {given}[{order}] =", f"{{{', '.join(complex_term(t).text for t in terms)}}}")
+        self.add(f"cx {found}[{order}];", f"cx_series({given}, {order}, {node.terms}, {found});")
+        return Term(found, Kind.COMPLEX, any(t.varies for t in terms))

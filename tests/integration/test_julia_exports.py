@@ -1,0 +1,124 @@
+"""Exported Julia modules against ball arithmetic: read as Python, and run where there is Julia."""
+
+from __future__ import annotations
+
+import re
+import shutil
+
+import numpy as np
+import pytest
+
+from symflex.emit.julia import julia_module
+from symflex.emit.program.verify import doubles
+from symflex.transfer import bind
+from tests.integration.julia import Julia
+from tests.integration.julia_in_python import functions_of
+from tests.unit.emit.against_balls import axis_points, worst_errors
+from tests.unit.emit.exportable import DERIVATIONS, SPECS, derived, public_name
+
+ACCURACY = 1e-13
+
+# Debian has had no package of Julia since version 11, so its absence is no failure anywhere.
+needs_julia = pytest.mark.skipif(shutil.which("julia") is None, reason="julia is not installed")
+
+
+@pytest.fixture
+def julia(tmp_path):
+    return Julia(tmp_path)
+
+
+def exported(name, samples=400):
+    model, tfs = derived(name)
+    return tfs, julia_module(tfs, model, name, samples=samples)
+
+
+def read(function, tf, points):
+    """Return values of a private function read as Python."""
+    values = doubles(bind(tf))
+    given = [values[p.name] for p in tf.parameters]
+    return [function(p, *given) for p in points.tolist()]
+
+
+def test_every_model_read_as_python_agrees_with_balls_over_its_band_and_beside_its_resonances():
+    count = 0
+    for name in DERIVATIONS:
+        tfs, made = exported(name)
+        functions = functions_of(made.text)
+        for tf in tfs:
+            w = axis_points(tf)
+            computed = [read(functions[f"_{public_name(tf)}"], tf, 1j * w)]
+            if f"_{public_name(tf)}_at" in functions:
+                computed.append(read(functions[f"_{public_name(tf)}_at"], tf, w))
+            assert max(worst_errors(tf, 1j * w, *computed)) <= ACCURACY, tf.name
+            count += len(computed)
+    assert count > 60
+
+
+@pytest.mark.parametrize("name", ["two_beams", "tension", "delayed", "chain"])
+def test_what_else_a_program_can_hold_read_as_python_agrees(name):
+    (tf,), made = exported(name, samples=30)
+    functions = functions_of(made.text)
+    w = axis_points(tf, 30)
+    turned = w[::5] * np.exp(1j * np.linspace(0.3, 6.0, len(w[::5])))
+    s = np.concatenate([1j * w, turned if name != "delayed" else []])
+    assert worst_errors(tf, s, read(functions["_X_over_F"], tf, s))[0] <= ACCURACY
+    if name == "two_beams":
+        assert worst_errors(tf, -1j * w, read(functions["_X_over_F_at"], tf, -w))[0] <= ACCURACY
+
+
+def test_powers_that_overflow_are_taken_of_one_over_s():
+    (tf,), made = exported("chain", samples=30)
+    s = np.array([1e3j, 1e8j, 1e16j, 1e18 + 1e18j, 1e25, -1e30j, 2.0])
+    assert worst_errors(tf, s, read(functions_of(made.text)["_X_over_F"], tf, s))[0] <= ACCURACY
+
+
+@pytest.mark.parametrize("name", ["six_mass", "timoshenko_cantilever", "robot_axis", *SPECS])
+def test_blocks_and_brackets_are_balanced(name):
+    _, made = exported(name, samples=5)
+    code = re.sub(r'"""(?:[^"\\]|\\.|"(?!""))*"""|"(?:[^"\\\n]|\\.)*"', '""', made.text)
+    code = re.sub(r"#.*", "", code)
+    for pair in ("()", "[]", "{}"):
+        depth = 0
+        for c in code:
+            depth += (c == pair[0]) - (c == pair[1])
+            assert depth >= 0
+        assert depth == 0
+    opened = re.findall(r"^\s*(?:module|function|if|for)\b", code, re.MULTILINE)
+    closed = re.findall(r"^\s*end\b", code, re.MULTILINE)
+    assert len(opened) == len(closed)
+
+
+@pytest.mark.slow
+@needs_julia
+def test_every_model_run_in_julia_agrees_with_balls(julia):
+    asked = []
+    for name in (*DERIVATIONS, *SPECS):
+        samples = 400 if name in DERIVATIONS else 30
+        tfs, made = exported(name, samples)
+        julia.write(name, made.text)
+        for tf in tfs:
+            w = axis_points(tf, samples)
+            function = f"{made.name}.{public_name(tf)}"
+            keys = [julia.keep(f"{function}.({julia.points(1j * w)})")]
+            if f"function {public_name(tf)}_at(" in made.text:
+                keys.append(julia.keep(f"{function}_at.(real.({julia.points(w)}))"))
+            asked.append((tf, w, 1e-8 if name == "massless_beam" else ACCURACY, keys))
+    julia.run()
+    for tf, w, worst, keys in asked:
+        assert max(worst_errors(tf, 1j * w, *(julia.value(k) for k in keys))) <= worst, tf.name
+
+
+@needs_julia
+def test_parameters_are_keywords_and_scalars_give_scalars(julia):
+    (tf, *_), made = exported("sliding_free_beam", samples=5)
+    julia.write("beam", made.text)
+    function = public_name(tf)
+    julia.do(f"using .{made.name}; const M = {made.name}; const G = {function}; const H = {function}_at")
+    key = julia.keep("G.([3im, 400im], l = 0.8)")
+    julia.do("print(typeof(G(3im, l = 1)), ' ', typeof(H(3)), ' ', H(-3) == conj(H(3)), ' ')")
+    julia.do(f'print(M.PARAMETERS.l.unit, " ", M.TRANSFER_FUNCTIONS["{tf.name}"] == G, " ")')
+    julia.do(f'print(occursin("verified", string(@doc {function})), " ", isfinite(H(0)))')
+    printed = julia.run()
+    assert printed.split() == ["Complex{Float64}", "Complex{Float64}", "true", "m", "true", "true", "false"]
+    for value, s in zip(julia.value(key), (3j, 400j), strict=True):
+        assert abs(value / bind(tf, {"l": 0.8})(s) - 1) < 1e-12

@@ -1,0 +1,127 @@
+"""Models that between them need everything a program tree can ask of a language."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from symflex import pipeline
+
+DERIVATIONS = {p.stem: p for p in sorted((Path(__file__).parents[3] / "derivations").rglob("*.toml"))}
+
+BAR = 'E = "70 GPa"\nI = "1e-8 m^4"\nrho = "2700 kg/m^3"\nA = "1e-4 m^2"\nl = "1 m"\n'
+BEAM = 'type = "beam", E = "E", I = "I", rho = "rho", A = "A"'
+
+# Two wavenumbers, pieces of complex s in a response in real arithmetic, and a definition that takes a name.
+TWO_BEAMS = f"""symflex = 1
+[parameters]
+{BAR}l_2 = "0.3 m"
+I_2 = "3e-8 m^4"
+[elements]
+arm = {{ {BEAM}, between = ["ground", "q"], l = "l" }}
+end = {{ type = "beam", between = ["q", "r"], E = "E", I = "I_2", rho = "rho", A = "A", l = "l_2" }}
+[inputs]
+F = {{ force = "r" }}
+[outputs]
+X = "r"
+"""
+
+TENSION = f"""symflex = 1
+[parameters]
+{BAR}N = "500 N"
+k_f = "1 kN/m^2"
+[elements]
+arm = {{ {BEAM}, between = ["ground", "q"], l = "l", N = "N", k_f = "k_f" }}
+[inputs]
+F = {{ force = "q" }}
+[outputs]
+X = "q"
+"""
+
+DELAY = """symflex = 1
+[parameters]
+m = "2 kg"
+k = "300 N/m"
+g = "5 N*s/m"
+T_s = "5 ms"
+[blocks]
+D = { type = "delay", T = "T_s" }
+[elements]
+body = { type = "mass", at = "x", m = "m" }
+spring = { type = "spring", between = ["x", "ground"], k = "k" }
+feedback = { type = "force_source", at = "x", f = "-g*D*s*x" }
+[inputs]
+F = { force = "x" }
+[outputs]
+X = "x"
+"""
+
+# Wavenumbers without a formula: sums over characteristic roots, power series, means over a circle.
+PIPE = """symflex = 1
+[parameters]
+EI = "100 N*m^2"
+m = "3 kg/m"
+m_f = "1 kg/m"
+U = "5 m/s"
+l = "2 m"
+[fields.w]
+domain = ["0", "l"]
+equation = "EI*w'''' + m_f*U^2*w'' + 2*m_f*U*s*w' + m*s^2*w = p"
+conditions = ["w(0) = 0", "w''(0) = 0", "w(l) = 0", "w''(l) = 0"]
+[inputs]
+p = { unit = "N/m" }
+[outputs]
+Y = "w(l/2)"
+[analysis]
+band = ["0.1 Hz", "20 Hz"]
+"""
+
+# Roots that are equal at every s: matrix exponentials.
+MASSLESS = """symflex = 1
+[parameters]
+EI = "4e-3 N*m^2"
+N = "1 N"
+m = "0.1 kg"
+l = "1 m"
+[fields.w]
+domain = ["0", "l"]
+equation = "EI*w'''' - N*w'' = 0"
+conditions = ["w(0) = 0", "w'(0) = 0", "w''(l) = 0", "EI*w'''(l) - N*w'(l) = m*s^2*w(l) - F"]
+[inputs]
+F = { unit = "N" }
+[outputs]
+Y = "w(l)"
+"""
+
+
+def _chain(count):
+    """Return a chain of masses so long that powers of s overflow: it has a far branch."""
+    lines = ["symflex = 1", "[parameters]", 'm = "1 kg"', 'k = "100 N/m"', 'b = "0.1 N*s/m"', "[elements]"]
+    for i in range(count):
+        below = f"x{i - 1}" if i else "ground"
+        lines += [
+            f'm{i} = {{ type = "mass", at = "x{i}", m = "m" }}',
+            f'k{i} = {{ type = "spring", between = ["x{i}", "{below}"], k = "k" }}',
+            f'b{i} = {{ type = "damper", between = ["x{i}", "ground"], b = "b" }}',
+        ]
+    lines += ["[inputs]", 'F = { force = "x0" }', "[outputs]", 'X = "x0"']
+    return "\n".join([*lines, "[analysis]", 'band = ["0.1 Hz", "100 Hz"]', ""])
+
+
+SPECS = {
+    "two_beams": TWO_BEAMS,
+    "tension": TENSION,
+    "delayed": DELAY,
+    "pipe_with_flow": PIPE,
+    "massless_beam": MASSLESS,
+    "chain": _chain(12),
+}
+
+
+def derived(name):
+    """Return a model and its transfer functions."""
+    model = pipeline.load(DERIVATIONS[name]) if name in DERIVATIONS else pipeline.loads(SPECS[name])
+    return model, pipeline.derive_all(model)
+
+
+def public_name(tf):
+    return f"{tf.output.name}_over_{tf.input.name}"

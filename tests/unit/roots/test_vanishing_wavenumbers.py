@@ -1,0 +1,111 @@
+"""Roots where a wavenumber vanishes, to as many digits as are asked for, against the motion known there.
+
+A free beam moves as a rigid body where a foundation's stiffness and the mass cancel: w = 1 solves
+E I w'''' - N w'' + (rho A s^2 + c_f s + k_f) w = 0 with free ends where the bracket is zero, whatever the
+axial force and the rotary inertia are. One of its wavenumbers vanishes there. In the Timoshenko theory one
+vanishes at the cut-off frequency, kappa G A = -rho I s^2, where a pinned beam turns all its sections alike
+(w = 0, phi = 1).
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+from mpmath import mpc, mpf, sqrt, workdps
+
+from symflex import pipeline
+from symflex.roots import Band, Modes
+from symflex.roots.locate import locate
+from symflex.roots.multiprecision import to_complex_mpmath, to_mpmath
+
+BEAM = """
+symflex = 1
+[elements.b]
+type    = "beam"
+between = ["a", "c"]
+E       = "4 Pa"
+I       = "1 m^4"
+rho     = "2 kg/m^3"
+A       = "1 m^2"
+l       = "1 m"
+{more}
+{ends}
+[inputs]
+F = {{ {load} }}
+[outputs]
+Y = "{output}"
+"""
+AXIAL = 'N = "3 N"\nk_f = "14 N/m^2"'
+DAMPED = 'N = "3 N"\nk_f = "18 N/m^2"\nc_f = "1 N*s/m^2"'
+RAYLEIGH = 'theory = "rayleigh"\nk_f = "14 N/m^2"'
+TIMOSHENKO = 'theory = "timoshenko"\nkappa = "0.5"\nG = "28 Pa"'
+PINNED = '[elements]\np = { type = "pin", at = "a" }\nq = { type = "pin", at = "c" }'
+
+
+def solved(more, digits, region, ends="", load='force = "a.y"', output="a.y"):
+    model = pipeline.loads(BEAM.format(more=more, ends=ends, load=load, output=output))
+    (bound,) = pipeline.derive_bound(model, model.transfer_functions)
+    return locate(bound, region, digits)
+
+
+def check(roots, expected, digits):
+    """Exactly one root has the expected value, with its radius and all digits."""
+    with workdps(digits + 20):
+        near = [r for r in roots if abs(to_complex_mpmath(r.enclosure()) - expected()) < mpf("1e-3")]
+        (root,) = near
+        value, radius = to_complex_mpmath(root.enclosure()), to_mpmath(root.re.rad() + root.im.rad())
+        assert root.certified
+        assert root.multiplicity == 1
+        assert abs(value - expected()) <= radius + mpf(10) ** (-digits - 10)
+        assert radius < 10 * abs(expected()) * mpf(10) ** -digits
+    assert len(root.decimal(digits).im.replace(".", "").lstrip("-0")) >= digits - 1
+    return root
+
+
+@pytest.mark.parametrize("digits", [15, 100, pytest.param(340, marks=pytest.mark.slow)])
+def test_translation_of_a_free_beam_on_a_foundation(digits):
+    result = solved(AXIAL, digits, Modes(1))
+    root = check(result.poles, lambda: mpc(0, sqrt(7)), digits)
+    assert root.on_imaginary_axis
+    assert len(result.poles) == 2
+    assert result.certificate.certified
+
+
+def test_translation_on_a_damped_foundation():
+    # 2 s^2 + s + 18 = 0
+    result = solved(DAMPED, 60, Modes(1))
+    check(result.poles, lambda: mpc(-0.25, sqrt(143) / 4), 60)
+    assert result.certificate.certified
+
+
+def test_translation_with_rotary_inertia():
+    result = solved(RAYLEIGH, 60, Modes(2))
+    assert check(result.poles, lambda: mpc(0, sqrt(7)), 60).on_imaginary_axis
+    assert result.certificate.certified
+
+
+@pytest.mark.slow
+def test_where_two_wavenumbers_meet_there_is_no_mode():
+    # w'''' - (3/4) w'' + (s^2 + 7)/2 w = 0 has double wavenumbers where (3/4)^2 = 2 (s^2 + 7).
+    result = solved(AXIAL, 40, Modes(3), output="c.y")
+    meeting = sqrt(mpf(7) - mpf(9) / 32)
+    found = [*result.poles, *result.zeros, *(h.root for h in result.hidden)]
+    assert result.certificate.certified
+    assert not any(abs(float(root.im.mid()) - float(meeting)) < 1e-3 for root in found)
+
+
+def test_sections_of_a_pinned_timoshenko_beam_turn_alike_at_the_cut_off_frequency():
+    cut_off = Band(Fraction("0.4"), Fraction("0.44"))  # sqrt(7) rad/s = 0.421 Hz
+    result = solved(TIMOSHENKO, 50, cut_off, PINNED, 'torque = "a.theta"', "a.theta")
+    assert check(result.poles, lambda: mpc(0, sqrt(7)), 50).on_imaginary_axis
+    assert result.certificate.certified
+
+
+@pytest.mark.slow
+def test_a_free_timoshenko_beam_has_no_mode_at_the_cut_off_frequency():
+    # Its shear force, kappa G A (w' - phi), is not zero at the ends.
+    result = solved(TIMOSHENKO, 20, Modes(2), output="c.y")
+    found = [*result.poles, *result.zeros, *(h.root for h in result.hidden)]
+    assert result.certificate.certified
+    assert not any(abs(float(root.im.mid()) - float(sqrt(mpf(7)))) < 1e-3 for root in found)

@@ -1,0 +1,124 @@
+"""What inputs do not reach, or outputs do not show, is left out, and nothing else."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import sympy
+from hypothesis import HealthCheck, given, settings
+
+import symflex
+from symflex import pipeline
+from symflex.errors import BudgetError, ModelError
+from symflex.model import with_numbers
+from symflex.state_space import minimal, realise
+from symflex.state_space.rounding import response, rounded
+from tests.property.networks import networks, to_toml
+from tests.unit.state_space.test_realise import DERIVATIONS, TWO_MASSES
+
+POINTS = (0.37 + 1.13j, 1.71 - 0.59j, 0.05 + 2.9j)
+
+
+def test_a_velocity_does_not_show_where_the_masses_are():
+    found = symflex.loads(TWO_MASSES).transfer_function("V", "F").state_space(minimal=True)
+    assert found.states == ("x_minus_y", "x_dot", "y_dot")
+    x, y = sympy.symbols("x y")
+    assert found.meanings["x_minus_y"] == x - y
+    assert found.units["x_minus_y"] == "m"
+
+
+def test_the_centre_of_mass_does_not_show_the_vibration():
+    text = TWO_MASSES.replace('X = "x"', 'X = "(m_1*x + m_2*y)/(m_1 + m_2)"')
+    found = symflex.loads(text).transfer_function("X", "F").state_space(minimal=True)
+    m_1, m_2 = (sympy.Symbol(n, positive=True) for n in ("m_1", "m_2"))
+    x, y = sympy.symbols("x y")
+    assert found.states == ("z_1", "z_2")
+    assert sympy.expand(found.meanings["z_1"] - (x + m_2 / m_1 * y)) == 0
+    assert found.A == sympy.Matrix([[0, 1], [0, 0]])
+    assert found.C * found.A * found.B == sympy.Matrix([1 / (m_1 + m_2)])
+
+
+def test_what_the_input_does_not_reach_keeps_no_state():
+    text = TWO_MASSES.replace(
+        "inputs.F",
+        'elements.far = { type = "mass", at = "z", m = "m_1" }\n'
+        'elements.wall = { type = "spring", between = ["z", "ground"], k = "k" }\ninputs.F',
+    )
+    text = text.replace('V = "s*y"', 'V = "x + z"')
+    model = symflex.loads(text)
+    assert "z" in model.transfer_function("V", "F").state_space().states
+    assert model.transfer_function("V", "F").state_space(minimal=True).states == ("x", "y", "x_dot", "y_dot")
+
+
+def test_two_equal_arms_move_as_one():
+    text = """
+symflex = 1
+parameters = { m = "2 kg", M = "9 kg", k = "3 N/m" }
+elements.hub = { type = "mass", at = "x", m = "M" }
+elements.a = { type = "mass", at = "y", m = "m" }
+elements.b = { type = "mass", at = "z", m = "m" }
+elements.p = { type = "spring", between = ["x", "y"], k = "k" }
+elements.q = { type = "spring", between = ["x", "z"], k = "k" }
+inputs.F = { force = "x" }
+outputs.X = "x"
+"""
+    found = symflex.loads(text).transfer_function("X", "F").state_space(minimal=True)
+    assert found.states == ("x", "y", "x_dot", "y_dot")
+
+
+def test_one_realisation_of_several_outputs_is_minimal_for_all_of_them_together():
+    model = symflex.loads(TWO_MASSES)
+    assert len(model.state_space(minimal=True).states) == 4
+    assert len(model.state_space(["V"], minimal=True).states) == 3
+
+
+def test_a_pole_that_a_zero_cancels_is_left_out():
+    text = 'symflex = 1\ninputs.u = {}\noutputs.y = "(s + 1)/((s + 2)*(s + 1))*u"'
+    G = symflex.loads(text).transfer_function("y", "u")
+    assert len(G.state_space().states) == 2
+    found = G.state_space(minimal=True)
+    assert (found.A, found.C * found.B) == (sympy.Matrix([[-2]]), sympy.Matrix([[1]]))
+
+
+def test_six_masses_with_all_their_symbols_take_no_time():
+    G = symflex.load(DERIVATIONS / "six_mass.toml").transfer_function("V_tip", "F")
+    found = G.state_space(minimal=True)
+    assert len(found.states) == 11
+    assert found.states[:2] == ("x_act_minus_x_tip", "x_2_minus_x_tip")
+
+
+def test_combinations_that_grow_too_large_are_refused(monkeypatch):
+    monkeypatch.setattr("symflex.state_space.reduction.SIZE_LIMIT", 5)
+    text = TWO_MASSES.replace('X = "x"', 'X = "(m_1*x + m_2*y)/(m_1 + m_2)"')
+    G = symflex.loads(text).transfer_function("X", "F")
+    with pytest.raises(BudgetError, match=r"SF502(.|\n)*bind"):
+        G.state_space(minimal=True)
+
+
+@given(network=networks())
+@settings(
+    max_examples=40,
+    deadline=None,
+    database=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
+def test_a_random_network_has_as_many_minimal_states_as_proved_poles(network):
+    model = pipeline.loads(to_toml(network))
+    for pair in model.transfer_functions:
+        (bound,) = pipeline.derive_bound(model, [pair])
+        try:
+            whole = realise(with_numbers(model), [pair])
+        except ModelError as error:
+            above, below = bound.source.order
+            assert error.diagnostics[0].code == "SF236"
+            assert above > below
+            continue
+        small = minimal(whole)
+        found = pipeline.roots(bound)
+        assert small.order == sum(r.multiplicity for r in found.poles)
+        assert whole.order == small.order + sum(h.root.multiplicity for h in found.hidden)
+        for system in (whole, small):
+            for s, value in zip(POINTS, response(rounded(system), POINTS), strict=True):
+                if np.isfinite(bound(s)):
+                    assert value[0][0] == pytest.approx(bound(s), rel=1e-9)
