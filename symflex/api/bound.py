@@ -156,7 +156,7 @@ class BoundTransferFunction:
     ) -> PoleZeroMap:
         """Return the map if the budget suffices: a tuple of roots could not say that it did not."""
         found = self.pole_zero_map(digits, modes=modes, mode=mode, band=band, budget=budget)
-        return found.complete()
+        return PoleZeroMap.of(found.complete())
 
     def pole_zero_map(
         self,

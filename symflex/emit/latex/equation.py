@@ -41,7 +41,7 @@ _FRACTION_EDGES: Final = 0.6
 _ARGUMENT: Final = 1.3
 _WHERE: Final = r"\text{where}\quad "
 _WHERE_WIDTH: Final = 3.8
-_LEAST_ROOM: Final = 14.0
+_LEAST_ROOM: Final = 17.5
 _NUMERATORS: Final = (("N", "D"), ("P", "Q"), ("B", "A"), (r"\mathcal{N}", r"\mathcal{D}"))
 
 

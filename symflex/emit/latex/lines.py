@@ -82,7 +82,7 @@ def break_lines(expression: Expression, writer: Writer, first: float, others: fl
     writer : Writer
         Gives names their labels.
     first, others : float
-        Room in the first line and in those that continue it [em].
+        Room in the first line and in those that continue it [em]; none of these is used beyond the first's.
 
     Returns
     -------
@@ -96,7 +96,8 @@ def break_lines(expression: Expression, writer: Writer, first: float, others: fl
     >>> break_lines(letters, Writer({}), 6.0, 6.0)
     ['a + b + c + d', '{}+ e + f']
     """
-    filler = _Filler(writer, first, others)
+    # What has no room in the first line may then stand in no other, and so need not leave it empty.
+    filler = _Filler(writer, first, min(first, others))
     filler.place(_NOTHING, Edge(), expression, as_is, Edge(), 0)
     return filler.finish()
 

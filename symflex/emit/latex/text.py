@@ -94,7 +94,7 @@ def escape_text(text: str) -> str:
     >>> print(escape_text(r"100 % of \input{x} & k_1^2"))
     100 \% of \textbackslash{}input\{x\} \& k\_1\textasciicircum{}2
     >>> print(escape_text("Größe ω\n中"))
-    Größe \ensuremath{\omega} [U+4E2D]
+    Gr\"{o}\ss{}e \ensuremath{\omega} [U+4E2D]
     """
     return " ".join(_WORD.sub(lambda match: _word(match[0]), text).split())
 

@@ -91,13 +91,13 @@ def test_names_of_files_are_letters_whatever_the_function_is_called(model):
 
 
 def test_a_map_that_cannot_be_found_is_told_and_left_out(model, monkeypatch):
-    from symflex.emit import exporters
+    from symflex.emit.targets import latex
     from symflex.errors import Diagnostic, UncertifiedError
 
     def refuse(*_, **__):
         raise UncertifiedError(Diagnostic("SF405", "poles cannot be told apart"))
 
-    monkeypatch.setattr(exporters, "locate", refuse)
+    monkeypatch.setattr(latex, "locate", refuse)
     made = LatexExporter().export(model, pipeline.derive_all(model))
     assert made.warnings == ("poles and zeros of X/F are left out: poles cannot be told apart",)
     assert "Poles" not in made.text
