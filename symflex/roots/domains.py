@@ -10,18 +10,17 @@ from cmath import phase
 from math import inf, log, pi
 from typing import TYPE_CHECKING
 
-from flint import acb
+from flint import acb, arb
 
 from symflex.roots.precision import precision
 from symflex.roots.region import Band, Rectangle
-from symflex.roots.root import FLOAT_BITS
+from symflex.roots.root import FLOAT_BITS, Root
 from symflex.roots.winding import Cell
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from symflex.roots.region import Region
-    from symflex.roots.root import Root
 
 NEIGHBOURHOOD = 0.05
 """Of a point where roots accumulate: relative to its distance from 0."""
@@ -115,28 +114,43 @@ def _images(hole: Cell) -> tuple[Cell, ...]:
     return (hole, Cell(hole.low, hole.high, -hole.left, -hole.right))
 
 
-def is_inside(cell: Cell, root: Root) -> bool | None:
-    """Tell whether a root lies in a cell, ``None`` where its enclosure does not decide that."""
-    if root.is_zero:
-        return cell.low == -inf
+def decider(cell: Cell) -> Callable[[Root], bool | None]:
+    """Return what tells whether a root lies in a cell, ``None`` where its enclosure does not decide that.
+
+    Examples
+    --------
+    >>> from flint import arb
+    >>> is_inside = decider(Cell(0.0, 1.0, -pi, pi))
+    >>> frequencies = (arb(2), arb(3), arb(1, 0.1))
+    >>> [is_inside(Root(arb(0), f, 1, on_imaginary_axis=True, is_real=False)) for f in frequencies]
+    [True, False, None]
+    """
     with precision(FLOAT_BITS):
-        s = root.enclosure()
-        size = s.abs_upper().log() if s.abs_lower() > 0 else None
-        if size is None:
-            return None
-        along = abs(s).log()
-        if along < cell.low or along > cell.high:
+        low, high = arb(cell.low).exp(), arb(cell.high).exp()
+
+    def is_inside(root: Root) -> bool | None:
+        if root.is_zero:
+            return cell.low == -inf
+        size = root.natural_frequency()
+        if size < low or size > high:
             return False
-        decided = bool(along > cell.low) and bool(along < cell.high)
-        if cell.right <= -pi and cell.left >= pi:
-            return True if decided else None
+        is_ring = cell.right <= -pi and cell.left >= pi
+        is_between = True if is_ring else _is_between(cell, root)
+        return is_between and (True if size > low and size < high else None)
+
+    return is_inside
+
+
+def _is_between(cell: Cell, root: Root) -> bool | None:
+    """Tell whether the argument of a root lies between those of a cell's sides."""
+    with precision(FLOAT_BITS):
         # Measured from the middle of the cell, the argument does not jump on it.
         middle = acb(0, (cell.right + cell.left) / 2).exp()
-        turned = (s / middle).arg()
+        turned = (root.enclosure() / middle).arg()
         half = (cell.left - cell.right) / 2
         if turned > half or turned < -half:
             return False
-        return True if decided and bool(turned < half) and bool(turned > -half) else None
+        return True if turned < half and turned > -half else None
 
 
 def limits(region: Region, *, is_even: bool) -> tuple[float, float, float, float]:

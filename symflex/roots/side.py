@@ -16,7 +16,7 @@ from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.kernels import Factored, Ring, degree_in
 from symflex.kernels.origin import Origin
 from symflex.roots.argument_principle import CertifiedWinding
-from symflex.roots.domains import WIDER, holes_about, is_inside, is_whole_ring, limits, parts
+from symflex.roots.domains import WIDER, decider, holes_about, is_whole_ring, limits, parts
 from symflex.roots.kernel_function import KernelFunction, has_kernels, split_off_kernels
 from symflex.roots.krawczyk import prove_simple
 from symflex.roots.lossless import LosslessSearch, lossless_search
@@ -24,9 +24,9 @@ from symflex.roots.polynomial import find_polynomial_roots, in_order
 from symflex.roots.precision import precision
 from symflex.roots.problem import Constant, PolynomialInS, RootProblem
 from symflex.roots.region import Modes
-from symflex.roots.root import FLOAT_BITS, Root, overlap
+from symflex.roots.root import FLOAT_BITS, Root, mirror_images, overlap
 from symflex.roots.square_free_kernels import without_squares
-from symflex.roots.transcendental import HIGHEST, MODES_LIMIT, RootSearch, mirrored
+from symflex.roots.transcendental import HIGHEST, MODES_LIMIT, RootSearch
 from symflex.roots.winding import Cell, RootOnPathError, Winding
 from symflex.transfer import coefficients_in_s
 
@@ -132,8 +132,6 @@ class Side:
         self._budget = budget
         self.holes = holes_about(accumulation_points(bound))
         plain, mixed = split_off_kernels(part, bound.kernels)
-        exact = polynomial_roots(bound, plain, digits)
-        self._exact = exact
         self._search: RootSearch | LosslessSearch | None = None
         self._origin: list[Root] = []
         self._order = 0
@@ -153,6 +151,7 @@ class Side:
             if self.is_finite:
                 message = f"not for the engine {', '.join(self._engines)}"
                 raise NoEngineError(message)
+        self._exact = polynomial_roots(bound, _without_laplace(plain) if is_kernel else plain, digits)
         self._located = self._origin if is_kernel else self._exact
         self.roots = list(self._located)
         self.missing = 0
@@ -440,7 +439,7 @@ class Side:
     def _set(self, located: Sequence[Root]) -> None:
         even = self._search is not None and self._search.is_even
         found: list[Root] = []
-        for root in (self._proved(root) for root in mirrored(located, even=even)):
+        for root in self._proved(mirror_images(located, even=even)):
             # What could not be told apart may have been met more than once.
             if root.certified or not any(overlap(root, other) for other in found if not other.certified):
                 found.append(root)
@@ -448,10 +447,14 @@ class Side:
         self._known = None
         self.roots = list(self._located)
 
-    def _proved(self, root: Root) -> Root:
-        """Return the certified root of a polynomial factor in place of the one located."""
-        same = (r for r in self._exact if overlap(r, root) and r.multiplicity == root.multiplicity)
-        return next(same, root)
+    def _proved(self, roots: Sequence[Root]) -> Sequence[Root]:
+        """Return the certified roots of polynomial factors in place of those located."""
+
+        def proved(root: Root) -> Root:
+            same = (r for r in self._exact if overlap(r, root) and r.multiplicity == root.multiplicity)
+            return next(same, root)
+
+        return [proved(root) for root in roots] if self._exact else roots
 
     def counted(self) -> Proof:
         """Count the domain that was searched by its boundary."""
@@ -468,10 +471,11 @@ class Side:
             return Proof(found, found, TOUCHING)
         cells, holes = parts(self._domain, search.left, self.holes)
         found, unsure = 0, False
+        deciders, hole_deciders = [decider(cell) for cell in cells], [decider(hole) for hole in holes]
         for root in self._located:
-            positions = [is_inside(cell, root) for cell in cells]
+            positions = [is_inside(root) for is_inside in deciders]
             unsure = unsure or (not any(positions) and None in positions)
-            if any(positions) and not any(is_inside(hole, root) for hole in holes):
+            if any(positions) and not any(is_inside(root) for is_inside in hole_deciders):
                 found += root.multiplicity
         if unsure:
             return Proof(found, found, "a root lies on the boundary of what was searched")
@@ -508,15 +512,15 @@ class Side:
 
 def _are_apart(roots: Sequence[Root]) -> bool:
     """Tell whether no two enclosures overlap."""
-    with precision(FLOAT_BITS):
-        ordered = sorted(roots, key=lambda root: float(abs(root.enclosure()).lower()))
-        reached: list[tuple[float, Root]] = []
-        for root in ordered:
-            low, high = (float(x) for x in (abs(root.enclosure()).lower(), abs(root.enclosure()).upper()))
-            reached = [(end, other) for end, other in reached if end >= low * (1 - ROUNDING)]
-            if any(overlap(root, other) for _, other in reached):
-                return False
-            reached.append((high * (1 + ROUNDING), root))
+    sizes = ((root.natural_frequency(), root) for root in roots)
+    spans = [(float(f.lower()) * (1 - ROUNDING), float(f.upper()) * (1 + ROUNDING), r) for f, r in sizes]
+    spans.sort(key=lambda span: span[0])
+    near: list[tuple[float, Root]] = []
+    for low, high, root in spans:
+        near = [(end, other) for end, other in near if end >= low]
+        if any(overlap(root, other) for _, other in near):
+            return False
+        near.append((high, root))
     return True
 
 
