@@ -121,18 +121,22 @@ def _with_kernels(
     ring: Ring, table: KernelTable, values: dict[str, nmod_poly], field: TaylorField
 ) -> dict[str, nmod_poly] | None:
     starts: dict[tuple[str, int], int] = {}
+    known: dict[tuple[int, str, int, bool], tuple[nmod_poly, nmod_poly]] = {}
     for kernel in table.kernels:
         if kernel.function == "fundamental":
             continue
-        length = field.rational(kernel.length, ring.names, values)
-        shift = field.rational(kernel.dispersion.shift, ring.names, values)
-        if length is None or shift is None:
-            return None
         key = (kernel.wavenumber, id(kernel.length))
         start = starts.setdefault(key, pow(BASE, 1001 + 2 * len(starts), field.prime))
-        rate = values[kernel.wavenumber] if kernel.wavenumber else -shift
         circular = kernel.function in ("cos", "sin")
-        even, odd = field.even_odd(field.times(rate, length), start, circular=circular)
+        pair = (id(kernel.dispersion), *key, circular)
+        if pair not in known:
+            length = field.rational(kernel.length, ring.names, values)
+            shift = field.rational(kernel.dispersion.shift, ring.names, values)
+            if length is None or shift is None:
+                return None
+            rate = values[kernel.wavenumber] if kernel.wavenumber else -shift
+            known[pair] = field.even_odd(field.times(rate, length), start, circular=circular)
+        even, odd = known[pair]
         if kernel.function == "exp":
             values[kernel.generator] = even + odd
         else:

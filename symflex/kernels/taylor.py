@@ -7,10 +7,12 @@ others: the primes are one more than a multiple of eight, and there are several 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from random import Random
 from typing import TYPE_CHECKING
 
 from flint import fmpz, nmod_poly
+from flint.utils.flint_exceptions import DomainError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -22,15 +24,22 @@ if TYPE_CHECKING:
 
 def primes() -> Iterator[int]:
     """Yield the sizes of fields that are tried, the same ones every time."""
-    candidate = 2**61 + 1
+    prime = 2**61 + 1 - STEP
     for _ in range(FIELDS):
-        while not fmpz(candidate).is_prime():
-            candidate += 8
-        yield candidate
-        candidate += 8
+        prime = _next_prime(prime)
+        yield prime
+
+
+@cache
+def _next_prime(prime: int) -> int:
+    candidate = prime + STEP
+    while not fmpz(candidate).is_prime():
+        candidate += STEP
+    return candidate
 
 
 FIELDS = 400
+STEP = 8
 FIRST_PRIME = next(primes())
 BASE = 3
 """Powers of it stand for exponentials."""
@@ -76,17 +85,16 @@ class TaylorField:
         first = self.order(series)
         if first is None or first % 2:
             return None
-        coefficients = series.coeffs()
-        lead = square_root(int(coefficients[first]), self.prime)
+        lead = square_root(int(series[first]), self.prime)
         if lead is None:
             return None
-        found = [lead]
-        below = pow(2 * lead, -1, self.prime)
-        for n in range(1, self.terms - first):
-            here = int(coefficients[first + n]) if first + n < len(coefficients) else 0
-            known = sum(found[k] * found[n - k] for k in range(1, n))
-            found.append((here - known) * below % self.prime)
-        return nmod_poly([0] * (first // 2) + found, self.prime).truncate(self.terms)
+        square, root = series.right_shift(first), self.constant(lead)
+        half, known = pow(2, -1, self.prime), 1
+        while known < self.terms - first:
+            known = min(2 * known, self.terms - first)
+            # Newton's iteration doubles the number of terms.
+            root = (root + square.mul_low(root.inverse_series_trunc(known), known)) * half
+        return root.left_shift(first // 2).truncate(self.terms)
 
     def even_odd(self, argument: nmod_poly, start: int, *, circular: bool) -> tuple[nmod_poly, nmod_poly]:
         """Return cosh and sinh, or cos and sin, of an argument.
@@ -100,17 +108,18 @@ class TaylorField:
         square = self.times(moving, moving) * sign
         even, odd = self.constant(1), moving
         term_even, term_odd = self.constant(1), moving
+        below = _reciprocals(self.terms + 2, self.prime)
         for n in range(1, self.terms // 2 + 1):
-            term_even = self.times(term_even, square) * pow(2 * n * (2 * n - 1), -1, self.prime)
-            term_odd = self.times(term_odd, square) * pow(2 * n * (2 * n + 1), -1, self.prime)
-            if not any(int(c) for c in term_even.coeffs()) and not any(int(c) for c in term_odd.coeffs()):
+            term_even = self.times(term_even, square) * (below[2 * n] * below[2 * n - 1] % self.prime)
+            term_odd = self.times(term_odd, square) * (below[2 * n] * below[2 * n + 1] % self.prime)
+            if term_even.is_zero() and term_odd.is_zero():
                 break
             even, odd = even + term_even, odd + term_odd
         if not constant:
             return even, odd
         if circular:
-            below = pow(1 + start * start, -1, self.prime)
-            c, s = (1 - start * start) * below % self.prime, 2 * start * below % self.prime
+            share = pow(1 + start * start, -1, self.prime)
+            c, s = (1 - start * start) * share % self.prime, 2 * start * share % self.prime
         else:
             half, back = pow(2, -1, self.prime), pow(start, -1, self.prime)
             c, s = (start + back) * half % self.prime, (start - back) * half % self.prime
@@ -149,29 +158,27 @@ class TaylorField:
         return total
 
 
+@cache
+def _reciprocals(count: int, prime: int) -> tuple[int, ...]:
+    """Return 0 and the reciprocals of the numbers below ``count`` modulo a larger prime."""
+    found = [0, 1]
+    for n in range(2, count):
+        found.append(-(prime // n) * found[prime % n] % prime)
+    return tuple(found)
+
+
 def square_root(value: int, prime: int) -> int | None:
-    """Return a square root modulo a prime (Tonelli 1891), ``None`` when there is none.
+    """Return a square root modulo a prime, ``None`` when there is none.
 
     Examples
     --------
     >>> square_root(2, 17), square_root(3, 17)
     (6, None)
     """
-    half = (prime - 1) // 2
-    if pow(value, half, prime) != 1:
+    try:
+        return int(fmpz(value).sqrtmod(prime))
+    except DomainError:
         return None
-    twos = ((prime - 1) & -(prime - 1)).bit_length() - 1
-    odd = (prime - 1) >> twos
-    other = next(n for n in range(2, prime) if pow(n, half, prime) != 1)
-    z, r, t = pow(other, odd, prime), pow(value, (odd + 1) // 2, prime), pow(value, odd, prime)
-    while t != 1:
-        i, square = 0, t
-        while square != 1:
-            square, i = square * square % prime, i + 1
-        b = pow(z, 1 << (twos - i - 1), prime)
-        twos, z, r = i, b * b % prime, r * b % prime
-        t = t * z % prime
-    return r
 
 
 def random_values(names: Sequence[str], random: Random, field: TaylorField) -> dict[str, nmod_poly]:

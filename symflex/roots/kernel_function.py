@@ -103,8 +103,7 @@ class KernelFunction:
         self._cost = terms + int(MODAL_WORK * sum(law.order**4 for law in laws if law.kind == "general"))
         self._values = lru_cache(maxsize=None)(self._kernel_values)
         self._sums = lru_cache(maxsize=None)(self._exponential_values)
-        self.part = self._without_branch_factors()
-        self.power = self._branch_order()
+        self.part, self.power = self._of_one_value()
 
     @cached_property
     def is_even(self) -> bool:
@@ -282,41 +281,32 @@ class KernelFunction:
         hint = "a rigid or massless limit has its own equations"
         raise ModelError(Diagnostic("SF231", message, None, hint))
 
-    def _without_branch_factors(self) -> Factored:
-        """Return the product divided by those powers of wavenumbers that change with the branch.
+    def _of_one_value(self) -> tuple[Factored, int]:
+        """Return the product without those powers of wavenumbers that change with the branch, and an order.
 
         Where a wavenumber vanishes they are roots of half or quarter order; numerator and denominator share
-        them, and they are no roots of a transfer function.
+        them, and they are no roots of a transfer function. The order is that of the power in which the choice
+        of the wavenumbers does not matter.
         """
-        part = self.part
+        part, order = self.part, 1
         bits, values, value = self._anywhere()
         with precision(bits):
-            for law in self.bound.kernels.dispersions:
-                if law.kind not in SINGLE:
-                    continue
-                (branch,) = other_branches(law, self.bound.kernels, values)
-                turned = _number(self._values(bits).value(self.part, {**values, **branch})) / value
-                step = acb(0, 1) if law.kind == "bending" else acb(-1)
-                power = next((k for k in range(SINGLE[law.kind]) if (turned - step**k).contains(0)), 0)
-                if power:
-                    part = part * Factored.generator(part.ring, law.wavenumbers[0]) ** -power
-        return part
-
-    def _branch_order(self) -> int:
-        """Return the power in which the choice of the wavenumbers does not matter."""
-        order = 1
-        bits, values, value = self._anywhere()
-        with precision(bits):
-            evaluator = self._values(bits)
             for law in self.bound.kernels.dispersions:
                 for other in other_branches(law, self.bound.kernels, values):
-                    turned = _number(evaluator.value(self.part, {**values, **other})) / value
+                    turned = _number(self._values(bits).value(self.part, {**values, **other})) / value
+                    if law.kind in SINGLE:
+                        step = acb(0, 1) if law.kind == "bending" else acb(-1)
+                        powers = range(SINGLE[law.kind])
+                        power = next((k for k in powers if (turned - step**k).contains(0)), 0)
+                        if power:
+                            part = part * Factored.generator(part.ring, law.wavenumbers[0]) ** -power
+                            turned = turned / step**power
                     found = next((n for n in BRANCHES if (turned**n - 1).contains(0)), None)
                     if found is None or not turned.rel_accuracy_bits() >= SETTLED_BITS:
                         message = f"a part of {self.bound.name} has no value of its own for every s"
                         raise UncertifiedError(Diagnostic("SF404", message))
                     order = lcm(order, found)
-        return order
+        return part, order
 
     def reach(self, s: float) -> float:
         """Return the largest kernel argument, in absolute value, at a positive ``s``."""

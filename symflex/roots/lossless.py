@@ -2,28 +2,32 @@
 
 Sign changes on a grid, in doubles, give guesses; one interval Newton step proves that each is a root, and the
 only one in its interval; the count on an arc, which takes the part of that of Wittrick and Williams (1971)
-and serves zeros as well as poles, shows that there are no others. Nothing grows with the number of a mode.
+and serves zeros as well as poles, shows that there are no others. A mode of a given number lies between two
+circles, aimed at by the largest terms and counted: nothing grows with the number.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import accumulate
-from math import exp, inf, log, log1p, pi
+from itertools import cycle, islice
+from math import exp, inf, log, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 from flint import arb
 
-from symflex.roots.harmonic_sum import IMAGINARY, REAL, lossless_function
-from symflex.roots.precision import bits_for_digits, precision
-from symflex.roots.root import GUARD_BITS, Root
+from symflex.roots.axis_function import IMAGINARY, REAL
+from symflex.roots.axis_root import AxisRoots, bits_of, bracketed, changes_sign
+from symflex.roots.harmonic_sum import lossless_function
+from symflex.roots.precision import precision
+from symflex.roots.root import Root
 from symflex.roots.winding import RootOnPathError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from symflex.roots.harmonic_sum import AxisFunction, Doubles, LosslessFunction
+    from symflex.roots.axis_function import AxisFunction, Doubles
+    from symflex.roots.harmonic_sum import LosslessFunction
     from symflex.roots.kernel_function import KernelFunction
     from symflex.roots.winding import Cell
 
@@ -32,14 +36,20 @@ GRID = 0.8
 BATCH = 4096
 MOST_SAMPLES = 2_000_000
 NEWTON_STEPS = 6
-WIDTH = 2.0**-46
-"""Relative width of the interval in which a guess is proved to be the only root."""
-SLOPE_BITS = 64
+CLOSER = 1e-12
+"""Relative to t: no further Newton step is needed after one as short as this."""
+COUNT_BITS = 64
+HALF = 0.5
+"""From one integer, to tell it from all others."""
 ROUNDS = 40
 SECANTS = 30
 NEARLY = 0.2
-MANY = 100
-"""Turns from which on they are proportional to the root of the frequency."""
+ASIDE = (0.0, 0.6, -0.6, 1.2)
+"""Turns by which circles are moved that meet roots; the first passes midway between two as a rule."""
+WITHIN, BEYOND = -1, 1
+SHARES = (0.5, 0.4, 0.6)
+"""Where a ring is cut in two."""
+HALVINGS = 60
 FEW = 8
 CLOSE = 1e-9
 DEPTH = 30.0
@@ -97,7 +107,8 @@ class LosslessSearch:
     def __init__(self, function: LosslessFunction, order: int, digits: int) -> None:
         self.function = function
         self.order = order
-        self.digits = digits
+        self._newton = AxisRoots(digits)
+        self._known: dict[int, tuple[tuple[AxisFunction, int], ...]] = {}
         self.roots: list[Root] = []
         self.reached = -inf
         self.missing = 0
@@ -105,14 +116,23 @@ class LosslessSearch:
         self.holes: tuple[Cell, ...] = ()
         self.is_even = True
         self.left = pi / 2
-        self._sources: list[tuple[AxisFunction, int]] = []
-        for number, (_, exponent) in enumerate(function.factors):
-            if exponent <= 0:
-                continue
-            for axis in (REAL, IMAGINARY):
-                source = function.on_axis(number, axis)
-                if source is not None and source.waves:
-                    self._sources.append((source, exponent))
+
+    def _factors_on(self, axis: int) -> tuple[tuple[AxisFunction, int], ...]:
+        """Return all factors that are real on an axis, and their exponents."""
+        if axis not in self._known:
+            found = (
+                (self.function.on_axis(number, axis), exponent)
+                for number, (_, exponent) in enumerate(self.function.factors)
+                if exponent > 0
+            )
+            self._known[axis] = tuple(
+                (source, e) for source, e in found if source is not None and source.waves
+            )
+        return self._known[axis]
+
+    @property
+    def _sources(self) -> tuple[tuple[AxisFunction, int], ...]:
+        return self._factors_on(REAL) + self._factors_on(IMAGINARY)
 
     def count(self, z: float) -> int:
         """Return the number of roots with ln(abs(s)) below ``z``, without those at 0: proved.
@@ -123,11 +143,14 @@ class LosslessSearch:
             A root lies on the circle, or too close to it.
         """
         turn = self.function.turn(z)
-        with precision(SLOPE_BITS):
-            found = (turn / (arb.pi() / 2)).unique_fmpz()
-        if found is None:
-            raise RootOnPathError
-        return int(found) - self.order
+        with precision(COUNT_BITS):
+            quarters = turn / (arb.pi() / 2)
+            if not quarters.is_finite():
+                raise RootOnPathError
+            found = round(float(quarters))
+            if not abs(quarters - found) < HALF:
+                raise RootOnPathError
+        return found - self.order
 
     def scan(self, modes: int, radius: float, is_complete: Callable[[], bool]) -> bool:
         """Find the lowest modes, and all up to ln of a radius; tell whether these are all."""
@@ -147,7 +170,7 @@ class LosslessSearch:
 
     def smallest(self) -> float:
         """Return ln of a radius within which no roots are sought."""
-        return log(self._first_frequency()) - DEPTH
+        return log(self.function.first_frequency) - DEPTH
 
     def lowest(self, modes: int) -> tuple[list[Root], float]:
         """Return the lowest modes, one of each pair, and ln of a radius between them and the next."""
@@ -155,7 +178,7 @@ class LosslessSearch:
             return [], self.smallest()
         low = 0.0
         guesses: list[Guess] = []
-        high = self._first_frequency()
+        high, about = self.function.first_frequency, self._about(modes + 1)
         samples = 0
         while sum(g.exponent for g in guesses) <= modes:
             found, used = self._guesses(low, high)
@@ -164,7 +187,8 @@ class LosslessSearch:
             if samples > MOST_SAMPLES or high > HIGHEST:
                 break
             known = len(guesses)
-            low, high = high, high * (4.0 if known < FEW else max(1.05, (1.1 * modes / known) ** 2))
+            growth = 4.0 if known < FEW else max(1.05, (1.1 * modes / known) ** 2)
+            low, high = high, about if about > high else high * growth
         chosen: list[Guess] = []
         total = 0
         for guess in guesses:
@@ -174,6 +198,12 @@ class LosslessSearch:
             chosen.append(guess)
             total += guess.exponent
         return self._proved(chosen), log(low)
+
+    def _about(self, modes: int) -> float:
+        """Return an abs(s) below which about so many modes lie, not far too large in any case."""
+        first = self.function.first_frequency
+        place = self._place(2 * modes + self.order, log(first))
+        return min(max(first, exp(place)), first * (2 * modes + FEW) ** 2)
 
     def between(self, low: float, high: float) -> list[Root]:
         """Return the roots with abs(s) between two [rad/s] at which a factor changes its sign."""
@@ -189,25 +219,6 @@ class LosslessSearch:
             found += [Guess(source.natural_frequency(t), t, source, exponent) for t in changes]
         found.sort(key=lambda guess: guess.frequency)
         return found, samples
-
-    def _first_frequency(self) -> float:
-        """Return an abs(s) below which no argument is large."""
-        frequency = 1.0
-        for _ in range(ROUNDS * 4):
-            fastest = max(
-                (
-                    source.fastest(source.at_frequency(frequency)) * source.at_frequency(frequency)
-                    for source, _ in self._sources
-                ),
-                default=1.0,
-            )
-            if fastest > 4 * pi:
-                frequency /= 3
-            elif fastest < pi:
-                frequency *= 3
-            else:
-                break
-        return frequency
 
     def _sign_changes(self, source: AxisFunction, low: float, high: float) -> tuple[list[float], int]:
         """Return t at every sign change between two abs(s), close to doubles' precision."""
@@ -234,47 +245,19 @@ class LosslessSearch:
         return found, count
 
     def _proved(self, guesses: Sequence[Guess]) -> list[Root]:
-        proved = (self.prove(guess) for guess in guesses)
+        proved = (self._proved_at(guess.source, guess.t, guess.exponent) for guess in guesses)
         return [root for root in proved if root is not None]
 
-    def prove(self, guess: Guess) -> Root | None:
-        """Return the root next to a guess, proved to be the only one of its factor in a small interval."""
-        source = guess.source
-        wanted = bits_for_digits(self.digits + 2) + GUARD_BITS
-        with precision(wanted):
-            goal = arb(10) ** -(self.digits + 2)
-        known = 40
-        box = arb(guess.t, abs(guess.t) * WIDTH)
-        slope_bits = SLOPE_BITS
-        is_first = True
-        for _ in range(ROUNDS):
-            bits = _level(2 * known + GUARD_BITS, wanted)
-            slope = source.slope(box, slope_bits)
-            middle = box.mid()
-            value = source.value(middle, bits)
-            with precision(bits):
-                step = middle - value / slope
-                if not step.is_finite() or (is_first and not box.contains_interior(step)):
-                    return None
-                is_first = False
-                box = step
-                accurate = step.rel_accuracy_bits()
-                if step.rad() < goal * abs(step):
-                    break
-                if accurate <= known + 4:
-                    return None
-            known = accurate
-            slope_bits = _level(known + GUARD_BITS, wanted)
-        else:
+    def _proved_at(self, source: AxisFunction, t: float, exponent: int) -> Root | None:
+        frequency = self._newton.frequency(source, t)
+        if frequency is None:
             return None
-        with precision(wanted):
-            frequency = source.natural_frequency(box)
         zero = arb(0)
         is_real = source.axis == REAL
         return Root(
             frequency if is_real else zero,
             zero if is_real else frequency,
-            guess.exponent,
+            exponent,
             on_imaginary_axis=not is_real,
             is_real=is_real,
         )
@@ -289,36 +272,49 @@ class LosslessSearch:
         RootOnPathError
             Roots are too close to each other for circles to pass between them.
         """
-        turns = 2.0 * number + self.order
-        place, below = self._count_near(turns)
-        # The estimate is off by a few; counted from here, the mode is so many places further.
-        further = 2.0 * (number - below)
-        if turns > MANY:
-            low, high = (place + 2 * log1p((further + side) / turns) for side in (-6, 6))
-        else:
-            low, high = (self._place(turns + further + side, place) for side in (-6, 6))
-        guesses, _ = self._guesses(exp(min(low, place)), exp(max(high, place)))
-        reached = below - sum(g.exponent for g in guesses if log(g.frequency) < place)
-        totals = accumulate((g.exponent for g in guesses), initial=reached)
-        i = next((k for k, total in enumerate(totals) if total >= number), 0) - 1
-        if i < 0:
-            return None
-        guess = guesses[i]
-        here = log(guess.frequency)
-        below_it = log(guesses[i - 1].frequency) if i else here - log(2)
-        above_it = log(guesses[i + 1].frequency) if i + 1 < len(guesses) else max(low, high, place)
-        edges = [(below_it + here) / 2, (above_it + here) / 2]
-        counts = [self.count(z) // 2 for z in edges]
-        if not counts[0] < number <= counts[1] or counts[1] - counts[0] != guess.exponent:
-            return None
-        return self.prove(guess)
+        low, below = self._circle(number - 1, WITHIN)
+        high, upto = self._circle(number, BEYOND)
+        for share in islice(cycle(SHARES), HALVINGS):
+            root = self._only_root(low, high, upto - below)
+            if root is not None:
+                return root
+            middle = low + (high - low) * share
+            count = self.count(middle) // 2
+            if count < number:
+                low, below = middle, count
+            else:
+                high, upto = middle, count
+        return None
 
-    def _count_near(self, turns: float) -> tuple[float, int]:
-        """Return ln(abs(s)) where about so many roots lie below, and how many modes there are."""
-        for aside in (0.3, 0.9, -0.4, 1.4):
-            place = self._place(turns + aside, log(self._first_frequency()))
+    def _only_root(self, low: float, high: float, multiplicity: int) -> Root | None:
+        """Return the root that is all a ring holds, proved to lie between its circles."""
+        for axis in (IMAGINARY, REAL):
+            for source, exponent in self._factors_on(axis):
+                ends = source.at_frequency(exp(low)), source.at_frequency(exp(high))
+                if exponent == multiplicity and changes_sign(source, *ends):
+                    root = self._proved_at(source, bracketed(source, *ends), exponent)
+                    if root is not None and arb(low).exp() < root.natural_frequency() < arb(high).exp():
+                        return root
+        return None
+
+    def _circle(self, modes: int, side: int) -> tuple[float, int]:
+        """Return ln of a radius within which at most or at least so many modes lie, and how many do."""
+        aim = modes
+        for _ in range(ROUNDS):
+            z, count = self._counted_near(aim)
+            if (count - modes) * side >= 0:
+                return z, count
+            # The estimate is off by a few.
+            aim += modes - count
+        raise RootOnPathError
+
+    def _counted_near(self, modes: int) -> tuple[float, int]:
+        """Return ln of a radius within which about so many modes lie, and how many do."""
+        start = log(self.function.first_frequency)
+        for aside in ASIDE:
+            z = self._place(2 * modes + self.order + aside, start) if modes > 0 else start + modes - 1 - aside
             try:
-                return place, self.count(place) // 2
+                return z, self.count(z) // 2
             except RootOnPathError:
                 continue
         raise RootOnPathError
@@ -339,14 +335,6 @@ class LosslessSearch:
         return there
 
 
-def _level(bits: int, most: int) -> int:
-    """Return one of few precisions, so that constants are evaluated for few."""
-    level = SLOPE_BITS
-    while level < bits:
-        level += max(SLOPE_BITS, level // 4)
-    return min(level, most)
-
-
 def _polished(
     source: AxisFunction,
     low: Doubles,
@@ -363,7 +351,9 @@ def _polished(
         low, high = np.where(left, t, low), np.where(left, high, t)
         with np.errstate(divide="ignore", invalid="ignore"):
             step = t - values / slopes
-        t = np.where((step >= low) & (step <= high), step, (low + high) / 2)
+        last, t = t, np.where((step >= low) & (step <= high), step, (low + high) / 2)
+        if (np.abs(t - last) <= CLOSER * t).all():
+            break
     return t
 
 
@@ -371,5 +361,5 @@ def lossless_search(function: KernelFunction, order: int, digits: int) -> Lossle
     """Return a search for a function without losses, ``None`` for any other."""
     if not function.is_even or function.power != 1:
         return None
-    lossless = lossless_function(function)
+    lossless = lossless_function(function, bits_of(digits))
     return None if lossless is None else LosslessSearch(lossless, order, digits)

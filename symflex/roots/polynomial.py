@@ -314,4 +314,4 @@ def in_order(roots: Sequence[Root]) -> tuple[Root, ...]:
 
 
 def _sign(a: arb, b: arb) -> int:
-    return int(bool(a > b)) - int(bool(a < b))
+    return 1 if a > b else -1 if a < b else 0

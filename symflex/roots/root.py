@@ -5,10 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
 from symflex.roots.precision import precision
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 GUARD_BITS = 32
 FLOAT_BITS = 128
@@ -80,10 +84,14 @@ class Root:
 
     def natural_frequency(self) -> arb:
         """Return abs(s) [rad/s]."""
+        if self.on_imaginary_axis or self.is_real:
+            size = self.im if self.on_imaginary_axis else self.re
+            if size > 0:
+                return size
+            with precision(max(FLOAT_BITS, size.bits())):
+                return abs(size)
         with precision(self.working_bits()):
-            if self.on_imaginary_axis:
-                return abs(self.im)
-            return abs(self.re) if self.is_real else abs(self.enclosure())
+            return abs(self.enclosure())
 
     def frequency_hz(self) -> float:
         """Return abs(s) / (2 pi) [Hz] in double precision."""
@@ -142,6 +150,39 @@ def overlap(a: Root, b: Root) -> bool:
     True
     """
     return bool(a.re.overlaps(b.re)) and bool(a.im.overlaps(b.im))
+
+
+def mirror_images(roots: Sequence[Root], *, even: bool) -> list[Root]:
+    """Return roots and their images in the real axis, for even functions in the imaginary axis too.
+
+    Examples
+    --------
+    >>> root = Root(arb(-3), arb(4), 1, on_imaginary_axis=False, is_real=False)
+    >>> [(r.decimal(1).re, r.decimal(1).im) for r in mirror_images([root], even=True)]
+    [('-3', '4'), ('-3', '-4'), ('3', '4'), ('3', '-4')]
+    """
+    found = []
+    with precision(max((root.working_bits() for root in roots), default=FLOAT_BITS)):
+        for root in roots:
+            images = [root]
+            if not root.is_real:
+                images.append(_image(root, root.re, -root.im))
+            if even and not root.on_imaginary_axis:
+                images += [_image(root, -image.re, image.im) for image in images]
+            found += images
+    return found
+
+
+def _image(root: Root, re: arb, im: arb) -> Root:
+    return Root(
+        re,
+        im,
+        root.multiplicity,
+        on_imaginary_axis=root.on_imaginary_axis,
+        is_real=root.is_real,
+        certified=root.certified,
+        on_boundary=root.on_boundary,
+    )
 
 
 def exact_fraction(number: arb) -> Fraction:

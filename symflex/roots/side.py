@@ -6,9 +6,8 @@ shows that none is missing. Where that fails, the subdivision is repeated with e
 
 from __future__ import annotations
 
-from cmath import phase
 from dataclasses import dataclass, replace
-from math import inf, log, pi
+from math import inf, pi
 from typing import TYPE_CHECKING
 
 from flint import acb, arb
@@ -18,16 +17,17 @@ from symflex.kernels import Factored, Ring, degree_in
 from symflex.kernels.origin import Origin
 from symflex.roots.argument_principle import CertifiedWinding
 from symflex.roots.branch_points import prove_together
+from symflex.roots.domains import WIDER, decider, holes_about, is_whole_ring, limits, parts
 from symflex.roots.kernel_function import KernelFunction, has_kernels, split_off_kernels
 from symflex.roots.krawczyk import prove_simple
 from symflex.roots.lossless import LosslessSearch, lossless_search
 from symflex.roots.polynomial import find_polynomial_roots, in_order
 from symflex.roots.precision import precision
 from symflex.roots.problem import Constant, PolynomialInS, RootProblem
-from symflex.roots.region import Band, Modes, Rectangle
-from symflex.roots.root import FLOAT_BITS, Root, overlap
+from symflex.roots.region import Modes
+from symflex.roots.root import FLOAT_BITS, Root, mirror_images, overlap
 from symflex.roots.square_free_kernels import without_squares
-from symflex.roots.transcendental import HIGHEST, MODES_LIMIT, RootSearch, mirrored
+from symflex.roots.transcendental import HIGHEST, MODES_LIMIT, RootSearch
 from symflex.roots.winding import Cell, RootOnPathError, Winding
 from symflex.transfer import coefficients_in_s
 
@@ -46,12 +46,8 @@ LOSSLESS = "lossless"
 ENGINES = (LOSSLESS, GUESS_AND_PROVE, SUBDIVISION)
 UNPROVED = "the number of roots could not be proved"
 TOUCHING = "some roots could not be told apart"
-NEIGHBOURHOOD = 0.05
-"""Of a point where roots accumulate: relative to its distance from 0."""
 ACCUMULATION_DIGITS = 20
 FEW = 40
-WIDER = 1e-3
-"""How far beyond its limits, in ln, a ring is searched."""
 ROUNDING = 1e-15
 MORE_DIGITS = 30
 ORIGIN_TERMS = (20, 80)
@@ -135,10 +131,8 @@ class Side:
         self._engines = tuple(engines)
         self._digits = digits
         self._budget = budget
-        self.holes = _holes(accumulation_points(bound))
+        self.holes = holes_about(accumulation_points(bound))
         plain, mixed = split_off_kernels(part, bound.kernels)
-        exact = polynomial_roots(bound, plain, digits)
-        self._exact = exact
         self._search: RootSearch | LosslessSearch | None = None
         self._origin: list[Root] = []
         self._order = 0
@@ -158,6 +152,7 @@ class Side:
             if self.is_finite:
                 message = f"not for the engine {', '.join(self._engines)}"
                 raise NoEngineError(message)
+        self._exact = polynomial_roots(bound, _without_laplace(plain) if is_kernel else plain, digits)
         self._located = self._origin if is_kernel else self._exact
         self.roots = list(self._located)
         self.missing = 0
@@ -302,7 +297,7 @@ class Side:
         if isinstance(region, Modes):
             self.extend(region.count)
             return
-        low, high, right, left = _limits(self._search, region)
+        low, high, right, left = limits(region, is_even=self._search.is_even)
         smallest = self._winding.smallest(self._left, self.holes)
         # Within the smallest disc none is sought; that there are none is counted.
         self._innermost = smallest if low < smallest else None
@@ -329,7 +324,11 @@ class Side:
         found = self._search.ring(low, high, right, left)
         self.missing = found.missing
         self._domain = found.cell
-        if found.cell is not None and low <= smallest and _is_whole_ring(found.cell, self._search):
+        if (
+            found.cell is not None
+            and low <= smallest
+            and is_whole_ring(found.cell, self._search.left, self.holes)
+        ):
             # A whole disc is easier to count than a ring whose inner circle is very small.
             self._domain = replace(found.cell, low=-inf)
         self._set(found.roots)
@@ -449,7 +448,7 @@ class Side:
     def _set(self, located: Sequence[Root]) -> None:
         even = self._search is not None and self._search.is_even
         found: list[Root] = []
-        for root in (self._proved(root) for root in mirrored(located, even=even)):
+        for root in self._proved(mirror_images(located, even=even)):
             # What could not be told apart may have been met more than once.
             if root.certified or not any(overlap(root, other) for other in found if not other.certified):
                 found.append(root)
@@ -457,10 +456,14 @@ class Side:
         self._known = None
         self.roots = list(self._located)
 
-    def _proved(self, root: Root) -> Root:
-        """Return the certified root of a polynomial factor in place of the one located."""
-        same = (r for r in self._exact if overlap(r, root) and r.multiplicity == root.multiplicity)
-        return next(same, root)
+    def _proved(self, roots: Sequence[Root]) -> Sequence[Root]:
+        """Return the certified roots of polynomial factors in place of those located."""
+
+        def proved(root: Root) -> Root:
+            same = (r for r in self._exact if overlap(r, root) and r.multiplicity == root.multiplicity)
+            return next(same, root)
+
+        return [proved(root) for root in roots] if self._exact else roots
 
     def counted(self) -> Proof:
         """Count the domain that was searched by its boundary."""
@@ -475,12 +478,13 @@ class Side:
         if not _are_apart(self._located):
             found = sum(root.multiplicity for root in self._located)
             return Proof(found, found, TOUCHING)
-        cells, holes = self._parts(self._domain, search)
+        cells, holes = parts(self._domain, search.left, self.holes)
         found, unsure = 0, False
+        deciders, hole_deciders = [decider(cell) for cell in cells], [decider(hole) for hole in holes]
         for root in self._located:
-            positions = [_position(cell, root) for cell in cells]
+            positions = [is_inside(root) for is_inside in deciders]
             unsure = unsure or (not any(positions) and None in positions)
-            if any(positions) and not any(_position(hole, root) for hole in holes):
+            if any(positions) and not any(is_inside(root) for is_inside in hole_deciders):
                 found += root.multiplicity
         if unsure:
             return Proof(found, found, "a root lies on the boundary of what was searched")
@@ -507,112 +511,26 @@ class Side:
     def _turns(
         self, domain: Cell, cells: Sequence[Cell], holes: Sequence[Cell], search: RootSearch | LosslessSearch
     ) -> int:
-        if not _is_whole_ring(domain, search):
+        if not is_whole_ring(domain, search.left, self.holes):
             return sum(self._winding.count(cell) for cell in cells)
         turns = self._count_within(domain.high, search.left)
         if domain.low > -inf:
             turns -= self._count_within(domain.low, search.left)
         return turns - sum(self._winding.count(hole) for hole in holes)
 
-    def _parts(
-        self, domain: Cell, search: RootSearch | LosslessSearch
-    ) -> tuple[tuple[Cell, ...], tuple[Cell, ...]]:
-        """Return the cells that were searched, and the holes in them, mirror images included."""
-        if _is_whole_ring(domain, search):
-            cell = Cell(domain.low, domain.high, -pi, pi)
-            met = [h for h in self.holes if h.low < cell.high and h.high > cell.low]
-            return (cell,), tuple(image for hole in met for image in _images(hole))
-        cells: tuple[Cell, ...] = (domain,)
-        for hole in self.holes:
-            cells = tuple(part for whole in cells for part in whole.without(hole))
-        return cells, ()
-
 
 def _are_apart(roots: Sequence[Root]) -> bool:
     """Tell whether no two enclosures overlap."""
-    with precision(FLOAT_BITS):
-        ordered = sorted(roots, key=lambda root: float(abs(root.enclosure()).lower()))
-        reached: list[tuple[float, Root]] = []
-        for root in ordered:
-            low, high = (float(x) for x in (abs(root.enclosure()).lower(), abs(root.enclosure()).upper()))
-            reached = [(end, other) for end, other in reached if end >= low * (1 - ROUNDING)]
-            if any(overlap(root, other) for _, other in reached):
-                return False
-            reached.append((high * (1 + ROUNDING), root))
+    sizes = ((root.natural_frequency(), root) for root in roots)
+    spans = [(float(f.lower()) * (1 - ROUNDING), float(f.upper()) * (1 + ROUNDING), r) for f, r in sizes]
+    spans.sort(key=lambda span: span[0])
+    near: list[tuple[float, Root]] = []
+    for low, high, root in spans:
+        near = [(end, other) for end, other in near if end >= low]
+        if any(overlap(root, other) for _, other in near):
+            return False
+        near.append((high, root))
     return True
-
-
-def _is_whole_ring(cell: Cell, search: RootSearch | LosslessSearch) -> bool:
-    return (
-        cell.right <= 0
-        and cell.left >= search.left
-        and all(
-            hole.high < cell.low or hole.low > cell.high or (cell.low < hole.low and hole.high < cell.high)
-            for hole in search.holes
-        )
-    )
-
-
-def _images(hole: Cell) -> tuple[Cell, ...]:
-    """Return a neighbourhood in the closed upper half plane and, off the real axis, its mirror image."""
-    if hole.right <= 0 <= hole.left or hole.right <= pi <= hole.left:
-        return (hole,)
-    return (hole, Cell(hole.low, hole.high, -hole.left, -hole.right))
-
-
-def _position(cell: Cell, root: Root) -> bool | None:
-    """Tell whether a root lies in a cell, ``None`` where its enclosure does not decide that."""
-    if root.is_zero:
-        return cell.low == -inf
-    with precision(FLOAT_BITS):
-        s = root.enclosure()
-        size = s.abs_upper().log() if s.abs_lower() > 0 else None
-        if size is None:
-            return None
-        along = abs(s).log()
-        if along < cell.low or along > cell.high:
-            return False
-        decided = bool(along > cell.low) and bool(along < cell.high)
-        if cell.right <= -pi and cell.left >= pi:
-            return True if decided else None
-        # Measured from the middle of the cell, the argument does not jump on it.
-        middle = acb(0, (cell.right + cell.left) / 2).exp()
-        turned = (s / middle).arg()
-        half = (cell.left - cell.right) / 2
-        if turned > half or turned < -half:
-            return False
-        return True if decided and bool(turned < half) and bool(turned > -half) else None
-
-
-def _limits(search: RootSearch | LosslessSearch, region: Region) -> tuple[float, float, float, float]:
-    """Return ln(abs(s)) and arg(s) between which a region lies, folded into the upper half plane."""
-    match region:
-        case Band(low, high):
-            return _log(2 * pi * low) - WIDER, _log(2 * pi * high) + WIDER, 0.0, pi
-        case Rectangle(re_low, re_high, im_low, im_high):
-            sides = (float(re_low), float(re_high), float(im_low), float(im_high))
-            return _limits_of_rectangle(search, *sides)
-    message = f"no search for {type(region).__name__}"
-    raise TypeError(message)
-
-
-def _limits_of_rectangle(
-    search: RootSearch | LosslessSearch, re_low: float, re_high: float, im_low: float, im_high: float
-) -> tuple[float, float, float, float]:
-    across_real, across_imaginary = im_low <= 0 <= im_high, re_low <= 0 <= re_high
-    bottom = 0.0 if across_real else min(abs(im_low), abs(im_high))
-    top = max(abs(im_low), abs(im_high))
-    corners = [complex(re, im) for re in (re_low, re_high) for im in (bottom, top)]
-    nearest = complex(0.0 if across_imaginary else min(abs(re_low), abs(re_high)), bottom)
-    low, high = _log(abs(nearest)) - WIDER, _log(max(abs(corner) for corner in corners)) + WIDER
-    right, left = min(map(phase, corners)), max(map(phase, corners))
-    if search.is_even or not nearest:
-        right, left = 0.0, pi
-    return low, high, right, left
-
-
-def _log(size: float) -> float:
-    return log(size) if size > 0 else -inf
 
 
 def groups(roots: Sequence[Root]) -> list[list[Root]]:
@@ -661,31 +579,3 @@ def accumulation_points(bound: BoundTransferFunction) -> tuple[complex, ...]:
                 if point and point.imag >= 0 and point not in points:
                     points.append(point)
     return tuple(points)
-
-
-def _holes(points: Sequence[complex]) -> tuple[Cell, ...]:
-    """Return neighbourhoods of points, those that meet as one."""
-    found: list[Cell] = []
-    for hole in map(_hole_about, points):
-        joined = hole
-        while meeting := next((h for h in found if _meet(h, joined)), None):
-            found.remove(meeting)
-            joined = Cell(
-                min(meeting.low, joined.low),
-                max(meeting.high, joined.high),
-                min(meeting.right, joined.right),
-                max(meeting.left, joined.left),
-            )
-        found.append(joined)
-    return tuple(found)
-
-
-def _meet(a: Cell, b: Cell) -> bool:
-    along = a.low <= b.high and b.low <= a.high
-    return along and a.right <= b.left and b.right <= a.left
-
-
-def _hole_about(point: complex) -> Cell:
-    z = complex(log(abs(point)), phase(point))
-    e = NEIGHBOURHOOD
-    return Cell(z.real - e, z.real + e, z.imag - e, z.imag + e)

@@ -37,25 +37,22 @@ def without_squares(bound: BoundTransferFunction, part: Factored) -> tuple[Bound
     if any(kernel.function == "fundamental" for kernel in table.kernels):
         return bound, part
     coordinates = Exponentials(part.ring, table)
-    split: list[tuple[fmpz_mpoly, int]] = []
     circular = [
         coordinates.coordinates.generator(name)
         for angle in coordinates.angles
         if angle.kind == "circular"
         for name in angle.coordinates
     ]
+    split: list[tuple[fmpz_mpoly, int]] = []
     has_squares = False
     for factor, exponent in part.factors:
-        if len(factor) > MOST_TERMS:
+        pieces = _pieces(coordinates, factor)
+        if pieces is None:
             return bound, part
-        for polynomial, times in coordinates.transform(factor).factors:
-            if len(polynomial) > MOST_TERMS:
-                return bound, part
-            _, pieces = polynomial.factor_squarefree()
-            has_squares = has_squares or any(
-                int(e) * times > 1 and (len(p) > 1 or any(p == c for c in circular)) for p, e in pieces
-            )
-            split += [(p, int(e) * times * exponent) for p, e in pieces]
+        has_squares = has_squares or any(
+            e > 1 and (len(piece) > 1 or any(piece == c for c in circular)) for piece, e in pieces
+        )
+        split += [(piece, e * exponent) for piece, e in pieces]
     if not has_squares:
         return bound, part
     halved = coordinates.halved([k for angle in coordinates.angles for k in (angle.even, angle.odd)])
@@ -69,3 +66,25 @@ def without_squares(bound: BoundTransferFunction, part: Factored) -> tuple[Bound
     if any(left):
         return bound, part
     return replace(bound, kernels=halved), result
+
+
+def _pieces(coordinates: Exponentials, factor: fmpz_mpoly) -> list[tuple[fmpz_mpoly, int]] | None:
+    """Return a polynomial as powers of polynomials without squares, ``None`` where it is too long."""
+    if len(factor) > MOST_TERMS:
+        return None
+    if len(factor) == 1:
+        # A generator; those other than kernels are coordinates themselves.
+        name = coordinates.ring.names[factor.degrees().index(1)]
+        if name in coordinates.coordinates.index:
+            return [(coordinates.coordinates.generator(name), 1)]
+    found = []
+    for polynomial, times in coordinates.transform(factor).factors:
+        if len(polynomial) > MOST_TERMS:
+            return None
+        if len(polynomial) == 1:
+            # A coordinate.
+            found.append((polynomial, times))
+            continue
+        _, pieces = polynomial.factor_squarefree()
+        found += [(piece, int(e) * times) for piece, e in pieces]
+    return found

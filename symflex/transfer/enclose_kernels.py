@@ -70,7 +70,7 @@ class KernelValues:
         coefficients: dict[int, tuple[Value, ...]] = {}
         shifts: dict[int, Value] = {}
         for law in self.table.dispersions:
-            found = tuple(self.value(c, values) for c in law.characteristic)
+            found = tuple(ZERO if c.is_zero else self.value(c, values) for c in law.characteristic)
             coefficients[id(law)] = found
             if not law.shift.is_zero:
                 shifts[id(law)] = self.value(law.shift, values)

@@ -1,0 +1,370 @@
+"""Functions without losses on the real and on the imaginary axis of s, where they are real.
+
+On the real axis ``s = t^2``, on the imaginary one ``s = 2 j t^2``; a function is a sum of products of
+exponentials, sines and cosines with polynomials in t.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import sqrt
+from typing import TYPE_CHECKING, overload
+
+import numpy as np
+import numpy.typing as npt
+from flint import arb
+
+from symflex.roots.precision import precision
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+FLOAT_BITS = 64
+LINEAR, QUADRATIC = 1, 2
+REAL, IMAGINARY = 0, 1
+DECAYED = 2
+"""What is smaller than the last bit by this power is bounded rather than evaluated."""
+
+Doubles = npt.NDArray[np.float64]
+Monomial = tuple[tuple[int, int], ...]
+"""Positions of constants, and exponents."""
+Polynomial = dict[int, dict[Monomial, int]]
+"""Per power of t and monomial of constants, a number."""
+Multiples = tuple[int, ...]
+"""Of every argument, one integer."""
+Rate = tuple[arb, arb]
+"""Of t and of t^2."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wave:
+    """Terms ``exp(g) (even(t) cos(p) + odd(t) sin(p))``.
+
+    Parameters
+    ----------
+    growth, phase : tuple of int
+        Multiples of the arguments, which make up g and p.
+    even, odd : Polynomial
+        Coefficients.
+    """
+
+    growth: Multiples
+    phase: Multiples
+    even: Polynomial
+    odd: Polynomial
+
+
+@dataclass(frozen=True, slots=True)
+class Enclosures:
+    """What coefficients and arguments are made of.
+
+    Parameters
+    ----------
+    bits : int
+        Precision of what follows.
+    constants : sequence of arb
+        Numbers in coefficients.
+    rates : sequence of arb
+        Per argument what a power of t is multiplied with.
+    degrees : sequence of int
+        That power: 1 or 2.
+    """
+
+    bits: int
+    constants: Sequence[arb]
+    rates: Sequence[arb]
+    degrees: Sequence[int]
+
+    def rate(self, multiples: Multiples) -> Rate:
+        """Return what t and t^2 are multiplied with in a combination of arguments."""
+        linear, square = arb(0), arb(0)
+        for k, rate, degree in zip(multiples, self.rates, self.degrees, strict=True):
+            if k and degree == LINEAR:
+                linear += k * rate
+            elif k:
+                square += k * rate
+        return linear, square
+
+    def product(self, monomial: Monomial) -> arb:
+        """Return a product of powers of constants."""
+        total = arb(1)
+        for i, e in monomial:
+            total *= self.constants[i] ** e
+        return total
+
+    def coefficients(self, polynomial: Polynomial) -> dict[int, arb]:
+        """Return the coefficients of a polynomial in t."""
+        return {
+            n: sum((number * self.product(m) for m, number in own.items()), arb(0))
+            for n, own in polynomial.items()
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class AxisFunction:
+    """A real function of t.
+
+    Parameters
+    ----------
+    waves : tuple of Wave
+        Its terms; at least one does not grow, and the others, for large t, decay.
+    axis : int
+        0 real, 1 imaginary.
+    enclosures : Enclosures
+        What its terms are made of.
+    """
+
+    waves: tuple[Wave, ...]
+    axis: int
+    enclosures: Enclosures
+
+    @overload
+    def natural_frequency(self, t: arb) -> arb: ...
+    @overload
+    def natural_frequency(self, t: float) -> float: ...
+    def natural_frequency(self, t: arb | float) -> arb | float:
+        """Return abs(s)."""
+        return t * t if self.axis == REAL else 2 * t * t
+
+    def at_frequency(self, frequency: float) -> float:
+        """Return t at an abs(s)."""
+        return sqrt(frequency if self.axis == REAL else frequency / 2)
+
+    @cached_property
+    def _known(self) -> dict[int, AxisValues]:
+        return {}
+
+    def values(self, bits: int) -> AxisValues:
+        """Return what evaluates the function at a precision."""
+        if bits not in self._known:
+            with precision(bits):
+                self._known[bits] = AxisValues(self._numbers, bits)
+        return self._known[bits]
+
+    @cached_property
+    def _numbers(self) -> _Numbers:
+        with precision(self.enclosures.bits):
+            return _numbers(self.waves, self.enclosures)
+
+    @cached_property
+    def _doubles(self) -> _AxisDoubles:
+        return _AxisDoubles(self._numbers)
+
+    def sampled(self, t: Doubles) -> tuple[Doubles, Doubles, Doubles]:
+        """Return values, derivatives, and the sizes of what is summed, all scaled alike, in doubles."""
+        return self._doubles.sampled(t)
+
+    @cached_property
+    def _phases(self) -> list[tuple[float, float]]:
+        return [(float(p), float(q)) for p, q in self._numbers.phases]
+
+    def fastest(self, t: float) -> float:
+        """Return the largest rate of any phase [rad per unit of t]."""
+        return max((abs(p + 2 * q * t) for p, q in self._phases), default=0.0)
+
+
+NONE = -1
+ZERO = arb(0)
+Powers = tuple[tuple[int, arb], ...]
+"""Exponents of t, and coefficients."""
+Term = tuple[int, int, Powers, Powers]
+"""Position of an exponential, or none, of a phase, and what its cosine and sine are multiplied with."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Numbers:
+    """What a function of t and its derivative are made of.
+
+    Parameters
+    ----------
+    growths, phases : list of (arb, arb)
+        Rates of t and t^2 in exponentials, and in sines and cosines.
+    products : sequence of (int, int) or None
+        Of exponentials that are products of two before them, the positions of these.
+    values, slopes : list of Term
+        What is summed.
+    """
+
+    growths: list[Rate]
+    phases: list[Rate]
+    products: Sequence[tuple[int, int] | None]
+    values: list[Term]
+    slopes: list[Term]
+
+
+def _numbers(waves: Sequence[Wave], enclosures: Enclosures) -> _Numbers:
+    growing = sorted({w.growth for w in waves if any(w.growth)}, key=_length)
+    turning = list(dict.fromkeys(w.phase for w in waves))
+    growths, phases = ([enclosures.rate(key) for key in keys] for keys in (growing, turning))
+    values, slopes = [], []
+    for wave in waves:
+        g, p = growing.index(wave.growth) if any(wave.growth) else NONE, turning.index(wave.phase)
+        even, odd = enclosures.coefficients(wave.even), enclosures.coefficients(wave.odd)
+        values.append((g, p, _powers(even), _powers(odd)))
+        turn, back = phases[p], (-phases[p][0], -phases[p][1])
+        slope_of_even, slope_of_odd = [_derived(even), _by(odd, turn)], [_derived(odd), _by(even, back)]
+        if g != NONE:
+            slope_of_even.append(_by(even, growths[g]))
+            slope_of_odd.append(_by(odd, growths[g]))
+        slopes.append((g, p, _powers(_sum(*slope_of_even)), _powers(_sum(*slope_of_odd))))
+    return _Numbers(growths, phases, _products(growing), values, slopes)
+
+
+class AxisValues:
+    """Evaluates a function of t, and its derivative, at one precision, which has to be the current one.
+
+    Parameters
+    ----------
+    numbers : _Numbers
+        What it is made of.
+    bits : int
+        The precision.
+    """
+
+    def __init__(self, numbers: _Numbers, bits: int) -> None:
+        self._growths = _rounded_rates(numbers.growths)
+        self._phases = _rounded_rates(numbers.phases)
+        self._values, self._slopes = _rounded(numbers.values), _rounded(numbers.slopes)
+        self._products = numbers.products
+        self._negligible = -arb(DECAYED * bits)
+        self._decayed = arb(0, 1) * arb(2) ** (-DECAYED * bits)
+        self._has_squares = any(q != 0 for _, q in (*numbers.growths, *numbers.phases))
+
+    def value(self, t: arb) -> arb:
+        """Return a ball around the values on a ball of t."""
+        return _total(t, self._values, *self._moving(t))
+
+    def slope(self, t: arb) -> arb:
+        """Return a ball around the derivatives on a ball of t."""
+        return _total(t, self._slopes, *self._moving(t))
+
+    def value_and_slope(self, t: arb) -> tuple[arb, arb]:
+        """Return both."""
+        moving = self._moving(t)
+        return _total(t, self._values, *moving), _total(t, self._slopes, *moving)
+
+    def _moving(self, t: arb) -> tuple[list[arb], list[tuple[arb, arb]]]:
+        """Return all exponentials, and sines and cosines."""
+        square = t * t if self._has_squares else None
+        growths: list[arb] = []
+        for (p, q), factors in zip(self._growths, self._products, strict=True):
+            if factors is not None:
+                growths.append(growths[factors[0]] * growths[factors[1]])
+                continue
+            exponent = p * t if square is None else p * t + q * square
+            growths.append(self._decayed if exponent < self._negligible else exponent.exp())
+        return growths, [(p * t if square is None else p * t + q * square).sin_cos() for p, q in self._phases]
+
+
+def _total(t: arb, terms: Sequence[Term], growths: Sequence[arb], turns: Sequence[tuple[arb, arb]]) -> arb:
+    total = ZERO
+    for g, p, even, odd in terms:
+        sine, cosine = turns[p]
+        own = ZERO
+        for n, c in even:
+            own += (c * t**n if n else c) * cosine
+        for n, c in odd:
+            own += (c * t**n if n else c) * sine
+        total += own if g == NONE else own * growths[g]
+    return total
+
+
+class _AxisDoubles:
+    """The same in doubles, for many t at once."""
+
+    def __init__(self, numbers: _Numbers) -> None:
+        self._growths = [(float(p), float(q)) for p, q in numbers.growths]
+        self._phases = [(float(p), float(q)) for p, q in numbers.phases]
+        self._terms = [
+            (g, p, _floats(even), _floats(odd), _floats(even_slope), _floats(odd_slope))
+            for (g, p, even, odd), (_, _, even_slope, odd_slope) in zip(
+                numbers.values, numbers.slopes, strict=True
+            )
+        ]
+
+    def sampled(self, t: Doubles) -> tuple[Doubles, Doubles, Doubles]:
+        """Return values, derivatives, and sizes of what is summed."""
+        exponents = [p * t + q * t * t for p, q in self._growths]
+        # The last stands for what does not grow; for small t something else may be larger.
+        exponents.append(np.zeros_like(t))
+        highest = np.maximum.reduce(exponents)
+        growths = [np.exp(e - highest) for e in exponents]
+        turns = [(np.sin(p * t + q * t * t), np.cos(p * t + q * t * t)) for p, q in self._phases]
+        total, slope, size = np.zeros_like(t), np.zeros_like(t), np.zeros_like(t)
+        for g, p, even, odd, even_slope, odd_slope in self._terms:
+            sine, cosine = turns[p][0] * growths[g], turns[p][1] * growths[g]
+            for n, c in even:
+                term = (c * t**n if n else c) * cosine
+                total += term
+                size += np.abs(term)
+            for n, c in odd:
+                term = (c * t**n if n else c) * sine
+                total += term
+                size += np.abs(term)
+            for n, c in even_slope:
+                slope += (c * t**n if n else c) * cosine
+            for n, c in odd_slope:
+                slope += (c * t**n if n else c) * sine
+        return total, slope, size
+
+
+def _length(multiples: Multiples) -> tuple[int, Multiples]:
+    return sum(map(abs, multiples)), multiples
+
+
+def _products(growths: Sequence[Multiples]) -> tuple[tuple[int, int] | None, ...]:
+    """Return for exponentials that are products of two before them the positions of these."""
+    found: dict[Multiples, int] = {}
+    products: list[tuple[int, int] | None] = []
+    for position, growth in enumerate(growths):
+        factors = None
+        for other, i in found.items():
+            rest = found.get(tuple(a - b for a, b in zip(growth, other, strict=True)))
+            if rest is not None:
+                factors = (i, rest)
+                break
+        products.append(factors)
+        found[growth] = position
+    return tuple(products)
+
+
+def _derived(polynomial: dict[int, arb]) -> dict[int, arb]:
+    return {n - 1: n * c for n, c in polynomial.items() if n}
+
+
+def _by(polynomial: dict[int, arb], rate: Rate) -> dict[int, arb]:
+    """Return a polynomial times the derivative of ``p t + q t^2``."""
+    found: dict[int, arb] = {}
+    for n, c in polynomial.items():
+        for power, factor in ((n, rate[0]), (n + 1, 2 * rate[1])):
+            if factor != 0:
+                found[power] = found.get(power, arb(0)) + c * factor
+    return found
+
+
+def _sum(*polynomials: dict[int, arb]) -> dict[int, arb]:
+    found: dict[int, arb] = {}
+    for polynomial in polynomials:
+        for n, c in polynomial.items():
+            found[n] = found.get(n, arb(0)) + c
+    return found
+
+
+def _powers(polynomial: dict[int, arb]) -> Powers:
+    return tuple(sorted(polynomial.items()))
+
+
+def _rounded_rates(rates: Sequence[Rate]) -> list[Rate]:
+    return [(+p, +q) for p, q in rates]
+
+
+def _rounded(terms: Sequence[Term]) -> list[Term]:
+    """Return terms with coefficients of the current precision."""
+    return [
+        (g, p, tuple((n, +c) for n, c in even), tuple((n, +c) for n, c in odd)) for g, p, even, odd in terms
+    ]
+
+
+def _floats(powers: Powers) -> list[tuple[int, float]]:
+    return [(n, float(c)) for n, c in powers]
