@@ -394,6 +394,7 @@ def test_the_derivative_of_a_rod_by_its_parameters_is_that_of_the_formula(omega,
             assert abs(float(computed[name]) - float(slope)) * float(center) < 1e-11 * swing
 
 
+@pytest.mark.slow
 @needs_jax
 @pytest.mark.parametrize("force", ["0", "1e-6", "500"])
 def test_the_derivative_by_an_axial_force_is_that_of_the_boundary_value_problem(force, over_jax, jax):

@@ -39,6 +39,7 @@ def read(function, tf, points):
     return [function(p, *given) for p in points.tolist()]
 
 
+@pytest.mark.slow
 def test_every_model_read_as_python_agrees_with_balls_over_its_band_and_beside_its_resonances():
     count = 0
     for name in DERIVATIONS:

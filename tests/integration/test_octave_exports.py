@@ -48,6 +48,7 @@ def test_every_model_agrees_with_balls_over_its_band_and_beside_its_resonances(o
         assert max(worst_errors(tf, 1j * w, *(octave.value(k) for k in keys))) <= ACCURACY, tf.name
 
 
+@pytest.mark.slow
 def test_what_else_a_program_can_hold_agrees_on_the_axis_and_in_both_half_planes(octave):
     asked = []
     for name in SPECS:

@@ -65,6 +65,7 @@ def assert_close(found, expected):
     assert abs(complex(found) - expected.value) <= allowed
 
 
+@pytest.mark.slow
 @given(network=networks())
 @quiet(300)
 def test_the_exported_functions_agree_with_the_dense_tableau(numpy_functions, network):

@@ -333,6 +333,7 @@ def check_damped(drawn):
     assert sum(root.multiplicity for root in found.zeros) + hidden == zeros
 
 
+@pytest.mark.slow
 @given(damped())
 @quiet(2)
 def test_a_damped_beam_has_as_many_poles_and_zeros_in_a_rectangle_as_its_determinant_turns(drawn):

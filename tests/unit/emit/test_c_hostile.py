@@ -114,6 +114,7 @@ def _compile(folder):
     assert done.returncode == 0, done.stderr[:2000]
 
 
+@pytest.mark.slow
 @pytest.mark.needs_tool("gcc")
 def test_a_parameter_or_output_of_any_name_keeps_the_structure_and_compiles(tmp_path):
     names = [n for n in dict.fromkeys((*C_NAMES, *HOSTILE)) if ring_takes(n)]

@@ -102,6 +102,7 @@ def test_a_clamped_blade_against_shooting():
     assert [s.imag for s in found] == pytest.approx([s.imag for s in expected], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_blade_that_is_hardly_coupled_bends_and_twists_by_itself():
     # Blevins 1979: cos x cosh x = -1, and (2 n - 1) pi/2 of a clamped-free shaft.
     bending = [
