@@ -13,7 +13,6 @@ import importlib.util
 import math
 import sys
 import tempfile
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +20,7 @@ import numpy as np
 import sympy
 
 import symflex
-from benchmarks.measure import Claim, Measurement
+from benchmarks.measure import Claim, Measurement, fastest
 from symflex import pipeline
 from symflex.emit.numpy_module import numpy_module
 
@@ -55,21 +54,7 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
     """
     omega = 2.0 * math.pi * np.geomspace(*BAND_HZ, POINTS)
     ways = _ways(1j * omega, omega)
-    best = dict.fromkeys(ways, math.inf)
-    begin = time.process_time()
-    with np.errstate(all="ignore"):
-        first, *others = (way() for way in ways.values())
-        for name, other in zip(list(ways)[1:], others, strict=True):
-            if np.median(np.abs(other - first) / np.abs(first)) > AGREEMENT:
-                message = f"{name} does not agree"
-                raise RuntimeError(message)
-        for _ in range(ROUNDS):
-            for name, way in ways.items():
-                started = time.process_time()
-                way()
-                best[name] = min(best[name], time.process_time() - started)
-            if time.process_time() - begin > limit:
-                break
+    best = fastest(ways, limit, rounds=ROUNDS, agreement=AGREEMENT)
     found = [Measurement(TASK, name, seconds, limit) for name, seconds in best.items()]
     ours, real, by_hand, common, plain = (m.at_least for m in found)
     return found, [

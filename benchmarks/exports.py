@@ -15,14 +15,13 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from benchmarks.distributed import AGREEMENT, BAND_HZ, POINTS, ROUNDS, SPECIFICATION, exported_module
-from benchmarks.measure import Claim, Measurement
+from benchmarks.measure import Claim, Measurement, fastest
 from symflex import pipeline
 from symflex.emit.c import c_files
 
@@ -79,7 +78,7 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
     omega = 2.0 * math.pi * np.geomspace(*BAND_HZ, POINTS)
     with tempfile.TemporaryDirectory() as folder:
         ways = _ways(omega, Path(folder))
-        best = _fastest(ways, limit)
+        best = fastest(ways, limit, rounds=ROUNDS, agreement=AGREEMENT)
     found = [Measurement(TASK, name, seconds, limit) for name, seconds in best.items()]
     by_numpy, _, ours, by_hand, ours_native, by_hand_native = (m.at_least for m in found)
     return found, [
@@ -108,26 +107,6 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
             larger_is_better=False,
         ),
     ]
-
-
-def _fastest(ways: dict[str, Callable[[], NDArray[Any]]], limit: float) -> dict[str, float]:
-    """Return the fastest run of every way, in seconds."""
-    best = dict.fromkeys(ways, math.inf)
-    begin = time.process_time()
-    with np.errstate(all="ignore"):
-        first, *others = (way() for way in ways.values())
-        for name, other in zip(list(ways)[1:], others, strict=True):
-            if np.median(np.abs(other - first) / np.abs(first)) > AGREEMENT:
-                message = f"{name} does not agree"
-                raise RuntimeError(message)
-        for _ in range(ROUNDS):
-            for name, way in ways.items():
-                started = time.process_time()
-                way()
-                best[name] = min(best[name], time.process_time() - started)
-            if time.process_time() - begin > limit:
-                break
-    return best
 
 
 def _ways(omega: NDArray[Any], folder: Path) -> dict[str, Callable[[], NDArray[Any]]]:

@@ -26,7 +26,7 @@ from symflex.emit.program import (
     inert,
     nearest_double,
 )
-from symflex.emit.program.everywhere import every_node, in_pieces
+from symflex.emit.program.everywhere import in_pieces
 from symflex.emit.python_text import (
     Signature,
     function_docstring,
@@ -279,7 +279,7 @@ def _support(programs: Sequence[Piecewise], dialect: Dialect) -> list[str]:
         blocks += [array_support.PIECES, dialect.idle]
         if dialect.size:
             blocks.append(dialect.size)
-    if any(isinstance(node, Solutions) for piece in code for node in every_node(piece.code)):
+    if any(isinstance(node, Solutions) for piece in code for node in piece.code.nodes()):
         blocks.append(dialect.series)
     if any(piece.circle for piece in code):
         blocks += [array_support.CIRCLE, dialect.in_front]

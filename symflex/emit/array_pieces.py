@@ -16,7 +16,7 @@ from symflex.emit.array_expression import ArrayPrinter
 from symflex.emit.numpy_expression import WIDTH, statement
 from symflex.emit.program import Apply, InverseLaplace, Laplace, Multiply, Node, Piece, Piecewise, identifiers
 from symflex.emit.program.evaluate import number_of
-from symflex.emit.program.everywhere import ONE, cases_of, every_node, places_of
+from symflex.emit.program.everywhere import ONE, cases_of, places_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -113,8 +113,8 @@ class ArrayPieces:
         printer = ArrayPrinter(
             self.parameters,
             names,
-            inverse,
             variable,
+            inverse,
             self.space,
             numbers,
             self.has_fixed_sizes and not self.program.is_real,
@@ -184,6 +184,6 @@ class ArrayPieces:
             start.append(f"    {printer.inverse} = 1.0 / {variable}")
         if self.program.is_real and not piece.is_complex:
             value = f"{'1j' if self.program.turn else '(1+0j)'} * ({value})"
-        elif not any(isinstance(n, (Laplace, InverseLaplace)) for n in every_node(piece.code)):
+        elif not any(isinstance(n, (Laplace, InverseLaplace)) for n in piece.code.nodes()):
             value = f"{value} + {self.space}.zeros_like({self.variable})"
         return [*start, *lines, *statement("return", value, "    ")]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from textwrap import TextWrapper
 from typing import TYPE_CHECKING, ClassVar
@@ -31,6 +32,7 @@ from symflex.emit.program import Parameter as ParameterNode
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
+    from symflex.emit.program import Condition, Piecewise
     from symflex.emit.program.nodes import Frames
 
 _SUM, _PRODUCT, _SIGN, _POWER, _LEAF = range(5)
@@ -39,7 +41,7 @@ _GLUE = "\N{NO-BREAK SPACE}"
 
 
 @dataclass(frozen=True)
-class InfixPrinter:
+class InfixPrinter(ABC):
     """Prints expressions that are evaluated in the order of the tree.
 
     Parameters
@@ -73,31 +75,56 @@ class InfixPrinter:
         text, binding = self._print(node)
         return text if binding >= tightest else f"({text})"
 
+    @property
+    def pi(self) -> str:
+        """The number pi."""
+        return "pi"
+
+    def applied(self, function: str, argument: Node) -> str:
+        """Return the text of an elementary function's value."""
+        return f"{'exp' if function == 'complex_exp' else function}({self.print(argument)})"
+
+    def piece_number(self, program: Piecewise) -> str:
+        """Return the sum of ``2**i`` over the tests that hold; empty without tests."""
+        terms = []
+        for i, condition in enumerate(program.conditions):
+            test = self._holds(condition, is_real=program.is_real)
+            terms.append(f"{2**i} {self.times} ({test})" if i else f"({test})")
+        return " + ".join(terms)
+
+    def _holds(self, condition: Condition, *, is_real: bool) -> str:
+        if not condition.limit:
+            return f"real({self.print(Multiply((condition.scale, condition.quantity)))}) < 0.0"
+        quantity, scale = self.print(condition.quantity), self.print(condition.scale)
+        is_positive = is_real and isinstance(condition.quantity, Laplace)
+        below = "" if scale == "1.0" else f" {self.over} abs({scale})"
+        return f"{quantity if is_positive else f'abs({quantity})'} < {condition.limit!r}{below}"
+
     # --------------------------------------------------------------------- what languages write differently
 
+    @abstractmethod
     def complex_number(self, real: float, imaginary: float) -> str:
         """Return a number as text that needs no parentheses."""
-        raise NotImplementedError
 
+    @abstractmethod
     def power(self, base: str, exponent: int) -> str:
         """Return a power of text that needs no parentheses."""
-        raise NotImplementedError
 
+    @abstractmethod
     def listed(self, texts: Iterable[str]) -> str:
         """Return a list."""
-        raise NotImplementedError
 
+    @abstractmethod
     def item(self, values: str, position: int) -> str:
         """Return one value of a list, counted from 0."""
-        raise NotImplementedError
 
+    @abstractmethod
     def call(self, function: str, arguments: Sequence[str]) -> str:
         """Return a call of a run-time function, named as in :mod:`symflex.emit.program.runtime`."""
-        raise NotImplementedError
 
+    @abstractmethod
     def frames(self, frames: Frames) -> str:
         """Return the frames of a sum of exponentials."""
-        raise NotImplementedError
 
     # -------------------------------------------------------------------------------------------- the tree
 
@@ -106,7 +133,7 @@ class InfixPrinter:
         match node:
             case Constant(value, pi_power):
                 is_pi = value == 1 and pi_power == 1
-                return "pi" if is_pi else repr(nearest_double(value, pi_power)), _LEAF
+                return self.pi if is_pi else repr(nearest_double(value, pi_power)), _LEAF
             case ComplexNumber(real, imaginary):
                 return self.complex_number(nearest_double(real), nearest_double(imaginary)), _LEAF
             case ParameterNode(name):
@@ -129,8 +156,7 @@ class InfixPrinter:
             case Negate(operand):
                 return f"-{self.within(operand, _POWER)}", _SIGN
             case Apply(function, argument):
-                name = "exp" if function == "complex_exp" else function
-                return f"{name}({self.print(argument)})", _LEAF
+                return self.applied(function, argument), _LEAF
         return self._with_lists(node), _LEAF
 
     def _with_lists(self, node: Node) -> str:

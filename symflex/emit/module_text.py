@@ -9,9 +9,6 @@ from symflex.emit.program import inert, nearest_double, wrapped
 from symflex.expressions import Number, Quotient, format_expression
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from symflex.emit.program import Node, Straight
     from symflex.model import Model, Parameter
     from symflex.transfer import TransferFunction
 
@@ -104,12 +101,3 @@ def default_value(parameter: Parameter) -> str:
     """
     value = parameter.value
     return "" if value is None else repr(nearest_double(value.rational, value.pi_power))
-
-
-def all_nodes(code: Straight) -> Iterator[Node]:
-    """Yield every node of straight-line code, in no particular order."""
-    pending = [*code.values, *(a.value for a in (*code.constants, *code.assignments))]
-    while pending:
-        node = pending.pop()
-        yield node
-        pending += node.children

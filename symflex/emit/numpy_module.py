@@ -246,7 +246,7 @@ class _Function:
         used |= set(own.values())
         assignments = [*program.constants, *program.near.assignments, *(far.assignments if far else ())]
         intermediates = identifiers({a.name: a.name for a in assignments}, used)
-        printer = Printer(self.names, intermediates, own["inverse"])
+        printer = Printer(self.names, intermediates, "s", own["inverse"])
         for assignment in (*program.constants, *program.near.assignments):
             lines += printer.assignment(assignment.name, assignment.value, "    ")
         if far is None:

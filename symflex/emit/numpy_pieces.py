@@ -16,22 +16,20 @@ from symflex.emit.program import (
     Apply,
     Assignment,
     Laplace,
-    ModalValue,
     Multiply,
     Node,
     Piece,
     Piecewise,
-    Roots,
-    Solutions,
     Straight,
     identifiers,
     runtime,
 )
+from symflex.emit.program.calls import RuntimeCalls
 from symflex.emit.program.real_axis import needed
 from symflex.kernels import modal_amplitudes, mode_values
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
 PIECES_SUPPORT = '''\
 BLOCK = 20480
@@ -209,31 +207,18 @@ def support(programs: Sequence[Piecewise]) -> list[str]:
         blocks.append(REAL_SUPPORT)
     if any(not c.limit for p in programs if not p.is_real for c in p.conditions):
         blocks.append(LEFT_SUPPORT)
-    code = [piece for p in programs for piece in p.code]
-    nodes = [n for c in code for n in _nodes(c.code)]
-    exponentials = (n for n in nodes if isinstance(n, Apply) and n.function == "complex_exp")
-    if any(exponentials) or any(isinstance(n, ModalValue) for n in nodes):
-        blocks.append(_copied(runtime.complex_exp))
-    asked = {n.terms > 0 for n in nodes if isinstance(n, Solutions)}
-    if True in asked:
-        blocks.append(_copied(runtime.series_solutions))
-    if False in asked:
-        blocks.append(_copied(runtime.propagated))
-    if any(isinstance(n, Roots) for n in nodes):
-        blocks.append(_copied(runtime.characteristic_roots))
-    if any(isinstance(n, ModalValue) for n in nodes):
-        blocks += [_copied(f) for f in (mode_values, modal_amplitudes, runtime.modal_value)]
-    if any(c.circle for c in code):
-        blocks.append(_copied(runtime.mean_over_circle))
-    return blocks
-
-
-def _nodes(code: Straight) -> Iterator[Node]:
-    pending = [*code.values, *(a.value for a in (*code.constants, *code.assignments))]
-    while pending:
-        node = pending.pop()
-        yield node
-        pending += node.children
+    calls = RuntimeCalls.of(programs)
+    nodes = (n for p in programs for piece in p.code for n in piece.code.nodes())
+    has_exponentials = any(isinstance(n, Apply) and n.function == "complex_exp" for n in nodes)
+    wanted: tuple[tuple[bool, tuple[Callable[..., object], ...]], ...] = (
+        (has_exponentials or calls.modes, (runtime.complex_exp,)),
+        (calls.series, (runtime.series_solutions,)),
+        (calls.propagation, (runtime.propagated,)),
+        (calls.roots, (runtime.characteristic_roots,)),
+        (calls.modes, (mode_values, modal_amplitudes, runtime.modal_value)),
+        (calls.means, (runtime.mean_over_circle,)),
+    )
+    return [*blocks, *(_copied(f) for is_called, functions in wanted if is_called for f in functions)]
 
 
 @dataclass(frozen=True)
@@ -293,7 +278,7 @@ class PiecesText:
         assignments: list[Assignment] = [*code.constants, *code.assignments]
         taken = {*self.reserved, *self.parameters.values(), self.variable, variable, "z"}
         names = identifiers({a.name: a.name for a in assignments}, taken)
-        return Printer(self.parameters, names, "inverse", variable)
+        return Printer(self.parameters, names, variable, "inverse")
 
     def _body(self, code: Straight, printer: Printer) -> list[str]:
         lines: list[str] = []

@@ -271,7 +271,7 @@ class _Module:
         floats = "NDArray[np.float64]"
         returned = f") -> tuple[{floats}, {floats}, {floats}, {floats}]:"
         lines = [*signature, returned, docstring(self._docstring(), "    ").rstrip("\n")]
-        printer = Printer(self._names, {}, "")
+        printer = Printer(self._names, {}, "s")
         for letter, _, shape in self._system.matrices:
             own = self._letters[letter]
             lines.append(f"    {own} = np.zeros({shape})")

@@ -8,7 +8,7 @@ are sampled on a grid in doubles; where these do not serve, and for all others, 
 from __future__ import annotations
 
 from cmath import pi
-from math import ceil, exp, log
+from math import ceil, log
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -125,7 +125,10 @@ def _secants(
     return [float(place) for place in _crossing(low, below, high, above)]
 
 
-def _crossing(low: Doubles, below: Doubles, high: Doubles, above: Doubles) -> Doubles:
+def _crossing(
+    low: Doubles | float, below: Doubles | float, high: Doubles | float, above: Doubles | float
+) -> Doubles:
+    """Return where a real function with these logarithms at the ends is about zero."""
     found: Doubles = low + (high - low) / (1 + np.exp(np.clip(above - below, -MOST, MOST)))
     return found
 
@@ -138,7 +141,7 @@ def _step_by_step(winding: Winding, low: float, high: float, turned: float) -> I
         beyond = _sample(winding, complex(following, turned))
         for start, first, end, last in _pieces(winding, place, sample, following, beyond, turned):
             if _changes_sign(winding, first, last):
-                yield _secant(start, first, end, last)
+                yield float(_crossing(start, first.log.real, end, last.log.real))
         place, sample = following, beyond
 
 
@@ -174,9 +177,3 @@ def _changes_sign(winding: Winding, first: Sample, last: Sample) -> bool:
     turn = (last.log.imag - first.log.imag) / winding.function.power
     turns = abs(turn) / pi
     return round(turns) % 2 == 1 and abs(turns - round(turns)) * pi < TILT
-
-
-def _secant(start: float, first: Sample, end: float, last: Sample) -> float:
-    """Return where a real function with these logarithms at the ends is about zero."""
-    growth = min(max(last.log.real - first.log.real, -MOST), MOST)
-    return start + (end - start) / (1 + exp(growth))

@@ -38,6 +38,9 @@ if TYPE_CHECKING:
     from symflex.model import Model
     from symflex.transfer import TransferFunction
 
+LAST_OF_FOUR_DIGITS = 0xFFFF
+"""The last character that ``\\u`` names."""
+
 KEYWORDS = frozenset(
     "abstract as baremodule begin break catch const continue do else elseif end export false finally for "
     "function global if import in isa let local macro module mutable outer primitive public quote return "
@@ -219,7 +222,7 @@ def _character(c: str) -> str:
         return f"\\{c}"
     if c.isprintable():
         return c
-    return f"\\u{ord(c):04x}" if ord(c) < 0x10000 else f"\\U{ord(c):08x}"  # noqa: PLR2004
+    return f"\\u{ord(c):04x}" if ord(c) <= LAST_OF_FOUR_DIGITS else f"\\U{ord(c):08x}"
 
 
 def _header(model: Model, members: Sequence[_Member], digits: int) -> list[str]:

@@ -7,25 +7,17 @@ from typing import TYPE_CHECKING
 
 from symflex.emit.julia import support
 from symflex.emit.julia.expression import JuliaPrinter, head, statement
-from symflex.emit.module_text import all_nodes
 from symflex.emit.program import (
     Assignment,
-    Laplace,
-    ModalValue,
-    ModeValues,
-    Multiply,
     Piece,
     Piecewise,
     Program,
-    Roots,
-    Solutions,
     identifiers,
 )
+from symflex.emit.program.calls import RuntimeCalls
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
-
-    from symflex.emit.program import Node
 
 
 @dataclass(frozen=True)
@@ -107,18 +99,8 @@ class PrivateFunctions:
                 "    end",
             ]
         lines += _assigned(assignments, printer)
-        tests = []
-        for i, condition in enumerate(program.conditions):
-            quantity, scale = printer.print(condition.quantity), printer.print(condition.scale)
-            if not condition.limit:
-                test = f"real({printer.print(Multiply((condition.scale, condition.quantity)))}) < 0.0"
-            else:
-                is_positive = program.is_real and isinstance(condition.quantity, Laplace)
-                below = "" if scale == "1.0" else f" / abs({scale})"
-                test = f"{quantity if is_positive else f'abs({quantity})'} < {condition.limit!r}{below}"
-            tests.append(f"{2**i} * ({test})" if i else f"({test})")
-        if tests:
-            lines += statement(number, " + ".join(tests))
+        if program.conditions:
+            lines += statement(number, printer.piece_number(program))
         given = ", ".join(self._arguments(variable))
         served = {k: [n for n, own in enumerate(program.pieces) if own == k] for k in set(program.pieces)}
         *others, last = sorted(served)
@@ -166,21 +148,12 @@ def _assigned(assignments: Sequence[Assignment], printer: JuliaPrinter, indent: 
 
 def support_of(programs: Sequence[Program | Piecewise]) -> list[str]:
     """Return the functions that the others call, those in use only."""
-    piecewise = [p for p in programs if isinstance(p, Piecewise)]
-    nodes: list[Node] = []
-    for p in piecewise:
-        for code in (p.tests, *(piece.code for piece in p.code)):
-            nodes += all_nodes(code)
-    solving = {n.terms > 0 for n in nodes if isinstance(n, Solutions)}
-    blocks = []
-    if any(piece.circle for p in piecewise for piece in p.code):
-        blocks.append(support.MEAN_OVER_CIRCLE)
-    if True in solving:
-        blocks.append(support.SERIES_SOLUTIONS)
-    if False in solving:
-        blocks.append(support.PROPAGATED)
-    if any(isinstance(n, Roots) for n in nodes):
-        blocks.append(support.CHARACTERISTIC_ROOTS)
-    if any(isinstance(n, ModalValue | ModeValues) for n in nodes):
-        blocks.append(support.MODAL)
-    return blocks
+    calls = RuntimeCalls.of([p for p in programs if isinstance(p, Piecewise)])
+    wanted = (
+        (calls.means, support.MEAN_OVER_CIRCLE),
+        (calls.series, support.SERIES_SOLUTIONS),
+        (calls.propagation, support.PROPAGATED),
+        (calls.roots, support.CHARACTERISTIC_ROOTS),
+        (calls.modes, support.MODAL),
+    )
+    return [text for is_called, text in wanted if is_called]

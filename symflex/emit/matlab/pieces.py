@@ -7,25 +7,17 @@ from typing import TYPE_CHECKING
 
 from symflex.emit.matlab import support
 from symflex.emit.matlab.expression import MatlabPrinter, continued, statement
-from symflex.emit.module_text import all_nodes
 from symflex.emit.program import (
     Assignment,
-    Laplace,
-    ModalValue,
-    ModeValues,
-    Multiply,
     Piece,
     Piecewise,
     Program,
-    Roots,
-    Solutions,
     identifiers,
 )
+from symflex.emit.program.calls import RuntimeCalls
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
-
-    from symflex.emit.program import Node
 
 LONGEST = 63
 """Characters that MATLAB tells identifiers apart by."""
@@ -129,17 +121,7 @@ class LocalFunctions:
         """Return the function that tells which piece serves."""
         assignments = (*program.tests.constants, *program.tests.assignments)
         printer, (variable, number) = self._scope(assignments, self.variable, "number")
-        terms = []
-        for i, condition in enumerate(program.conditions):
-            quantity, scale = printer.print(condition.quantity), printer.print(condition.scale)
-            if not condition.limit:
-                test = f"real({printer.print(Multiply((condition.scale, condition.quantity)))}) < 0.0"
-            else:
-                is_positive = program.is_real and isinstance(condition.quantity, Laplace)
-                below = "" if scale == "1.0" else f" ./ abs({scale})"
-                test = f"{quantity if is_positive else f'abs({quantity})'} < {condition.limit!r}{below}"
-            terms.append(f"{2**i} .* ({test})" if i else f"({test})")
-        lines = [*_assigned(assignments, printer), *statement(number, " + ".join(terms) or "0")]
+        lines = [*_assigned(assignments, printer), *statement(number, printer.piece_number(program) or "0")]
         return self._function(number, "number", variable, lines)
 
     def _piece(self, number: int, piece: Piece) -> list[str]:
@@ -197,22 +179,13 @@ def support_of(programs: Sequence[Program | Piecewise]) -> list[str]:
     if any(p.is_real for p in piecewise):
         blocks.append(support.IN_REAL_PIECES)
     blocks.append(support.CHOSEN)
-    if any(piece.circle for p in piecewise for piece in p.code):
-        blocks.append(support.MEAN_OVER_CIRCLE)
-    nodes: list[Node] = []
-    for p in piecewise:
-        for code in (p.tests, *(piece.code for piece in p.code)):
-            nodes += all_nodes(code)
-    solving = {n.terms > 0 for n in nodes if isinstance(n, Solutions)}
-    if True in solving:
-        blocks.append(support.SERIES_SOLUTIONS)
-    has_roots = any(isinstance(n, Roots) for n in nodes)
-    if False in solving or has_roots:
-        blocks.append(support.ROWS)
-    if False in solving:
-        blocks.append(support.PROPAGATED)
-    if has_roots:
-        blocks.append(support.CHARACTERISTIC_ROOTS)
-    if any(isinstance(n, ModalValue | ModeValues) for n in nodes):
-        blocks.append(support.MODAL)
-    return blocks
+    calls = RuntimeCalls.of(piecewise)
+    wanted = (
+        (calls.means, support.MEAN_OVER_CIRCLE),
+        (calls.series, support.SERIES_SOLUTIONS),
+        (calls.propagation or calls.roots, support.ROWS),
+        (calls.propagation, support.PROPAGATED),
+        (calls.roots, support.CHARACTERISTIC_ROOTS),
+        (calls.modes, support.MODAL),
+    )
+    return [*blocks, *(text for is_called, text in wanted if is_called)]

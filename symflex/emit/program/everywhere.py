@@ -19,7 +19,6 @@ from symflex.emit.program.nodes import (
     Condition,
     Constant,
     Laplace,
-    Node,
     Piece,
     Piecewise,
     Program,
@@ -28,7 +27,7 @@ from symflex.emit.program.nodes import (
 from symflex.emit.program.real_axis import needed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Mapping
 
     from numpy.typing import NDArray
 
@@ -72,15 +71,6 @@ def in_pieces(program: Program | Piecewise) -> Piecewise:
 def _whole(code: Straight) -> Piece:
     kept = needed(code, code.values)
     return Piece(Straight(kept.constants, kept.assignments, (*code.values, ONE)))
-
-
-def every_node(code: Straight) -> Iterator[Node]:
-    """Yield all expressions of a piece of code, parts included."""
-    pending = [*code.values, *(a.value for a in (*code.constants, *code.assignments))]
-    while pending:
-        node = pending.pop()
-        yield node
-        pending += node.children
 
 
 def cases_of(program: Piecewise) -> tuple[Cases, ...]:

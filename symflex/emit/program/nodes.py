@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from fractions import Fraction
 
 Frames = tuple[
@@ -329,6 +330,14 @@ class Straight:
     constants: tuple[Assignment, ...]
     assignments: tuple[Assignment, ...]
     values: tuple[Node, ...]
+
+    def nodes(self) -> Iterator[Node]:
+        """Yield all expressions, parts included, in no particular order."""
+        pending = [*self.values, *(a.value for a in (*self.constants, *self.assignments))]
+        while pending:
+            node = pending.pop()
+            yield node
+            pending += node.children
 
 
 @dataclass(frozen=True, slots=True)
