@@ -1,0 +1,44 @@
+"""Every model of ``derivations/`` in every language that runs here, against balls and the printed table."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from tests.house.repository import ROOT
+from tests.integration.error_table import WAYS, worst
+from tests.unit.emit.exportable import DERIVATIONS
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.needs_tool("gcc", "octave"),
+    pytest.mark.needs_module("array_api_strict", "jax"),
+]
+
+ACCURACY = 1e-13
+LIBRARIES_DIFFER = 2.0
+"""How many times the printed error another mathematical library may have."""
+
+ROW = re.compile(r"^\| `(\w+)` \|((?: [-0-9.e–]+ \|)+)$", re.MULTILINE)
+PRINTED = {
+    name: dict(zip(WAYS, (cell.strip() for cell in cells.split("|")), strict=False))
+    for name, cells in ROW.findall((ROOT / "docs" / "numeric-export.md").read_text(encoding="utf-8"))
+}
+
+
+@pytest.mark.parametrize("target", WAYS)
+@pytest.mark.parametrize("name", DERIVATIONS)
+def test_what_is_exported_is_as_accurate_as_the_documentation_says(name, target):
+    found, printed = worst(name, target), PRINTED[name][target]
+    if printed == "–":
+        assert target == "state-space"
+        assert found is None
+        return
+    error, count = found
+    assert count > 0
+    assert error <= min(ACCURACY, LIBRARIES_DIFFER * float(printed))
+
+
+def test_the_table_has_every_model():
+    assert set(PRINTED) == set(DERIVATIONS)
