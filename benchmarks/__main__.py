@@ -10,7 +10,7 @@ from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 
-from benchmarks import chains, distributed, exports, roots, startup
+from benchmarks import chains, distributed, exports, lumped, roots, startup
 from benchmarks.measure import Claim, Measurement
 from symflex import __version__
 
@@ -33,6 +33,9 @@ def main(arguments: list[str] | None = None) -> int:
     export_measurements, export_claims = exports.measure(asked.limit)
     measurements += export_measurements
     claims += export_claims
+    lumped_measurements, lumped_claims = lumped.measure(asked.limit)
+    measurements += lumped_measurements
+    claims += lumped_claims
     root_measurements, root_claims = roots.measure(asked.limit)
     measurements += root_measurements
     claims += root_claims

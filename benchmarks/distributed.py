@@ -9,10 +9,7 @@ overflows above some 10 kHz, and the band stops before.
 
 from __future__ import annotations
 
-import importlib.util
 import math
-import sys
-import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +17,7 @@ import numpy as np
 import sympy
 
 import symflex
+from benchmarks.generated import imported
 from benchmarks.measure import Claim, Measurement, fastest
 from symflex import pipeline
 from symflex.emit.numpy_module import numpy_module
@@ -91,18 +89,7 @@ def _ways(s: NDArray[Any], omega: NDArray[Any]) -> dict[str, Callable[[], Any]]:
 def exported_module() -> Any:  # noqa: ANN401
     """Return the exported module, imported."""
     model = pipeline.load(SPECIFICATION)
-    text = numpy_module(pipeline.derive_all(model), model).text
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "exported_beam.py"
-        path.write_text(text, encoding="utf-8")
-        spec = importlib.util.spec_from_file_location("exported_beam", path)
-        if spec is None or spec.loader is None:
-            message = "the exported module cannot be imported"
-            raise RuntimeError(message)
-        module = importlib.util.module_from_spec(spec)
-        sys.modules[spec.name] = module
-        spec.loader.exec_module(module)
-    return module
+    return imported(numpy_module(pipeline.derive_all(model), model).text, "exported_beam")
 
 
 def _closed_form() -> tuple[sympy.Expr, list[sympy.Symbol]]:

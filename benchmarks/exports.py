@@ -12,15 +12,13 @@ from __future__ import annotations
 import ctypes
 import math
 import shutil
-import subprocess
 import sys
-import tempfile
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from benchmarks.distributed import AGREEMENT, BAND_HZ, POINTS, ROUNDS, SPECIFICATION, exported_module
+from benchmarks.generated import FLAGS, loaded, pointer
 from benchmarks.measure import Claim, Measurement, fastest
 from symflex import pipeline
 from symflex.emit.c import c_files
@@ -31,7 +29,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 TASK = "exported C: sliding-free beam at a million frequencies"
-FLAGS = {"-O2": ["-std=c99", "-O2"], "-O2 -march=native": ["-std=c99", "-O2", "-march=native"]}
 
 FASTER_THAN_NUMPY = 2.5
 SLOWER_THAN_BY_HAND = 1.3
@@ -76,9 +73,7 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
         print("skipped, there is no C compiler `cc`: exported C", file=sys.stderr)
         return [], []
     omega = 2.0 * math.pi * np.geomspace(*BAND_HZ, POINTS)
-    with tempfile.TemporaryDirectory() as folder:
-        ways = _ways(omega, Path(folder))
-        best = fastest(ways, limit, rounds=ROUNDS, agreement=AGREEMENT)
+    best = fastest(_ways(omega), limit, rounds=ROUNDS, agreement=AGREEMENT)
     found = [Measurement(TASK, name, seconds, limit) for name, seconds in best.items()]
     by_numpy, _, ours, by_hand, ours_native, by_hand_native = (m.at_least for m in found)
     return found, [
@@ -109,14 +104,12 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
     ]
 
 
-def _ways(omega: NDArray[Any], folder: Path) -> dict[str, Callable[[], NDArray[Any]]]:
+def _ways(omega: NDArray[Any]) -> dict[str, Callable[[], NDArray[Any]]]:
     """Return the ways to compute the imaginary parts, without arguments."""
     model = pipeline.load(SPECIFICATION)
-    files = c_files(pipeline.derive_all(model), model, name="exported_beam")
+    made = c_files(pipeline.derive_all(model), model, name="exported_beam")
+    files = {"exported_beam.c": made.source, "exported_beam.h": made.header, "by_hand.c": BY_HAND}
     module = exported_module()
-    (folder / "exported_beam.c").write_text(files.source, encoding="utf-8")
-    (folder / "exported_beam.h").write_text(files.header, encoding="utf-8")
-    (folder / "by_hand.c").write_text(BY_HAND, encoding="utf-8")
     s = 1j * omega
     ways: dict[str, Callable[[], NDArray[Any]]] = {
         "`--to numpy`, `V_act_over_F(1j*omega)`": lambda: module.V_act_over_F(s).imag,
@@ -125,21 +118,17 @@ def _ways(omega: NDArray[Any], folder: Path) -> dict[str, Callable[[], NDArray[A
         ),
     }
     values = [module.PARAMETERS[name]["value"] for name in ("E", "I", "rho", "A", "l")]
-    for number, (name, flags) in enumerate(FLAGS.items()):
-        library = folder / f"beam_{number}.so"
-        sources = ["exported_beam.c", "by_hand.c"]
-        command = ["cc", *flags, "-shared", "-fPIC", "-o", str(library), *sources, "-lm"]
-        subprocess.run(command, cwd=folder, check=True)
-        loaded = ctypes.CDLL(str(library))
-        ways[f"`--to c`, `V_act_over_F_freq`, {name}"] = _exported(loaded, omega)
-        ways[f"C by hand, {name}"] = _by_hand(loaded, omega, values)
+    for name, flags in FLAGS.items():
+        library = loaded(files, flags)
+        ways[f"`--to c`, `V_act_over_F_freq`, {name}"] = _exported(library, omega)
+        ways[f"C by hand, {name}"] = _by_hand(library, omega, values)
     return ways
 
 
 def _exported(library: ctypes.CDLL, omega: NDArray[Any]) -> Callable[[], NDArray[Any]]:
     real, imag = np.empty_like(omega), np.empty_like(omega)
     defaults = ctypes.c_double.in_dll(library, "exported_beam_defaults")
-    arguments = (*map(_pointer, (omega, real, imag)), ctypes.c_size_t(omega.size), ctypes.byref(defaults))
+    arguments = (*map(pointer, (omega, real, imag)), ctypes.c_size_t(omega.size), ctypes.byref(defaults))
 
     def run() -> NDArray[Any]:
         library.exported_beam_V_act_over_F_freq(*arguments)
@@ -151,7 +140,7 @@ def _exported(library: ctypes.CDLL, omega: NDArray[Any]) -> Callable[[], NDArray
 def _by_hand(library: ctypes.CDLL, omega: NDArray[Any], values: list[float]) -> Callable[[], NDArray[Any]]:
     real, imag = np.empty_like(omega), np.empty_like(omega)
     arguments = (
-        *map(_pointer, (omega, real, imag)),
+        *map(pointer, (omega, real, imag)),
         ctypes.c_size_t(omega.size),
         *map(ctypes.c_double, values),
     )
@@ -161,7 +150,3 @@ def _by_hand(library: ctypes.CDLL, omega: NDArray[Any], values: list[float]) -> 
         return imag
 
     return run
-
-
-def _pointer(array: NDArray[Any]) -> Any:  # noqa: ANN401
-    return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))

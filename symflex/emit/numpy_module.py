@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 FIRST = "Transfer functions of a linear system as functions of numpy arrays."
 
 LINTS_OF_NAMES = "E501, E741, N802, N803, N806, PLR0915, RUF001, RUF002, RUF100"
+LINTS_OF_BLOCKS = "ANN001, ANN202"
 
 IMPORTS = """\
 # ruff: noqa: {lints}  (names and texts are the model's)
@@ -62,16 +63,31 @@ def _numbers(
     return tuple(
         a.astype(t, copy=False)[()] for a, t in zip(arrays, types, strict=True)
     )
+'''
 
+BLOCK = '''\
+BLOCK = 20480
+"""Values computed at once, so that intermediate ones stay in the processor's cache."""
+'''
 
-def _shaped(
-    value: NDArray[np.complex128], arguments: tuple[NDArray[np.complex128], ...]
-) -> complex | NDArray[np.complex128]:
-    """Return a value in the shape of all arguments together: a number if all are."""
-    shape = np.broadcast_shapes(*(np.shape(argument) for argument in arguments))
+IN_BLOCKS = '''\
+def _in_blocks(function, arguments):
+    """Return values in the shape of all arguments together: a number if all are."""
+    shape = np.broadcast_shapes(*(np.shape(a) for a in arguments))
     if not shape:
-        return complex(value)
-    return np.array(np.broadcast_to(value, shape), dtype=complex)
+        return complex(function(*arguments))
+    value = np.empty(shape, dtype=complex)
+    # Where arrays expand, what depends on one of them alone is computed once.
+    expands = any(np.shape(a) not in ((), shape) for a in arguments)
+    if expands or value.size <= BLOCK:
+        value[...] = function(*arguments)
+        return value
+    flat = value.reshape(-1)
+    columns = [a.reshape(-1) if np.ndim(a) else a for a in arguments]
+    for start in range(0, flat.size, BLOCK):
+        part = slice(start, start + BLOCK)
+        flat[part] = function(*(a[part] if np.ndim(a) else a for a in columns))
+    return value
 '''
 
 
@@ -164,10 +180,11 @@ def numpy_module(
             blocks.append(_Function(tf, response, responses[key], names, measured.text(digits)).text())
     made = [*(first for _, first, _ in chosen.values()), *real.values()]
     pieces = [program for program, _ in made if isinstance(program, Piecewise)]
-    blocks += [SUPPORT, *support(pieces), function_table("TRANSFER_FUNCTIONS", functions)]
+    rational = [IN_BLOCKS] if len(pieces) < len(made) else []
+    blocks += [SUPPORT, BLOCK, *rational, *support(pieces), function_table("TRANSFER_FUNCTIONS", functions)]
     if pieces:
         blocks.append(function_table("FREQUENCY_RESPONSES", responses))
-    lints = f"{LINTS_OF_NAMES}, {LINTS}" if pieces else LINTS_OF_NAMES
+    lints = f"{LINTS_OF_NAMES}, {LINTS if pieces else LINTS_OF_BLOCKS}"
     verified = tuple(verification for _, verification in made)
     text = header(FIRST, model, verified[: len(chosen)], digits)
     return NumpyExport(f"{text}{IMPORTS.format(lints=lints)}\n" + "\n\n".join(blocks), verified)
@@ -231,7 +248,7 @@ class _Function:
     def _call(self) -> str:
         if isinstance(self.program, Piecewise):
             return self._pieces(self.program).call()
-        return f"_shaped(_{self.name}(*arguments), arguments)"
+        return f"_in_blocks(_{self.name}, arguments)"
 
     def _kernel(self, parameters: Sequence[str]) -> list[str]:
         """Return the private function that computes with numbers or arrays of any shape."""

@@ -32,10 +32,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
 PIECES_SUPPORT = '''\
-BLOCK = 20480
-"""Values computed at once, so that intermediate ones stay in the processor's cache."""
-
-
 def _in_pieces(tests, pieces, arguments, unit):
     """Return the value of the piece that serves, element by element.
 

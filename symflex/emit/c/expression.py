@@ -141,7 +141,7 @@ class Printer:
             case Laplace():
                 return self.s
             case InverseLaplace():
-                return quotient(Term("1.0", Kind.REAL), self.s)
+                return self.quotient(Term("1.0", Kind.REAL), self.s)
             case Add(terms):
                 return self._sum(terms)
             case Multiply(factors):
@@ -150,7 +150,7 @@ class Printer:
                     result = product(self._short(result), self.print(factor))
                 return result
             case Divide(numerator, denominator):
-                return quotient(self.print(numerator), self.print(denominator))
+                return self.quotient(self.print(numerator), self.print(denominator))
             case Power(base, exponent):
                 return _power(self.print(base), exponent)
             case Negate(operand):
@@ -162,6 +162,12 @@ class Printer:
                 return Term(f"{held.text}[{position}]", held.kind, held.varies)
         message = f"no text for {type(node).__name__}"
         raise TypeError(message)
+
+    def quotient(self, x: Term, y: Term) -> Term:
+        """Return the quotient of two numbers, in lanes without branches."""
+        if self.in_lanes and y.kind is Kind.COMPLEX and (x.varies or y.varies):
+            return _call("lane_div", Kind.COMPLEX, complex_term(x), y)
+        return quotient(x, y)
 
     def _sum(self, terms: Sequence[Node]) -> Term:
         result = self.print(terms[0])

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from symflex.emit.c.choice import choose, conditions_of
 from symflex.emit.c.expression import Kind, Term, complex_term, quotient
-from symflex.emit.c.lanes import fits_lanes, lanes
+from symflex.emit.c.lanes import fits_lanes, is_rational_in_lanes, lanes, rational_lanes
 from symflex.emit.c.scope import AXIS, POSITIVE, STEP, WIDTH, S, Scope
 from symflex.emit.program import Piece, Piecewise, Program
 from symflex.emit.program.real_axis import needed
@@ -150,6 +150,8 @@ class Functions:
         if self.axis is not None and fits_lanes(self.axis):
             return [*self.freq_prototype.split("\n"), "{", *lanes(self.axis, self.members), "}"]
         program = self.axis or self.program
+        if isinstance(program, Program) and is_rational_in_lanes(program):
+            return [*self.freq_prototype.split("\n"), "{", *rational_lanes(program, self.members), "}"]
         is_axis = self.axis is not None
         outer = Scope.of(self.members, POSITIVE if is_axis else AXIS)
         # Names are unique in the whole function; the loop's statements come after all constants.

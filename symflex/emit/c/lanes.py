@@ -1,6 +1,6 @@
-"""Frequency responses in real arithmetic, several values at a time.
+"""Frequency responses, several values at a time.
 
-Input: a program in real arithmetic with two pieces, one of them for small frequencies.
+Input: a program in real arithmetic with two pieces, one of them for small frequencies; or a rational one.
 Output: lines of a C function. Every loop has a fixed number of turns and, where it can, neither branches nor
 calls; so compilers make it work on several values at once.
 """
@@ -11,9 +11,9 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from symflex.emit.c.choice import limit_text
-from symflex.emit.c.expression import LANE_FUNCTIONS, Term, quotient
-from symflex.emit.c.scope import LANE, STEP, Scope
-from symflex.emit.program import Apply, Divide, Node, Piecewise, Reference, Straight
+from symflex.emit.c.expression import LANE_FUNCTIONS, Kind, Term, quotient
+from symflex.emit.c.scope import AXIS_LANE, LANE, STEP, Scope
+from symflex.emit.program import Apply, Divide, Node, Piecewise, Program, Reference, Solutions, Straight
 from symflex.emit.program.real_axis import needed
 
 if TYPE_CHECKING:
@@ -25,7 +25,6 @@ PADDING = """\
 const size_t count = n - i < LANES ? n - i : LANES;
 const double *x = omega + i;
 double *re = real + i, *im = imag + i;
-int near = 0;
 if (count < LANES) {    /* the last ones: made up to LANES */
     for (size_t j = 0; j < LANES; j++) {
         padded[0][j] = omega[j < count ? i + j : i];
@@ -52,6 +51,14 @@ def fits_lanes(program: Piecewise) -> bool:
         and len(set(program.pieces)) > 1
         and not any(p.is_complex or p.circle for p in program.code)
     )
+
+
+def is_rational_in_lanes(program: Program) -> bool:
+    """Tell whether a program varies, has one branch, and calls no function of s."""
+    near = program.near
+    values = (*(a.value for a in near.assignments), near.value)
+    calls = (n for value in values for n in _all(value) if isinstance(n, Apply | Solutions))
+    return program.varies and program.far is None and not any(calls)
 
 
 def lanes(program: Piecewise, members: Mapping[str, str]) -> list[str]:
@@ -85,7 +92,7 @@ def lanes(program: Piecewise, members: Mapping[str, str]) -> list[str]:
     tests.add("near += is_near[j];")
     loop = outer.within()
     is_odd = bool(program.turn)
-    loop.add("double padded[3][LANES], w[LANES], g[LANES] = {0.0};", "int is_near[LANES];")
+    loop.add("double padded[3][LANES], w[LANES], g[LANES] = {0.0};", "int near = 0, is_near[LANES];")
     loop.add(*(["double sign[LANES];"] if is_odd else []), *PADDING.split("\n"))
     loop.add(LOOP, f"{STEP}w[j] = fabs(x[j]);")
     loop.add(*([f"{STEP}sign[j] = copysign(1.0, x[j]);"] if is_odd else []), "}")
@@ -103,6 +110,49 @@ def lanes(program: Piecewise, members: Mapping[str, str]) -> list[str]:
     real, imag = (zero, value) if is_odd else (value, zero)
     loop.add(LOOP, f"{STEP}re[j] = {real};", "}", LOOP, f"{STEP}im[j] = {imag};", "}")
     loop.add(*UNPADDING.split("\n"))
+    return _looped(outer, loop, members)
+
+
+def rational_lanes(program: Program, members: Mapping[str, str]) -> list[str]:
+    """Return the body of the function that computes the frequency response.
+
+    Parameters
+    ----------
+    program : Program
+        Such that :func:`is_rational_in_lanes` holds.
+    members : mapping of str to str
+        The structure's members by the parameters' names.
+    """
+    outer = Scope.of(members, AXIS_LANE)
+    outer.assign(program.constants)
+    block = outer.within(3)
+    block.assign(program.near.assignments)
+    value = block.term(program.near.value)
+    parts = {"re": "0.0", "im": "0.0"}
+    if value.kind is Kind.COMPLEX:
+        block.say("const cx g =", value.text)
+        parts = {"re": "g.re", "im": "g.im"}
+    else:
+        parts["re" if value.kind is Kind.REAL else "im"] = value.text
+    varying = {name: text for name, text in parts.items() if text != "0.0"}
+    arrays = {name: block.name(f"g_{name}") for name in varying}
+    for name, text in varying.items():
+        block.say(f"{arrays[name]}[j] =", text)
+    loop = outer.within()
+    loop.add(f"double padded[3][LANES], w[LANES], {', '.join(f'{a}[LANES]' for a in arrays.values())};")
+    loop.add(*PADDING.split("\n"))
+    # Copied, since the arrays outside might overlap for all that a compiler knows.
+    loop.add(LOOP, f"{STEP}w[j] = x[j];", "}", LOOP)
+    loop.lines += block.lines
+    loop.add("}")
+    for name in parts:
+        stored = f"{arrays[name]}[j]" if name in arrays else "0.0"
+        loop.add(LOOP, f"{STEP}{name}[j] = {stored};", "}")
+    loop.add(*UNPADDING.split("\n"))
+    return _looped(outer, loop, members)
+
+
+def _looped(outer: Scope, loop: Scope, members: Mapping[str, str]) -> list[str]:
     head = [*outer.opening(members), *outer.lines, f"{STEP}for (size_t i = 0; i < n; i += LANES) {{"]
     return [*head, *loop.lines, f"{STEP}}}"]
 

@@ -55,7 +55,7 @@ FUNCTIONS = frozenset(
     creal cimag
     cx cx_of cx_add cx_addr cx_addi cx_sub cx_rsub cx_mul cx_scale cx_turn cx_div cx_neg cx_exp cx_cis
     cx_sqrt cx_abs cx_over cx_under cx_circle cx_series complex_of memcpy uint64_t
-    lane_bits lane_double lane_expm1 lane_exp lane_tan lane_tanh
+    lane_bits lane_div lane_double lane_expm1 lane_exp lane_tan lane_tanh
     """.split()
 )
 """What the code calls, and the types it uses."""

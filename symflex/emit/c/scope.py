@@ -22,7 +22,8 @@ S = Term("s", Kind.COMPLEX, varies=True)
 AXIS = Term("w", Kind.IMAGINARY, varies=True)
 POSITIVE = Term("w", Kind.REAL, varies=True)
 LANE = Term("w[j]", Kind.REAL, varies=True)
-"""What s is: complex; j w; the frequency w of a response in real arithmetic, alone or one of several."""
+AXIS_LANE = Term("w[j]", Kind.IMAGINARY, varies=True)
+"""What s is: complex; j w; the frequency w of a response in real arithmetic; the last two, one of several."""
 
 _NUMBERED = re.compile(r"[a-z]_\d{1,9}")
 
@@ -108,7 +109,7 @@ class Scope:
     @property
     def printer(self) -> Printer:
         """Prints expressions of these variables."""
-        in_lanes = self.s == LANE
+        in_lanes = self.s in (LANE, AXIS_LANE)
         return Printer(self._parameter, self.known, self.s, self._array, self._hold, in_lanes)
 
     def term(self, node: Node) -> Term:

@@ -101,6 +101,16 @@ static inline cx cx_div(cx z, cx w)
     return cx_of((z.re * r + z.im) / d, (z.im * r - z.re) / d);
 }
 """,
+    "lane_div": """\
+/* As accurate as Smith's method, and without branches. */
+static inline cx lane_div(cx z, cx w)
+{
+    const double r = 1.0 / (fabs(w.re) + fabs(w.im));
+    const double a = w.re * r, b = w.im * r;
+    const double q = r / (a * a + b * b);
+    return cx_of((z.re * a + z.im * b) * q, (z.im * a - z.re * b) * q);
+}
+""",
     "cx_abs": """\
 static inline double cx_abs(cx z)
 {

@@ -90,7 +90,7 @@ def plan_recurrences(ring: Ring, polynomials: Sequence[fmpz_mpoly]) -> Plan:
         SF503 when they have so little structure that looking for it takes too long.
     """
     planner = _Planner(ring)
-    roots = tuple(planner.plan(_Terms.of(polynomial)) for polynomial in polynomials)
+    roots = planner.plan_all([_Terms.of(polynomial) for polynomial in polynomials])
     return Plan(tuple(planner.steps), roots)
 
 
@@ -164,6 +164,11 @@ class _Terms:
     def variables(self) -> list[int]:
         return [int(i) for i in np.flatnonzero(self.exponents.any(axis=0))]
 
+    def split_variables(self) -> list[int]:
+        """Return the variables to split by: s, the first, runs through all of a chain and parts nothing."""
+        variables = self.variables()
+        return [i for i in variables if i] or variables
+
 
 @dataclass
 class _Planner:
@@ -175,6 +180,14 @@ class _Planner:
     _wanted: set[tuple[bytes, tuple[int, ...]]] = field(default_factory=set)
     _work: int = 0
     _depth: int = 0
+
+    def plan_all(self, polynomials: Sequence[_Terms]) -> tuple[Scaled, ...]:
+        """Return several polynomials, planned from the largest: smaller ones are often its parts."""
+        self._wanted.update(polynomial.stripped()[2].key for polynomial in polynomials)
+        found: dict[int, Scaled] = {}
+        for i in sorted(range(len(polynomials)), key=lambda i: -len(polynomials[i].coefficients)):
+            found[i] = self.plan(polynomials[i])
+        return tuple(found[i] for i in range(len(polynomials)))
 
     def plan(self, terms: _Terms) -> Scaled:
         """Return a polynomial in terms of the steps found so far and those it adds."""
@@ -205,13 +218,12 @@ class _Planner:
         return ProductStep(int(constant), tuple(parts))
 
     def _split(self, terms: _Terms) -> SumStep:
-        variables = terms.variables()
+        variables = terms.split_variables()
         self._work += terms.exponents.size * len(variables)
         if self._work > WORK_LIMIT:
             raise _without_structure()
         parts = min((terms.parts(v) for v in variables), key=self._cost)
-        self._wanted.update(part.stripped()[2].key for part in parts)
-        return SumStep(tuple(self.plan(part) for part in parts))
+        return SumStep(self.plan_all(parts))
 
     def _cost(self, parts: tuple[_Terms, _Terms]) -> tuple[int, int]:
         """Return how many terms, and generators, a split leaves to do; the first of equals is taken."""

@@ -221,20 +221,31 @@ def beam(tmp_path_factory):
     return compiled(tmp_path_factory.mktemp("beam"), exported(BEAM))[0]
 
 
-def test_one_array_may_be_the_frequencies_themselves(beam):
+@pytest.fixture(scope="module")
+def six_masses(tmp_path_factory):
+    path = ROOT / "derivations" / "eppinger1988" / "six_mass.toml"
+    return compiled(tmp_path_factory.mktemp("six_masses"), exported(path.read_text(encoding="utf-8")))[0]
+
+
+@pytest.fixture(params=["beam", "six_masses"])
+def either(request):
+    return request.getfixturevalue(request.param)
+
+
+def test_one_array_may_be_the_frequencies_themselves(either):
     omega = np.geomspace(1e-3, 1e4, 75)
-    expected = response(beam, 0, omega)
+    expected = response(either, 0, omega)
     for place in (0, 1):
         arrays = [np.empty_like(omega), np.empty_like(omega)]
         arrays[place] = omega.copy()
-        beam.freq_0(pointer(arrays[place]), *map(pointer, arrays), ctypes.c_size_t(75), None)
+        either.freq_0(pointer(arrays[place]), *map(pointer, arrays), ctypes.c_size_t(75), None)
         assert np.array_equal(arrays[0] + 1j * arrays[1], expected)
 
 
-def test_a_value_does_not_depend_on_its_neighbours(beam):
+def test_a_value_does_not_depend_on_its_neighbours(either):
     omega = np.geomspace(1e-7, 1e6, 75)
-    alone = np.array([response(beam, 0, [w])[0] for w in omega])
-    assert np.array_equal(alone, response(beam, 0, omega))
+    alone = np.array([response(either, 0, [w])[0] for w in omega])
+    assert np.array_equal(alone, response(either, 0, omega))
 
 
 def test_nothing_overflows_from_1e_minus_9_to_1e12(beam):
@@ -497,9 +508,10 @@ def test_every_pair_of_kinds_computes_what_complex_numbers_do(tmp_path):
     assert found == pytest.approx(expected, rel=1e-15)
 
 
-def test_a_quotient_of_numbers_of_any_size_neither_overflows_nor_vanishes(tmp_path):
-    code = support("cx_div(", "void", 1)
-    call = "void run(const cx *z, const cx *w, cx *q)\n{\n    *q = cx_div(*z, *w);\n}\n"
+@pytest.mark.parametrize("function", ["cx_div", "lane_div"])
+def test_a_quotient_of_numbers_of_any_size_neither_overflows_nor_vanishes(function, tmp_path):
+    code = support(f"{function}(", "void", 1)
+    call = f"void run(const cx *z, const cx *w, cx *q)\n{{\n    *q = {function}(*z, *w);\n}}\n"
     (tmp_path / "quotient.c").write_text(f"#include <math.h>\n{code}\n{call}", encoding="utf-8")
     command = ["gcc", "-std=c99", "-shared", "-fPIC", "-o", "quotient.so", "quotient.c", "-lm"]
     subprocess.run(command, cwd=tmp_path, check=True)

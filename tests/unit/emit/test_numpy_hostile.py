@@ -138,7 +138,7 @@ NAMES = [
     "X_over_F",
     "_X_over_F",
     "_numbers",
-    "_shaped",
+    "_in_blocks",
     "__builtins__",
     "__class__",
     "__import__",
@@ -302,7 +302,9 @@ def test_a_definition_cannot_hide_a_parameter_or_a_name_of_the_code(loaded):
 def test_builtins_are_not_shadowed_where_the_code_uses_them():
     used = {"complex", "float", "zip", "tuple", "any", "all", "TypeError"}
     tree = ast.parse(export(renamed(model_of(), {"b": "zip", "m": "complex"})))
-    helpers = [n for n in tree.body if isinstance(n, ast.FunctionDef) and n.name in ("_numbers", "_shaped")]
+    helpers = [
+        n for n in tree.body if isinstance(n, ast.FunctionDef) and n.name in ("_numbers", "_in_blocks")
+    ]
     assert len(helpers) == 2
     assert used <= set(dir(builtins))
     for helper in helpers:

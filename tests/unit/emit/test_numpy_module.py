@@ -186,6 +186,19 @@ def test_integers_in_parameters_count_as_real_numbers(two_mass):
     )
 
 
+def test_arrays_longer_than_a_block_have_the_values_of_their_elements(two_mass):
+    s = np.geomspace(1, 1e3, 50_000).reshape(2, 25_000) * 1j
+    masses = np.linspace(1.0, 3.0, s.size).reshape(s.shape)
+    function = two_mass.V_tip_over_F
+    for given in ({}, {"m_1": masses}, {"m_1": masses[:, :1]}, {"m_1": masses.T.copy().T}):
+        found = function(s, **given)
+        assert found.shape == s.shape
+        for place in ((0, 0), (0, 20_479), (0, 20_480), (1, 24_999)):
+            one = {name: np.broadcast_to(a, s.shape)[place] for name, a in given.items()}
+            assert found[place] == pytest.approx(function(s[place], **one), rel=1e-15)
+    assert function(s[:, ::-1])[0, 0] == function(s)[0, -1]
+
+
 def test_s_and_every_parameter_are_broadcast_together(two_mass):
     s = 1j * np.arange(1, 5)
     m_1 = np.array([[1.0], [2.0], [3.0]])
