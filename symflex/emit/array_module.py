@@ -17,15 +17,15 @@ from symflex.emit import array_support
 from symflex.emit.array_pieces import ArrayPieces
 from symflex.emit.module_text import default_value
 from symflex.emit.numpy_expression import statement
+from symflex.emit.numpy_pieces import private_copy
 from symflex.emit.program import (
     Piecewise,
-    Solutions,
     Verification,
     choose_programs,
     identifiers,
-    inert,
     nearest_double,
 )
+from symflex.emit.program.calls import RuntimeCalls
 from symflex.emit.program.everywhere import in_pieces
 from symflex.emit.python_text import (
     Signature,
@@ -34,7 +34,7 @@ from symflex.emit.python_text import (
     header,
     parameter_table,
 )
-from symflex.errors import Diagnostic, ModelError
+from symflex.kernels import modal_amplitudes, mode_values
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -77,7 +77,7 @@ class Dialect:
         What docstrings call an argument.
     returned : tuple of str
         What docstrings call the value, and a sentence about it.
-    numbers, real_numbers, idle, in_front, series, size : str
+    numbers, real_numbers, idle, in_front, series, stacked, settled, size : str
         Support that differs between dialects; ``size`` is empty when magnitudes are differentiated.
     """
 
@@ -95,6 +95,8 @@ class Dialect:
     idle: str
     in_front: str
     series: str
+    stacked: str
+    settled: str
     size: str = ""
 
     @property
@@ -123,6 +125,8 @@ ARRAY_API = Dialect(
     array_support.IDLE,
     array_support.IN_FRONT,
     array_support.SERIES,
+    array_support.STACKED,
+    array_support.SETTLED,
 )
 
 JAX = Dialect(
@@ -141,6 +145,8 @@ JAX = Dialect(
     array_support.JAX_IDLE,
     array_support.JAX_IN_FRONT,
     array_support.JAX_SERIES,
+    array_support.JAX_STACKED,
+    array_support.JAX_SETTLED,
     array_support.JAX_SIZE,
 )
 
@@ -209,8 +215,7 @@ def array_module(
     BudgetError
         SF503 when a function's text would be too long.
     ModelError
-        SF233 when a number does not fit in double precision; SF234 for a function whose wavenumbers have no
-        formula: finding these takes eigenvalues of matrices.
+        SF233 when a number does not fit in double precision.
 
     Examples
     --------
@@ -226,11 +231,6 @@ def array_module(
     >>> "def V_over_F(" in array_module(pipeline.derive_all(model), model, JAX).text
     True
     """
-    nameless = [tf.name for tf in tfs if tf.is_nameless]
-    if nameless:
-        name = inert(nameless[0])
-        message = f"the wavenumbers of {name} have no formula, and {dialect.name} code does not find them"
-        raise ModelError(Diagnostic("SF234", message, None, "the code of the target numpy does"))
     chosen = {tf.name: (tf, *choose_programs(tf, band_hz, samples)) for tf in tfs}
     reserved = dialect.reserved
     names = identifiers({p.name: p.name for p in model.parameters}, reserved)
@@ -272,17 +272,29 @@ def array_module(
 def _support(programs: Sequence[Piecewise], dialect: Dialect) -> list[str]:
     """Return the functions that generated pieces call, those in use only."""
     blocks = [dialect.numbers]
-    code = [piece for p in programs for piece in p.code]
+    calls = RuntimeCalls.of(programs)
+    solves = calls.roots or calls.propagation
     if any(p.is_real for p in programs):
         blocks += [dialect.real_numbers, array_support.REAL_PIECES]
     if any(p.conditions for p in programs):
-        blocks += [array_support.PIECES, dialect.idle]
-        if dialect.size:
-            blocks.append(dialect.size)
-    if any(isinstance(node, Solutions) for piece in code for node in piece.code.nodes()):
+        blocks.append(array_support.PIECES)
+    if any(p.conditions for p in programs) or solves:
+        blocks.append(dialect.idle)
+        blocks += [dialect.size] if dialect.size else []
+    if calls.series:
         blocks.append(dialect.series)
-    if any(piece.circle for piece in code):
+    if calls.means:
         blocks += [array_support.CIRCLE, dialect.in_front]
+    if solves:
+        blocks += [] if dialect.size else [array_support.SIZE]
+        blocks += [dialect.stacked, array_support.LARGEST]
+    if calls.propagation:
+        blocks.append(array_support.PROPAGATED)
+    if calls.roots:
+        blocks += [array_support.ROOTS, dialect.settled]
+    if calls.modes:
+        copied = (private_copy(function) for function in (mode_values, modal_amplitudes))
+        blocks += [*copied, array_support.MODAL]
     return blocks
 
 

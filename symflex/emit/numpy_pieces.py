@@ -182,8 +182,19 @@ LINTS = "ANN001, ANN201, ANN202, N816, PLR0912, PLR0914, PLR1704, PLR2004"
 """Rules that the private functions of the pieces do not follow."""
 
 
-def _copied(function: Callable[..., object]) -> str:
-    """Return the text of a run-time function as a private one, without annotations."""
+def private_copy(function: Callable[..., object]) -> str:
+    """Return the text of a run-time function as a private one, without annotations.
+
+    Parameters
+    ----------
+    function : callable
+        Of this package.
+
+    Raises
+    ------
+    ValueError
+        When its text has no signature with a result.
+    """
     text = inspect.getsource(function)
     signature = re.compile(r"def (\w+)\((.*?)\) -> .*?:(?:  # noqa[^\n]*)?\n", re.DOTALL)
     found = signature.match(text)
@@ -218,7 +229,7 @@ def support(programs: Sequence[Piecewise]) -> list[str]:
         (calls.modes, (mode_values, modal_amplitudes, runtime.modal_value)),
         (calls.means, (runtime.mean_over_circle,)),
     )
-    return [*blocks, *(_copied(f) for is_called, functions in wanted if is_called for f in functions)]
+    return [*blocks, *(private_copy(f) for is_called, functions in wanted if is_called for f in functions)]
 
 
 @dataclass(frozen=True)
