@@ -77,7 +77,7 @@ class Dialect:
         What docstrings call an argument.
     returned : tuple of str
         What docstrings call the value, and a sentence about it.
-    numbers, real_numbers, idle, in_front, series, stacked, settled, size : str
+    numbers, real_numbers, idle, in_front, series, stacked, settled, grown, size : str
         Support that differs between dialects; ``size`` is empty when magnitudes are differentiated.
     """
 
@@ -97,6 +97,7 @@ class Dialect:
     series: str
     stacked: str
     settled: str
+    grown: str
     size: str = ""
 
     @property
@@ -127,6 +128,7 @@ ARRAY_API = Dialect(
     array_support.SERIES,
     array_support.STACKED,
     array_support.SETTLED,
+    array_support.GROWN,
 )
 
 JAX = Dialect(
@@ -147,6 +149,7 @@ JAX = Dialect(
     array_support.JAX_SERIES,
     array_support.JAX_STACKED,
     array_support.JAX_SETTLED,
+    array_support.JAX_GROWN,
     array_support.JAX_SIZE,
 )
 
@@ -289,7 +292,7 @@ def _support(programs: Sequence[Piecewise], dialect: Dialect) -> list[str]:
         blocks += [] if dialect.size else [array_support.SIZE]
         blocks += [dialect.stacked, array_support.LARGEST]
     if calls.propagation:
-        blocks.append(array_support.PROPAGATED)
+        blocks += [array_support.PROPAGATED, dialect.grown]
     if calls.roots:
         blocks += [array_support.ROOTS, dialect.settled]
     if calls.modes:

@@ -472,15 +472,7 @@ def _propagated(xp, coefficients):
     small = xp.stack([xp.stack([x * share for x in row]) for row in companion])
     diagonal = [[one * float(i == k) for k in range(n)] for i in range(n)]
     identity = xp.stack([xp.stack(row) for row in diagonal])
-    grown = identity
-    for m in range(18, 0, -1):
-        grown = identity + _matrix_product(xp, small, grown) / m
-    for k in range(_MOST_HALVINGS):
-        is_small = halvings > k
-        if _is_idle(xp, is_small):
-            break
-        safe = xp.where(is_small, grown, xp.zeros_like(grown))
-        grown = xp.where(is_small, _matrix_product(xp, safe, safe), grown)
+    grown = _grown(xp, small, identity, halvings)
     one = xp.ones_like(size)
     known = xp.where(halvings > _MOST_HALVINGS, one * cmath.nan, one)
     return [grown[k, n - 1, ...] * size ** (k - n + 1.0) * known for k in range(n)]
@@ -496,6 +488,42 @@ def _matrix_product(xp, left, right):
     for k in range(left.shape[1]):
         total = total + left[:, k, None, ...] * right[k, None, :, ...]
     return total
+
+
+def _squared(xp, matrix, is_wanted):
+    """Return squares of matrices where they are wanted."""
+    safe = xp.where(is_wanted, matrix, xp.zeros_like(matrix))
+    return xp.where(is_wanted, _matrix_product(xp, safe, safe), matrix)
+'''
+
+GROWN = '''\
+def _grown(xp, small, identity, halvings):
+    """Return the exponential of a small matrix, squared as often as each element needs."""
+    grown = identity
+    for m in range(18, 0, -1):
+        grown = identity + _matrix_product(xp, small, grown) / m
+    for k in range(_MOST_HALVINGS):
+        if _is_idle(xp, halvings > k):
+            break
+        grown = _squared(xp, grown, halvings > k)
+    return grown
+'''
+
+JAX_GROWN = '''\
+def _grown(small, identity, halvings):
+    """Return the exponential of a small matrix, squared as often as each element needs."""
+
+    def summed(grown, m):
+        return identity + _matrix_product(small, grown) / m, None
+
+    def squared(grown, k):
+        return jax.lax.cond(
+            jnp.any(halvings > k), lambda: _squared(grown, halvings > k), lambda: grown
+        ), None
+
+    # Loops, because what is written out is computed anew for every use when compiled.
+    grown, _ = jax.lax.scan(summed, identity, jnp.arange(18.0, 0.0, -1.0))
+    return jax.lax.scan(squared, grown, jnp.arange(float(_MOST_HALVINGS)))[0]
 '''
 
 MODAL = '''\

@@ -181,7 +181,7 @@ class _Member:
 
     @property
     def key(self) -> str:
-        return f"{self.tf.name}{' at' if self.program.is_real else ''}"
+        return f"{'at' if self.program.is_real else 'of'} {self.tf.name}"
 
 
 def module_name(text: str) -> str:
@@ -295,9 +295,9 @@ def _public(member: _Member, functions: PrivateFunctions, digits: int) -> str:
     first = [f"function {whole}"]
     if len(first[0]) > WIDTH:
         first = [f"function {opening};", *(f"    {x}," for x in signature[:-1]), f"    {signature[-1]})"]
-    call = f"complex(_{functions.name}({', '.join(arguments)}))"
+    call = f"complex(_value_of_{functions.name}({', '.join(arguments)}))"
     body = f"    return {call}"
     if len(body) > WIDTH:
         inside = [f"        {a}," for a in arguments[:-1]] + [f"        {arguments[-1]}))"]
-        body = "\n".join([f"    return complex(_{functions.name}(", *inside])
+        body = "\n".join([f"    return complex(_value_of_{functions.name}(", *inside])
     return "\n".join([*_docstring(lines), *first, body, "end", ""])
