@@ -10,6 +10,7 @@ arguments become arrays.
 from __future__ import annotations
 
 import keyword
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -53,6 +54,8 @@ LINTS = (
 MEASURED = (
     "The error is that of the same operations in numpy; another library's rounding differs in the last digit."
 )
+
+_CALLS_LARGER = re.compile(r"(?<!\w)_larger\(")
 
 
 @dataclass(frozen=True, slots=True)
@@ -256,9 +259,10 @@ def array_module(
             named = (responses[key], names, values, dialect)
             printed.append(_Function(tf, response, measured.text(digits), *named))
     made = [*(first for _, first, _ in chosen.values()), *real.values()]
-    texts = [function.text() for function in printed]
+    code = ["\n".join(function.code()) for function in printed]
+    texts = [f"{function.head()}\n\n\n{own}\n" for function, own in zip(printed, code, strict=True)]
     used = _support([f.program for f in printed], dialect)
-    used += [array_support.LARGER] if any("_larger(" in text for text in texts) else []
+    used += [array_support.LARGER] if any(_CALLS_LARGER.search(own) for own in code) else []
     blocks = [parameter_table(model, names), *texts, *(dialect.support(text) for text in used)]
     blocks.append(function_table("TRANSFER_FUNCTIONS", functions))
     if any(isinstance(program, Piecewise) for program, _ in made):
@@ -320,7 +324,8 @@ class _Function:
             return "s"
         return "omega_" if "omega" in self.names.values() else "omega"
 
-    def text(self) -> str:
+    def head(self) -> str:
+        """Return the function that a user calls."""
         dialect = self.dialect
         parameters = [(p, self.names[p.name]) for p in self.tf.parameters]
         arguments = [self.variable, *(name for _, name in parameters)]
@@ -335,7 +340,18 @@ class _Function:
         given = ", ".join([*([dialect.space] if dialect.is_argument else []), *arguments])
         target = f"{dialect.space}, arguments" if dialect.is_argument else "arguments"
         lines += statement(target, f"{converter}({given})", "    ")
-        pieces = ArrayPieces(
+        leading = f"{dialect.space}, " if dialect.is_argument else ""
+        lines += statement("return", f"_shaped({leading}{self._pieces.call()}, arguments)", "    ")
+        return "\n".join(lines)
+
+    def code(self) -> list[str]:
+        """Return the lines of the private functions; they hold no text of the model."""
+        return self._pieces.functions()
+
+    @property
+    def _pieces(self) -> ArrayPieces:
+        dialect = self.dialect
+        return ArrayPieces(
             self.program,
             self.name,
             self.variable,
@@ -346,9 +362,6 @@ class _Function:
             dialect.is_argument,
             bool(dialect.size) and bool(self.program.conditions),
         )
-        leading = f"{dialect.space}, " if dialect.is_argument else ""
-        lines += statement("return", f"_shaped({leading}{pieces.call()}, arguments)", "    ")
-        return "\n".join([*lines, "", "", *pieces.functions(), ""])
 
     def _docstring(self) -> str:
         dialect = self.dialect

@@ -157,11 +157,12 @@ def julia_module(
     for m in members:
         functions = PrivateFunctions(m.program, public[m.key], parameters, taken - {"s"})
         blocks += [_public(m, functions, digits), *functions.blocks()]
-    blocks += support_of([m.program for m in members])
+    called = support_of([m.program for m in members])
+    blocks += called
     for table, is_real in (("TRANSFER_FUNCTIONS", False), ("FREQUENCY_RESPONSES", True)):
         blocks.append(_function_table(table, [m for m in members if m.program.is_real == is_real], public))
     header = [*_docstring(_header(model, members, digits)), f"module {main}", ""]
-    if any("LinearAlgebra." in block for block in blocks):
+    if any("LinearAlgebra." in text for text in called):
         header += ["import LinearAlgebra", ""]
     if public:
         header += [*_exported(list(public.values())), ""]

@@ -64,6 +64,9 @@ ODD = ["2m", "a-b", "a b", "a.b", "", "-", "__", "a__b", "x" * 63, "x" * 64, "x"
 
 NAMES = tuple(dict.fromkeys([*PYTHON, *C, *JULIA, *MATLAB, *TEX, *ODD]))
 
+PARAMETERS = tuple(f"{name} " if name in ("s", "pi") else name for name in NAMES)
+"""As names of parameters: the formula language has a meaning of its own for two."""
+
 SPRING = """
 symflex = 1
 [parameters]
@@ -71,13 +74,13 @@ m0 = "2 kg"
 b0 = "3 N*s/m"
 {values}
 [elements]
-body = {{ type = "mass", at = "x", m = "m0" }}
-loss = {{ type = "damper", between = ["x", "ground"], b = "b0" }}
-spring = {{ type = "spring", between = ["x", "ground"], k = "{total}" }}
+body = {{ type = "mass", at = "node_q", m = "m0" }}
+loss = {{ type = "damper", between = ["node_q", "ground"], b = "b0" }}
+spring = {{ type = "spring", between = ["node_q", "ground"], k = "{total}" }}
 [inputs]
-F = {{ force = "x" }}
+u_in = {{ force = "node_q" }}
 [outputs]
-X = "x"
+y_out = "node_q"
 """
 
 
