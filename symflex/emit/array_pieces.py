@@ -90,7 +90,11 @@ class ArrayPieces:
         places = places_of(self.program, self.values)
         for i, (cases, place) in enumerate(zip(cases_of(self.program), places, strict=True)):
             at = repr(place.real if self.program.is_real else place)
-            lines += [f"    (_piece_{i}_of_{self.name}, {at}, (", *(f"        {case!r}," for case in cases), "    )),"]
+            lines += [
+                f"    (_piece_{i}_of_{self.name}, {at}, (",
+                *(f"        {case!r}," for case in cases),
+                "    )),",
+            ]
         return [*lines, ")"]
 
     def _head(self, name: str) -> list[str]:

@@ -167,7 +167,9 @@ class Scope:
                 given, order, varies = self._given(coefficients)
                 self.orders.add(order)
                 found = self.name(wanted)
-                call = f"cx_series({given}, {order}, {count}," if count else f"cx_propagated({given}, {order},"
+                call = (
+                    f"cx_series({given}, {order}, {count}," if count else f"cx_propagated({given}, {order},"
+                )
                 self.add(f"cx {found}[{order}];", f"{call} {found});")
                 return Term(found, Kind.COMPLEX, varies)
             case Roots(coefficients):

@@ -111,7 +111,9 @@ class PrivateFunctions:
                 *statement("return", f"_piece_{k}_of_{self.name}({given})", "        "),
                 "    end",
             ]
-        return self._function("value", variable, [*lines, *statement("return", f"_piece_{last}_of_{self.name}({given})")])
+        return self._function(
+            "value", variable, [*lines, *statement("return", f"_piece_{last}_of_{self.name}({given})")]
+        )
 
     def _piece(self, program: Piecewise, number: int, piece: Piece) -> list[str]:
         assignments = (*piece.code.constants, *piece.code.assignments)

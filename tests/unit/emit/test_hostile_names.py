@@ -25,7 +25,7 @@ from symflex.emit.matlab import function_file as matlab_room
 from symflex.emit.matlab import matlab_function_file
 from symflex.emit.program import choose_programs
 from symflex.emit.state_space_module import state_space_module
-from tests.unit.emit.hostile_names import C, NAMES, PARAMETERS, benign, mass_on_springs, with_names
+from tests.unit.emit.hostile_names import NAMES, PARAMETERS, C, benign, mass_on_springs, with_names
 
 COUNT = len(NAMES)
 ROOMS = (numpys, arrays, c_module, julia_room, matlab_room)
@@ -89,7 +89,9 @@ def python_structure(text):
 
 
 KEYWORDS = {
-    "c": set("if else for return static inline const double struct void switch case default break while".split()),
+    "c": set(
+        "if else for return static inline const double struct void switch case default break while".split()
+    ),
     "matlab": set("function end if else for return while".split()),
     "julia": set("function end if else for return while const module import export begin let".split()),
 }
@@ -154,7 +156,11 @@ def test_every_function_of_a_python_module_has_a_name_of_its_own(target):
 
 def function_names(target, text):
     if target == "c":
-        return re.findall(r"^(?:static )?(?:inline )?(?:double complex|void|double|cx) (\w+)\([^;]*?\)\s*\{", text, re.MULTILINE)
+        return re.findall(
+            r"^(?:static )?(?:inline )?(?:double complex|void|double|cx) (\w+)\([^;]*?\)\s*\{",
+            text,
+            re.MULTILINE,
+        )
     pattern = {
         "matlab": r"^function (?:\S+|\[.*?\]) = (?:\.\.\.\n\s*)?(\w+)\(",
         "julia": r"^function (\w+)\(",
@@ -389,7 +395,10 @@ def latex(names):
 def test_documents_have_the_same_environments_and_balanced_braces_whatever_names_are(start):
     names = PARAMETERS[start : start + 90]
     found, plain = latex(names), latex(benign(len(names)))
-    parts = [re.findall(r"\\(?:begin|end|section|documentclass|usepackage)\b\*?\{[^{}]*\}", t) for t in (found, plain)]
+    parts = [
+        re.findall(r"\\(?:begin|end|section|documentclass|usepackage)\b\*?\{[^{}]*\}", t)
+        for t in (found, plain)
+    ]
     assert parts[0] == parts[1]
     bare = re.sub(r"\\[\\{}%&#$_]", "", found)
     assert bare.count("{") == bare.count("}")
