@@ -1,4 +1,4 @@
-"""Over five hundred names at once, in the code of every target: all apart, the code the same, the values right."""
+"""Over five hundred names at once, in the code of every target: apart, the code the same, the values right."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def with_parameters(target, names):
 
 
 def python_structure(text):
-    """Return every node of the tree, without names and texts; what is looked up in modules and numbers stay."""
+    """Return every node of the tree without names and texts; what is looked up and numbers stay."""
     found = []
     for node in ast.walk(ast.parse(text)):
         own = getattr(node, "attr", None) if isinstance(node, ast.Attribute) else None
@@ -195,9 +195,12 @@ X = "x"
 Y = "y"
 """
 SUFFIXES = """
-0 1 2 0_parts 1_parts tests pieces limits sizes at at_0 at_tests value at_value freq freq_freq parts_0 piece_0 F_0
+0 1 2 0_parts 1_parts tests pieces limits sizes at at_0 at_tests value at_value freq freq_freq
+parts_0 piece_0 F_0
 """.split()
-PREFIXES = "value_of piece_0_of piece_1_of tests_of pieces_of limits_of sizes_of parts_0_of parts_of_piece_0_of".split()
+PREFIXES = """
+value_of piece_0_of piece_1_of tests_of pieces_of limits_of sizes_of parts_0_of parts_of_piece_0_of
+""".split()
 
 
 @cache
