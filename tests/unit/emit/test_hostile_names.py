@@ -1,4 +1,4 @@
-"""Over five hundred names at once, in the code of every target: apart, the code the same, the values right."""
+"""Over five hundred names at once, in code of every target: apart, the code the same, the values right."""
 
 from __future__ import annotations
 
