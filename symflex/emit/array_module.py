@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from symflex.emit import array_support
 from symflex.emit.array_pieces import ArrayPieces
-from symflex.emit.module_text import default_value
+from symflex.emit.module_text import COST, ITERATED, default_value
 from symflex.emit.numpy_expression import statement
 from symflex.emit.numpy_pieces import private_copy
 from symflex.emit.program import (
@@ -377,4 +377,7 @@ class _Function:
             dialect.returned,
             more if dialect.is_argument else (),
         )
-        return function_docstring(self.tf, signature, [self.sentence, MEASURED])
+        notes = [self.sentence, MEASURED]
+        if self.program.solves:
+            notes.append(ITERATED if RuntimeCalls.of([self.program]).roots else COST)
+        return function_docstring(self.tf, signature, notes)

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 from symflex.emit.c.functions import Functions
 from symflex.emit.c.names import KEYWORDS, RESERVED
 from symflex.emit.c.support import support
-from symflex.emit.module_text import default_value, formula_lines, origin_lines
-from symflex.emit.program import Verification, choose_programs, identifiers, inert, wrapped
+from symflex.emit.module_text import COST, ITERATED, default_value, formula_lines, origin_lines
+from symflex.emit.program import Piecewise, Verification, choose_programs, identifiers, inert, wrapped
+from symflex.emit.program.calls import RuntimeCalls
 from symflex.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:
@@ -297,11 +298,13 @@ class _Files:
         unit = f" [{tf.unit}]" if tf.unit else ""
         lines = [inert(f"{tf.quantity[:1].upper()}{tf.quantity[1:]} {tf.name}{unit}."), ""]
         lines += [f"  {line}" if line else "" for line in formula_lines(tf, WIDTH - 5)]
-        (_, verification), axis = self.chosen[key]
+        (program, verification), axis = self.chosen[key]
         sentences = [f"At s = j omega, {verification.text(self.digits)}."]
         if axis is not None:
             sentences = [f"Of s, {verification.text(self.digits)}."]
             sentences.append(f"At s = j omega, in real arithmetic, {axis[1].text(self.digits)}.")
+        if isinstance(program, Piecewise) and program.solves:
+            sentences.append(ITERATED if RuntimeCalls.of([program]).roots else COST)
         lines.append("")
         for sentence in sentences:
             lines += wrapped(inert(sentence), WIDTH - 3)
