@@ -134,7 +134,7 @@ def test_a_definition_cannot_hide_a_name_of_the_code():
     made = written(model_of(text.replace('V = "s*x"', 'V = "num*x*exp*abs"')))
     s, m, b, k = 0.5j, 2.0, 3.0, 5.0
     expected = (m * s**2 + k) * 2 * m * b * s / (m * s**2 + b * s + k)
-    assert functions_of(made)["_V_over_F"](s, m, b, k) == pytest.approx(expected, rel=1e-15)
+    assert functions_of(made)["_value_of_V_over_F"](s, m, b, k) == pytest.approx(expected, rel=1e-15)
 
 
 @pytest.mark.slow
