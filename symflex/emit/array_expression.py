@@ -15,7 +15,7 @@ from symflex.emit.program.evaluate import number_of
 from symflex.emit.program.everywhere import ONE
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
 
 @dataclass(frozen=True)
@@ -58,6 +58,12 @@ class ArrayPrinter(Printer):
             # numpy's one tangent costs less than a complex exponential, but its derivative loses digits.
             return f"{self.space}.exp({self.print(argument)})"
         return super().applied(function, argument)
+
+    def call(self, function: str, arguments: Sequence[str]) -> str:
+        """Return a call of a run-time function."""
+        leading = [] if function in ("series_solutions", "mode_values") else [self.leading.rstrip(", ")]
+        text = super().call(function, arguments)
+        return text.replace("(", f"({leading[0]}, ", 1) if any(leading) else text
 
     def _pair(self, node: Node) -> tuple[Node, Node] | None:
         """Return m and p of ``m*(1 + sqrt(1 - p/(m*m)))``, the larger root of ``x^2 - 2*m*x + p``.

@@ -10,22 +10,23 @@ arguments become arrays.
 from __future__ import annotations
 
 import keyword
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symflex.emit import array_support
 from symflex.emit.array_pieces import ArrayPieces
-from symflex.emit.module_text import default_value
+from symflex.emit.module_text import COST, ITERATED, default_value
 from symflex.emit.numpy_expression import statement
+from symflex.emit.numpy_pieces import private_copy
 from symflex.emit.program import (
     Piecewise,
-    Solutions,
     Verification,
     choose_programs,
     identifiers,
-    inert,
     nearest_double,
 )
+from symflex.emit.program.calls import RuntimeCalls
 from symflex.emit.program.everywhere import in_pieces
 from symflex.emit.python_text import (
     Signature,
@@ -34,7 +35,7 @@ from symflex.emit.python_text import (
     header,
     parameter_table,
 )
-from symflex.errors import Diagnostic, ModelError
+from symflex.kernels import modal_amplitudes, mode_values
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -53,6 +54,8 @@ LINTS = (
 MEASURED = (
     "The error is that of the same operations in numpy; another library's rounding differs in the last digit."
 )
+
+_CALLS_LARGER = re.compile(r"(?<!\w)_larger\(")
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +80,7 @@ class Dialect:
         What docstrings call an argument.
     returned : tuple of str
         What docstrings call the value, and a sentence about it.
-    numbers, real_numbers, idle, in_front, series, size : str
+    numbers, real_numbers, idle, in_front, series, stacked, settled, grown, size : str
         Support that differs between dialects; ``size`` is empty when magnitudes are differentiated.
     """
 
@@ -95,6 +98,9 @@ class Dialect:
     idle: str
     in_front: str
     series: str
+    stacked: str
+    settled: str
+    grown: str
     size: str = ""
 
     @property
@@ -123,6 +129,9 @@ ARRAY_API = Dialect(
     array_support.IDLE,
     array_support.IN_FRONT,
     array_support.SERIES,
+    array_support.STACKED,
+    array_support.SETTLED,
+    array_support.GROWN,
 )
 
 JAX = Dialect(
@@ -141,6 +150,9 @@ JAX = Dialect(
     array_support.JAX_IDLE,
     array_support.JAX_IN_FRONT,
     array_support.JAX_SERIES,
+    array_support.JAX_STACKED,
+    array_support.JAX_SETTLED,
+    array_support.JAX_GROWN,
     array_support.JAX_SIZE,
 )
 
@@ -209,8 +221,7 @@ def array_module(
     BudgetError
         SF503 when a function's text would be too long.
     ModelError
-        SF233 when a number does not fit in double precision; SF234 for a function whose wavenumbers have no
-        formula: finding these takes eigenvalues of matrices.
+        SF233 when a number does not fit in double precision.
 
     Examples
     --------
@@ -226,11 +237,6 @@ def array_module(
     >>> "def V_over_F(" in array_module(pipeline.derive_all(model), model, JAX).text
     True
     """
-    nameless = [tf.name for tf in tfs if tf.is_nameless]
-    if nameless:
-        name = inert(nameless[0])
-        message = f"the wavenumbers of {name} have no formula, and {dialect.name} code does not find them"
-        raise ModelError(Diagnostic("SF234", message, None, "the code of the target numpy does"))
     chosen = {tf.name: (tf, *choose_programs(tf, band_hz, samples)) for tf in tfs}
     reserved = dialect.reserved
     names = identifiers({p.name: p.name for p in model.parameters}, reserved)
@@ -253,9 +259,10 @@ def array_module(
             named = (responses[key], names, values, dialect)
             printed.append(_Function(tf, response, measured.text(digits), *named))
     made = [*(first for _, first, _ in chosen.values()), *real.values()]
-    texts = [function.text() for function in printed]
+    code = ["\n".join(function.code()) for function in printed]
+    texts = [f"{function.head()}\n\n\n{own}\n" for function, own in zip(printed, code, strict=True)]
     used = _support([f.program for f in printed], dialect)
-    used += [array_support.LARGER] if any("_larger(" in text for text in texts) else []
+    used += [array_support.LARGER] if any(_CALLS_LARGER.search(own) for own in code) else []
     blocks = [parameter_table(model, names), *texts, *(dialect.support(text) for text in used)]
     blocks.append(function_table("TRANSFER_FUNCTIONS", functions))
     if any(isinstance(program, Piecewise) for program, _ in made):
@@ -272,17 +279,29 @@ def array_module(
 def _support(programs: Sequence[Piecewise], dialect: Dialect) -> list[str]:
     """Return the functions that generated pieces call, those in use only."""
     blocks = [dialect.numbers]
-    code = [piece for p in programs for piece in p.code]
+    calls = RuntimeCalls.of(programs)
+    solves = calls.roots or calls.propagation
     if any(p.is_real for p in programs):
         blocks += [dialect.real_numbers, array_support.REAL_PIECES]
     if any(p.conditions for p in programs):
-        blocks += [array_support.PIECES, dialect.idle]
-        if dialect.size:
-            blocks.append(dialect.size)
-    if any(isinstance(node, Solutions) for piece in code for node in piece.code.nodes()):
+        blocks.append(array_support.PIECES)
+    if any(p.conditions for p in programs) or solves:
+        blocks.append(dialect.idle)
+        blocks += [dialect.size] if dialect.size else []
+    if calls.series:
         blocks.append(dialect.series)
-    if any(piece.circle for piece in code):
+    if calls.means:
         blocks += [array_support.CIRCLE, dialect.in_front]
+    if solves:
+        blocks += [] if dialect.size else [array_support.SIZE]
+        blocks += [dialect.stacked, array_support.LARGEST]
+    if calls.propagation:
+        blocks += [array_support.PROPAGATED, dialect.grown]
+    if calls.roots:
+        blocks += [array_support.ROOTS, dialect.settled]
+    if calls.modes:
+        copied = (private_copy(function) for function in (mode_values, modal_amplitudes))
+        blocks += [*copied, array_support.MODAL]
     return blocks
 
 
@@ -305,7 +324,8 @@ class _Function:
             return "s"
         return "omega_" if "omega" in self.names.values() else "omega"
 
-    def text(self) -> str:
+    def head(self) -> str:
+        """Return the function that a user calls."""
         dialect = self.dialect
         parameters = [(p, self.names[p.name]) for p in self.tf.parameters]
         arguments = [self.variable, *(name for _, name in parameters)]
@@ -320,7 +340,18 @@ class _Function:
         given = ", ".join([*([dialect.space] if dialect.is_argument else []), *arguments])
         target = f"{dialect.space}, arguments" if dialect.is_argument else "arguments"
         lines += statement(target, f"{converter}({given})", "    ")
-        pieces = ArrayPieces(
+        leading = f"{dialect.space}, " if dialect.is_argument else ""
+        lines += statement("return", f"_shaped({leading}{self._pieces.call()}, arguments)", "    ")
+        return "\n".join(lines)
+
+    def code(self) -> list[str]:
+        """Return the lines of the private functions; they hold no text of the model."""
+        return self._pieces.functions()
+
+    @property
+    def _pieces(self) -> ArrayPieces:
+        dialect = self.dialect
+        return ArrayPieces(
             self.program,
             self.name,
             self.variable,
@@ -331,9 +362,6 @@ class _Function:
             dialect.is_argument,
             bool(dialect.size) and bool(self.program.conditions),
         )
-        leading = f"{dialect.space}, " if dialect.is_argument else ""
-        lines += statement("return", f"_shaped({leading}{pieces.call()}, arguments)", "    ")
-        return "\n".join([*lines, "", "", *pieces.functions(), ""])
 
     def _docstring(self) -> str:
         dialect = self.dialect
@@ -349,4 +377,7 @@ class _Function:
             dialect.returned,
             more if dialect.is_argument else (),
         )
-        return function_docstring(self.tf, signature, [self.sentence, MEASURED])
+        notes = [self.sentence, MEASURED]
+        if self.program.solves:
+            notes.append(ITERATED if RuntimeCalls.of([self.program]).roots else COST)
+        return function_docstring(self.tf, signature, notes)

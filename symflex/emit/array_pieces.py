@@ -72,25 +72,29 @@ class ArrayPieces:
         """Return the call that computes the value of ``arguments``."""
         leading = "".join(f"{x}, " for x in self._leading)
         if not self.program.conditions:
-            return f"_{self.name}_0({leading}*arguments)"
+            return f"_piece_0_of_{self.name}({leading}*arguments)"
         chooser = "_in_real_pieces" if self.program.is_real else "_in_pieces"
-        return f"{chooser}({leading}_{self.name}_tests, _{self.name}_pieces, arguments)"
+        return f"{chooser}({leading}_tests_of_{self.name}, _pieces_of_{self.name}, arguments)"
 
     def functions(self) -> list[str]:
         """Return the lines of all functions.
 
-        Names end in what only a private function's can, so that ``A_over_F_0`` may be another function.
+        Names begin with what a private function is, so that ``A_over_F_0`` may be another function.
         """
         if not self.program.conditions:
-            return self._piece(f"_{self.name}_0", self.program.code[0])
+            return self._piece(0, self.program.code[0])
         lines = [*self._tests(), "", ""]
         for i, piece in enumerate(self.program.code):
-            lines += [*self._piece(f"_{self.name}_{i}", piece), "", ""]
-        lines.append(f"_{self.name}_pieces = (")
+            lines += [*self._piece(i, piece), "", ""]
+        lines.append(f"_pieces_of_{self.name} = (")
         places = places_of(self.program, self.values)
         for i, (cases, place) in enumerate(zip(cases_of(self.program), places, strict=True)):
             at = repr(place.real if self.program.is_real else place)
-            lines += [f"    (_{self.name}_{i}, {at}, (", *(f"        {case!r}," for case in cases), "    )),"]
+            lines += [
+                f"    (_piece_{i}_of_{self.name}, {at}, (",
+                *(f"        {case!r}," for case in cases),
+                "    )),",
+            ]
         return [*lines, ")"]
 
     def _head(self, name: str) -> list[str]:
@@ -144,7 +148,7 @@ class ArrayPieces:
                 limit += f" / {self._size(condition.scale, printer)}"
             tests.append(f"{printer.print(size)} < {limit}")
         return [
-            *self._head(f"_{self.name}_tests"),
+            *self._head(f"_tests_of_{self.name}"),
             *lines,
             *statement("return", f"[{', '.join(tests)}]", "    "),
         ]
@@ -154,14 +158,15 @@ class ArrayPieces:
             return repr(abs(number_of(scale, printer.numbers)))
         return printer.print(Apply("abs", scale))
 
-    def _piece(self, name: str, piece: Piece) -> list[str]:
+    def _piece(self, number: int, piece: Piece) -> list[str]:
+        name, parts = (f"_{word}_{number}_of_{self.name}" for word in ("piece", "parts"))
         if piece.circle:
             lines, printer = self._body(piece.code, self.variable)
             leading = "".join(f"{x}, " for x in self._leading)
             values = ", ".join(printer.print(v) for v in piece.code.values)
-            whole = f"_mean_over_circle({leading}{name}_parts, [{', '.join(self._given)}], {piece.circle})"
+            whole = f"_mean_over_circle({leading}{parts}, [{', '.join(self._given)}], {piece.circle})"
             return [
-                *self._head(f"{name}_parts"),
+                *self._head(parts),
                 *lines,
                 *statement("return", values, "    "),
                 "",

@@ -317,6 +317,232 @@ def _next_term(state, factorial):
     return (derivatives, total + following / factorial, coefficients), None
 '''
 
+STACKED = '''\
+def _stacked(xp, values):
+    """Return numbers and arrays as one array, along a new axis in front."""
+    place = _place(xp, [value for value in values if hasattr(value, "dtype")])
+    arrays = [xp.asarray(value, dtype=xp.complex128, **place) for value in values]
+    shape = _shape(arrays)
+    return xp.stack([xp.broadcast_to(array, shape) for array in arrays])
+'''
+
+JAX_STACKED = '''\
+def _stacked(values):
+    """Return numbers and arrays as one array, along a new axis in front."""
+    arrays = [jnp.asarray(value, dtype=jnp.complex128) for value in values]
+    return jnp.stack(jnp.broadcast_arrays(*arrays))
+'''
+
+LARGEST = '''\
+def _largest(xp, values):
+    """Return the largest of some real arrays, element by element."""
+    found = values[0]
+    for value in values[1:]:
+        found = xp.where(value > found, value, found)
+    return found
+
+
+def _largest_root(xp, rows):
+    """Return about the largest root of x^n + c_(n-1) x^(n-1) + ... + c_0."""
+    n = rows.shape[0]
+    sizes = [_size(xp, rows[i, ...]) ** (1.0 / (n - i)) for i in range(n)]
+    found = _largest(xp, [xp.full_like(sizes[0], 1e-30), *sizes])
+    return xp.where(xp.isfinite(sum(sizes)), found, xp.full_like(found, cmath.nan))
+'''
+
+ROOTS = '''\
+def _characteristic_roots(xp, coefficients):
+    """Return the roots of x^n + c_(n-1) x^(n-1) + ... + c_0, and the least distance of two.
+
+    Steps of Aberth and Ehrlich from where the sizes of the coefficients say that roots
+    are (Bini 1996). The last two steps give roots their derivatives.
+    """
+    n = len(coefficients)
+    rows = _stacked(xp, coefficients)
+    size = _largest_root(xp, rows)
+    if n == 1:
+        return [-rows[0, ...], size + cmath.inf]
+    scaled = [rows[i, ...] / size ** (n - i) for i in range(n)]
+    x = _settled(xp, scaled, _first_roots(xp, scaled))
+    for _ in range(2):
+        step = _root_steps(xp, scaled, x)
+        x = x - xp.where(_size(xp, step) < 0.01, step, xp.zeros_like(step))
+    found = [x[i, ...] * size for i in range(n)]
+    apart = [-_size(xp, found[i] - found[k]) for i in range(n) for k in range(i)]
+    return [*found, -_largest(xp, apart)]
+
+
+def _first_roots(xp, scaled):
+    """Return points of about the sizes of the roots, which Newton's polygon tells."""
+    n = len(scaled)
+    heights = [xp.log(_size(xp, c) + 1e-300) for c in scaled]
+    heights.append(xp.zeros_like(heights[0]))
+    found = []
+    for j in range(1, n + 1):
+        # The slope of the least concave curve above the points (i, heights[i]).
+        slopes = [
+            _largest(xp, [(heights[b] - heights[a]) / (b - a) for b in range(j, n + 1)])
+            for a in range(j)
+        ]
+        radius = xp.exp(_largest(xp, [-slope for slope in slopes]))
+        # By the golden angle points of a circle lie apart however many they are.
+        turn = cmath.exp(1j * (2.399963229728653 * j + 0.7))
+        found.append(xp.ones_like(scaled[0]) * turn * (radius + 1e-30))
+    return xp.stack(found)
+
+
+def _root_steps(xp, scaled, x):
+    """Return how far roots are off, by the method of Aberth and Ehrlich."""
+    value, slope = xp.ones_like(x), xp.zeros_like(x)
+    for c in reversed(scaled):
+        slope = slope * x + value
+        value = value * x + c[None, ...]
+    apart = x[:, None, ...] - x[None, ...]
+    is_same = apart == 0.0
+    one = xp.ones_like(apart)
+    away = xp.where(is_same, xp.zeros_like(one), one / xp.where(is_same, one, apart))
+    below = slope - value * xp.sum(away, axis=1)
+    is_flat = below == 0.0
+    one = xp.ones_like(below)
+    step = value / xp.where(is_flat, one, below)
+    return xp.where(is_flat | ~xp.isfinite(step), xp.zeros_like(step), step)
+
+
+def _shortened(xp, step):
+    """Return steps of a size of one at most."""
+    size = _size(xp, step)
+    return xp.where(size > 1.0, step / xp.where(size > 1.0, size, xp.ones_like(size)), step)
+'''
+
+SETTLED = '''\
+def _settled(xp, scaled, x):
+    """Return roots after as many steps as each element needs."""
+    moves = xp.ones_like(xp.real(x[0, ...])) > 0.0
+    for _ in range(60):
+        step = _shortened(xp, _root_steps(xp, scaled, x))
+        x = xp.where(moves, x - step, x)
+        shares = _size(xp, step) - 1e-9 * _size(xp, x)
+        moves = moves & (_largest(xp, [shares[i, ...] for i in range(len(scaled))]) > 0.0)
+        if _is_idle(xp, moves):
+            break
+    return x
+'''
+
+JAX_SETTLED = '''\
+def _settled(scaled, x):
+    """Return roots after as many steps as each element needs, without derivatives."""
+    scaled = [jax.lax.stop_gradient(c) for c in scaled]
+    x = jax.lax.stop_gradient(x)
+
+    def is_on(state):
+        count, moves, _ = state
+        return (count < 60) & jnp.any(moves)
+
+    def moved(state):
+        count, moves, x = state
+        step = _shortened(_root_steps(scaled, x))
+        x = jnp.where(moves, x - step, x)
+        is_far = jnp.any(jnp.abs(step) > 1e-9 * jnp.abs(x), axis=0)
+        return count + 1, moves & is_far, x
+
+    return jax.lax.while_loop(is_on, moved, (0, jnp.ones(x.shape[1:], dtype=bool), x))[2]
+'''
+
+PROPAGATED = '''\
+def _propagated(xp, coefficients):
+    """Return h, h', ..., h^(n-1) at 1 for coefficients of any size.
+
+    h solves h^(n) + c_(n-1) h^(n-1) + ... + c_0 h = 0 and starts from h^(n-1)(0) = 1 and
+    zeros. The exponential of the companion matrix, by scaling and squaring: its first
+    two axes are those of the matrix.
+    """
+    n = len(coefficients)
+    rows = _stacked(xp, coefficients)
+    size = _largest_root(xp, rows)
+    one = xp.ones_like(rows[0, ...])
+    companion = [[one * 0.0 for _ in range(n)] for _ in range(n)]
+    for i in range(n - 1):
+        companion[i][i + 1] = one * size
+    companion[n - 1] = [-rows[i, ...] / size ** (n - 1 - i) for i in range(n)]
+    # Each element has its own number of halvings: what others are must not matter.
+    above_one = _largest(xp, [xp.ones_like(size), size])
+    halvings = xp.ceil(xp.log2(above_one)) + 3.0
+    halvings = xp.where(xp.isfinite(halvings), halvings, xp.full_like(halvings, 3.0))
+    share = 2.0**-halvings
+    small = xp.stack([xp.stack([x * share for x in row]) for row in companion])
+    diagonal = [[one * float(i == k) for k in range(n)] for i in range(n)]
+    identity = xp.stack([xp.stack(row) for row in diagonal])
+    grown = _grown(xp, small, identity, halvings)
+    one = xp.ones_like(size)
+    known = xp.where(halvings > _MOST_HALVINGS, one * cmath.nan, one)
+    return [grown[k, n - 1, ...] * size ** (k - n + 1.0) * known for k in range(n)]
+
+
+_MOST_HALVINGS = 32
+"""Of a matrix before its exponential is a series: exponents are below 2**29 then."""
+
+
+def _matrix_product(xp, left, right):
+    """Return the product of matrices whose rows and columns are the first two axes."""
+    total = 0.0
+    for k in range(left.shape[1]):
+        total = total + left[:, k, None, ...] * right[k, None, :, ...]
+    return total
+
+
+def _squared(xp, matrix, is_wanted):
+    """Return squares of matrices where they are wanted."""
+    safe = xp.where(is_wanted, matrix, xp.zeros_like(matrix))
+    return xp.where(is_wanted, _matrix_product(xp, safe, safe), matrix)
+'''
+
+GROWN = '''\
+def _grown(xp, small, identity, halvings):
+    """Return the exponential of a small matrix, squared as often as each element needs."""
+    grown = identity
+    for m in range(18, 0, -1):
+        grown = identity + _matrix_product(xp, small, grown) / m
+    for k in range(_MOST_HALVINGS):
+        if _is_idle(xp, halvings > k):
+            break
+        grown = _squared(xp, grown, halvings > k)
+    return grown
+'''
+
+JAX_GROWN = '''\
+def _grown(small, identity, halvings):
+    """Return the exponential of a small matrix, squared as often as each element needs."""
+
+    def summed(grown, m):
+        return identity + _matrix_product(small, grown) / m, None
+
+    def squared(grown, k):
+        return jax.lax.cond(
+            jnp.any(halvings > k), lambda: _squared(grown, halvings > k), lambda: grown
+        ), None
+
+    # Loops, because what is written out is computed anew for every use when compiled.
+    grown, _ = jax.lax.scan(summed, identity, jnp.arange(18.0, 0.0, -1.0))
+    return jax.lax.scan(squared, grown, jnp.arange(float(_MOST_HALVINGS)))[0]
+'''
+
+MODAL = '''\
+def _modal_value(xp, modes, coefficients, frames):
+    """Return a sum of exponentials over the largest one, and the logarithm of that."""
+    found = _modal_amplitudes(modes, coefficients, frames)
+    growth = _largest(xp, [xp.real(exponent) for _, exponent in found])
+    total = 0.0
+    for amplitude, exponent in found:
+        total = total + amplitude * xp.exp(exponent - growth)
+    return [total, growth]
+'''
+
+SIZE = '''\
+def _size(xp, x):
+    """Return the magnitude."""
+    return xp.abs(x)
+'''
+
 
 def for_one_library(text: str, name: str) -> str:
     """Return the text of functions with the argument ``xp`` replaced by a library's name.

@@ -20,6 +20,12 @@ COST = (
 )
 """What is said of functions that solve for their exponents."""
 
+ITERATED = (
+    "Exponents without a formula are found by iteration, which costs some hundred times a complex "
+    "exponential; the error was measured with exponents from eigenvalues."
+)
+"""What is said of those that find their exponents otherwise than the code that was measured."""
+
 
 def formula_lines(tf: TransferFunction, width: int) -> list[str]:
     """Return the formula in lines of inert text, shortened when it is long.

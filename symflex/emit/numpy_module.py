@@ -248,13 +248,13 @@ class _Function:
     def _call(self) -> str:
         if isinstance(self.program, Piecewise):
             return self._pieces(self.program).call()
-        return f"_in_blocks(_{self.name}, arguments)"
+        return f"_in_blocks(_value_of_{self.name}, arguments)"
 
     def _kernel(self, parameters: Sequence[str]) -> list[str]:
         """Return the private function that computes with numbers or arrays of any shape."""
         if isinstance(self.program, Piecewise):
             return self._pieces(self.program).functions()
-        lines = [f"def _{self.name}("]
+        lines = [f"def _value_of_{self.name}("]
         lines += [f"    {name}: NDArray[np.complex128]," for name in ("s", *parameters)]
         lines.append(") -> NDArray[np.complex128]:")
         program, far = self.program, self.program.far

@@ -178,8 +178,19 @@ LINTS = "ANN001, ANN201, ANN202, N816, PLR0912, PLR0914, PLR1704, PLR2004"
 """Rules that the private functions of the pieces do not follow."""
 
 
-def _copied(function: Callable[..., object]) -> str:
-    """Return the text of a run-time function as a private one, without annotations."""
+def private_copy(function: Callable[..., object]) -> str:
+    """Return the text of a run-time function as a private one, without annotations.
+
+    Parameters
+    ----------
+    function : callable
+        Of this package.
+
+    Raises
+    ------
+    ValueError
+        When its text has no signature with a result.
+    """
     text = inspect.getsource(function)
     signature = re.compile(r"def (\w+)\((.*?)\) -> .*?:(?:  # noqa[^\n]*)?\n", re.DOTALL)
     found = signature.match(text)
@@ -214,7 +225,7 @@ def support(programs: Sequence[Piecewise]) -> list[str]:
         (calls.modes, (mode_values, modal_amplitudes, runtime.modal_value)),
         (calls.means, (runtime.mean_over_circle,)),
     )
-    return [*blocks, *(_copied(f) for is_called, functions in wanted if is_called for f in functions)]
+    return [*blocks, *(private_copy(f) for is_called, functions in wanted if is_called for f in functions)]
 
 
 @dataclass(frozen=True)
@@ -245,20 +256,23 @@ class PiecesText:
         """Return the call that computes the value of ``arguments``."""
         if not self.program.is_real:
             if self.program.solves:
-                return f"_in_array(_{self.name}_tests, _{self.name}_pieces, arguments)"
-            return f"_in_pieces(_{self.name}_tests, _{self.name}_pieces, arguments, 1)"
-        parts = ", ".join(f"_{self.name}_{part}" for part in ("limits", "sizes", "pieces"))
+                return f"_in_array(_tests_of_{self.name}, _pieces_of_{self.name}, arguments)"
+            return f"_in_pieces(_tests_of_{self.name}, _pieces_of_{self.name}, arguments, 1)"
+        parts = ", ".join(f"_{part}_of_{self.name}" for part in ("limits", "sizes", "pieces"))
         return f"_in_real_pieces({parts}, arguments, {'1j' if self.program.turn else '1'})"
 
     def functions(self) -> list[str]:
-        """Return the lines of all functions."""
+        """Return the lines of all functions.
+
+        Names begin with what a private function is, so that ``A_over_F_0`` may be another function.
+        """
         tests = self._real_tests() if self.program.is_real else self._tests()
         lines = [*tests, "", ""]
         for i, piece in enumerate(self.program.code):
             lines += [*self._piece(i, piece), "", ""]
-        names = [f"_{self.name}_{i}" for i in self.program.pieces]
+        names = [f"_piece_{i}_of_{self.name}" for i in self.program.pieces]
         comma = "," if len(names) == 1 else ""
-        return [*lines, *statement(f"_{self.name}_pieces", f"({', '.join(names)}{comma})", "")]
+        return [*lines, *statement(f"_pieces_of_{self.name}", f"({', '.join(names)}{comma})", "")]
 
     def _head(self, name: str, *, is_free: bool = False) -> list[str]:
         """Return the first lines of a function, without the first argument if it is free of that."""
@@ -284,7 +298,7 @@ class PiecesText:
 
     def _tests(self) -> list[str]:
         program = self.program
-        lines = self._head(f"_{self.name}_tests")
+        lines = self._head(f"_tests_of_{self.name}")
         printer = self._printer(program.tests, self.variable)
         lines += self._body(program.tests, printer)
         tests = []
@@ -315,25 +329,25 @@ class PiecesText:
             sizes.append(condition.quantity if is_positive else Apply("abs", condition.quantity))
         fixed = needed(program.tests, [c.scale for c in program.conditions if c.limit])
         return [
-            *self._head(f"_{self.name}_limits", is_free=True),
+            *self._head(f"_limits_of_{self.name}", is_free=True),
             *self._body(fixed, printer),
             *statement("return", f"[{', '.join(limits)}]", "    "),
             "",
             "",
-            *self._head(f"_{self.name}_sizes"),
+            *self._head(f"_sizes_of_{self.name}"),
             *self._body(needed(program.tests, sizes), printer),
             *statement("return", f"[{', '.join(printer.print(x) for x in sizes)}]", "    "),
         ]
 
     def _piece(self, number: int, piece: Piece) -> list[str]:
-        name = f"_{self.name}_{number}"
+        name, parts = (f"_{word}_{number}_of_{self.name}" for word in ("piece", "parts"))
         if piece.circle:
             given = ", ".join(["z", *(self.parameters[p] for p in self.program.parameters)])
             printer = self._printer(piece.code, self.variable)
             values = ", ".join(printer.print(v) for v in piece.code.values)
-            whole = f"_mean_over_circle(lambda z: {name}_parts({given}), {self.variable}, {piece.circle})"
+            whole = f"_mean_over_circle(lambda z: {parts}({given}), {self.variable}, {piece.circle})"
             return [
-                *self._head(f"{name}_parts"),
+                *self._head(parts),
                 *self._body(piece.code, printer),
                 *statement("return", values, "    "),
                 "",

@@ -101,7 +101,7 @@ def from_julia(name, _folder):
         values = doubles(bind(tf))
         given = [values[p.name] for p in tf.parameters]
         for suffix, points in (("", 1j * w), ("_at", w)):
-            function = functions.get(f"_{public_name(tf)}{suffix}")
+            function = functions.get(f"_value_of_{public_name(tf)}{suffix}")
             if function:
                 yield tf, w, [function(p, *given) for p in points.tolist()]
 

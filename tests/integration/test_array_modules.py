@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import importlib.util
 import sys
+from fractions import Fraction
 from functools import cache
 from pathlib import Path
 
@@ -17,7 +18,8 @@ from flint import acb
 from symflex import pipeline
 from symflex.emit.array_module import ARRAY_API, JAX, array_module
 from symflex.emit.numpy_module import numpy_module
-from symflex.errors import ModelError
+from tests.unit.emit.against_balls import axis_points, worst_errors
+from tests.unit.emit.exportable import MASSLESS, PIPE
 from tests.unit.emit.test_numpy_distributed import beam, clamped_end_compliance, specification
 
 ROOT = Path(__file__).parents[2]
@@ -43,19 +45,6 @@ elements.body = { type = "mass", at = "x", m = "m" }
 elements.spring = { type = "spring", between = ["x", "ground"], k = "k" }
 inputs = { F = { force = "x" }, u = {} }
 outputs = { X = "x", gain = "k*u", half = "u/2" }
-"""
-
-PIPE = """
-symflex = 1
-parameters = { EI = "100 N*m^2", m = "3 kg/m", m_f = "1 kg/m", U = "5 m/s", l = "2 m" }
-[fields.w]
-domain = ["0", "l"]
-equation = "EI*w'''' + m_f*U^2*w'' + 2*m_f*U*s*w' + m*s^2*w = p"
-conditions = ["w(0) = 0", "w''(0) = 0", "w(l) = 0", "w''(l) = 0"]
-[inputs]
-p = { unit = "N/m" }
-[outputs]
-Y = "w(l/2)"
 """
 
 
@@ -299,11 +288,109 @@ def test_the_response_at_negative_frequencies_is_conjugate(over_any):
     assert np.all(value[:2] == np.conj(value[:1:-1]))
 
 
-def test_a_function_without_a_formula_for_its_wavenumbers_is_refused():
-    model = pipeline.loads(PIPE)
-    for dialect in (ARRAY_API, JAX):
-        with pytest.raises(ModelError, match="SF234"):
-            array_module(pipeline.derive_all(model), model, dialect)
+# ---------------------------------------------------------------- wavenumbers without a formula
+
+NAMELESS = {"pipe": (PIPE, 1e-13), "massless": (MASSLESS, 2e-8)}
+"""With the error allowed: the numpy module reaches no more for roots that are equal at every s."""
+
+
+def nameless_points(tf):
+    omega = axis_points(tf, 20)
+    return np.concatenate([1j * omega, omega[::5] * np.exp(1j * np.linspace(0.1, 6.2, len(omega[::5])))])
+
+
+@needs_strict
+@pytest.mark.parametrize("name", NAMELESS)
+def test_wavenumbers_without_a_formula_are_found_by_any_library(name, over_any, strict):
+    text, allowed = NAMELESS[name]
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    (function,) = over_any(text).TRANSFER_FUNCTIONS.values()
+    s = nameless_points(tf)
+    found = function(strict.asarray(s))
+    assert type(found) is type(strict.asarray(s))
+    assert max(worst_errors(tf, s, np.asarray(found), function(s))) < allowed
+
+
+@pytest.mark.slow
+@needs_jax
+@pytest.mark.parametrize("name", NAMELESS)
+def test_wavenumbers_without_a_formula_are_found_by_compiled_functions(name, over_jax, jax):
+    text, allowed = NAMELESS[name]
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    (function,) = over_jax(text).TRANSFER_FUNCTIONS.values()
+    s = nameless_points(tf)
+    computed = np.asarray(jax.jit(function)(s)), np.asarray(function(s))
+    assert max(worst_errors(tf, s, *computed)) < allowed
+
+
+@pytest.mark.slow
+@needs_jax
+def test_derivatives_of_found_wavenumbers_are_those_of_their_equation(over_jax, jax, jnp):
+    def parts(x):
+        value = over_jax(PIPE).Y_over_p(1j * x[0], U=x[1])
+        return jnp.stack([jnp.real(value), jnp.imag(value)])
+
+    slopes = np.asarray(jax.jit(jax.jacrev(parts))(jnp.asarray([40.0, 5.0])))
+    by_omega, by_speed = slopes[0] + 1j * slopes[1]
+    (tf,) = pipeline.derive_all(pipeline.loads(PIPE))
+    bound = pipeline.bind(tf)
+    logarithmic = complex(bound.enclosed(400).logarithmic_derivative(acb(0, 40)))
+    assert by_omega == pytest.approx(1j * bound(40j) * logarithmic, rel=1e-12)
+    # By the speed: central differences of enclosures.
+    step = Fraction(1, 10**4)
+    ends = [pipeline.bind(tf, {"U": 5 + sign * step})(40j) for sign in (1, -1)]
+    assert by_speed == pytest.approx((ends[0] - ends[1]) / (2 * float(step)), rel=1e-7)
+
+
+@pytest.mark.slow
+@needs_jax
+def test_functions_that_find_wavenumbers_are_mapped_over_parameters(over_jax, over_numpy, jax):
+    speeds = np.array([0.0, 5.0, 11.0])
+    mapped = jax.jit(jax.vmap(lambda u: over_jax(PIPE).Y_over_p(30j, U=u)))(speeds)
+    assert np.allclose(mapped, over_numpy(PIPE).Y_over_p(30j, U=speeds), rtol=1e-12, atol=0)
+
+
+@needs_strict
+def test_functions_that_find_wavenumbers_broadcast_s_and_parameters(over_any, over_numpy, strict):
+    s, speeds = 1j * np.logspace(-3, 3, 4), np.array([[5.0], [11.0]])
+    expected = over_numpy(PIPE).Y_over_p(s, U=speeds)
+    found = over_any(PIPE).Y_over_p(strict.asarray(s), U=strict.asarray(speeds))
+    assert found.shape == (2, 4)
+    assert np.allclose(np.asarray(found), expected, rtol=1e-12, atol=0)
+
+
+@pytest.mark.parametrize(
+    "library", [pytest.param("array_api_strict", marks=needs_strict), pytest.param("jax", marks=needs_jax)]
+)
+def test_roots_of_any_sizes_are_found(library, over_any, request):
+    if library == "jax":
+        module, convert = request.getfixturevalue("over_jax")(PIPE), request.getfixturevalue("jnp").asarray
+        find = module._characteristic_roots
+    else:
+        strict = request.getfixturevalue("strict")
+        convert = strict.asarray
+
+        def find(coefficients):
+            return over_any(PIPE)._characteristic_roots(strict, coefficients)
+
+    expected = np.array(
+        [
+            [1.0, -2.0, 3.0, -4.0],
+            [1e-6, 1.0, -1e3, 2e6],
+            [1j, -1j, 5.0, -5.0],
+            [1.0 + 1.0j, 1.0 - 1.0j, -3.0, 0.0],
+            [0.0, 0.0, 2.0, -7.0],
+        ]
+    )
+    rows = np.array([np.poly(e)[:0:-1].astype(complex) for e in expected] + [[1.0, np.nan, 1.0, 1.0]])
+    with np.errstate(invalid="ignore"):
+        *found, least = (np.asarray(x) for x in find([convert(c) for c in rows.T]))
+    roots = np.array(found)[:, :-1].T
+    nearest = np.min(np.abs(roots[:, :, None] - expected[:, None, :]), axis=1)
+    assert np.all(nearest <= 1e-14 * np.abs(expected) + 1e-50)
+    distances = np.abs(expected[:, :, None] - expected[:, None, :]) + np.diag([np.inf] * 4)
+    assert least[:-1] == pytest.approx(distances.min(axis=(1, 2)), rel=1e-13)
+    assert np.all(np.isnan(np.array(found)[:, -1]))
 
 
 # -------------------------------------------------------------------------------------------------- jax

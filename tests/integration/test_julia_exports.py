@@ -46,15 +46,15 @@ def test_what_else_a_program_can_hold_read_as_python_agrees(name):
     w = axis_points(tf, 30)
     turned = w[::5] * np.exp(1j * np.linspace(0.3, 6.0, len(w[::5])))
     s = np.concatenate([1j * w, turned if name != "delayed" else []])
-    assert worst_errors(tf, s, read(functions["_X_over_F"], tf, s))[0] <= ACCURACY
+    assert worst_errors(tf, s, read(functions["_value_of_X_over_F"], tf, s))[0] <= ACCURACY
     if name == "two_beams":
-        assert worst_errors(tf, -1j * w, read(functions["_X_over_F_at"], tf, -w))[0] <= ACCURACY
+        assert worst_errors(tf, -1j * w, read(functions["_value_of_X_over_F_at"], tf, -w))[0] <= ACCURACY
 
 
 def test_powers_that_overflow_are_taken_of_one_over_s():
     (tf,), made = exported("chain", samples=30)
     s = np.array([1e3j, 1e8j, 1e16j, 1e18 + 1e18j, 1e25, -1e30j, 2.0])
-    assert worst_errors(tf, s, read(functions_of(made.text)["_X_over_F"], tf, s))[0] <= ACCURACY
+    assert worst_errors(tf, s, read(functions_of(made.text)["_value_of_X_over_F"], tf, s))[0] <= ACCURACY
 
 
 @pytest.mark.parametrize("name", ["six_mass", "timoshenko_cantilever", "robot_axis", *SPECS])

@@ -105,7 +105,7 @@ def test_a_parameter_of_any_name_is_a_plain_identifier_and_nothing_else_changes(
     assert all(PLAIN.fullmatch(k) for k in keywords)
     assert not {"im", "pi", "exp", "end", "abs", "begin", "complex"} & set(keywords)
     # 1/(m + b + k)
-    assert functions_of(made)["_X_over_F"](1.0, 2.0, 3.0, 5.0) == 0.1
+    assert functions_of(made)["_value_of_X_over_F"](1.0, 2.0, 3.0, 5.0) == 0.1
 
 
 @pytest.mark.parametrize("name", CALLED, ids=lambda n: ascii(n)[:40])
@@ -134,7 +134,7 @@ def test_a_definition_cannot_hide_a_name_of_the_code():
     made = written(model_of(text.replace('V = "s*x"', 'V = "num*x*exp*abs"')))
     s, m, b, k = 0.5j, 2.0, 3.0, 5.0
     expected = (m * s**2 + k) * 2 * m * b * s / (m * s**2 + b * s + k)
-    assert functions_of(made)["_V_over_F"](s, m, b, k) == pytest.approx(expected, rel=1e-15)
+    assert functions_of(made)["_value_of_V_over_F"](s, m, b, k) == pytest.approx(expected, rel=1e-15)
 
 
 @pytest.mark.slow

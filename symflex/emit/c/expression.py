@@ -82,6 +82,8 @@ class Term:
         How many calls are nested in it.
     is_signed : bool
         True for a real number that stands for a complex one: its square root may be imaginary.
+    real_at : int
+        Of an array of complex numbers, the position of the one that is real; negative for none.
     """
 
     text: str
@@ -90,6 +92,7 @@ class Term:
     binding: int = _LEAF
     depth: int = 0
     is_signed: bool = False
+    real_at: int = -1
 
     def within(self, tightest: int) -> str:
         """Return the text, in parentheses where an operator around it binds tighter."""
@@ -158,7 +161,9 @@ class Printer:
             case Apply(function, argument):
                 return self._apply(function, self.print(argument))
             case Item(values, position):
-                held = self.known[values.name] if isinstance(values, Reference) else self.array(values)
+                held = self.listed(values)
+                if position == held.real_at:
+                    return Term(f"{held.text}[{position}].re", Kind.REAL, held.varies)
                 return Term(f"{held.text}[{position}]", held.kind, held.varies)
         message = f"no text for {type(node).__name__}"
         raise TypeError(message)
@@ -168,6 +173,10 @@ class Printer:
         if self.in_lanes and y.kind is Kind.COMPLEX and (x.varies or y.varies):
             return _call("lane_div", Kind.COMPLEX, complex_term(x), y)
         return quotient(x, y)
+
+    def listed(self, node: Node) -> Term:
+        """Return the array that holds a list; it is declared where there is none yet."""
+        return self.known[node.name] if isinstance(node, Reference) else self.array(node)
 
     def _sum(self, terms: Sequence[Node]) -> Term:
         result = self.print(terms[0])

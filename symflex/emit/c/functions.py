@@ -119,6 +119,7 @@ class Functions:
             blocks += self._piece(f"piece_{number}_of_{self.name}", piece, orders)
         scope = Scope.of(self.members, S)
         conditions = conditions_of(program, scope)
+        orders |= scope.orders
 
         def call(k: int, inner: Scope) -> None:
             inner.say("return", f"piece_{k}_of_{self.name}(s, p)")

@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING
 from symflex.emit.c.functions import Functions
 from symflex.emit.c.names import KEYWORDS, RESERVED
 from symflex.emit.c.support import support
-from symflex.emit.module_text import default_value, formula_lines, origin_lines
-from symflex.emit.program import Verification, choose_programs, identifiers, inert, wrapped
-from symflex.errors import Diagnostic, ModelError, UsageError
+from symflex.emit.module_text import COST, ITERATED, default_value, formula_lines, origin_lines
+from symflex.emit.program import Piecewise, Verification, choose_programs, identifiers, inert, wrapped
+from symflex.emit.program.calls import RuntimeCalls
+from symflex.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -97,8 +98,7 @@ def c_files(
     BudgetError
         SF503 when a function's text would be too long.
     ModelError
-        SF233 when a number does not fit in double precision; SF234 for a function whose wavenumbers have no
-        formula.
+        SF233 when a number does not fit in double precision.
     UsageError
         SF902 when ``name`` cannot stand in an include directive.
 
@@ -121,10 +121,6 @@ def c_files(
         message = f"'{inert(name)[:64]}' cannot be the name of a C header"
         hint = "letters, digits and _ . + - of ASCII can stand in an include directive everywhere"
         raise UsageError(Diagnostic("SF902", message, None, hint))
-    nameless = [tf.name for tf in tfs if tf.is_nameless]
-    if nameless:
-        message = f"the wavenumbers of {inert(nameless[0])} have no formula, and C code does not find them"
-        raise ModelError(Diagnostic("SF234", message, None, "the code of the target numpy does"))
     return _Files(tfs, model, band_hz, name, samples, digits).made()
 
 
@@ -302,11 +298,13 @@ class _Files:
         unit = f" [{tf.unit}]" if tf.unit else ""
         lines = [inert(f"{tf.quantity[:1].upper()}{tf.quantity[1:]} {tf.name}{unit}."), ""]
         lines += [f"  {line}" if line else "" for line in formula_lines(tf, WIDTH - 5)]
-        (_, verification), axis = self.chosen[key]
+        (program, verification), axis = self.chosen[key]
         sentences = [f"At s = j omega, {verification.text(self.digits)}."]
         if axis is not None:
             sentences = [f"Of s, {verification.text(self.digits)}."]
             sentences.append(f"At s = j omega, in real arithmetic, {axis[1].text(self.digits)}.")
+        if isinstance(program, Piecewise) and program.solves:
+            sentences.append(ITERATED if RuntimeCalls.of([program]).roots else COST)
         lines.append("")
         for sentence in sentences:
             lines += wrapped(inert(sentence), WIDTH - 3)
@@ -321,10 +319,8 @@ class _Files:
         helpers = support(called, self.structure, max((order for _, order in printed.values()), default=1))
         code = "\n".join("\n".join([*comment([inert(key)]), "", text]) for key, (text, _) in printed.items())
         conversion = COMPLEX_OF if self.functions else ""
-        headers = ["math"]
-        if "lane_" in helpers:
-            headers = ["float", "math", *(["stdint", "string"] if "uint64_t" in helpers else [])]
-        includes = "".join(f"#include <{name}.h>\n" for name in headers)
+        signs = {"float": "FLT_EVAL_METHOD", "math": "", "stdint": "uint64_t", "string": "memcpy("}
+        includes = "".join(f"#include <{name}.h>\n" for name, sign in signs.items() if sign in helpers)
         parts = [includes, self._defaults(), helpers, conversion, code]
         return "\n".join(part for part in parts if part)
 

@@ -51,10 +51,12 @@ that firmware and Windows programs often include first."""
 
 FUNCTIONS = frozenset(
     """
-    main size_t ptrdiff_t sqrt exp log sin cos tan sinh cosh tanh fabs hypot pow copysign
+    main size_t ptrdiff_t
+    sqrt exp log log2 ldexp ceil fmax fmin sin cos tan sinh cosh tanh fabs hypot pow copysign
     creal cimag
     cx cx_of cx_add cx_addr cx_addi cx_sub cx_rsub cx_mul cx_scale cx_turn cx_div cx_neg cx_exp cx_cis
-    cx_sqrt cx_abs cx_over cx_under cx_circle cx_series complex_of memcpy uint64_t
+    cx_sqrt cx_abs cx_over cx_under cx_circle cx_series cx_size cx_matrix cx_propagated cx_step cx_roots
+    cx_mode cx_modes cx_exponent cx_modal complex_of memcpy uint64_t
     lane_bits lane_div lane_double lane_expm1 lane_exp lane_tan lane_tanh
     """.split()
 )

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 from symflex.emit.c.expression import Kind, Printer, Term, complex_term
 from symflex.emit.c.names import TAKEN
-from symflex.emit.program import Assignment, Node, Solutions, identifiers
+from symflex.emit.c.plan import modal_plan
+from symflex.emit.program import Assignment, ModalValue, ModeValues, Node, Roots, Solutions, identifiers
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -127,7 +128,7 @@ class Scope:
     def assign(self, assignments: Sequence[Assignment]) -> None:
         """Make variables; what is free of s and made already is not made again."""
         for assignment in assignments:
-            if isinstance(assignment.value, Solutions):
+            if isinstance(assignment.value, Solutions | Roots | ModeValues | ModalValue):
                 self.known[assignment.name] = self._array(assignment.value, assignment.name)
                 continue
             term = self.printer.whole(assignment.value)
@@ -162,13 +163,47 @@ class Scope:
         return self.parameters[name]
 
     def _array(self, node: Node, wanted: str = "solutions") -> Term:
-        if not isinstance(node, Solutions):
-            message = f"no text for {type(node).__name__}"
-            raise TypeError(message)
-        terms = [self.term(c) for c in node.coefficients]
-        order = len(terms)
-        self.orders.add(order)
-        given, found = self.name("coefficients"), self.name(wanted)
-        self.say(f"const cx {given}[{order}] =", f"{{{', '.join(complex_term(t).text for t in terms)}}}")
-        self.add(f"cx {found}[{order}];", f"cx_series({given}, {order}, {node.terms}, {found});")
-        return Term(found, Kind.COMPLEX, any(t.varies for t in terms))
+        match node:
+            case Solutions(coefficients, count):
+                given, order, varies = self._given(coefficients)
+                self.orders.add(order)
+                found = self.name(wanted)
+                call = (
+                    f"cx_series({given}, {order}, {count}," if count else f"cx_propagated({given}, {order},"
+                )
+                self.add(f"cx {found}[{order}];", f"{call} {found});")
+                return Term(found, Kind.COMPLEX, varies)
+            case Roots(coefficients):
+                given, order, varies = self._given(coefficients)
+                self.orders.add(order)
+                found = self.name(wanted)
+                self.add(f"cx {found}[{order + 1}];", f"cx_roots({given}, {order}, {found});")
+                return Term(found, Kind.COMPLEX, varies, real_at=order)
+            case ModeValues(roots, length):
+                held, scale = self.printer.listed(roots), complex_term(self.term(length))
+                found = self.name(wanted)
+                self.add(f"cx_mode {found};")
+                self.say(f"cx_modes({held.text}, {held.real_at},", f"{scale.text}, &{found})")
+                return Term(found, Kind.COMPLEX, held.varies or scale.varies)
+            case ModalValue():
+                return self._modal(node, wanted)
+        message = f"no text for {type(node).__name__}"
+        raise TypeError(message)
+
+    def _given(self, nodes: Sequence[Node]) -> tuple[str, int, bool]:
+        """Declare an array of coefficients; return its name, its length and whether it depends on s."""
+        terms = [complex_term(self.term(c)) for c in nodes]
+        given = self.name("coefficients")
+        self.say(f"const cx {given}[{len(terms)}] =", f"{{{', '.join(t.text for t in terms)}}}")
+        return given, len(terms), any(t.varies for t in terms)
+
+    def _modal(self, node: ModalValue, wanted: str) -> Term:
+        modes = [self.printer.listed(mode) for mode in node.modes]
+        given, _, varies = self._given(node.coefficients)
+        plan, most = modal_plan(node.frames)
+        names = [self.name(x) for x in ("modes", "plan", "sums", wanted)]
+        self.say(f"const cx_mode *const {names[0]}[] =", f"{{{', '.join(f'&{m.text}' for m in modes)}}}")
+        self.say(f"static const int {names[1]}[] =", f"{{{', '.join(map(str, plan))}}}")
+        self.add(f"cx {names[2]}[{most}], {names[3]}[2];")
+        self.say(f"cx_modal({names[0]}, {given}, {names[1]},", f"{names[2]}, {names[3]})")
+        return Term(names[3], Kind.COMPLEX, varies or any(m.varies for m in modes), real_at=1)

@@ -176,6 +176,231 @@ static void cx_series(const cx *c, int n, int terms, cx *y)
     }
 }
 """,
+    "cx_size": """\
+/* About the size of the largest root of x^n + c[n - 1] x^(n - 1) + ... + c[0]. */
+static double cx_size(const cx *c, int n)
+{
+    double size = 1e-30;
+    for (int i = 0; i < n; i++) {
+        const double own = pow(cx_abs(c[i]), 1.0 / (n - i));
+        if (!(own < HUGE_VAL)) {
+            return NAN;
+        }
+        size = fmax(size, own);
+    }
+    return size;
+}
+""",
+    "cx_matrix": """\
+/* The product of two matrices of n rows, plus that of a number and the unit matrix. */
+static void cx_matrix(const cx *a, const cx *b, int n, double scale, double plus, cx *y)
+{
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            cx sum = cx_of(0.0, 0.0);
+            for (int k = 0; k < n; k++) {
+                sum = cx_add(sum, cx_mul(a[n * i + k], b[n * k + j]));
+            }
+            y[n * i + j] = cx_addr(cx_over(sum, scale), i == j ? plus : 0.0);
+        }
+    }
+}
+""",
+    "cx_propagated": """\
+/* y = h, h', ..., h^(n - 1) at 1 for coefficients of any size; h solves
+ * h^(n) + c[n - 1] h^(n - 1) + ... + c[0] h = 0 and starts from h^(n - 1)(0) = 1 and zeros.
+ * The exponential of the companion matrix, by scaling and squaring.
+ */
+static void cx_propagated(const cx *c, int n, cx *y)
+{
+    cx small[CX_ORDER * CX_ORDER], grown[CX_ORDER * CX_ORDER], next[CX_ORDER * CX_ORDER];
+    const double size = cx_size(c, n);
+    const double above_one = size > 1.0 && size < HUGE_VAL ? size : 1.0;
+    const int halvings = (int)ceil(log2(above_one)) + 3;
+    const double share = ldexp(1.0, -halvings);
+    for (int i = 0; i < n * n; i++) {
+        small[i] = cx_of(i % n == i / n + 1 ? size * share : 0.0, 0.0);
+        grown[i] = cx_of(i % n == i / n ? 1.0 : 0.0, 0.0);
+    }
+    for (int i = 0; i < n; i++) {
+        small[n * (n - 1) + i] = cx_scale(-share / pow(size, n - 1 - i), c[i]);
+    }
+    for (int m = 18; m > 0; m--) {
+        cx_matrix(small, grown, n, m, 1.0, next);
+        memcpy(grown, next, sizeof grown);
+    }
+    for (int k = 0; k < halvings; k++) {
+        cx_matrix(grown, grown, n, 1.0, 0.0, next);
+        memcpy(grown, next, sizeof grown);
+    }
+    for (int k = 0; k < n; k++) {
+        y[k] = cx_scale(pow(size, k - n + 1), grown[n * k + n - 1]);
+    }
+}
+""",
+    "cx_step": """\
+/* How far x[i] is off a root, by the method of Aberth and Ehrlich; zero if that is unknown. */
+static cx cx_step(const cx *c, int n, const cx *x, int i)
+{
+    cx value = cx_of(1.0, 0.0), slope = cx_of(0.0, 0.0), away = slope;
+    for (int k = n - 1; k >= 0; k--) {
+        slope = cx_add(cx_mul(slope, x[i]), value);
+        value = cx_add(cx_mul(value, x[i]), c[k]);
+    }
+    for (int k = 0; k < n; k++) {
+        if (x[k].re != x[i].re || x[k].im != x[i].im) {
+            away = cx_add(away, cx_div(cx_of(1.0, 0.0), cx_sub(x[i], x[k])));
+        }
+    }
+    const cx step = cx_div(value, cx_sub(slope, cx_mul(value, away)));
+    return cx_abs(step) < HUGE_VAL ? step : cx_of(0.0, 0.0);
+}
+""",
+    "cx_roots": """\
+/* Roots x[0], ..., x[n - 1] of x^n + c[n - 1] x^(n - 1) + ... + c[0], and in x[n] the least
+ * distance of two. Steps of Aberth and Ehrlich from where the sizes of the coefficients say
+ * that roots are (Bini 1996).
+ */
+static void cx_roots(const cx *c, int n, cx *x)
+{
+    cx scaled[CX_ORDER], step[CX_ORDER];
+    double height[CX_ORDER + 1], least = HUGE_VAL;
+    const double size = cx_size(c, n);
+    int moves = 1;
+    if (n == 1) {
+        x[0] = cx_neg(c[0]);
+        x[1] = cx_of(least, 0.0);
+        return;
+    }
+    height[n] = 0.0;
+    for (int i = 0; i < n; i++) {
+        scaled[i] = cx_over(c[i], pow(size, n - i));
+        height[i] = log(cx_abs(scaled[i]) + 1e-300);
+    }
+    for (int j = 1; j <= n; j++) {
+        /* The slope of the least concave curve above the points (i, height[i]). */
+        double slope = HUGE_VAL;
+        for (int a = 0; a < j; a++) {
+            double most = -HUGE_VAL;
+            for (int b = j; b <= n; b++) {
+                most = fmax(most, (height[b] - height[a]) / (b - a));
+            }
+            slope = fmin(slope, most);
+        }
+        /* By the golden angle points of a circle lie apart however many they are. */
+        x[j - 1] = cx_scale(exp(-slope) + 1e-30, cx_cis(2.399963229728653 * j + 0.7));
+    }
+    for (int count = 0; count < 60 && moves; count++) {
+        moves = 0;
+        for (int i = 0; i < n; i++) {
+            step[i] = cx_step(scaled, n, x, i);
+            moves |= cx_abs(step[i]) > 1e-9 * cx_abs(x[i]);
+        }
+        for (int i = 0; i < n; i++) {
+            const double length = cx_abs(step[i]);
+            x[i] = cx_sub(x[i], length > 1.0 ? cx_over(step[i], length) : step[i]);
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        step[i] = cx_step(scaled, n, x, i);
+    }
+    for (int i = 0; i < n; i++) {
+        x[i] = cx_scale(size, cx_abs(step[i]) < 0.01 ? cx_sub(x[i], step[i]) : x[i]);
+        for (int k = 0; k < i; k++) {
+            least = fmin(least, cx_abs(cx_sub(x[i], x[k])));
+        }
+    }
+    x[n] = cx_of(least, 0.0);
+}
+""",
+    "cx_modes": """\
+/* Exponents of n roots at a length, and per root x^k/chi'(x) for k = 0, ..., n - 1. */
+typedef struct { cx exponent[CX_ORDER], power[CX_ORDER][CX_ORDER]; } cx_mode;
+
+static void cx_modes(const cx *x, int n, cx length, cx_mode *mode)
+{
+    for (int i = 0; i < n; i++) {
+        cx slope = cx_of(1.0, 0.0);
+        for (int k = 0; k < n; k++) {
+            slope = k == i ? slope : cx_mul(slope, cx_sub(x[i], x[k]));
+        }
+        mode->exponent[i] = cx_mul(x[i], length);
+        mode->power[i][0] = cx_div(cx_of(1.0, 0.0), slope);
+        for (int k = 1; k < n; k++) {
+            mode->power[i][k] = cx_mul(mode->power[i][k - 1], x[i]);
+        }
+    }
+}
+""",
+    "cx_exponent": """\
+/* The sum of the exponents of some roots, one of each mode. */
+static cx cx_exponent(const cx_mode *const *modes, const int *slots, int count, const int *roots)
+{
+    cx sum = cx_of(0.0, 0.0);
+    for (int i = 0; i < count; i++) {
+        sum = cx_add(sum, modes[slots[i]]->exponent[roots[i]]);
+    }
+    return sum;
+}
+""",
+    "cx_modal": """\
+/* A sum of exponentials over the largest one, and the logarithm of that. The plan has for
+ * every frame: the number of slots and their modes; per slot the number of terms, with the
+ * order of the derivative of each and the sum that it becomes part of; the number of
+ * coefficients, which are the first sums, and their places; the number of products of
+ * exponentials, with the root that every slot takes and a divisor each.
+ */
+static void cx_modal(const cx_mode *const *modes, const cx *c, const int *plan, cx *sums,
+                     cx *value)
+{
+    double growth = -HUGE_VAL;
+    for (int turn = 0; turn < 2; turn++) {
+        const int *at = plan + 1;
+        value[0] = cx_of(0.0, 0.0);
+        for (int frame = 0; frame < plan[0]; frame++) {
+            const int slots = *at++;
+            const int *const mode = at, *const steps = at + slots;
+            at = steps;
+            for (int slot = 0; slot < slots; slot++) {
+                at += 2 + 2 * at[0];
+            }
+            const int first = *at++;
+            for (int k = 0; k < first; k++) {
+                sums[k] = c[*at++];
+            }
+            const int keys = *at++;
+            for (int key = 0; key < keys; key++, at += slots + 1) {
+                const cx exponent = cx_exponent(modes, mode, slots, at);
+                const int *step = steps;
+                cx *own = sums;
+                int is_known = key > 0;
+                if (turn == 0) {
+                    growth = exponent.re > growth ? exponent.re : growth;
+                    continue;
+                }
+                for (int slot = 0; slot < slots; slot++) {
+                    const int terms = step[0], found = step[1];
+                    cx *const next = own + terms;
+                    is_known = is_known && at[slot] == at[slot - slots - 1];
+                    for (int k = 0; k < found && !is_known; k++) {
+                        next[k] = cx_of(0.0, 0.0);
+                    }
+                    for (int k = 0; k < terms && !is_known; k++) {
+                        const cx power = modes[mode[slot]]->power[at[slot]][step[2 + 2 * k]];
+                        cx *const sum = next + step[3 + 2 * k];
+                        *sum = cx_add(*sum, cx_mul(own[k], power));
+                    }
+                    own = next;
+                    step += 2 + 2 * terms;
+                }
+                const cx scale = cx_exp(cx_of(exponent.re - growth, exponent.im));
+                value[0] = cx_add(value[0], cx_mul(cx_over(*own, at[slots]), scale));
+            }
+        }
+    }
+    value[1] = cx_of(growth, 0.0);
+}
+""",
     "cx_circle": """\
 /* Numerator over denominator at s, each the mean of its values on a circle around s,
  * because the formula itself is singular near s though they are not. At z, parts gives

@@ -157,11 +157,12 @@ def julia_module(
     for m in members:
         functions = PrivateFunctions(m.program, public[m.key], parameters, taken - {"s"})
         blocks += [_public(m, functions, digits), *functions.blocks()]
-    blocks += support_of([m.program for m in members])
+    called = support_of([m.program for m in members])
+    blocks += called
     for table, is_real in (("TRANSFER_FUNCTIONS", False), ("FREQUENCY_RESPONSES", True)):
         blocks.append(_function_table(table, [m for m in members if m.program.is_real == is_real], public))
     header = [*_docstring(_header(model, members, digits)), f"module {main}", ""]
-    if any("LinearAlgebra." in block for block in blocks):
+    if any("LinearAlgebra." in text for text in called):
         header += ["import LinearAlgebra", ""]
     if public:
         header += [*_exported(list(public.values())), ""]
@@ -181,7 +182,7 @@ class _Member:
 
     @property
     def key(self) -> str:
-        return f"{self.tf.name}{' at' if self.program.is_real else ''}"
+        return f"{'at' if self.program.is_real else 'of'} {self.tf.name}"
 
 
 def module_name(text: str) -> str:
@@ -295,9 +296,9 @@ def _public(member: _Member, functions: PrivateFunctions, digits: int) -> str:
     first = [f"function {whole}"]
     if len(first[0]) > WIDTH:
         first = [f"function {opening};", *(f"    {x}," for x in signature[:-1]), f"    {signature[-1]})"]
-    call = f"complex(_{functions.name}({', '.join(arguments)}))"
+    call = f"complex(_value_of_{functions.name}({', '.join(arguments)}))"
     body = f"    return {call}"
     if len(body) > WIDTH:
         inside = [f"        {a}," for a in arguments[:-1]] + [f"        {arguments[-1]}))"]
-        body = "\n".join([f"    return complex(_{functions.name}(", *inside])
+        body = "\n".join([f"    return complex(_value_of_{functions.name}(", *inside])
     return "\n".join([*_docstring(lines), *first, body, "end", ""])

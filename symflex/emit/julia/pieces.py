@@ -58,8 +58,8 @@ class PrivateFunctions:
     def _arguments(self, variable: str) -> list[str]:
         return [variable, *(self.parameters[p] for p in self.program.parameters)]
 
-    def _function(self, suffix: str, variable: str, body: Sequence[str]) -> str:
-        lines = [*head(f"_{self.name}{suffix}", self._arguments(variable)), *body]
+    def _function(self, kind: str, variable: str, body: Sequence[str]) -> str:
+        lines = [*head(f"_{kind}_of_{self.name}", self._arguments(variable)), *body]
         return "\n".join([*lines, "end", ""])
 
     def _scope(self, assignments: Sequence[Assignment], *words: str) -> tuple[JuliaPrinter, list[str]]:
@@ -84,7 +84,7 @@ class PrivateFunctions:
                 *statement("return", printer.print(far.value), "        "),
                 "    end",
             ]
-        return self._function("", s, [*lines, *statement("return", printer.print(program.near.value))])
+        return self._function("value", s, [*lines, *statement("return", printer.print(program.near.value))])
 
     def _choice(self, program: Piecewise) -> str:
         """Return the function that finds the piece that serves."""
@@ -95,7 +95,7 @@ class PrivateFunctions:
             negative = ", ".join(self._arguments(f"-{variable}"))
             lines += [
                 f"    if signbit({variable})",
-                *statement("return", f"conj(_{self.name}({negative}))", "        "),
+                *statement("return", f"conj(_value_of_{self.name}({negative}))", "        "),
                 "    end",
             ]
         lines += _assigned(assignments, printer)
@@ -108,10 +108,12 @@ class PrivateFunctions:
             conditions = " || ".join(f"{number} == {n}" for n in served[k])
             lines += [
                 f"    if {conditions}",
-                *statement("return", f"_{self.name}_{k}({given})", "        "),
+                *statement("return", f"_piece_{k}_of_{self.name}({given})", "        "),
                 "    end",
             ]
-        return self._function("", variable, [*lines, *statement("return", f"_{self.name}_{last}({given})")])
+        return self._function(
+            "value", variable, [*lines, *statement("return", f"_piece_{last}_of_{self.name}({given})")]
+        )
 
     def _piece(self, program: Piecewise, number: int, piece: Piece) -> list[str]:
         assignments = (*piece.code.constants, *piece.code.assignments)
@@ -119,7 +121,7 @@ class PrivateFunctions:
             printer, (variable,) = self._scope(assignments, self.variable)
             values = ", ".join(printer.print(v) for v in piece.code.values)
             lines = [*_assigned(assignments, printer), *statement("return", f"({values})")]
-            return [self._function(f"_{number}_parts", variable, lines), self._mean(number, piece.circle)]
+            return [self._function(f"parts_{number}", variable, lines), self._mean(number, piece.circle)]
         words = (self.variable, *(["s"] if piece.is_complex else []))
         printer, (variable, *place) = self._scope(assignments, *words)
         lines = []
@@ -130,13 +132,13 @@ class PrivateFunctions:
         whole = printer.quotient(*piece.code.values)
         if program.is_real and not piece.is_complex:
             whole = f"complex(0.0, {whole})" if program.turn else f"complex({whole}, 0.0)"
-        return [self._function(f"_{number}", variable, [*lines, *statement("return", whole)])]
+        return [self._function(f"piece_{number}", variable, [*lines, *statement("return", whole)])]
 
     def _mean(self, number: int, points: int) -> str:
         _, (variable, z) = self._scope((), self.variable, "z")
         given = ", ".join(self._arguments(z))
-        whole = f"_mean_over_circle({z} -> _{self.name}_{number}_parts({given}), {variable}, {points})"
-        return self._function(f"_{number}", variable, statement("return", whole))
+        whole = f"_mean_over_circle({z} -> _parts_{number}_of_{self.name}({given}), {variable}, {points})"
+        return self._function(f"piece_{number}", variable, statement("return", whole))
 
 
 def _assigned(assignments: Sequence[Assignment], printer: JuliaPrinter, indent: str = "    ") -> list[str]:

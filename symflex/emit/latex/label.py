@@ -184,7 +184,7 @@ def _stacked_width(latex: str) -> float:
     lines: list[str] = re.findall(r"\\mathtt\{([^}]*)\}", latex)
     return max(
         _TINY_SIZE * TYPEWRITER * len(line.replace(r"\_", "")) + _UNDERSCORE * line.count(r"\_")
-        for line in lines
+        for line in lines or [""]
     )
 
 

@@ -195,7 +195,7 @@ class _Member:
 
     @property
     def key(self) -> str:
-        return f"{self.tf.name}{' at' if self.program.is_real else ''}"
+        return f"{'at' if self.program.is_real else 'of'} {self.tf.name}"
 
 
 def main_name(text: str) -> str:

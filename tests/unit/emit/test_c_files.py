@@ -20,10 +20,12 @@ from symflex.emit.c.expression import Kind, Term, complex_term, difference, prod
 from symflex.emit.c.support import support
 from symflex.emit.exporters import EXPORTERS
 from symflex.emit.program import verify
-from symflex.errors import ModelError, UsageError
+from symflex.errors import UsageError
 from symflex.transfer import bind
 from tests.house.repository import ROOT, blocks
-from tests.unit.emit.test_numpy_distributed import BAR, DELAY, SENSOR, specification
+from tests.unit.emit.against_balls import axis_points, worst_errors
+from tests.unit.emit.exportable import MASSLESS, PIPE
+from tests.unit.emit.test_numpy_distributed import BAR, COMPRESSED, DELAY, SENSOR, specification
 
 pytestmark = pytest.mark.needs_tool("gcc")
 
@@ -462,12 +464,77 @@ Y = "y(l/2)"
 """
 
 
-def test_wavenumbers_without_a_formula_are_refused_with_a_hint():
-    with pytest.raises(ModelError) as caught:
-        exported(NAMELESS)
-    (problem,) = caught.value.diagnostics
-    assert problem.code == "SF234"
-    assert "numpy" in problem.hint
+NAMELESS_SPECS = {"unsymmetric": (NAMELESS, 1e-13), "pipe": (PIPE, 1e-13), "massless": (MASSLESS, 2e-8)}
+"""With the error allowed: the numpy module reaches no more for roots that are equal at every s."""
+
+
+@cache
+def nameless(name):
+    model = pipeline.loads(NAMELESS_SPECS[name][0])
+    (tf,) = pipeline.derive_all(model)
+    return tf, c_files([tf], model, name="plant", samples=5)
+
+
+@pytest.mark.parametrize("name", [pytest.param("unsymmetric", marks=pytest.mark.slow), "pipe", "massless"])
+def test_functions_without_a_formula_for_their_wavenumbers_agree_with_balls(name, tmp_path):
+    tf, files = nameless(name)
+    allowed = NAMELESS_SPECS[name][1]
+    library, _ = compiled(tmp_path, files)
+    omega = axis_points(tf, 20)
+    s = np.concatenate([1j * omega, omega[::5] * np.exp(1j * np.linspace(0.1, 6.2, len(omega[::5])))])
+    assert worst_errors(tf, s, value_at(library, 0, s))[0] < allowed
+    assert worst_errors(tf, -1j * omega, response(library, 0, -omega))[0] < allowed
+
+
+@pytest.mark.slow
+def test_roots_that_nearly_meet_cost_c_code_no_digits(tmp_path):
+    # x^4 + 400 x^2 + s^2 has double roots at s = 200, which c takes apart a little.
+    model = pipeline.loads(COMPRESSED)
+    (tf,) = pipeline.derive_all(model)
+    library, _ = compiled(tmp_path, c_files([tf], model, name="plant", samples=5))
+    s = np.array([200.0, 200.0001, 199.9 + 0.05j, 201.0, 190 - 3j, 260.0])
+    assert worst_errors(tf, s, value_at(library, 0, s))[0] < 1e-11
+
+
+ROOTS = np.array(
+    [
+        [1.0, -2.0, 3.0, -4.0],
+        [1e-6, 1.0, -1e3, 2e6],
+        [1j, -1j, 5.0, -5.0],
+        [1.0 + 1.0j, 1.0 - 1.0j, -3.0, 0.0],
+        [0.0, 0.0, 2.0, -7.0],
+    ]
+)
+
+
+def test_c_finds_roots_of_any_sizes(tmp_path):
+    call = "void run(const cx *c, cx *x)\n{\n    cx_roots(c, 4, x);\n}\n"
+    code = f"#include <math.h>\n#include <string.h>\n{support('cx_roots(', 'void', 4)}\n{call}"
+    (tmp_path / "roots.c").write_text(code, encoding="utf-8")
+    command = ["gcc", *STRICT, "-shared", "-fPIC", "-o", "roots.so", "roots.c", "-lm"]
+    subprocess.run(command, cwd=tmp_path, check=True)
+    library = ctypes.CDLL(str(tmp_path / "roots.so"))
+    for expected in ROOTS:
+        coefficients = np.poly(expected)[:0:-1].astype(complex)
+        found = np.empty(5, dtype=complex)
+        library.run(pointer(coefficients.view(float)), pointer(found.view(float)))
+        nearest = np.min(np.abs(found[:4, None] - expected), axis=0)
+        assert np.all(nearest <= 1e-14 * np.abs(expected) + 1e-50)
+        least = min(abs(x - y) for x, y in itertools.combinations(expected, 2))
+        assert found[4] == pytest.approx(least, rel=1e-13)
+    unknown = np.array([1.0, np.nan, 1.0, 1.0], dtype=complex)
+    library.run(pointer(unknown.view(float)), pointer(found.view(float)))
+    assert np.all(np.isnan(found[:4]))
+
+
+def test_only_functions_that_are_called_are_in_the_file():
+    two_mass = pipeline.load(ROOT / "derivations" / "eppinger1988" / "two_mass.toml")
+    lumped = c_files(pipeline.derive_all(two_mass), two_mass, name="plant", samples=5).source
+    massless, pipe = (nameless(name)[1].source for name in ("massless", "pipe"))
+    for name, texts in {"cx_roots": [pipe], "cx_modal": [pipe], "cx_propagated": [massless]}.items():
+        assert [name in text for text in (lumped, massless, pipe)] == [
+            text in texts for text in (lumped, massless, pipe)
+        ]
 
 
 # --------------------------------------------------------------------------------------- expressions
