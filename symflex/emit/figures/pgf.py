@@ -32,9 +32,6 @@ TEX_POINTS: Final = 72.27 / DOTS_PER_INCH
 FARTHEST: Final = 5000.0
 """TeX has no lengths beyond 16383 points."""
 
-PACKAGES: Final = ("pgf",)
-"""What a paper loads for such a figure; T1 fonts besides where titles hold letters beyond ASCII."""
-
 _LINE_SPACING: Final = 1.2
 _DOLLAR: Final = re.compile(r"(?<!\\)\$")
 _DEFAULT_FONT: Final = re.compile(r"\\mathdefault\{([^{}]*)\}")
@@ -82,7 +79,7 @@ def pgf_figure(figure: Figure) -> str:
     width, height = (_decimal(MM_PER_INCH * inches, 5) for inches in figure.get_size_inches())
     return "\n".join(
         (
-            rf"% Figure of {width} mm by {height} mm: \usepackage{{{','.join(PACKAGES)}}} and \input this file.",
+            rf"% Figure of {width} mm by {height} mm. Needs \usepackage{{pgf}}; to be read with \input.",
             r"% Texts are in the font of the paper; titles with accents need \usepackage[T1]{fontenc}.",
             r"\begin{pgfpicture}%",
             rf"\pgfpathrectangle{{\pgfpointorigin}}{{\pgfqpoint{{{width}mm}}{{{height}mm}}}}%",

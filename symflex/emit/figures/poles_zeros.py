@@ -40,7 +40,7 @@ NARROWEST, WIDEST = 0.6, 1.25
 TALLEST_INCHES: Final = 2.6
 LISTED: Final = 5
 NOTE_LINE_POINTS: Final = 7.5
-GLYPHS: Final = {"pole": "×", "zero": "○"}
+GLYPHS: Final = {"pole": r"$\times$", "zero": r"$\circ$"}
 COLOUR_OF: Final = {"pole": COLOURS[1], "zero": COLOURS[0]}
 
 

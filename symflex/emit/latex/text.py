@@ -42,7 +42,7 @@ _SYMBOLS: Final = {
     "∂": "partial", "∇": "nabla", "∑": "sum", "∏": "prod", "∫": "int", "∈": "in", "→": "to",
     "←": "leftarrow", "↔": "leftrightarrow", "⇒": "Rightarrow", "−": "-",
     "⋅": "cdot", "·": "cdot", "×": "times", "÷": "div", "±": "pm", "∓": "mp",
-    "∼": "sim", "∝": "propto", "∥": "parallel", "⊥": "perp", "○": "circ", "°": "^\\circ", "′": "'", "″": "''", "¬": "neg",
+    "∼": "sim", "∝": "propto", "∥": "parallel", "⊥": "perp", "°": "^\\circ", "′": "'", "″": "''", "¬": "neg",
     "µ": "mu", "ϑ": "vartheta", "ϕ": "phi", "ϵ": "epsilon", "ϱ": "varrho", "ϖ": "varpi",
     "Ω": "Omega", "ℓ": "ell",
     "²": "^{2}", "³": "^{3}", "¹": "^{1}",
