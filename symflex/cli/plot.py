@@ -38,8 +38,9 @@ def command(
     modes draws the shapes of the lowest modes of the model, --modes or [analysis] modes of them, else five.
     Without -o the figure is written to the current folder as SPEC_KIND.pdf.
 
-    A .pgf is for papers set with LaTeX: \\usepackage{pgf} and \\input it. Its texts take the paper's font; --font,
-    there latex by default, only says how much room to leave for them. Nothing needs a LaTeX installation.
+    A .pgf is for papers set with LaTeX: load the package pgf and input the file. Its texts take the paper's
+    font; --font, there latex by default, only says how much room to leave for them. No LaTeX installation is
+    needed to write one.
     """
     from symflex import pipeline
     from symflex.emit.figures import DEFAULT_FONT, FIGURES, FONTS, draw, save

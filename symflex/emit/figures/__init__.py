@@ -35,7 +35,17 @@ FIGURES: dict[str, Drawing] = {
     "poles_zeros": draw_poles_zeros,
 }
 
-__all__ = ["DEFAULT_FONT", "FIGURES", "FONTS", "FORMATS", "Drawing", "draw", "draw_response", "render", "save"]
+__all__ = [
+    "DEFAULT_FONT",
+    "FIGURES",
+    "FONTS",
+    "FORMATS",
+    "Drawing",
+    "draw",
+    "draw_response",
+    "render",
+    "save",
+]
 
 
 def draw(
@@ -100,6 +110,7 @@ def draw(
     with paper_style(font):
         figure = FIGURES[kind](tfs, bounds, band_hz=band, title=title, width=width)
     for text in figure.findobj(Text):
-        if isinstance(text, Text) and (family := family_of(text.get_text(), font)) and not text.get_parse_math():
+        family = family_of(text.get_text(), font)
+        if family and not text.get_parse_math():
             text.set_fontfamily(family)
     return figure

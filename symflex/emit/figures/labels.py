@@ -30,7 +30,8 @@ def label_of_tf(tf: TransferFunction) -> str:
 def label_of(end: Output | Input) -> str:
     """Return the label of an output or input, without dollar signs.
 
-    The model's own label is taken when it is sound LaTeX that matplotlib can typeset, else one made from the name.
+    The model's own label is taken when it is sound LaTeX that matplotlib can typeset, else one made from the
+    name.
     """
     label = end.latex.strip()
     if label and read_label(label) is not None and _is_typeset(label):

@@ -1,9 +1,9 @@
-r"""Figures in PGF, for ``\input`` into a paper: lines are drawn by TeX, and texts are set in the paper's font.
+r"""Figures in PGF, for ``\input`` into a paper: TeX draws the lines and sets the texts in the paper's font.
 
-No TeX is needed to write one. Where a text begins and how much room it has is computed from the metrics of
-the fonts that come with matplotlib; where it is centred or ends, TeX measures it itself. A text is either
-mathematics that :func:`~symflex.emit.latex.label.read_label` reads completely, or it is escaped: nothing that a
-specification says reaches a command.
+No TeX is needed to write one. How much room a text has is computed from the metrics of the fonts that come
+with matplotlib; where it is centred or ends, TeX measures it itself. A text is either mathematics that
+:func:`~symflex.emit.latex.label.read_label` reads completely, or it is escaped: nothing that a specification
+says reaches a command.
 """
 
 from __future__ import annotations
@@ -11,13 +11,17 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
 from matplotlib.backend_bases import RendererBase
+from matplotlib.colors import to_rgba
 from matplotlib.path import Path
 
 from symflex.emit.latex.label import read_label
 from symflex.emit.latex.text import escape_text
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from matplotlib.backend_bases import GraphicsContextBase
     from matplotlib.figure import Figure
     from matplotlib.font_manager import FontProperties
@@ -143,7 +147,9 @@ class _Renderer(RendererBase):
     ) -> None:
         """Stroke a path, and fill it where it has a colour inside."""
         is_stroked = gc.get_linewidth() > 0
-        actions = [name for name, is_done in (("stroke", is_stroked), ("fill", rgbFace is not None)) if is_done]
+        actions = [
+            name for name, is_done in (("stroke", is_stroked), ("fill", rgbFace is not None)) if is_done
+        ]
         if not actions:
             return
         self.lines.append(r"\begin{pgfscope}%")
@@ -151,8 +157,8 @@ class _Renderer(RendererBase):
         if is_stroked:
             self._pen(gc)
         if rgbFace is not None:
-            alpha = gc.get_alpha() if gc.get_forced_alpha() else (*rgbFace, 1.0)[3]
-            self._colour("fill", tuple(rgbFace), alpha)
+            *colour, alpha = to_rgba(rgbFace)
+            self._colour("fill", colour, gc.get_alpha() if gc.get_forced_alpha() else alpha)
         self._trace(path, transform, gc if rgbFace is None else None)
         self.lines += [rf"\pgfusepath{{{','.join(actions)}}}%", r"\end{pgfscope}%"]
 
@@ -164,7 +170,7 @@ class _Renderer(RendererBase):
         s: str,
         prop: FontProperties,
         angle: float,
-        ismath: bool | str = False,  # noqa: FBT001, FBT002 -- matplotlib's signature
+        ismath: bool | str = False,
         mtext: Text | None = None,
     ) -> None:
         """Set one line of text with its baseline where matplotlib has it."""
@@ -202,7 +208,7 @@ class _Renderer(RendererBase):
             self.lines.append(rf"\pgfpathrectangle{{{corner}}}{{{size}}}\pgfusepath{{clip}}%")
         path, transform = gc.get_clip_path()
         if path is not None and transform is not None:
-            self._trace(path, transform, None)
+            self._trace(path, transform, None)  # type: ignore[arg-type]  # a Path, unlike the stub says
             self.lines.append(r"\pgfusepath{clip}%")
 
     def _pen(self, gc: GraphicsContextBase) -> None:
@@ -211,14 +217,19 @@ class _Renderer(RendererBase):
         self.lines.append(rf"\pgfsetlinewidth{{{width}pt}}\pgfset{cap}cap\pgfset{join}join%")
         offset, dashes = gc.get_dashes()
         if dashes is not None:
-            pattern = "".join(f"{{{_decimal(TEX_POINTS * dash, 3)}pt}}" for dash in dashes)
-            self.lines.append(rf"\pgfsetdash{{{pattern}}}{{{_decimal(TEX_POINTS * (offset or 0), 3)}pt}}%")
-        colour = gc.get_rgb()
-        self._colour("stroke", colour, gc.get_alpha() if gc.get_forced_alpha() else (*colour, 1.0)[3])
+            pattern = "".join(
+                f"{{{_decimal(TEX_POINTS * dash, 3)}pt}}"
+                for dash in np.atleast_1d(np.asarray(dashes, dtype=float))
+            )
+            self.lines.append(
+                rf"\pgfsetdash{{{pattern}}}{{{_decimal(TEX_POINTS * float(offset or 0), 3)}pt}}%"
+            )
+        *colour, alpha = to_rgba(gc.get_rgb())
+        self._colour("stroke", colour, gc.get_alpha() if gc.get_forced_alpha() else alpha)
 
-    def _colour(self, what: str, colour: tuple[float, ...], alpha: float) -> None:
+    def _colour(self, what: str, colour: Sequence[float], alpha: float) -> None:
         self.lines.append(
-            rf"\definecolor{{figure{what}}}{{rgb}}{{{_triple(colour[:3])}}}\pgfset{what}color{{figure{what}}}%"
+            rf"\definecolor{{figure{what}}}{{rgb}}{{{_triple(colour)}}}\pgfset{what}color{{figure{what}}}%"
         )
         if alpha != 1.0:
             self.lines.append(rf"\pgfset{what}opacity{{{_decimal(alpha, 3)}}}%")
@@ -228,7 +239,7 @@ class _Renderer(RendererBase):
         box = None if gc is None else gc.get_clip_rectangle()
         seen = (-FARTHEST, -FARTHEST, FARTHEST, FARTHEST) if box is None else (box.x0, box.y0, box.x1, box.y1)
         for points, code in path.iter_segments(transform, clip=seen, remove_nans=True):
-            pairs = [_point(x, y) for x, y in zip(points[::2], points[1::2], strict=True)]
+            pairs = [_point(float(x), float(y)) for x, y in np.reshape(points, (-1, 2))]
             if code == Path.MOVETO:
                 self.lines.append(rf"\pgfpathmoveto{{{pairs[0]}}}%")
             elif code == Path.LINETO:
@@ -240,5 +251,5 @@ class _Renderer(RendererBase):
                 self.lines.append(rf"\pgfpath{name}{''.join(f'{{{pair}}}' for pair in pairs)}%")
 
 
-def _triple(colour: tuple[float, ...]) -> str:
+def _triple(colour: Sequence[float]) -> str:
     return ",".join(_decimal(part, 4) for part in colour)

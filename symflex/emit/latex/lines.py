@@ -10,7 +10,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from symflex.emit.latex.expression import (
-    FENCE_WIDTH,
     FENCES,
     Shape,
     Writer,
@@ -23,9 +22,21 @@ from symflex.emit.latex.expression import (
     joined,
     number_piece,
     numbers_first,
-    operator_width,
+    operator_size,
 )
-from symflex.emit.latex.width import CDOT, DIGIT, MINUS, OPERATOR, QUAD, SCRIPT, SLASH, THIN, TIMES
+from symflex.emit.latex.width import (
+    BIG_FENCES,
+    BIGGER_FENCES,
+    CDOT,
+    CDOT_SIZES,
+    DIGIT,
+    MINUS,
+    OPERATOR,
+    QUAD,
+    SCRIPT_SPACE,
+    SLASH,
+    TIMES,
+)
 from symflex.expressions import Call, Expression, Negative, Number, Power, Product, Quotient, Sum
 from symflex.expressions.format import number_text
 from symflex.kernels.functions import FUNCTIONS
@@ -41,7 +52,8 @@ DEEPEST_INDENT: Final = 3
 _LONG: Final = 0.5
 _LONGEST_LEAD: Final = 0.25
 _LONGEST_TAIL: Final = 0.15
-_BIG_FENCES: Final = 2 * (FENCE_WIDTH + 0.25)
+_SQUARE_ROOT: Final = 1.26
+"""The exponent 1/2."""
 
 
 class Glue(NamedTuple):
@@ -141,9 +153,11 @@ class _Filler:
         if piece is not bare or is_looser:
             # Fences round what is broken have one size, chosen by what they hold.
             size = r"\Big" if bare.is_tall else r"\big"
-            opening, closing = FENCES[bare.nesting % len(FENCES)]
-            left = Edge(f"{left.latex}{size}l{opening} ", left.width + _BIG_FENCES / 2)
-            right = Edge(f" {size}r{closing}{right.latex}", right.width + _BIG_FENCES / 2)
+            kind = bare.nesting % len(FENCES)
+            opening, closing = FENCES[kind]
+            width = (BIGGER_FENCES if bare.is_tall else BIG_FENCES)[kind]
+            left = Edge(f"{left.latex}{size}l{opening} ", left.width + width)
+            right = Edge(f" {size}r{closing}{right.latex}", right.width + width)
             depth += 1
         self._split(glue, left, node, bare, right, depth)
 
@@ -241,19 +255,19 @@ class _Filler:
         for index, (factor, piece) in enumerate(zip(factors, pieces, strict=True)):
             sign, edge = glue, left
             if index:
-                between, width = between_factors(pieces[index - 1], piece)
-                start, start_width = (_DOT, CDOT) if width == CDOT else (_TIMES, TIMES)
-                sign, edge = Glue(between, width, start, start_width, depth), Edge()
+                between, gap = between_factors(pieces[index - 1], piece)
+                start, start_width = (_DOT, CDOT) if gap == CDOT_SIZES else (_TIMES, TIMES)
+                sign, edge = Glue(between, gap.text, start, start_width, depth), Edge()
             self.place(sign, edge, factor, as_factor, right if index == len(factors) - 1 else Edge(), depth)
 
     def _split_call(
         self, glue: Glue, left: Edge, name: str, argument: Expression, right: Edge, depth: int
     ) -> None:
         if name == "sqrt":
-            after = Edge(f"^{{1/2}}{right.latex}", 1.5 + right.width)
+            after = Edge(f"^{{1/2}}{right.latex}", _SQUARE_ROOT + right.width)
             self.place(glue, left, argument, fenced, after, depth)
             return
-        head = Edge(f"{left.latex}{FUNCTIONS[name].latex}", left.width + operator_width(name))
+        head = Edge(f"{left.latex}{FUNCTIONS[name].latex}", left.width + operator_size(name).text)
         self.place(glue, head, argument, fenced, right, depth)
 
     def _split_number(self, glue: Glue, left: Edge, node: Number, right: Edge, depth: int) -> None:
@@ -283,9 +297,9 @@ class _Filler:
 
     def _raised(self, exponent: Expression) -> Edge:
         if is_half(exponent):
-            return Edge("^{1/2}", 1.5)
+            return Edge("^{1/2}", _SQUARE_ROOT)
         piece = self._writer.exponent(exponent)
-        return Edge(f"^{{{piece.latex}}}", SCRIPT * piece.width + THIN)
+        return Edge(f"^{{{piece.latex}}}", piece.size.script + SCRIPT_SPACE.text)
 
 
 def _beside(pieces: Sequence[Piece], *, leading: bool = False) -> Edge:
@@ -295,7 +309,7 @@ def _beside(pieces: Sequence[Piece], *, leading: bool = False) -> Edge:
     alone = pieces[0] if leading else pieces[-1]
     latex, extra = joined(pieces)
     rest = latex.removeprefix(alone.latex) if leading else latex.removesuffix(alone.latex)
-    return Edge(rest, sum(piece.width for piece in pieces) - alone.width + extra)
+    return Edge(rest, sum(piece.width for piece in pieces) - alone.width + extra.text)
 
 
 def _as_numerator(piece: Piece) -> Piece:

@@ -69,14 +69,10 @@ class LatexExporter:
         """Return the files by name, to be written into one folder, and the warnings."""
         forms, maps, warnings = self._parts(tfs)
         pictures, more = self._pictures(model, tfs) if self.has_figures else ([], [])
-        files = latex_files(
-            model, tfs, forms, pole_zero_maps=maps, pictures=pictures, width_mm=self.width_mm
-        )
+        files = latex_files(model, tfs, forms, pole_zero_maps=maps, pictures=pictures, width_mm=self.width_mm)
         return files, (*warnings, *more)
 
-    def _pictures(
-        self, model: Model, tfs: Sequence[TransferFunction]
-    ) -> tuple[list[Picture], list[str]]:
+    def _pictures(self, model: Model, tfs: Sequence[TransferFunction]) -> tuple[list[Picture], list[str]]:
         """Return the model's figures, one of each kind besides, and why others are left out."""
         bounds: list[BoundTransferFunction] = []
         for tf in tfs:
@@ -127,7 +123,9 @@ class LatexExporter:
             warnings.append(f"the figure {name} is left out: it is {height:.0f} mm high")
             return
         shown = "" if kind == "modes" else f" of {', '.join(bound.name for bound in of)}"
-        pictures.append(Picture(name, render(figure, "pgf", font="latex").decode("ascii"), f"{caption}{shown}."))
+        pictures.append(
+            Picture(name, render(figure, "pgf", font="latex").decode("ascii"), f"{caption}{shown}.")
+        )
 
     def _parts(
         self, tfs: Sequence[TransferFunction]
