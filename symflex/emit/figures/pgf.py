@@ -85,11 +85,12 @@ def pgf_figure(figure: Figure) -> str:
         (
             rf"% Figure of {width} mm by {height} mm. Needs \usepackage{{pgf}}; to be read with \input.",
             r"% Texts are in the font of the paper; titles with accents need \usepackage[T1]{fontenc}.",
-            r"\begin{pgfpicture}%",
-            rf"\pgfpathrectangle{{\pgfpointorigin}}{{\pgfqpoint{{{width}mm}}{{{height}mm}}}}%",
-            r"\pgfusepath{use as bounding box}%",
+            r"\begin{pgfpicture}",
+            rf"\pgfpathrectangle{{\pgfpointorigin}}{{\pgfqpoint{{{width}mm}}{{{height}mm}}}}",
+            r"\pgfusepath{use as bounding box}",
             *renderer.lines,
-            r"\end{pgfpicture}%",
+            # No space comes of a line that ends in a command.
+            r"\end{pgfpicture}\relax",
             "",
         )
     )
@@ -152,7 +153,7 @@ class _Renderer(RendererBase):
         ]
         if not actions:
             return
-        self.lines.append(r"\begin{pgfscope}%")
+        self.lines.append(r"\begin{pgfscope}")
         self._clip(gc)
         if is_stroked:
             self._pen(gc)
@@ -160,7 +161,7 @@ class _Renderer(RendererBase):
             *colour, alpha = to_rgba(rgbFace)
             self._colour("fill", colour, gc.get_alpha() if gc.get_forced_alpha() else alpha)
         self._trace(path, transform, gc if rgbFace is None else None)
-        self.lines += [rf"\pgfusepath{{{','.join(actions)}}}%", r"\end{pgfscope}%"]
+        self.lines += [rf"\pgfusepath{{{','.join(actions)}}}", r"\end{pgfscope}"]
 
     def draw_text(
         self,
@@ -196,25 +197,25 @@ class _Renderer(RendererBase):
         colour = rf"\color[rgb]{{{_triple((red, green, blue))}}}" if (red, green, blue) != (0, 0, 0) else ""
         body = pgf_text(s, is_math=bool(ismath))
         self.lines += [
-            r"\begin{pgfscope}%",
-            rf"\pgftext[{','.join(options)}]{{{font}{colour}{{}}{body}}}%",
-            r"\end{pgfscope}%",
+            r"\begin{pgfscope}",
+            rf"\pgftext[{','.join(options)}]{{{font}{colour}{{}}{body}}}",
+            r"\end{pgfscope}",
         ]
 
     def _clip(self, gc: GraphicsContextBase) -> None:
         box = gc.get_clip_rectangle()
         if box is not None:
             corner, size = _point(box.x0, box.y0), _point(box.width, box.height)
-            self.lines.append(rf"\pgfpathrectangle{{{corner}}}{{{size}}}\pgfusepath{{clip}}%")
+            self.lines.append(rf"\pgfpathrectangle{{{corner}}}{{{size}}}\pgfusepath{{clip}}")
         path, transform = gc.get_clip_path()
         if path is not None and transform is not None:
             self._trace(path, transform, None)  # type: ignore[arg-type]  # a Path, unlike the stub says
-            self.lines.append(r"\pgfusepath{clip}%")
+            self.lines.append(r"\pgfusepath{clip}")
 
     def _pen(self, gc: GraphicsContextBase) -> None:
         width = _decimal(TEX_POINTS * gc.get_linewidth(), 3)
         cap, join = _CAPS[gc.get_capstyle()], gc.get_joinstyle()
-        self.lines.append(rf"\pgfsetlinewidth{{{width}pt}}\pgfset{cap}cap\pgfset{join}join%")
+        self.lines.append(rf"\pgfsetlinewidth{{{width}pt}}\pgfset{cap}cap\pgfset{join}join")
         offset, dashes = gc.get_dashes()
         if dashes is not None:
             pattern = "".join(
@@ -222,17 +223,17 @@ class _Renderer(RendererBase):
                 for dash in np.atleast_1d(np.asarray(dashes, dtype=float))
             )
             self.lines.append(
-                rf"\pgfsetdash{{{pattern}}}{{{_decimal(TEX_POINTS * float(offset or 0), 3)}pt}}%"
+                rf"\pgfsetdash{{{pattern}}}{{{_decimal(TEX_POINTS * float(offset or 0), 3)}pt}}"
             )
         *colour, alpha = to_rgba(gc.get_rgb())
         self._colour("stroke", colour, gc.get_alpha() if gc.get_forced_alpha() else alpha)
 
     def _colour(self, what: str, colour: Sequence[float], alpha: float) -> None:
         self.lines.append(
-            rf"\definecolor{{figure{what}}}{{rgb}}{{{_triple(colour)}}}\pgfset{what}color{{figure{what}}}%"
+            rf"\definecolor{{figure{what}}}{{rgb}}{{{_triple(colour)}}}\pgfset{what}color{{figure{what}}}"
         )
         if alpha != 1.0:
-            self.lines.append(rf"\pgfset{what}opacity{{{_decimal(alpha, 3)}}}%")
+            self.lines.append(rf"\pgfset{what}opacity{{{_decimal(alpha, 3)}}}")
 
     def _trace(self, path: Path, transform: Transform, gc: GraphicsContextBase | None) -> None:
         """Write a path; of a line that is only stroked, what is in sight."""
@@ -241,14 +242,14 @@ class _Renderer(RendererBase):
         for points, code in path.iter_segments(transform, clip=seen, remove_nans=True):
             pairs = [_point(float(x), float(y)) for x, y in np.reshape(points, (-1, 2))]
             if code == Path.MOVETO:
-                self.lines.append(rf"\pgfpathmoveto{{{pairs[0]}}}%")
+                self.lines.append(rf"\pgfpathmoveto{{{pairs[0]}}}")
             elif code == Path.LINETO:
-                self.lines.append(rf"\pgfpathlineto{{{pairs[0]}}}%")
+                self.lines.append(rf"\pgfpathlineto{{{pairs[0]}}}")
             elif code == Path.CLOSEPOLY:
-                self.lines.append(r"\pgfpathclose%")
+                self.lines.append(r"\pgfpathclose")
             else:
                 name = "quadraticcurveto" if code == Path.CURVE3 else "curveto"
-                self.lines.append(rf"\pgfpath{name}{''.join(f'{{{pair}}}' for pair in pairs)}%")
+                self.lines.append(rf"\pgfpath{name}{''.join(f'{{{pair}}}' for pair in pairs)}")
 
 
 def _triple(colour: Sequence[float]) -> str:

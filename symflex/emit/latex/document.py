@@ -65,13 +65,16 @@ class Picture:
         Of its file, without suffix.
     latex : str
         A ``pgfpicture`` as wide as the column.
-    caption : str
+    title : str
         Plain text; what it shows.
+    of : tuple of TransferFunction
+        Whose it shows that of; empty where that goes without saying.
     """
 
     name: str
     latex: str
-    caption: str
+    title: str
+    of: tuple[TransferFunction, ...] = ()
 
 
 def latex_fragment(tf: TransferFunction, form: PrintedForm, *, width_mm: float = TEXT_WIDTH_MM) -> str:
@@ -160,10 +163,15 @@ def latex_files(
         # What a figure shows stands on the page that shows it.
         parts.append(
             f"\\noindent\\begin{{minipage}}{{\\linewidth}}\\raggedright\n\\input{{{name}}}\n\n"
-            f"\\smallskip\\noindent {escape_text(picture.caption)}\n\\end{{minipage}}\n\\bigskip\n\n"
+            f"\\smallskip\\noindent {_caption(picture)}\n\\end{{minipage}}\n\\bigskip\n\n"
         )
     files[DOCUMENT] = "".join((*parts, "\\end{document}\n"))
     return files
+
+
+def _caption(picture: Picture) -> str:
+    ratios = ", ".join(f"${ratio_latex(tf)}$" for tf in picture.of)
+    return f"{escape_text(picture.title)}{f' of {ratios}' if ratios else ''}."
 
 
 def _free_name(stem: str, files: Mapping[str, str], suffix: str = ".tex") -> str:

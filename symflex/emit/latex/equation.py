@@ -333,7 +333,9 @@ def _align(rows: Sequence[_Row], environment: str, label: str) -> str:
         lines = [f"{lines[0]} {label}", *(rf"{line} \notag" for line in lines[1:])]
     displays = []
     for start in range(0, len(lines), _LINES_PER_DISPLAY):
-        body = " \\\\\n  ".join(lines[start : start + _LINES_PER_DISPLAY])
+        # The first line stays with the next.
+        first, *more = lines[start : start + _LINES_PER_DISPLAY]
+        body = " \\\\*\n  ".join((first, " \\\\\n  ".join(more))) if more else first
         displays.append(f"\\begin{{{environment}}}\n  {body}\n\\end{{{environment}}}")
     if len(lines) == 1:
         return displays[0]

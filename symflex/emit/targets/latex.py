@@ -88,12 +88,12 @@ class LatexExporter:
             names = {"/".join(pair) for pair in figure.of}
             of = [bound for bound in bounds if not names or bound.name in names]
             if of:
-                caption = figure.title or DEFAULT_FIGURES.get(figure.kind, figure.kind)
-                self._add(pictures, warnings, figure.name, figure.kind, of, caption)
+                title = figure.title or DEFAULT_FIGURES.get(figure.kind, figure.kind)
+                self._add(pictures, warnings, figure.name, figure.kind, of, title)
         asked = {figure.kind for figure in model.figures}
-        for kind, caption in DEFAULT_FIGURES.items() if bounds else ():
+        for kind, title in DEFAULT_FIGURES.items() if bounds else ():
             if kind not in asked:
-                self._add(pictures, warnings, kind, kind, bounds[:MOST_IN_A_FIGURE], caption)
+                self._add(pictures, warnings, kind, kind, bounds[:MOST_IN_A_FIGURE], title)
         return pictures, warnings
 
     def _add(
@@ -103,7 +103,7 @@ class LatexExporter:
         name: str,
         kind: str,
         bounds: Sequence[BoundTransferFunction],
-        caption: str,
+        title: str,
     ) -> None:
         """Draw one figure, without its title, which stands below it."""
         from symflex.emit.figures import draw, render  # imports matplotlib
@@ -122,10 +122,10 @@ class LatexExporter:
         if height > TALLEST_MM:
             warnings.append(f"the figure {name} is left out: it is {height:.0f} mm high")
             return
-        shown = "" if kind == "modes" else f" of {', '.join(bound.name for bound in of)}"
-        pictures.append(
-            Picture(name, render(figure, "pgf", font="latex").decode("ascii"), f"{caption}{shown}.")
-        )
+        is_told = kind == "modes" or title not in DEFAULT_FIGURES.values()
+        shown = () if is_told else tuple(sources)
+        latex = render(figure, "pgf", font="latex").decode("ascii")
+        pictures.append(Picture(name, latex, title, shown))
 
     def _parts(
         self, tfs: Sequence[TransferFunction]
