@@ -6,7 +6,6 @@ import pytest
 
 from symflex.emit.latex import label_of
 from symflex.emit.latex.label import labels_of, read_label, symbol
-from symflex.emit.latex.width import ITALIC, SCRIPT
 
 # By hand, after the habits of journals: variables italic, words in subscripts upright, Greek as letters.
 MADE = {

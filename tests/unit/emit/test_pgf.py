@@ -34,7 +34,7 @@ Y = "y"
 band = ["0.2 Hz", "5 Hz"]
 """
 NUMBER = r"-?[0-9.]+"
-POINT = rf"\\pgfqpoint\{{{NUMBER}pt\}}\{{{NUMBER}pt\}}"
+POINT = rf"pgfqpoint\{{{NUMBER}pt\}}\{{{NUMBER}pt\}}"
 OF_DRAWING = re.compile(
     rf"\\(?:(?:begin|end)\{{pgfscope\}}|pgfpath(?:moveto|lineto|close|curveto|quadraticcurveto|rectangle)|{POINT}"
     r"|pgfusepath\{(?:stroke|fill|stroke,fill|clip)\}"
@@ -50,7 +50,8 @@ OF_MATHEMATICS = {r"\mathrm", r"\zeta", r"\times", r"\circ", r"\pm", r"\cdot", r
 
 @pytest.fixture(scope="module")
 def bounds():
-    return pipeline.derive_bound(pipeline.loads(SPEC))
+    model = pipeline.loads(SPEC)
+    return pipeline.derive_bound(model, model.transfer_functions)
 
 
 def text_of(kind, bounds, **asked):
