@@ -2,7 +2,7 @@ r"""Breaking an expression into lines that fit, at the loosest place that does.
 
 A line ends before a plus or minus; a term too long for a whole line is broken between its factors, inside
 their parentheses, at the slash of a quotient, and at last inside a number. What continues inside
-parentheses is indented.
+parentheses is indented, and so are the factors of a term that stands in a sum.
 """
 
 from __future__ import annotations
@@ -141,8 +141,9 @@ class _Filler:
         fence: Callable[[Piece], Piece],
         right: Edge,
         depth: int,
+        hang: int = 0,
     ) -> None:
-        """Set one item whole, on this line or the next, or in parts."""
+        """Set one item whole, on this line or the next, or in parts; those of a term hang below its sign."""
         bare = self._writer.piece(node)
         piece = fence(bare)
         width = left.width + piece.width + right.width
@@ -159,7 +160,7 @@ class _Filler:
             left = Edge(f"{left.latex}{size}l{opening} ", left.width + width)
             right = Edge(f" {size}r{closing}{right.latex}", right.width + width)
             depth += 1
-        self._split(glue, left, node, bare, right, depth)
+        self._split(glue, left, node, bare, right, depth, 0 if piece is not bare else hang)
 
     def _append(self, glue: Glue, latex: str, width: float) -> bool:
         """Set something unbroken if this line or the next has room for it."""
@@ -194,18 +195,27 @@ class _Filler:
         self._parts = [r"\quad " * min(glue.depth, DEEPEST_INDENT) + glue.start]
         self._room = self._rest(glue.depth) - glue.start_width
 
-    def _split(self, glue: Glue, left: Edge, node: Expression, bare: Piece, right: Edge, depth: int) -> None:
+    def _split(
+        self,
+        glue: Glue,
+        left: Edge,
+        node: Expression,
+        bare: Piece,
+        right: Edge,
+        depth: int,
+        hang: int,
+    ) -> None:
         match node:
             case Sum(terms=terms):
                 self._split_sum(glue, left, terms, right, depth)
             case Product(factors=factors):
-                self._split_product(glue, left, numbers_first(factors), right, depth)
+                self._split_product(glue, left, numbers_first(factors), right, depth, hang)
             case Negative(operand=operand):
                 minus = Edge(f"{left.latex}-", left.width + MINUS)
-                self.place(glue, minus, operand, as_term, right, depth)
+                self.place(glue, minus, operand, as_term, right, depth, hang)
             case Quotient(numerator=above, denominator=below):
                 self.place(glue, left, above, _as_numerator, Edge(), depth)
-                self.place(_SLASH._replace(depth=depth), Edge(), below, _as_denominator, right, depth)
+                self.place(_SLASH._replace(depth=depth + hang), Edge(), below, _as_denominator, right, depth)
             case Power(base=base, exponent=exponent):
                 raised = self._raised(exponent)
                 after = Edge(f"{raised.latex}{right.latex}", raised.width + right.width)
@@ -234,12 +244,12 @@ class _Filler:
                     sign = _MINUS._replace(depth=depth)
                 else:
                     before = Edge(f"{left.latex}-", left.width + MINUS)
-                self.place(sign, before, term.operand, as_term, after, depth)
+                self.place(sign, before, term.operand, as_term, after, depth, 1)
             else:
-                self.place(sign, before, term, as_term, after, depth)
+                self.place(sign, before, term, as_term, after, depth, 1)
 
     def _split_product(
-        self, glue: Glue, left: Edge, factors: list[Expression], right: Edge, depth: int
+        self, glue: Glue, left: Edge, factors: list[Expression], right: Edge, depth: int, hang: int
     ) -> None:
         pieces = [as_factor(self._writer.piece(factor)) for factor in factors]
         long = [i for i, piece in enumerate(pieces) if piece.width > _LONG * self._others]
@@ -257,8 +267,9 @@ class _Filler:
             if index:
                 between, gap = between_factors(pieces[index - 1], piece)
                 start, start_width = (_DOT, CDOT) if gap == CDOT_SIZES else (_TIMES, TIMES)
-                sign, edge = Glue(between, gap.text, start, start_width, depth), Edge()
-            self.place(sign, edge, factor, as_factor, right if index == len(factors) - 1 else Edge(), depth)
+                sign, edge = Glue(between, gap.text, start, start_width, depth + hang), Edge()
+            inner = depth + hang if index else depth
+            self.place(sign, edge, factor, as_factor, right if index == len(factors) - 1 else Edge(), inner)
 
     def _split_call(
         self, glue: Glue, left: Edge, name: str, argument: Expression, right: Edge, depth: int
