@@ -62,8 +62,6 @@ def pictures():
     return found
 
 
-# matplotlib says so of letters that it has no glyphs of; what TeX sets of them it does not know.
-@pytest.mark.filterwarnings("ignore:Glyph")
 @pytest.mark.needs_tool("pdffonts")
 @pytest.mark.parametrize("engine", ENGINES)
 def test_pictures_are_as_wide_as_asked_for_and_take_the_font_of_the_paper(engine, pictures, tmp_path):

@@ -9,6 +9,7 @@ says reaches a command.
 from __future__ import annotations
 
 import re
+import warnings
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -75,11 +76,14 @@ def pgf_figure(figure: Figure) -> str:
     """
     renderer = _Renderer(figure.get_figwidth(), figure.get_figheight())
     dpi = figure.dpi
-    try:
-        figure.dpi = DOTS_PER_INCH
-        figure.draw(renderer)
-    finally:
-        figure.dpi = dpi
+    with warnings.catch_warnings():
+        # Letters that matplotlib has no glyphs of are TeX's to set.
+        warnings.filterwarnings("ignore", r"Glyph \d+", UserWarning)
+        try:
+            figure.dpi = DOTS_PER_INCH
+            figure.draw(renderer)
+        finally:
+            figure.dpi = dpi
     width, height = (_decimal(MM_PER_INCH * inches, 5) for inches in figure.get_size_inches())
     return "\n".join(
         (

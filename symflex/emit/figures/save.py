@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import logging
+from contextlib import contextmanager
 from io import BytesIO
 from typing import TYPE_CHECKING, Final
 
@@ -12,6 +14,7 @@ from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from matplotlib.figure import Figure
@@ -49,8 +52,21 @@ def render(figure: Figure, format: str, *, font: str = DEFAULT_FONT) -> bytes:
     with paper_style(font):
         if format == "pgf":
             return pgf_figure(figure).encode("ascii")
-        figure.savefig(buffer, format=format, metadata=FORMATS[format])
+        with _quietly():
+            figure.savefig(buffer, format=format, metadata=FORMATS[format])
     return buffer.getvalue()
+
+
+@contextmanager
+def _quietly() -> Iterator[None]:
+    """Keep back what fontTools remarks on fonts that come with matplotlib."""
+    logger = logging.getLogger("fontTools")
+    level = logger.level
+    logger.setLevel(logging.ERROR)
+    try:
+        yield
+    finally:
+        logger.setLevel(level)
 
 
 def save(figure: Figure, path: Path, format: str | None = None, *, font: str = DEFAULT_FONT) -> None:
