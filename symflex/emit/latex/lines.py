@@ -180,7 +180,9 @@ class _Filler:
         return False
 
     def _force(self, glue: Glue, latex: str, width: float) -> None:
-        """Set something that cannot be broken, on a line of its own if it must be."""
+        """Set something that cannot be broken, on a line of its own and less far in if it must be."""
+        while glue.depth and glue.start_width + width > self._rest(glue.depth):
+            glue = glue._replace(depth=glue.depth - 1)
         if not self._append(glue, latex, width):
             self._start(glue)
             self._parts.append(latex)
@@ -215,7 +217,9 @@ class _Filler:
                 self.place(glue, minus, operand, as_term, right, depth, hang)
             case Quotient(numerator=above, denominator=below):
                 self.place(glue, left, above, _as_numerator, Edge(), depth)
-                self.place(_SLASH._replace(depth=depth + hang), Edge(), below, _as_denominator, right, depth)
+                self.place(
+                    _SLASH._replace(depth=depth + hang), Edge(), below, _as_denominator, right, depth + hang
+                )
             case Power(base=base, exponent=exponent):
                 raised = self._raised(exponent)
                 after = Edge(f"{raised.latex}{right.latex}", raised.width + right.width)
@@ -291,6 +295,7 @@ class _Filler:
 
     def _split_digits(self, glue: Glue, left: Edge, text: str, right: Edge, depth: int) -> None:
         """Set a number too long for a line: its digits go on in the next."""
+        depth = max(depth, glue.depth)
         edges = left.width + right.width + glue.start_width
         if "e" in text or DIGIT * len(text) + edges <= self._rest(depth):
             piece = number_piece(text)
