@@ -39,6 +39,7 @@ class ExportCommand(click.Command):
 @click.option("--tf", "tfs", multiple=True, metavar="OUT/IN", help="Only this transfer function; repeatable.")
 @click.option("--form", metavar="FORM", help="latex: form of the functions, as for derive.")
 @click.option("--width", metavar="ieee|a4|MM", help="latex: width of the column; a4 (170 mm) by default.")
+@click.option("--no-figures", "no_figures", is_flag=True, help="latex: a folder without figures.")
 @click.option("-o", "--output", type=click.Path(), help="File to write; standard output by default.")
 @click.option("--minimal", "is_minimal", is_flag=True, help="state-space: without hidden states.")
 @click.option("--strict", is_flag=True, help="Exit with 4 when the verified accuracy falls short.")
@@ -50,6 +51,7 @@ def command(
     tfs: tuple[str, ...],
     form: str | None,
     width: str | None,
+    no_figures: bool,
     output: str | None,
     is_minimal: bool,
     strict: bool,
@@ -60,8 +62,8 @@ def command(
     documentation. A target that consists of several files, as c does with its header, writes them beside
     the one named with -o; on standard output it is one file.
 
-    With --to latex and -o FOLDER/ every transfer function and table becomes a file for a paper to input, and
-    document.tex inputs them all.
+    With --to latex and -o FOLDER/ every transfer function, table and figure becomes a file for a paper to
+    input, and document.tex inputs them all.
 
     With --to state-space all of them get one realisation, whose states are displacements, velocities,
     currents and the like of the model. Exit code 3 says that there is none: beams, rods and delays have
@@ -76,7 +78,7 @@ def command(
     if target not in EXPORTERS:
         hint = nearest(target, EXPORTERS) or "targets: " + ", ".join(EXPORTERS)
         raise UsageError(Diagnostic("SF902", f"there is no export target '{target[:64]}'", None, hint))
-    exporter = _chosen(EXPORTERS[target], form, width, is_minimal=is_minimal)
+    exporter = _chosen(EXPORTERS[target], form, width, no_figures=no_figures, is_minimal=is_minimal)
     model = pipeline.load(spec)
     derived = pipeline.derive_all(model, pipeline.pick_pairs(model, tfs))
     if isinstance(exporter, LatexExporter) and output and _is_folder(output):
@@ -100,16 +102,19 @@ def command(
     return 4 if strict and made.warnings else 0
 
 
-def _chosen(exporter: Exporter, form: str | None, width: str | None, *, is_minimal: bool) -> Exporter:
+def _chosen(
+    exporter: Exporter, form: str | None, width: str | None, *, no_figures: bool, is_minimal: bool
+) -> Exporter:
     """Return an exporter with the options that are its own."""
     from symflex.emit.latex import column_width
     from symflex.emit.targets.latex import LatexExporter
     from symflex.emit.targets.state_space import StateSpaceExporter
 
     if isinstance(exporter, LatexExporter):
-        exporter = replace(exporter, form=form, width_mm=column_width(width or "a4"))
-    elif form is not None or width is not None:
-        raise UsageError(Diagnostic("SF902", "--form and --width are for --to latex"))
+        column = column_width(width or "a4")
+        exporter = replace(exporter, form=form, width_mm=column, has_figures=not no_figures)
+    elif form is not None or width is not None or no_figures:
+        raise UsageError(Diagnostic("SF902", "--form, --width and --no-figures are for --to latex"))
     if isinstance(exporter, StateSpaceExporter):
         exporter = replace(exporter, is_minimal=is_minimal)
     elif is_minimal:

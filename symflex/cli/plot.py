@@ -11,7 +11,7 @@ from symflex.cli.report import note, reporting
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 
-SUFFIXES = (".pdf", ".png", ".svg")
+SUFFIXES = (".pdf", ".pgf", ".png", ".svg")
 
 
 @click.command("plot")
@@ -19,16 +19,32 @@ SUFFIXES = (".pdf", ".png", ".svg")
 @click.argument("kind")
 @click.option("--tf", "tfs", multiple=True, metavar="OUT/IN", help="Draw this transfer function; repeatable.")
 @click.option("--modes", type=click.IntRange(1), help="How many modes are shown, the lowest ones.")
-@click.option("-o", "--output", type=click.Path(), help="File to write: .pdf, .svg or .png.")
+@click.option("-o", "--output", type=click.Path(), help="File to write: .pdf, .pgf, .svg or .png.")
+@click.option("--width", metavar="ieee|a4|MM", help="Width of the figure: 88.5, 170 or so many mm.")
+@click.option("--font", metavar="FONT", help="times (the default), latex or sans.")
 @reporting
-def command(spec: str, kind: str, *, tfs: tuple[str, ...], modes: int | None, output: str | None) -> int:
+def command(
+    spec: str,
+    kind: str,
+    *,
+    tfs: tuple[str, ...],
+    modes: int | None,
+    output: str | None,
+    width: str | None,
+    font: str | None,
+) -> int:
     """Draw KIND (bode, modes, poles_zeros) or a figure that SPEC defines in [figures].
 
     modes draws the shapes of the lowest modes of the model, --modes or [analysis] modes of them, else five.
     Without -o the figure is written to the current folder as SPEC_KIND.pdf.
+
+    A .pgf is for papers set with LaTeX: load the package pgf and input the file. Its texts take the paper's
+    font; --font, there latex by default, only says how much room to leave for them. No LaTeX installation is
+    needed to write one.
     """
     from symflex import pipeline
-    from symflex.emit.figures import FIGURES, draw, save
+    from symflex.emit.figures import DEFAULT_FONT, FIGURES, FONTS, draw, save
+    from symflex.emit.latex import column_width
     from symflex.model.analysis import FIGURE_KINDS
 
     model = pipeline.load(spec)
@@ -44,7 +60,12 @@ def command(spec: str, kind: str, *, tfs: tuple[str, ...], modes: int | None, ou
         raise UsageError(Diagnostic("SF911", f"figures of kind '{drawn}' are not available yet"))
     path = Path(output) if output else Path(f"{Path(spec).stem}_{kind}.pdf")
     if path.suffix not in SUFFIXES:
-        raise UsageError(Diagnostic("SF902", f"'{path.name}' must end in .pdf, .svg or .png"))
+        raise UsageError(Diagnostic("SF902", f"'{path.name}' must end in .pdf, .pgf, .svg or .png"))
+    width_mm = None if width is None else column_width(width)
+    font = font or ("latex" if path.suffix == ".pgf" else DEFAULT_FONT)
+    if font not in FONTS:
+        hint = nearest(font, FONTS) or "fonts: " + ", ".join(FONTS)
+        raise UsageError(Diagnostic("SF902", f"there is no font '{font[:64]}' for figures", None, hint))
     pairs = figure.of if figure and figure.of and not tfs else pipeline.pick_pairs(model, tfs)
     if drawn == "modes":
         pairs = pairs[:1]  # all functions of a model have the same modes, seen or hidden
@@ -55,6 +76,7 @@ def command(spec: str, kind: str, *, tfs: tuple[str, ...], modes: int | None, ou
                 note(f"{bound.name} is identically zero and is left out")
         bounds = tuple(bound for bound in bounds if not bound.ratio.is_zero) or bounds
     title = figure.title if figure else ""
-    save(draw(drawn, [bound.source for bound in bounds], bounds, title=title or None), path)
+    sources = [bound.source for bound in bounds]
+    save(draw(drawn, sources, bounds, title=title or None, width_mm=width_mm, font=font), path, font=font)
     note(f"wrote {path}")
     return 0

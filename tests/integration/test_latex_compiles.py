@@ -33,7 +33,6 @@ from symflex.model import load_model
 from symflex.roots.locate import locate
 from symflex.spec import read
 from symflex.transfer import bind, derive, derive_all
-from tests.house.repository import in_turns
 from tests.unit.emit.models_with_kernels import derived as of_case
 
 pytestmark = pytest.mark.needs_tool("pdflatex")
@@ -52,6 +51,11 @@ WRAPPER = (
     r"\usepackage[textwidth=%gmm,textheight=240mm]{geometry}\raggedbottom\begin{document}"
     "\n%s\n\\end{document}\n"
 )
+
+
+def marks_of(is_quick):
+    """TeX takes seconds: one document of a kind is compiled each time, the others when asked for."""
+    return [] if is_quick else [pytest.mark.slow]
 
 
 def run(folder, source):
@@ -78,8 +82,16 @@ def derived(path):
     return model, derive_all(assemble(model, nested), model.transfer_functions)
 
 
-@pytest.mark.parametrize("form", [None, "polynomial", "zpk"])
-@pytest.mark.parametrize("path", MODELS, ids=lambda p: p.stem)
+@pytest.mark.parametrize(
+    ("path", "form"),
+    [
+        pytest.param(
+            path, form, id=f"{path.stem}-{form}", marks=marks_of(path.stem == "rigid_body" and not form)
+        )
+        for path in MODELS
+        for form in (None, "polynomial", "zpk")
+    ],
+)
 def test_the_document_of_every_model_compiles_without_a_warning(path, form, tmp_path):
     model, tfs = derived(path)
     maps = [locate(bind(tf), None, 12) for tf in tfs]
@@ -87,13 +99,15 @@ def test_the_document_of_every_model_compiles_without_a_warning(path, form, tmp_
     assert complaints(tmp_path, latex_document(model, tfs, forms, pole_zero_maps=maps)) == []
 
 
-@pytest.mark.parametrize("path", in_turns(DISTRIBUTED))
+@pytest.mark.slow
+@pytest.mark.parametrize("path", DISTRIBUTED, ids=lambda p: p.stem)
 def test_the_document_of_a_model_with_kernels_compiles_without_a_warning(path, tmp_path):
     model, tfs = derived(path)
     assert complaints(tmp_path, latex_document(model, tfs, [print_form(tf) for tf in tfs])) == []
 
 
-@pytest.mark.parametrize("path", in_turns([*DISTRIBUTED, Path("third order")]))
+@pytest.mark.slow
+@pytest.mark.parametrize("path", [*DISTRIBUTED, Path("third order")], ids=lambda p: p.stem)
 def test_every_form_of_a_function_with_kernels_fits_a_column(path, tmp_path):
     fragments = [
         "Text:\n"
@@ -104,6 +118,7 @@ def test_every_form_of_a_function_with_kernels_fits_a_column(path, tmp_path):
     assert complaints(tmp_path, WRAPPER % (88, "\n\n".join(fragments))) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("width", [88.0, 120.0])
 @pytest.mark.parametrize("path", MODELS, ids=lambda p: p.stem)
 def test_a_fragment_fits_the_column_it_is_made_for(path, width, tmp_path):
@@ -129,7 +144,9 @@ LABELS = (
 UNITS = ("kg", "zz_%", "m^(1/2)", "", "1/s", r"\input{x}", "kN*m^2/rad", "1", "furlong", "m/(V*s)")
 
 
-@pytest.mark.parametrize("text", HOSTILE.values(), ids=HOSTILE)
+@pytest.mark.parametrize(
+    "text", [pytest.param(t, id=n, marks=marks_of(n == "commands")) for n, t in HOSTILE.items()]
+)
 def test_hostile_titles_and_descriptions_compile_without_a_warning(text, tmp_path):
     model, _ = derived(next(p for p in MODELS if p.stem == "two_mass"))
     first = model.parameters
@@ -181,7 +198,7 @@ def fake(name, chance):
     )
 
 
-@pytest.mark.parametrize("width", [88.0, 160.0])
+@pytest.mark.parametrize("width", [88.0, pytest.param(160.0, marks=pytest.mark.slow)])
 def test_random_formulas_fit_whatever_their_names_and_numbers(width, tmp_path):
     chance = random.Random(1988)
     fragments = []

@@ -25,7 +25,16 @@ OVERHANG = 0.15
 """How far a slanted letter reaches over its box [mm]."""
 PROTRUSION = 0.8
 """How far microtype puts full stops and parentheses into the margin, on purpose [mm]."""
-ENGINES = [pytest.param(name, marks=pytest.mark.needs_tool(name)) for name in ("pdflatex", "lualatex")]
+
+
+def engines(quick):
+    """Both engines, of which one is run each time and the other when asked for."""
+    return [
+        pytest.param(name, marks=[pytest.mark.needs_tool(name)] + [pytest.mark.slow] * (name != quick))
+        for name in ("pdflatex", "lualatex")
+    ]
+
+
 RUNS = 3
 """With hyperref, a third run settles the outlines."""
 
@@ -96,7 +105,7 @@ def fragments():
         tfs = pipeline.derive_all(model)[-few:]
         if stem.endswith("two_mass"):
             model = many_parameters(model)
-        files, _ = LatexExporter(88.5, form).export_files(model, tfs)
+        files, _ = LatexExporter(88.5, form, has_figures=False).export_files(model, tfs)
         for name, text in files.items():
             if name != DOCUMENT:
                 key = f"{stem.rpartition('/')[2]}-{name}"
@@ -105,7 +114,7 @@ def fragments():
 
 
 @pytest.mark.needs_tool("pdftotext")
-@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("engine", engines("pdflatex"))
 def test_fragments_fit_the_columns_of_a_paper_with_other_packages(engine, fragments, tmp_path):
     for name, text in fragments.items():
         (tmp_path / name).write_text(text, encoding="ascii")
@@ -119,7 +128,7 @@ def test_fragments_fit_the_columns_of_a_paper_with_other_packages(engine, fragme
 
 
 @pytest.mark.needs_tool("pdftotext")
-@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("engine", engines("lualatex"))
 def test_a_document_of_hostile_texts_in_the_narrowest_column_is_like_any_other(engine, tmp_path):
     model = many_parameters(pipeline.load(DERIVATIONS / "eppinger1988" / "two_mass.toml"))
     model = replace(model, title=HOSTILE["commands"], source=HOSTILE["letters"])

@@ -54,6 +54,7 @@ def draw_bode(
     *,
     band_hz: tuple[float, float] | None = None,
     title: str | None = None,
+    width: float | None = None,
 ) -> Figure:
     """Draw magnitude and phase of transfer functions in one figure; see :func:`symflex.emit.figures.draw`.
 
@@ -68,11 +69,12 @@ def draw_bode(
         respond(bound, adaptive_grid(bound, low, high, roots=found), found)
         for bound, found in zip(bounds, maps, strict=True)
     ]
-    lines = title_lines(title, COLUMN_INCHES)
+    width = width or COLUMN_INCHES
+    lines = title_lines(title, width)
     units = {response.unit for response in responses}
     legend_columns = min(len(tfs), LEGEND_COLUMNS if len(units) == 1 else LEGEND_COLUMNS_WITH_UNITS)
     height = HEIGHT_INCHES + LINE_INCHES * (len(lines) + ceil(len(tfs) / legend_columns))
-    figure = new_figure(COLUMN_INCHES, height)
+    figure = new_figure(width, height)
     figure.set_layout_engine("constrained", h_pad=0.02, w_pad=0.03, hspace=0.03)
     top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[1.25, 1])
     limits = _magnitude_limits(responses, maps)

@@ -22,6 +22,7 @@ class Drawing(Protocol):
         *,
         band_hz: tuple[float, float] | None,
         title: str | None,
+        width: float | None,
     ) -> Figure:
-        """Return the figure."""
+        """Return the figure, as wide as asked for [inches] or as suits it."""
         ...

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from matplotlib.mathtext import MathTextParser
 
+from symflex.emit.latex.label import read_label
 from symflex.model.labels import GREEK
 
 if TYPE_CHECKING:
@@ -29,10 +30,11 @@ def label_of_tf(tf: TransferFunction) -> str:
 def label_of(end: Output | Input) -> str:
     """Return the label of an output or input, without dollar signs.
 
-    The model's own label is taken when matplotlib can typeset it, else one made from the name.
+    The model's own label is taken when it is sound LaTeX that matplotlib can typeset, else one made from the
+    name.
     """
     label = end.latex.strip()
-    if label and "$" not in label and _is_typeset(label):
+    if label and read_label(label) is not None and _is_typeset(label):
         return f"{{{label}}}"
     return label_of_name(end.name)
 

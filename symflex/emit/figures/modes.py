@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, MaxNLocator, NullFormatter
 
 from symflex.emit.figures.labels import PLAIN_HIGH, label_of_name
+from symflex.emit.figures.pgf import MM_PER_INCH
 from symflex.emit.figures.runs import Run, Stems, panels_of
 from symflex.emit.figures.style import (
     COLOURS,
@@ -23,7 +24,7 @@ from symflex.emit.figures.style import (
     new_figure,
     title_lines,
 )
-from symflex.errors import Diagnostic, ModelError
+from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.modes import lowest_mode_shapes
 
 if TYPE_CHECKING:
@@ -44,6 +45,7 @@ LEFT, RIGHT = 0.46, 0.08
 GAP, LABELLED_GAP = 0.34, 0.54
 LABEL_OFFSET: Final = 0.35
 STEM_INCHES, NARROWEST_STEMS, NARROWEST_RUN = 0.3, 0.42, 0.9
+NARROWEST_PANEL: Final = 0.25
 PANELS_IN_COLUMN: Final = 3
 NAMES_LIMIT: Final = 12
 NAME_INCHES: Final = 0.06
@@ -63,6 +65,7 @@ def draw_modes(
     *,
     band_hz: tuple[float, float] | None = None,
     title: str | None = None,
+    width: float | None = None,
 ) -> Figure:
     """Draw the shapes of the lowest modes of the first function's model, hidden ones among them.
 
@@ -74,6 +77,8 @@ def draw_modes(
     ------
     ModelError
         SF402 when there is no mode other than at 0.
+    UsageError
+        SF902 when the panels have no room in the width asked for.
     """
     count = min(tfs[0].model.analysis.modes or DEFAULT_MODES, MODES_LIMIT)
     shapes = [found.shape for found in lowest_mode_shapes(bounds[0], count)]
@@ -84,13 +89,16 @@ def draw_modes(
         raise ModelError(
             Diagnostic("SF402", f"{bounds[0].name} has no mode other than at 0 that has a shape")
         )
-    width = COLUMN_INCHES if len(panels) <= PANELS_IN_COLUMN else PAGE_INCHES
+    width = width or (COLUMN_INCHES if len(panels) <= PANELS_IN_COLUMN else PAGE_INCHES)
     lines = title_lines(title, width)
     per_metre = all(_unit_of_reference(shape) == "m" for shape in shapes)
     names = {**UNIT_NAMES, "rad": "angle [rad/m]"} if per_metre else UNIT_NAMES
     labels = [names[_unit_of(panel)] for panel in panels]
     gaps = [LEFT, *(GAP if a == b else LABELLED_GAP for a, b in pairwise(labels))]
     columns = _widths(panels, width - RIGHT - sum(gaps))
+    if min(columns) < NARROWEST_PANEL:
+        message = f"{len(panels)} panels side by side have no room in {MM_PER_INCH * width:.4g} mm"
+        raise UsageError(Diagnostic("SF902", message, None, "the width of a page is 170 mm"))
     is_lagging = any(_lags(panel, shape) for shape in shapes for panel in panels)
     below = AXIS_INCHES + _name_inches(panels, columns)
     above = LINE_INCHES * len(lines) + (LEGEND_INCHES if is_lagging else 0) + 0.02

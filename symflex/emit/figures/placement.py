@@ -86,5 +86,7 @@ class Panel:
 
 def text_width(text: str, size: float) -> float:
     """Return about how wide a line of mathematics is [points]."""
-    shown = text.replace("\\,", "").replace("\\mathrm{j}", "j").replace("\\pm", "+").replace("$", "")
+    shown = text.replace("\\,", "").replace("\\mathrm{j}", "j").replace("$", "")
+    for sign in (r"\pm", r"\times", r"\circ"):
+        shown = shown.replace(sign, "+")
     return LETTER * size * len(shown)

@@ -40,7 +40,7 @@ NARROWEST, WIDEST = 0.6, 1.25
 TALLEST_INCHES: Final = 2.6
 LISTED: Final = 5
 NOTE_LINE_POINTS: Final = 7.5
-GLYPHS: Final = {"pole": "×", "zero": "○"}
+GLYPHS: Final = {"pole": r"$\times$", "zero": r"$\circ$"}
 COLOUR_OF: Final = {"pole": COLOURS[1], "zero": COLOURS[0]}
 
 
@@ -50,6 +50,7 @@ def draw_poles_zeros(
     *,
     band_hz: tuple[float, float] | None = None,
     title: str | None = None,
+    width: float | None = None,
 ) -> Figure:
     """Draw poles (crosses) and zeros (circles); see :func:`symflex.emit.figures.draw`.
 
@@ -60,8 +61,8 @@ def draw_poles_zeros(
     maps = [locate(bound) for bound in bounds]
     panels = [marks_of(found) for found in maps]
     count = len(panels)
-    width = COLUMN_INCHES if count <= PANELS_IN_COLUMN else PAGE_INCHES
-    columns = min(count, PANELS_IN_COLUMN if width == COLUMN_INCHES else PANELS_ON_PAGE)
+    width = width or (COLUMN_INCHES if count <= PANELS_IN_COLUMN else PAGE_INCHES)
+    columns = min(count, PANELS_IN_COLUMN if width < (COLUMN_INCHES + PAGE_INCHES) / 2 else PANELS_ON_PAGE)
     rows = ceil(count / columns)
     room = (width - LEFT - RIGHT - GAP * (columns - 1)) / columns
     narrowest = min(NARROWEST, room / 1.3)

@@ -9,6 +9,9 @@ from matplotlib import style
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from symflex.errors import Diagnostic, UsageError
+from symflex.errors.diagnostic import nearest
+
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
 
@@ -26,10 +29,30 @@ DASHES: Final = ("-", (0, (5, 1.5)), (0, (5, 1.2, 1.2, 1.2)), (0, (1.2, 1.2)))
 QUIET: Final = "#8C8C8C"
 FAINT: Final = "#E3E3E3"
 
+_FALLBACK: Final = ["STIXGeneral", "DejaVu Sans"]
+
+# All come with matplotlib: the same glyphs on every computer.
+FONTS: Final[dict[str, dict[str, object]]] = {
+    "times": {"font.family": _FALLBACK, "mathtext.fontset": "stix"},
+    # Computer Modern has no minus sign but that of mathematics.
+    "latex": {
+        "font.family": ["cmr10", *_FALLBACK],
+        "mathtext.fontset": "cm",
+        "axes.formatter.use_mathtext": True,
+    },
+    "sans": {"font.family": ["DejaVu Sans"], "mathtext.fontset": "dejavusans"},
+}
+"""Fonts of texts: STIX, at home next to Times; Computer Modern, that of LaTeX; one for slides."""
+
+DEFAULT_FONT: Final = "times"
+
+# Where Computer Modern has what ASCII and Latin-1 say; elsewhere its glyphs are others.
+_COMPUTER_MODERN: Final = frozenset(
+    " !#$%&'()*+,-./0123456789:;=?@ABCDEFGHIJKLMNOPQRSTUVWXYZ[]`abcdefghijklmnopqrstuvwxyz"
+)
+_LAST_OF_LATIN: Final = "\u00c4"
+
 _PAPER: Final[dict[str, object]] = {
-    # STIX comes with matplotlib: the same glyphs on every computer, and at home next to Times.
-    "font.family": ["STIXGeneral", "DejaVu Sans"],
-    "mathtext.fontset": "stix",
     "font.size": 8,
     "axes.labelsize": 8,
     "axes.titlesize": TITLE_POINTS,
@@ -60,9 +83,36 @@ _PAPER: Final[dict[str, object]] = {
 }
 
 
-def paper_style() -> AbstractContextManager[None]:
-    """Return a context in which matplotlib draws as for a paper, whatever the user's own settings."""
-    return style.context(["default", _PAPER])
+def paper_style(font: str = DEFAULT_FONT) -> AbstractContextManager[None]:
+    """Return a context in which matplotlib draws as for a paper, whatever the user's own settings.
+
+    Parameters
+    ----------
+    font : str, optional
+        A key of :data:`FONTS`.
+
+    Raises
+    ------
+    UsageError
+        SF208 for any other font.
+    """
+    if font not in FONTS:
+        hint = nearest(font, FONTS) or "fonts: " + ", ".join(FONTS)
+        raise UsageError(Diagnostic("SF208", f"there is no font '{font[:64]}' for figures", None, hint))
+    return style.context(["default", _PAPER | FONTS[font]])
+
+
+def family_of(text: str, font: str) -> list[str] | None:
+    """Return the families of a text that the font lacks letters for, None when it has them all.
+
+    Examples
+    --------
+    >>> family_of("Two masses", "latex"), family_of("a < b", "latex"), family_of("a < b", "times")
+    (None, ['STIXGeneral', 'DejaVu Sans'], None)
+    """
+    if font != "latex" or all(c in _COMPUTER_MODERN or c > _LAST_OF_LATIN for c in text):
+        return None
+    return _FALLBACK
 
 
 def new_figure(width: float, height: float) -> Figure:

@@ -4,6 +4,7 @@ from symflex.emit.latex.column import COLUMNS_MM, column_width
 from symflex.emit.latex.document import (
     DOCUMENT,
     TEXT_WIDTH_MM,
+    Picture,
     latex_document,
     latex_files,
     latex_fragment,
@@ -24,6 +25,7 @@ __all__ = [
     "COLUMNS_MM",
     "DOCUMENT",
     "TEXT_WIDTH_MM",
+    "Picture",
     "column_width",
     "equation_label",
     "escape_text",

@@ -42,8 +42,18 @@ def column_width(text: str) -> float:
     if match is None:
         hint = f"{', '.join(COLUMNS_MM)} or millimetres such as 120mm"
         raise UsageError(Diagnostic("SF902", f"'{text[:32]}' is no width of a column", None, hint))
-    width = float(match[1])
-    if not NARROWEST_MM <= width <= WIDEST_MM:
-        message = f"a column is from {NARROWEST_MM:g} to {WIDEST_MM:g} mm wide, found {width:g} mm"
+    return checked_width(float(match[1]))
+
+
+def checked_width(width_mm: float) -> float:
+    """Return the width of a column [mm] if it is one.
+
+    Raises
+    ------
+    UsageError
+        SF902 when it is not between 80 and 1000 mm.
+    """
+    if not NARROWEST_MM <= width_mm <= WIDEST_MM:
+        message = f"a column is from {NARROWEST_MM:g} to {WIDEST_MM:g} mm wide, found {width_mm:g} mm"
         raise UsageError(Diagnostic("SF902", message))
-    return width
+    return width_mm

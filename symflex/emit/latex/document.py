@@ -42,6 +42,7 @@ _LONGEST_HIDDEN: Final = 0.5
 _COUNTS: Final = "no one two three four five six seven eight nine ten eleven twelve".split()
 _FOR_EQUATIONS: Final = "amsmath"
 _FOR_TABLES: Final = "amsmath,array,booktabs,siunitx"
+_FOR_FIGURES: Final = ("pgf",)
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +53,28 @@ class _Block:
     file: str = ""
     packages: str = ""
     title: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    r"""A figure that a document inputs.
+
+    Parameters
+    ----------
+    name : str
+        Of its file, without suffix.
+    latex : str
+        A ``pgfpicture`` as wide as the column.
+    title : str
+        Plain text; what it shows.
+    of : tuple of TransferFunction
+        Whose it shows that of; empty where that goes without saying.
+    """
+
+    name: str
+    latex: str
+    title: str
+    of: tuple[TransferFunction, ...] = ()
 
 
 def latex_fragment(tf: TransferFunction, form: PrintedForm, *, width_mm: float = TEXT_WIDTH_MM) -> str:
@@ -108,13 +131,14 @@ def latex_files(
     forms: Sequence[PrintedForm],
     *,
     pole_zero_maps: Sequence[PoleZeroMap] = (),
+    pictures: Sequence[Picture] = (),
     width_mm: float = TEXT_WIDTH_MM,
 ) -> dict[str, str]:
     r"""Return the same article as files to ``\input`` into a paper, and the document that inputs them all.
 
     A file holds one transfer function (``V_tip_over_F.tex``), the table of its poles, zeros or hidden roots
-    (``V_tip_over_F_poles.tex``), of the parameters or of the modes, and names the packages that it needs. See
-    :func:`latex_document`.
+    (``V_tip_over_F_poles.tex``), of the parameters or of the modes, or a figure (``fig5.pgf``), and names the
+    packages that it needs. See :func:`latex_document`.
 
     Returns
     -------
@@ -122,7 +146,7 @@ def latex_files(
         Text by name of file; :data:`DOCUMENT` is the one to compile.
     """
     files: dict[str, str] = {}
-    parts = list(_opening(model, width_mm))
+    parts = list(_opening(model, width_mm, _FOR_FIGURES if pictures else ()))
     for block in _blocks(model, tfs, forms, pole_zero_maps, width_mm):
         if not block.file:
             parts.append(block.text)
@@ -131,16 +155,31 @@ def latex_files(
         files[name] = _file(block, width_mm)
         after = block.text[len(block.text.rstrip("\n")) :]
         parts.append(f"\\input{{{name.removesuffix('.tex')}}}{after}")
+    if pictures:
+        parts.append("\\section{Figures}\n\n")
+    for picture in pictures:
+        name = _free_name(_plain_stem(picture.name), files, ".pgf")
+        files[name] = picture.latex
+        # What a figure shows stands on the page that shows it.
+        parts.append(
+            f"\\noindent\\begin{{minipage}}{{\\linewidth}}\\raggedright\n\\input{{{name}}}\n\n"
+            f"\\smallskip\\noindent {_caption(picture)}\n\\end{{minipage}}\n\\bigskip\n\n"
+        )
     files[DOCUMENT] = "".join((*parts, "\\end{document}\n"))
     return files
 
 
-def _free_name(stem: str, files: Mapping[str, str]) -> str:
+def _caption(picture: Picture) -> str:
+    ratios = ", ".join(f"${ratio_latex(tf)}$" for tf in picture.of)
+    return f"{escape_text(picture.title)}{f' of {ratios}' if ratios else ''}."
+
+
+def _free_name(stem: str, files: Mapping[str, str], suffix: str = ".tex") -> str:
     """Return a name that none of the files has, not even where capitals count as small letters."""
     taken = {DOCUMENT, *(name.lower() for name in files)}
-    name, number = f"{stem}.tex", 2
+    name, number = f"{stem}{suffix}", 2
     while name.lower() in taken:
-        name, number = f"{stem}_{number}.tex", number + 1
+        name, number = f"{stem}_{number}{suffix}", number + 1
     return name
 
 
@@ -149,8 +188,8 @@ def _file(block: _Block, width_mm: float) -> str:
     return f"{head}{block.text.rstrip()}\n"
 
 
-def _opening(model: Model, width_mm: float) -> Iterator[str]:
-    yield f"% To be compiled twice, with pdflatex or lualatex.\n{preamble(width_mm)}\n\n"
+def _opening(model: Model, width_mm: float, packages: Sequence[str] = ()) -> Iterator[str]:
+    yield f"% To be compiled twice, with pdflatex or lualatex.\n{preamble(width_mm, packages)}\n\n"
     yield f"\\begin{{document}}\n\n{_heading(model)}\n\n"
 
 
@@ -208,7 +247,11 @@ def _equation(tf: TransferFunction, form: PrintedForm, width_mm: float, after: s
 
 def _stem(tf: TransferFunction) -> str:
     """Return a file's name without its suffix, of letters that every file system has."""
-    return re.sub(r"[^A-Za-z0-9_]", "_", tf.name.replace("/", "_over_"))
+    return _plain_stem(tf.name.replace("/", "_over_"))
+
+
+def _plain_stem(name: str) -> str:
+    return re.sub(r"[^A-Za-z0-9_]", "_", name)
 
 
 def _heading(model: Model) -> str:

@@ -14,7 +14,7 @@ from symflex.emit.latex.column import NARROWEST_MM
 from symflex.emit.latex.expression import Piece, Style, Writer
 from symflex.emit.latex.label import labels_of, symbol
 from symflex.emit.latex.lines import break_lines
-from symflex.emit.latex.width import EM_MM, MINUS, QUAD, RELATION
+from symflex.emit.latex.width import EM_MM, FRACTION_EDGES, MINUS, QUAD, RELATION
 from symflex.expressions import Call, Derivative, Expression, Name, Negative, Number, names, number
 from symflex.kernels import LAPLACE
 
@@ -36,11 +36,12 @@ LONGEST_IN_NOTEBOOK: Final = 20_000
 
 # TeX keeps a whole display in its memory.
 _LINES_PER_DISPLAY: Final = 300
-_TAG: Final = 3.5
-_FRACTION_EDGES: Final = 0.6
-_ARGUMENT: Final = 1.3
+_TAG: Final = 2.9
+"""A number of three digits and the least room before it."""
+
+_ARGUMENT: Final = 1.25
 _WHERE: Final = r"\text{where}\quad "
-_WHERE_WIDTH: Final = 3.8
+_WHERE_WIDTH: Final = 3.57
 _LEAST_ROOM: Final = 17.5
 _NUMERATORS: Final = (("N", "D"), ("P", "Q"), ("B", "A"), (r"\mathcal{N}", r"\mathcal{D}"))
 
@@ -161,7 +162,7 @@ def _end(end: Input | Output) -> tuple[str, float]:
 
 def _left_side(tf: TransferFunction) -> tuple[str, float]:
     (above, above_width), (below, below_width) = _end(tf.output), _end(tf.input)
-    return rf"\frac{{{above}}}{{{below}}}", max(above_width, below_width) + _FRACTION_EDGES
+    return rf"\frac{{{above}}}{{{below}}}", max(above_width, below_width) + FRACTION_EDGES.text
 
 
 def _signed(form: PrintedForm) -> tuple[str, Expression]:
@@ -179,7 +180,7 @@ def _right_side(form: PrintedForm, writer: Writer) -> tuple[str, float]:
         return piece.latex, piece.width
     sign, num = _signed(form)
     above, below = writer.piece(num, Style.TEXT), writer.piece(form.den, Style.TEXT)
-    width = max(above.width, below.width) + _FRACTION_EDGES + (MINUS if sign else 0)
+    width = max(above.width, below.width) + FRACTION_EDGES.text + (MINUS if sign else 0)
     return rf"{sign}\frac{{{above.latex}}}{{{below.latex}}}", width
 
 
@@ -208,7 +209,7 @@ def _named_parts(form: PrintedForm, writer: Writer, width: float, left: str, lef
     parts = []
     for name, expression in zip(_free_names(form, writer), (num, form.den), strict=True):
         piece = writer.piece(expression, Style.TEXT)
-        is_long = left_width + RELATION + MINUS + _FRACTION_EDGES + piece.width + _TAG > width
+        is_long = left_width + RELATION + MINUS + FRACTION_EDGES.text + piece.width + _TAG > width
         depends = any(n.name in varying for n in names(expression))
         head = f"{name}(s)" if depends else name
         parts.append((head if is_long else piece.latex, expression, is_long))
@@ -248,8 +249,7 @@ def _where(form: PrintedForm, writer: Writer, width: float | None) -> str:
 def _where_rows(form: PrintedForm, writer: Writer, width: float | None) -> list[_Row]:
     if not (form.where or form.laws):
         return []
-    room = None if width is None else width - _WHERE_WIDTH
-    rows = _broken_rows(form.where, writer, room) if form.where else []
+    rows = _broken_rows(form.where, writer, width) if form.where else []
     rows += [_Row(left.latex, left.width, (value,)) for left, value in _laws(form, writer)]
     first = rows[0]
     rows[0] = _Row(f"{_WHERE}{first.left}", first.left_width, first.right)
@@ -271,7 +271,7 @@ def _broken_rows(
     equations: Sequence[tuple[str, Expression]], writer: Writer, width: float | None
 ) -> list[_Row]:
     heads = [writer.label(name) for name, _ in equations]
-    column = max(head.width for head in heads)
+    column = max(_WHERE_WIDTH + heads[0].width, *(head.width for head in heads))
     return [
         _row(head.latex, head.width, expression, writer, width, column)
         for head, (_, expression) in zip(heads, equations, strict=True)
@@ -333,7 +333,9 @@ def _align(rows: Sequence[_Row], environment: str, label: str) -> str:
         lines = [f"{lines[0]} {label}", *(rf"{line} \notag" for line in lines[1:])]
     displays = []
     for start in range(0, len(lines), _LINES_PER_DISPLAY):
-        body = " \\\\\n  ".join(lines[start : start + _LINES_PER_DISPLAY])
+        # The first line stays with the next.
+        first, *more = lines[start : start + _LINES_PER_DISPLAY]
+        body = " \\\\*\n  ".join((first, " \\\\\n  ".join(more))) if more else first
         displays.append(f"\\begin{{{environment}}}\n  {body}\n\\end{{{environment}}}")
     if len(lines) == 1:
         return displays[0]

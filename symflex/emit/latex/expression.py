@@ -13,7 +13,26 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from symflex.emit.latex.label import symbol
-from symflex.emit.latex.width import CDOT, DIGIT, MINUS, OPERATOR, SCRIPT, SLASH, THIN
+from symflex.emit.latex.width import (
+    CDOT_SIZES,
+    DIGIT_SIZES,
+    FENCE_SIZES,
+    FRACTION_EDGES,
+    MINUS_SIZES,
+    NOTHING,
+    OPERATOR_SIZES,
+    PRIME_SIZES,
+    ROOT,
+    SCRIPT_SPACE,
+    SLASH_SIZES,
+    TALL_FENCES,
+    TALL_ROOT,
+    THIN_SIZES,
+    UPRIGHT,
+    Width,
+    always,
+    widest,
+)
 from symflex.expressions import (
     Call,
     Derivative,
@@ -60,26 +79,29 @@ class Piece(NamedTuple):
     """A printed subtree and what its surroundings must know."""
 
     latex: str
-    width: float
+    size: Width
     shape: Shape
     is_tall: bool = False
     nesting: int = 0
     is_wordy: bool = False
     has_superscript: bool = False
+    subscript: Width = NOTHING
+
+    @property
+    def width(self) -> float:
+        """Width at full size [em]."""
+        return self.size.text
 
 
 FENCES: Final = (("(", ")"), ("[", "]"), (r"\{", r"\}"))
-FENCE_WIDTH: Final = 0.5
-_FENCE_WIDTHS: Final = (0.39, 0.28, 0.5)
-_TALL_FENCE_WIDTH: Final = 0.95
-_FRACTION_EDGES: Final = 0.6
-_ROOT_WIDTH: Final = 1.1
-_OPERATOR_WIDTHS: Final = {"sqrt": 1.1, "exp": 1.7, "log": 1.5, "sin": 1.4, "cos": 1.6, "tan": 1.7}
-_WIDEST_OPERATOR: Final = 2.3
+# The letters of a function's name, with the space that sets it off on either side.
+_OPERATORS: Final = {"exp": "exp", "log": "log", "sin": "sin", "cos": "cos", "tan": "tan"} | {
+    name: name for name in ("sinh", "cosh", "tanh", "coth")
+}
+_WIDEST_OPERATOR: Final = always(2.3)
 _TRIGONOMETRIC: Final = frozenset(("sin", "cos", "tan", "sinh", "cosh", "tanh"))
 _SHORT_EXPONENT: Final = 8
 _MOST_PRIMES: Final = 3
-_PRIME_WIDTH: Final = 0.3
 
 
 def latex_expression(expression: Expression, labels: Mapping[str, str], style: Style = Style.DISPLAY) -> str:
@@ -159,8 +181,10 @@ class Writer:
         if not order:
             return piece
         primes = "'" * order if order <= _MOST_PRIMES else rf"^{{({order})}}"
-        width = piece.width + _PRIME_WIDTH * order
-        return piece._replace(latex=piece.latex + primes, width=width, has_superscript=True)
+        size = piece.size + PRIME_SIZES * order + SCRIPT_SPACE
+        if order > _MOST_PRIMES:
+            size = piece.size + (FENCE_SIZES[0] * 2 + DIGIT_SIZES * len(str(order))).raised + SCRIPT_SPACE
+        return piece._replace(latex=piece.latex + primes, size=size, has_superscript=True, subscript=NOTHING)
 
     def exponent(self, expression: Expression) -> Piece:
         """Return a subtree as it prints in an exponent."""
@@ -175,31 +199,38 @@ class Writer:
         if piece is None:
             label = self.label(name)
             shape = Shape.SUM if label.is_sum else Shape.PRODUCT if label.is_product else Shape.ATOM
-            piece = Piece(label.latex, label.width, shape, False, 0, label.is_wordy, label.has_superscript)
+            piece = Piece(
+                label.latex,
+                label.size,
+                shape,
+                is_wordy=label.is_wordy,
+                has_superscript=label.has_superscript,
+                subscript=label.subscript,
+            )
             self._names[name] = piece
         return piece
 
 
-def joined(factors: Sequence[Piece]) -> tuple[str, float]:
+def joined(factors: Sequence[Piece]) -> tuple[str, Width]:
     """Return factors, already fenced where they must be, side by side, and the width of the signs between."""
     parts = [factors[0].latex]
-    extra = 0.0
+    extra = NOTHING
     for left, right in pairwise(factors):
-        between, width = between_factors(left, right)
+        between, size = between_factors(left, right)
         parts += [between, right.latex]
-        extra += width
+        extra += size
     return "".join(parts), extra
 
 
-def between_factors(left: Piece, right: Piece) -> tuple[str, float]:
+def between_factors(left: Piece, right: Piece) -> tuple[str, Width]:
     """Return what stands between two factors, and its width."""
     if right.latex[:1].isdigit() or (right.latex.startswith(r"\frac") and left.latex[-1:].isdigit()):
-        return r" \cdot ", CDOT
+        return r" \cdot ", CDOT_SIZES
     if left.shape is Shape.CALL or right.shape is Shape.CALL:
-        return r" \, ", THIN
+        return r" \, ", THIN_SIZES
     if (left.is_wordy or right.is_wordy) and not (left.nesting or right.nesting):
-        return r" \, ", THIN
-    return " ", 0.0
+        return r" \, ", THIN_SIZES
+    return " ", NOTHING
 
 
 def fenced(piece: Piece) -> Piece:
@@ -207,10 +238,10 @@ def fenced(piece: Piece) -> Piece:
     kind = piece.nesting % len(FENCES)
     left, right = FENCES[kind]
     if piece.is_tall:
-        latex, width = rf"\left{left} {piece.latex} \right{right}", 2 * _TALL_FENCE_WIDTH
+        latex, fence = rf"\left{left} {piece.latex} \right{right}", TALL_FENCES[kind]
     else:
-        latex, width = f"{left}{piece.latex}{right}", 2 * _FENCE_WIDTHS[kind]
-    return Piece(latex, piece.width + width, Shape.ATOM, piece.is_tall, piece.nesting + 1)
+        latex, fence = f"{left}{piece.latex}{right}", FENCE_SIZES[kind]
+    return Piece(latex, piece.size + fence * 2, Shape.ATOM, piece.is_tall, piece.nesting + 1)
 
 
 def as_term(piece: Piece) -> Piece:
@@ -255,8 +286,10 @@ def number_piece(text: str) -> Piece:
     mantissa, _, exponent = text.partition("e")
     if exponent:
         latex = rf"{mantissa} \cdot 10^{{{exponent}}}"
-        return Piece(latex, DIGIT * (len(mantissa) + len(exponent) + 3) + CDOT, Shape.PRODUCT)
-    return Piece(mantissa, DIGIT * len(mantissa), Shape.ATOM)
+        power = DIGIT_SIZES * len(exponent) + MINUS_SIZES * exponent.startswith("-")
+        digits = DIGIT_SIZES * (len(mantissa) + 2)
+        return Piece(latex, digits + CDOT_SIZES + power.raised + SCRIPT_SPACE, Shape.PRODUCT)
+    return Piece(mantissa, DIGIT_SIZES * len(mantissa), Shape.ATOM)
 
 
 def _number(value: Fraction, style: Style) -> Piece:
@@ -303,32 +336,34 @@ def _combined(node: Expression, pieces: Sequence[Piece], style: Style) -> Piece:
 
 def _sum(pieces: Sequence[Piece]) -> Piece:
     parts: list[str] = []
-    width, is_tall, nesting = 0.0, False, 0
+    size, is_tall, nesting = NOTHING, False, 0
     for index, written in enumerate(pieces):
         if written.shape is Shape.NEGATIVE:
             # Its minus sign is the sum's own.
             parts.append(("- " if index else "-") + written.latex[1:])
-            width += written.width + (OPERATOR - MINUS if index else 0)
+            size += written.size + (OPERATOR_SIZES.beyond(MINUS_SIZES) if index else NOTHING)
             piece = written
         else:
             piece = as_term(written)
             parts.append(("+ " if index else "") + piece.latex)
-            width += piece.width + (OPERATOR if index else 0)
+            size += piece.size + (OPERATOR_SIZES if index else NOTHING)
         is_tall = is_tall or piece.is_tall
         nesting = max(nesting, piece.nesting)
-    return Piece(" ".join(parts), width, Shape.SUM, is_tall, nesting)
+    return Piece(" ".join(parts), size, Shape.SUM, is_tall, nesting)
 
 
 def _negative(operand: Piece) -> Piece:
     piece = as_term(operand)
-    return Piece(f"-{piece.latex}", piece.width + MINUS, Shape.NEGATIVE, piece.is_tall, piece.nesting)
+    return Piece(f"-{piece.latex}", piece.size + MINUS_SIZES, Shape.NEGATIVE, piece.is_tall, piece.nesting)
 
 
 def _product(factors: Sequence[Piece]) -> Piece:
-    latex, extra = joined(factors)
+    latex, size = joined(factors)
+    for factor in factors:
+        size += factor.size
     return Piece(
         latex,
-        sum(f.width for f in factors) + extra,
+        size,
         Shape.PRODUCT,
         any(f.is_tall for f in factors),
         max(f.nesting for f in factors),
@@ -342,14 +377,14 @@ def _quotient(above: Piece, below: Piece, style: Style) -> Piece:
         denominator = below if below.shape >= Shape.CALL else fenced(below)
         return Piece(
             f"{numerator.latex}/{denominator.latex}",
-            numerator.width + SLASH + denominator.width,
+            numerator.size + SLASH_SIZES + denominator.size,
             Shape.RATIO,
             numerator.is_tall or denominator.is_tall,
             max(numerator.nesting, denominator.nesting),
         )
-    size = 1.0 if style is Style.DISPLAY else SCRIPT
-    width = size * max(above.width, below.width) + _FRACTION_EDGES
-    return Piece(rf"\frac{{{above.latex}}}{{{below.latex}}}", width, Shape.FRACTION, is_tall=True)
+    inside = widest(above.size, below.size)
+    size = (inside if style is Style.DISPLAY else inside.raised) + FRACTION_EDGES
+    return Piece(rf"\frac{{{above.latex}}}{{{below.latex}}}", size, Shape.FRACTION, is_tall=True)
 
 
 def _power(base: Expression, exponent: Expression, pieces: Sequence[Piece]) -> Piece:
@@ -357,27 +392,30 @@ def _power(base: Expression, exponent: Expression, pieces: Sequence[Piece]) -> P
     if is_half(exponent):
         return _root(below)
     raised = f"^{{{above.latex}}}"
-    width = SCRIPT * above.width + THIN
+    size = above.size.raised + SCRIPT_SPACE
     if isinstance(base, Call) and base.name in _TRIGONOMETRIC and isinstance(exponent, Number):
         # The exponent of a function stands at its name.
         head = FUNCTIONS[base.name].latex
         latex = f"{head}{raised}{below.latex.removeprefix(head)}"
-        return Piece(latex, below.width + width, Shape.CALL, below.is_tall, below.nesting)
+        return Piece(latex, below.size + size, Shape.CALL, below.is_tall, below.nesting)
     root = as_base(below)
     latex = f"{root.latex}{raised}"
-    return Piece(latex, root.width + width, Shape.POWER, root.is_tall, root.nesting, root.is_wordy)
+    size = root.size + size.beyond(root.subscript)
+    return Piece(latex, size, Shape.POWER, root.is_tall, root.nesting, root.is_wordy)
 
 
 def _root(radicand: Piece) -> Piece:
     latex = rf"\sqrt{{{radicand.latex}}}"
-    return Piece(latex, radicand.width + _ROOT_WIDTH, Shape.CALL, radicand.is_tall)
+    return Piece(
+        latex, radicand.size + (TALL_ROOT if radicand.is_tall else ROOT), Shape.CALL, radicand.is_tall
+    )
 
 
 def _applied(function: Piece, argument: Piece) -> Piece:
     """Return a function of x at a point."""
     inside = fenced(argument)
-    width = function.width + inside.width
-    return Piece(function.latex + inside.latex, width, Shape.CALL, inside.is_tall, inside.nesting)
+    size = function.size + inside.size
+    return Piece(function.latex + inside.latex, size, Shape.CALL, inside.is_tall, inside.nesting)
 
 
 def _call(node: Call, argument: Piece) -> Piece:
@@ -385,13 +423,18 @@ def _call(node: Call, argument: Piece) -> Piece:
         return _root(argument)
     if node.name == "exp" and is_short(node.argument):
         latex = rf"\mathrm{{e}}^{{{argument.latex}}}"
-        return Piece(latex, SCRIPT * argument.width + DIGIT + THIN, Shape.POWER)
+        return Piece(latex, argument.size.raised + UPRIGHT.widths["e"] + SCRIPT_SPACE, Shape.POWER)
     inside = fenced(argument)
-    width = operator_width(node.name) + inside.width
+    size = operator_size(node.name) + inside.size
     latex = FUNCTIONS[node.name].latex + inside.latex
-    return Piece(latex, width, Shape.CALL, inside.is_tall, inside.nesting)
+    return Piece(latex, size, Shape.CALL, inside.is_tall, inside.nesting)
 
 
-def operator_width(function: str) -> float:
+def operator_size(function: str) -> Width:
     """Return the width of a function's name."""
-    return _OPERATOR_WIDTHS.get(function, _WIDEST_OPERATOR)
+    if function not in _OPERATORS:
+        return _WIDEST_OPERATOR
+    size = THIN_SIZES * 2
+    for letter in _OPERATORS[function]:
+        size += UPRIGHT.widths[letter]
+    return size

@@ -12,15 +12,25 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from symflex.emit.latex.width import (
-    BOLD_AND_OTHERS,
-    DIGIT,
+    COMMA_SIZES,
+    FENCE_SIZES,
     ITALIC,
-    OPERATOR,
+    NOTHING,
+    OPERATOR_SIZES,
+    OTHER_ALPHABETS,
+    PRIME_SIZES,
+    RELATION_SIZES,
     ROMAN,
-    SCRIPT,
+    SCRIPT_SPACE,
+    SLASH_SIZES,
+    STAR_SIZES,
     TEXT_ITALIC,
-    THIN,
+    THIN_SIZES,
     TYPEWRITER,
+    UPRIGHT,
+    Alphabet,
+    Width,
+    always,
     greek_width,
 )
 from symflex.model.labels import ACCENTS, FONTS, GREEK, SYMBOLS
@@ -51,22 +61,30 @@ class Label:
     ----------
     latex : str
         Sound in math mode.
-    width : float
-        In em, rounded up.
+    size : Width
+        Rounded up.
     is_wordy : bool
         Holds a word, so that a neighbour needs a thin space.
     has_superscript : bool
         Bears a superscript or prime, so that a power needs parentheses.
     is_sum, is_product : bool
         Prints an operation, so that it may need parentheses.
+    subscript : Width
+        Of the subscript at its end, above which a power has room.
     """
 
     latex: str
-    width: float
+    size: Width
     is_wordy: bool = False
     has_superscript: bool = False
     is_sum: bool = False
     is_product: bool = False
+    subscript: Width = NOTHING
+
+    @property
+    def width(self) -> float:
+        """Width at full size [em]."""
+        return self.size.text
 
 
 def label_of(name: str) -> str:
@@ -171,12 +189,12 @@ def _verbatim(name: str) -> Label:
     """Return a name in typewriter, stacked and small when it is long: this label always works."""
     if _NAME.fullmatch(name) and _typewriter_width(name.replace("_", r"\_")) <= WIDEST_LABEL:
         text = name.replace("_", r"\_")
-        return Label(rf"\mathtt{{{text}}}", _typewriter_width(text), is_wordy=True)
+        return Label(rf"\mathtt{{{text}}}", always(_typewriter_width(text)), is_wordy=True)
     plain = re.sub(r"[^A-Za-z0-9_]", ".", name)
     pieces = [plain[i : i + _STACKED].replace("_", r"\_") for i in range(0, len(plain), _STACKED)]
     lines = [rf"\scriptscriptstyle\mathtt{{{piece}}}" for piece in pieces]
     stacked = r"\\".join(lines)
-    return Label(rf"\substack{{{stacked}}}", _stacked_width(stacked), is_wordy=True)
+    return Label(rf"\substack{{{stacked}}}", always(_stacked_width(stacked)), is_wordy=True)
 
 
 def _stacked_width(latex: str) -> float:
@@ -197,9 +215,9 @@ def _typewriter_width(text: str) -> float:
 def _read(latex: str) -> Label | None:
     if _TYPEWRITER.fullmatch(latex):
         text = latex.removeprefix(r"\mathtt{").removesuffix("}")
-        return Label(latex, _typewriter_width(text), is_wordy=True)
+        return Label(latex, always(_typewriter_width(text)), is_wordy=True)
     if _SMALL.fullmatch(latex):
-        return Label(latex, _stacked_width(latex), is_wordy=True)
+        return Label(latex, always(_stacked_width(latex)), is_wordy=True)
     try:
         whole, _ = _read_list(latex, 0, ITALIC, 0)
     except _UnsoundError:
@@ -208,11 +226,12 @@ def _read(latex: str) -> Label | None:
         return None
     return Label(
         latex,
-        whole.width,
+        whole.size,
         whole.is_wordy,
         whole.has_superscript,
         whole.is_sum,
         whole.is_product or whole.atoms > 1,
+        whole.subscript,
     )
 
 
@@ -238,20 +257,30 @@ class _UnsoundError(Exception):
 class _Found:
     """What a list of atoms amounts to."""
 
-    width: float = 0.0
+    size: Width = NOTHING
     atoms: int = 0
     letters: int = 0
     is_wordy: bool = False
     has_superscript: bool = False
     is_sum: bool = False
     is_product: bool = False
+    subscript: Width = NOTHING
+    last: str = ""
 
-    def add(self, width: float) -> None:
-        self.width += width
+    def add(self, size: Width) -> None:
+        """Add an atom."""
+        self.size += size
         self.atoms += 1
+        self.subscript = NOTHING
+        self.last = ""
+
+    def add_script(self, sign: str, size: Width) -> None:
+        """Add a script of the last atom, above or below the one that it bears already."""
+        self.size += size.beyond(self.subscript)
+        self.subscript = size if sign == "_" else NOTHING
 
 
-def _read_list(latex: str, start: int, letters: Mapping[str, float], depth: int) -> tuple[_Found, int]:
+def _read_list(latex: str, start: int, letters: Alphabet, depth: int) -> tuple[_Found, int]:
     """Read atoms up to the closing brace, or to the end at depth 0; return them and where reading goes on."""
     if depth > _DEEPEST:
         raise _UnsoundError
@@ -265,7 +294,8 @@ def _read_list(latex: str, start: int, letters: Mapping[str, float], depth: int)
         position = match.end()
         command, space, sign = match.groups()
         if space:
-            found.width += 2 * THIN
+            found.size += THIN_SIZES * 2
+            found.subscript, found.last = NOTHING, ""
             scripts = None
         elif command:
             inner, position = _read_command(latex, command, position, letters, depth)
@@ -295,7 +325,7 @@ def _read_script(
     position: int,
     found: _Found,
     scripts: set[str] | None,
-    letters: Mapping[str, float],
+    letters: Alphabet,
     depth: int,
 ) -> int:
     """Read what a script sign raises or lowers; a prime is a superscript and may be repeated."""
@@ -304,15 +334,17 @@ def _read_script(
     scripts.add(sign)
     found.has_superscript = found.has_superscript or sign != "_"
     if sign == "'":
-        found.width += 0.3
+        # More primes stand beside the first, wherever a subscript ends.
+        found.size += PRIME_SIZES + SCRIPT_SPACE
+        found.subscript = NOTHING
         return position
     inner, position = _read_argument(latex, position, letters, depth)
-    found.width += SCRIPT * inner.width
+    found.add_script(sign, inner.size.raised + SCRIPT_SPACE)
     found.is_wordy = found.is_wordy or inner.is_wordy or inner.letters > 1
     return position
 
 
-def _read_argument(latex: str, start: int, letters: Mapping[str, float], depth: int) -> tuple[_Found, int]:
+def _read_argument(latex: str, start: int, letters: Alphabet, depth: int) -> tuple[_Found, int]:
     """Read the one atom or group that a script or accent applies to."""
     match = _TOKEN.match(latex, start)
     if match is None:
@@ -331,7 +363,7 @@ def _read_argument(latex: str, start: int, letters: Mapping[str, float], depth: 
 
 
 def _read_command(
-    latex: str, command: str, position: int, letters: Mapping[str, float], depth: int
+    latex: str, command: str, position: int, letters: Alphabet, depth: int
 ) -> tuple[_Found, int]:
     found = _Found()
     if command in _GREEK or command in _SYMBOLS:
@@ -341,7 +373,7 @@ def _read_command(
         return found, position
     if command in _ACCENTS:
         inner, position = _read_argument(latex, position, letters, depth)
-        found.add(inner.width + THIN)
+        found.add(inner.size + THIN_SIZES)
         found.is_wordy = inner.is_wordy
         return found, position
     if command not in _FONTS or latex[position : position + 1] != "{":
@@ -350,44 +382,57 @@ def _read_command(
         match = _TEXT.match(latex, position + 1)
         if match is None or latex[match.end() : match.end() + 1] != "}" or not match[0].strip():
             raise _UnsoundError
-        found.add(sum(max(ROMAN[c], TEXT_ITALIC.get(c, 0)) for c in match[0]))
+        # Text shrinks in scripts as letters do, at least.
+        found.add(_text_size(match[0]))
         found.is_wordy = True
         return found, match.end() + 1
-    inner, position = _read_list(latex, position + 1, _FONT_LETTERS.get(command, _OTHER_LETTERS), depth + 1)
+    inner, position = _read_list(latex, position + 1, _ALPHABETS.get(command, OTHER_ALPHABETS), depth + 1)
     if not inner.atoms:
         raise _UnsoundError
-    found.add(inner.width)
+    found.add(inner.size)
     found.letters = inner.letters
     found.is_wordy = inner.letters > 1
     return found, position
 
 
-_FONT_LETTERS: Final[dict[str, Mapping[str, float]]] = {"mathrm": ROMAN, "mathit": TEXT_ITALIC}
-_OTHER_LETTERS: Final = {c: BOLD_AND_OTHERS * max(w, ROMAN[c], TEXT_ITALIC[c]) for c, w in ITALIC.items()}
+_ALPHABETS: Final[dict[str, Alphabet]] = {"mathrm": UPRIGHT, "mathit": TEXT_ITALIC}
+_SIGN_SIZES: Final = (
+    dict.fromkeys("+-", OPERATOR_SIZES)
+    | {"=": RELATION_SIZES, ",": COMMA_SIZES, "*": STAR_SIZES, "/": SLASH_SIZES, ".": FENCE_SIZES[1]}
+    | dict.fromkeys("()", FENCE_SIZES[0])
+    | {"|": FENCE_SIZES[1]}
+)
+_SCRIPT_TEXT, _TINY_TEXT = 0.85, 0.7
 
 
-def _command_width(command: str) -> float:
-    return greek_width(command) if command in _GREEK else OPERATOR
+def _text_size(text: str) -> Width:
+    """Return the width of words in mathematics, in the wider of two fonts."""
+    italic = TEXT_ITALIC.widths
+    em = sum(max(ROMAN[c], italic[c].text if c in italic else 0.0) for c in text) + TEXT_ITALIC.kern.text
+    return Width(em, _SCRIPT_TEXT * em, _TINY_TEXT * em)
 
 
-def _add_sign(found: _Found, sign: str, letters: Mapping[str, float]) -> None:
-    if sign.isalpha():
-        found.letters += 1
-        found.add(letters[sign])
-    elif sign.isdigit():
-        found.add(DIGIT)
+def _command_width(command: str) -> Width:
+    return greek_width(command) if command in _GREEK else OPERATOR_SIZES
+
+
+def _add_sign(found: _Found, sign: str, letters: Alphabet) -> None:
+    if sign.isalnum():
+        found.letters += sign.isalpha()
+        before = found.last
+        found.add(letters.after(before, sign))
+        found.last = sign
     elif sign in "+-=,|":
         found.is_sum = True
-        found.add(OPERATOR + THIN)
+        found.add(_SIGN_SIZES[sign])
     else:
         found.is_product = found.is_product or sign in "/*"
-        found.add(OPERATOR if sign == "*" else DIGIT)
+        found.add(_SIGN_SIZES[sign])
 
 
 def _merge(found: _Found, inner: _Found) -> None:
     """Add a group as one atom of the list around it."""
-    found.width += inner.width
-    found.atoms += 1
+    found.add(inner.size)
     found.letters += inner.letters
     found.is_wordy = found.is_wordy or inner.is_wordy
     found.has_superscript = found.has_superscript or inner.has_superscript

@@ -2,7 +2,7 @@ r"""Breaking an expression into lines that fit, at the loosest place that does.
 
 A line ends before a plus or minus; a term too long for a whole line is broken between its factors, inside
 their parentheses, at the slash of a quotient, and at last inside a number. What continues inside
-parentheses is indented.
+parentheses is indented, and so are the factors of a term that stands in a sum.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from symflex.emit.latex.expression import (
-    FENCE_WIDTH,
     FENCES,
     Shape,
     Writer,
@@ -23,9 +22,21 @@ from symflex.emit.latex.expression import (
     joined,
     number_piece,
     numbers_first,
-    operator_width,
+    operator_size,
 )
-from symflex.emit.latex.width import CDOT, DIGIT, MINUS, OPERATOR, QUAD, SCRIPT, SLASH, THIN, TIMES
+from symflex.emit.latex.width import (
+    BIG_FENCES,
+    BIGGER_FENCES,
+    CDOT,
+    CDOT_SIZES,
+    DIGIT,
+    MINUS,
+    OPERATOR,
+    QUAD,
+    SCRIPT_SPACE,
+    SLASH,
+    TIMES,
+)
 from symflex.expressions import Call, Expression, Negative, Number, Power, Product, Quotient, Sum
 from symflex.expressions.format import number_text
 from symflex.kernels.functions import FUNCTIONS
@@ -41,7 +52,8 @@ DEEPEST_INDENT: Final = 3
 _LONG: Final = 0.5
 _LONGEST_LEAD: Final = 0.25
 _LONGEST_TAIL: Final = 0.15
-_BIG_FENCES: Final = 2 * (FENCE_WIDTH + 0.25)
+_SQUARE_ROOT: Final = 1.26
+"""The exponent 1/2."""
 
 
 class Glue(NamedTuple):
@@ -129,8 +141,9 @@ class _Filler:
         fence: Callable[[Piece], Piece],
         right: Edge,
         depth: int,
+        hang: int = 0,
     ) -> None:
-        """Set one item whole, on this line or the next, or in parts."""
+        """Set one item whole, on this line or the next, or in parts; those of a term hang below its sign."""
         bare = self._writer.piece(node)
         piece = fence(bare)
         width = left.width + piece.width + right.width
@@ -141,11 +154,13 @@ class _Filler:
         if piece is not bare or is_looser:
             # Fences round what is broken have one size, chosen by what they hold.
             size = r"\Big" if bare.is_tall else r"\big"
-            opening, closing = FENCES[bare.nesting % len(FENCES)]
-            left = Edge(f"{left.latex}{size}l{opening} ", left.width + _BIG_FENCES / 2)
-            right = Edge(f" {size}r{closing}{right.latex}", right.width + _BIG_FENCES / 2)
+            kind = bare.nesting % len(FENCES)
+            opening, closing = FENCES[kind]
+            width = (BIGGER_FENCES if bare.is_tall else BIG_FENCES)[kind]
+            left = Edge(f"{left.latex}{size}l{opening} ", left.width + width)
+            right = Edge(f" {size}r{closing}{right.latex}", right.width + width)
             depth += 1
-        self._split(glue, left, node, bare, right, depth)
+        self._split(glue, left, node, bare, right, depth, 0 if piece is not bare else hang)
 
     def _append(self, glue: Glue, latex: str, width: float) -> bool:
         """Set something unbroken if this line or the next has room for it."""
@@ -165,7 +180,9 @@ class _Filler:
         return False
 
     def _force(self, glue: Glue, latex: str, width: float) -> None:
-        """Set something that cannot be broken, on a line of its own if it must be."""
+        """Set something that cannot be broken, on a line of its own and less far in if it must be."""
+        while glue.depth and glue.start_width + width > self._rest(glue.depth):
+            glue = glue._replace(depth=glue.depth - 1)
         if not self._append(glue, latex, width):
             self._start(glue)
             self._parts.append(latex)
@@ -180,18 +197,29 @@ class _Filler:
         self._parts = [r"\quad " * min(glue.depth, DEEPEST_INDENT) + glue.start]
         self._room = self._rest(glue.depth) - glue.start_width
 
-    def _split(self, glue: Glue, left: Edge, node: Expression, bare: Piece, right: Edge, depth: int) -> None:
+    def _split(
+        self,
+        glue: Glue,
+        left: Edge,
+        node: Expression,
+        bare: Piece,
+        right: Edge,
+        depth: int,
+        hang: int,
+    ) -> None:
         match node:
             case Sum(terms=terms):
                 self._split_sum(glue, left, terms, right, depth)
             case Product(factors=factors):
-                self._split_product(glue, left, numbers_first(factors), right, depth)
+                self._split_product(glue, left, numbers_first(factors), right, depth, hang)
             case Negative(operand=operand):
                 minus = Edge(f"{left.latex}-", left.width + MINUS)
-                self.place(glue, minus, operand, as_term, right, depth)
+                self.place(glue, minus, operand, as_term, right, depth, hang)
             case Quotient(numerator=above, denominator=below):
                 self.place(glue, left, above, _as_numerator, Edge(), depth)
-                self.place(_SLASH._replace(depth=depth), Edge(), below, _as_denominator, right, depth)
+                self.place(
+                    _SLASH._replace(depth=depth + hang), Edge(), below, _as_denominator, right, depth + hang
+                )
             case Power(base=base, exponent=exponent):
                 raised = self._raised(exponent)
                 after = Edge(f"{raised.latex}{right.latex}", raised.width + right.width)
@@ -220,12 +248,12 @@ class _Filler:
                     sign = _MINUS._replace(depth=depth)
                 else:
                     before = Edge(f"{left.latex}-", left.width + MINUS)
-                self.place(sign, before, term.operand, as_term, after, depth)
+                self.place(sign, before, term.operand, as_term, after, depth, 1)
             else:
-                self.place(sign, before, term, as_term, after, depth)
+                self.place(sign, before, term, as_term, after, depth, 1)
 
     def _split_product(
-        self, glue: Glue, left: Edge, factors: list[Expression], right: Edge, depth: int
+        self, glue: Glue, left: Edge, factors: list[Expression], right: Edge, depth: int, hang: int
     ) -> None:
         pieces = [as_factor(self._writer.piece(factor)) for factor in factors]
         long = [i for i, piece in enumerate(pieces) if piece.width > _LONG * self._others]
@@ -241,19 +269,20 @@ class _Filler:
         for index, (factor, piece) in enumerate(zip(factors, pieces, strict=True)):
             sign, edge = glue, left
             if index:
-                between, width = between_factors(pieces[index - 1], piece)
-                start, start_width = (_DOT, CDOT) if width == CDOT else (_TIMES, TIMES)
-                sign, edge = Glue(between, width, start, start_width, depth), Edge()
-            self.place(sign, edge, factor, as_factor, right if index == len(factors) - 1 else Edge(), depth)
+                between, gap = between_factors(pieces[index - 1], piece)
+                start, start_width = (_DOT, CDOT) if gap == CDOT_SIZES else (_TIMES, TIMES)
+                sign, edge = Glue(between, gap.text, start, start_width, depth + hang), Edge()
+            inner = depth + hang if index else depth
+            self.place(sign, edge, factor, as_factor, right if index == len(factors) - 1 else Edge(), inner)
 
     def _split_call(
         self, glue: Glue, left: Edge, name: str, argument: Expression, right: Edge, depth: int
     ) -> None:
         if name == "sqrt":
-            after = Edge(f"^{{1/2}}{right.latex}", 1.5 + right.width)
+            after = Edge(f"^{{1/2}}{right.latex}", _SQUARE_ROOT + right.width)
             self.place(glue, left, argument, fenced, after, depth)
             return
-        head = Edge(f"{left.latex}{FUNCTIONS[name].latex}", left.width + operator_width(name))
+        head = Edge(f"{left.latex}{FUNCTIONS[name].latex}", left.width + operator_size(name).text)
         self.place(glue, head, argument, fenced, right, depth)
 
     def _split_number(self, glue: Glue, left: Edge, node: Number, right: Edge, depth: int) -> None:
@@ -266,6 +295,7 @@ class _Filler:
 
     def _split_digits(self, glue: Glue, left: Edge, text: str, right: Edge, depth: int) -> None:
         """Set a number too long for a line: its digits go on in the next."""
+        depth = max(depth, glue.depth)
         edges = left.width + right.width + glue.start_width
         if "e" in text or DIGIT * len(text) + edges <= self._rest(depth):
             piece = number_piece(text)
@@ -283,9 +313,9 @@ class _Filler:
 
     def _raised(self, exponent: Expression) -> Edge:
         if is_half(exponent):
-            return Edge("^{1/2}", 1.5)
+            return Edge("^{1/2}", _SQUARE_ROOT)
         piece = self._writer.exponent(exponent)
-        return Edge(f"^{{{piece.latex}}}", SCRIPT * piece.width + THIN)
+        return Edge(f"^{{{piece.latex}}}", piece.size.script + SCRIPT_SPACE.text)
 
 
 def _beside(pieces: Sequence[Piece], *, leading: bool = False) -> Edge:
@@ -295,7 +325,7 @@ def _beside(pieces: Sequence[Piece], *, leading: bool = False) -> Edge:
     alone = pieces[0] if leading else pieces[-1]
     latex, extra = joined(pieces)
     rest = latex.removeprefix(alone.latex) if leading else latex.removesuffix(alone.latex)
-    return Edge(rest, sum(piece.width for piece in pieces) - alone.width + extra)
+    return Edge(rest, sum(piece.width for piece in pieces) - alone.width + extra.text)
 
 
 def _as_numerator(piece: Piece) -> Piece:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from symflex.emit.export import Export
 from symflex.emit.forms import print_forms
-from symflex.emit.latex import TEXT_WIDTH_MM, latex_document, latex_files
+from symflex.emit.latex import TEXT_WIDTH_MM, Picture, latex_document, latex_files
 from symflex.errors import ModelError, SymflexError
 from symflex.roots.locate import locate
 from symflex.transfer import bind
@@ -18,11 +18,20 @@ if TYPE_CHECKING:
     from symflex.emit.forms import PrintedForm
     from symflex.model import Model
     from symflex.roots import PoleZeroMap
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import BoundTransferFunction, TransferFunction
 
 
 ROOT_DIGITS = 15
 """Digits to which roots are found for a table; it prints fewer."""
+
+DEFAULT_FIGURES = {"bode": "Frequency responses", "poles_zeros": "Poles and zeros", "modes": "Lowest modes"}
+"""Figures of kinds that the model asks for none of."""
+
+MOST_IN_A_FIGURE = 6
+"""So many functions a figure holds that the model did not ask for."""
+
+TALLEST_MM = 225.0
+"""Of a figure with what it shows in words, on a page of the document."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,10 +44,13 @@ class LatexExporter:
         Width of the column.
     form : str, optional
         Of the transfer functions; the shortest symbolic one by default.
+    has_figures : bool
+        The files hold figures; a document in one file has none.
     """
 
     width_mm: float = TEXT_WIDTH_MM
     form: str | None = None
+    has_figures: bool = True
 
     suffix = ".tex"
     summary = "standalone LaTeX document: parameters, transfer functions, poles, zeros, modes"
@@ -56,7 +68,64 @@ class LatexExporter:
     ) -> tuple[dict[str, str], tuple[str, ...]]:
         """Return the files by name, to be written into one folder, and the warnings."""
         forms, maps, warnings = self._parts(tfs)
-        return latex_files(model, tfs, forms, pole_zero_maps=maps, width_mm=self.width_mm), warnings
+        pictures, more = self._pictures(model, tfs) if self.has_figures else ([], [])
+        files = latex_files(model, tfs, forms, pole_zero_maps=maps, pictures=pictures, width_mm=self.width_mm)
+        return files, (*warnings, *more)
+
+    def _pictures(self, model: Model, tfs: Sequence[TransferFunction]) -> tuple[list[Picture], list[str]]:
+        """Return the model's figures, one of each kind besides, and why others are left out."""
+        bounds: list[BoundTransferFunction] = []
+        for tf in tfs:
+            try:
+                bound = bind(tf)
+            except ModelError:
+                continue  # as for the tables
+            if not bound.ratio.is_zero:
+                bounds.append(bound)
+        pictures: list[Picture] = []
+        warnings: list[str] = []
+        for figure in model.figures if bounds else ():
+            names = {"/".join(pair) for pair in figure.of}
+            of = [bound for bound in bounds if not names or bound.name in names]
+            if of:
+                title = figure.title or DEFAULT_FIGURES.get(figure.kind, figure.kind)
+                self._add(pictures, warnings, figure.name, figure.kind, of, title)
+        asked = {figure.kind for figure in model.figures}
+        for kind, title in DEFAULT_FIGURES.items() if bounds else ():
+            if kind not in asked:
+                self._add(pictures, warnings, kind, kind, bounds[:MOST_IN_A_FIGURE], title)
+        return pictures, warnings
+
+    def _add(
+        self,
+        pictures: list[Picture],
+        warnings: list[str],
+        name: str,
+        kind: str,
+        bounds: Sequence[BoundTransferFunction],
+        title: str,
+    ) -> None:
+        """Draw one figure, without its title, which stands below it."""
+        from symflex.emit.figures import draw, render  # imports matplotlib
+        from symflex.emit.figures.pgf import MM_PER_INCH
+
+        of = bounds[:1] if kind == "modes" else bounds  # all functions of a model have the same modes
+        sources = [bound.source for bound in of]
+        try:
+            figure = draw(kind, sources, of, width_mm=self.width_mm, font="latex")
+        except SymflexError as error:
+            is_without_modes = kind == "modes" and error.diagnostics[0].code == "SF402"
+            if not is_without_modes:
+                warnings.append(f"the figure {name} is left out: {error.diagnostics[0].message}")
+            return
+        height = MM_PER_INCH * figure.get_figheight()
+        if height > TALLEST_MM:
+            warnings.append(f"the figure {name} is left out: it is {height:.0f} mm high")
+            return
+        is_told = kind == "modes" or title not in DEFAULT_FIGURES.values()
+        shown = () if is_told else tuple(sources)
+        latex = render(figure, "pgf", font="latex").decode("ascii")
+        pictures.append(Picture(name, latex, title, shown))
 
     def _parts(
         self, tfs: Sequence[TransferFunction]

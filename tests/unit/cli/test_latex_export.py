@@ -50,6 +50,7 @@ def test_an_equation_is_broken_to_the_column_asked_for(chain):
         ("derive", "x.toml", "--format", "latex", "--width", "wide"),
         ("export", "x.toml", "--to", "numpy", "--width", "ieee"),
         ("export", "x.toml", "--to", "numpy", "--form", "monic"),
+        ("export", "x.toml", "--to", "numpy", "--no-figures"),
         ("export", "x.toml", "--to", "latex", "--width", "3mm"),
         ("export", "x.toml", "--to", "latex", "--form", "hyperbolic"),
     ],
@@ -78,14 +79,17 @@ def test_a_function_is_normalised_as_asked(shell, form, denominator):
 
 def test_a_folder_holds_a_file_for_every_function_and_table(chain):
     done = chain("export", "chain.toml", "--to", "latex", "-o", "paper/")
-    assert (done.code, done.out, done.err) == (0, "", "wrote 9 files to paper/\n")
+    assert (done.code, done.out, done.err) == (0, "", "wrote 12 files to paper/\n")
     files = {p.name: p.read_text(encoding="ascii") for p in (chain.folder / "paper").iterdir()}
     tables = [f"{tf}_over_F{kind}.tex" for tf in "XY" for kind in ("", "_poles", "_zeros")]
-    assert set(files) == {"document.tex", "modes.tex", "parameters.tex", *tables}
+    figures = [f"{kind}.pgf" for kind in ("bode", "poles_zeros", "modes")]
+    assert set(files) == {"document.tex", "modes.tex", "parameters.tex", *tables, *figures}
     inputs = re.findall(r"\\input\{([^}]*)\}", files.pop("document.tex"))
-    assert {f"{name}.tex" for name in inputs} == set(files)
+    figures = {"bode.pgf", "poles_zeros.pgf", "modes.pgf"}
+    assert {name if name in figures else f"{name}.tex" for name in inputs} == set(files)
     assert r"\label{eq:X_over_F}" in files["X_over_F.tex"]
     needs = {name: re.search(r"\\usepackage\{([a-z,]+)\}", text)[1] for name, text in files.items()}
+    assert needs["bode.pgf"] == "pgf"
     assert needs["X_over_F.tex"] == "amsmath"
     assert needs["X_over_F_poles.tex"] == "amsmath,array,booktabs,siunitx"
 
@@ -98,7 +102,7 @@ def test_an_existing_folder_needs_no_slash(chain):
 
 def test_the_files_make_the_same_document_as_the_document(chain):
     whole = chain("export", "chain.toml", "--to", "latex", "--width", "120").out
-    chain("export", "chain.toml", "--to", "latex", "--width", "120", "-o", "paper/")
+    chain("export", "chain.toml", "--to", "latex", "--width", "120", "--no-figures", "-o", "paper/")
 
     def contents(match):
         lines = (chain.folder / "paper" / f"{match[1]}.tex").read_text().splitlines()

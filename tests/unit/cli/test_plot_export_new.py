@@ -9,7 +9,9 @@ from symflex.emit.exporters import EXPORTERS
 
 
 @pytest.mark.parametrize(
-    ("suffix", "begin"), [("pdf", b"%PDF"), ("svg", b"<?xml"), ("png", b"\x89PNG")], ids=str
+    ("suffix", "begin"),
+    [("pdf", b"%PDF"), ("pgf", b"% Figure of 88.9 mm by"), ("svg", b"<?xml"), ("png", b"\x89PNG")],
+    ids=str,
 )
 def test_a_figure_is_written_in_the_format_of_its_name(shell, suffix, begin):
     done = shell("plot", "x.toml", "poles_zeros", "-o", f"a.{suffix}")
@@ -50,6 +52,9 @@ def test_a_figure_of_the_specification_is_drawn_by_its_name(shell):
         (("bode", "-o", "a.gif"), "SF902"),
         (("bode", "-o", "no/such/folder/a.pdf"), "SF903"),
         (("bode", "--tf", "X/G"), "SF902"),
+        (("bode", "--font", "tims"), "SF902"),
+        (("bode", "--width", "wide"), "SF902"),
+        (("bode", "--width", "20"), "SF902"),
     ],
     ids=str,
 )
@@ -57,6 +62,19 @@ def test_a_figure_that_cannot_be_made_is_a_usage_error(shell, arguments, code):
     done = shell("plot", "x.toml", *arguments)
     assert done.code == 2
     assert f"error[{code}]" in done.err
+
+
+@pytest.mark.parametrize(("width", "written"), [("ieee", "88.5mm"), ("a4", "170mm"), ("120.5 mm", "120.5mm")])
+def test_a_figure_is_as_wide_as_asked_for(shell, width, written):
+    assert shell("plot", "x.toml", "poles_zeros", "--width", width, "-o", "a.pgf").code == 0
+    text = (shell.folder / "a.pgf").read_text(encoding="ascii")
+    assert rf"\pgfpathrectangle{{\pgfpointorigin}}{{\pgfqpoint{{{written}}}" in text
+
+
+def test_a_figure_takes_the_font_asked_for(shell):
+    done = shell("plot", "x.toml", "bode", "--font", "latex", "-o", "a.pdf")
+    assert (done.code, done.err) == (0, "wrote a.pdf\n")
+    assert b"Cmr10" in (shell.folder / "a.pdf").read_bytes()
 
 
 def test_a_figure_without_values_says_which(shell):

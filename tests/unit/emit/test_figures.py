@@ -361,7 +361,7 @@ def test_a_multiple_root_carries_its_multiplicity():
 
 def test_a_root_far_away_is_named_at_the_border():
     axes = drawn_rational("poles_zeros", "1/((s + 5000)*(s^2 + 4*s + 4900))").axes[0]
-    assert "× $-5000$" in texts(axes)
+    assert r"$\times$ $-5000$" in texts(axes)
 
 
 def test_a_function_without_poles_and_zeros_has_an_empty_panel():

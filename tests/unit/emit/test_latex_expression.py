@@ -137,7 +137,7 @@ def test_a_long_term_begins_a_line():
 
 
 def test_a_quotient_too_wide_breaks_at_a_slash():
-    assert lines("(a + b)*(c + d)/(e + f)", 6.4) == ["(a + b) (c + d)", "{}/ (e + f)"]
+    assert lines("(a + b)*(c + d)/(e + f)", 6.0) == ["(a + b) (c + d)", "{}/ (e + f)"]
 
 
 def test_a_quotient_broken_within_a_product_stands_in_parentheses():
