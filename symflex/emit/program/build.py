@@ -1,9 +1,10 @@
 """From a transfer function to the programs that compute it.
 
 Input: a :class:`symflex.transfer.TransferFunction`.
-Output: a :class:`Program` per way of evaluating it. ``closed`` and ``nested`` keep sums such as k + b*s and
-definitions as intermediates, the first in recurrences, the second by powers of s; ``factors`` multiplies out
-every factor by powers of s.
+Output: a :class:`Program` per way of evaluating it. ``closed``, ``closed in s`` and ``nested`` keep sums such
+as k + b*s and definitions as intermediates: the first in recurrences over the elements, the second in
+recurrences that part powers of s too, the third by powers of s; ``factors`` multiplies out every factor by
+powers of s.
 """
 
 from __future__ import annotations
@@ -92,7 +93,7 @@ def available_forms(tf: TransferFunction) -> tuple[str, ...]:
         closed = tf.closed
         terms = [len(closed.num), len(closed.den), *(len(p) for _, p in closed.closure.sums)]
         if sum(terms) <= TERM_LIMIT:
-            forms += ["closed", "nested"]
+            forms += ["closed", "closed in s", "nested"]
     if sum(len(f) for f, _ in tf.ratio.factors) <= TERM_LIMIT:
         forms.append("factors")
     return tuple(forms)
@@ -249,7 +250,7 @@ def _maker(tf: TransferFunction, form: str) -> Callable[[Generators], tuple[int,
     ring, polynomials = closed.closure.ring, (closed.num, closed.den)
     if form == "nested":
         return lambda g: _quotient(g, [g.polynomial(ring, p) for p in polynomials])
-    plan = plan_recurrences(ring, polynomials)
+    plan = plan_recurrences(ring, polynomials, splits_s=form == "closed in s")
     return lambda g: _quotient(g, express(g.forge, plan, g.images(ring, polynomials)))
 
 

@@ -81,15 +81,25 @@ class Plan:
     roots: tuple[Scaled, ...]
 
 
-def plan_recurrences(ring: Ring, polynomials: Sequence[fmpz_mpoly]) -> Plan:
+def plan_recurrences(ring: Ring, polynomials: Sequence[fmpz_mpoly], *, splits_s: bool = False) -> Plan:
     """Return how to compute several polynomials of a ring with few operations.
+
+    Parameters
+    ----------
+    ring : Ring
+        Its first generator is s.
+    polynomials : sequence of fmpz_mpoly
+        Not zero.
+    splits_s : bool
+        True to split by s like by any other generator. Where every element has parameters of its own, s runs
+        through all of them and parts nothing; where elements share parameters it may be what parts them.
 
     Raises
     ------
     BudgetError
         SF503 when they have so little structure that looking for it takes too long.
     """
-    planner = _Planner(ring)
+    planner = _Planner(ring, splits_s)
     roots = planner.plan_all([_Terms.of(polynomial) for polynomial in polynomials])
     return Plan(tuple(planner.steps), roots)
 
@@ -164,17 +174,13 @@ class _Terms:
     def variables(self) -> list[int]:
         return [int(i) for i in np.flatnonzero(self.exponents.any(axis=0))]
 
-    def split_variables(self) -> list[int]:
-        """Return the variables to split by: s, the first, runs through all of a chain and parts nothing."""
-        variables = self.variables()
-        return [i for i in variables if i] or variables
-
 
 @dataclass
 class _Planner:
     """Finds the steps, the operands of each before itself."""
 
     ring: Ring
+    splits_s: bool
     steps: list[SumStep | ProductStep] = field(default_factory=list)
     _known: dict[tuple[bytes, tuple[int, ...]], int] = field(default_factory=dict)
     _wanted: set[tuple[bytes, tuple[int, ...]]] = field(default_factory=set)
@@ -218,7 +224,8 @@ class _Planner:
         return ProductStep(int(constant), tuple(parts))
 
     def _split(self, terms: _Terms) -> SumStep:
-        variables = terms.split_variables()
+        every = terms.variables()
+        variables = every if self.splits_s else [i for i in every if i] or every
         self._work += terms.exponents.size * len(variables)
         if self._work > WORK_LIMIT:
             raise _without_structure()

@@ -107,8 +107,8 @@ class Verification:
     name : str
         ``OUT/IN``.
     form : str
-        The form evaluated: ``closed``, ``nested`` or ``factors``; of a distributed system ``pieces`` or
-        ``real``.
+        The form evaluated: ``closed``, ``closed in s``, ``nested`` or ``factors``; of a distributed system
+        ``pieces`` or ``real``.
     error : float or None
         The worst ``|dG| / (|G| (1 + |s G'/G|))`` on the imaginary axis: the relative error beyond what one
         rounding of ``s`` would cause. ``None`` when it was not measured.
@@ -301,7 +301,8 @@ def _choose(gauge: _Gauge) -> tuple[Program | Piecewise, Verification]:
     is_long = sum(len(f) for f, _ in tf.ratio.factors) > LONG
     candidates: list[tuple[Program, str, float]] = []
     for form in forms:
-        if form == "factors" and is_long and any(error < ACCURATE for _, _, error in candidates):
+        is_spare = form == "closed in s" or (form == "factors" and is_long)
+        if is_spare and any(error < ACCURATE for _, _, error in candidates):
             continue
         if (program := _program(tf, form)) is not None:
             candidates.append((program, form, references.worst_error(program)))

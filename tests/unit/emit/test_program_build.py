@@ -68,7 +68,7 @@ def values_of(tf):
 EIGHT = chain(8)
 
 
-@pytest.mark.parametrize("form", ["closed", "nested", "factors"])
+@pytest.mark.parametrize("form", ["closed", "closed in s", "nested", "factors"])
 @pytest.mark.parametrize("s", [1e-9j, 3 + 40j, -2 + 1e3j, 1e8 + 1e8j, 1e10j, 1e12j])
 @pytest.mark.parametrize("which", [0, 1])
 def test_eight_masses_agree_with_a_linear_solve_from_1e_minus_9_to_1e12(form, s, which):
@@ -232,7 +232,7 @@ def test_a_program_that_would_fill_megabytes_is_refused(monkeypatch):
 
 
 @pytest.mark.parametrize("s", [0, 0.5, 3j, 1e6j, 1e12j, 1e12])
-@pytest.mark.parametrize("form", ["closed", "nested", "factors"])
+@pytest.mark.parametrize("form", ["closed", "closed in s", "nested", "factors"])
 def test_a_ratio_of_degree_180_over_180_does_not_overflow(form, s):
     text = """
     symflex = 1
