@@ -151,7 +151,9 @@ CHAINS = {
 }
 
 
-@pytest.mark.parametrize("function", ["", "sqrt"], ids=["plain", "inside a function"])
+@pytest.mark.parametrize(
+    "function", ["", pytest.param("sqrt", marks=pytest.mark.slow)], ids=["plain", "inside a function"]
+)
 @pytest.mark.parametrize(("count", "first", "step"), CHAINS.values(), ids=CHAINS)
 def test_a_chain_of_definitions_is_answered(count, first, step, function, tmp_path):
     chain = f"Z0 = {first}\n" + lines("Z{i} = " + step, count, 1)
@@ -243,7 +245,20 @@ MANY = {
 }
 
 
-@pytest.mark.parametrize("text", MANY.values(), ids=MANY)
+COSTLY = {
+    "a dense loop of three hundred signals",
+    "fifteen thousand signals, the first defined last",
+    "signals whose units double their exponents",
+    "published formulas of all of five thousand transfer functions",
+    "fifteen thousand figures of nothing",
+    "nine thousand coefficients",
+}
+"""Their tests take seconds each, and have others of their kind."""
+
+
+@pytest.mark.parametrize(
+    "text", [pytest.param(t, marks=[pytest.mark.slow] if n in COSTLY else [], id=n) for n, t in MANY.items()]
+)
 def test_a_specification_of_many_parts_is_answered(text, tmp_path):
     check(tmp_path, text)
 
@@ -557,7 +572,7 @@ def test_a_dense_network_of_thirty_masses_is_checked(tmp_path):
     "value",
     [
         pytest.param(lambda i, j: 30 * i + j + 1, id="with numbers"),
-        pytest.param(lambda i, j: f'"k{i}_{j}"', id="with symbols"),
+        pytest.param(lambda i, j: f'"k{i}_{j}"', id="with symbols", marks=pytest.mark.slow),
     ],
 )
 def test_the_closed_form_of_a_dense_network_of_thirty_masses_is_refused_as_too_large(value, tmp_path):

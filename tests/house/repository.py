@@ -83,6 +83,11 @@ EACH_TIME = ("sliding_free_beam", "timoshenko_cantilever", "rod_tip_mass")
 """The distributed models that go through every test in every run; the others do with -m slow."""
 
 
+def slow_ones(values, is_slow):
+    """The values as parameters, some of them of slow tests."""
+    return [pytest.param(v, marks=pytest.mark.slow) if is_slow(v) else v for v in values]
+
+
 def in_turns(paths):
     """The paths as parameters: most of the classics, which all go the same way, are marked slow."""
     found = []

@@ -29,6 +29,9 @@ COSTLY = {
     "Timoshenko root, rigid body, slender tip",
     "cantilever of two thicknesses, force at the step",
     "beam of two spans over a spring",
+    "coupled bending and torsion",
+    "pipe conveying fluid",
+    "pipe conveying fluid with a bare tail",
 }
 """Their exports take seconds each."""
 

@@ -9,6 +9,7 @@ import pytest
 from mpmath import cos, cosh, findroot, mp, mpc, mpf, pi, sin, sinh, sqrt, tanh
 
 import symflex
+from tests.house.repository import slow_ones
 from tests.independent.published_roots import (
     CANTILEVER_WITH_ITS_OWN_MASS,
     COS_COSH_MINUS_ONE,
@@ -244,7 +245,7 @@ def finite_elements(count):
     )
 
 
-@pytest.mark.parametrize("count", LOADED_STRING)
+@pytest.mark.parametrize("count", slow_ones(LOADED_STRING, lambda count: count > 200))
 def test_the_discretised_loaded_string_has_the_published_eigenvalues(count):
     found = [omega**2 for omega in natural(finite_elements(count), 6, 20)]
     assert found[0] < 1  # below K/M, where the table begins

@@ -123,7 +123,7 @@ def damped_cantilever(s, load=True):
 @pytest.mark.parametrize(
     ("low", "high"),
     [
-        (-60 + 1j, 1 + 150j),
+        pytest.param(-60 + 1j, 1 + 150j, marks=pytest.mark.slow),
         (-5 - 40j, 5 + 40j),
         pytest.param(-200 + 30j, -10 + 600j, marks=pytest.mark.slow),
         pytest.param(-800 + 400j, -30 + 950j, marks=pytest.mark.slow),

@@ -121,6 +121,7 @@ def test_two_drawings_have_the_same_bytes(kind, format, tfs):
     assert render(drawn(kind, tfs), format) == render(drawn(kind, tfs), format)
 
 
+@pytest.mark.slow
 def test_the_bytes_do_not_depend_on_the_hash_seed():
     assert python(DRAW_ALL, PYTHONHASHSEED="1") == python(DRAW_ALL, PYTHONHASHSEED="2")
 

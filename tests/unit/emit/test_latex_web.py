@@ -59,6 +59,7 @@ def test_one_line_of_mathematics_has_no_environment(printed):
     assert commands(whole) <= COMMANDS
 
 
+@pytest.mark.slow
 def test_the_equations_of_a_paper_add_only_numbers_and_page_breaks(printed):
     shorter = [(tf, form) for tf, form in printed if tf.model.title[:3] != "Six" or form.name != "monic"]
     whole = "\n".join(latex_fragment(tf, form, width_mm=88.5) for tf, form in shorter)

@@ -32,6 +32,7 @@ from symflex.expressions import (
     parse,
     parse_equation,
 )
+from tests.house.repository import slow_ones
 from tests.unit.expressions.texts import text_of
 
 a, b, c, d, s = (Name(name) for name in "abcds")
@@ -463,7 +464,11 @@ HOSTILE = [
 
 
 @pytest.mark.parametrize("limits", [USER_LIMITS, PROGRAM_LIMITS], ids=["user", "program"])
-@pytest.mark.parametrize("written", HOSTILE, ids=lambda written: written[:4])
+@pytest.mark.parametrize(
+    "written",
+    slow_ones(HOSTILE, lambda written: written.startswith(("a*-", "a/"))),
+    ids=lambda written: written[:4],
+)
 def test_a_hostile_text_is_refused_or_read_under_either_limits(written, limits):
     try:
         parse(text_of(written), limits=limits)

@@ -123,6 +123,7 @@ def _nodes(expression):
     return found
 
 
+@pytest.mark.slow
 def test_trees_deeper_than_the_interpreter_can_call_are_walked():
     deep, expected = x, Number(Fraction(1))
     for _ in range(20_000):

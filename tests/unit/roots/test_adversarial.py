@@ -17,6 +17,7 @@ from mpmath import cos, cosh, findroot, mp, mpc, mpf, pi, sin, sqrt, tanh
 import symflex
 from symflex.errors import BudgetError
 from symflex.roots.root import exact_fraction
+from tests.house.repository import slow_ones
 from tests.independent.boundary_value import Problem, bending
 from tests.independent.winding import count_inside, determinant
 
@@ -428,7 +429,10 @@ def not_left_out(case, result, expected):
     ]
 
 
-@pytest.mark.parametrize("case", CASES, ids=IDS)
+LARGE = slow_ones(CASES, lambda case: case.name == "200 masses with losses")
+
+
+@pytest.mark.parametrize("case", LARGE, ids=IDS)
 def test_what_is_certified_is_right(case):
     try:
         result = case.solve()
@@ -463,7 +467,7 @@ def test_what_is_found_is_what_there_is(case):
 # ----------------------------------------------------------------- certified: what the engine has to reach
 
 
-@pytest.mark.parametrize("case", CASES, ids=IDS)
+@pytest.mark.parametrize("case", LARGE, ids=IDS)
 def test_certified_the_whole_region_is_proved(case):
     result = case.solve()
     assert result.certificate.certified

@@ -71,7 +71,7 @@ def sine_modes(e, c, most):
     return sorted(map(complex, found), key=abs)
 
 
-@pytest.mark.parametrize("damping", [0.0, 2.0])
+@pytest.mark.parametrize("damping", [0.0, pytest.param(2.0, marks=pytest.mark.slow)])
 def test_pinned_coupled_bending_and_torsion_solves_a_quartic_per_mode(damping):
     found = upper(blade(PINNED, c=f"{damping} N*s/m^2"), Modes(6))
     assert found == pytest.approx(sine_modes(0.008, damping, 12)[:6], rel=1e-9, abs=1e-7)
@@ -102,6 +102,7 @@ def test_a_clamped_blade_against_shooting():
     assert [s.imag for s in found] == pytest.approx([s.imag for s in expected], rel=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.slow
 def test_a_blade_that_is_hardly_coupled_bends_and_twists_by_itself():
     # Blevins 1979: cos x cosh x = -1, and (2 n - 1) pi/2 of a clamped-free shaft.
@@ -141,6 +142,7 @@ def test_a_simply_supported_sandwich_beam_has_modes_of_sines():
     assert [s.imag for s in upper(SANDWICH, Modes(5))] == pytest.approx(list(expected), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_region_of_coupled_bending_and_torsion_is_certified():
     expected = [s for s in sine_modes(0.008, 2.0, 12) if 500 < s.imag < 2000]
     found = upper(blade(PINNED, c="2 N*s/m^2"), Rectangle(-50, 0, 500, 2000))
