@@ -1,0 +1,3 @@
+"""Measured frequency responses."""
+from symflex.measurement.measured_response import MeasuredResponse
+__all__ = ["MeasuredResponse"]
