@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     from symflex.audit import Audit
     from symflex.equations import Equations
     from symflex.explanation import ZeroExplanation
+    from symflex.fitting import Fit
+    from symflex.measurement import MeasuredResponse, MeasurementPlan
     from symflex.rational import RationalApproximation, Residue
     from symflex.roots import Budget, PoleZeroMap, Region
     from symflex.sensitivity import Sensitivity
@@ -251,3 +253,82 @@ def audit(model: Model, names: Sequence[str] = ()) -> tuple[Audit, ...]:
         raise SpecError(*problems)
     derived = derive_all(model, tuple(p.tf for p in chosen)) if chosen else ()
     return tuple(audit_room.judge(tf, p) for tf, p in zip(derived, chosen, strict=True))
+
+
+def fit(
+    measured: Sequence[MeasuredResponse],
+    base: str | Path | None = None,
+    names: Sequence[str] = (),
+    *,
+    modes: int | None = None,
+    start: str = "auto",
+    criterion: str = "bic",
+    is_gain_free: bool = False,
+    slope: int | None = None,
+) -> Fit:
+    """Fit resonances to measured responses; see :func:`symflex.fitting.fit_resonances`.
+
+    Parameters
+    ----------
+    measured : sequence of MeasuredResponse
+        Responses that share their poles.
+    base : str or Path, optional
+        The specification whose transfer functions the resonances are multiplied by.
+    names : sequence of str
+        Its transfer functions, one per response or one for all.
+    modes, start, criterion, is_gain_free, slope
+        As there; a gain is fitted in any case without a base.
+
+    Raises
+    ------
+    UsageError
+        SF902 for a name the base does not have, or more or fewer of them than responses.
+    """
+    from symflex import fitting  # imports numpy and scipy
+    from symflex.response import respond
+
+    if base is None:
+        return fitting.fit_resonances(measured, None, modes=modes, start=start, criterion=criterion, slope=slope)
+    model = load(base)
+    pairs = pick_pairs(model, names)[: None if names else 1]
+    if len(pairs) == 1:
+        pairs = pairs * len(measured)
+    if len(pairs) != len(measured):
+        message = f"{len(measured)} responses and {len(pairs)} transfer functions of the base"
+        raise UsageError(Diagnostic("SF902", message, None, "name one with --tf for each response"))
+    bounds = dict(zip(pairs, derive_bound(model, pairs), strict=True))
+    bases = [
+        fitting.Base(
+            lambda omega, bound=bounds[pair]: respond(bound, omega).values,
+            "/".join(pair),
+            str(base),
+            bounds[pair].source.unit,
+        )
+        for pair in pairs
+    ]
+    return fitting.fit_resonances(
+        measured,
+        bases,
+        modes=modes,
+        start=start,
+        criterion=criterion,
+        is_gain_free=is_gain_free,
+        slope=slope,
+    )
+
+
+def fit_specification(found: Fit, folder: str | Path) -> str:
+    """Return a fit as a specification that stands in a folder; see :func:`symflex.fitting.fit_specification`."""
+    from symflex.fitting.specification import fit_specification as written
+
+    taken = {p.name for path in {b.path for b in found.bases if b.path} for p in load(path).parameters}
+    return written(found, folder, taken)
+
+
+def measure(model: Model, pair: tuple[str, str], plan: MeasurementPlan) -> MeasuredResponse:
+    """Return a synthetic measurement of one transfer function; see :func:`symflex.measurement.synthesise`."""
+    from symflex.measurement import synthesise  # imports numpy
+    from symflex.response import respond
+
+    (bound,) = derive_bound(model, [pair])
+    return synthesise("/".join(pair), lambda omega: respond(bound, omega).values, plan, bound.source.unit)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from symflex.emit.figures.bode import draw_bode, draw_response
 from symflex.emit.figures.drawing import Drawing
+from symflex.emit.figures.fit import draw_fit
 from symflex.emit.figures.modes import draw_modes
 from symflex.emit.figures.poles_zeros import draw_poles_zeros
 from symflex.emit.figures.save import FORMATS, render, save
@@ -31,7 +32,7 @@ FIGURES: dict[str, Drawing] = {
     "poles_zeros": draw_poles_zeros,
 }
 
-__all__ = ["FIGURES", "FORMATS", "Drawing", "draw", "draw_response", "render", "save"]
+__all__ = ["FIGURES", "FORMATS", "Drawing", "draw", "draw_fit", "draw_response", "render", "save"]
 
 
 def draw(
