@@ -29,6 +29,9 @@ if TYPE_CHECKING:
     from decimal import Decimal
     from fractions import Fraction
 
+    import numpy as np
+    import numpy.typing as npt
+
     from symflex.audit import Audit
     from symflex.equations import Equations
     from symflex.explanation import ZeroExplanation
@@ -40,6 +43,9 @@ if TYPE_CHECKING:
     from symflex.spec import Spec
     from symflex.state_space import StateSpace
     from symflex.transfer import BoundTransferFunction, TransferFunction
+
+    Array = npt.NDArray[np.float64]
+    ComplexArray = npt.NDArray[np.complex128]
 
 
 def parse(text: str, name: str = "<string>") -> Spec:
@@ -264,6 +270,7 @@ def fit(
     start: str = "auto",
     criterion: str = "bic",
     is_gain_free: bool = False,
+    is_lag_free: bool = False,
     slope: int | None = None,
 ) -> Fit:
     """Fit resonances to measured responses; see :func:`symflex.fitting.fit_resonances`.
@@ -276,7 +283,7 @@ def fit(
         The specification whose transfer functions the resonances are multiplied by.
     names : sequence of str
         Its transfer functions, one per response or one for all.
-    modes, start, criterion, is_gain_free, slope
+    modes, start, criterion, is_gain_free, is_lag_free, slope
         As there; a gain is fitted in any case without a base.
 
     Raises
@@ -288,7 +295,15 @@ def fit(
     from symflex.response import respond
 
     if base is None:
-        return fitting.fit_resonances(measured, None, modes=modes, start=start, criterion=criterion, slope=slope)
+        return fitting.fit_resonances(
+            measured,
+            None,
+            modes=modes,
+            start=start,
+            criterion=criterion,
+            is_lag_free=is_lag_free,
+            slope=slope,
+        )
     model = load(base)
     pairs = pick_pairs(model, names)[: None if names else 1]
     if len(pairs) == 1:
@@ -297,15 +312,14 @@ def fit(
         message = f"{len(measured)} responses and {len(pairs)} transfer functions of the base"
         raise UsageError(Diagnostic("SF902", message, None, "name one with --tf for each response"))
     bounds = dict(zip(pairs, derive_bound(model, pairs), strict=True))
-    bases = [
-        fitting.Base(
-            lambda omega, bound=bounds[pair]: respond(bound, omega).values,
-            "/".join(pair),
-            str(base),
-            bounds[pair].source.unit,
-        )
-        for pair in pairs
-    ]
+    bases = []
+    for pair in pairs:
+        bound = bounds[pair]
+
+        def function(omega: Array, bound: BoundTransferFunction = bound) -> ComplexArray:
+            return respond(bound, omega).values
+
+        bases.append(fitting.Base(function, "/".join(pair), str(base), bound.source.unit))
     return fitting.fit_resonances(
         measured,
         bases,
@@ -313,12 +327,15 @@ def fit(
         start=start,
         criterion=criterion,
         is_gain_free=is_gain_free,
-        slope=slope,
+        is_lag_free=is_lag_free,
     )
 
 
 def fit_specification(found: Fit, folder: str | Path) -> str:
-    """Return a fit as a specification that stands in a folder; see :func:`symflex.fitting.fit_specification`."""
+    """Return the specification of a fit that will stand in a folder.
+
+    See :func:`symflex.fitting.specification.fit_specification`.
+    """
     from symflex.fitting.specification import fit_specification as written
 
     taken = {p.name for path in {b.path for b in found.bases if b.path} for p in load(path).parameters}

@@ -20,8 +20,12 @@ SUFFIXES = (".pdf", ".png", ".svg")
 @click.command("fit")
 @click.argument("data", type=click.Path(), nargs=-1, required=True)
 @click.option("--base", type=click.Path(), help="Specification whose function the resonances multiply.")
-@click.option("--tf", "tfs", multiple=True, metavar="OUT/IN", help="That function; repeat it, one per response.")
-@click.option("--modes", type=click.IntRange(1, 50), help="How many resonances; chosen by --criterion if absent.")
+@click.option(
+    "--tf", "tfs", multiple=True, metavar="OUT/IN", help="That function; repeat it, one per response."
+)
+@click.option(
+    "--modes", type=click.IntRange(1, 50), help="How many resonances; chosen by --criterion if absent."
+)
 @click.option(
     "--start",
     type=click.Choice(["auto", "peaks", "vector", "aaa"]),
@@ -36,12 +40,19 @@ SUFFIXES = (".pdf", ".png", ".svg")
     show_default=True,
     help="Chooses the number of resonances.",
 )
-@click.option("--band", nargs=2, type=float, metavar="LO HI", help="Only the lines between these frequencies [Hz].")
-@click.option("--gain", "is_gain_free", is_flag=True, help="Fit a gain besides the base too.")
-@click.option("--slope", type=click.IntRange(-6, 6), help="Without --base: the power of s; chosen if absent.")
-@click.option("--averages", type=click.FloatRange(1), help="Independent averages, where the file does not say.")
 @click.option(
-    "--window", type=click.Choice(["hann", "none"]), help="Time window of the estimate, if the file does not say."
+    "--band", nargs=2, type=float, metavar="LO HI", help="Only the lines between these frequencies [Hz]."
+)
+@click.option("--gain", "is_gain_free", is_flag=True, help="Fit a gain besides the base too.")
+@click.option("--lag", "is_lag_free", is_flag=True, help="Fit a lag of the sensor, 1/(1 + T s).")
+@click.option("--slope", type=click.IntRange(-6, 6), help="Without --base: the power of s; chosen if absent.")
+@click.option(
+    "--averages", type=click.FloatRange(1), help="Independent averages, where the file does not say."
+)
+@click.option(
+    "--window",
+    type=click.Choice(["hann", "none"]),
+    help="Time window of the estimate, if the file does not say.",
 )
 @click.option("-o", "--output", type=click.Path(), help="Specification to write.")
 @click.option("--plot", "figure", type=click.Path(), help="Figure to write: .pdf, .svg or .png.")
@@ -57,6 +68,7 @@ def command(
     criterion: str,
     band: tuple[float, float] | None,
     is_gain_free: bool,
+    is_lag_free: bool,
     slope: int | None,
     averages: float | None,
     window: str | None,
@@ -93,6 +105,7 @@ def command(
         start=start,
         criterion=criterion,
         is_gain_free=is_gain_free,
+        is_lag_free=is_lag_free,
         slope=slope,
     )
     if as_json:
@@ -108,9 +121,9 @@ def command(
 
         for r in range(len(measured)):
             place = Path(figure)
-            path = place if r == 0 else place.with_stem(f"{place.stem}_{r + 1}")
-            save(draw_fit(found, r), path)
-            note(f"wrote {path}")
+            one = place if r == 0 else place.with_stem(f"{place.stem}_{r + 1}")
+            save(draw_fit(found, r), one)
+            note(f"wrote {one}")
     return 0
 
 

@@ -14,11 +14,17 @@ from symflex.errors import Diagnostic, UsageError
 @click.argument("spec", type=click.Path())
 @click.option("--tf", metavar="OUT/IN", help="The transfer function; the first one by default.")
 @click.option("-o", "--output", type=click.Path(), required=True, help="File to write: .csv, .npz or .uff.")
-@click.option("--band", nargs=2, type=float, metavar="LO HI", help="Lines shown [Hz].  [default: [analysis] band]")
+@click.option(
+    "--band", nargs=2, type=float, metavar="LO HI", help="Lines shown [Hz].  [default: [analysis] band]"
+)
 @click.option("--spacing", type=float, help="Distance of lines [Hz].  [default: HI/800]")
 @click.option("--averages", type=click.IntRange(1), default=40, show_default=True, help="Records averaged.")
 @click.option(
-    "--noise", type=click.FloatRange(0), default=0.03, show_default=True, help="Sensor noise over its signal, rms."
+    "--noise",
+    type=click.FloatRange(0),
+    default=0.03,
+    show_default=True,
+    help="Sensor noise over its signal, rms.",
 )
 @click.option(
     "--rolloff",
@@ -64,9 +70,7 @@ def command(
             message = "the specification has no [analysis] band"
             raise UsageError(Diagnostic("SF902", message, None, "give one with --band LO HI"))
         band = (float(model.analysis.band[0]), float(model.analysis.band[1]))
-    plan = MeasurementPlan(
-        band[0], band[1], spacing or band[1] / 800, averages, noise, rolloff or None, seed
-    )
+    plan = MeasurementPlan(band[0], band[1], spacing or band[1] / 800, averages, noise, rolloff or None, seed)
     plan.check()
     measured = pipeline.measure(model, pairs[0], plan)
     write_atomically(Path(output), measurement_bytes(measured, output))

@@ -48,8 +48,10 @@ def fit_text(fit: Fit, width: int = 80) -> str:
         for i in range(found.count):
             z, e = found, errors
             lines.append(_row(i, z.omega_z[r, i], e.omega_z[r, i], z.zeta_z[r, i], e.zeta_z[r, i]))
-        if fit.problem.is_gain_free:
+        if fit.problem.free.gain:
             lines.append(f"  gain {found.gain[r]:.6g}, standard error {errors.gain[r]:.2g}")
+        if fit.problem.free.lag:
+            lines.append(f"  lag of the sensor {found.lag[r]:.4g} s, standard error {errors.lag[r]:.2g} s")
     lines.append("")
     for r, measured in enumerate(fit.measured):
         name = f" of {measured.name}" if found.responses > 1 else ""
@@ -80,7 +82,8 @@ def fit_json(fit: Fit) -> dict[str, object]:
         "schema": SCHEMA,
         "modes": found.count,
         "start": fit.candidate.start_kind,
-        "gain_fitted": fit.problem.is_gain_free,
+        "gain_fitted": fit.problem.free.gain,
+        "lag_fitted": fit.problem.free.lag,
         "poles": _pairs(found.omega_p, found.zeta_p, errors.omega_p, errors.zeta_p),
         "responses": [_response_json(fit, r) for r in range(found.responses)],
         "residual": {
@@ -118,6 +121,7 @@ def _response_json(fit: Fit, r: int) -> dict[str, object]:
         "base": {"spec": base.path, "tf": base.tf} if base.path else None,
         "slope": None if base.path else base.slope,
         "gain": {"value": float(found.gain[r]), "standard_error": float(errors.gain[r])},
+        "lag": {"value": float(found.lag[r]), "standard_error": float(errors.lag[r])},
         "zeros": _pairs(found.omega_z[r], found.zeta_z[r], errors.omega_z[r], errors.zeta_z[r]),
         "start": [
             {
@@ -171,7 +175,9 @@ def _is_scaled(fit: Fit) -> bool:
 
 
 def _wrapped(text: str, width: int, indent: str = "  ") -> list[str]:
-    return textwrap.wrap(text, width, initial_indent=indent, subsequent_indent=indent + "  ", break_on_hyphens=False)
+    return textwrap.wrap(
+        text, width, initial_indent=indent, subsequent_indent=indent + "  ", break_on_hyphens=False
+    )
 
 
 def _what(fit: Fit, r: int) -> str:
@@ -189,7 +195,9 @@ def _data_line(fit: Fit, r: int) -> str:
     if measured.coherence is None:
         parts.append("no coherence: all lines weigh alike")
     else:
-        parts.append(f"coherence {measured.coherence.min():.3f} or more, median {np.median(measured.coherence):.3f}")
+        parts.append(
+            f"coherence {measured.coherence.min():.3f} or more, median {np.median(measured.coherence):.3f}"
+        )
         if measured.averages:
             parts.append(f"{measured.averages:g} averages")
     if measured.window:

@@ -10,9 +10,21 @@ import numpy.typing as npt
 
 from symflex.errors import DataError, Diagnostic, FitError, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.fitting.order import CRITERIA, STARTS, Candidate, Score, best_of_starts, chosen_order, too_few
+from symflex.fitting.order import (
+    CRITERIA,
+    LOWER,
+    MOST_MODES,
+    STARTS,
+    Candidate,
+    Score,
+    best_of_starts,
+    chosen_order,
+    too_few,
+)
+from symflex.fitting.peaks import find_modes
 from symflex.fitting.phase_test import PhaseTest, judge_phase
 from symflex.fitting.problem import FitProblem, fit_problem
+from symflex.fitting.resonances import MILLISECOND, Free
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -27,6 +39,9 @@ Complex = npt.NDArray[np.complex128]
 SLOPES = range(-6, 7)
 FEWEST_LINES = 8
 WEAK = 0.5
+LARGE = 2.0
+SMOOTH = 3.0
+"""A Hann window makes this 2, see :attr:`symflex.fitting.least_squares.Refined.correlation`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +71,7 @@ class Base:
     @staticmethod
     def power(slope: int) -> Base:
         """Return the base ``s^slope``."""
-        return Base(lambda omega: (1j * omega) ** slope, slope=slope)
+        return Base(lambda omega: np.asarray((1j * omega) ** slope, np.complex128), slope=slope)
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,20 +125,23 @@ class Fit:
         return line.base_at_lines * (resonances or self.resonances).factor(response, line.omega)
 
     def standard_errors(self) -> Resonances:
-        """Return the standard error of every parameter, in a record of the same shape; 0 for what was fixed."""
+        """Return the standard error of every parameter, in a record of the same shape; 0 for what was
+        fixed."""
         covariance = self.refined.covariance
         assert covariance is not None
         deviation = np.sqrt(np.diag(covariance))
         found = self.resonances
-        n, free = found.count, self.problem.is_gain_free
-        rest = deviation[2 * n :].reshape(found.responses, 2 * n + free)
-        gain = np.abs(found.gain) * rest[:, 2 * n] if free else np.zeros(found.responses)
+        n, free = found.count, self.problem.free
+        rest = deviation[2 * n :].reshape(found.responses, 2 * n + free.count)
+        none = np.zeros(found.responses)
+        gain = np.abs(found.gain) * rest[:, 2 * n] if free.gain else none
         return type(found)(
             found.omega_p * deviation[:n],
             found.zeta_p * deviation[n : 2 * n],
             found.omega_z * rest[:, :n],
             rest[:, n : 2 * n],
             gain,
+            MILLISECOND * rest[:, -1] if free.lag else none,
         )
 
     def misfit_db(self, response: int) -> float:
@@ -147,6 +165,7 @@ def fit_resonances(
     start: str = "auto",
     criterion: str = "bic",
     is_gain_free: bool | None = None,
+    is_lag_free: bool = False,
     slope: int | None = None,
 ) -> Fit:
     """Fit simple resonances, in cascade with a known base, to one or several measured responses.
@@ -165,6 +184,8 @@ def fit_resonances(
         ``bic`` or ``aicc``.
     is_gain_free : bool, optional
         Whether a gain is fitted too; by default only without a base.
+    is_lag_free : bool
+        Whether a lag of each sensor, 1/(1 + T s), is fitted too.
     slope : int, optional
         The power of s of a fit without base; by default the one with the lowest criterion.
 
@@ -175,8 +196,8 @@ def fit_resonances(
     DataError
         SF605 too few lines for what is asked.
     FitError
-        SF611 no (or not enough) resonances to begin with; SF612 no convergence; SF613 parameters that the data do
-        not determine; SF614 a pole that left the band; SF615 a base that vanishes in it.
+        SF611 no (or not enough) resonances to begin with; SF612 no convergence; SF613 parameters that the
+        data do not determine; SF614 a pole that left the band; SF615 a base that vanishes in it.
 
     Examples
     --------
@@ -201,34 +222,27 @@ def fit_resonances(
             message = f"'{response.name}' has {response.values.size} lines; such a fit needs {needed} or more"
             raise DataError(Diagnostic("SF605", message))
     if bases is not None:
-        return _fit(measured, tuple(bases), modes, start, criterion, is_gain_free=bool(is_gain_free))
-    if slope is not None:
-        tried = [slope]
-    else:
-        guess = _slope_of(measured[0])
-        tried = [n for n in (guess, guess - 1, guess + 1, guess - 2, guess + 2) if n in SLOPES]
-    best: Fit | None = None
-    failure: FitError | None = None
-    for power in tried:
-        same = tuple(Base.power(power) for _ in measured)
-        try:
-            found = _fit(measured, same, modes, start, criterion, is_gain_free=True)
-        except FitError as error:
-            failure = failure or error
+        return _fit(measured, tuple(bases), modes, start, criterion, Free(bool(is_gain_free), is_lag_free))
+    free = Free(True, is_lag_free)
+    power = _best_slope(measured, modes, free) if slope is None else slope
+    same = tuple(Base.power(power) for _ in measured)
+    return _fit(measured, same, modes, start, criterion, free)
+
+
+def _best_slope(measured: Sequence[MeasuredResponse], modes: int | None, free: Free) -> int:
+    """Return the power of s near that of the lowest lines with which a quick fit comes closest."""
+    guess = _slope_of(measured[0])
+    best, least = guess, np.inf
+    for power in (guess, guess - 1, guess + 1, guess - 2, guess + 2):
+        if power not in SLOPES:
             continue
-        if best is None or _criterion(found) < _criterion(best):
-            best = found
-    if best is None:
-        assert failure is not None
-        raise failure
+        function = Base.power(power).function
+        problem = fit_problem(measured, [function] * len(measured), free).without_window()
+        count = modes or min(max(len(find_modes(problem)), 1), MOST_MODES)
+        found = best_of_starts(problem, count, is_quick=True)
+        if found is not None and found.refined.cost < LOWER * least:
+            best, least = power, found.refined.cost
     return best
-
-
-def _criterion(fit: Fit) -> float:
-    size = 2 * fit.problem.count
-    return size * float(np.log(max(fit.refined.cost, np.finfo(float).tiny))) + fit.refined.parameters * float(
-        np.log(size)
-    )
 
 
 def _slope_of(measured: MeasuredResponse) -> int:
@@ -245,16 +259,17 @@ def _fit(
     modes: int | None,
     start: str,
     criterion: str,
-    *,
-    is_gain_free: bool,
+    free: Free,
 ) -> Fit:
-    problem = fit_problem(measured, [base.function for base in bases], is_gain_free=is_gain_free)
+    problem = fit_problem(measured, [base.function for base in bases], free)
     for line, base in zip(problem.lines, bases, strict=True):
         wrong = ~np.isfinite(line.base) | (line.base == 0)
         if wrong.any():
             place = float(line.observation.omega[int(np.argmax(wrong))]) / (2 * np.pi)
             message = f"the base {base.tf} is zero or infinite at {place:.4g} Hz, inside the band measured"
-            raise FitError(Diagnostic("SF615", message, None, "a base needs damping, or --band a smaller band"))
+            raise FitError(
+                Diagnostic("SF615", message, None, "a base needs damping, or --band a smaller band")
+            )
     scores: tuple[Score, ...] = ()
     if modes is None:
         candidate, scores = chosen_order(problem, start, criterion)
@@ -300,9 +315,12 @@ def _warnings(fit: Fit) -> tuple[str, ...]:
                 "Hann window, say --window hann, or damping comes out too large"
             )
             break
-    if fit.problem.has_deviations and all(m.averages for m in fit.measured) and fit.refined.reduced > 2:
+    if fit.problem.has_deviations and all(m.averages for m in fit.measured) and fit.refined.reduced > LARGE:
         warnings.append(
             f"the residual is {np.sqrt(fit.refined.reduced):.2g} times what coherence explains: "
             "the model lacks something that the data show"
         )
+    if fit.refined.correlation > SMOOTH:
+        lacking = "" if fit.problem.free.lag else ", as the lag of a sensor would: try --lag"
+        warnings.append(f"neighbouring lines deviate together: the model lacks something smooth{lacking}")
     return tuple(warnings)

@@ -2,13 +2,14 @@
 
 Two residuals are used one after the other.
 
-``logarithmic``: ln(G/H), the logarithm of the quotient of model and measurement. A peak missed by a factor of two counts
-as much as a trough missed by a factor of two, in magnitude and in phase, and the way from a poor start is short.
+``logarithmic``: ln(G/H), the logarithm of the quotient of model and measurement. A peak missed by a factor
+of two counts as much as a trough missed by a factor of two, in magnitude and in phase, and the way from a
+poor start is short.
 
-``complex``: (G - H)/sigma with the standard deviation sigma of each measured line, known from coherence. It is the
-maximum-likelihood residual of an H1 estimate, whose error is complex, Gaussian and independent of sigma's own
-error; troughs drowned in noise pull nothing their way, where a logarithm would be biased. As sigma is a share of
-the magnitude, resonances and antiresonances still count alike.
+``complex``: (G - H)/sigma with the standard deviation sigma of each measured line, known from coherence. It
+is the maximum-likelihood residual of an H1 estimate, whose error is complex, Gaussian and independent of
+sigma's own error; troughs drowned in noise pull nothing their way, where a logarithm would be biased. As
+sigma is a share of the magnitude, resonances and antiresonances still count alike.
 """
 
 from __future__ import annotations
@@ -30,7 +31,8 @@ Complex = npt.NDArray[np.complex128]
 STEPS = 100
 TOLERANCE = 1e-9
 CAP = 0.05
-"""Added to the deviation in the logarithmic residual: no line may be so heavy that a poor start is torn by it."""
+"""Added to the deviation in the logarithmic residual: no line may be so heavy that a poor start is torn by
+it."""
 LARGEST_LAG = 3
 SINGULAR = 1e-12
 EDGE = 12.0
@@ -53,6 +55,8 @@ class Refined:
         Of the packed parameters; None when the lines do not determine all of them.
     correlation : float
         What correlated neighbouring lines multiply the variance of a mean by; 1 for independent lines.
+    parameters : int
+        How many parameters were found.
     """
 
     resonances: Resonances
@@ -60,23 +64,12 @@ class Refined:
     residuals: tuple[Complex, ...]
     covariance: Real | None
     correlation: float
+    parameters: int
 
     @property
     def cost(self) -> float:
         """The sum of squares."""
         return float(sum(np.sum(np.abs(r) ** 2) for r in self.residuals))
-
-    @property
-    def parameters(self) -> int:
-        """How many parameters were found."""
-        r = self.resonances
-        return self.free_gains + 2 * r.count * (1 + r.responses)
-
-    @property
-    def free_gains(self) -> int:
-        """How many of them are gains."""
-        r = self.resonances
-        return 0 if self.covariance is None else self.covariance.shape[0] - 2 * r.count * (1 + r.responses)
 
     @property
     def reduced(self) -> float:
@@ -113,12 +106,12 @@ def refine_directly(problem: FitProblem, start: Resonances, *, steps: int = STEP
 
 
 def _descend(problem: FitProblem, start: Resonances, kind: str, steps: int) -> tuple[Resonances, bool]:
-    packed = start.pack(is_gain_free=problem.is_gain_free)
+    packed = start.pack(problem.free)
     if not packed.size:
         return start, True
 
     def resonances(vector: Real) -> Resonances:
-        return start.unpack(vector, is_gain_free=problem.is_gain_free)
+        return start.unpack(vector, problem.free)
 
     def residual(vector: Real) -> Real:
         return _parts(np.concatenate(_residuals(problem, resonances(vector), kind)))
@@ -146,7 +139,7 @@ def _parts(values: Complex) -> Real:
 
 
 def _residuals(problem: FitProblem, resonances: Resonances, kind: str) -> list[Complex]:
-    found = []
+    found: list[Complex] = []
     for r, line in enumerate(problem.lines):
         model = problem.values(resonances, r)
         if kind == "logarithmic":
@@ -159,7 +152,7 @@ def _residuals(problem: FitProblem, resonances: Resonances, kind: str) -> list[C
 
 
 def _slopes(problem: FitProblem, resonances: Resonances, kind: str) -> list[Complex]:
-    found = []
+    found: list[Complex] = []
     for r, line in enumerate(problem.lines):
         model, slopes = problem.linearised(resonances, r)
         if kind == "logarithmic":
@@ -170,8 +163,8 @@ def _slopes(problem: FitProblem, resonances: Resonances, kind: str) -> list[Comp
     return found
 
 
-def _capped(deviation: Real | None) -> Real | float:
-    return 1.0 if deviation is None else np.hypot(deviation, CAP)
+def _capped(deviation: Real | None) -> Real:
+    return np.ones(1) if deviation is None else np.hypot(deviation, CAP)
 
 
 def _judged(problem: FitProblem, found: Resonances, *, has_converged: bool) -> Refined:
@@ -179,15 +172,15 @@ def _judged(problem: FitProblem, found: Resonances, *, has_converged: bool) -> R
     residuals = _residuals(problem, found, kind)
     slopes = _slopes(problem, found, kind)
     covariance, correlation = _covariance(residuals, slopes)
-    return Refined(found, has_converged, tuple(residuals), covariance, correlation)
+    return Refined(found, has_converged, tuple(residuals), covariance, correlation, slopes[0].shape[1])
 
 
 def _covariance(residuals: list[Complex], slopes: list[Complex]) -> tuple[Real | None, float]:
     """Return the covariance of the parameters, None when it is singular, and the factor of correlation.
 
-    Windows and overlapping records correlate neighbouring lines, so that the inverse of J'J alone would promise too
-    much: the correlation up to :data:`LARGEST_LAG` lines is estimated from the residuals and enters between two
-    such inverses (White 1980; Newey & West 1987). The scale is that of the residuals.
+    Windows and overlapping records correlate neighbouring lines, so that the inverse of J'J alone would
+    promise too much: the correlation up to :data:`LARGEST_LAG` lines is estimated from the residuals and
+    enters between two such inverses (White 1980; Newey & West 1987). The scale is that of the residuals.
     """
     stacked = np.concatenate([_parts(s) for s in slopes])
     if not stacked.shape[1]:

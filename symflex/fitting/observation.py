@@ -4,8 +4,8 @@ With a stationary input of flat spectrum the expectation of an H1 estimate with 
 
     H_seen(f) = integral abs(W(f - f'))^2 H(f') df' / integral abs(W)^2
 
-(Bendat & Piersol, Random Data, 4th ed. 2010, sections 8.5 and 9.1: resolution bias). A peak whose width is a few
-lines looks lower and broader than it is; fitted without this, its damping would come out too large.
+(Bendat & Piersol, Random Data, 4th ed. 2010, sections 8.5 and 9.1: resolution bias). A peak whose width is
+a few lines looks lower and broader than it is; fitted without this, its damping would come out too large.
 """
 
 from __future__ import annotations
@@ -45,8 +45,8 @@ class Observation:
         """Return the lines that values at :attr:`omega` give; shape (k,) or (k, p) to (n,) or (n, p)."""
         if self.matrix is None:
             return values
-        seen = self.matrix @ values
-        return seen if self.mirror is None else seen + self.mirror @ np.conj(values)
+        seen: Complex = np.asarray(self.matrix @ values)
+        return seen if self.mirror is None else np.asarray(seen + self.mirror @ np.conj(values))
 
 
 def observe(frequency_hz: Real, spacing_hz: float | None, window: str) -> Observation:

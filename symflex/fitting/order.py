@@ -26,7 +26,7 @@ STARTS: Mapping[str, Callable[[FitProblem, int], Resonances | None]] = {
 """Ways to begin; ``auto`` tries all and keeps the lowest residual."""
 
 CRITERIA = ("bic", "aicc")
-MOST_MODES = 20
+MOST_MODES = 12
 PATIENCE = 1
 QUICK_STEPS = 25
 EXPLAINED = 1.15
@@ -161,7 +161,9 @@ def no_resonance(problem: FitProblem) -> Diagnostic:
     """Return the message that there is nothing to fit."""
     low, high = (value / (2 * np.pi) for value in problem.band)
     message = f"the data show no resonance between {low:.4g} and {high:.4g} Hz that the base does not have"
-    return Diagnostic("SF611", message, None, "check the base and the band; --modes N asks for N all the same")
+    return Diagnostic(
+        "SF611", message, None, "check the base and the band; --modes N asks for N all the same"
+    )
 
 
 def too_few(problem: FitProblem, count: int, kind: str) -> Diagnostic:
@@ -179,7 +181,7 @@ def _nothing(problem: FitProblem) -> Resonances:
     for line in problem.lines:
         middle = complex(np.median(line.ratio.real), 0)
         size = float(np.exp(np.median(np.log(np.abs(line.ratio)))))
-        gains.append((size if middle.real >= 0 else -size) if problem.is_gain_free else 1.0)
+        gains.append((size if middle.real >= 0 else -size) if problem.free.gain else 1.0)
     empty = np.zeros((len(gains), 0))
     return Resonances(np.zeros(0), np.zeros(0), empty, empty, np.array(gains))
 
@@ -197,7 +199,7 @@ def _signs_tried(problem: FitProblem, best: Candidate) -> Candidate:
             now = best.refined.resonances
             flipped = now.zeta_z.copy()
             flipped[r, i] = -flipped[r, i]
-            start = Resonances(now.omega_p, now.zeta_p, now.omega_z, flipped, now.gain)
+            start = Resonances(now.omega_p, now.zeta_p, now.omega_z, flipped, now.gain, now.lag)
             residual = sum(
                 float(np.sum(np.abs(np.log(problem.values(start, k) / line.measured.values)) ** 2))
                 for k, line in enumerate(problem.lines)

@@ -1,8 +1,8 @@
 """A start from the magnitude alone, by the procedure of the paper.
 
-For each resonance, starting with the lowest: compare the model so far with the data; the peak is omega_p, the trough
-omega_z; zeta_p matches the height of the peak, zeta_z the depth of the trough (Eppinger & Seering 1988, section
-"Polynomial Resonance Model").
+For each resonance, starting with the lowest: compare the model so far with the data; the peak is omega_p,
+the trough omega_z; zeta_p matches the height of the peak, zeta_z the depth of the trough (Eppinger &
+Seering 1988, section "Polynomial Resonance Model").
 """
 
 from __future__ import annotations
@@ -20,13 +20,14 @@ if TYPE_CHECKING:
 
 Real = npt.NDArray[np.float64]
 
-LEAST_PROMINENCE = 0.1
-"""Of the logarithm of the magnitude: 0.9 dB."""
+LEAST_PROMINENCE = 0.02
+"""Of the logarithm of the magnitude: 0.2 dB, below the shoulders that close pairs leave."""
 NOISE_MULTIPLE = 5.0
 TYPICAL_RATIO, TYPICAL_DAMPING = 1.1, 0.05
 """omega_z over omega_p, and the damping ratio, that the paper calls typical."""
 LOWEST_DAMPING, HIGHEST_DAMPING = 1e-4, 0.5
 MATCHING_STEPS = 30
+SMOOTHED = 5
 
 
 def find_modes(problem: FitProblem) -> list[int]:
@@ -69,10 +70,11 @@ def _one_response(
     line = problem.lines[response]
     omega, ratio = line.omega, line.ratio
     gain = 1.0
-    if problem.is_gain_free:
+    if problem.free.gain:
         # The sign is that of the lowest lines, where no resonance has turned the phase yet.
-        low = ratio[: max(3, peaks[0] // 3)]
-        gain = float(np.exp(np.median(np.log(np.abs(low)))) * (1 if np.median(low.real) >= 0 else -1))
+        first = ratio[: max(3, peaks[0] // 3)]
+        sign = 1 if np.median(first.real) >= 0 else -1
+        gain = sign * float(np.exp(np.median(np.log(np.abs(first)))))
     level = np.log(np.abs(ratio / gain))
     modes: list[tuple[float, float, float, float]] = []
     for i, peak in enumerate(peaks):
@@ -122,11 +124,11 @@ def _level(problem: FitProblem, response: int) -> Real:
 
 def _noise(level: Real) -> float:
     """Return the scatter of a smoothed level from line to line."""
-    if level.size < 4:
+    if level.size < SMOOTHED:
         return 0.0
     second = np.diff(level, 2)
-    return float(np.median(np.abs(second))) / 0.6745 / np.sqrt(6) * np.sqrt(0.49)
+    return float(np.median(np.abs(second)) / 0.6745 / np.sqrt(6) * np.sqrt(0.49))
 
 
 def _smoothed(level: Real) -> Real:
-    return savgol_filter(level, 5, 2) if level.size > 5 else level
+    return savgol_filter(level, SMOOTHED, 2) if level.size > SMOOTHED else level

@@ -88,6 +88,7 @@ def judge_phase(problem: FitProblem, response: int, fitted: Resonances) -> Phase
         fitted.omega_z[response : response + 1],
         np.maximum(np.abs(fitted.zeta_z[response : response + 1]), LOWEST_DAMPING),
         fitted.gain[response : response + 1],
+        fitted.lag[response : response + 1],
     )
     n = start.count
     damping = slice(3 * n, 4 * n)
@@ -95,7 +96,7 @@ def judge_phase(problem: FitProblem, response: int, fitted: Resonances) -> Phase
     def resonances(vector: Real) -> Resonances:
         plain = vector.copy()
         plain[damping] = np.exp(plain[damping])
-        return start.unpack(plain, is_gain_free=problem.is_gain_free)
+        return start.unpack(plain, problem.free)
 
     def residual(vector: Real) -> Real:
         model = single.values(resonances(vector), 0)
@@ -108,7 +109,7 @@ def judge_phase(problem: FitProblem, response: int, fitted: Resonances) -> Phase
         found[:, damping] *= now.zeta_z[0]
         return found
 
-    packed = start.pack(is_gain_free=problem.is_gain_free)
+    packed = start.pack(problem.free)
     packed[damping] = np.log(packed[damping])
     if packed.size:
         with np.errstate(all="ignore"):  # a trial step may be wild

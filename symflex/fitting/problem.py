@@ -13,7 +13,7 @@ from symflex.fitting.observation import Observation, observe
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from symflex.fitting.resonances import Resonances
+    from symflex.fitting.resonances import Free, Resonances
     from symflex.measurement import MeasuredResponse
 
 Real = npt.NDArray[np.float64]
@@ -61,12 +61,12 @@ class FitProblem:
     ----------
     lines : tuple of FittedLines
         One per response; they share their poles.
-    is_gain_free : bool
-        Whether each response has a gain of its own to find.
+    free : Free
+        What is found of each response besides its resonances.
     """
 
     lines: tuple[FittedLines, ...]
-    is_gain_free: bool
+    free: Free
     count: int = field(init=False)
 
     def __post_init__(self) -> None:
@@ -99,15 +99,14 @@ class FitProblem:
         line = self.lines[response]
         omega = line.observation.omega
         inside = line.base * resonances.factor(response, omega)
-        slopes = resonances.log_derivatives(response, omega, is_gain_free=self.is_gain_free)
+        slopes = resonances.log_derivatives(response, omega, self.free)
         return line.observation(inside), line.observation(inside[:, None] * slopes)
 
 
 def fit_problem(
     measured: Sequence[MeasuredResponse],
     bases: Sequence[Callable[[Real], Complex]],
-    *,
-    is_gain_free: bool,
+    free: Free,
 ) -> FitProblem:
     """Return the problem of fitting resonances to responses, given the known factor of each.
 
@@ -117,8 +116,8 @@ def fit_problem(
         At least one.
     bases : sequence of functions
         Of angular frequencies [rad/s], one per response.
-    is_gain_free : bool
-        Whether each response has a gain of its own to find.
+    free : Free
+        What is found of each response besides its resonances.
     """
     lines = []
     for response, base in zip(measured, bases, strict=True):
@@ -126,4 +125,4 @@ def fit_problem(
         at_lines = base(response.omega)
         everywhere = at_lines if observation.matrix is None else base(observation.omega)
         lines.append(FittedLines(response, observation, everywhere, at_lines, response.relative_deviation()))
-    return FitProblem(tuple(lines), is_gain_free)
+    return FitProblem(tuple(lines), free)

@@ -1,10 +1,10 @@
 """Starts from rational approximation: vector fitting and AAA.
 
-Both fit the quotient of measurement and base by a rational function with as many poles as zeros, and both are exact on
-data without noise. Sources: Gustavsen & Semlyen, Rational approximation of frequency domain responses by vector
-fitting, IEEE Trans. Power Delivery 14(3), 1999; Gustavsen, Improving the pole relocating properties of vector fitting,
-IEEE Trans. Power Delivery 21(3), 2006 (relaxed); Nakatsukasa, Sete & Trefethen, The AAA algorithm for rational
-approximation, SIAM J. Sci. Comput. 40(3), 2018.
+Both fit the quotient of measurement and base by a rational function with as many poles as zeros, and both
+are exact on data without noise. Sources: Gustavsen & Semlyen, Rational approximation of frequency domain
+responses by vector fitting, IEEE Trans. Power Delivery 14(3), 1999; Gustavsen, Improving the pole
+relocating properties of vector fitting, IEEE Trans. Power Delivery 21(3), 2006 (relaxed); Nakatsukasa, Sete
+& Trefethen, The AAA algorithm for rational approximation, SIAM J. Sci. Comput. 40(3), 2018.
 """
 
 from __future__ import annotations
@@ -91,6 +91,10 @@ def _state_matrix(poles: Complex) -> tuple[Real, Real]:
     return a, b
 
 
+def _eigenvalues(matrix: Real) -> Complex:
+    return np.asarray(np.linalg.eigvals(matrix), np.complex128)
+
+
 def _relocated(problem: FitProblem, poles: Complex) -> Complex:
     """Return the poles after relaxed vector fitting; pairs stay pairs, and stay stable."""
     for _ in range(ITERATIONS):
@@ -111,9 +115,12 @@ def _relocated(problem: FitProblem, poles: Complex) -> Complex:
             total += float(np.linalg.norm(weight * np.abs(line.ratio))) ** 2
         size = sum(line.omega.size for line in problem.lines)
         mean = np.sqrt(total) / size
-        summed = sum(
-            np.concatenate((_basis(line.omega, poles).real.sum(axis=0), [line.omega.size]))
-            for line in problem.lines
+        summed = np.sum(
+            [
+                np.concatenate((_basis(line.omega, poles).real.sum(axis=0), [line.omega.size]))
+                for line in problem.lines
+            ],
+            axis=0,
         )
         rows.append(mean * summed[None, :])
         right.append(np.array([mean * size]))
@@ -122,7 +129,7 @@ def _relocated(problem: FitProblem, poles: Complex) -> Complex:
         solution = np.linalg.lstsq(matrix / norms, target, rcond=None)[0] / norms
         a, b = _state_matrix(poles)
         direct = solution[-1] if abs(solution[-1]) > SETTLED else SETTLED
-        moved = _upper(np.linalg.eigvals(a - np.outer(b, solution[:-1]) / direct), poles.size)
+        moved = _upper(_eigenvalues(a - np.outer(b, solution[:-1]) / direct), poles.size)
         change = np.max(np.abs(moved - poles) / np.abs(poles))
         poles = moved
         if change < SETTLED:
@@ -160,7 +167,7 @@ def _from_poles(problem: FitProblem, poles: Complex, count: int) -> Resonances |
         solved = solved / norms
         a, b = _state_matrix(poles)
         direct = solved[-1] if abs(solved[-1]) > SETTLED * np.abs(line.ratio).max() else SETTLED
-        zeros = np.linalg.eigvals(a - np.outer(b, solved[:-1]) / direct)
+        zeros = _eigenvalues(a - np.outer(b, solved[:-1]) / direct)
         pairs = _zero_pairs(zeros, low / WIDER, high * WIDER)
         if len(pairs) != count:
             return None
@@ -177,7 +184,7 @@ def _from_poles(problem: FitProblem, poles: Complex, count: int) -> Resonances |
 def _gain(
     problem: FitProblem, response: int, poles: Complex, pairs: list[tuple[float, float]], sign: float
 ) -> float:
-    if not problem.is_gain_free:
+    if not problem.free.gain:
         return 1.0
     line = problem.lines[response]
     table = np.array(pairs)

@@ -39,7 +39,11 @@ def fit_specification(fit: Fit, folder: str | Path, taken: Collection[str] = ())
     """
     found, errors = fit.resonances, fit.standard_errors()
     prefix = ""
-    while any(name.startswith(f"{prefix}{stem}") for name in taken for stem in ("omega_", "zeta_", "c_fit")):
+    while any(
+        name.startswith(f"{prefix}{stem}")
+        for name in taken
+        for stem in ("omega_", "zeta_", "c_fit", "T_sensor")
+    ):
         prefix += "fit_"
     outputs = _output_names(fit)
     source_name = fit.bases[0].tf.split("/")[1] if fit.bases[0].tf else _input_name(fit)
@@ -60,7 +64,7 @@ def fit_specification(fit: Fit, folder: str | Path, taken: Collection[str] = ())
             relative = os.path.relpath(os.path.abspath(base.path), os.path.abspath(folder))
             blocks[block] = {"type": "model", "spec": relative.replace(os.sep, "/"), "tf": base.tf}
             parts.append(block)
-        if fit.problem.is_gain_free:
+        if fit.problem.free.gain:
             gain = f"{prefix}c_fit{tail}"
             error = errors.gain[r]
             parameters[gain] = {
@@ -83,8 +87,21 @@ def fit_specification(fit: Fit, folder: str | Path, taken: Collection[str] = ())
                 "zeta_z": zeta,
             }
             parts.append(block)
+        if fit.problem.free.lag:
+            lag, block = f"{prefix}T_sensor{tail}", f"L_sensor{tail}"
+            value = float(found.lag[r])
+            parameters[lag] = {
+                "value": f"{_plain(abs(value))} s",
+                "assume": "nonnegative",
+                "doc": f"lag of the sensor, standard error {errors.lag[r]:.2g} s",
+            }
+            ends = ("0", lag) if value >= 0 else (lag, "0")
+            blocks[block] = {"type": "lead_lag", "T_1": ends[0], "T_2": ends[1]}
+            parts.append(block)
         if not base.path and base.slope:
-            parts.append("s" if base.slope == 1 else f"s^{base.slope}" if base.slope > 0 else f"(1/s^{-base.slope})")
+            parts.append(
+                "s" if base.slope == 1 else f"s^{base.slope}" if base.slope > 0 else f"(1/s^{-base.slope})"
+            )
         factors.append(parts)
     files = ", ".join(dict.fromkeys(m.name for m in fit.measured))
     kind = "SYNTHETIC data" if any(m.is_synthetic for m in fit.measured) else "measured data"
@@ -99,7 +116,8 @@ def fit_specification(fit: Fit, folder: str | Path, taken: Collection[str] = ())
             "blocks": blocks,
             "inputs": {source_name: {}},
             "outputs": {
-                output: "*".join([*parts, source_name]) for output, parts in zip(outputs, factors, strict=True)
+                output: "*".join([*parts, source_name])
+                for output, parts in zip(outputs, factors, strict=True)
             },
             "analysis": {"band": [f"{low:.6g} Hz", f"{high:.6g} Hz"]},
         }

@@ -53,7 +53,8 @@ def read_mat(name: str, data: bytes, stem: str) -> tuple[MeasuredResponse, ...]:
     Raises
     ------
     DataError
-        SF601 no such file, or version 7.3; SF602 variables missing; SF603, SF604, SF605 values; SF607 too large.
+        SF601 no such file, or version 7.3; SF602 variables missing; SF603, SF604, SF605 values; SF607 too
+        large.
     """
     from scipy.io import loadmat
     from scipy.io.matlab import MatReadError
@@ -93,9 +94,9 @@ def responses_of(arrays: Mapping[str, np.ndarray], name: str, stem: str) -> tupl
     Parameters
     ----------
     arrays : mapping of str to array
-        ``frequency_hz`` (n) or ``omega`` [rad/s]; ``values`` (n, or m rows of n), or ``re`` and ``im``; names are
-        compared without case, and some usual ones are understood. ``coherence``, ``averages``, ``window``, ``unit``,
-        ``tf`` (m names), ``synthetic`` where known.
+        ``frequency_hz`` (n) or ``omega`` [rad/s]; ``values`` (n, or m rows of n), or ``re`` and ``im``;
+        names are compared without case, and some usual ones are understood. ``coherence``, ``averages``,
+        ``window``, ``unit``, ``tf`` (m names), ``synthetic`` where known.
     name : str
         What messages call the file.
     stem : str
@@ -139,7 +140,11 @@ def responses_of(arrays: Mapping[str, np.ndarray], name: str, stem: str) -> tupl
     lines = _numeric(frequency, name, "frequency_hz").real.ravel()
     table = _rows(_numeric(values, name, "values"), lines.size, name, "values")
     coherence = first(COHERENCE)
-    weights = None if coherence is None else _rows(_numeric(coherence, name, "coherence").real, lines.size, name, "coherence")
+    weights = (
+        None
+        if coherence is None
+        else _rows(_numeric(coherence, name, "coherence").real, lines.size, name, "coherence")
+    )
     if weights is not None and len(weights) != len(table):
         message = f"'{name}': {len(weights)} rows of coherence for {len(table)} of values"
         raise DataError(Diagnostic("SF602", message, None, _HINT))

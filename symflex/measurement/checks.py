@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
     from symflex.errors import Span
 
-Real = npt.NDArray[np.float64] if TYPE_CHECKING else object
-
 FEWEST_LINES = 3
+MOST_AVERAGES = 1e9
+SHOWN_NAMES = 8
 
 
 def checked_response(
@@ -39,15 +39,17 @@ def checked_response(
     Raises
     ------
     DataError
-        SF603 values that are no numbers, or out of range; SF604 frequencies that repeat or do not increase; SF605
-        too few lines; SF607 too many.
+        SF603 values that are no numbers, or out of range; SF604 frequencies that repeat or do not increase;
+        SF605 too few lines; SF607 too many.
     """
     frequency, values, coherence = response.frequency_hz, response.values, response.coherence
     if frequency.size > MAX_LINES:
         raise DataError(Diagnostic("SF607", f"'{file}' has more than {MAX_LINES} lines"))
     problems: list[Diagnostic] = []
 
-    def note(code: str, wrong: npt.NDArray[np.bool_], column: str, say: Callable[[int], str], hint: str) -> None:
+    def note(
+        code: str, wrong: npt.NDArray[np.bool_], column: str, say: Callable[[int], str], hint: str
+    ) -> None:
         for i in np.flatnonzero(wrong)[: MAX_ERRORS - len(problems)].tolist():
             span = span_of(i, column)
             place = "" if span else f"'{file}', line {i + 1} of {response.name}: "
@@ -110,6 +112,7 @@ def checked_response(
 def nowhere(index: int, column: str) -> Span | None:
     """Return no place: arrays have none."""
     del index, column
+    return None
 
 
 def averages_of(text: str, file: str, span: Span | None = None) -> float:
@@ -124,7 +127,7 @@ def averages_of(text: str, file: str, span: Span | None = None) -> float:
         number = float(text)
     except ValueError:
         number = float("nan")
-    if not 1 <= number <= 1e9:
+    if not 1 <= number <= MOST_AVERAGES:
         place = "" if span else f"'{file}': "
         message = f"{place}the number of averages is '{text[:40]}'"
         raise DataError(Diagnostic("SF603", message, span, "a number from 1 on"))
@@ -144,5 +147,5 @@ def window_of(text: str) -> str:
 
 def listed_names(names: Sequence[str]) -> str:
     """Return some names for a message."""
-    shown = ", ".join(name[:30] for name in names[:8])
-    return shown + (", ..." if len(names) > 8 else "")  # noqa: PLR2004
+    shown = ", ".join(name[:30] for name in names[:SHOWN_NAMES])
+    return shown + (", ..." if len(names) > SHOWN_NAMES else "")

@@ -1,7 +1,8 @@
 r"""Frequency responses as text in columns.
 
-A header line names the columns; comment lines begin with ``#``, ``%`` or ``!``, and such a line may hold what the columns
-cannot: ``# tf: A_tip/V_cmd``, ``# averages: 40``, ``# window: hann``, ``# unit: m/(V*s^2)``, ``# synthetic: yes``.
+A header line names the columns; comment lines begin with ``#``, ``%`` or ``!``, and such a line may hold
+what the columns cannot: ``# tf: A_tip/V_cmd``, ``# averages: 40``, ``# window: hann``, ``# unit:
+m/(V*s^2)``, ``# synthetic: yes``.
 """
 
 from __future__ import annotations
@@ -24,7 +25,9 @@ if TYPE_CHECKING:
 COMMENTS: Final = ("#", "%", "!", "//")
 _CELL = re.compile(r"[^,;\t ]+(?: +[^,;\t ]+)*")
 _COMMENT_FIELD = re.compile(r"\W*\s*(?P<key>tf|averages|window|unit|synthetic)\s*[:=]\s*(?P<value>.*)", re.I)
-_UNIT = re.compile(r"\s*[\[(](?P<bracket>[^\])]*)[\])]\s*$|[_ ](?P<suffix>hz|khz|rad/s|rad_s|db|deg|rad)$", re.I)
+_UNIT = re.compile(
+    r"\s*[\[(](?P<bracket>[^\])]*)[\])]\s*$|[_ ](?P<suffix>hz|khz|rad/s|rad_s|db|deg|rad)$", re.I
+)
 _NAMES: Final = {
     "frequency": ("frequency", "freq", "f", "frequencies"),
     "omega": ("omega", "w", "angular frequency"),
@@ -40,9 +43,7 @@ _UNITS: Final[dict[str, dict[str, float]]] = {
     "frequency": {"": 1.0, "hz": 1.0, "khz": 1000.0, "rad/s": 1 / (2 * np.pi), "rad_s": 1 / (2 * np.pi)},
     "phase": {"deg": np.pi / 180, "degrees": np.pi / 180, "°": np.pi / 180, "rad": 1.0, "radians": 1.0},
 }
-_HEADER_HINT: Final = (
-    "columns: frequency_hz; re, im or magnitude_db, phase_deg or magnitude, phase_rad; coherence if there is one"
-)
+_HEADER_HINT: Final = "columns: frequency_hz; re, im or magnitude_db, phase_deg or magnitude, phase_rad; coherence if there is one"
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +71,8 @@ def read_columns(name: str, data: bytes, stem: str) -> tuple[MeasuredResponse, .
     Raises
     ------
     DataError
-        SF601 no text; SF602 columns missing, unknown or in an unknown unit; SF603, SF604, SF605, SF607 values.
+        SF601 no text; SF602 columns missing, unknown or in an unknown unit; SF603, SF604, SF605, SF607
+        values.
     """
     text = _decoded(name, data)
     source = Source(name, text)
@@ -105,7 +107,8 @@ def read_columns(name: str, data: bytes, stem: str) -> tuple[MeasuredResponse, .
         averages,
         window_of(told("window")),
         told("unit"),
-        told("synthetic").lower() in ("yes", "true", "1") or "synthetic" in " ".join(_comments(source)).lower(),
+        told("synthetic").lower() in ("yes", "true", "1")
+        or "synthetic" in " ".join(_comments(source)).lower(),
         tuple(_comments(source)),
     )
     return (checked_response(response, name, span_of),)
@@ -128,7 +131,9 @@ def _decoded(name: str, data: bytes) -> str:
         text = data.decode("utf-8").removeprefix("\ufeff")
     except UnicodeDecodeError as error:
         message = f"'{name}' is no text: byte 0x{data[error.start]:02x} at byte offset {error.start}"
-        raise DataError(Diagnostic("SF601", message, None, "binary formats end in .npz, .mat, .uff")) from None
+        raise DataError(
+            Diagnostic("SF601", message, None, "binary formats end in .npz, .mat, .uff")
+        ) from None
     if "\0" in text:
         message = f"'{name}' is no text: it holds NUL characters"
         raise DataError(Diagnostic("SF601", message, None, "binary formats end in .npz, .mat, .uff"))
@@ -186,7 +191,9 @@ def _splitter(header: str) -> Callable[[Source, int, int], list[Span]]:
     return split
 
 
-def _columns(source: Source, split: Callable[[Source, int, int], list[Span]], start: int, end: int) -> list[Column]:
+def _columns(
+    source: Source, split: Callable[[Source, int, int], list[Span]], start: int, end: int
+) -> list[Column]:
     cells = split(source, start, end)
     if all(_number(cell.text) is not None for cell in cells):
         message = "the first line holds numbers: without a header, columns have no meaning"
@@ -219,7 +226,10 @@ def _column(cell: Span, index: int, problems: list[Diagnostic]) -> Column | None
     written = cell.text.strip("\"' ").lower()
     name, unit = written, ""
     if written not in _KINDS and (match := _UNIT.search(written)):
-        name, unit = written[: match.start()].strip(), (match["bracket"] or match["suffix"] or "").strip().lower()
+        name, unit = (
+            written[: match.start()].strip(),
+            (match["bracket"] or match["suffix"] or "").strip().lower(),
+        )
     kind = _KINDS.get(name)
     if kind is None:
         hint = nearest(name, _KINDS) or _HEADER_HINT

@@ -1,7 +1,7 @@
 """A synthetic measurement: what an analyser would show of a model, sensor and noise included.
 
-Band-limited white noise drives the model; its stationary response, sensor noise added, is cut into records with half
-an overlap, windowed (Hann) and averaged to the H1 estimate S_xy/S_xx and the ordinary coherence
+Band-limited white noise drives the model; its stationary response, sensor noise added, is cut into records
+with half an overlap, windowed (Hann) and averaged to the H1 estimate S_xy/S_xx and the ordinary coherence
 abs(S_xy)^2/(S_xx S_yy) (Bendat & Piersol, Random Data, 4th ed. 2010, sections 6.1, 9.1 and 11.5).
 """
 
@@ -80,7 +80,11 @@ class MeasurementPlan:
     def check(self) -> None:
         """Raise SF902 for a plan that cannot be meant, SF607 for one that is too large."""
         values = (self.low_hz, self.high_hz, self.spacing_hz, self.noise, self.rolloff_hz or 1.0)
-        if not np.isfinite(values).all() or not 0 < self.spacing_hz < self.high_hz or not 0 < self.low_hz < self.high_hz:
+        if (
+            not np.isfinite(values).all()
+            or not 0 < self.spacing_hz < self.high_hz
+            or not 0 < self.low_hz < self.high_hz
+        ):
             message = "a measurement needs 0 < LO < HI and a distance of lines below HI"
             raise UsageError(Diagnostic("SF902", message))
         if self.noise < 0 or self.averages < 1 or (self.rolloff_hz is not None and self.rolloff_hz <= 0):
@@ -121,20 +125,24 @@ def synthesise(
     plan.check()
     random = np.random.default_rng(plan.seed)
     size, rate, record = plan.samples, plan.rate_hz, plan.record
-    frequency = np.fft.rfftfreq(size, 1 / rate)
-    excited = (frequency >= LEAST_EXCITED * plan.low_hz) & (frequency <= plan.high_hz + BEYOND * plan.spacing_hz)
+    frequency: Real = np.asarray(np.fft.rfftfreq(size, 1 / rate), np.float64)
+    excited = (frequency >= LEAST_EXCITED * plan.low_hz) & (
+        frequency <= plan.high_hz + BEYOND * plan.spacing_hz
+    )
     spectrum = np.fft.rfft(random.standard_normal(size)) * excited
     response = np.zeros(frequency.size, np.complex128)
     response[excited] = _interpolated(function, frequency[excited], plan)
     if not np.isfinite(response).all():
         message = f"{name} is not finite between {plan.low_hz:g} and {plan.high_hz:g} Hz"
-        raise UsageError(Diagnostic("SF902", message, None, "an undamped resonance has no stationary response"))
+        raise UsageError(
+            Diagnostic("SF902", message, None, "an undamped resonance has no stationary response")
+        )
     if plan.rolloff_hz is not None:
         x = frequency / plan.rolloff_hz
         response = response / (1 - x * x + 2j * SENSOR_DAMPING * x)
     drive, signal = np.fft.irfft(spectrum, size), np.fft.irfft(spectrum * response, size)
     signal = signal + plan.noise * float(signal.std()) * random.standard_normal(size)
-    lines = np.fft.rfftfreq(record, 1 / rate)
+    lines: Real = np.asarray(np.fft.rfftfreq(record, 1 / rate), np.float64)
     window = np.sin(np.pi * np.arange(record) / record) ** 2
     power_in = np.zeros(lines.size)
     power_out = np.zeros(lines.size)

@@ -1,7 +1,7 @@
 """Frequency responses in universal files, datasets 58 and 58b, read by pyuff.
 
-The layout is that of the Structural Dynamics Research Laboratory, University of Cincinnati (universal file datasets
-summary). What pyuff could stumble over is looked at first, so that messages name a line of the file.
+The layout is that of the Structural Dynamics Research Laboratory, University of Cincinnati (universal file
+datasets summary). What pyuff could stumble over is looked at first, so that messages name a line of the file.
 """
 
 from __future__ import annotations
@@ -45,13 +45,15 @@ def read_universal_file(name: str, data: bytes, stem: str) -> tuple[MeasuredResp
     UsageError
         SF902 when pyuff is not installed.
     DataError
-        SF601 no universal file, or a dataset that cannot be read; SF602 none with a frequency response; SF603, SF604,
-        SF605 values; SF607 too many datasets or lines.
+        SF601 no universal file, or a dataset that cannot be read; SF602 none with a frequency response;
+        SF603, SF604, SF605 values; SF607 too many datasets or lines.
     """
     places = _datasets(name, data)
     if not places:
         message = f"'{name}' holds no dataset 58 (function at nodal degree of freedom)"
-        raise DataError(Diagnostic("SF601", message, None, "datasets stand between lines with -1 in columns 5 and 6"))
+        raise DataError(
+            Diagnostic("SF601", message, None, "datasets stand between lines with -1 in columns 5 and 6")
+        )
     if len(places) > MAX_RESPONSES:
         raise DataError(Diagnostic("SF607", f"'{name}' holds more than {MAX_RESPONSES} datasets 58"))
     pyuff = load_pyuff()
@@ -159,7 +161,12 @@ def _response(
     name: str, stem: str, place: DatasetPlace, entry: Mapping[str, Any], coherence: Mapping[str, Any] | None
 ) -> MeasuredResponse:
     lines, values = np.asarray(entry["x"]), np.asarray(entry["data"])
-    if lines.ndim != 1 or lines.shape != values.shape or lines.dtype.kind not in "fiu" or values.dtype.kind not in "fciu":
+    if (
+        lines.ndim != 1
+        or lines.shape != values.shape
+        or lines.dtype.kind not in "fiu"
+        or values.dtype.kind not in "fciu"
+    ):
         message = f"{name}:{place.line}:1: {values.size} values at {lines.size} frequencies"
         raise DataError(Diagnostic("SF601", message))
     weights = None

@@ -75,7 +75,9 @@ def draw_fit(fit: Fit, response: int = 0) -> Figure:
             color=DATA_COLOUR,
             markersize=1.6,
         )
-        bottom.plot(frequency, fitted + np.degrees(np.angle(start / model)), color=COLOURS[4], linestyle=DASHES[3])
+        bottom.plot(
+            frequency, fitted + np.degrees(np.angle(start / model)), color=COLOURS[4], linestyle=DASHES[3]
+        )
         bottom.plot(frequency, fitted, color=COLOURS[0])
         if test.bands:
             alone = fit.values(response, None) * test.resonances.factor(0, line.omega)
