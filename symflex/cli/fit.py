@@ -108,10 +108,6 @@ def command(
         is_lag_free=is_lag_free,
         slope=slope,
     )
-    if as_json:
-        emit_json(fit_json(found))
-    else:
-        click.echo(fit_text(found, terminal_width()))
     if output:
         text = pipeline.fit_specification(found, Path(output).parent)
         write_atomically(Path(output), text.encode())
@@ -124,6 +120,10 @@ def command(
             one = place if r == 0 else place.with_stem(f"{place.stem}_{r + 1}")
             save(draw_fit(found, r), one)
             note(f"wrote {one}")
+    if as_json:
+        emit_json(fit_json(found))
+    else:
+        click.echo(fit_text(found, terminal_width()))
     return 0
 
 

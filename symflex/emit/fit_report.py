@@ -62,9 +62,8 @@ def fit_text(fit: Fit, width: int = 80) -> str:
         lines += ["", "  resonances   parameters          BIC         AICc   residual"]
         for s in fit.scores:
             mark = " <" if s.count == found.count else "" if s.is_usable else " failed"
-            lines.append(
-                f"  {s.count:10d}   {s.parameters:10d}   {s.bic:10.1f}   {s.aicc:10.1f}   {sqrt(s.reduced):8.4g}{mark}"
-            )
+            numbers = f"{s.bic:10.1f}   {s.aicc:10.1f}   {sqrt(s.reduced):8.4g}"
+            lines.append(f"  {s.count:10d}   {s.parameters:10d}   {numbers}{mark}")
         lines += _wrapped(f"chosen by {fit.criterion.upper()}, the lowest of those that did not fail", width)
     lines.append("")
     for r, test in enumerate(fit.phase_tests):
@@ -247,8 +246,8 @@ def _phase_words(test: PhaseTest, fit: Fit, r: int) -> str:
         fitted += " (the base with its own phase)"
     if test.is_minimum_phase:
         return (
-            f"the measured phase is that of {fitted}, within 10 degrees or the noise, from {low:.4g} to {high:.4g} Hz: "
-            "minimum phase"
+            f"the measured phase is that of {fitted}, within 10 degrees or the noise, "
+            f"from {low:.4g} to {high:.4g} Hz: minimum phase"
         )
     bands = "; ".join(
         f"from {b.low_hz:.4g} to {b.high_hz:.4g} Hz, by {b.worst_degrees:+.0f} degrees at {b.worst_hz:.4g} Hz"

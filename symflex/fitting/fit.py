@@ -125,8 +125,7 @@ class Fit:
         return line.base_at_lines * (resonances or self.resonances).factor(response, line.omega)
 
     def standard_errors(self) -> Resonances:
-        """Return the standard error of every parameter, in a record of the same shape; 0 for what was
-        fixed."""
+        """Return the standard error of every parameter, in a record of the same shape; 0 if it was fixed."""
         covariance = self.refined.covariance
         assert covariance is not None
         deviation = np.sqrt(np.diag(covariance))
@@ -311,8 +310,8 @@ def _warnings(fit: Fit) -> tuple[str, ...]:
         if narrow:
             pairs = ", ".join(map(str, narrow))
             warnings.append(
-                f"less than four lines in the half-power bandwidth of pole pair {pairs}: if the estimate used a "
-                "Hann window, say --window hann, or damping comes out too large"
+                f"less than four lines in the half-power bandwidth of pole pair {pairs}: if the estimate "
+                "used a Hann window, say --window hann, or damping comes out too large"
             )
             break
     if fit.problem.has_deviations and all(m.averages for m in fit.measured) and fit.refined.reduced > LARGE:

@@ -22,7 +22,7 @@ import numpy.typing as npt
 from scipy.optimize import least_squares
 
 if TYPE_CHECKING:
-    from symflex.fitting.problem import FitProblem
+    from symflex.fitting.problem import FitProblem, FittedLines
     from symflex.fitting.resonances import Resonances
 
 Real = npt.NDArray[np.float64]
@@ -143,11 +143,9 @@ def _residuals(problem: FitProblem, resonances: Resonances, kind: str) -> list[C
     for r, line in enumerate(problem.lines):
         model = problem.values(resonances, r)
         if kind == "logarithmic":
-            found.append(np.log(model / line.measured.values) / _capped(line.deviation))
+            found.append(np.asarray(np.log(model / line.measured.values) / _capped(line.deviation), complex))
         else:
-            assert line.deviation is not None
-            scale = line.deviation * np.abs(line.measured.values)
-            found.append((model - line.measured.values) / scale)
+            found.append((model - line.measured.values) / _absolute(line))
     return found
 
 
@@ -155,16 +153,19 @@ def _slopes(problem: FitProblem, resonances: Resonances, kind: str) -> list[Comp
     found: list[Complex] = []
     for r, line in enumerate(problem.lines):
         model, slopes = problem.linearised(resonances, r)
-        if kind == "logarithmic":
-            found.append(slopes / (model * _capped(line.deviation))[:, None])
-        else:
-            assert line.deviation is not None
-            found.append(slopes / (line.deviation * np.abs(line.measured.values))[:, None])
+        scale = model * _capped(line.deviation) if kind == "logarithmic" else _absolute(line)
+        found.append(np.asarray(slopes / scale[:, None], np.complex128))
     return found
 
 
 def _capped(deviation: Real | None) -> Real:
     return np.ones(1) if deviation is None else np.hypot(deviation, CAP)
+
+
+def _absolute(line: FittedLines) -> Real:
+    """Return the standard deviation of each part of each line."""
+    assert line.deviation is not None
+    return line.deviation * np.abs(line.measured.values)
 
 
 def _judged(problem: FitProblem, found: Resonances, *, has_converged: bool) -> Refined:

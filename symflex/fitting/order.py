@@ -30,6 +30,8 @@ MOST_MODES = 12
 PATIENCE = 1
 QUICK_STEPS = 25
 EXPLAINED = 1.15
+WEAK = 0.5
+"""Standard error of ln zeta beyond which the criterion's choice is not taken."""
 LOWER = 0.999
 """How far a residual has to fall for another start to count as better."""
 
@@ -147,10 +149,30 @@ def chosen_order(
     for score in sorted((s for s in scores if s.is_usable), key=lambda s: _value(s, criterion)):
         if score.count == 0:
             break
-        best = best_of_starts(problem, score.count, kind)
-        if best is not None and best.failure is None:
+        best = _continued(problem, tried[score.count])
+        if best.failure is not None or not _is_explained(problem, best.refined):
+            again = best_of_starts(problem, score.count, kind)
+            if again is not None and _is_better(again, best):
+                best = again
+        if best.failure is None and not _is_weak(best.refined):
             return best, tuple(scores)
+        scores = [replace(s, is_usable=False) if s.count == score.count else s for s in scores]
     raise FitError(no_resonance(problem))
+
+
+def _is_weak(refined: Refined) -> bool:
+    """Return whether the damping of a pole is lost in its own error: such a resonance fits noise."""
+    covariance = refined.covariance
+    if covariance is None:
+        return True
+    n = refined.resonances.count
+    return bool(np.any(np.sqrt(np.diag(covariance)[n : 2 * n]) > WEAK))
+
+
+def _continued(problem: FitProblem, quick: Candidate) -> Candidate:
+    """Return where a quick fit leads with all steps, and with the window."""
+    refined = refine_directly(problem, quick.refined.resonances, steps=3 * STEPS)
+    return _signs_tried(problem, replace(quick, refined=refined, failure=_failure(problem, refined)))
 
 
 def _value(score: Score, criterion: str) -> float:

@@ -28,6 +28,7 @@ TYPICAL_RATIO, TYPICAL_DAMPING = 1.1, 0.05
 LOWEST_DAMPING, HIGHEST_DAMPING = 1e-4, 0.5
 MATCHING_STEPS = 30
 SMOOTHED = 5
+APART = 3
 
 
 def find_modes(problem: FitProblem) -> list[int]:
@@ -44,10 +45,14 @@ def start_from_peaks(problem: FitProblem, count: int) -> Resonances | None:
 
     Several responses share the peaks of the first; each has its own troughs.
     """
-    found = find_modes(problem)
-    if len(found) < count:
-        return None
-    peaks = sorted(found[:count])
+    found = find_modes(problem)[:count]
+    while len(found) < count:
+        # A shoulder becomes a peak when the modes found so far are divided out.
+        more = _hidden_peak(problem, sorted(found))
+        if more is None:
+            return None
+        found.append(more)
+    peaks = sorted(found)
     omega_p: list[float] = []
     zeta_p: list[float] = []
     zeros: list[list[tuple[float, float]]] = []
@@ -62,6 +67,21 @@ def start_from_peaks(problem: FitProblem, count: int) -> Resonances | None:
     return Resonances(
         np.array(omega_p), np.array(zeta_p), table[:, :, 0], table[:, :, 1], np.array(gains)
     ).ordered()
+
+
+def _hidden_peak(problem: FitProblem, peaks: list[int]) -> int | None:
+    """Return the most prominent peak of what is left of the first response, away from those known."""
+    if not peaks:
+        return None
+    modes, gain = _one_response(problem, 0, peaks)
+    line = problem.lines[0]
+    level = np.log(np.abs(line.ratio / Resonances.of(modes, gain).factor(0, line.omega)))
+    noise = NOISE_MULTIPLE * _noise(level)
+    places, found = find_peaks(_smoothed(level), prominence=max(LEAST_PROMINENCE, noise))
+    for i in np.argsort(-found["prominences"], kind="stable"):
+        if min(abs(int(places[i]) - peak) for peak in peaks) > APART:
+            return int(places[i])
+    return None
 
 
 def _one_response(

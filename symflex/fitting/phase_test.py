@@ -1,8 +1,9 @@
 """Is the measured function minimum phase? The test of the paper.
 
-The resonances are fitted to the magnitude alone, with all zeros in the left half plane. "The phase plots should match
-also, if the data to be matched actually represent a minimum-phase system" (Eppinger & Seering 1988): where the
-measured phase leaves the fitted one, it does not. The base keeps its own phase.
+The resonances are fitted to the magnitude alone, with all zeros in the left half plane. "The phase plots
+should match also, if the data to be matched actually represent a minimum-phase system" (Eppinger & Seering 1988,
+section "Polynomial Resonance Model"): where the measured phase leaves the fitted one, they do not. The base
+keeps its own phase.
 """
 
 from __future__ import annotations

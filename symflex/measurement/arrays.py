@@ -61,7 +61,7 @@ def read_mat(name: str, data: bytes, stem: str) -> tuple[MeasuredResponse, ...]:
 
     _check_inflated(name, data)
     try:
-        loaded = loadmat(BytesIO(data), mat_dtype=True, squeeze_me=True)
+        loaded = loadmat(BytesIO(data), squeeze_me=True)
     except NotImplementedError:
         message = f"'{name}' is a MATLAB file of version 7.3"
         raise DataError(Diagnostic("SF601", message, None, "save it with -v7")) from None

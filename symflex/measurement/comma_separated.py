@@ -43,7 +43,9 @@ _UNITS: Final[dict[str, dict[str, float]]] = {
     "frequency": {"": 1.0, "hz": 1.0, "khz": 1000.0, "rad/s": 1 / (2 * np.pi), "rad_s": 1 / (2 * np.pi)},
     "phase": {"deg": np.pi / 180, "degrees": np.pi / 180, "°": np.pi / 180, "rad": 1.0, "radians": 1.0},
 }
-_HEADER_HINT: Final = "columns: frequency_hz; re, im or magnitude_db, phase_deg or magnitude, phase_rad; coherence if there is one"
+_HEADER_HINT: Final = (
+    "columns: frequency_hz; re, im or magnitude_db, phase_deg or magnitude, phase_rad; coherence if known"
+)
 
 
 @dataclass(frozen=True, slots=True)
