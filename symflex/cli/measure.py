@@ -70,7 +70,15 @@ def command(
             message = "the specification has no [analysis] band"
             raise UsageError(Diagnostic("SF902", message, None, "give one with --band LO HI"))
         band = (float(model.analysis.band[0]), float(model.analysis.band[1]))
-    plan = MeasurementPlan(band[0], band[1], band[1] / 800 if spacing is None else spacing, averages, noise, rolloff or None, seed)
+    plan = MeasurementPlan(
+        band[0],
+        band[1],
+        band[1] / 800 if spacing is None else spacing,
+        averages,
+        noise,
+        rolloff or None,
+        seed,
+    )
     plan.check()
     measured = pipeline.measure(model, pairs[0], plan)
     write_atomically(Path(output), measurement_bytes(measured, output))

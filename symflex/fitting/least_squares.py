@@ -111,7 +111,7 @@ def _descend(problem: FitProblem, start: Resonances, kind: str, steps: int) -> t
         return start, True
 
     def resonances(vector: Real) -> Resonances:
-        return start.unpack(vector, problem.free)
+        return start.unpack(np.clip(vector, packed - EDGE, packed + EDGE), problem.free)
 
     def residual(vector: Real) -> Real:
         return _parts(np.concatenate(_residuals(problem, resonances(vector), kind)))
@@ -124,7 +124,7 @@ def _descend(problem: FitProblem, start: Resonances, kind: str, steps: int) -> t
             residual,
             packed,
             slopes,
-            bounds=(packed - EDGE, packed + EDGE),
+            method="lm",
             x_scale="jac",
             ftol=TOLERANCE,
             xtol=TOLERANCE,

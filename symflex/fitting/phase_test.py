@@ -95,7 +95,7 @@ def judge_phase(problem: FitProblem, response: int, fitted: Resonances) -> Phase
     damping = slice(3 * n, 4 * n)
 
     def resonances(vector: Real) -> Resonances:
-        plain = vector.copy()
+        plain = np.clip(vector, packed - EDGE, packed + EDGE)
         plain[damping] = np.exp(plain[damping])
         return start.unpack(plain, problem.free)
 
@@ -114,8 +114,7 @@ def judge_phase(problem: FitProblem, response: int, fitted: Resonances) -> Phase
     packed[damping] = np.log(packed[damping])
     if packed.size:
         with np.errstate(all="ignore"):  # a trial step may be wild
-            bounds = (packed - EDGE, packed + EDGE)
-            done = least_squares(residual, packed, slopes, bounds=bounds, x_scale="jac", max_nfev=STEPS)
+            done = least_squares(residual, packed, slopes, method="lm", x_scale="jac", max_nfev=STEPS)
         packed = done.x
     found = resonances(packed).ordered()
     model = single.values(found, 0)

@@ -29,7 +29,9 @@ def test_the_paper_s_modes_come_back_from_the_synthetic_figure(shell):
     poles, (response,) = done.json["poles"], done.json["responses"]
     assert [p["frequency_hz"] for p in poles] == pytest.approx(PAPER_HZ, rel=0.002)
     assert [p["damping_ratio"] for p in poles] == pytest.approx([0.05] * 5, rel=0.05)
-    assert [z["frequency_hz"] for z in response["zeros"]] == pytest.approx([1.1 * f for f in PAPER_HZ], rel=0.002)
+    assert [z["frequency_hz"] for z in response["zeros"]] == pytest.approx(
+        [1.1 * f for f in PAPER_HZ], rel=0.002
+    )
     assert response["synthetic"]
     assert response["phase_test"]["minimum_phase"]
     # second order, 5 kHz, damping 0.7: a lag of 2 zeta/omega
@@ -76,7 +78,12 @@ def test_json_has_the_documented_keys(oscillator):
     assert document["schema"] == "symflex.fit/1"
     page = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
     section = page.partition("### `symflex.fit/1`")[2].partition("\n### ")[0]
-    keys = {*document, *document["responses"][0], *document["poles"][0], *document["responses"][0]["phase_test"]}
+    keys = {
+        *document,
+        *document["responses"][0],
+        *document["poles"][0],
+        *document["responses"][0]["phase_test"],
+    }
     assert all(f"`{key}`" in section for key in keys - {"schema"})
 
 

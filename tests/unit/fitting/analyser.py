@@ -48,7 +48,7 @@ def rigid(omega):
     return 1j * omega / (1 + 1j * omega / 60)
 
 
-def measured(function, random, record=16.0, records=40, noise=0.05, **more):
+def measured(function, random, record=16.0, records=40, noise=0.03, **more):
     """Return the H1 estimate of a function of frequency [Hz]; noise over signal, both rms, at the output."""
     size = int(record * RATE)
     total = size * (records + 1) // 2

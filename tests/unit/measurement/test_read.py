@@ -175,7 +175,9 @@ def test_damaged_files_of_every_format_are_refused_without_a_traceback(write, su
     if suffix == ".uff":
         pytest.importorskip("pyuff")
     random = np.random.default_rng(1)
-    good = {".npz": npz(f=FREQUENCY, H=VALUES), ".mat": mat(f=FREQUENCY, H=VALUES)}.get(suffix, PLAIN.encode())
+    good = {".npz": npz(f=FREQUENCY, H=VALUES), ".mat": mat(f=FREQUENCY, H=VALUES)}.get(
+        suffix, PLAIN.encode()
+    )
     if suffix == ".uff":
         good = measurement_bytes(MeasuredResponse("a/b", FREQUENCY, VALUES), "a.uff")
     for _ in range(150):
@@ -217,7 +219,11 @@ def test_universal_files_of_kind_58b_are_read(write, tmp_path):
 
 @pytest.mark.needs_module("pyuff")
 def test_universal_files_without_a_response_are_refused(write):
-    for text, code in (("nothing\n", "SF601"), ("    -1\n    58\nhalf\n", "SF601"), ("    -1\n   151\na\n    -1\n", "SF601")):
+    for text, code in (
+        ("nothing\n", "SF601"),
+        ("    -1\n    58\nhalf\n", "SF601"),
+        ("    -1\n   151\na\n    -1\n", "SF601"),
+    ):
         with pytest.raises(DataError) as caught:
             read_measurement(write("a.uff", text))
         assert caught.value.diagnostics[0].code == code
