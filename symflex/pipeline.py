@@ -9,6 +9,7 @@ text --parse--> Spec --resolve--> Model --assemble--> Equations --derive--> Tran
 
 from __future__ import annotations
 
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,7 +28,6 @@ from symflex.sensitivity import differentiate
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from decimal import Decimal
-    from fractions import Fraction
 
     import numpy as np
     import numpy.typing as npt
@@ -343,9 +343,24 @@ def fit_specification(found: Fit, folder: str | Path) -> str:
 
 
 def measure(model: Model, pair: tuple[str, str], plan: MeasurementPlan) -> MeasuredResponse:
-    """Return a synthetic measurement of one transfer function; see :func:`symflex.measurement.synthesise`."""
+    """Return a synthetic measurement of one transfer function; see :func:`symflex.measurement.synthesise`.
+
+    Raises
+    ------
+    UsageError
+        SF902 when a pole is undamped, which has no stationary response, or the plan cannot be meant.
+    """
     from symflex.measurement import synthesise  # imports numpy
     from symflex.response import respond
+    from symflex.roots import Band
 
+    plan.check()
     (bound,) = derive_bound(model, [pair])
+    band = Band(Fraction(plan.low_hz) / 2, Fraction(plan.high_hz) * 2)
+    for pole in locate(bound, band if bound.is_distributed else None).poles:
+        if pole.on_imaginary_axis and not pole.is_zero:
+            message = f"{'/'.join(pair)} has an undamped pole at {pole.frequency_hz():.4g} Hz"
+            raise UsageError(
+                Diagnostic("SF902", message, None, "only damped systems have a stationary response")
+            )
     return synthesise("/".join(pair), lambda omega: respond(bound, omega).values, plan, bound.source.unit)

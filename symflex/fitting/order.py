@@ -30,8 +30,8 @@ MOST_MODES = 12
 PATIENCE = 1
 QUICK_STEPS = 25
 EXPLAINED = 1.15
-WEAK = 0.5
-"""Standard error of ln zeta beyond which the criterion's choice is not taken."""
+WEAK, DECISIVE = 0.5, 50.0
+"""Standard error of ln zeta beyond which fewer resonances are preferred, unless the criterion is that much worse."""
 LOWER = 0.999
 """How far a residual has to fall for another start to count as better."""
 
@@ -146,7 +146,10 @@ def chosen_order(
         worse = 0 if is_lower else worse + 1
         if worse > PATIENCE:
             break
+    weak: tuple[float, Candidate] | None = None
     for score in sorted((s for s in scores if s.is_usable), key=lambda s: _value(s, criterion)):
+        if weak is not None and _value(score, criterion) - weak[0] > DECISIVE:
+            return weak[1], tuple(scores)
         if score.count == 0:
             break
         best = _continued(problem, tried[score.count])
@@ -156,7 +159,10 @@ def chosen_order(
                 best = again
         if best.failure is None and not _is_weak(best.refined):
             return best, tuple(scores)
-        scores = [replace(s, is_usable=False) if s.count == score.count else s for s in scores]
+        if best.failure is None:
+            weak = weak or (_value(score, criterion), best)
+        else:
+            scores = [replace(s, is_usable=False) if s.count == score.count else s for s in scores]
     raise FitError(no_resonance(problem))
 
 

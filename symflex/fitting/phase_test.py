@@ -1,9 +1,9 @@
 """Is the measured function minimum phase? The test of the paper.
 
 The resonances are fitted to the magnitude alone, with all zeros in the left half plane. "The phase plots
-should match also, if the data to be matched actually represent a minimum-phase system" (Eppinger & Seering 1988,
-section "Polynomial Resonance Model"): where the measured phase leaves the fitted one, they do not. The base
-keeps its own phase.
+should match also, if the data to be matched actually represent a minimum-phase system" (Eppinger & Seering
+1988, section "Polynomial Resonance Model"): where the measured phase leaves the fitted one, they do not. The
+base keeps its own phase.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ Real = npt.NDArray[np.float64]
 LIMIT_DEGREES = 10.0
 SIGNIFICANT = 4.0
 SMOOTHED_LINES = 5
-SHORTEST_RUN, LONGEST_GAP = 4, 3
+SHORTEST_RUN, LONGEST_GAP = 4, 10
 STEPS = 100
 CAP = 0.05
 LOWEST_DAMPING = 1e-4

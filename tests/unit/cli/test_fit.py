@@ -113,6 +113,7 @@ def test_json_has_the_documented_keys(oscillator):
         ("measure x.toml -o a.csv --band 10 1", 2),
         ("measure x.toml -o a.csv --band 1 10 --spacing 0", 2),
         ("measure x.toml -o a.csv --band 1 10 --averages 100000000", 2),
+        ("measure x.toml -o a.csv --band 0.1 1", 2),  # undamped
         ("measure symbolic.toml -o a.csv --band 1 10", 3),
     ],
 )
@@ -127,8 +128,9 @@ def test_what_cannot_be_meant_has_its_exit_code_and_writes_nothing(oscillator, a
 
 def test_measure_writes_what_fit_reads(shell):
     (shell.folder / "damped.toml").write_text(
-        'symflex = 1\nparameters = { m = "2 kg", k = "20 kN/m", b = "10 N*s/m" }\ninputs.F = { force = "x" }\n'
-        'outputs.A = "s^2*x"\nelements.body = { type = "mass", at = "x", m = "m" }\n'
+        'symflex = 1\nparameters = { m = "2 kg", k = "20 kN/m", b = "10 N*s/m" }\n'
+        'inputs.F = { force = "x" }\noutputs.A = "s^2*x"\n'
+        'elements.body = { type = "mass", at = "x", m = "m" }\n'
         'elements.wall = { type = "spring", between = ["x", "ground"], k = "k" }\n'
         'elements.loss = { type = "damper", between = ["x", "ground"], b = "b" }\n'
     )

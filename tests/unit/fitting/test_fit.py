@@ -10,7 +10,7 @@ from symflex.fitting import STARTS, Base, fit_resonances
 from symflex.measurement import MeasuredResponse
 from tests.unit.fitting.analyser import System, measured, rigid
 
-# The modes of the paper with its typical ratio and damping; 38 and 44 Hz are close, the zero of one between them.
+# The modes of the paper with its typical ratio and damping; the zero of 38 Hz lies between it and 44 Hz.
 PAPER_HZ = np.array([11.0, 38.0, 44.0, 67.0, 77.0])
 PAPER = System(PAPER_HZ, np.full(5, 0.05), 1.1 * PAPER_HZ, np.full(5, 0.05))
 ONE = System(np.array([20.0]), np.array([0.02]), np.array([25.0]), np.array([0.03]))

@@ -12,7 +12,7 @@ BASE = [Base(rigid)]
 
 
 def recover(count, seed):
-    """Return errors and standard errors of (f_p, zeta_p, f_z) relative, and of zeta_z, over random systems."""
+    """Return errors and standard errors: relative ones of f_p, zeta_p and f_z, and those of zeta_z."""
     errors, deviations = [], []
     for k in range(count):
         random = np.random.default_rng([seed, k])

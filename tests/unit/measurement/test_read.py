@@ -34,16 +34,16 @@ def table(header, *columns, separator=","):
 
 
 PHASE = np.angle(VALUES)
+RE, IM, DECIBEL = VALUES.real, VALUES.imag, 20 * np.log10(abs(VALUES))
 LAYOUTS = [
-    table("frequency_hz,re,im,coherence", FREQUENCY, VALUES.real, VALUES.imag, COHERENCE),
-    table("Frequency [Hz];Real;Imag;Coherence", FREQUENCY, VALUES.real, VALUES.imag, COHERENCE, separator=";"),
-    table("coh f dB phase_deg", COHERENCE, FREQUENCY, 20 * np.log10(abs(VALUES)), np.degrees(PHASE), separator=" "),
-    table("freq(kHz)\tmag(dB)\tphase(rad)\tcoherence", FREQUENCY / 1000, 20 * np.log10(abs(VALUES)), PHASE, COHERENCE,
-          separator="\t"),
-    "% a comment\n\n" + table("omega,magnitude,phase_rad,gamma2", 2 * np.pi * FREQUENCY, abs(VALUES), PHASE, COHERENCE),
-    "\ufeff" + table("frequency_hz, re, im, coherence", FREQUENCY, VALUES.real, VALUES.imag, COHERENCE)
-    .replace("\n", "\r\n"),
-]  # fmt: skip
+    table("frequency_hz,re,im,coherence", FREQUENCY, RE, IM, COHERENCE),
+    table("Frequency [Hz];Real;Imag;Coherence", FREQUENCY, RE, IM, COHERENCE, separator=";"),
+    table("coh f dB phase_deg", COHERENCE, FREQUENCY, DECIBEL, np.degrees(PHASE), separator=" "),
+    table("freq(kHz)\tmag(dB)\tphase(rad)\tcoh", FREQUENCY / 1000, DECIBEL, PHASE, COHERENCE, separator="\t"),
+    "% said\n\n"
+    + table("omega,magnitude,phase_rad,gamma2", 2 * np.pi * FREQUENCY, abs(VALUES), PHASE, COHERENCE),
+    "\ufeff" + table("frequency_hz, re, im, coherence", FREQUENCY, RE, IM, COHERENCE).replace("\n", "\r\n"),
+]
 
 
 @pytest.mark.parametrize("text", LAYOUTS)
@@ -208,8 +208,8 @@ def test_universal_files_of_kind_58b_are_read(write, tmp_path):
 
     path = tmp_path / "b.uff"
     entry = pyuff.prepare_58(
-        binary=1, func_type=4, rsp_node=1, rsp_dir=1, ref_node=2, ref_dir=1, data=VALUES, x=FREQUENCY, id1="A/V",
-        rsp_ent_name="NONE", ref_ent_name="NONE", abscissa_spacing=0, abscissa_spec_data_type=18,
+        binary=1, func_type=4, rsp_node=1, rsp_dir=1, ref_node=2, ref_dir=1, data=VALUES, x=FREQUENCY,
+        id1="A/V", rsp_ent_name="NONE", ref_ent_name="NONE", abscissa_spacing=0, abscissa_spec_data_type=18,
         ordinate_spec_data_type=0, orddenom_spec_data_type=0,
     )  # fmt: skip
     pyuff.UFF(str(path)).write_sets([entry])
