@@ -31,7 +31,9 @@ PATIENCE = 1
 QUICK_STEPS = 25
 EXPLAINED = 1.15
 WEAK, DECISIVE = 0.5, 50.0
-"""Standard error of ln zeta beyond which fewer resonances are preferred, unless the criterion is that much worse."""
+"""Standard error of ln zeta beyond which fewer are preferred, unless the criterion is so much worse."""
+FAR_BETTER = 4.0
+"""Ratio of the sums of squares at which a failed fit is said rather than replaced by a worse one."""
 LOWER = 0.999
 """How far a residual has to fall for another start to count as better."""
 
@@ -127,7 +129,8 @@ def chosen_order(
     Raises
     ------
     FitError
-        SF611 when no resonance improves on the base alone.
+        SF611 when no resonance improves on the base alone; SF612 to SF614 when the number preferred by far
+        gives no fit.
     """
     # Numbers are compared without the window, a sixth of the work; the best one is then fitted with it.
     plain = problem.without_window()
@@ -147,9 +150,13 @@ def chosen_order(
         if worse > PATIENCE:
             break
     weak: tuple[float, Candidate] | None = None
+    failed: list[tuple[Score, Diagnostic]] = []
     for score in sorted((s for s in scores if s.is_usable), key=lambda s: _value(s, criterion)):
         if weak is not None and _value(score, criterion) - weak[0] > DECISIVE:
             return weak[1], tuple(scores)
+        for better, failure in failed:
+            if FAR_BETTER * better.reduced < score.reduced:
+                raise FitError(_preferred(better, failure))
         if score.count == 0:
             break
         best = _continued(problem, tried[score.count])
@@ -157,13 +164,21 @@ def chosen_order(
             again = best_of_starts(problem, score.count, kind)
             if again is not None and _is_better(again, best):
                 best = again
-        if best.failure is None and not _is_weak(best.refined):
-            return best, tuple(scores)
-        if best.failure is None:
+        if best.failure is not None:
+            failed.append((score, best.failure))
+            scores = [replace(s, is_usable=False) if s.count == score.count else s for s in scores]
+        elif _is_weak(best.refined):
             weak = weak or (_value(score, criterion), best)
         else:
-            scores = [replace(s, is_usable=False) if s.count == score.count else s for s in scores]
+            return best, tuple(scores)
     raise FitError(no_resonance(problem))
+
+
+def _preferred(score: Score, failure: Diagnostic) -> Diagnostic:
+    """Return the failure of the number that the criterion prefers by far."""
+    message = f"{score.count} resonances describe the data far better than fewer do, but {failure.message}"
+    hint = "give what is known of the system with --base, or a number with --modes"
+    return Diagnostic(failure.code, message, None, hint)
 
 
 def _is_weak(refined: Refined) -> bool:

@@ -112,11 +112,12 @@ def judge_phase(problem: FitProblem, response: int, fitted: Resonances) -> Phase
 
     packed = start.pack(problem.free)
     packed[damping] = np.log(packed[damping])
+    best = packed
     if packed.size:
         with np.errstate(all="ignore"):  # a trial step may be wild
             done = least_squares(residual, packed, slopes, method="lm", x_scale="jac", max_nfev=STEPS)
-        packed = done.x
-    found = resonances(packed).ordered()
+        best = done.x
+    found = resonances(best).ordered()
     model = single.values(found, 0)
     difference = np.angle(line.measured.values / model)
     misfit = 20 / np.log(10) * (np.log(np.abs(model)) - wanted)
