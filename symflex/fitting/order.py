@@ -30,10 +30,10 @@ MOST_MODES = 12
 PATIENCE = 1
 QUICK_STEPS = 25
 EXPLAINED = 1.15
-WEAK, DECISIVE = 0.5, 50.0
-"""Standard error of ln zeta beyond which fewer are preferred, unless the criterion is so much worse."""
+WEAK = 0.5
+"""Standard error of ln zeta beyond which fewer resonances are preferred, unless that is far worse."""
 FAR_BETTER = 4.0
-"""Ratio of the sums of squares at which a failed fit is said rather than replaced by a worse one."""
+"""Ratio of sums of squares at which a failed fit is said rather than replaced, and a weak one kept."""
 LOWER = 0.999
 """How far a residual has to fall for another start to count as better."""
 
@@ -149,10 +149,10 @@ def chosen_order(
         worse = 0 if is_lower else worse + 1
         if worse > PATIENCE:
             break
-    weak: tuple[float, Candidate] | None = None
+    weak: tuple[Score, Candidate] | None = None
     failed: list[tuple[Score, Diagnostic]] = []
     for score in sorted((s for s in scores if s.is_usable), key=lambda s: _value(s, criterion)):
-        if weak is not None and _value(score, criterion) - weak[0] > DECISIVE:
+        if weak is not None and FAR_BETTER * weak[0].reduced < score.reduced:
             return weak[1], tuple(scores)
         for better, failure in failed:
             if FAR_BETTER * better.reduced < score.reduced:
@@ -168,7 +168,7 @@ def chosen_order(
             failed.append((score, best.failure))
             scores = [replace(s, is_usable=False) if s.count == score.count else s for s in scores]
         elif _is_weak(best.refined):
-            weak = weak or (_value(score, criterion), best)
+            weak = weak or (score, best)
         else:
             return best, tuple(scores)
     raise FitError(no_resonance(problem))
