@@ -61,10 +61,14 @@ def fit_text(fit: Fit, width: int = 80) -> str:
     if fit.scores:
         lines += ["", "  resonances   parameters          BIC         AICc   residual"]
         for s in fit.scores:
-            mark = " <" if s.count == found.count else "" if s.is_usable else " failed"
+            mark = " <" if s.count == found.count else "" if s.is_usable else f" {s.status}"
             numbers = f"{s.bic:10.1f}   {s.aicc:10.1f}   {sqrt(s.reduced):8.4g}"
             lines.append(f"  {s.count:10d}   {s.parameters:10d}   {numbers}{mark}")
-        lines += _wrapped(f"chosen by {fit.criterion.upper()}, the lowest of those that did not fail", width)
+        told = ["did not fail"] + ["are not weak (a damping ratio lost in its error)"] * any(
+            s.status == "weak" for s in fit.scores
+        )
+        words = f"chosen by {fit.criterion.upper()}, the lowest of those that {' and '.join(told)}"
+        lines += _wrapped(words, width)
     lines.append("")
     for r, test in enumerate(fit.phase_tests):
         name = f" of {fit.measured[r].name}" if found.responses > 1 else ""
@@ -98,7 +102,7 @@ def fit_json(fit: Fit) -> dict[str, object]:
                 "bic": _finite(s.bic),
                 "aicc": _finite(s.aicc),
                 "reduced": _finite(s.reduced),
-                "usable": s.is_usable,
+                "status": s.status,
             }
             for s in fit.scores
         ],

@@ -14,7 +14,7 @@ from symflex.fitting.rational_start import start_from_aaa, start_from_vector_fit
 from symflex.fitting.resonances import Resonances
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from symflex.fitting.problem import FitProblem
 
@@ -75,8 +75,8 @@ class Score:
         Schwarz 1978; Hurvich & Tsai 1989.
     reduced : float
         The sum of squares per degree of freedom.
-    is_usable : bool
-        False when the fit failed.
+    status : str
+        ``usable``; ``failed`` when the fit did; ``weak`` when it has a damping ratio lost in its own error.
     """
 
     count: int
@@ -84,7 +84,12 @@ class Score:
     bic: float
     aicc: float
     reduced: float
-    is_usable: bool
+    status: str
+
+    @property
+    def is_usable(self) -> bool:
+        """Whether it is a result."""
+        return self.status == "usable"
 
 
 def best_of_starts(
@@ -166,12 +171,17 @@ def chosen_order(
                 best = again
         if best.failure is not None:
             failed.append((score, best.failure))
-            scores = [replace(s, is_usable=False) if s.count == score.count else s for s in scores]
+            scores = _marked(scores, score.count, "failed")
         elif _is_weak(best.refined):
             weak = weak or (score, best)
+            scores = _marked(scores, score.count, "weak")
         else:
             return best, tuple(scores)
     raise FitError(no_resonance(problem))
+
+
+def _marked(scores: Sequence[Score], count: int, status: str) -> list[Score]:
+    return [replace(score, status=status) if score.count == count else score for score in scores]
 
 
 def _preferred(score: Score, failure: Diagnostic) -> Diagnostic:
@@ -303,5 +313,5 @@ def _score(problem: FitProblem, candidate: Candidate, correlation: float) -> Sco
         fit + parameters * float(np.log(size)),
         float(aicc),
         refined.reduced,
-        candidate.failure is None,
+        "usable" if candidate.failure is None else "failed",
     )

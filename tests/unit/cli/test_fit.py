@@ -64,7 +64,7 @@ def test_the_report_fits_eighty_columns_and_shows_errors_and_phase_test(shell):
 
 
 def test_a_fit_that_fails_is_said_and_not_replaced_by_a_far_worse_one(shell):
-    # Without the rigid body its two real poles are missing, and a sixth resonance would need zeros at infinity.
+    # Without the rigid body its two real poles are missing; a sixth resonance would need zeros at infinity.
     done = shell("fit", DATA)
     assert (done.code, done.out) == (4, "")
     assert "6 resonances describe the data far better" in done.err
