@@ -9,6 +9,7 @@ text --parse--> Spec --resolve--> Model --assemble--> Equations --derive--> Tran
 
 from __future__ import annotations
 
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,17 +28,24 @@ from symflex.sensitivity import differentiate
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from decimal import Decimal
-    from fractions import Fraction
+
+    import numpy as np
+    import numpy.typing as npt
 
     from symflex.audit import Audit
     from symflex.equations import Equations
     from symflex.explanation import ZeroExplanation
+    from symflex.fitting import Fit
+    from symflex.measurement import MeasuredResponse, MeasurementPlan
     from symflex.rational import RationalApproximation, Residue
     from symflex.roots import Budget, PoleZeroMap, Region
     from symflex.sensitivity import Sensitivity
     from symflex.spec import Spec
     from symflex.state_space import StateSpace
     from symflex.transfer import BoundTransferFunction, TransferFunction
+
+    Array = npt.NDArray[np.float64]
+    ComplexArray = npt.NDArray[np.complex128]
 
 
 def parse(text: str, name: str = "<string>") -> Spec:
@@ -251,3 +259,108 @@ def audit(model: Model, names: Sequence[str] = ()) -> tuple[Audit, ...]:
         raise SpecError(*problems)
     derived = derive_all(model, tuple(p.tf for p in chosen)) if chosen else ()
     return tuple(audit_room.judge(tf, p) for tf, p in zip(derived, chosen, strict=True))
+
+
+def fit(
+    measured: Sequence[MeasuredResponse],
+    base: str | Path | None = None,
+    names: Sequence[str] = (),
+    *,
+    modes: int | None = None,
+    start: str = "auto",
+    criterion: str = "bic",
+    is_gain_free: bool = False,
+    is_lag_free: bool = False,
+    slope: int | None = None,
+) -> Fit:
+    """Fit resonances to measured responses; see :func:`symflex.fitting.fit_resonances`.
+
+    Parameters
+    ----------
+    measured : sequence of MeasuredResponse
+        Responses that share their poles.
+    base : str or Path, optional
+        The specification whose transfer functions the resonances are multiplied by.
+    names : sequence of str
+        Its transfer functions, one per response or one for all.
+    modes, start, criterion, is_gain_free, is_lag_free, slope
+        As there; a gain is fitted in any case without a base.
+
+    Raises
+    ------
+    UsageError
+        SF902 for a name the base does not have, or more or fewer of them than responses.
+    """
+    from symflex import fitting  # imports numpy and scipy
+    from symflex.response import respond
+
+    if base is None:
+        return fitting.fit_resonances(
+            measured,
+            None,
+            modes=modes,
+            start=start,
+            criterion=criterion,
+            is_lag_free=is_lag_free,
+            slope=slope,
+        )
+    model = load(base)
+    pairs = pick_pairs(model, names)[: None if names else 1]
+    if len(pairs) == 1:
+        pairs = pairs * len(measured)
+    if len(pairs) != len(measured):
+        message = f"{len(measured)} responses and {len(pairs)} transfer functions of the base"
+        raise UsageError(Diagnostic("SF902", message, None, "name one with --tf for each response"))
+    bounds = dict(zip(pairs, derive_bound(model, pairs), strict=True))
+    bases = []
+    for pair in pairs:
+        bound = bounds[pair]
+
+        def function(omega: Array, bound: BoundTransferFunction = bound) -> ComplexArray:
+            return respond(bound, omega).values
+
+        bases.append(fitting.Base(function, "/".join(pair), str(base), bound.source.unit))
+    return fitting.fit_resonances(
+        measured,
+        bases,
+        modes=modes,
+        start=start,
+        criterion=criterion,
+        is_gain_free=is_gain_free,
+        is_lag_free=is_lag_free,
+    )
+
+
+def fit_specification(found: Fit, folder: str | Path) -> str:
+    """Return the specification of a fit that will stand in a folder.
+
+    See :func:`symflex.fitting.specification.fit_specification`.
+    """
+    from symflex.fitting.specification import fit_specification as written
+
+    taken = {p.name for path in {b.path for b in found.bases if b.path} for p in load(path).parameters}
+    return written(found, folder, taken)
+
+
+def measure(model: Model, pair: tuple[str, str], plan: MeasurementPlan) -> MeasuredResponse:
+    """Return a synthetic measurement of one transfer function; see :func:`symflex.measurement.synthesise`.
+
+    Raises
+    ------
+    UsageError
+        SF902 when a pole is undamped, which has no stationary response, or the plan cannot be meant.
+    """
+    from symflex.measurement import synthesise  # imports numpy
+    from symflex.response import respond
+    from symflex.roots import Band
+
+    plan.check()
+    (bound,) = derive_bound(model, [pair])
+    band = Band(Fraction(plan.low_hz) / 2, Fraction(plan.high_hz) * 2)
+    for pole in locate(bound, band if bound.is_distributed else None).poles:
+        if pole.on_imaginary_axis and not pole.is_zero:
+            message = f"{'/'.join(pair)} has an undamped pole at {pole.frequency_hz():.4g} Hz"
+            raise UsageError(
+                Diagnostic("SF902", message, None, "only damped systems have a stationary response")
+            )
+    return synthesise("/".join(pair), lambda omega: respond(bound, omega).values, plan, bound.source.unit)

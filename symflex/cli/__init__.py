@@ -16,6 +16,8 @@ COMMANDS: dict[str, str] = {
     "plot": "Draw a Bode plot, a pole-zero array or mode shapes.",
     "export": "Write numeric code or LaTeX.",
     "audit": "Compare printed formulas with derived ones.",
+    "fit": "Fit resonances to measured frequency responses.",
+    "measure": "Write a synthetic measurement of a model.",
     "new": "Write a specification to start from.",
     "elements": "List the element and block library.",
 }

@@ -3,6 +3,8 @@
 from symflex.errors.diagnostic import Diagnostic
 from symflex.errors.exceptions import (
     BudgetError,
+    DataError,
+    FitError,
     ModelError,
     SpecError,
     SymflexError,
@@ -13,7 +15,9 @@ from symflex.errors.source import Source, Span, Text
 
 __all__ = [
     "BudgetError",
+    "DataError",
     "Diagnostic",
+    "FitError",
     "ModelError",
     "Source",
     "Span",

@@ -50,6 +50,18 @@ class ModelError(SymflexError):
     exit_code = 3
 
 
+class DataError(SymflexError):
+    """A data file does not hold what it should."""
+
+    exit_code = 3
+
+
+class FitError(SymflexError):
+    """Measured data and a model do not come together: no result is worth returning."""
+
+    exit_code = 4
+
+
 class UncertifiedError(SymflexError):
     """A result could not be proved."""
 

@@ -11,6 +11,7 @@ from matplotlib.text import Text
 
 from symflex.emit.figures.bode import draw_bode, draw_response
 from symflex.emit.figures.drawing import Drawing
+from symflex.emit.figures.fit import draw_fit
 from symflex.emit.figures.modes import draw_modes
 from symflex.emit.figures.pgf import MM_PER_INCH
 from symflex.emit.figures.poles_zeros import draw_poles_zeros
@@ -42,6 +43,7 @@ __all__ = [
     "FORMATS",
     "Drawing",
     "draw",
+    "draw_fit",
     "draw_response",
     "render",
     "save",

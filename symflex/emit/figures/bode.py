@@ -90,7 +90,7 @@ def draw_bode(
     unit = label_of_unit(units.pop()) if len(units) == 1 else ""
     top.set_ylabel(f"Magnitude [dB re 1 {unit}]" if unit else "Magnitude [dB]")
     _set_phase_axis(bottom, responses)
-    _set_frequency_axis(bottom, low, high)
+    set_frequency_axis(bottom, low, high)
     for axes in (top, bottom):
         axes.grid(visible=True)
     figure.align_ylabels([top, bottom])
@@ -134,7 +134,7 @@ def draw_response(response: FrequencyResponse) -> Figure | None:
         unit = label_of_unit(response.unit)
         top.set_ylabel(f"Magnitude [dB re 1 {unit}]" if unit else "Magnitude [dB]")
         _set_phase_axis(bottom, [response])
-        _set_frequency_axis(bottom, float(frequency[0]), float(frequency[-1]))
+        set_frequency_axis(bottom, float(frequency[0]), float(frequency[-1]))
         for axes in (top, bottom):
             axes.grid(visible=True)
         figure.align_ylabels([top, bottom])
@@ -206,7 +206,8 @@ def _set_phase_axis(axes: Axes, responses: Sequence[FrequencyResponse]) -> None:
     axes.set_ylabel("Phase [deg]")
 
 
-def _set_frequency_axis(axes: Axes, low: float, high: float) -> None:
+def set_frequency_axis(axes: Axes, low: float, high: float) -> None:
+    """Label a logarithmic axis of frequencies [Hz]."""
     axes.set_xscale("log")
     axes.set_xlim(low, high)
     axes.set_xlabel("Frequency [Hz]")

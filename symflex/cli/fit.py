@@ -1,0 +1,148 @@
+"""``symflex fit``."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from symflex.cli.report import emit_json, note, reporting, terminal_width
+from symflex.errors import DataError, Diagnostic, UsageError
+
+if TYPE_CHECKING:
+    from symflex.measurement import MeasuredResponse
+
+SUFFIXES = (".pdf", ".png", ".svg")
+
+
+@click.command("fit")
+@click.argument("data", type=click.Path(), nargs=-1, required=True)
+@click.option("--base", type=click.Path(), help="Specification whose function the resonances multiply.")
+@click.option(
+    "--tf", "tfs", multiple=True, metavar="OUT/IN", help="That function; repeat it, one per response."
+)
+@click.option(
+    "--modes", type=click.IntRange(1, 50), help="How many resonances; chosen by --criterion if absent."
+)
+@click.option(
+    "--start",
+    type=click.Choice(["auto", "peaks", "vector", "aaa"]),
+    default="auto",
+    show_default=True,
+    help="Where the fit begins; auto tries all and keeps the best.",
+)
+@click.option(
+    "--criterion",
+    type=click.Choice(["bic", "aicc"]),
+    default="bic",
+    show_default=True,
+    help="Chooses the number of resonances.",
+)
+@click.option(
+    "--band", nargs=2, type=float, metavar="LO HI", help="Only the lines between these frequencies [Hz]."
+)
+@click.option("--gain", "is_gain_free", is_flag=True, help="Fit a gain besides the base too.")
+@click.option("--lag", "is_lag_free", is_flag=True, help="Fit a lag of the sensor, 1/(1 + T s).")
+@click.option("--slope", type=click.IntRange(-6, 6), help="Without --base: the power of s; chosen if absent.")
+@click.option(
+    "--averages", type=click.FloatRange(1), help="Independent averages, where the file does not say."
+)
+@click.option(
+    "--window",
+    type=click.Choice(["hann", "none"]),
+    help="Time window of the estimate, if the file does not say.",
+)
+@click.option("-o", "--output", type=click.Path(), help="Specification to write.")
+@click.option("--plot", "figure", type=click.Path(), help="Figure to write: .pdf, .svg or .png.")
+@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@reporting
+def command(
+    data: tuple[str, ...],
+    *,
+    base: str | None,
+    tfs: tuple[str, ...],
+    modes: int | None,
+    start: str,
+    criterion: str,
+    band: tuple[float, float] | None,
+    is_gain_free: bool,
+    is_lag_free: bool,
+    slope: int | None,
+    averages: float | None,
+    window: str | None,
+    output: str | None,
+    figure: str | None,
+    as_json: bool,
+) -> int:
+    """Fit resonances to the frequency responses in DATA: .csv, .uff, .mat or .npz.
+
+    On top of the transfer function --base SPEC --tf OUT/IN, or of a gain and a power of s, each resonance
+    adds a pair of poles and a pair of zeros. Several responses are fitted together and share their poles.
+    -o writes a specification with resonance blocks, which derive, roots, plot and export take like any other.
+
+    The report has standard errors, and says where the measured phase parts from that of a minimum-phase
+    fit to the magnitude alone. Exit code 3 says that the data are invalid, 4 that no fit came of them.
+    """
+    from symflex import pipeline
+    from symflex.emit.fit_report import fit_json, fit_text
+    from symflex.emit.write import write_atomically
+
+    if tfs and base is None:
+        raise UsageError(Diagnostic("SF902", "--tf names a transfer function of --base"))
+    if base is not None and slope is not None:
+        raise UsageError(Diagnostic("SF902", "--slope is for fits without --base"))
+    for path, endings in ((output, (".toml",)), (figure, SUFFIXES)):
+        if path and Path(path).suffix.lower() not in endings:
+            raise UsageError(Diagnostic("SF902", f"'{Path(path).name}' must end in {' or '.join(endings)}"))
+    measured = _measured(data, band, averages, window)
+    found = pipeline.fit(
+        measured,
+        base,
+        tfs,
+        modes=modes,
+        start=start,
+        criterion=criterion,
+        is_gain_free=is_gain_free,
+        is_lag_free=is_lag_free,
+        slope=slope,
+    )
+    if output:
+        text = pipeline.fit_specification(found, Path(output).parent)
+        write_atomically(Path(output), text.encode())
+        note(f"wrote {output}")
+    if figure:
+        from symflex.emit.figures import draw_fit, save
+
+        for r in range(len(measured)):
+            place = Path(figure)
+            one = place if r == 0 else place.with_stem(f"{place.stem}_{r + 1}")
+            save(draw_fit(found, r), one)
+            note(f"wrote {one}")
+    if as_json:
+        emit_json(fit_json(found))
+    else:
+        click.echo(fit_text(found, terminal_width()))
+    return 0
+
+
+def _measured(
+    data: tuple[str, ...], band: tuple[float, float] | None, averages: float | None, window: str | None
+) -> list[MeasuredResponse]:
+    from symflex.measurement import read_measurement
+
+    found = [response for path in data for response in read_measurement(path)]
+    if averages is not None:
+        found = [replace(response, averages=averages) for response in found]
+    if window is not None:
+        found = [replace(response, window=window.replace("none", "")) for response in found]
+    if band is not None:
+        if not 0 <= band[0] < band[1]:
+            raise UsageError(Diagnostic("SF902", "--band takes two frequencies in Hz, the lower one first"))
+        found = [response.between(*band) for response in found]
+        for response in found:
+            if not response.values.size:
+                message = f"'{response.name}' has no lines between {band[0]:g} and {band[1]:g} Hz"
+                raise DataError(Diagnostic("SF605", message))
+    return found

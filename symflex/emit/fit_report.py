@@ -1,0 +1,260 @@
+"""A fit as the text a terminal shows and as JSON data."""
+
+from __future__ import annotations
+
+import textwrap
+from math import floor, isfinite, log10, pi, sqrt
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from symflex.fitting import Fit, PhaseTest
+
+SCHEMA: Final = "symflex.fit/1"
+ERROR_DIGITS: Final = 2
+STARTS: Final = {
+    "peaks": "peaks and troughs of the magnitude, the paper's procedure",
+    "vector": "vector fitting",
+    "aaa": "AAA approximation",
+}
+
+
+def fit_text(fit: Fit, width: int = 80) -> str:
+    """Return the report of a fit.
+
+    Parameters
+    ----------
+    fit : Fit
+        The result.
+    width : int
+        Columns of the terminal.
+    """
+    lines: list[str] = []
+    found = fit.resonances
+    for r, measured in enumerate(fit.measured):
+        lines += _wrapped(f"{measured.name}   {_what(fit, r)}", width, "")
+        if measured.is_synthetic:
+            lines += _wrapped("the data are SYNTHETIC: computed from a model, not measured", width)
+        lines += _wrapped(_data_line(fit, r), width)
+    lines += _wrapped(f"start: {STARTS[fit.candidate.start_kind]}", width)
+    errors = fit.standard_errors()
+    lines += ["", "  poles" + _heads()]
+    for i in range(found.count):
+        lines.append(_row(i, found.omega_p[i], errors.omega_p[i], found.zeta_p[i], errors.zeta_p[i]))
+    for r, measured in enumerate(fit.measured):
+        name = f" of {measured.name}" if found.responses > 1 else ""
+        lines += ["", *([f"  zeros{name}"] if name else []), ("       " if name else "  zeros") + _heads()]
+        for i in range(found.count):
+            z, e = found, errors
+            lines.append(_row(i, z.omega_z[r, i], e.omega_z[r, i], z.zeta_z[r, i], e.zeta_z[r, i]))
+        if fit.problem.free.gain:
+            lines.append(f"  gain {found.gain[r]:.6g}, standard error {errors.gain[r]:.2g}")
+        if fit.problem.free.lag:
+            lines.append(f"  lag of the sensor {found.lag[r]:.4g} s, standard error {errors.lag[r]:.2g} s")
+    lines.append("")
+    for r, measured in enumerate(fit.measured):
+        name = f" of {measured.name}" if found.responses > 1 else ""
+        text = f"residual{name}: {fit.misfit_db(r):.2g} dB and {fit.misfit_degrees(r):.2g} degrees rms"
+        lines += _wrapped(text, width)
+    lines += _wrapped(_accuracy(fit), width)
+    if fit.scores:
+        lines += ["", "  resonances   parameters          BIC         AICc   residual"]
+        for s in fit.scores:
+            mark = " <" if s.count == found.count else "" if s.is_usable else f" {s.status}"
+            numbers = f"{s.bic:10.1f}   {s.aicc:10.1f}   {sqrt(s.reduced):8.4g}"
+            lines.append(f"  {s.count:10d}   {s.parameters:10d}   {numbers}{mark}")
+        told = ["did not fail"] + ["are not weak (a damping ratio lost in its error)"] * any(
+            s.status == "weak" for s in fit.scores
+        )
+        words = f"chosen by {fit.criterion.upper()}, the lowest of those that {' and '.join(told)}"
+        lines += _wrapped(words, width)
+    lines.append("")
+    for r, test in enumerate(fit.phase_tests):
+        name = f" of {fit.measured[r].name}" if found.responses > 1 else ""
+        lines += _wrapped(f"phase test{name}: {_phase_words(test, fit, r)}", width)
+    for warning in fit.warnings:
+        lines += _wrapped(f"warning: {warning}", width)
+    return "\n".join(lines)
+
+
+def fit_json(fit: Fit) -> dict[str, object]:
+    """Return the document ``symflex fit --json`` prints."""
+    found, errors = fit.resonances, fit.standard_errors()
+    return {
+        "schema": SCHEMA,
+        "modes": found.count,
+        "start": fit.candidate.start_kind,
+        "gain_fitted": fit.problem.free.gain,
+        "lag_fitted": fit.problem.free.lag,
+        "poles": _pairs(found.omega_p, found.zeta_p, errors.omega_p, errors.zeta_p),
+        "responses": [_response_json(fit, r) for r in range(found.responses)],
+        "residual": {
+            "reduced": fit.refined.reduced,
+            "in_units_of_coherence_noise": _is_scaled(fit),
+            "line_correlation": fit.refined.correlation,
+        },
+        "criterion": fit.criterion if fit.scores else None,
+        "orders": [
+            {
+                "modes": s.count,
+                "parameters": s.parameters,
+                "bic": _finite(s.bic),
+                "aicc": _finite(s.aicc),
+                "reduced": _finite(s.reduced),
+                "status": s.status,
+            }
+            for s in fit.scores
+        ],
+        "warnings": list(fit.warnings),
+    }
+
+
+def _response_json(fit: Fit, r: int) -> dict[str, object]:
+    measured, base, test = fit.measured[r], fit.bases[r], fit.phase_tests[r]
+    found, errors, start = fit.resonances, fit.standard_errors(), fit.candidate.start
+    return {
+        "name": measured.name,
+        "synthetic": measured.is_synthetic,
+        "lines": measured.values.size,
+        "band_hz": [float(measured.frequency_hz[0]), float(measured.frequency_hz[-1])],
+        "averages": measured.averages,
+        "window": measured.window or None,
+        "unit": measured.unit,
+        "base": {"spec": base.path, "tf": base.tf} if base.path else None,
+        "slope": None if base.path else base.slope,
+        "gain": {"value": float(found.gain[r]), "standard_error": float(errors.gain[r])},
+        "lag": {"value": float(found.lag[r]), "standard_error": float(errors.lag[r])},
+        "zeros": _pairs(found.omega_z[r], found.zeta_z[r], errors.omega_z[r], errors.zeta_z[r]),
+        "start": [
+            {
+                "omega_p": float(start.omega_p[i]),
+                "zeta_p": float(start.zeta_p[i]),
+                "omega_z": float(start.omega_z[r, i]),
+                "zeta_z": float(start.zeta_z[r, i]),
+            }
+            for i in range(start.count)
+        ],
+        "residual_db": fit.misfit_db(r),
+        "residual_degrees": fit.misfit_degrees(r),
+        "phase_test": {
+            "minimum_phase": test.is_minimum_phase,
+            "magnitude_residual_db": test.magnitude_db,
+            "parted": [
+                {
+                    "low_hz": b.low_hz,
+                    "high_hz": b.high_hz,
+                    "worst_degrees": b.worst_degrees,
+                    "worst_hz": b.worst_hz,
+                }
+                for b in test.bands
+            ],
+        },
+    }
+
+
+def _pairs(
+    omega: np.ndarray, zeta: np.ndarray, omega_error: np.ndarray, zeta_error: np.ndarray
+) -> list[dict[str, object]]:
+    return [
+        {
+            "omega": float(omega[i]),
+            "omega_standard_error": float(omega_error[i]),
+            "frequency_hz": float(omega[i]) / (2 * pi),
+            "frequency_standard_error_hz": float(omega_error[i]) / (2 * pi),
+            "damping_ratio": float(zeta[i]),
+            "damping_standard_error": float(zeta_error[i]),
+        }
+        for i in range(omega.size)
+    ]
+
+
+def _finite(value: float) -> float | None:
+    return value if isfinite(value) else None
+
+
+def _is_scaled(fit: Fit) -> bool:
+    return fit.problem.has_deviations and all(bool(m.averages) for m in fit.measured)
+
+
+def _wrapped(text: str, width: int, indent: str = "  ") -> list[str]:
+    return textwrap.wrap(
+        text, width, initial_indent=indent, subsequent_indent=indent + "  ", break_on_hyphens=False
+    )
+
+
+def _what(fit: Fit, r: int) -> str:
+    count, base = fit.resonances.count, fit.bases[r]
+    word = "resonance" if count == 1 else "resonances"
+    if base.path:
+        return f"{count} {word} on {base.tf} of {base.path}"
+    return f"{count} {word} on a gain" + (f" times s^{base.slope}" if base.slope else "")
+
+
+def _data_line(fit: Fit, r: int) -> str:
+    measured = fit.measured[r]
+    low, high = measured.frequency_hz[0], measured.frequency_hz[-1]
+    parts = [f"data: {measured.values.size} lines from {low:.4g} to {high:.4g} Hz"]
+    if measured.coherence is None:
+        parts.append("no coherence: all lines weigh alike")
+    else:
+        parts.append(
+            f"coherence {measured.coherence.min():.3f} or more, median {np.median(measured.coherence):.3f}"
+        )
+        if measured.averages:
+            parts.append(f"{measured.averages:g} averages")
+    if measured.window:
+        parts.append("Hann window")
+    return ", ".join(parts)
+
+
+def _heads() -> str:
+    return f"{'frequency [Hz]':>18}{'std. error':>13}{'damping ratio':>17}{'std. error':>13}"
+
+
+def _row(i: int, omega: float, omega_error: float, zeta: float, zeta_error: float) -> str:
+    hertz, hertz_error = omega / (2 * pi), omega_error / (2 * pi)
+    left = f"{_shown(hertz, hertz_error):>18}{_error(hertz_error):>13}"
+    return f"  {i + 1:5d}{left}{_shown(zeta, zeta_error):>17}{_error(zeta_error):>13}"
+
+
+def _places(error: float) -> int:
+    if not isfinite(error) or error <= 0:
+        return 6
+    return max(0, min(10, ERROR_DIGITS - 1 - floor(log10(error))))
+
+
+def _shown(value: float, error: float) -> str:
+    return f"{value:.{_places(error)}f}"
+
+
+def _error(error: float) -> str:
+    return f"{error:.{_places(error)}f}" if error >= 1e-10 else "0"  # noqa: PLR2004
+
+
+def _accuracy(fit: Fit) -> str:
+    words = []
+    size = sqrt(fit.refined.reduced)
+    if _is_scaled(fit):
+        words.append(f"that is {size:.3g} times what coherence explains")
+    words.append("standard errors are scaled to the residual")
+    if fit.refined.correlation > 1:
+        words.append(f"and count neighbouring lines as correlated (variance x {fit.refined.correlation:.2f})")
+    return ", ".join(words[:-1]) + (", " if len(words) == 2 else " ") + words[-1]  # noqa: PLR2004
+
+
+def _phase_words(test: PhaseTest, fit: Fit, r: int) -> str:
+    low, high = fit.measured[r].frequency_hz[[0, -1]]
+    fitted = "a minimum-phase fit to the magnitude alone"
+    if fit.bases[r].path:
+        fitted += " (the base with its own phase)"
+    if test.is_minimum_phase:
+        return (
+            f"the measured phase is that of {fitted}, within 10 degrees or the noise, "
+            f"from {low:.4g} to {high:.4g} Hz: minimum phase"
+        )
+    bands = "; ".join(
+        f"from {b.low_hz:.4g} to {b.high_hz:.4g} Hz, by {b.worst_degrees:+.0f} degrees at {b.worst_hz:.4g} Hz"
+        for b in test.bands
+    )
+    return f"the measured phase parts from that of {fitted} {bands}: not minimum phase there"

@@ -1,0 +1,325 @@
+"""A fit of resonances to measured responses, and everything a report says of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from symflex.errors import DataError, Diagnostic, FitError, UsageError
+from symflex.errors.diagnostic import nearest
+from symflex.fitting.order import (
+    CRITERIA,
+    LOWER,
+    MOST_MODES,
+    STARTS,
+    Candidate,
+    Score,
+    best_of_starts,
+    chosen_order,
+    too_few,
+)
+from symflex.fitting.peaks import find_modes
+from symflex.fitting.phase_test import PhaseTest, judge_phase
+from symflex.fitting.problem import FitProblem, fit_problem
+from symflex.fitting.resonances import MILLISECOND, Free
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from symflex.fitting.least_squares import Refined
+    from symflex.fitting.resonances import Resonances
+    from symflex.measurement import MeasuredResponse
+
+Real = npt.NDArray[np.float64]
+Complex = npt.NDArray[np.complex128]
+
+SLOPES = range(-6, 7)
+FEWEST_LINES = 8
+WEAK = 0.5
+LARGE = 2.0
+SMOOTH = 3.0
+"""A Hann window makes this 2, see :attr:`symflex.fitting.least_squares.Refined.correlation`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Base:
+    """What the resonances are multiplied by.
+
+    Parameters
+    ----------
+    function : callable
+        Of angular frequencies [rad/s], shape (n,), to complex values.
+    tf : str
+        ``OUT/IN`` of the specification it comes from; empty for a bare power of s.
+    path : str
+        The specification; empty likewise.
+    unit : str
+        Of its values, empty when unknown.
+    slope : int
+        The power of s, where that is all the base is.
+    """
+
+    function: Callable[[Real], Complex] = field(repr=False)
+    tf: str = ""
+    path: str = ""
+    unit: str = ""
+    slope: int = 0
+
+    @staticmethod
+    def power(slope: int) -> Base:
+        """Return the base ``s^slope``."""
+        return Base(lambda omega: np.asarray((1j * omega) ** slope, np.complex128), slope=slope)
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """The result of a fit.
+
+    Parameters
+    ----------
+    problem : FitProblem
+        What was fitted.
+    bases : tuple of Base
+        One per response.
+    candidate : Candidate
+        Start and minimum.
+    scores : tuple of Score
+        What the criteria say of the numbers of resonances tried; empty when the number was given.
+    criterion : str
+        The one that chose.
+    phase_tests : tuple of PhaseTest
+        One per response.
+    warnings : tuple of str
+        What to be careful about.
+    """
+
+    problem: FitProblem
+    bases: tuple[Base, ...]
+    candidate: Candidate
+    scores: tuple[Score, ...]
+    criterion: str
+    phase_tests: tuple[PhaseTest, ...]
+    warnings: tuple[str, ...]
+
+    @property
+    def resonances(self) -> Resonances:
+        """The fitted resonances."""
+        return self.candidate.refined.resonances
+
+    @property
+    def refined(self) -> Refined:
+        """The minimum with its residuals and covariance."""
+        return self.candidate.refined
+
+    @property
+    def measured(self) -> tuple[MeasuredResponse, ...]:
+        """The data."""
+        return tuple(line.measured for line in self.problem.lines)
+
+    def values(self, response: int, resonances: Resonances | None = None) -> Complex:
+        """Return the fitted (or another) model on the lines of one response, without the window's effect."""
+        line = self.problem.lines[response]
+        return line.base_at_lines * (resonances or self.resonances).factor(response, line.omega)
+
+    def standard_errors(self) -> Resonances:
+        """Return the standard error of every parameter, in a record of the same shape; 0 if it was fixed."""
+        covariance = self.refined.covariance
+        assert covariance is not None
+        deviation = np.sqrt(np.diag(covariance))
+        found = self.resonances
+        n, free = found.count, self.problem.free
+        rest = deviation[2 * n :].reshape(found.responses, 2 * n + free.count)
+        none = np.zeros(found.responses)
+        gain = np.abs(found.gain) * rest[:, 2 * n] if free.gain else none
+        return type(found)(
+            found.omega_p * deviation[:n],
+            found.zeta_p * deviation[n : 2 * n],
+            found.omega_z * rest[:, :n],
+            rest[:, n : 2 * n],
+            gain,
+            MILLISECOND * rest[:, -1] if free.lag else none,
+        )
+
+    def misfit_db(self, response: int) -> float:
+        """Return the root mean square of model over data on the lines [dB], magnitude alone."""
+        line = self.problem.lines[response]
+        ratio = self.problem.values(self.resonances, response) / line.measured.values
+        return float(np.sqrt(np.mean((20 * np.log10(np.abs(ratio))) ** 2)))
+
+    def misfit_degrees(self, response: int) -> float:
+        """Return the root mean square of the phase difference on the lines [deg]."""
+        line = self.problem.lines[response]
+        ratio = self.problem.values(self.resonances, response) / line.measured.values
+        return float(np.degrees(np.sqrt(np.mean(np.angle(ratio) ** 2))))
+
+
+def fit_resonances(
+    measured: Sequence[MeasuredResponse],
+    bases: Sequence[Base] | None = None,
+    *,
+    modes: int | None = None,
+    start: str = "auto",
+    criterion: str = "bic",
+    is_gain_free: bool | None = None,
+    is_lag_free: bool = False,
+    slope: int | None = None,
+) -> Fit:
+    """Fit simple resonances, in cascade with a known base, to one or several measured responses.
+
+    Parameters
+    ----------
+    measured : sequence of MeasuredResponse
+        Responses that share their poles.
+    bases : sequence of Base, optional
+        The known factor of each. Without it, a gain times a power of s, the same for all.
+    modes : int, optional
+        How many resonances; by default what the criterion prefers.
+    start : str
+        A key of :data:`symflex.fitting.order.STARTS`, or ``auto`` for the best of all.
+    criterion : str
+        ``bic`` or ``aicc``.
+    is_gain_free : bool, optional
+        Whether a gain is fitted too; by default only without a base.
+    is_lag_free : bool
+        Whether a lag of each sensor, 1/(1 + T s), is fitted too.
+    slope : int, optional
+        The power of s of a fit without base; by default the one with the lowest criterion.
+
+    Raises
+    ------
+    UsageError
+        SF902 for an unknown start or criterion, or options that contradict each other.
+    DataError
+        SF605 too few lines for what is asked.
+    FitError
+        SF611 no (or not enough) resonances to begin with; SF612 no convergence; SF613 parameters that the
+        data do not determine; SF614 a pole that left the band; SF615 a base that vanishes in it.
+
+    Examples
+    --------
+    >>> from symflex.fitting.resonances import Resonances
+    >>> from symflex.measurement import MeasuredResponse
+    >>> frequency = np.arange(5.0, 20.0, 0.05)
+    >>> omega = 2 * np.pi * frequency
+    >>> data = 3.0 * Resonances.of([(62.8, 0.02, 75.4, 0.03)]).factor(0, omega)
+    >>> fit = fit_resonances([MeasuredResponse("y/u", frequency, data)], modes=1)
+    >>> print(fit.resonances.omega_p.round(6), fit.resonances.zeta_p.round(6), fit.resonances.gain.round(6))
+    [62.8] [0.02] [3.]
+    """
+    for given, known, what in ((start, ("auto", *STARTS), "start"), (criterion, CRITERIA, "criterion")):
+        if given not in known:
+            hint = nearest(given, known) or f"choose from: {', '.join(known)}"
+            raise UsageError(Diagnostic("SF902", f"there is no {what} '{given[:64]}'", None, hint))
+    if bases is not None and slope is not None:
+        raise UsageError(Diagnostic("SF902", "a power of s is for fits without a base"))
+    for response in measured:
+        needed = max(FEWEST_LINES, 4 * (modes or 1) + 2)
+        if response.values.size < needed:
+            message = f"'{response.name}' has {response.values.size} lines; such a fit needs {needed} or more"
+            raise DataError(Diagnostic("SF605", message))
+    if bases is not None:
+        return _fit(measured, tuple(bases), modes, start, criterion, Free(bool(is_gain_free), is_lag_free))
+    free = Free(True, is_lag_free)
+    power = _best_slope(measured, modes, free) if slope is None else slope
+    same = tuple(Base.power(power) for _ in measured)
+    return _fit(measured, same, modes, start, criterion, free)
+
+
+def _best_slope(measured: Sequence[MeasuredResponse], modes: int | None, free: Free) -> int:
+    """Return the power of s near that of the lowest lines with which a quick fit comes closest."""
+    guess = _slope_of(measured[0])
+    best, least = guess, np.inf
+    for power in (guess, guess - 1, guess + 1, guess - 2, guess + 2):
+        if power not in SLOPES:
+            continue
+        function = Base.power(power).function
+        problem = fit_problem(measured, [function] * len(measured), free).without_window()
+        count = modes or min(max(len(find_modes(problem)), 1), MOST_MODES)
+        found = best_of_starts(problem, count, is_quick=True)
+        if found is not None and found.refined.cost < LOWER * least:
+            best, least = power, found.refined.cost
+    return best
+
+
+def _slope_of(measured: MeasuredResponse) -> int:
+    """Return the power of s that the lowest tenth of the lines suggests."""
+    size = max(5, measured.values.size // 10)
+    x = np.log(measured.frequency_hz[:size])
+    y = np.log(np.abs(measured.values[:size]))
+    return int(np.clip(round(float(np.polyfit(x, y, 1)[0])), SLOPES.start, SLOPES.stop - 1))
+
+
+def _fit(
+    measured: Sequence[MeasuredResponse],
+    bases: tuple[Base, ...],
+    modes: int | None,
+    start: str,
+    criterion: str,
+    free: Free,
+) -> Fit:
+    problem = fit_problem(measured, [base.function for base in bases], free)
+    for line, base in zip(problem.lines, bases, strict=True):
+        wrong = ~np.isfinite(line.base) | (line.base == 0)
+        if wrong.any():
+            place = float(line.observation.omega[int(np.argmax(wrong))]) / (2 * np.pi)
+            message = f"the base {base.tf} is zero or infinite at {place:.4g} Hz, inside the band measured"
+            raise FitError(
+                Diagnostic("SF615", message, None, "a base needs damping, or --band a smaller band")
+            )
+    scores: tuple[Score, ...] = ()
+    if modes is None:
+        candidate, scores = chosen_order(problem, start, criterion)
+    else:
+        found = best_of_starts(problem, modes, start)
+        if found is None:
+            raise FitError(too_few(problem, modes, start))
+        candidate = found
+    if candidate.failure is not None:
+        raise FitError(candidate.failure)
+    tests = tuple(judge_phase(problem, r, candidate.refined.resonances) for r in range(len(measured)))
+    fit = Fit(problem, bases, candidate, scores, criterion, tests, ())
+    return Fit(problem, bases, candidate, scores, criterion, tests, _warnings(fit))
+
+
+def _warnings(fit: Fit) -> tuple[str, ...]:
+    found = fit.resonances
+    errors = fit.standard_errors()
+    low, high = fit.problem.band
+    warnings = []
+    for i in range(found.count):
+        if errors.zeta_p[i] > WEAK * found.zeta_p[i]:
+            warnings.append(f"the damping of pole pair {i + 1} is hardly determined by the data")
+        for r, line in enumerate(fit.problem.lines):
+            where = f" of {line.measured.name}" if found.responses > 1 else ""
+            if not low <= found.omega_z[r, i] <= high:
+                place = found.omega_z[r, i] / (2 * np.pi)
+                warnings.append(
+                    f"zero pair {i + 1}{where} lies outside the band measured, at {place:.4g} Hz: "
+                    "the data show its effect, not itself"
+                )
+    for line in fit.problem.lines:
+        spacing = line.measured.spacing_hz
+        if spacing is None or line.observation.matrix is not None:
+            continue
+        narrow = [
+            i + 1 for i in range(found.count) if found.zeta_p[i] * found.omega_p[i] / np.pi < 4 * spacing
+        ]
+        if narrow:
+            pairs = ", ".join(map(str, narrow))
+            warnings.append(
+                f"less than four lines in the half-power bandwidth of pole pair {pairs}: if the estimate "
+                "used a Hann window, say --window hann, or damping comes out too large"
+            )
+            break
+    if fit.problem.has_deviations and all(m.averages for m in fit.measured) and fit.refined.reduced > LARGE:
+        warnings.append(
+            f"the residual is {np.sqrt(fit.refined.reduced):.2g} times what coherence explains: "
+            "the model lacks something that the data show"
+        )
+    if fit.refined.correlation > SMOOTH:
+        lacking = "" if fit.problem.free.lag else ", as the lag of a sensor would: try --lag"
+        warnings.append(f"neighbouring lines deviate together: the model lacks something smooth{lacking}")
+    return tuple(warnings)

@@ -1,0 +1,146 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import symflex
+from tests.unit.cli.commands import ROOT
+
+FOLDER = ROOT / "derivations" / "eppinger1988"
+DATA = FOLDER / "data" / "synthetic_figure_3.csv"
+BASE = ["--base", FOLDER / "rigid_body.toml", "--tf", "A_tip/V_cmd"]
+PAPER_HZ = [11.0, 38.0, 44.0, 67.0, 77.0]
+
+
+@pytest.fixture
+def oscillator(shell):
+    """Exact data of 3 (1 + 0.02j x - x^2)/(1 + 0.04j y - y^2), x = f/25 Hz, y = f/20 Hz."""
+    f = np.arange(2.0, 60.0, 0.25)
+    x, y = f / 25, f / 20
+    h = 3 * (1 + 0.02j * x - x**2) / (1 + 0.04j * y - y**2)
+    rows = [f"{a},{b.real!r},{b.imag!r}" for a, b in zip(f.tolist(), h.tolist(), strict=True)]
+    (shell.folder / "one.csv").write_text("\n".join(["f,re,im", *rows]) + "\n")
+    return shell
+
+
+def test_the_paper_s_modes_come_back_from_the_synthetic_figure(shell):
+    done = shell("fit", DATA, *BASE, "--lag", "--modes", "5", "--json")
+    assert done.code == 0
+    poles, (response,) = done.json["poles"], done.json["responses"]
+    assert [p["frequency_hz"] for p in poles] == pytest.approx(PAPER_HZ, rel=0.002)
+    assert [p["damping_ratio"] for p in poles] == pytest.approx([0.05] * 5, rel=0.05)
+    zeros = [z["frequency_hz"] for z in response["zeros"]]
+    assert zeros == pytest.approx([1.1 * f for f in PAPER_HZ], rel=0.002)
+    assert response["synthetic"]
+    assert response["phase_test"]["minimum_phase"]
+    # second order, 5 kHz, damping 0.7: a lag of 2 zeta/omega
+    assert response["lag"]["value"] == pytest.approx(2 * 0.7 / (2 * np.pi * 5000), rel=0.15)
+
+
+def test_the_fitted_specification_is_the_one_in_the_repository(shell):
+    assert shell("fit", DATA, *BASE, "--lag", "--modes", "5", "-o", "fitted.toml").code == 0
+    fitted = symflex.load(shell.folder / "fitted.toml")
+    kept = symflex.load(FOLDER / "fitted_resonances.toml")
+    for new, old in zip(fitted.parameters, kept.parameters, strict=True):
+        assert new.name == old.name
+        assert float(new.value.rational) == pytest.approx(float(old.value.rational), rel=1e-4)
+    poles = kept.transfer_function("A_tip", "V_cmd").bind().poles()
+    frequencies = sorted({round(abs(complex(p)) / (2 * np.pi), 1) for p in poles if complex(p).imag > 0})
+    assert frequencies == pytest.approx(PAPER_HZ, abs=0.06)
+
+
+def test_synthetic_is_said_wherever_the_data_appear(shell):
+    done = shell("fit", DATA, *BASE, "--modes", "5", "--plot", "a.svg", "-o", "a.toml")
+    assert "SYNTHETIC" in done.out
+    assert "SYNTHETIC" in (shell.folder / "a.toml").read_text()
+    assert "SYNTHETIC" in DATA.read_text().splitlines()[0]
+
+
+def test_the_report_fits_eighty_columns_and_shows_errors_and_phase_test(shell):
+    out = shell("fit", DATA, *BASE, "--modes", "5").out
+    assert max(map(len, out.splitlines())) <= 80
+    assert "std. error" in out
+    assert "phase test: " in out
+
+
+def test_a_fit_that_fails_is_said_and_not_replaced_by_a_far_worse_one(shell):
+    # Without the rigid body its two real poles are missing; a sixth resonance would need zeros at infinity.
+    done = shell("fit", DATA)
+    assert (done.code, done.out) == (4, "")
+    assert "6 resonances describe the data far better" in done.err
+
+
+def test_a_fit_without_base_is_a_specification_of_its_own(oscillator):
+    done = oscillator("fit", "one.csv", "--modes", "1", "-o", "one.toml")
+    assert (done.code, done.err) == (0, "wrote one.toml\n")
+    G = symflex.load(oscillator.folder / "one.toml").transfer_function("Y", "U").bind()
+    assert G(2j * np.pi * 20) == pytest.approx(3 * (1 + 0.016j - 0.64) / 0.04j, rel=1e-6)
+    assert oscillator("roots", "one.toml").code == 0
+    assert oscillator("export", "one.toml", "--to", "numpy").code == 0
+
+
+def test_json_has_the_documented_keys(oscillator):
+    document = oscillator("fit", "one.csv", "--modes", "1", "--json").json
+    assert document["schema"] == "symflex.fit/1"
+    page = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
+    section = page.partition("### `symflex.fit/1`")[2].partition("\n### ")[0]
+    keys = {
+        *document,
+        *document["responses"][0],
+        *document["poles"][0],
+        *document["responses"][0]["phase_test"],
+    }
+    assert all(f"`{key}`" in section for key in keys - {"schema"})
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"),
+    [
+        ("fit", 2),
+        ("fit none.csv", 2),
+        ("fit one.csv --tf X/F", 2),
+        ("fit one.csv --base none.toml", 2),
+        ("fit one.csv --base x.toml --tf X/G", 2),
+        ("fit one.csv --base x.toml --tf X/F --tf V/F", 2),
+        ("fit one.csv --base x.toml --slope 1", 2),
+        ("fit one.csv --start peeks", 2),
+        ("fit one.csv --modes 0", 2),
+        ("fit one.csv --band 10 5", 2),
+        ("fit one.csv --modes 1 -o one.json", 2),
+        ("fit one.csv --modes 1 --plot one.jpg", 2),
+        ("fit one.csv --modes 1 -o nowhere/one.toml", 2),
+        ("fit one.csv --band 100 200", 3),
+        ("fit one.csv --band 2 3", 3),
+        ("fit x.toml", 3),
+        ("fit wrong.csv", 3),
+        ("fit one.csv --modes 9 --start peaks", 4),
+        ("measure x.toml -o a.csv", 2),
+        ("measure x.toml -o a.xlsx --band 1 10", 2),
+        ("measure x.toml -o a.csv --band 10 1", 2),
+        ("measure x.toml -o a.csv --band 1 10 --spacing 0", 2),
+        ("measure x.toml -o a.csv --band 1 10 --averages 100000000", 2),
+        ("measure x.toml -o a.csv --band 0.1 1", 2),  # undamped
+        ("measure symbolic.toml -o a.csv --band 1 10", 3),
+    ],
+)
+def test_what_cannot_be_meant_has_its_exit_code_and_writes_nothing(oscillator, arguments, code):
+    (oscillator.folder / "wrong.csv").write_text("f,re,im\n1,2,nan\n")
+    before = sorted(p.name for p in oscillator.folder.iterdir())
+    done = oscillator(*arguments.split())
+    assert (done.code, done.out) == (code, "")
+    assert "Traceback" not in done.err
+    assert sorted(p.name for p in oscillator.folder.iterdir()) == before
+
+
+def test_measure_writes_what_fit_reads(shell):
+    (shell.folder / "damped.toml").write_text(
+        'symflex = 1\nparameters = { m = "2 kg", k = "20 kN/m", b = "10 N*s/m" }\n'
+        'inputs.F = { force = "x" }\noutputs.A = "s^2*x"\n'
+        'elements.body = { type = "mass", at = "x", m = "m" }\n'
+        'elements.wall = { type = "spring", between = ["x", "ground"], k = "k" }\n'
+        'elements.loss = { type = "damper", between = ["x", "ground"], b = "b" }\n'
+    )
+    done = shell("measure", "damped.toml", "-o", "a.npz", "--band", "2", "40", "--spacing", "0.25")
+    assert done.code == 0
+    assert "SYNTHETIC" in done.err
+    assert shell("fit", "a.npz", "--base", "damped.toml", "--tf", "A/F").code == 4  # nothing is left to fit

@@ -1,0 +1,131 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from symflex.errors import DataError, FitError, UsageError
+from symflex.fitting import STARTS, Base, fit_resonances
+from symflex.measurement import MeasuredResponse
+from tests.unit.fitting.analyser import System, measured, rigid
+
+# The modes of the paper with its typical ratio and damping; the zero of 38 Hz lies between it and 44 Hz.
+PAPER_HZ = np.array([11.0, 38.0, 44.0, 67.0, 77.0])
+PAPER = System(PAPER_HZ, np.full(5, 0.05), 1.1 * PAPER_HZ, np.full(5, 0.05))
+ONE = System(np.array([20.0]), np.array([0.02]), np.array([25.0]), np.array([0.03]))
+FREQUENCY = np.arange(2.0, 100.0, 0.25)
+UNIT = [Base(np.ones_like)]
+
+
+def exact(system, name="y/u"):
+    return MeasuredResponse(name, FREQUENCY, system(FREQUENCY))
+
+
+def noisy(system, seed=1, **more):
+    return measured(system, np.random.default_rng(seed), record=8.0, **more)
+
+
+@pytest.mark.parametrize("start", [*STARTS, "auto"])
+def test_every_start_leads_to_the_paper_s_modes(start):
+    fit = fit_resonances([exact(PAPER)], UNIT, modes=5, start=start)
+    assert fit.resonances.omega_p / (2 * np.pi) == pytest.approx(PAPER.f_p, rel=1e-6)
+    assert fit.resonances.zeta_p == pytest.approx(PAPER.zeta_p, rel=1e-5)
+    assert fit.resonances.omega_z[0] / (2 * np.pi) == pytest.approx(PAPER.f_z, rel=1e-6)
+
+
+def test_the_close_pair_is_not_swapped_and_five_modes_are_chosen():
+    fit = fit_resonances([noisy(PAPER)], UNIT)
+    assert fit.resonances.count == 5
+    assert fit.resonances.omega_p / (2 * np.pi) == pytest.approx(PAPER.f_p, rel=0.005)
+    assert fit.resonances.omega_z[0] / (2 * np.pi) == pytest.approx(PAPER.f_z, rel=0.005)
+    assert min(fit.scores, key=lambda s: s.bic).count == 5
+
+
+def test_without_coherence_all_lines_weigh_alike():
+    data = replace(noisy(PAPER), coherence=None)
+    fit = fit_resonances([data], UNIT, modes=5)
+    assert fit.resonances.omega_p / (2 * np.pi) == pytest.approx(PAPER.f_p, rel=0.01)
+
+
+def test_without_a_base_gain_and_power_of_s_are_found():
+    omega = 2 * np.pi * FREQUENCY
+    data = MeasuredResponse("y/u", FREQUENCY, -0.3 * (1j * omega) ** 2 * ONE(FREQUENCY))
+    fit = fit_resonances([data], modes=1)
+    assert fit.bases[0].slope == 2
+    assert fit.resonances.gain[0] == pytest.approx(-0.3)
+    assert fit.resonances.zeta_z[0, 0] == pytest.approx(0.03)
+
+
+def test_a_lag_of_the_sensor_is_found():
+    data = MeasuredResponse("y/u", FREQUENCY, ONE(FREQUENCY) / (1 + 2j * np.pi * FREQUENCY * 2e-4))
+    fit = fit_resonances([data], UNIT, modes=1, is_lag_free=True)
+    assert fit.resonances.lag[0] == pytest.approx(2e-4)
+
+
+def test_responses_share_their_poles():
+    other = replace(PAPER, f_z=1.05 * PAPER.f_p, zeta_z=np.full(5, 0.03))
+    fit = fit_resonances([exact(PAPER, "a/u"), exact(other, "b/u")], UNIT * 2, modes=5)
+    assert fit.resonances.omega_p / (2 * np.pi) == pytest.approx(PAPER.f_p, rel=1e-6)
+    assert fit.resonances.omega_z[1] / (2 * np.pi) == pytest.approx(other.f_z, rel=1e-6)
+    assert fit.resonances.zeta_z[1] == pytest.approx(other.zeta_z, rel=1e-5)
+
+
+def test_a_minimum_phase_function_passes_the_phase_test():
+    assert fit_resonances([noisy(PAPER)], UNIT, modes=5).phase_tests[0].is_minimum_phase
+
+
+def test_zeros_in_the_right_half_plane_are_found_and_fail_the_phase_test():
+    mirrored = replace(PAPER, zeta_z=np.array([0.05, 0.05, 0.05, -0.05, 0.05]))
+    fit = fit_resonances([noisy(mirrored)], UNIT, modes=5)
+    assert fit.resonances.zeta_z[0] == pytest.approx(mirrored.zeta_z, abs=0.005)
+    (worst, *_) = sorted(fit.phase_tests[0].bands, key=lambda band: -abs(band.worst_degrees))
+    # At its own frequency a mirrored pair of zeros stands 180 degrees beside the other.
+    assert worst.low_hz < 73.7 < worst.high_hz
+    assert abs(worst.worst_degrees) == pytest.approx(180, abs=5)
+
+
+def code_of(caught):
+    return [d.code for d in caught.value.diagnostics]
+
+
+def test_data_without_a_resonance_are_refused():
+    with pytest.raises(FitError) as caught:
+        fit_resonances([noisy(lambda f: rigid(2 * np.pi * f))], [Base(rigid)])
+    assert code_of(caught) == ["SF611"]
+
+
+def test_more_peaks_than_there_are_is_an_error():
+    with pytest.raises(FitError) as caught:
+        fit_resonances([exact(ONE)], UNIT, modes=4, start="peaks")
+    assert code_of(caught) == ["SF611"]
+
+
+def test_a_pole_that_leaves_the_band_is_an_error():
+    above = System(np.array([130.0]), np.array([0.02]), np.array([160.0]), np.array([0.02]))
+    with pytest.raises(FitError) as caught:
+        fit_resonances([noisy(above, noise=0.001)], UNIT, modes=1, start="vector")
+    assert code_of(caught) == ["SF614"]
+
+
+def test_parameters_the_data_do_not_determine_are_an_error():
+    with pytest.raises(FitError) as caught:
+        fit_resonances([exact(ONE)], UNIT, modes=3, start="vector")
+    assert code_of(caught)[0] in ("SF612", "SF613", "SF614")
+
+
+def test_a_base_with_a_zero_in_the_band_is_an_error():
+    with pytest.raises(FitError) as caught:
+        fit_resonances([exact(ONE)], [Base(lambda omega: omega - omega[3] + 0j)], modes=1)
+    assert code_of(caught) == ["SF615"]
+
+
+def test_too_few_lines_are_an_error():
+    with pytest.raises(DataError) as caught:
+        fit_resonances([exact(ONE).between(10, 13)], UNIT, modes=3)
+    assert code_of(caught) == ["SF605"]
+
+
+def test_an_unknown_start_is_a_usage_error():
+    with pytest.raises(UsageError, match="vector"):
+        fit_resonances([exact(ONE)], UNIT, start="vectro")
