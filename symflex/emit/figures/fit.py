@@ -67,7 +67,7 @@ def draw_fit(fit: Fit, response: int = 0) -> Figure:
         top.plot(frequency, _db(start), color=COLOURS[4], linestyle=DASHES[3], label="start")
         top.plot(frequency, _db(model), color=COLOURS[0], label=f"fit, {fit.resonances.count} resonances")
         fitted = np.degrees(np.unwrap(np.angle(model)))
-        fitted = fitted - 360 * np.round(np.median(fitted) / 360)
+        fitted = fitted - 360 * np.round(fitted[0] / 360)
         bottom.plot(
             frequency,
             fitted + np.degrees(np.angle(measured.values / model)),
