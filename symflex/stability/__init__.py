@@ -1,0 +1,33 @@
+"""Stable gains of feedback loops, proved: closed-loop poles right of the imaginary axis counted, none missing."""
+
+from symflex.stability.crossing import Crossing, PoleCount
+from symflex.stability.find import find_stable_gains
+from symflex.stability.loop import GainPolynomial, Loop, characteristic_loop, pick_gain
+from symflex.stability.stability_map import (
+    Boundary,
+    GainInterval,
+    GainMargin,
+    PhaseMargin,
+    StabilityMap,
+    decibels,
+    degrees,
+    hertz,
+)
+
+__all__ = [
+    "Boundary",
+    "Crossing",
+    "GainInterval",
+    "GainMargin",
+    "GainPolynomial",
+    "Loop",
+    "PhaseMargin",
+    "PoleCount",
+    "StabilityMap",
+    "characteristic_loop",
+    "decibels",
+    "degrees",
+    "find_stable_gains",
+    "hertz",
+    "pick_gain",
+]
