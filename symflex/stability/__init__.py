@@ -1,5 +1,6 @@
 """Stable gains of feedback loops, proved: closed-loop poles right of the imaginary axis counted, none missing."""
 
+from symflex.stability.colocation import DynamicColocation, dynamic_colocation
 from symflex.stability.crossing import Crossing, PoleCount
 from symflex.stability.find import find_stable_gains
 from symflex.stability.loop import GainPolynomial, Loop, characteristic_loop, pick_gain
@@ -17,6 +18,7 @@ from symflex.stability.stability_map import (
 __all__ = [
     "Boundary",
     "Crossing",
+    "DynamicColocation",
     "GainInterval",
     "GainMargin",
     "GainPolynomial",
@@ -27,6 +29,7 @@ __all__ = [
     "characteristic_loop",
     "decibels",
     "degrees",
+    "dynamic_colocation",
     "find_stable_gains",
     "hertz",
     "pick_gain",

@@ -53,6 +53,7 @@ def find_on_axis(
     limits: tuple[float, float],
     digits: int,
     budget: Budget,
+    order: int = 1,
 ) -> AxisRoots:
     """Return the roots of a function of A and B at ``s = j omega``.
 
@@ -70,6 +71,8 @@ def find_on_axis(
         Significant digits of each root.
     budget : Budget
         Spent by every interval.
+    order : int
+        Derivatives of A and B that the function and its derivative are made of.
 
     Raises
     ------
@@ -91,7 +94,7 @@ def find_on_axis(
         budget.spend()
         start, end = pending.pop()
         ball = _between(start, end)
-        around, centre = function.on(ball, BITS)
+        around, centre = function.on(ball, BITS, order)
         with precision(BITS):
             if is_excluded(around):
                 continue
@@ -101,10 +104,10 @@ def find_on_axis(
             if value != 0 or mean != 0:
                 continue
             if slope != 0:
-                ends = [equation(function.on(arb(x), BITS)[1])[0] for x in (start, end)]
+                ends = [equation(function.on(arb(x), BITS, order)[1])[0] for x in (start, end)]
                 if all(x != 0 for x in ends):
                     if bool(ends[0] > 0) != bool(ends[1] > 0):
-                        roots.append(_refined(function, equation, ball, digits))
+                        roots.append(_refined(function, equation, ball, digits, order))
                     continue
         if end - start < NARROWEST * end:
             undecided.append(ball)
@@ -122,13 +125,17 @@ def _between(start: float, end: float) -> arb:
 
 
 def _refined(
-    function: LoopFunction, equation: Callable[[LoopValue], tuple[arb, arb]], ball: arb, digits: int
+    function: LoopFunction,
+    equation: Callable[[LoopValue], tuple[arb, arb]],
+    ball: arb,
+    digits: int,
+    order: int,
 ) -> arb:
     """Return a narrower enclosure of the only root in an interval on which the function is monotonous."""
     wanted = bits_for_digits(digits) + 16
     for step in range(NEWTON_STEPS):
         bits = min(max(BITS, 2 * ball.rel_accuracy_bits() + 64), 2 * wanted + BITS)
-        around, centre = function.on(ball, bits)
+        around, centre = function.on(ball, bits, order)
         with precision(bits):
             _, slope = equation(around)
             value, _ = equation(centre)

@@ -142,17 +142,18 @@ class DistributedFactors:
 
     def _crossings(self, function: LoopFunction, digits: int) -> list[Crossing]:
         found: list[Crossing] = []
-        if self._never_leaves(function):
-            self.reasons.append(
-                "poles mirror each other in the imaginary axis for every gain; where they meet is not searched"
-            )
+        is_mirrored = self._never_leaves(function)
+        if is_mirrored and function.sums is None:
+            self.reasons.append("where poles that mirror each other meet on the axis is not searched")
             return []
-        first, origin = self.next_to_zero(function)
+        first, origin = self.next_to_zero(function, is_mirrored=is_mirrored)
         if origin is not None:
             gain = origin.gain()
             if gain is not None and self._may_be_in_range(gain):
                 found.append(Crossing(gain, (arb(0),)))
-        result = self.on_axis(function, LoopValue.crossing, self._is_far, first, digits)
+        equation = LoopValue.meeting if is_mirrored else LoopValue.crossing
+        order = 2 if is_mirrored else 1
+        result = self.on_axis(function, equation, self._is_far, first, digits, order)
         for omega in result.roots:
             bits = max(BITS, 2 * omega.rel_accuracy_bits())
             around, _ = function.on(omega, bits)
@@ -161,7 +162,7 @@ class DistributedFactors:
                     continue
                 gain = around.gain()
             if self._may_be_in_range(gain):
-                found.append(Crossing(gain, (omega,)))
+                found.append(Crossing(gain, (omega,), is_symmetric=is_mirrored))
         return found
 
     def on_axis(
@@ -171,10 +172,11 @@ class DistributedFactors:
         is_excluded: Callable[[LoopValue], bool],
         first: float,
         digits: int,
+        order: int = 1,
     ) -> AxisRoots:
         """Return the roots of a real function along the axis, as far as poles are searched."""
         result = find_on_axis(
-            function, equation, is_excluded, (first, self.radius[0] * 1.01), digits, self.budget
+            function, equation, is_excluded, (first, self.radius[0] * 1.01), digits, self.budget, order
         )
         for gap in result.undecided:
             place = float((gap.mid() / (2 * arb.pi())).mid())
@@ -190,7 +192,9 @@ class DistributedFactors:
         powers = [{int(m[0]) % 2 for m in f.monoms()} for f in (function.a, function.b)]
         return powers[0] == powers[1]
 
-    def next_to_zero(self, function: LoopFunction) -> tuple[float, LoopAtOrigin | None]:
+    def next_to_zero(
+        self, function: LoopFunction, *, is_mirrored: bool = False
+    ) -> tuple[float, LoopAtOrigin | None]:
         """Return a frequency [rad/s] within which no pole crosses the axis but at 0, as far as proved."""
         origin = loop_at_origin(function, self.budget)
         if origin is None:
@@ -198,7 +202,8 @@ class DistributedFactors:
             return self._scale * 1e-6, None
         radius = origin.series[0].reach / 4
         for _ in range(SHRINKINGS):
-            if origin.turns_away(radius) or self._beyond_all_gains(origin, radius):
+            is_proved = origin.moves_away(radius) if is_mirrored else origin.turns_away(radius)
+            if is_proved or self._beyond_all_gains(origin, radius):
                 break
             radius = radius / 2
         else:

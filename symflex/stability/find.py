@@ -268,7 +268,7 @@ def _sample(low: arb | None, high: arb | None) -> Fraction:
     if not start < end:
         message = "two boundaries cannot be told apart"
         raise UncertifiedError(Diagnostic("SF802", message, None, "ask for more --digits"))
-    if 0 < start and end > 4 * start:
+    if low is not None and low > 0 and end > 4 * start:
         return _short(2 * start, start, end)
     return _short((start + end) / 2, start, end)
 

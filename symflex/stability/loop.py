@@ -107,13 +107,13 @@ def characteristic_loop(
         SF801 the closed loop does not depend on the gain, or the gain shapes waves or delays.
     """
     position = tf.ratio.ring.index.get(gain.name)
+    if position is not None and any(value.depends_on(gain.name) for value in tf.kernels.values):
+        message = f"'{gain.name}' is part of a wavenumber, a length or a delay, and no gain"
+        raise ModelError(Diagnostic("SF801", message, gain.span))
     if position is None or not _depends(tf, position):
         message = f"no pole of the model depends on '{gain.name}'"
         hint = "a loop is closed in [signals], as in e = 'r - y', u = 'K*e'"
         raise ModelError(Diagnostic("SF801", message, gain.span, hint))
-    if any(value.depends_on(gain.name) for value in tf.kernels.values):
-        message = f"'{gain.name}' is part of a wavenumber, a length or a delay, and no gain"
-        raise ModelError(Diagnostic("SF801", message, gain.span))
     bound = _bound(tf, gain, dict(values or {}))
     nominal = dict(bound.values)[gain.name] if gain.value is not None or gain.name in (values or {}) else None
     factors = [(f, e, False) for f, e in tf.den.factors]

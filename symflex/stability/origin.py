@@ -79,6 +79,34 @@ class LoopAtOrigin:
                 value = first[1] * second[0] - first[0] * second[1]
             return bool(value != 0)
 
+    def moves_away(self, radius: arb) -> bool:
+        """Tell, if A/B is real on the axis, whether it changes monotonously within a radius of 0.
+
+        Its derivative is then that of a power of omega times a quotient of functions of omega squared.
+        """
+        with precision(BITS):
+            omega = arb(0).union(radius)
+            square = omega * omega
+            (a, _), (b, _) = (self._parts(i, omega) for i in (0, 1))
+            a_slope, b_slope = (self._slope(i, omega) for i in (0, 1))
+            turning = a_slope * b - a * b_slope
+            difference = self.orders[0] - self.orders[1]
+            value = turning if not difference else difference * a * b + 2 * square * turning
+            return bool(value != 0)
+
+    def _slope(self, which: int, omega: arb) -> arb:
+        """Return the derivative of u in omega squared."""
+        series, order = self.series[which], self.orders[which]
+        coefficients = [c.real for c in series.coefficients[order::2]]
+        square, total = omega * omega, arb(0)
+        for k in range(len(coefficients) - 1, 0, -1):
+            total = total * square + (-1) ** k * k * coefficients[k]
+        # The sum of k q^(k - 1) from the first missing power on.
+        q, first = (omega.upper() / series.reach) ** 2, len(coefficients)
+        rest = q ** (first - 1) * (first - (first - 1) * q) / (1 - q) ** 2
+        error = (series.bound / series.reach ** (order + 2) * rest).upper()
+        return total + arb(0, error)
+
     def _parts(self, which: int, omega: arb) -> tuple[arb, arb]:
         """Return u and v, functions of omega squared, of ``u + j omega v``."""
         series, order = self.series[which], self.orders[which]
