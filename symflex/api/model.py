@@ -264,7 +264,7 @@ class Model:
         ...     outputs={"X": "x", "Y": "y"},
         ... )
         >>> print(model.colocation("Y", "X", "F", band=(0.01, 1)))
-        Y/F within 10 deg and 1 dB of X/F: up to 0.105 Hz, where the magnitude differs by more
+        Y/F within 10 deg and 1 dB of X/F: up to 0.104969441593 Hz, where the magnitude differs by more
         """
         return pipeline.colocation(
             self.resolved, f"{output}/{input}", f"{reference}/{input}", phase, magnitude, band

@@ -15,7 +15,7 @@ COMMANDS: dict[str, str] = {
     "rational": "Print rational approximations and where they are valid.",
     "stability": "Print for which values of a gain a feedback loop is stable.",
     "colocation": "Print up to which frequency two outputs move together.",
-    "plot": "Draw a Bode plot, a pole-zero array or mode shapes.",
+    "plot": "Draw a Bode plot, a pole-zero array, mode shapes, a root locus or a Nyquist plot.",
     "export": "Write numeric code or LaTeX.",
     "audit": "Compare printed formulas with derived ones.",
     "new": "Write a specification to start from.",

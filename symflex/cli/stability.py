@@ -70,7 +70,7 @@ def command(
 
     model = pipeline.load(spec)
     parameter = pick_gain(model.parameters, gain)
-    chosen = None if limits is None else (_limit(limits[0], parameter), _limit(limits[1], parameter))
+    chosen = None if limits is None else (gain_limit(limits[0], parameter), gain_limit(limits[1], parameter))
     highest = None if up_to is None else _radians(up_to)
     with ProgressBar() as bar:
         found = pipeline.stability(
@@ -88,7 +88,7 @@ def command(
     return 0 if found.certified else 4
 
 
-def _limit(text: str, parameter: Parameter) -> Fraction | None:
+def gain_limit(text: str, parameter: Parameter) -> Fraction | None:
     """Return an end of the range in SI units, ``None`` for an infinite one."""
     from symflex.errors import Source, Span, SpecError, Text
     from symflex.quantities import parse_quantity, unit_of

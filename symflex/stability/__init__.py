@@ -3,6 +3,7 @@
 from symflex.stability.colocation import DynamicColocation, dynamic_colocation
 from symflex.stability.crossing import Crossing, PoleCount
 from symflex.stability.find import find_stable_gains
+from symflex.stability.locus import RootLocus, loop_gain, require_arrival, trace_locus
 from symflex.stability.loop import GainPolynomial, Loop, characteristic_loop, pick_gain
 from symflex.stability.stability_map import (
     Boundary,
@@ -25,6 +26,7 @@ __all__ = [
     "Loop",
     "PhaseMargin",
     "PoleCount",
+    "RootLocus",
     "StabilityMap",
     "characteristic_loop",
     "decibels",
@@ -32,5 +34,8 @@ __all__ = [
     "dynamic_colocation",
     "find_stable_gains",
     "hertz",
+    "loop_gain",
     "pick_gain",
+    "require_arrival",
+    "trace_locus",
 ]

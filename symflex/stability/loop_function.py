@@ -177,6 +177,22 @@ class LoopFunction:
             )
 
 
+    def near(self, s: complex, bits: int = 96) -> tuple[complex, complex, complex, complex]:
+        """Return A, its derivative, B and its derivative at a point, in doubles and divided alike; no proof."""
+        with precision(bits):
+            kernels, sums = self.evaluator(bits)
+            point = expansion(acb(s.real, s.imag))
+            if sums is None:
+                place = kernels.at(point)
+                values = [kernels.polynomial(f, place) for f in (self.a, self.b)]
+            else:
+                at = sums.at(point)
+                less = _largest(sums, at)
+                values = [_sum(sums, i, at, less) for i in (0, 1)]
+            (a, a_slope, _), (b, b_slope, _) = (_derivatives(value) for value in values)
+            return complex(a.mid()), complex(a_slope.mid()), complex(b.mid()), complex(b_slope.mid())
+
+
 def _series(s: acb, order: int) -> acb_series:
     """Return ``s + x`` up to a power of x."""
     return expansion(s) if order == 1 else acb_series([s, acb(1)], order + 1)

@@ -9,13 +9,17 @@ from typing import TYPE_CHECKING
 
 from symflex.emit.figures.bode import draw_bode, draw_response
 from symflex.emit.figures.drawing import Drawing
+from symflex.emit.figures.labels import label_of_name
+from symflex.emit.figures.locus import draw_locus
 from symflex.emit.figures.modes import draw_modes
+from symflex.emit.figures.nyquist import draw_nyquist
 from symflex.emit.figures.poles_zeros import draw_poles_zeros
 from symflex.emit.figures.save import FORMATS, render, save
 from symflex.emit.figures.style import paper_style
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.model.analysis import FIGURE_KINDS
+from symflex.stability import loop_gain, require_arrival, trace_locus
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,15 +27,30 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
+    from symflex.stability import Loop
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
 FIGURES: dict[str, Drawing] = {
     "bode": draw_bode,
     "modes": draw_modes,
+    "nyquist": draw_nyquist,
     "poles_zeros": draw_poles_zeros,
 }
 
-__all__ = ["FIGURES", "FORMATS", "Drawing", "draw", "draw_response", "render", "save"]
+LOOP_FIGURES: tuple[str, ...] = ("locus", "nyquist")
+"""Kinds that are drawn of a loop and its gain, by :func:`draw_loop`."""
+
+__all__ = [
+    "FIGURES",
+    "FORMATS",
+    "LOOP_FIGURES",
+    "Drawing",
+    "draw",
+    "draw_loop",
+    "draw_response",
+    "render",
+    "save",
+]
 
 
 def draw(
@@ -69,6 +88,9 @@ def draw(
         SF402 a transfer function is identically zero.
     """
     if kind not in FIGURES:
+        if kind in LOOP_FIGURES:
+            message = f"a figure of kind '{kind}' is drawn of a loop"
+            raise UsageError(Diagnostic("SF902", message, None, "name its gain: --gain K, or gain in [figures]"))
         if kind in FIGURE_KINDS:
             hint = "available: " + ", ".join(FIGURES)
             raise UsageError(
@@ -87,3 +109,46 @@ def draw(
     band = None if band_hz is None else (float(band_hz[0]), float(band_hz[1]))
     with paper_style():
         return FIGURES[kind](tfs, bounds, band_hz=band, title=title)
+
+
+def draw_loop(
+    kind: str,
+    loop: Loop,
+    *,
+    limits: tuple[Fraction | None, Fraction | None] | None = None,
+    modes: int | None = None,
+    title: str | None = None,
+) -> Figure:
+    """Draw a root locus, or the Nyquist plot of a loop gain ``K B/A``.
+
+    Parameters
+    ----------
+    kind : str
+        ``locus`` or ``nyquist``.
+    loop : Loop
+        A straight line in its gain.
+    limits : (Fraction, Fraction), optional
+        First and last gain of a locus; from 0 to 10 times the nominal one by default.
+    modes : int, optional
+        Traced in the locus of a loop with kernels.
+    title : str, optional
+        Printed as it is.
+
+    Raises
+    ------
+    UsageError
+        SF208 an unknown kind, SF804 no range, SF806 no straight line in the gain.
+    UncertifiedError
+        SF807 the curves do not end in proved poles.
+    """
+    if kind not in LOOP_FIGURES:
+        hint = "kinds: " + ", ".join(LOOP_FIGURES)
+        raise UsageError(Diagnostic("SF208", f"no figure of kind '{kind[:64]}' is drawn of a loop", None, hint))
+    with paper_style():
+        if kind == "locus":
+            locus = trace_locus(loop, limits, modes)
+            require_arrival(locus)
+            return draw_locus(locus, title)
+        bound = loop_gain(loop)
+        label = f"loop gain, ${label_of_name(loop.gain.name)} = {float(loop.nominal or 0):.4g}$"
+        return draw_nyquist([bound.source], [bound], title=title, labels=[label])
