@@ -9,6 +9,7 @@ from __future__ import annotations
 from cmath import isfinite, rect
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from math import inf
 from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, UncertifiedError, UsageError
@@ -53,7 +54,7 @@ class RootLocus:
     branches : tuple of tuple of complex
         Curves [rad/s] from each pole at the first gain, not proved.
     arrived : bool
-        Every curve ends within a proved pole at the last gain, and no two in the same.
+        Every curve ends next to a proved pole at the last gain, and no two at the same.
     """
 
     gain: str
@@ -147,7 +148,9 @@ def trace_locus(
     poles = [complex(float(r.re.mid()), float(r.im.mid())) for r in start.poles for _ in range(r.multiplicity)]
     traced = _trace(function, poles, float(low), float(high))
     final = [complex(float(r.re.mid()), float(r.im.mid())) for r in end.poles for _ in range(r.multiplicity)]
-    arrived = _arrived([branch[-1] for branch in traced], final)
+    # Of a loop with kernels, poles beyond those proved at the last gain are not compared.
+    reach = max((abs(s) for s in final), default=0.0) if loop.bound.kernels else inf
+    arrived = _arrived([branch[-1] for branch in traced if abs(branch[-1]) < reach], final)
     return RootLocus(loop.gain.name, (low, high), start, end, tuple(map(tuple, traced)), arrived)
 
 

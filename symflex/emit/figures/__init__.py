@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from symflex.emit.figures.bode import draw_bode, draw_response
 from symflex.emit.figures.drawing import Drawing
 from symflex.emit.figures.labels import label_of_name
-from symflex.emit.figures.locus import draw_locus
+from symflex.emit.figures.locus import draw_locus, number_label
 from symflex.emit.figures.modes import draw_modes
 from symflex.emit.figures.nyquist import draw_nyquist
 from symflex.emit.figures.poles_zeros import draw_poles_zeros
@@ -150,5 +150,5 @@ def draw_loop(
             require_arrival(locus)
             return draw_locus(locus, title)
         bound = loop_gain(loop)
-        label = f"loop gain, ${label_of_name(loop.gain.name)} = {float(loop.nominal or 0):.4g}$"
+        label = f"loop gain, ${label_of_name(loop.gain.name)} = {number_label(float(loop.nominal or 0))}$"
         return draw_nyquist([bound.source], [bound], title=title, labels=[label])

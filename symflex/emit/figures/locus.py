@@ -54,7 +54,7 @@ def draw_locus(locus: RootLocus, title: str | None = None) -> Figure:
     for branch in locus.branches:
         s = np.array(branch)
         axes.plot(s.real, s.imag, "-", color=COLOURS[0], linewidth=1.0, zorder=2)
-    low, high = (f"{float(x):.4g}" for x in locus.limits)
+    low, high = (number_label(float(x)) for x in locus.limits)
     name = label_of_name(locus.gain)
     marks = (
         (starts, "x", COLOURS[1], f"poles, ${name} = {low}$"),
@@ -82,6 +82,22 @@ def draw_locus(locus: RootLocus, title: str | None = None) -> Figure:
     if lines:
         figure.suptitle("\n".join(lines), fontsize=TITLE_POINTS, linespacing=TITLE_SPACING, parse_math=False)
     return figure
+
+
+def number_label(value: float) -> str:
+    r"""Return a number in four digits in matplotlib's mathematics.
+
+    Examples
+    --------
+    >>> number_label(25.0), number_label(1e6), number_label(2.5e-7)
+    ('25', '10^{6}', '2.5\\times 10^{-7}')
+    """
+    text = f"{value:.4g}"
+    if "e" not in text:
+        return text
+    mantissa, exponent = text.split("e")
+    power = f"10^{{{int(exponent)}}}"
+    return power if mantissa == "1" else rf"{mantissa}\times {power}"
 
 
 def _set_view(axes: Axes, locus: RootLocus, starts: list[complex], zeros: list[complex]) -> None:

@@ -7,6 +7,7 @@ from itertools import cycle
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 from symflex.emit.figures.labels import label_of_tf
 from symflex.emit.figures.style import (
@@ -34,10 +35,9 @@ HEIGHT_INCHES: Final = 3.3
 LINE_INCHES: Final = 0.13
 WIDENED: Final = 10.0
 """How far beyond the band of poles and zeros the curve is drawn, to both sides."""
-REACH: Final = 3.0
-"""Of the part of the plane shown about -1, at least."""
+REACHES: Final = (1.5, 2.5)
+"""Half the side of the square shown of a loop gain, about -1."""
 QUANTILE: Final = 0.9
-MOST: Final = 12.0
 
 
 def draw_nyquist(
@@ -50,7 +50,7 @@ def draw_nyquist(
 ) -> Figure:
     """Draw the values of transfer functions for positive frequencies, and mirrored, dashed, for negative ones.
 
-    The part of the plane about -1 is shown; where a curve leaves it, it goes on outside. Arrows point to
+    Of a loop gain the part of the plane about -1 is shown; where a curve leaves it, it goes on outside. Arrows point to
     growing frequency.
     """
     lines = title_lines(title, COLUMN_INCHES)
@@ -69,12 +69,14 @@ def draw_nyquist(
         axes.plot(values.real, values.imag, "-", color=colour, linewidth=1.0, zorder=2, label=label)
         axes.plot(values.real, -values.imag, "--", color=colour, linewidth=0.6, zorder=2)
     axes.plot([-1], [0], "+", color="black", markersize=8, markeredgewidth=1.1, zorder=4)
-    reach = _reach(np.concatenate(curves))
+    reach = _reach(np.concatenate(curves), is_loop=bool(labels))
     axes.set_xlim(-reach, reach)
     axes.set_ylim(-reach, reach)
     axes.set_aspect("equal", adjustable="box")
     for values, colour in zip(curves, cycle(COLOURS), strict=False):
         _point_along(axes, values, reach, colour)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10]))
     axes.set_xlabel("Real part")
     axes.set_ylabel("Imaginary part")
     figure.legend(loc="outside upper center", ncols=3, frameon=False)
@@ -98,10 +100,12 @@ def _curve(bound: BoundTransferFunction, band_hz: tuple[float, float] | None) ->
     return values[np.isfinite(values)]
 
 
-def _reach(values: np.ndarray) -> float:
-    """Return half the side of a square that shows -1 and most of the curves."""
-    typical = float(np.quantile(np.abs(values), QUANTILE)) if values.size else 1.0
-    return min(max(REACH, 1.1 * typical), MOST) if typical > 0 else REACH
+def _reach(values: np.ndarray, *, is_loop: bool) -> float:
+    """Return half the side of a square that shows -1, and most of a curve that is no loop gain."""
+    largest = float(np.max(np.abs(values))) if values.size else 1.0
+    if is_loop:
+        return min(max(1.1 * largest, REACHES[0]), REACHES[1])
+    return 1.1 * float(np.quantile(np.abs(values), QUANTILE)) or 1.0
 
 
 def _point_along(axes: Axes, values: np.ndarray, reach: float, colour: str) -> None:
