@@ -14,7 +14,9 @@ from symflex.errors import Diagnostic, UsageError
 @click.option("--with", "reference", required=True, metavar="OUT2/IN", help="The colocated output.")
 @click.option("--phase", default="10 deg", show_default=True, help="Largest difference of phase.")
 @click.option("--magnitude", default="1 dB", show_default=True, help="Largest difference of magnitude.")
-@click.option("--band", nargs=2, metavar="LO HI", help="Frequencies examined; by default those of [analysis].")
+@click.option(
+    "--band", nargs=2, metavar="LO HI", help="Frequencies examined; by default those of [analysis]."
+)
 @click.option(
     "--budget", type=click.FloatRange(min=0, min_open=True), metavar="SECONDS", help="Stop the search then."
 )
@@ -33,9 +35,9 @@ def command(
 ) -> int:
     """Print up to which frequency an output of SPEC moves with a colocated one.
 
-    Within this band they are dynamically colocated, although flexible parts lie between them. It ends where the
-    ratio of the two first leaves the tolerances; that it does not before is proved. Exit code 4 says that the
-    end could not be told.
+    Within this band they are dynamically colocated, although flexible parts lie between them. It ends where
+    the ratio of the two first leaves the tolerances; that it does not before is proved. Exit code 4 says that
+    the end could not be told.
     """
     from symflex import pipeline
     from symflex.cli.roots import frequency_limit
@@ -45,7 +47,9 @@ def command(
     if band is not None:
         low, high = (float(frequency_limit(x, "--band", "0.1 or '1 kHz'", hertz=True)) for x in band)
         if not 0 < low < high:
-            raise UsageError(Diagnostic("SF902", "--band takes two frequencies, the lower one first, above 0"))
+            raise UsageError(
+                Diagnostic("SF902", "--band takes two frequencies, the lower one first, above 0")
+            )
         limits = (low, high)
     found = pipeline.colocation(
         pipeline.load(spec),

@@ -72,7 +72,9 @@ def command(
     title = figure.title if figure else ""
     if named:
         parameter = pick_gain(model.parameters, named)
-        chosen = None if limits is None else (gain_limit(limits[0], parameter), gain_limit(limits[1], parameter))
+        chosen = (
+            None if limits is None else (gain_limit(limits[0], parameter), gain_limit(limits[1], parameter))
+        )
         loop = pipeline.characteristic_loop(model, named)
         save(draw_loop(drawn, loop, limits=chosen, modes=modes, title=title or None), path)
         note(f"wrote {path}")

@@ -128,7 +128,9 @@ def _margins(found: StabilityMap) -> list[str]:
     lines = ["", f"{INDENT}margins of {found.gain} = {_number(found.nominal)}"]
     rows: list[tuple[str, ...]] = []
     for margin in found.gain_margins:
-        places = ", ".join(f"{float(hertz(w).mid()):.{SHORT_DIGITS}g} Hz" for w in margin.boundary.frequencies)
+        places = ", ".join(
+            f"{float(hertz(w).mid()):.{SHORT_DIGITS}g} Hz" for w in margin.boundary.frequencies
+        )
         factor = decimals(margin.factor, arb(0), SHORT_DIGITS).re
         size = decimals(decibels(margin.factor), arb(0), SHORT_DIGITS).re
         rows.append(("gain", f"x {factor}", f"{size} dB", places))

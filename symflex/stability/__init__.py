@@ -1,4 +1,4 @@
-"""Stable gains of feedback loops, proved: closed-loop poles right of the imaginary axis counted, none missing."""
+"""Stable gains of feedback loops, proved: poles right of the imaginary axis counted, none missing."""
 
 from symflex.stability.colocation import DynamicColocation, dynamic_colocation
 from symflex.stability.crossing import Crossing, PoleCount

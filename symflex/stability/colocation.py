@@ -1,7 +1,7 @@
 """Dynamic colocation: up to which frequency one output moves together with another.
 
-Input: two bound transfer functions from the same input. Output: the first frequency at which their ratio leaves
-a sector of phases and magnitudes, enclosed, with proof that it does not leave before.
+Input: two bound transfer functions from the same input. Output: the first frequency at which their ratio
+leaves a sector of phases and magnitudes, enclosed, with proof that it does not leave before.
 
 A tip sensor may be away from the joint actuator, and yet respond as the joint does for a finite bandwidth:
 "physically noncolocated, but dynamically colocated" (Eppinger and Seering 1988).

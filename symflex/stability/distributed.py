@@ -1,7 +1,7 @@
 """Stability boundaries of characteristic functions with kernels: beams, rods, delays.
 
-Crossings of the imaginary axis are isolated in one dimension: along the axis ``A + K B`` vanishes for a real K
-only where ``Im(A conj(B))`` does. Between them the poles in the right half plane are counted by the argument
+Crossings of the imaginary axis are isolated in one dimension: along the axis ``A + K B`` vanishes for a real
+K only where ``Im(A conj(B))`` does. Between them the poles in the right half plane are counted by the argument
 principle about a half disc, beyond which, where this can be proved, there are none.
 """
 
@@ -249,7 +249,7 @@ class DistributedFactors:
         zeros = self._order_at_zero(gain, function)
         if function.is_even and function.power == 1:
             return self._count_mirrored(gain, zeros)
-        winding = CertifiedWinding(function, self.budget)
+        winding = CertifiedWinding(function, self.budget, tries_series=True)
         inner = self._inner_radius(winding, function)
         for nudge in NUDGES:
             high = log(self.radius[0] * 1.01) + nudge

@@ -1,9 +1,10 @@
-"""The stable gains of a loop: crossings from all factors, counts between them, margins of the nominal gain."""
+"""The stable gains of a loop: crossings from all factors, counts between them, and margins."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from flint import acb, arb
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from symflex.stability.loop import GainPolynomial, Loop
 
 RANGE_OF_NOMINAL = 100
-"""How many times the nominal gain is examined of a loop with kernels, which may have boundaries without end."""
+"""How many times the nominal gain is examined of a loop with kernels: it may have boundaries without end."""
 GUARD_DIGITS = 6
 SAMPLE_BITS = (6, 12, 24, 48, 96, 192, 384, 768)
 BITS = 128
@@ -101,23 +102,14 @@ def find_stable_gains(
         (),
         digits,
     )
-    gain_margins = _gain_margins(found)
     phase_margins: tuple[PhaseMargin, ...] = ()
     if found.is_stable and nominal:
         phase_margins = _phase_margins(plain, distributed, loop, nominal, digits, budget)
-    return StabilityMap(
-        loop.gain.name,
-        loop.gain.unit,
-        (low, high),
-        boundaries,
-        intervals,
-        nominal,
-        gain_margins,
-        phase_margins,
-        radius,
-        is_complete,
-        tuple(dict.fromkeys((*search.reasons, *reasons))),
-        digits,
+    return replace(
+        found,
+        gain_margins=_gain_margins(found),
+        phase_margins=phase_margins,
+        reasons=tuple(dict.fromkeys((*search.reasons, *reasons))),
     )
 
 
@@ -170,9 +162,7 @@ class _Search:
     def __post_init__(self) -> None:
         self.reasons: list[str] = []
 
-    def between(
-        self, crossings: Sequence[Crossing]
-    ) -> tuple[tuple[Boundary, ...], tuple[GainInterval, ...]]:
+    def between(self, crossings: Sequence[Crossing]) -> tuple[tuple[Boundary, ...], tuple[GainInterval, ...]]:
         """Return the boundaries inside the range, and the intervals they part it into.
 
         Crossings at which no count changes are left out.
@@ -196,10 +186,7 @@ class _Search:
                     groups.append([crossing])
         gains = [_hull(group) for group in groups]
         ends: list[arb | None] = [low, *gains, high]
-        counts = [
-            self._count(_sample(start, end))
-            for start, end in zip(ends[:-1], ends[1:], strict=True)
-        ]
+        counts = [self._count(_sample(start, end)) for start, end in pairwise(ends)]
         boundaries, intervals = [], []
         start: arb | None = ends[0]
         for i, (gain, group) in enumerate(zip(gains, groups, strict=True)):
@@ -222,7 +209,7 @@ class _Search:
 
 
 def _is_touching(count: PoleCount, group: Sequence[Crossing]) -> bool:
-    """Tell whether a stable loop loses its stability at one gain alone: poles touch the axis and turn back."""
+    """Tell whether a stable loop is not stable at one gain alone: poles touch the axis and turn back."""
     return count.is_stable and bool(group)
 
 

@@ -145,7 +145,9 @@ def trace_locus(
     start = locate(_with(loop.bound, above, below + above * low), region, 15, budget)
     end = locate(_with(loop.bound, above, below + above * high), wider, 15, budget)
     function = LoopFunction.of(loop.bound, below, above)
-    poles = [complex(float(r.re.mid()), float(r.im.mid())) for r in start.poles for _ in range(r.multiplicity)]
+    poles = [
+        complex(float(r.re.mid()), float(r.im.mid())) for r in start.poles for _ in range(r.multiplicity)
+    ]
     traced = _trace(function, poles, float(low), float(high))
     final = [complex(float(r.re.mid()), float(r.im.mid())) for r in end.poles for _ in range(r.multiplicity)]
     # Of a loop with kernels, poles beyond those proved at the last gain are not compared.
@@ -154,9 +156,7 @@ def trace_locus(
     return RootLocus(loop.gain.name, (low, high), start, end, tuple(map(tuple, traced)), arrived)
 
 
-def _trace(
-    function: LoopFunction, poles: Sequence[complex], low: float, high: float
-) -> list[list[complex]]:
+def _trace(function: LoopFunction, poles: Sequence[complex], low: float, high: float) -> list[list[complex]]:
     size = max((abs(s) for s in poles), default=1.0) or 1.0
     branches = [[s] for s in poles]
     growth = (1 / FIRST_SHARE) ** (1 / STEPS)
@@ -202,9 +202,7 @@ def _moved(function: LoopFunction, poles: Sequence[complex], gain: float, size: 
     return found
 
 
-def _newton(
-    function: LoopFunction, start: complex, gain: float, known: Sequence[complex]
-) -> complex | None:
+def _newton(function: LoopFunction, start: complex, gain: float, known: Sequence[complex]) -> complex | None:
     """Return a root of A + K B with known ones divided out, ``None`` where it is not found."""
     s = start
     for _ in range(NEWTON_STEPS):
@@ -245,5 +243,7 @@ def require_arrival(locus: RootLocus) -> None:
         SF807.
     """
     if not locus.arrived:
-        message = f"the poles traced do not end in those proved at {locus.gain} = {float(locus.limits[1]):.6g}"
+        message = (
+            f"the poles traced do not end in those proved at {locus.gain} = {float(locus.limits[1]):.6g}"
+        )
         raise UncertifiedError(Diagnostic("SF807", message, None, "narrow the range of the gain"))

@@ -69,7 +69,7 @@ class LoopValue:
         return value, slope
 
     def meeting(self) -> tuple[arb, arb]:
-        """Return what vanishes where poles meet on the axis if A/B is real on it, and its derivative in omega.
+        """Return what vanishes where poles meet on the axis if A/B is real there, and its derivative.
 
         It is ``-Im((A' B - A B') conj(B)^2)``, the derivative of A/B in omega but for a positive factor.
         """
@@ -168,17 +168,14 @@ class LoopFunction:
                 ]
             (a, b), (a_mid, b_mid) = ([_derivatives(v) for v in pair] for pair in values)
             off = acb(0, omega - middle)
-            narrow = [
-                _narrower(value[0], mid[0] + value[1] * off) for value, mid in ((a, a_mid), (b, b_mid))
-            ]
+            narrow = [_narrower(value[0], mid[0] + value[1] * off) for value, mid in ((a, a_mid), (b, b_mid))]
             return (
                 LoopValue(narrow[0], a[1], narrow[1], b[1], a[2], b[2]),
                 LoopValue(a_mid[0], a_mid[1], b_mid[0], b_mid[1], a_mid[2], b_mid[2]),
             )
 
-
     def near(self, s: complex, bits: int = 96) -> tuple[complex, complex, complex, complex]:
-        """Return A, its derivative, B and its derivative at a point, in doubles and divided alike; no proof."""
+        """Return A, A', B and B' at a point, divided alike, in doubles and without proof."""
         with precision(bits):
             kernels, sums = self.evaluator(bits)
             point = expansion(acb(s.real, s.imag))
@@ -218,7 +215,8 @@ def _number(value: Value) -> acb:
 
 def _largest(sums: ExponentialValues, place: Place) -> Powers:
     """Return the exponent, as powers of the arguments, of the largest term of both sums."""
-    best, chosen = -inf, ()
+    best = -inf
+    chosen: Powers = ()
     for i, (terms, _) in enumerate(sums.sums):
         pairs = zip(terms.terms, sums.amplitudes(i, place), sums.exponents(i, place), strict=True)
         for term, amplitude, exponent in pairs:

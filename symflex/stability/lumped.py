@@ -1,9 +1,9 @@
 """Stability boundaries of polynomials in s and a gain, exactly.
 
-With ``s = j omega`` and ``w = omega^2`` the characteristic polynomial is ``E(w, K) + j omega O(w, K)``. It has a
-root on the imaginary axis where E and O vanish together, at s = 0 where its last coefficient does, at infinity
-where its first does. What E and O have in common belongs to roots that mirror each other in the axis for every
-gain; between the real roots of its discriminant their number on the axis stays the same.
+With ``s = j omega`` and ``w = omega^2`` the characteristic polynomial is ``E(w, K) + j omega O(w, K)``. It
+has a root on the imaginary axis where E and O vanish together, at s = 0 where its last coefficient does, at
+infinity where its first does. What E and O have in common belongs to roots that mirror each other in the axis
+for every gain; between the real roots of its discriminant their number on the axis stays the same.
 """
 
 from __future__ import annotations
@@ -95,26 +95,43 @@ class LumpedFactor:
         whole = self.even * self.common, self.odd * self.common
         if degree_in(whole[0], K) == 0 and degree_in(whole[1], K) == 0:
             return []
-        for gain in self._gains([_lowest(self.ring, whole[0])], digits, budget):
-            found.append(Crossing(gain, (arb(0),)))
+        if degree_in(whole[0], W) or len(whole[1]):
+            for gain in self._gains([_lowest(self.ring, whole[0])], digits, budget):
+                found.append(Crossing(gain, (arb(0),)))
         for gain in self._gains([self._leading(whole)], digits, budget):
             found.append(Crossing(gain, (), is_infinite=True))
         if degree_in(self.common, W):
             symmetric = [self._leading((self.common, self.common * 0))]
-            w = str(self.ring.context.gen(W))
-            simple = self.common / self.common.gcd(self.common.derivative(w))
-            if degree_in(simple, W) > 1:
-                symmetric.append(simple.discriminant(w))
-            found += [
-                Crossing(gain, (), is_symmetric=True) for gain in self._gains(symmetric, digits, budget)
-            ]
+            found += [Crossing(gain, (), is_infinite=True) for gain in self._gains(symmetric, digits, budget)]
+            found += self._meetings(digits, budget)
         found += self._on_axis(digits, budget)
+        return found
+
+    def _meetings(self, digits: int, budget: Budget) -> list[Crossing]:
+        """Return where poles that mirror each other in the axis meet, on it or beside it."""
+        w, k = (str(self.ring.context.gen(i)) for i in (W, K))
+        simple = self.common / self.common.gcd(self.common.derivative(w))
+        if degree_in(simple, W) < 2 or degree_in(simple, K) == 0:  # noqa: PLR2004 (two roots can meet)
+            return []
+        slope = simple.derivative(w)
+        gains = self._real_roots(simple.discriminant(w), K, digits, budget)
+        squares = self._real_roots(simple.resultant(slope, k), W, digits + SPARE_DIGITS, budget)
+        found = []
+        for gain in gains:
+            near = tuple(
+                square.re.sqrt()
+                for square in squares
+                if square.re > 0 and all(self._may_vanish(f, square, gain) for f in (simple, slope))
+            )
+            found.append(Crossing(gain.re, near, is_symmetric=True))
         return found
 
     def _on_axis(self, digits: int, budget: Budget) -> list[Crossing]:
         """Return where E and O vanish together at a positive w."""
-        even, odd = ([_coefficient(self.ring, f, K, i) for i in range(degree_in(f, K) + 1)]
-                     for f in (self.even, self.odd))
+        even, odd = (
+            [_coefficient(self.ring, f, K, i) for i in range(degree_in(f, K) + 1)]
+            for f in (self.even, self.odd)
+        )
         if not len(self.odd) or len(even) == len(odd) == 1:
             return []
         if max(len(even), len(odd)) <= 2:  # noqa: PLR2004 (affine)
@@ -139,14 +156,10 @@ class LumpedFactor:
                     found.append(Crossing(gain.re, tuple(w.sqrt() for w in near)))
         return found
 
-    def _affine(
-        self, root: Root, even: Sequence[fmpz_mpoly], odd: Sequence[fmpz_mpoly]
-    ) -> Crossing | None:
+    def _affine(self, root: Root, even: Sequence[fmpz_mpoly], odd: Sequence[fmpz_mpoly]) -> Crossing | None:
         """Return the gain at which the poles cross at a frequency; ``None`` where that is infinite."""
         with precision(2 * root.working_bits()):
-            values = [
-                [self._value(f, root.re, arb(0)) for f in pair] for pair in (even, odd)
-            ]
+            values = [[self._value(f, root.re, arb(0)) for f in pair] for pair in (even, odd)]
             usable = [(-constant / slope) for constant, slope in values if not slope.contains(0)]
             if not usable:
                 return None
@@ -177,9 +190,7 @@ class LumpedFactor:
         return _coefficient(self.ring, chosen, W, power)
 
     def _gains(self, polynomials: Sequence[fmpz_mpoly], digits: int, budget: Budget) -> list[arb]:
-        return [
-            root.re for f in polynomials for root in self._real_roots(f, K, digits, budget)
-        ]
+        return [root.re for f in polynomials for root in self._real_roots(f, K, digits, budget)]
 
     def _real_roots(self, polynomial: fmpz_mpoly, variable: int, digits: int, budget: Budget) -> list[Root]:
         """Return the real roots of a polynomial in one of w and K; each once."""

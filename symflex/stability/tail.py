@@ -1,9 +1,9 @@
-"""Beyond which frequency a characteristic function has no roots in the right half plane: one term outweighs all.
+"""Beyond which frequency no root lies in the right half plane: one term outweighs all others.
 
-In a sector of the closed right half plane every wavenumber goes like a power of s, times a factor close to its
-limit. So do the amplitudes of a sum of exponentials, and the exponents. Where, at ``abs(s) = R``, one term is
-larger than all others together, and every quotient of another term to it falls with growing ``abs(s)``, there
-is no root beyond R in this sector. For dead time in the lower powers of s alone this is Cauchy's bound.
+In a sector of the closed right half plane every wavenumber goes like a power of s, times a factor close to
+its limit. So do the amplitudes of a sum of exponentials, and the exponents. Where at ``abs(s) = R`` one term
+is larger than all others together, and every quotient of another term to it falls with growing ``abs(s)``,
+there is no root beyond R in this sector. For dead time in the lower powers of s alone this is Cauchy's bound.
 """
 
 from __future__ import annotations
@@ -149,7 +149,7 @@ def _at_infinity(function: LoopFunction, value: Factored, radius: float) -> tupl
     power = 0
     total = acb(arb(value.unit.numerator) / value.unit.denominator)
     names = kernels.names
-    constants = Ring(names[1:])
+    constants = Ring(tuple(names[1:]))
     for factor, exponent in value.factors:
         if any(degree_in(factor, names.index(n)) for n in kernels.table.generators):
             return None
@@ -186,9 +186,7 @@ def _amplitude(amplitude: Amplitude, named: dict[str, _Power]) -> dict[Fraction,
     return found
 
 
-def _is_dominated(
-    terms: dict[Powers, dict[Fraction, acb]], arguments: list[_Power], radius: arb
-) -> bool:
+def _is_dominated(terms: dict[Powers, dict[Fraction, acb]], arguments: list[_Power], radius: arb) -> bool:
     """Tell whether one term is larger than all others from a radius on."""
 
     def growth(powers: Powers) -> arb:

@@ -1,7 +1,7 @@
 """Poles in the right half plane, counted by turns of a characteristic function about a half disc.
 
-The functions are written down from free-body diagrams; the count is numpy's phase on a contour refined until no
-step turns by much. Nothing of the program is used.
+The functions are written down from free-body diagrams; the count is the phase on a contour that is refined
+until no step turns by much. Nothing of the program is used.
 """
 
 from __future__ import annotations
@@ -46,15 +46,19 @@ def poles_right_of_axis(chi: Characteristic, radius: float, smallest: float = 0.
 
 def _turn(chi, a: complex, b: complex, at_a: complex, at_b: complex, depth: int) -> float:
     step = cmath.phase(at_b / at_a)
-    middle = (a + b) / 2 if abs(abs(a) - abs(b)) > 1e-9 * abs(a) else abs(a) * cmath.exp(
-        0.5j * (cmath.phase(a) + cmath.phase(b))
+    middle = (
+        (a + b) / 2
+        if abs(abs(a) - abs(b)) > 1e-9 * abs(a)
+        else abs(a) * cmath.exp(0.5j * (cmath.phase(a) + cmath.phase(b)))
     )
     at_middle = chi(middle)
     halves = cmath.phase(at_middle / at_a), cmath.phase(at_b / at_middle)
     if max(map(abs, (step, *halves))) < LARGEST_TURN and abs(sum(halves) - step) < 1e-6:
         return step
     assert depth < DEEPEST, "a zero lies on the contour"
-    return _turn(chi, a, middle, at_a, at_middle, depth + 1) + _turn(chi, middle, b, at_middle, at_b, depth + 1)
+    return _turn(chi, a, middle, at_a, at_middle, depth + 1) + _turn(
+        chi, middle, b, at_middle, at_b, depth + 1
+    )
 
 
 def bending_transfer(s: complex, *, EI: complex, mass: float, length: float) -> np.ndarray:

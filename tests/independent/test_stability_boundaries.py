@@ -59,11 +59,11 @@ def lumped_bending_beam(s, K):
 
 
 def beam(s, K, *, is_force):
-    E, I, rho, A, length, eta, b = 200e9, 4000e-12, 7850, 480e-6, 1.086, 1e-4, 20
+    stiffness, mass, length, eta, b = 200e9 * 4000e-12, 7850 * 480e-6, 1.086, 1e-4, 20
     k_c = 2e3 if is_force else 0.0
-    t = bending_transfer(s, EI=E * I * (1 + eta * s), mass=rho * A, length=length)
-    t = t / np.abs(t).max()
-    scale = 1 / np.abs(bending_transfer(s, EI=E * I * (1 + eta * s), mass=rho * A, length=length)).max()
+    grown = bending_transfer(s, EI=stiffness * (1 + eta * s), mass=mass, length=length)
+    scale = 1 / np.abs(grown).max()
+    t = grown * scale
     gain = K * k_c if is_force else K
     # Unknowns: w(0), M(0), V(0), w(l); w'(0) = 0.
     rows = [
@@ -72,18 +72,18 @@ def beam(s, K, *, is_force):
         [t[3, 0], t[3, 2], t[3, 3], -k_c * scale],
         [b * s, 0, 1, gain],
     ]
-    weights = np.array([1, E * I, E * I, 1])
+    weights = np.array([1, stiffness, stiffness, 1])
     return complex(np.linalg.det(np.array(rows, complex) * weights)) / scale
 
 
 def rod(s, K):
     # A rod of steel with a mass at its far end; its velocity there is fed back to the force at the near one.
-    EA, mass, length, tip, eta = 70e9 * 1e-4, 2700 * 1e-4, 2.0, 3.0, 2e-6
-    t = axial_transfer(s, EA=EA * (1 + eta * s), mass=mass, length=length)
+    stiffness, mass, length, tip, eta = 70e9 * 1e-4, 2700 * 1e-4, 2.0, 3.0, 2e-6
+    t = axial_transfer(s, EA=stiffness * (1 + eta * s), mass=mass, length=length)
     # N(0) = -F = K s u(l); N(l) = -tip s^2 u(l); divided by the free motion of the near end.
-    return complex(np.linalg.det(np.array(
-        [[t[0, 0], t[0, 1] * K * s - 1], [t[1, 0], t[1, 1] * K * s + tip * s**2]]
-    )))
+    return complex(
+        np.linalg.det(np.array([[t[0, 0], t[0, 1] * K * s - 1], [t[1, 0], t[1, 1] * K * s + tip * s**2]]))
+    )
 
 
 ROD = """
@@ -108,10 +108,16 @@ v = {}
 V = "s*tip"
 """
 
-TIP_POSITION = (CONTROL / "sliding_free_beam_position.toml").read_text("utf-8").replace("K*(X_cmd - (act))", "K*(X_cmd - tip)")
+TIP_POSITION = (
+    (CONTROL / "sliding_free_beam_position.toml")
+    .read_text("utf-8")
+    .replace("K*(X_cmd - (act))", "K*(X_cmd - tip)")
+)
 
 LOOPS = [
-    pytest.param(lambda: loop("K/(s*(s + 1)*(s + 2))"), lambda s, K: s * (s + 1) * (s + 2) + K, 50, id="type-1"),
+    pytest.param(
+        lambda: loop("K/(s*(s + 1)*(s + 2))"), lambda s, K: s * (s + 1) * (s + 2) + K, 50, id="type-1"
+    ),
     pytest.param(
         lambda: loop("K*(s + 2)^2/s^3"), lambda s, K: s**3 + K * (s + 2) ** 2, 50, id="conditionally-stable"
     ),
@@ -122,7 +128,9 @@ LOOPS = [
         id="unstable-plant",
     ),
     pytest.param(lambda: symflex.load(CONTROL / "two_mass_force.toml"), two_mass, 1e3, id="two-mass"),
-    pytest.param(lambda: symflex.load(CONTROL / "base_flexure_force.toml"), base_flexure, 1e3, id="base-flexure"),
+    pytest.param(
+        lambda: symflex.load(CONTROL / "base_flexure_force.toml"), base_flexure, 1e3, id="base-flexure"
+    ),
     pytest.param(
         lambda: symflex.load(CONTROL / "lumped_bending_beam_force.toml"),
         lumped_bending_beam,
@@ -130,7 +138,9 @@ LOOPS = [
         id="lumped-bending-beam",
     ),
     pytest.param(lambda: loop("K*D/s"), lambda s, K: s + K * cmath.exp(-s / 2), 150, id="delay-integrator"),
-    pytest.param(lambda: loop("K*D/(s - 1)"), lambda s, K: s - 1 + K * cmath.exp(-s / 2), 150, id="delay-unstable"),
+    pytest.param(
+        lambda: loop("K*D/(s - 1)"), lambda s, K: s - 1 + K * cmath.exp(-s / 2), 150, id="delay-unstable"
+    ),
     pytest.param(
         lambda: loop("K*D*(s + 1)/s^2"),
         lambda s, K: s**2 + K * (s + 1) * cmath.exp(-s / 2),
@@ -201,7 +211,7 @@ def test_textbook_boundaries(expression, K, omega):
 def test_margins_of_an_integrator_with_dead_time():
     # L = K e^(-s T)/s crosses 1 at omega = K; the phase left is 90 degrees less K T.
     found = loop("K*D/s", K=1.2).stability("K")
-    (angle, hertz), = found.phase_margins
+    ((angle, hertz),) = found.phase_margins
     assert abs(angle - (90 - math.degrees(1.2 * 0.5))) < 1e-10
     assert abs(2 * math.pi * hertz - 1.2) < 1e-12
     (factor,) = found.gain_margins

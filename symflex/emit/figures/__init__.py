@@ -90,7 +90,9 @@ def draw(
     if kind not in FIGURES:
         if kind in LOOP_FIGURES:
             message = f"a figure of kind '{kind}' is drawn of a loop"
-            raise UsageError(Diagnostic("SF902", message, None, "name its gain: --gain K, or gain in [figures]"))
+            raise UsageError(
+                Diagnostic("SF902", message, None, "name its gain: --gain K, or gain in [figures]")
+            )
         if kind in FIGURE_KINDS:
             hint = "available: " + ", ".join(FIGURES)
             raise UsageError(
@@ -143,7 +145,9 @@ def draw_loop(
     """
     if kind not in LOOP_FIGURES:
         hint = "kinds: " + ", ".join(LOOP_FIGURES)
-        raise UsageError(Diagnostic("SF208", f"no figure of kind '{kind[:64]}' is drawn of a loop", None, hint))
+        raise UsageError(
+            Diagnostic("SF208", f"no figure of kind '{kind[:64]}' is drawn of a loop", None, hint)
+        )
     with paper_style():
         if kind == "locus":
             locus = trace_locus(loop, limits, modes)

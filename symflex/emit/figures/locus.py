@@ -37,8 +37,8 @@ CLOSE: Final = 0.3
 def draw_locus(locus: RootLocus, title: str | None = None) -> Figure:
     """Draw a root locus.
 
-    Crosses are the poles at the first gain, squares those at the last, circles the zeros; all three are proved.
-    The lines between are traced numerically. Right of the imaginary axis the ground is tinted.
+    Crosses are the poles at the first gain, squares those at the last, circles the zeros; all three are
+    proved. The lines between are traced numerically. Right of the imaginary axis the ground is tinted.
     """
     lines = title_lines(title, COLUMN_INCHES)
     figure = new_figure(COLUMN_INCHES, HEIGHT_INCHES + LINE_INCHES * (len(lines) + 1))

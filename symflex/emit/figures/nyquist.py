@@ -26,6 +26,7 @@ from symflex.roots.locate import locate
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    import numpy.typing as npt
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -48,10 +49,10 @@ def draw_nyquist(
     title: str | None = None,
     labels: Sequence[str] = (),
 ) -> Figure:
-    """Draw the values of transfer functions for positive frequencies, and mirrored, dashed, for negative ones.
+    """Draw the values of transfer functions for positive frequencies and, dashed, for negative ones.
 
-    Of a loop gain the part of the plane about -1 is shown; where a curve leaves it, it goes on outside. Arrows point to
-    growing frequency.
+    Of a loop gain, which ``labels`` tell apart, the part of the plane about -1 is shown; where a curve leaves
+    it, it goes on outside. Arrows point to growing frequency.
     """
     lines = title_lines(title, COLUMN_INCHES)
     figure = new_figure(COLUMN_INCHES, HEIGHT_INCHES + LINE_INCHES * (len(lines) + 1))
@@ -85,7 +86,7 @@ def draw_nyquist(
     return figure
 
 
-def _curve(bound: BoundTransferFunction, band_hz: tuple[float, float] | None) -> np.ndarray:
+def _curve(bound: BoundTransferFunction, band_hz: tuple[float, float] | None) -> npt.NDArray[np.complex128]:
     """Return values along the axis, dense where a resonance turns them."""
     band = bound.source.model.analysis.band
     given = band_hz or (None if band is None else (float(band[0]), float(band[1])))
@@ -96,11 +97,12 @@ def _curve(bound: BoundTransferFunction, band_hz: tuple[float, float] | None) ->
         low, high = given
     found = locate(bound, Band(Fraction(low), Fraction(high)) if bound.is_distributed else None)
     response = respond(bound, adaptive_grid(bound, low, high, roots=found), found)
-    values: np.ndarray = np.array(response.values)
-    return values[np.isfinite(values)]
+    values: npt.NDArray[np.complex128] = np.array(response.values, dtype=np.complex128)
+    finite: npt.NDArray[np.complex128] = values[np.isfinite(values)]
+    return finite
 
 
-def _reach(values: np.ndarray, *, is_loop: bool) -> float:
+def _reach(values: npt.NDArray[np.complex128], *, is_loop: bool) -> float:
     """Return half the side of a square that shows -1, and most of a curve that is no loop gain."""
     largest = float(np.max(np.abs(values))) if values.size else 1.0
     if is_loop:
@@ -108,7 +110,7 @@ def _reach(values: np.ndarray, *, is_loop: bool) -> float:
     return 1.1 * float(np.quantile(np.abs(values), QUANTILE)) or 1.0
 
 
-def _point_along(axes: Axes, values: np.ndarray, reach: float, colour: str) -> None:
+def _point_along(axes: Axes, values: npt.NDArray[np.complex128], reach: float, colour: str) -> None:
     """Draw an arrow halfway along the part of a curve that is shown."""
     shown = np.flatnonzero((np.abs(values.real) < 0.9 * reach) & (np.abs(values.imag) < 0.9 * reach))
     steps = np.abs(np.diff(values[shown])) if shown.size > 2 else np.array([])  # noqa: PLR2004
