@@ -18,7 +18,7 @@ from symflex import explanation as explanation_room
 from symflex import spec as spec_room
 from symflex import transfer as transfer_room
 from symflex.elimination import explain_singular, is_singular
-from symflex.errors import Diagnostic, ModelError, Source, SpecError, UsageError
+from symflex.errors import Diagnostic, Source, SpecError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.model import Model, load_model, with_numbers
 from symflex.roots.locate import locate
@@ -273,9 +273,6 @@ def characteristic_loop(
     unknown = [name for name in given if name not in {p.name for p in model.parameters}]
     if unknown:
         stability_room.pick_gain(model.parameters, unknown[0])
-    if not model.transfer_functions:
-        message = "the model has no input or no output"
-        raise ModelError(Diagnostic("SF801", message, None, "poles are those of a transfer function"))
     # Parameters that are given another value stay symbols until that is put in.
     prepared = with_numbers(model, (gain, *given))
     equations = assemble(prepared)

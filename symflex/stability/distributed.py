@@ -1,7 +1,7 @@
 """Stability boundaries of characteristic functions with kernels: beams, rods, delays.
 
 Crossings of the imaginary axis are isolated in one dimension: along the axis ``A + K B`` vanishes for a real
-K only where ``Im(A conj(B))`` does. Between them the poles in the right half plane are counted by the argument
+K only where ``Im(A conj(B))`` does. Between them poles in the right half plane are counted by the argument
 principle about a half disc, beyond which, where this can be proved, there are none.
 """
 

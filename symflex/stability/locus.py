@@ -32,7 +32,7 @@ FIRST_SHARE = 1e-5
 NEWTON_STEPS = 25
 CONVERGED = 1e-12
 FAREST = 0.05
-"""How far a pole may move in a step, of the size of the largest pole."""
+"""How far a pole may move in a step, relative to its size or that of the largest at the first gain."""
 HALVINGS = 9
 TURNS = (0.3, 1.9, 3.4, 5.0)
 TOUCHING = 1e-7
@@ -172,8 +172,10 @@ def _trace(function: LoopFunction, poles: Sequence[complex], low: float, high: f
         while pending:
             aim = pending[-1]
             found = _moved(function, current, aim, size)
-            far = max((abs(a - b) for a, b in zip(found, current, strict=True)), default=0.0)
-            if far > FAREST * size and len(pending) < HALVINGS:
+            far = max(
+                (abs(a - b) / max(size, abs(b)) for a, b in zip(found, current, strict=True)), default=0.0
+            )
+            if far > FAREST and len(pending) < HALVINGS:
                 pending.append((reached + aim) / 2)
                 continue
             current, reached = found, aim
@@ -189,7 +191,7 @@ def _moved(function: LoopFunction, poles: Sequence[complex], gain: float, size: 
     for i, s in enumerate(poles):
         new = _newton(function, s, gain, ())
         twins = [k for k in range(i) if new is not None and abs(found[k] - new) < TOUCHING * size]
-        if new is None or twins or abs(new - s) > 2 * FAREST * size:
+        if new is None or twins or abs(new - s) > 2 * FAREST * max(size, abs(s)):
             # Another pole is there already, or two part from the axis: the others are divided out.
             known = tuple(found)
             reach = max(TOUCHING * size, 0.02 * size)

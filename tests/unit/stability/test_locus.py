@@ -26,7 +26,7 @@ def test_curves_go_from_open_loop_poles_to_closed_loop_poles(loop):
 
 
 def test_every_point_traced_is_a_pole_for_some_gain(loop):
-    locus = trace_locus(characteristic(loop("K*(s + 3)/(s^2 + s + 1)")), (Fraction(0), Fraction(100)))
+    locus = trace_locus(characteristic(loop("K*(s + 3)/(s^2 + 1*s + 1)")), (Fraction(0), Fraction(100)))
     for branch in locus.branches:
         for s in branch[::10]:
             gain = -(s * s + s + 1) / (s + 3)
