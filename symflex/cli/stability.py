@@ -100,8 +100,10 @@ def gain_limit(text: str, parameter: Parameter) -> Fraction | None:
         quantity = parse_quantity(Text(text, Span(Source("--range", text), 0, len(text))))
     except SpecError:
         raise UsageError(Diagnostic("SF902", wrong)) from None
-    if quantity.unit and parameter.unit and quantity.dimension != unit_of(parameter.unit).dimension:
-        message = f"'{parameter.name}' is in '{parameter.unit}', the range in '{quantity.unit}'"
+    known = unit_of(parameter.unit).dimension if parameter.unit else None
+    if quantity.unit and quantity.dimension != known:
+        own = f"is in '{parameter.unit}'" if parameter.unit else "is a number without a unit"
+        message = f"'{parameter.name}' {own}, the range is in '{quantity.unit}'"
         raise UsageError(Diagnostic("SF203", message))
     number, pi_power = quantity.angular()
     if pi_power:
