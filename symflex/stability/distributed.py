@@ -158,7 +158,11 @@ class DistributedFactors:
             bits = max(BITS, 2 * omega.rel_accuracy_bits())
             around, _ = function.on(omega, bits)
             with precision(bits):
+                if self._is_far(around):
+                    continue
                 if around.b.contains(0):
+                    place = float((omega.mid() / (2 * arb.pi())).mid())
+                    self.reasons.append(f"poles near {place:.6g} Hz may stay on the axis for every gain")
                     continue
                 gain = around.gain()
             if self._may_be_in_range(gain):
@@ -257,7 +261,8 @@ class DistributedFactors:
                 right = winding.count(Cell(inner, high, -pi / 2, pi / 2))
             except RootOnPathError:
                 continue
-            return PoleCount(right // function.power, zeros)
+            if right % function.power == 0:
+                return PoleCount(right // function.power, zeros)
         message = f"poles right of the axis cannot be counted for a gain of {float(gain):.6g}"
         hint = "one may lie on the imaginary axis whatever the gain is"
         raise UncertifiedError(Diagnostic("SF802", message, None, hint))
@@ -267,6 +272,7 @@ class DistributedFactors:
         powers = whole.exponent_of(whole.ring.context.gen(0))
         order = Origin(function.part.ring, function.bound.kernels).order(function.part)
         if order is None:
+            self.reasons.append("poles next to s = 0 are counted as poles at 0")
             return powers + self._turns(function)
         return powers + order
 

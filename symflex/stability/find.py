@@ -186,7 +186,10 @@ class _Search:
                     groups.append([crossing])
         gains = [_hull(group) for group in groups]
         ends: list[arb | None] = [low, *gains, high]
-        counts = [self._count(_sample(start, end)) for start, end in pairwise(ends)]
+        counts = []
+        for i, (start, end) in enumerate(pairwise(ends)):
+            self.budget.progress.report(i / len(ends), f"poles counted in {i} of {len(ends) - 1} intervals")
+            counts.append(self._count(_sample(start, end)))
         boundaries, intervals = [], []
         start: arb | None = ends[0]
         for i, (gain, group) in enumerate(zip(gains, groups, strict=True)):
