@@ -155,7 +155,7 @@ class DistributedFactors:
         order = 2 if is_mirrored else 1
         result = self.on_axis(function, equation, self._is_far, first, digits, order)
         for omega in result.roots:
-            bits = max(BITS, 2 * omega.rel_accuracy_bits())
+            bits = max(BITS, 2 * omega.bits())
             around, _ = function.on(omega, bits)
             with precision(bits):
                 if self._is_far(around):

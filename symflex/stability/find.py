@@ -309,7 +309,7 @@ def _phase_margins(
         pairs = []
     found = []
     for omega, ratio in pairs:
-        bits = max(BITS, 2 * omega.rel_accuracy_bits())
+        bits = max(BITS, 2 * omega.bits())
         with precision(bits):
             # The loop gain is K B/A; its angle beyond that of -1.
             angle = (-ratio * acb(_ball(nominal))).arg()

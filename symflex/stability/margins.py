@@ -97,7 +97,7 @@ def distributed_crossovers(
             distributed.reasons.append("whether the loop gain is one at high frequencies is not proved")
     found = []
     for omega in result.roots:
-        bits = max(BITS, 2 * omega.rel_accuracy_bits())
+        bits = max(BITS, 2 * omega.bits())
         around, _ = function.on(omega, bits)
         with precision(bits):
             if not around.a.contains(0):
