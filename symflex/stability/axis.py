@@ -26,7 +26,7 @@ FIRST_RATIO = 1.25
 """Of the ends of the first intervals."""
 NARROWEST = 1e-11
 """Relative width of an interval that is not halved any more."""
-MOST_INTERVALS = 400_000
+MOST_INTERVALS = 40_000
 NEWTON_STEPS = 60
 
 

@@ -211,7 +211,9 @@ class DistributedFactors:
                 break
             radius = radius / 2
         else:
+            # Several crossings meet at 0: nothing is gained by going closer.
             self.reasons.append("what poles do next to s = 0 is not proved")
+            radius = origin.series[0].reach / 4
         return float(radius.lower()), origin
 
     def _beyond_all_gains(self, origin: LoopAtOrigin, radius: arb) -> bool:

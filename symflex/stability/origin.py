@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import exp, inf, pi
 from typing import TYPE_CHECKING
 
@@ -142,13 +142,19 @@ def loop_at_origin(function: LoopFunction, budget: Budget) -> LoopAtOrigin | Non
         except SymflexError:
             return None
         orders.append(order)
-        found.append((part, lowest))
-    lowest = min(low for _, low in found)
+        found.append((part, lowest, whole.unit))
+    lowest = min(low for _, low, _ in found)
     if lowest == -inf:
         return None
     with precision(BITS):
         reach = arb(exp(lowest))
-        series = [local_series(part, acb(0), reach, BITS, SERIES_POINTS * 2) for part, _ in found]
-    if series[0] is None or series[1] is None:
-        return None
+        series = []
+        for part, _, unit in found:
+            own = local_series(part, acb(0), reach, BITS, SERIES_POINTS * 2)
+            if own is None:
+                return None
+            # Functions whose roots are sought are known but for a factor, which counts here.
+            scale = arb(unit.numerator) / unit.denominator
+            scaled = tuple(scale * coefficient for coefficient in own.coefficients)
+            series.append(replace(own, coefficients=scaled, bound=own.bound * abs(scale)))
     return LoopAtOrigin((orders[0], orders[1]), (series[0], series[1]))

@@ -132,6 +132,15 @@ def found_symmetric(found):
     return all(c.is_symmetric for b in found.proved.boundaries for c in b.crossings)
 
 
+def test_a_real_pole_through_zero_beside_a_delay(loop):
+    # s + 2 + 3 K e^(-s T) is 0 at s = 0 for K = -2/3; a factor in front of the delay counts.
+    found = loop("3*K*D/(s + 2)", K={"value": 1, "assume": "real"}).stability("K", (-1, 1))
+    boundary = found.boundaries[0]
+    assert abs(float(boundary.gain) + 2 / 3) < 1e-12
+    assert boundary.frequencies_hz == (0.0,)
+    assert counts(found)[:2] == [(1, 0), (0, 0)]
+
+
 def test_values_in_place_of_declared_ones(loop):
     model = loop("K*D/s")
     assert abs(float(model.stability("K", (0, 50), T="0.25 s").boundaries[0].gain) - 2 * math.pi) < 1e-12
