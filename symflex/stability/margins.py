@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from symflex.transfer import BoundTransferFunction
 
 BITS = 128
+SHRINKINGS = 30
 
 
 def lumped_crossovers(
@@ -78,7 +79,8 @@ def distributed_crossovers(
 
     first, origin = distributed.next_to_zero(function)
     if origin is not None:
-        for _ in range(60):
+        start = first
+        for _ in range(SHRINKINGS):
             a, b = origin.sizes(arb(first))
             orders = origin.orders
             share = abs(gain) * arb(first) ** (orders[1] - orders[0])
@@ -88,7 +90,9 @@ def distributed_crossovers(
                 break
             first /= 2
         else:
+            # As where it is one at s = 0 itself: nothing is gained by going closer.
             distributed.reasons.append("whether the loop gain is one next to s = 0 is not proved")
+            first = start
     result = distributed.on_axis(function, equation, lambda value: False, first, digits)
     if distributed.radius[1]:
         most = abs(gain).upper()
