@@ -122,4 +122,7 @@ class Stability:
 
 
 def _end(value: arb | None, infinite: mpmath.mpf) -> mpmath.mpf:
-    return infinite if value is None else to_mpmath(value)
+    if value is None:
+        return infinite
+    # Where poles of the open loop lie on the axis, 0 is the end, up to the radius of its enclosure.
+    return mpmath.mpf(0) if value.contains(0) else to_mpmath(value)

@@ -187,9 +187,9 @@ class _Search:
         gains = [_hull(group) for group in groups]
         ends: list[arb | None] = [low, *gains, high]
         counts = []
-        for i, (start, end) in enumerate(pairwise(ends)):
+        for i, (below, above) in enumerate(pairwise(ends)):
             self.budget.progress.report(i / len(ends), f"poles counted in {i} of {len(ends) - 1} intervals")
-            counts.append(self._count(_sample(start, end)))
+            counts.append(self._count(_sample(below, above)))
         boundaries, intervals = [], []
         start: arb | None = ends[0]
         for i, (gain, group) in enumerate(zip(gains, groups, strict=True)):
