@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from symflex.roots import Budget, PoleZeroMap, Region
     from symflex.sensitivity import Sensitivity
     from symflex.spec import Spec
+    from symflex.stability import DynamicColocation, Loop, StabilityMap
     from symflex.state_space import StateSpace
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
@@ -226,6 +227,87 @@ def sensitivities(
         (tf,) = derive_all(with_numbers(model, (parameter.name,), known), [pair])
         moved += differentiate(tf, known, found, [parameter], digits)
     return tuple(sorted(moved, key=lambda m: (m.kind, m.index)))
+
+
+def stability(
+    model: Model,
+    gain: str,
+    values: Mapping[str, int | float | Fraction | Decimal | str] | None = None,
+    limits: tuple[Fraction | None, Fraction | None] | None = None,
+    digits: int = 15,
+    budget: Budget | None = None,
+    up_to: float | None = None,
+) -> StabilityMap:
+    """Return for which values of a gain the model is stable; see :func:`symflex.stability.find_stable_gains`.
+
+    Parameters
+    ----------
+    model : Model
+        With a loop closed in its signals.
+    gain : str
+        A parameter.
+    values : mapping of str to number or quantity, optional
+        In place of declared values.
+    limits, digits, budget, up_to
+        See :func:`symflex.stability.find_stable_gains`.
+
+    Raises
+    ------
+    UsageError
+        SF902 when there is no such parameter.
+    ModelError
+        SF801 when no pole depends on it.
+    """
+    from symflex import stability as stability_room  # most commands need none of it
+
+    return stability_room.find_stable_gains(
+        characteristic_loop(model, gain, values), limits, digits, budget, up_to
+    )
+
+
+def characteristic_loop(
+    model: Model,
+    gain: str,
+    values: Mapping[str, int | float | Fraction | Decimal | str] | None = None,
+) -> Loop:
+    """Return the characteristic function of a model as a polynomial in a gain.
+
+    See :func:`symflex.stability.characteristic_loop`.
+    """
+    from symflex import stability as stability_room  # most commands need none of it
+
+    parameter = stability_room.pick_gain(model.parameters, gain)
+    given = dict(values or {})
+    unknown = [name for name in given if name not in {p.name for p in model.parameters}]
+    if unknown:
+        stability_room.pick_gain(model.parameters, unknown[0])
+    # Parameters that are given another value stay symbols until that is put in.
+    prepared = with_numbers(model, (gain, *given))
+    equations = assemble(prepared)
+    plain = {row.name for row in equations.outputs if row.divisor.is_one}
+    pair = next((p for p in model.transfer_functions if p[0] in plain), model.transfer_functions[0])
+    (tf,) = derive_all(prepared, [pair])
+    return stability_room.characteristic_loop(tf, parameter, given)
+
+
+def colocation(
+    model: Model,
+    name: str,
+    reference: str,
+    phase: float = 10.0,
+    magnitude: float = 1.0,
+    limits: tuple[float, float] | None = None,
+    budget: Budget | None = None,
+) -> DynamicColocation:
+    """Return up to which frequency one output moves with another; both are named "OUT/IN".
+
+    See :func:`symflex.stability.dynamic_colocation`.
+    """
+    from symflex import stability as stability_room  # most commands need none of it
+
+    pairs = pick_pairs(model, [name, reference])
+    tip, joint = derive_bound(model, pairs)
+    return stability_room.dynamic_colocation(tip, joint, phase, magnitude, limits, budget)
 
 
 def explain_zeros(model: Model, bound: BoundTransferFunction, found: PoleZeroMap) -> ZeroExplanation:

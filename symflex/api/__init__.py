@@ -8,6 +8,7 @@ from symflex.api.model import Model, Table, load, loads
 from symflex.api.residue import Residue
 from symflex.api.root import Root
 from symflex.api.sensitivity import Sensitivity
+from symflex.api.stability import Stability, StabilityBoundary
 from symflex.api.state_space import StateSpace
 from symflex.api.transfer_function import Number, TransferFunction
 
@@ -21,6 +22,8 @@ __all__ = [
     "Residue",
     "Root",
     "Sensitivity",
+    "Stability",
+    "StabilityBoundary",
     "StateSpace",
     "Table",
     "TransferFunction",

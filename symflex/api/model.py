@@ -4,16 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from math import isinf, pi
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symflex import pipeline
+from symflex.api.budget import budget_of
+from symflex.api.stability import Stability
 from symflex.api.state_space import StateSpace
-from symflex.api.transfer_function import TransferFunction
+from symflex.api.transfer_function import Number, TransferFunction
 from symflex.spec import write
 
 if TYPE_CHECKING:
     from symflex import model as model_room
+    from symflex.stability import DynamicColocation
 
 Table = Mapping[str, object]
 SHOWN_PAIRS = 6
@@ -169,6 +175,101 @@ class Model:
         pairs = pipeline.pick_pairs(self.resolved, wanted)
         return StateSpace(pipeline.state_space(self.resolved, pairs, is_minimal=minimal))
 
+    def stability(
+        self,
+        gain: str,
+        limits: tuple[float | None, float | None] | None = None,
+        *,
+        digits: int = 15,
+        budget: float | None = None,
+        up_to_hz: float | None = None,
+        **values: Number,
+    ) -> Stability:
+        """Return for which values of a gain all closed-loop poles lie in the open left half plane, proved.
+
+        Parameters
+        ----------
+        gain : str
+            A parameter; the loop is closed in the model's signals.
+        limits : (float or None, float or None), optional
+            Range of the gain in SI units, its ends left out; ``None`` for no limit. By default all values of
+            the sign assumed of it; with beams, rods or delays up to 100 times its declared value.
+        digits : int
+            Significant digits of boundaries and frequencies.
+        budget : float, optional
+            Time [s].
+        up_to_hz : float, optional
+            Where poles have no end along the axis: how far they are counted [Hz].
+        **values : number or str
+            In place of declared values, as for :meth:`TransferFunction.bind`.
+
+        Raises
+        ------
+        UsageError
+            SF902 no such parameter, SF804 a range that is empty, or missing where one is needed.
+        ModelError
+            SF801 no pole depends on the parameter, SF803 it occurs squared beside beams, rods or delays.
+        BudgetError
+            SF505, SF506.
+
+        Examples
+        --------
+        >>> model = Model(
+        ...     parameters={"K": 1},
+        ...     signals={"y": "K/(s*(s + 1)*(s + 2))*(r - y)"},
+        ...     inputs={"r": {}},
+        ...     outputs={"Y": "y"},
+        ... )
+        >>> model.stability("K")
+        <Stability: 0.0 < K < 6.0, certified>
+        """
+        exact = None if limits is None else (_exact(limits[0]), _exact(limits[1]))
+        radians = None if up_to_hz is None else 2 * pi * up_to_hz
+        return Stability(
+            pipeline.stability(self.resolved, gain, values, exact, digits, budget_of(budget), radians)
+        )
+
+    def colocation(
+        self,
+        output: str,
+        reference: str,
+        input: str,
+        *,
+        phase: float = 10.0,
+        magnitude: float = 1.0,
+        band: tuple[float, float] | None = None,
+    ) -> DynamicColocation:
+        """Return up to which frequency an output moves with a colocated one.
+
+        Parameters
+        ----------
+        output, reference, input : str
+            Such as "X_tip", "X_act" and "F".
+        phase : float
+            Largest difference of phase [degrees].
+        magnitude : float
+            Largest difference of magnitude [dB].
+        band : (float, float), optional
+            Frequencies examined [Hz]; by default the model's.
+
+        Examples
+        --------
+        >>> model = Model(
+        ...     elements={
+        ...         "a": {"type": "mass", "at": "x", "m": "1 kg"},
+        ...         "k": {"type": "spring", "between": ["x", "y"], "k": "4 N/m"},
+        ...         "b": {"type": "mass", "at": "y", "m": "1 kg"},
+        ...     },
+        ...     inputs={"F": {"force": "x"}},
+        ...     outputs={"X": "x", "Y": "y"},
+        ... )
+        >>> print(model.colocation("Y", "X", "F", band=(0.01, 1)))
+        Y/F within 10 deg and 1 dB of X/F: up to 0.104969441593 Hz, where the magnitude differs by more
+        """
+        return pipeline.colocation(
+            self.resolved, f"{output}/{input}", f"{reference}/{input}", phase, magnitude, band
+        )
+
     def export_numpy(self) -> str:
         """Return a numpy module with a function per transfer function."""
         return self._export("numpy")
@@ -205,6 +306,13 @@ class Model:
         from symflex.emit.exporters import EXPORTERS  # the numeric exporters import numpy
 
         return EXPORTERS[target].export(self.resolved, pipeline.derive_all(self.resolved), name).text
+
+
+def _exact(number: float | None) -> Fraction | None:
+    """Return the shortest decimal that prints a number, ``None`` for an infinite one."""
+    if number is None or isinf(number):
+        return None
+    return Fraction(Decimal(repr(float(number))))
 
 
 def load(path: str | Path) -> Model:

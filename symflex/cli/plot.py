@@ -18,6 +18,8 @@ SUFFIXES = (".pdf", ".pgf", ".png", ".svg")
 @click.argument("spec", type=click.Path())
 @click.argument("kind")
 @click.option("--tf", "tfs", multiple=True, metavar="OUT/IN", help="Draw this transfer function; repeatable.")
+@click.option("--gain", metavar="K", help="Draw a locus, or a Nyquist plot, of the loop with this gain.")
+@click.option("--range", "limits", nargs=2, metavar="LO HI", help="First and last gain of a locus.")
 @click.option("--modes", type=click.IntRange(1), help="How many modes are shown, the lowest ones.")
 @click.option("-o", "--output", type=click.Path(), help="File to write: .pdf, .pgf, .svg or .png.")
 @click.option("--width", metavar="ieee|a4|MM", help="Width of the figure: 88.5, 170 or so many mm.")
@@ -28,14 +30,20 @@ def command(
     kind: str,
     *,
     tfs: tuple[str, ...],
+    gain: str | None,
+    limits: tuple[str, str] | None,
     modes: int | None,
     output: str | None,
     width: str | None,
     font: str | None,
 ) -> int:
-    """Draw KIND (bode, modes, poles_zeros) or a figure that SPEC defines in [figures].
+    """Draw KIND (bode, locus, modes, nyquist, poles_zeros) or a figure that SPEC defines in [figures].
 
     modes draws the shapes of the lowest modes of the model, --modes or [analysis] modes of them, else five.
+    locus --gain K draws where the closed-loop poles go as K grows, from proved poles to proved zeros; of a
+    distributed system those of the lowest modes. nyquist draws a transfer function, or with --gain K the loop
+    gain.
+
     Without -o the figure is written to the current folder as SPEC_KIND.pdf.
 
     A .pgf is for papers set with LaTeX: load the package pgf and input the file. Its texts take the paper's
@@ -43,29 +51,48 @@ def command(
     needed to write one.
     """
     from symflex import pipeline
-    from symflex.emit.figures import DEFAULT_FONT, FIGURES, FONTS, draw, save
+    from symflex.cli.stability import gain_limit
+    from symflex.emit.figures import DEFAULT_FONT, FIGURES, LOOP_FIGURES, draw, draw_loop, save
     from symflex.emit.latex import column_width
     from symflex.model.analysis import FIGURE_KINDS
+    from symflex.stability import pick_gain
 
     model = pipeline.load(spec)
     if modes is not None:
         model = replace(model, analysis=replace(model.analysis, modes=modes))
     figure = next((f for f in model.figures if f.name == kind), None)
     if figure is None and kind not in (*FIGURES, *FIGURE_KINDS):
-        names = [*FIGURES, *(f.name for f in model.figures)]
+        names = [*FIGURES, "locus", *(f.name for f in model.figures)]
         hint = nearest(kind, names) or "choose from: " + ", ".join(names)
         raise UsageError(Diagnostic("SF902", f"there is no figure '{kind[:64]}'", None, hint))
     drawn = figure.kind if figure else kind
-    if drawn not in FIGURES:
+    if drawn not in (*FIGURES, *LOOP_FIGURES):
         raise UsageError(Diagnostic("SF911", f"figures of kind '{drawn}' are not available yet"))
     path = Path(output) if output else Path(f"{Path(spec).stem}_{kind}.pdf")
     if path.suffix not in SUFFIXES:
         raise UsageError(Diagnostic("SF902", f"'{path.name}' must end in .pdf, .pgf, .svg or .png"))
     width_mm = None if width is None else column_width(width)
-    font = font or ("latex" if path.suffix == ".pgf" else DEFAULT_FONT)
-    if font not in FONTS:
-        hint = nearest(font, FONTS) or "fonts: " + ", ".join(FONTS)
-        raise UsageError(Diagnostic("SF902", f"there is no font '{font[:64]}' for figures", None, hint))
+    font = _checked_font(font or ("latex" if path.suffix == ".pgf" else DEFAULT_FONT))
+    named = gain or (figure.gain if figure else "")
+    if (gain or limits) and drawn not in LOOP_FIGURES:
+        message = f"--gain and --range are for {' and '.join(LOOP_FIGURES)}, not for '{drawn}'"
+        raise UsageError(Diagnostic("SF902", message))
+    if drawn == "locus" and not named:
+        message = "a locus is drawn of a loop"
+        raise UsageError(Diagnostic("SF902", message, None, "name its gain: --gain K, or gain in [figures]"))
+    title = figure.title if figure else ""
+    if named:
+        parameter = pick_gain(model.parameters, named)
+        chosen = (
+            None if limits is None else (gain_limit(limits[0], parameter), gain_limit(limits[1], parameter))
+        )
+        loop = pipeline.characteristic_loop(model, named)
+        drawing = draw_loop(
+            drawn, loop, limits=chosen, modes=modes, title=title or None, width_mm=width_mm, font=font
+        )
+        save(drawing, path, font=font)
+        note(f"wrote {path}")
+        return 0
     pairs = figure.of if figure and figure.of and not tfs else pipeline.pick_pairs(model, tfs)
     if drawn == "modes":
         pairs = pairs[:1]  # all functions of a model have the same modes, seen or hidden
@@ -75,8 +102,23 @@ def command(
             if bound.ratio.is_zero:
                 note(f"{bound.name} is identically zero and is left out")
         bounds = tuple(bound for bound in bounds if not bound.ratio.is_zero) or bounds
-    title = figure.title if figure else ""
     sources = [bound.source for bound in bounds]
     save(draw(drawn, sources, bounds, title=title or None, width_mm=width_mm, font=font), path, font=font)
     note(f"wrote {path}")
     return 0
+
+
+def _checked_font(font: str) -> str:
+    """Return the name of a font for figures.
+
+    Raises
+    ------
+    UsageError
+        SF902 when there is no such font.
+    """
+    from symflex.emit.figures import FONTS
+
+    if font not in FONTS:
+        hint = nearest(font, FONTS) or "fonts: " + ", ".join(FONTS)
+        raise UsageError(Diagnostic("SF902", f"there is no font '{font[:64]}' for figures", None, hint))
+    return font

@@ -128,13 +128,13 @@ def _region(
     if mode is not None:
         return Mode(mode)
     if band is not None:
-        low, high = (_limit(text, "--band", "0.1 or '1 kHz'", hertz=True) for text in band)
+        low, high = (frequency_limit(text, "--band", "0.1 or '1 kHz'", hertz=True) for text in band)
         if not 0 <= low < high:
             raise UsageError(Diagnostic("SF902", "--band takes two frequencies in Hz, the lower one first"))
         return Band(low, high)
     if region is not None:
         re_low, re_high, im_low, im_high = (
-            _limit(text, "--region", "-10 or '3 rad/s'", hertz=False) for text in region
+            frequency_limit(text, "--region", "-10 or '3 rad/s'", hertz=False) for text in region
         )
         if re_low > re_high or im_low > im_high:
             raise UsageError(Diagnostic("SF902", "--region takes RE0 <= RE1 and IM0 <= IM1"))
@@ -142,7 +142,7 @@ def _region(
     return None
 
 
-def _limit(text: str, option: str, example: str, *, hertz: bool) -> Fraction:
+def frequency_limit(text: str, option: str, example: str, *, hertz: bool) -> Fraction:
     """Return a limit in Hz, or in rad/s, from a number or a quantity that counts per second."""
     from symflex.errors import Source, Span, SpecError, Text
     from symflex.model.analysis import PER_SECOND, PI_NEARLY, in_limits

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from symflex.spec import Entry, Value
 
 FIGURE_KINDS = ("bode", "poles_zeros", "nyquist", "locus", "modes", "step")
+OF_A_LOOP = ("nyquist", "locus")
 MODES_LIMIT = 1_000_000
 DIGITS_LIMIT = 10_000
 PER_SECOND = unit_of("1/s").dimension
@@ -122,13 +123,34 @@ def read_figures(reader: Reader, section: TableValue | None, model: Model) -> tu
         table = reader.table(entry, what) if reader.name(entry, "a figure") else None
         if table is None:
             continue
-        reader.keys(table, ("kind", "of", "title", "doc"), what)
+        reader.keys(table, ("kind", "of", "gain", "title", "doc"), what)
         kind = _kind(reader, table, entry, what)
         of = table.get("of")
         texts = reader.strings(of, f"of of {what}") if of else ()
         chosen = tuple(tf for t in texts or () if (tf := pick_tf(reader, t.value, t.span, known)))
-        found.append(Figure(entry.key, kind, chosen, reader.plain(table, "title", what), entry.key_span))
+        gain = _gain(reader, table, kind, what, model)
+        title = reader.plain(table, "title", what)
+        found.append(Figure(entry.key, kind, chosen, title, gain, entry.key_span))
     return tuple(found)
+
+
+def _gain(reader: Reader, table: TableValue, kind: str, what: str, model: Model) -> str:
+    """Return the parameter that is the gain of the loop a figure shows, empty when it shows none."""
+    entry = table.get("gain")
+    if entry is None:
+        return ""
+    text = reader.string(entry, f"gain of {what}")
+    if text is None:
+        return ""
+    if kind not in OF_A_LOOP:
+        hint = "kinds with a gain: " + ", ".join(OF_A_LOOP)
+        reader.note("SF207", f"{what} is of kind '{kind}', which has no gain", text.span, hint)
+    names = [p.name for p in model.parameters]
+    if text.value not in names:
+        hint = nearest(text.value, names) or "parameters: " + ", ".join(names[:LISTED_NAMES])
+        reader.note("SF210", f"there is no parameter '{text.value[:64]}'", text.span, hint)
+        return ""
+    return text.value
 
 
 def _kind(reader: Reader, table: TableValue, entry: Entry, what: str) -> str:

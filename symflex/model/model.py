@@ -200,12 +200,13 @@ class Analysis:
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A figure the specification asks for."""
+    """A figure the specification asks for; of a loop when a gain is named."""
 
     name: str
     kind: str
     of: tuple[tuple[str, str], ...]
     title: str = ""
+    gain: str = ""
     span: Span | None = field(default=None, compare=False, repr=False)
 
 

@@ -111,10 +111,14 @@ class CertifiedWinding(Winding):
         What is followed.
     budget : Budget
         Spent by every step.
+    tries_series : bool
+        Where steps are too long for sums of exponentials, power series are tried before shorter steps: next
+        to points where wavenumbers meet these would have to be very short.
     """
 
-    def __init__(self, function: KernelFunction, budget: Budget) -> None:
+    def __init__(self, function: KernelFunction, budget: Budget, *, tries_series: bool = False) -> None:
         super().__init__(function, budget)
+        self._tries_series = tries_series
         self._bits = BITS
         self._turns: dict[tuple[complex, complex], arb] = {}
         self._series = SeriesSteps(function)
@@ -206,6 +210,9 @@ class CertifiedWinding(Winding):
         here, there = path.point(start), path.point(end)
         by_exponentials = self.function.turn_of_exponentials(ball, here, there, bits)
         if by_exponentials is not None:
+            if by_exponentials[0] > ROOM and self._tries_series:
+                by_series = self._series.change(centre, reach, here, there, bits)
+                return min(by_series, by_exponentials, key=lambda found: found[0])
             return by_exponentials
         if self.function.has_fundamental:
             return self._series.change(centre, reach, here, there, bits)

@@ -339,6 +339,8 @@ class KernelFunction:
             with precision(bits):
                 s = point()
                 found = self._factors(s, bits)
+                if any(f == 0 for f, _, _ in found):
+                    return None
                 if all(f.rel_accuracy_bits() >= SETTLED_BITS and d.is_finite() for f, d, _ in found):
                     return found, s
             bits *= 2

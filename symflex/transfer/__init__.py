@@ -1,6 +1,12 @@
 """Transfer functions: derived exactly, reduced, named, and bound to numbers."""
 
-from symflex.transfer.bind import BoundTransferFunction, EnclosedTransferFunction, bind, coefficients_in_s
+from symflex.transfer.bind import (
+    BoundTransferFunction,
+    EnclosedTransferFunction,
+    bind,
+    bind_polynomials,
+    coefficients_in_s,
+)
 from symflex.transfer.derive import derive, derive_all
 from symflex.transfer.nested import nested_transfer
 from symflex.transfer.transfer_function import ClosedForm, HiddenFactor, TransferFunction
@@ -12,6 +18,7 @@ __all__ = [
     "HiddenFactor",
     "TransferFunction",
     "bind",
+    "bind_polynomials",
     "coefficients_in_s",
     "derive",
     "derive_all",

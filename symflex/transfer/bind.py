@@ -37,7 +37,7 @@ from symflex.transfer.monomials import Plan, plan
 from symflex.transfer.transfer_function import HiddenFactor, TransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from flint import fmpz_mpoly
 
@@ -414,14 +414,7 @@ def bind(
     exact = read_values((*used, *extra), given)
     table = dict(exact)
     ring = Ring((LAPLACE, "pi", *_used_constants(tf), *tf.kernels.generators))
-    squares = {
-        ring.index[c.generator]: square
-        for c in tf.constants
-        if c.generator in ring.index
-        and c.expression.name == "sqrt"
-        and (square := rational_value(c.expression.argument, table)) is not None
-    }
-    images = _Substitution(ring, tf.ratio.ring, table, squares)
+    images = _Substitution(ring, tf.ratio.ring, table, _rational_squares(tf, ring, table))
     # Kept apart, so that factors which these values make equal are still seen to cancel.
     above, below = Factored.number(ring, tf.ratio.unit), Factored.number(ring, 1)
     for factor, exponent in tf.ratio.factors:
@@ -457,6 +450,23 @@ def bind(
     return BoundTransferFunction(tf, exact, ratio, tuple(hidden), kernels, parts)
 
 
+def bind_polynomials(
+    tf: TransferFunction, bound: BoundTransferFunction, polynomials: Sequence[fmpz_mpoly]
+) -> tuple[Factored, ...]:
+    """Return polynomials over a transfer function's ring with the values a bound one has.
+
+    Parameters
+    ----------
+    tf, bound : TransferFunction, BoundTransferFunction
+        The same function, and with numbers.
+    polynomials : sequence of fmpz_mpoly
+        Over the ring of ``tf``, such as the coefficients of a gain in its denominator.
+    """
+    ring, values = bound.ratio.ring, dict(bound.values)
+    images = _Substitution(ring, tf.ratio.ring, values, _rational_squares(tf, ring, values))
+    return tuple(images.apply(polynomial) for polynomial in polynomials)
+
+
 def _bound_table(table: KernelTable, images: _Substitution) -> KernelTable:
     """Return the table with values in its coefficients and lengths."""
     return embedded_table(table, [(v, images.apply_factored(v)) for v in table.values])
@@ -467,6 +477,19 @@ def _used_constants(tf: TransferFunction) -> list[str]:
     index = tf.ratio.ring.index
     polynomials = [*(f for f, _ in tf.all_factors), *(h.polynomial for h in tf.hidden)]
     return [c.generator for c in tf.constants if any(degree_in(p, index[c.generator]) for p in polynomials)]
+
+
+def _rational_squares(
+    tf: TransferFunction, ring: Ring, values: Mapping[str, ExactValue]
+) -> dict[int, Fraction]:
+    """Return the squares of the generators that are roots of rational numbers, by position."""
+    return {
+        ring.index[c.generator]: square
+        for c in tf.constants
+        if c.generator in ring.index
+        and c.expression.name == "sqrt"
+        and (square := rational_value(c.expression.argument, values)) is not None
+    }
 
 
 @dataclass(frozen=True)

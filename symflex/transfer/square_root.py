@@ -34,8 +34,14 @@ def square_root(x: Value) -> Value:
         return (x / middle).sqrt() * middle.sqrt()
     if not reach < 1:
         # Of a ball that holds 0 no branch is analytic.
-        return NOWHERE if isinstance(x, acb) else acb_series([NOWHERE, NOWHERE], 2)
+        return NOWHERE if isinstance(x, acb) else acb_series([NOWHERE] * x.prec, x.prec)
     # sqrt(m) sqrt(1 + e) with abs(e) <= d differs from sqrt(m) by at most (1 - sqrt(1 - d)) sqrt(m).
     off = (1 - (1 - reach).sqrt()).upper()
     root = middle.sqrt() * acb(arb(1, off), arb(0, off))
-    return acb_series([root, x[1] / (2 * root)], 2) if isinstance(x, acb_series) else root
+    if isinstance(x, acb):
+        return root
+    found = [root]
+    for n in range(1, x.prec):
+        crossed = sum((found[k] * found[n - k] for k in range(1, n)), acb(0))
+        found.append((x[n] - crossed) / (2 * root))
+    return acb_series(found, x.prec)

@@ -12,7 +12,10 @@ from matplotlib.text import Text
 from symflex.emit.figures.bode import draw_bode, draw_response
 from symflex.emit.figures.drawing import Drawing
 from symflex.emit.figures.fit import draw_fit
+from symflex.emit.figures.labels import label_of_name
+from symflex.emit.figures.locus import draw_locus, number_label
 from symflex.emit.figures.modes import draw_modes
+from symflex.emit.figures.nyquist import draw_nyquist
 from symflex.emit.figures.pgf import MM_PER_INCH
 from symflex.emit.figures.poles_zeros import draw_poles_zeros
 from symflex.emit.figures.save import FORMATS, render, save
@@ -21,6 +24,7 @@ from symflex.emit.latex.column import checked_width
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.model.analysis import FIGURE_KINDS
+from symflex.stability import loop_gain, require_arrival, trace_locus
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,22 +32,29 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
+    from symflex.stability import Loop
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
 FIGURES: dict[str, Drawing] = {
     "bode": draw_bode,
     "modes": draw_modes,
+    "nyquist": draw_nyquist,
     "poles_zeros": draw_poles_zeros,
 }
+
+LOOP_FIGURES: tuple[str, ...] = ("locus", "nyquist")
+"""Kinds that are drawn of a loop and its gain, by :func:`draw_loop`."""
 
 __all__ = [
     "DEFAULT_FONT",
     "FIGURES",
     "FONTS",
     "FORMATS",
+    "LOOP_FIGURES",
     "Drawing",
     "draw",
     "draw_fit",
+    "draw_loop",
     "draw_response",
     "render",
     "save",
@@ -92,6 +103,11 @@ def draw(
         SF402 a transfer function is identically zero.
     """
     if kind not in FIGURES:
+        if kind in LOOP_FIGURES:
+            message = f"a figure of kind '{kind}' is drawn of a loop"
+            raise UsageError(
+                Diagnostic("SF902", message, None, "name its gain: --gain K, or gain in [figures]")
+            )
         if kind in FIGURE_KINDS:
             hint = "available: " + ", ".join(FIGURES)
             raise UsageError(
@@ -111,8 +127,64 @@ def draw(
     width = None if width_mm is None else checked_width(width_mm) / MM_PER_INCH
     with paper_style(font):
         figure = FIGURES[kind](tfs, bounds, band_hz=band, title=title, width=width)
+    return _with_every_letter(figure, font)
+
+
+def _with_every_letter(figure: Figure, font: str) -> Figure:
+    """Set texts with letters that a font lacks in one that has them."""
     for text in figure.findobj(Text):
         family = family_of(text.get_text(), font)
         if family and not text.get_parse_math():
             text.set_fontfamily(family)
     return figure
+
+
+def draw_loop(
+    kind: str,
+    loop: Loop,
+    *,
+    limits: tuple[Fraction | None, Fraction | None] | None = None,
+    modes: int | None = None,
+    title: str | None = None,
+    width_mm: float | None = None,
+    font: str = DEFAULT_FONT,
+) -> Figure:
+    """Draw a root locus, or the Nyquist plot of a loop gain ``K B/A``.
+
+    Parameters
+    ----------
+    kind : str
+        ``locus`` or ``nyquist``.
+    loop : Loop
+        A straight line in its gain.
+    limits : (Fraction, Fraction), optional
+        First and last gain of a locus; from 0 to 10 times the nominal one by default.
+    modes : int, optional
+        Traced in the locus of a loop with kernels.
+    title : str, optional
+        Printed as it is.
+    width_mm, font
+        As for :func:`draw`.
+
+    Raises
+    ------
+    UsageError
+        SF208 an unknown kind, SF804 no range, SF806 no straight line in the gain.
+    UncertifiedError
+        SF807 the curves do not end in proved poles.
+    """
+    if kind not in LOOP_FIGURES:
+        hint = "kinds: " + ", ".join(LOOP_FIGURES)
+        raise UsageError(
+            Diagnostic("SF208", f"no figure of kind '{kind[:64]}' is drawn of a loop", None, hint)
+        )
+    width = None if width_mm is None else checked_width(width_mm) / MM_PER_INCH
+    with paper_style(font):
+        if kind == "locus":
+            locus = trace_locus(loop, limits, modes)
+            require_arrival(locus)
+            return _with_every_letter(draw_locus(locus, title, width), font)
+        bound = loop_gain(loop)
+        label = f"loop gain, ${label_of_name(loop.gain.name)} = {number_label(float(loop.nominal or 0))}$"
+        figure = draw_nyquist([bound.source], [bound], title=title, width=width, labels=[label])
+        return _with_every_letter(figure, font)

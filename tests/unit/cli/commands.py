@@ -28,7 +28,7 @@ wall = { type = "spring", between = ["x", "ground"], k = "k" }
 kind = "bode"
 of = ["V/F"]
 [figures.later]
-kind = "nyquist"
+kind = "step"
 """
 SYMBOLIC = OSCILLATOR.replace('m = "2 kg"', "m = {}")
 WRONG = OSCILLATOR.replace('"18 N/m"', '"18 N"').replace('"s*x"', '"s*y"')

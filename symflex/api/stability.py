@@ -1,0 +1,128 @@
+"""For which gains a loop is stable, as mpmath numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import mpmath
+
+from symflex.roots.multiprecision import to_mpmath
+from symflex.stability import degrees, hertz
+
+if TYPE_CHECKING:
+    from flint import arb
+
+    from symflex import stability as stability_room
+
+
+@dataclass(frozen=True)
+class StabilityBoundary:
+    """A gain at which poles cross the imaginary axis.
+
+    Parameters
+    ----------
+    gain : mpmath.mpf
+        Middle of its enclosure, in SI units.
+    radius : mpmath.mpf
+        A bound on the distance from ``gain`` to the boundary.
+    frequencies_hz : tuple of float
+        At which poles are on the axis; empty where one passes through infinity.
+    entering : int
+        By how many the poles in the right half plane grow in number, as the gain grows.
+    """
+
+    gain: mpmath.mpf
+    radius: mpmath.mpf
+    frequencies_hz: tuple[float, ...]
+    entering: int
+
+
+@dataclass(frozen=True)
+class Stability:
+    """The gains for which all closed-loop poles lie in the open left half plane.
+
+    Parameters
+    ----------
+    proved : symflex.stability.StabilityMap
+        The enclosures and counts.
+    """
+
+    proved: stability_room.StabilityMap
+
+    @property
+    def certified(self) -> bool:
+        """Whether everything is proved, for all poles; see :attr:`reasons` and :attr:`counted_up_to_hz`."""
+        return self.proved.certified
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """What is not proved."""
+        return self.proved.reasons
+
+    @property
+    def counted_up_to_hz(self) -> float:
+        """How far poles right of the axis are counted [Hz]; infinite when that is all of them."""
+        if self.proved.is_complete or self.proved.radius is None:
+            return float("inf")
+        return self.proved.radius / (2 * float(mpmath.pi))
+
+    @property
+    def stable(self) -> tuple[tuple[mpmath.mpf, mpmath.mpf], ...]:
+        """The open intervals of stable gains, in SI units; infinite ends are ``mpmath.inf``."""
+        return tuple(
+            (_end(interval.low, -mpmath.inf), _end(interval.high, mpmath.inf))
+            for interval in self.proved.stable
+        )
+
+    @property
+    def boundaries(self) -> tuple[StabilityBoundary, ...]:
+        """Where the number of unstable poles changes, ascending."""
+        return tuple(
+            StabilityBoundary(
+                to_mpmath(boundary.gain),
+                to_mpmath(boundary.gain.rad()),
+                tuple(float(hertz(omega).mid()) for omega in boundary.frequencies),
+                self.proved.change(i),
+            )
+            for i, boundary in enumerate(self.proved.boundaries)
+        )
+
+    @property
+    def is_stable(self) -> bool | None:
+        """Whether the loop is stable with the gain's declared value; ``None`` when it has none."""
+        return self.proved.is_stable
+
+    @property
+    def gain_margins(self) -> tuple[mpmath.mpf, ...]:
+        """Factors by which the declared gain may change until a boundary; none when it is unstable."""
+        return tuple(to_mpmath(margin.factor) for margin in self.proved.gain_margins)
+
+    @property
+    def phase_margins(self) -> tuple[tuple[float, float], ...]:
+        """Pairs of degrees, positive for lag, and crossover frequency [Hz]."""
+        return tuple(
+            (float(degrees(m.angle).mid()), float(hertz(m.frequency).mid()))
+            for m in self.proved.phase_margins
+        )
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return the result in the schema ``symflex.stability/1``."""
+        return self.proved.to_json_dict()
+
+    def __str__(self) -> str:
+        from symflex.emit.stability import stability_text
+
+        return stability_text(self.proved)
+
+    def __repr__(self) -> str:
+        pieces = (f"{mpmath.nstr(a, 8)} < {self.proved.gain} < {mpmath.nstr(b, 8)}" for a, b in self.stable)
+        status = "certified" if self.certified else "not certified"
+        return f"<Stability: {' or '.join(pieces) or 'no gain'}, {status}>"
+
+
+def _end(value: arb | None, infinite: mpmath.mpf) -> mpmath.mpf:
+    if value is None:
+        return infinite
+    # Where poles of the open loop lie on the axis, 0 is the end, up to the radius of its enclosure.
+    return mpmath.mpf(0) if value.contains(0) else to_mpmath(value)

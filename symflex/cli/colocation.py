@@ -1,0 +1,81 @@
+"""``symflex colocation``."""
+
+from __future__ import annotations
+
+import click
+
+from symflex.cli.report import emit_json, reporting
+from symflex.errors import Diagnostic, UsageError
+
+
+@click.command("colocation")
+@click.argument("spec", type=click.Path())
+@click.option("--tf", required=True, metavar="OUT/IN", help="The output that is away from the actuator.")
+@click.option("--with", "reference", required=True, metavar="OUT2/IN", help="The colocated output.")
+@click.option("--phase", default="10 deg", show_default=True, help="Largest difference of phase.")
+@click.option("--magnitude", default="1 dB", show_default=True, help="Largest difference of magnitude.")
+@click.option(
+    "--band", nargs=2, metavar="LO HI", help="Frequencies examined; by default those of [analysis]."
+)
+@click.option(
+    "--budget", type=click.FloatRange(min=0, min_open=True), metavar="SECONDS", help="Stop the search then."
+)
+@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@reporting
+def command(
+    spec: str,
+    *,
+    tf: str,
+    reference: str,
+    phase: str,
+    magnitude: str,
+    band: tuple[str, str] | None,
+    budget: float | None,
+    as_json: bool,
+) -> int:
+    """Print up to which frequency an output of SPEC moves with a colocated one.
+
+    Within this band they are dynamically colocated, although flexible parts lie between them. It ends where
+    the ratio of the two first leaves the tolerances; that it does not before is proved. Exit code 4 says that
+    the end could not be told.
+    """
+    from symflex import pipeline
+    from symflex.cli.roots import frequency_limit
+    from symflex.roots import Budget
+
+    limits = None
+    if band is not None:
+        low, high = (float(frequency_limit(x, "--band", "0.1 or '1 kHz'", hertz=True)) for x in band)
+        if not 0 < low < high:
+            raise UsageError(
+                Diagnostic("SF902", "--band takes two frequencies, the lower one first, above 0")
+            )
+        limits = (low, high)
+    found = pipeline.colocation(
+        pipeline.load(spec),
+        tf,
+        reference,
+        _tolerance(phase, "--phase", ("deg", "°"), "10 deg"),
+        _tolerance(magnitude, "--magnitude", ("dB",), "1 dB"),
+        limits,
+        Budget(budget),
+    )
+    if as_json:
+        emit_json(found.to_json_dict())
+    else:
+        click.echo(str(found))
+    return 0 if found.is_decided else 4
+
+
+def _tolerance(text: str, option: str, units: tuple[str, ...], example: str) -> float:
+    number = text.strip()
+    for unit in units:
+        number = number.removesuffix(unit).strip()
+    try:
+        value = float(number)
+    except ValueError:
+        value = 0.0
+    if not 0 < value < float("inf"):
+        message = f"{option} takes a positive number such as '{example}', found '{text[:40]}'"
+        raise UsageError(Diagnostic("SF902", message))
+    return value

@@ -1,0 +1,129 @@
+"""Nyquist plots: a transfer function along the imaginary axis, and the point -1."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import cycle
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from matplotlib.ticker import MaxNLocator
+
+from symflex.emit.figures.labels import label_of_tf
+from symflex.emit.figures.style import (
+    COLOURS,
+    COLUMN_INCHES,
+    QUIET,
+    TITLE_POINTS,
+    TITLE_SPACING,
+    new_figure,
+    title_lines,
+)
+from symflex.response import adaptive_grid, default_band, respond
+from symflex.roots import Band
+from symflex.roots.locate import locate
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy.typing as npt
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from symflex.transfer import BoundTransferFunction, TransferFunction
+
+HEIGHT_INCHES: Final = 3.3
+LINE_INCHES: Final = 0.13
+WIDENED: Final = 10.0
+"""How far beyond the band of poles and zeros the curve is drawn, to both sides."""
+REACHES: Final = (1.5, 2.5)
+"""Half the side of the square shown of a loop gain, about -1."""
+QUANTILE: Final = 0.9
+
+
+def draw_nyquist(
+    tfs: Sequence[TransferFunction],
+    bounds: Sequence[BoundTransferFunction],
+    *,
+    band_hz: tuple[float, float] | None = None,
+    title: str | None = None,
+    width: float | None = None,
+    labels: Sequence[str] = (),
+) -> Figure:
+    """Draw the values of transfer functions for positive frequencies and, dashed, for negative ones.
+
+    Of a loop gain, which ``labels`` tell apart, the part of the plane about -1 is shown; where a curve leaves
+    it, it goes on outside. Arrows point to growing frequency.
+    """
+    width = width or COLUMN_INCHES
+    lines = title_lines(title, width)
+    figure = new_figure(width, HEIGHT_INCHES + LINE_INCHES * (len(lines) + 1))
+    figure.set_layout_engine("constrained", h_pad=0.03, w_pad=0.03)
+    axes = figure.subplots()
+    for value, draw in ((0, axes.axhline), (0, axes.axvline)):
+        draw(value, color=QUIET, linewidth=0.5, zorder=1)
+    circle = np.exp(1j * np.linspace(0, 2 * np.pi, 361))
+    axes.plot(circle.real, circle.imag, ":", color=QUIET, linewidth=0.7, zorder=1)
+    curves = []
+    for i, (bound, colour) in enumerate(zip(bounds, cycle(COLOURS), strict=False)):
+        values = _curve(bound, band_hz)
+        curves.append(values)
+        label = labels[i] if labels else label_of_tf(tfs[i])
+        axes.plot(values.real, values.imag, "-", color=colour, linewidth=1.0, zorder=2, label=label)
+        axes.plot(values.real, -values.imag, "--", color=colour, linewidth=0.6, zorder=2)
+    axes.plot([-1], [0], "+", color="black", markersize=8, markeredgewidth=1.1, zorder=4)
+    reach = _reach(np.concatenate(curves), is_loop=bool(labels))
+    axes.set_xlim(-reach, reach)
+    axes.set_ylim(-reach, reach)
+    axes.set_aspect("equal", adjustable="box")
+    for values, colour in zip(curves, cycle(COLOURS), strict=False):
+        _point_along(axes, values, reach, colour)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10]))
+    axes.set_xlabel("Real part")
+    axes.set_ylabel("Imaginary part")
+    figure.legend(loc="outside upper center", ncols=3, frameon=False)
+    if lines:
+        figure.suptitle("\n".join(lines), fontsize=TITLE_POINTS, linespacing=TITLE_SPACING, parse_math=False)
+    return figure
+
+
+def _curve(bound: BoundTransferFunction, band_hz: tuple[float, float] | None) -> npt.NDArray[np.complex128]:
+    """Return values along the axis, dense where a resonance turns them."""
+    band = bound.source.model.analysis.band
+    given = band_hz or (None if band is None else (float(band[0]), float(band[1])))
+    if given is None:
+        low, high = default_band(locate(bound))
+        low, high = low / WIDENED, high * WIDENED
+    else:
+        low, high = given
+    found = locate(bound, Band(Fraction(low), Fraction(high)) if bound.is_distributed else None)
+    response = respond(bound, adaptive_grid(bound, low, high, roots=found), found)
+    values: npt.NDArray[np.complex128] = np.array(response.values, dtype=np.complex128)
+    finite: npt.NDArray[np.complex128] = values[np.isfinite(values)]
+    return finite
+
+
+def _reach(values: npt.NDArray[np.complex128], *, is_loop: bool) -> float:
+    """Return half the side of a square that shows -1, and most of a curve that is no loop gain."""
+    largest = float(np.max(np.abs(values))) if values.size else 1.0
+    if is_loop:
+        return min(max(1.1 * largest, REACHES[0]), REACHES[1])
+    return 1.1 * float(np.quantile(np.abs(values), QUANTILE)) or 1.0
+
+
+def _point_along(axes: Axes, values: npt.NDArray[np.complex128], reach: float, colour: str) -> None:
+    """Draw an arrow halfway along the part of a curve that is shown."""
+    shown = np.flatnonzero((np.abs(values.real) < 0.9 * reach) & (np.abs(values.imag) < 0.9 * reach))
+    steps = np.abs(np.diff(values[shown])) if shown.size > 2 else np.array([])  # noqa: PLR2004
+    if not steps.size or not float(steps.sum()) > 0:
+        return
+    middle = int(np.searchsorted(np.cumsum(steps), 0.4 * float(steps.sum())))
+    i = int(shown[min(middle, shown.size - 2)])
+    a, b = values[i], values[min(i + 1, values.size - 1)]
+    axes.annotate(
+        "",
+        (b.real, b.imag),
+        (a.real, a.imag),
+        arrowprops={"arrowstyle": "-|>", "mutation_scale": 9, "linewidth": 0, "color": colour},
+    )

@@ -1,0 +1,41 @@
+"""Stable gains of feedback loops, proved: poles right of the imaginary axis counted, none missing."""
+
+from symflex.stability.colocation import DynamicColocation, dynamic_colocation
+from symflex.stability.crossing import Crossing, PoleCount
+from symflex.stability.find import find_stable_gains
+from symflex.stability.locus import RootLocus, loop_gain, require_arrival, trace_locus
+from symflex.stability.loop import GainPolynomial, Loop, characteristic_loop, pick_gain
+from symflex.stability.stability_map import (
+    Boundary,
+    GainInterval,
+    GainMargin,
+    PhaseMargin,
+    StabilityMap,
+    decibels,
+    degrees,
+    hertz,
+)
+
+__all__ = [
+    "Boundary",
+    "Crossing",
+    "DynamicColocation",
+    "GainInterval",
+    "GainMargin",
+    "GainPolynomial",
+    "Loop",
+    "PhaseMargin",
+    "PoleCount",
+    "RootLocus",
+    "StabilityMap",
+    "characteristic_loop",
+    "decibels",
+    "degrees",
+    "dynamic_colocation",
+    "find_stable_gains",
+    "hertz",
+    "loop_gain",
+    "pick_gain",
+    "require_arrival",
+    "trace_locus",
+]

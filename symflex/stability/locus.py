@@ -1,0 +1,251 @@
+"""The root locus: closed-loop poles as the gain grows, proved at both ends and traced between.
+
+Input: a loop that is a straight line in its gain. Output: poles at the first and the last gain and the zeros
+they go to, as certified maps, and curves between them by Newton's method from gain to gain.
+"""
+
+from __future__ import annotations
+
+from cmath import isfinite, rect
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import inf
+from typing import TYPE_CHECKING
+
+from symflex.errors import Diagnostic, UncertifiedError, UsageError
+from symflex.kernels import Factored
+from symflex.roots import Budget, Modes
+from symflex.roots.locate import locate
+from symflex.stability.loop_function import LoopFunction
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.roots import PoleZeroMap, Region
+    from symflex.stability.loop import Loop
+    from symflex.transfer import BoundTransferFunction
+
+DEFAULT_MODES = 5
+STEPS = 120
+FIRST_SHARE = 1e-5
+"""The first step, of the whole range."""
+NEWTON_STEPS = 25
+CONVERGED = 1e-12
+FAREST = 0.05
+"""How far a pole may move in a step, relative to its size or that of the largest at the first gain."""
+HALVINGS = 9
+TURNS = (0.3, 1.9, 3.4, 5.0)
+TOUCHING = 1e-7
+ENDS_AGREE = 1e-6
+
+
+@dataclass(frozen=True)
+class RootLocus:
+    """Closed-loop poles over a range of the gain.
+
+    Parameters
+    ----------
+    gain : str
+        Its name.
+    limits : (Fraction, Fraction)
+        First and last value.
+    start, end : PoleZeroMap
+        Poles at these, and the zeros the poles go to, proved.
+    branches : tuple of tuple of complex
+        Curves [rad/s] from each pole at the first gain, not proved.
+    arrived : bool
+        Every curve ends next to a proved pole at the last gain, and no two at the same.
+    """
+
+    gain: str
+    limits: tuple[Fraction, Fraction]
+    start: PoleZeroMap
+    end: PoleZeroMap
+    branches: tuple[tuple[complex, ...], ...]
+    arrived: bool
+
+
+def loop_gain(loop: Loop, gain: Fraction | None = None) -> BoundTransferFunction:
+    """Return the loop's transfer function ``K B/A``, whose value -1 is a closed-loop pole.
+
+    Parameters
+    ----------
+    loop : Loop
+        A straight line in its gain.
+    gain : Fraction, optional
+        K; the nominal one by default.
+
+    Raises
+    ------
+    UsageError
+        SF806 when the loop is no straight line in its gain, or K has no value.
+    """
+    value = loop.nominal if gain is None else gain
+    above, below = _parts(loop)
+    if value is None:
+        message = f"'{loop.gain.name}' has no value"
+        raise UsageError(Diagnostic("SF806", message, loop.gain.span, "give it one in [parameters]"))
+    return _with(loop.bound, above * value, below)
+
+
+def _parts(loop: Loop) -> tuple[Factored, Factored]:
+    """Return B and A, both with the factors that do not depend on the gain."""
+    one = Factored.number(loop.bound.ratio.ring, 1)
+    above = below = one
+    if len(loop.with_gain) != 1 or loop.with_gain[0].degree != 1 or loop.with_gain[0].multiplicity != 1:
+        message = f"the characteristic function is no straight line in '{loop.gain.name}'"
+        hint = "let the parameter occur as the gain of one loop"
+        raise UsageError(Diagnostic("SF806", message, loop.gain.span, hint))
+    for factor in loop.factors:
+        if factor.degree:
+            above = above * factor.coefficients[1]
+            below = below * factor.coefficients[0]
+    return above, below
+
+
+def _with(bound: BoundTransferFunction, num: Factored, den: Factored) -> BoundTransferFunction:
+    """Return a transfer function of the given parts over the ring of another."""
+    parts = (num, den) if bound.kernels else None
+    return replace(bound, ratio=num / den, hidden=(), parts=parts)
+
+
+def trace_locus(
+    loop: Loop,
+    limits: tuple[Fraction | None, Fraction | None] | None = None,
+    modes: int | None = None,
+    budget: Budget | None = None,
+) -> RootLocus:
+    """Return the root locus of a loop.
+
+    Parameters
+    ----------
+    loop : Loop
+        A straight line in its gain.
+    limits : (Fraction, Fraction), optional
+        From 0 to 10 times the nominal gain by default.
+    modes : int, optional
+        Of a loop with kernels, how many modes are traced; 5 by default.
+    budget : Budget, optional
+        Of the search for roots.
+
+    Raises
+    ------
+    UsageError
+        SF804 no range, SF806 no straight line in the gain.
+    """
+    budget = budget or Budget()
+    above, below = _parts(loop)
+    low, high = limits or (Fraction(0), None if loop.nominal is None else 10 * loop.nominal)
+    if low is None or high is None or not low < high:
+        message = f"a locus needs a first and a last value of '{loop.gain.name}'"
+        raise UsageError(Diagnostic("SF804", message, None, "say --range LO HI, or give it a value"))
+    wanted = modes or loop.bound.source.model.analysis.modes or DEFAULT_MODES
+    region: Region | None = Modes(wanted) if loop.bound.kernels else None
+    wider: Region | None = Modes(wanted + 2) if loop.bound.kernels else None
+    start = locate(_with(loop.bound, above, below + above * low), region, 15, budget)
+    end = locate(_with(loop.bound, above, below + above * high), wider, 15, budget)
+    function = LoopFunction.of(loop.bound, below, above)
+    poles = [
+        complex(float(r.re.mid()), float(r.im.mid())) for r in start.poles for _ in range(r.multiplicity)
+    ]
+    traced = _trace(function, poles, float(low), float(high))
+    final = [complex(float(r.re.mid()), float(r.im.mid())) for r in end.poles for _ in range(r.multiplicity)]
+    # Of a loop with kernels, poles beyond those proved at the last gain are not compared.
+    reach = max((abs(s) for s in final), default=0.0) if loop.bound.kernels else inf
+    arrived = _arrived([branch[-1] for branch in traced if abs(branch[-1]) < reach], final)
+    return RootLocus(loop.gain.name, (low, high), start, end, tuple(map(tuple, traced)), arrived)
+
+
+def _trace(function: LoopFunction, poles: Sequence[complex], low: float, high: float) -> list[list[complex]]:
+    size = max((abs(s) for s in poles), default=1.0) or 1.0
+    branches = [[s] for s in poles]
+    growth = (1 / FIRST_SHARE) ** (1 / STEPS)
+    gain, shift = low, (high - low) * FIRST_SHARE
+    goals = []
+    while gain < high:
+        gain = min(low + shift, high)
+        goals.append(gain)
+        shift *= growth
+    current, reached = list(poles), low
+    for goal in goals:
+        pending = [goal]
+        while pending:
+            aim = pending[-1]
+            found = _moved(function, current, aim, size)
+            far = max(
+                (abs(a - b) / max(size, abs(b)) for a, b in zip(found, current, strict=True)), default=0.0
+            )
+            if far > FAREST and len(pending) < HALVINGS:
+                pending.append((reached + aim) / 2)
+                continue
+            current, reached = found, aim
+            pending.pop()
+            for branch, s in zip(branches, current, strict=True):
+                branch.append(s)
+    return branches
+
+
+def _moved(function: LoopFunction, poles: Sequence[complex], gain: float, size: float) -> list[complex]:
+    """Return the poles at the next gain; those that meet are sent apart."""
+    found: list[complex] = []
+    for i, s in enumerate(poles):
+        new = _newton(function, s, gain, ())
+        twins = [k for k in range(i) if new is not None and abs(found[k] - new) < TOUCHING * size]
+        if new is None or twins or abs(new - s) > 2 * FAREST * max(size, abs(s)):
+            # Another pole is there already, or two part from the axis: the others are divided out.
+            known = tuple(found)
+            reach = max(TOUCHING * size, 0.02 * size)
+            tries = [s + rect(reach, angle) for angle in TURNS]
+            candidates = [c for start in tries if (c := _newton(function, start, gain, known)) is not None]
+            apart = [c for c in candidates if all(abs(c - f) > TOUCHING * size for f in found)]
+            if apart:
+                new = min(apart, key=lambda c: abs(c - s))
+        found.append(s if new is None else new)
+    return found
+
+
+def _newton(function: LoopFunction, start: complex, gain: float, known: Sequence[complex]) -> complex | None:
+    """Return a root of A + K B with known ones divided out, ``None`` where it is not found."""
+    s = start
+    for _ in range(NEWTON_STEPS):
+        a, a_slope, b, b_slope = function.near(s)
+        value, slope = a + gain * b, a_slope + gain * b_slope
+        if value == 0:
+            return s
+        quotient = slope / value - sum(1 / (s - k) for k in known if s != k)
+        if quotient == 0:
+            return None
+        step = 1 / quotient
+        s -= step
+        if not isfinite(s):
+            return None
+        if abs(step) <= CONVERGED * (1 + abs(s)):
+            # Rounding leaves real poles real.
+            return complex(s.real, 0.0) if abs(s.imag) < CONVERGED * (1 + abs(s)) * 100 else s
+    return None
+
+
+def _arrived(ends: Sequence[complex], proved: Sequence[complex]) -> bool:
+    """Tell whether every end is close to a pole of its own."""
+    free = list(proved)
+    for end in ends:
+        near = min(free, key=lambda s: abs(s - end), default=None)
+        if near is None or abs(near - end) > ENDS_AGREE * (1 + abs(end)):
+            return False
+        free.remove(near)
+    return True
+
+
+def require_arrival(locus: RootLocus) -> None:
+    """Raise an error when curves of a locus do not end in proved poles.
+
+    Raises
+    ------
+    UncertifiedError
+        SF807.
+    """
+    if not locus.arrived:
+        message = (
+            f"the poles traced do not end in those proved at {locus.gain} = {float(locus.limits[1]):.6g}"
+        )
+        raise UncertifiedError(Diagnostic("SF807", message, None, "narrow the range of the gain"))

@@ -1,0 +1,109 @@
+"""Where the loop gain is one: the crossover frequencies, and the loop's value there."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from flint import acb, arb
+
+from symflex.kernels import Factored
+from symflex.roots import RootProblem, find_polynomial_roots, precision
+from symflex.roots.side import polynomial_in_s
+from symflex.stability.tail import radius_without_roots
+
+if TYPE_CHECKING:
+    from fractions import Fraction
+
+    from symflex.roots import Budget
+    from symflex.stability.distributed import DistributedFactors
+    from symflex.stability.loop import GainPolynomial
+    from symflex.stability.loop_function import LoopValue
+    from symflex.transfer import BoundTransferFunction
+
+BITS = 128
+SHRINKINGS = 30
+
+
+def lumped_crossovers(
+    bound: BoundTransferFunction, factor: GainPolynomial, nominal: Fraction, digits: int, budget: Budget
+) -> list[tuple[arb, acb]]:
+    """Return the frequencies [rad/s] at which ``abs(A) = abs(K B)``, and B/A there.
+
+    ``A(s) A(-s) - K^2 B(s) B(-s)`` is even in s; its roots on the imaginary axis are these frequencies.
+    """
+    a, b = factor.coefficients
+    squared = a * _mirrored(a) - b * _mirrored(b) * nominal**2
+    if squared.is_zero:
+        return []
+    problem = RootProblem(
+        tuple(
+            (polynomial, e)
+            for f, e in squared.factors
+            if e > 0 and (polynomial := polynomial_in_s(bound, f)).degree
+        )
+    )
+    found = []
+    for root in find_polynomial_roots(problem, digits, budget=budget):
+        if root.on_imaginary_axis and root.im > 0:
+            with precision(2 * root.working_bits()):
+                omega = root.im
+                values = [_value(bound, part, acb(0, omega)) for part in (a, b)]
+                found.append((omega, values[1] / values[0]))
+    return found
+
+
+def _mirrored(value: Factored) -> Factored:
+    """Return a function of s at -s."""
+    ring = value.ring
+    images = [ring.context.gen(i) for i in range(len(ring.names))]
+    images[0] = -images[0]
+    return value.map_factors(ring, lambda f: Factored.polynomial(ring, f.compose(*images, ctx=ring.context)))
+
+
+def _value(bound: BoundTransferFunction, part: Factored, s: acb) -> acb:
+    total = acb(arb(part.unit.numerator) / part.unit.denominator)
+    for factor, exponent in part.factors:
+        total = total * polynomial_in_s(bound, factor).enclosure()(s) ** exponent
+    return total
+
+
+def distributed_crossovers(
+    distributed: DistributedFactors, nominal: Fraction, digits: int
+) -> list[tuple[arb, acb]]:
+    """Return the same for a loop with kernels; where it is not proved is added to its reasons."""
+    (function,) = distributed.with_gain
+    gain = arb(nominal.numerator) / nominal.denominator
+
+    def equation(value: LoopValue) -> tuple[arb, arb]:
+        return value.excess(gain)
+
+    first, origin = distributed.next_to_zero(function)
+    if origin is not None:
+        start = first
+        for _ in range(SHRINKINGS):
+            a, b = origin.sizes(arb(first))
+            orders = origin.orders
+            share = abs(gain) * arb(first) ** (orders[1] - orders[0])
+            if a.abs_lower() > share * b.abs_upper() and orders[1] >= orders[0]:
+                break
+            if a.abs_upper() < share * b.abs_lower() and orders[1] <= orders[0]:
+                break
+            first /= 2
+        else:
+            # As where it is one at s = 0 itself: nothing is gained by going closer.
+            distributed.reasons.append("whether the loop gain is one next to s = 0 is not proved")
+            first = start
+    result = distributed.on_axis(function, equation, lambda value: False, first, digits)
+    if distributed.radius[1]:
+        most = abs(gain).upper()
+        disc = acb(arb(0, most), arb(0, most))
+        if radius_without_roots(function, disc, distributed.radius[0]) != distributed.radius[0]:
+            distributed.reasons.append("whether the loop gain is one at high frequencies is not proved")
+    found = []
+    for omega in result.roots:
+        bits = max(BITS, 2 * omega.bits())
+        around, _ = function.on(omega, bits)
+        with precision(bits):
+            if not around.a.contains(0):
+                found.append((omega, around.b / around.a))
+    return found

@@ -1,0 +1,55 @@
+"""The loops of derivations/control: what their README states."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+import symflex
+from tests.house.repository import ROOT
+
+FOLDER = ROOT / "derivations" / "control"
+ROWS = [
+    [cell.strip() for cell in line.strip("|").split("|")]
+    for line in (FOLDER / "README.md").read_text("utf-8").splitlines()
+    if line.startswith("| `")
+]
+NUMBER = re.compile(r"\d+\.\d+")
+
+
+def test_the_table_has_every_model():
+    stems = {path.stem.rsplit("_", 1)[0] for path in FOLDER.glob("*.toml")}
+    assert {row[0].strip("`") for row in ROWS} == stems
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row[0].strip("`"))
+def test_every_gain_and_frequency_of_the_table(row):
+    name = row[0].strip("`")
+    position = symflex.load(FOLDER / f"{name}_position.toml").stability("K")
+    force = symflex.load(FOLDER / f"{name}_force.toml").stability("K")
+    assert position.certified
+    assert force.certified
+    # Colocated, no gain that was examined is too large.
+    assert position.boundaries == ()
+    assert position.is_stable
+    gains, frequencies = ([float(x) for x in NUMBER.findall(cell)] for cell in row[2:4])
+    assert len(gains) == len(force.boundaries)
+    for boundary, gain, frequency in zip(force.boundaries, gains, frequencies, strict=True):
+        assert abs(float(boundary.gain) / gain - 1) < 1e-4
+        assert abs(boundary.frequencies_hz[0] / frequency - 1) < 1e-4
+
+
+def test_the_beam_goes_to_its_zero_in_the_right_half_plane():
+    from fractions import Fraction
+
+    from symflex import pipeline
+    from symflex.stability import trace_locus
+
+    model = symflex.load(FOLDER / "sliding_free_beam_force.toml").resolved
+    locus = trace_locus(pipeline.characteristic_loop(model, "K"), (Fraction(0), Fraction(10**5)), modes=2)
+    assert locus.arrived
+    (zero,) = [z for z in locus.end.zeros if 0 < float(z.re.mid()) < 100]
+    target = float(zero.re.mid())
+    assert zero.is_real
+    assert min(abs(branch[-1] - target) for branch in locus.branches) < 0.02 * target

@@ -1,0 +1,123 @@
+"""``symflex stability``, ``symflex colocation`` and figures of loops on the command line."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+LOOP = """
+symflex = 1
+[parameters]
+K = 1
+T = { value = "0.5 s" }
+[blocks]
+D = { type = "delay", T = "T" }
+[signals]
+y = "K*D/s*(r - y)"
+[inputs]
+r = {}
+[outputs]
+Y = "y"
+E = "r - y"
+[figures.paths]
+kind = "locus"
+gain = "K"
+"""
+BEAM = """
+symflex = 1
+[parameters]
+K = "10 N/m"
+EI = "1 N*m^2"
+[elements]
+drive = { type = "force_source", at = "x", f = "F" }
+mass = { type = "mass", at = "x", m = "1 kg" }
+rod = { type = "rod", between = ["x", "y"], E = "1 Pa", A = "1 m^2", rho = "1 kg/m^3", l = "1 m" }
+[signals]
+F = "K*(r - x)"
+[inputs]
+r = {}
+[outputs]
+X = "x"
+"""
+
+
+@pytest.fixture
+def files(shell):
+    (shell.folder / "loop.toml").write_text(LOOP, encoding="utf-8")
+    (shell.folder / "lossless.toml").write_text(BEAM.replace('EI = "1 N*m^2"\n', ""), encoding="utf-8")
+    return shell
+
+
+def test_a_stable_range_is_printed(files):
+    done = files("stability", "loop.toml", "--gain", "K", "--range", "0", "20")
+    assert (done.code, done.err) == (0, "")
+    assert "0 < K < 3.14159265358979" in done.out
+    assert max(map(len, done.out.splitlines())) <= 80
+
+
+def test_json_has_a_schema(files):
+    done = files("stability", "loop.toml", "--gain", "K", "--range", "0", "20", "--digits", "30", "--json")
+    document = json.loads(done.out)
+    assert document["schema"] == "symflex.stability/1"
+    assert document["boundaries"][0]["gain"]["value"] == "3.14159265358979323846264338328"
+
+
+def test_what_is_not_certified_has_exit_code_4(files):
+    done = files("stability", "lossless.toml", "--gain", "K", "--up-to", "1 Hz")
+    assert done.code == 4
+    assert "NOT CERTIFIED beyond 1 Hz" in done.out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "exit_code"),
+    [
+        (("stability", "loop.toml", "--gain", "Q"), "SF902", 2),
+        (("stability", "loop.toml", "--gain", "T"), "SF801", 3),
+        (("stability", "loop.toml", "--gain", "K", "--range", "3", "1"), "SF804", 2),
+        (("stability", "loop.toml", "--gain", "K", "--range", "0", "inf"), "SF804", 2),
+        (("stability", "loop.toml", "--gain", "K", "--range", "0", "x"), "SF902", 2),
+        (("stability", "loop.toml", "--gain", "K", "--range", "0", "1 s"), "SF203", 2),
+        (("stability", "loop.toml", "--gain", "K", "--up-to", "-1"), "SF902", 2),
+        (("stability", "loop.toml", "--gain", "K", "--budget", "1e-9"), "SF506", 5),
+        (("colocation", "loop.toml", "--tf", "Y/r", "--with", "E/r"), "SF804", 2),
+        (("colocation", "loop.toml", "--tf", "Y/r", "--with", "Z/r"), "SF902", 2),
+        (("colocation", "loop.toml", "--tf", "Y/r", "--with", "E/r", "--phase", "no"), "SF902", 2),
+        (("plot", "loop.toml", "locus"), "SF902", 2),
+        (("plot", "loop.toml", "bode", "--gain", "K"), "SF902", 2),
+        (("plot", "loop.toml", "locus", "--gain", "Q"), "SF902", 2),
+    ],
+    ids=str,
+)
+def test_errors(files, arguments, code, exit_code):
+    done = files(*arguments)
+    assert done.code == exit_code
+    assert f"error[{code}]" in done.err
+
+
+def test_outputs_that_are_not_together_are_told(files):
+    done = files("colocation", "loop.toml", "--tf", "Y/r", "--with", "E/r", "--band", "0.01", "1", "--json")
+    document = json.loads(done.out)
+    assert document["schema"] == "symflex.colocation/1"
+    assert document["colocated_at_start"] is False
+
+
+@pytest.mark.parametrize(
+    "arguments", [("paths",), ("nyquist", "--gain", "K"), ("nyquist", "--tf", "E/r")], ids=str
+)
+def test_figures_of_loops_are_drawn(files, arguments):
+    done = files("plot", "loop.toml", *arguments, "-o", "a.svg")
+    assert (done.code, done.err) == (0, "wrote a.svg\n")
+
+
+@pytest.mark.parametrize(
+    ("table", "code"),
+    [('kind = "bode"\ngain = "K"', "SF207"), ('kind = "locus"\ngain = "Q"', "SF210"), ("gain = 1", "SF2")],
+    ids=str,
+)
+def test_a_gain_that_is_none_is_an_error_of_the_specification(files, table, code):
+    text = LOOP.replace('kind = "locus"\ngain = "K"', table)
+    (files.folder / "wrong.toml").write_text(text, encoding="utf-8")
+    done = files("check", "wrong.toml")
+    assert done.code == 3
+    assert f"error[{code}" in done.err
