@@ -39,6 +39,8 @@ WIDENED: Final = 10.0
 REACHES: Final = (1.5, 2.5)
 """Half the side of the square shown of a loop gain, about -1."""
 QUANTILE: Final = 0.9
+SHAFT: Final = 0.01
+"""Length of an arrow without its head, in halves of the square."""
 
 
 def draw_nyquist(
@@ -71,8 +73,9 @@ def draw_nyquist(
         label = labels[i] if labels else label_of_tf(tfs[i])
         axes.plot(values.real, values.imag, "-", color=colour, linewidth=1.0, zorder=2, label=label)
         axes.plot(values.real, -values.imag, "--", color=colour, linewidth=0.6, zorder=2)
-    axes.plot([-1], [0], "+", color="black", markersize=8, markeredgewidth=1.1, zorder=4)
     reach = _reach(np.concatenate(curves), is_loop=bool(labels))
+    if reach > 1:
+        axes.plot([-1], [0], "+", color="black", markersize=8, markeredgewidth=1.1, zorder=4)
     axes.set_xlim(-reach, reach)
     axes.set_ylim(-reach, reach)
     axes.set_aspect("equal", adjustable="box")
@@ -120,7 +123,9 @@ def _point_along(axes: Axes, values: npt.NDArray[np.complex128], reach: float, c
         return
     middle = int(np.searchsorted(np.cumsum(steps), 0.4 * float(steps.sum())))
     i = int(shown[min(middle, shown.size - 2)])
-    a, b = values[i], values[min(i + 1, values.size - 1)]
+    a, step = values[i], values[min(i + 1, values.size - 1)] - values[i]
+    # Its head alone: the next value may be far outside.
+    b = a + SHAFT * reach * step / abs(step)
     axes.annotate(
         "",
         (b.real, b.imag),
