@@ -79,8 +79,8 @@ def all_blocks(language: str) -> list[Block]:
     return [block for page in pages() for block in blocks(page) if block.language == language]
 
 
-EACH_TIME = ("sliding_free_beam", "timoshenko_cantilever", "rod_tip_mass")
-"""The distributed models that go through every test in every run; the others do with -m slow."""
+EACH_TIME = ("sliding_free_beam", "timoshenko_cantilever", "rod_tip_mass", "two_mass_force")
+"""Of the classics and loops, the models that go through every test in every run; others do with -m slow."""
 
 
 def slow_ones(values, is_slow):
@@ -89,9 +89,9 @@ def slow_ones(values, is_slow):
 
 
 def in_turns(paths):
-    """The paths as parameters: most of the classics, which all go the same way, are marked slow."""
+    """The paths as parameters: most of the classics and loops, which all go the same way, are marked slow."""
     found = []
     for path in paths:
-        is_turn = path.parent.name != "classics" or path.stem in EACH_TIME
+        is_turn = path.parent.name == "eppinger1988" or path.stem in EACH_TIME
         found.append(pytest.param(path, marks=[] if is_turn else [pytest.mark.slow], id=path.stem))
     return found

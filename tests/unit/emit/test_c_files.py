@@ -22,7 +22,7 @@ from symflex.emit.exporters import EXPORTERS
 from symflex.emit.program import verify
 from symflex.errors import UsageError
 from symflex.transfer import bind
-from tests.house.repository import ROOT, blocks
+from tests.house.repository import ROOT, blocks, in_turns
 from tests.unit.emit.against_balls import axis_points, worst_errors
 from tests.unit.emit.exportable import MASSLESS, PIPE
 from tests.unit.emit.test_numpy_distributed import BAR, COMPRESSED, DELAY, SENSOR, specification
@@ -104,7 +104,7 @@ def exported(text, **options):
 # ------------------------------------------------------------------------------------------ values
 
 
-@pytest.mark.parametrize("path", SPECS, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", in_turns(SPECS))
 def test_values_agree_with_balls_over_the_band_and_beside_resonances(path, tmp_path, monkeypatch):
     model = pipeline.load(path)
     tfs = pipeline.derive_all(model)
