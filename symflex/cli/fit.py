@@ -54,6 +54,11 @@ SUFFIXES = (".pdf", ".png", ".svg")
     type=click.Choice(["hann", "none"]),
     help="Time window of the estimate, if the file does not say.",
 )
+@click.option(
+    "--driving",
+    metavar="OUT/IN",
+    help="The response at the driven point: it is fitted, and all give mass-normalised mode shapes.",
+)
 @click.option("-o", "--output", type=click.Path(), help="Specification to write.")
 @click.option("--plot", "figure", type=click.Path(), help="Figure to write: .pdf, .svg or .png.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
@@ -72,6 +77,7 @@ def command(
     slope: int | None,
     averages: float | None,
     window: str | None,
+    driving: str | None,
     output: str | None,
     figure: str | None,
     as_json: bool,
@@ -88,6 +94,7 @@ def command(
     from symflex import pipeline
     from symflex.emit.fit_report import fit_json, fit_text
     from symflex.emit.write import write_atomically
+    from symflex.fitting import mode_shapes
 
     if tfs and base is None:
         raise UsageError(Diagnostic("SF902", "--tf names a transfer function of --base"))
@@ -97,6 +104,16 @@ def command(
         if path and Path(path).suffix.lower() not in endings:
             raise UsageError(Diagnostic("SF902", f"'{Path(path).name}' must end in {' or '.join(endings)}"))
     measured = _measured(data, band, averages, window)
+    every = measured
+    if driving:
+        measured = [response for response in every if response.name == driving]
+        if len(measured) != 1:
+            hint = "responses: " + ", ".join(response.name for response in every)
+            raise UsageError(
+                Diagnostic("SF902", f"no single response is called '{driving[:64]}'", None, hint)
+            )
+        if base is not None:
+            raise UsageError(Diagnostic("SF902", "--driving is for fits without --base"))
     found = pipeline.fit(
         measured,
         base,
@@ -108,6 +125,7 @@ def command(
         is_lag_free=is_lag_free,
         slope=slope,
     )
+    shapes = mode_shapes(found, every) if driving else None
     if output:
         text = pipeline.fit_specification(found, Path(output).parent)
         write_atomically(Path(output), text.encode())
@@ -121,9 +139,9 @@ def command(
             save(draw_fit(found, r), one)
             note(f"wrote {one}")
     if as_json:
-        emit_json(fit_json(found))
+        emit_json(fit_json(found, shapes))
     else:
-        click.echo(fit_text(found, terminal_width()))
+        click.echo(fit_text(found, terminal_width(), shapes))
     return 0
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 if TYPE_CHECKING:
-    from symflex.fitting import Fit, PhaseTest
+    from symflex.fitting import Fit, FittedModeShapes, PhaseTest
 
 SCHEMA: Final = "symflex.fit/1"
 ERROR_DIGITS: Final = 2
@@ -20,7 +20,7 @@ STARTS: Final = {
 }
 
 
-def fit_text(fit: Fit, width: int = 80) -> str:
+def fit_text(fit: Fit, width: int = 80, shapes: FittedModeShapes | None = None) -> str:
     """Return the report of a fit.
 
     Parameters
@@ -29,6 +29,8 @@ def fit_text(fit: Fit, width: int = 80) -> str:
         The result.
     width : int
         Columns of the terminal.
+    shapes : FittedModeShapes, optional
+        Printed too.
     """
     lines: list[str] = []
     found = fit.resonances
@@ -52,6 +54,8 @@ def fit_text(fit: Fit, width: int = 80) -> str:
             lines.append(f"  gain {found.gain[r]:.6g}, standard error {errors.gain[r]:.2g}")
         if fit.problem.free.lag:
             lines.append(f"  lag of the sensor {found.lag[r]:.4g} s, standard error {errors.lag[r]:.2g} s")
+    if shapes is not None:
+        lines += ["", *_shape_lines(shapes, width)]
     lines.append("")
     for r, measured in enumerate(fit.measured):
         name = f" of {measured.name}" if found.responses > 1 else ""
@@ -78,7 +82,34 @@ def fit_text(fit: Fit, width: int = 80) -> str:
     return "\n".join(lines)
 
 
-def fit_json(fit: Fit) -> dict[str, object]:
+def _shape_lines(shapes: FittedModeShapes, width: int) -> list[str]:
+    """Return mode shapes, a block for each mode."""
+    head = f"mass-normalised mode shapes [{shapes.unit}], driven at {shapes.names[shapes.driving]}"
+    lines = _wrapped(head, width)
+    wide = max(len(name) for name in shapes.names)
+    lines.append(f"  mode  {'response':{wide}}        value   std. error   off real [deg]")
+    for i in range(shapes.shapes.shape[1]):
+        for r, name in enumerate(shapes.names):
+            mode = str(i + 1) if r == 0 else ""
+            value, error = shapes.shapes[r, i], shapes.errors[r, i]
+            lines.append(
+                f"  {mode:>4}  {name:{wide}}   {value:10.5g}   {error:10.2g}   {shapes.turned[r, i]:14.1f}"
+            )
+    return lines
+
+
+def _shapes_json(shapes: FittedModeShapes) -> dict[str, object]:
+    return {
+        "driving": shapes.names[shapes.driving],
+        "unit": shapes.unit,
+        "responses": list(shapes.names),
+        "shapes": shapes.shapes.T.tolist(),
+        "standard_errors": shapes.errors.T.tolist(),
+        "degrees_off_real": shapes.turned.T.tolist(),
+    }
+
+
+def fit_json(fit: Fit, shapes: FittedModeShapes | None = None) -> dict[str, object]:
     """Return the document ``symflex fit --json`` prints."""
     found, errors = fit.resonances, fit.standard_errors()
     return {
@@ -106,6 +137,7 @@ def fit_json(fit: Fit) -> dict[str, object]:
             }
             for s in fit.scores
         ],
+        "mode_shapes": None if shapes is None else _shapes_json(shapes),
         "warnings": list(fit.warnings),
     }
 

@@ -144,3 +144,29 @@ def test_measure_writes_what_fit_reads(shell):
     assert done.code == 0
     assert "SYNTHETIC" in done.err
     assert shell("fit", "a.npz", "--base", "damped.toml", "--tf", "A/F").code == 4  # nothing is left to fit
+
+
+def test_responses_to_one_force_give_mass_normalised_mode_shapes(shell, tmp_path):
+    # Two equal masses on equal springs: modes (1, g)/sqrt(m (1 + g^2)) and (g, -1)/..., g the golden ratio.
+    f, m, k = np.arange(5.0, 60.0, 0.1), 2.0, 4e4
+    s = 2j * np.pi * f
+    w = k * (1 + 2e-4 * s)
+    det = (m * s**2 + 2 * w) * (m * s**2 + w) - w**2
+    for name, value in (("a", (m * s**2 + w) / det), ("b", w / det)):
+        rows = "\n".join(
+            f"{x},{v.real!r},{v.imag!r}" for x, v in zip(f.tolist(), value.tolist(), strict=True)
+        )
+        (tmp_path / f"{name}.csv").write_text(f"# tf: {name}/F\n# unit: m/N\nfrequency_hz,re,im\n{rows}\n")
+    files = [str(tmp_path / f"{name}.csv") for name in "ab"]
+    found = shell("fit", *files, "--driving", "a/F", "--modes", "2", "--json").json["mode_shapes"]
+    golden = (1 + 5**0.5) / 2
+    low = np.array([1, golden]) / np.sqrt(m * (1 + golden**2))
+    assert found["responses"] == ["a/F", "b/F"]
+    assert found["unit"] == "kg^(-1/2)"
+    assert found["shapes"] == pytest.approx([low.tolist(), [low[1], -low[0]]], rel=1e-4)
+    text = shell("fit", *files, "--driving", "a/F", "--modes", "2").out
+    assert "mass-normalised mode shapes [kg^(-1/2)], driven at a/F" in text
+    assert max(map(len, text.splitlines())) <= 80
+    refused = shell("fit", *files, "--driving", "c/F")
+    assert refused.code == 2
+    assert refused.err.startswith("error[SF902]")
