@@ -100,7 +100,7 @@ def transfer_function_latex(tf: TransferFunction, form: PrintedForm, *, width_mm
         ``equation`` when one line suffices, else ``align`` with numerator and denominator named and broken.
         The label is :func:`equation_label` of the name.
     """
-    writer = Writer(_labels(tf, form))
+    writer = Writer(form_labels(tf, form))
     width = None if width_mm is None else max(width_mm, NARROWEST_MM) / EM_MM
     parts = [_formula(tf, form, writer, width)]
     if form.where or form.laws:
@@ -110,7 +110,7 @@ def transfer_function_latex(tf: TransferFunction, form: PrintedForm, *, width_mm
 
 def inline_latex(tf: TransferFunction, form: PrintedForm) -> str:
     r"""Return a transfer function as one line of mathematics without delimiters, for notebooks and HTML."""
-    writer = Writer(_labels(tf, form))
+    writer = Writer(form_labels(tf, form))
     formula = f"{_left_side(tf)[0]} = {_right_side(form, writer)[0]}"
     if not (form.where or form.laws):
         return formula
@@ -130,7 +130,7 @@ def notebook_latex(tf: TransferFunction, form: PrintedForm) -> str | None:
         :func:`inline_latex`, or an ``aligned`` environment. None when it would be longer than
         :data:`LONGEST_IN_NOTEBOOK` characters, which a page takes seconds to set.
     """
-    writer = Writer(_labels(tf, form))
+    writer = Writer(form_labels(tf, form))
     width = NOTEBOOK_MM / EM_MM
     right, right_width = _right_side(form, writer)
     if len(right) > LONGEST_IN_NOTEBOOK:
@@ -148,7 +148,8 @@ def notebook_latex(tf: TransferFunction, form: PrintedForm) -> str | None:
     return latex if len(latex) <= LONGEST_IN_NOTEBOOK else None
 
 
-def _labels(tf: TransferFunction, form: PrintedForm) -> dict[str, str]:
+def form_labels(tf: TransferFunction, form: PrintedForm) -> dict[str, str]:
+    """Return the labels of every name in a printed form: the model's, and those the form brings."""
     labels = model_labels(tf.model)
     own = [(name, "") for name, _ in (*form.where, *form.laws) if name not in labels]
     return labels_of(own, labels)
@@ -164,20 +165,22 @@ def _left_side(tf: TransferFunction) -> tuple[str, float]:
     return rf"\frac{{{above}}}{{{below}}}", max(above_width, below_width) + _FRACTION_EDGES
 
 
-def _signed(form: PrintedForm) -> tuple[str, Expression]:
+def split_sign(form: PrintedForm) -> tuple[str, Expression]:
+    """Return the sign that stands before the fraction, and the numerator without it."""
     num = form.num
     return ("-", num.operand) if isinstance(num, Negative) else ("", num)
 
 
-def _is_one(expression: Expression) -> bool:
+def is_one(expression: Expression) -> bool:
+    """Tell whether an expression is the number 1, as the denominator of what has none."""
     return isinstance(expression, Number) and expression.value == 1
 
 
 def _right_side(form: PrintedForm, writer: Writer) -> tuple[str, float]:
-    if _is_one(form.den):
+    if is_one(form.den):
         piece = writer.piece(form.num)
         return piece.latex, piece.width
-    sign, num = _signed(form)
+    sign, num = split_sign(form)
     above, below = writer.piece(num, Style.TEXT), writer.piece(form.den, Style.TEXT)
     width = max(above.width, below.width) + _FRACTION_EDGES + (MINUS if sign else 0)
     return rf"{sign}\frac{{{above.latex}}}{{{below.latex}}}", width
@@ -196,17 +199,17 @@ def _formula(tf: TransferFunction, form: PrintedForm, writer: Writer, width: flo
 def _rows(tf: TransferFunction, form: PrintedForm, writer: Writer, width: float) -> list[_Row]:
     """Return the equations that a formula too wide for one line is made of."""
     left, left_width = _left_side(tf)
-    if _is_one(form.den):
+    if is_one(form.den):
         return [_row(left, left_width, form.num, writer, width, left_width, _TAG)]
     return _named_parts(form, writer, width, left, left_width)
 
 
 def _named_parts(form: PrintedForm, writer: Writer, width: float, left: str, left_width: float) -> list[_Row]:
     """Return the quotient of what is short and of names for what is not, and what the names stand for."""
-    sign, num = _signed(form)
-    varying = _varying(form)
+    sign, num = split_sign(form)
+    varying = varying_names(form)
     parts = []
-    for name, expression in zip(_free_names(form, writer), (num, form.den), strict=True):
+    for name, expression in zip(free_names(form, writer), (num, form.den), strict=True):
         piece = writer.piece(expression, Style.TEXT)
         is_long = left_width + RELATION + MINUS + _FRACTION_EDGES + piece.width + _TAG > width
         depends = any(n.name in varying for n in names(expression))
@@ -221,7 +224,7 @@ def _named_parts(form: PrintedForm, writer: Writer, width: float, left: str, lef
     return rows
 
 
-def _varying(form: PrintedForm) -> frozenset[str]:
+def varying_names(form: PrintedForm) -> frozenset[str]:
     """Return s, and the names that stand for functions of it."""
     varying = {LAPLACE, *(name for name, _ in form.laws)}
     # A line may use the names of any other.
@@ -232,7 +235,7 @@ def _varying(form: PrintedForm) -> frozenset[str]:
     return frozenset(varying)
 
 
-def _free_names(form: PrintedForm, writer: Writer) -> tuple[str, str]:
+def free_names(form: PrintedForm, writer: Writer) -> tuple[str, str]:
     """Return names for numerator and denominator that no symbol of the formula bears."""
     expressions = [form.num, form.den, *(e for _, e in form.where)]
     used = {n.name for e in expressions for n in names(e) if isinstance(n, Name)}
