@@ -16,6 +16,7 @@ COMMANDS: dict[str, str] = {
     "plot": "Draw a Bode plot, a pole-zero array or mode shapes.",
     "export": "Write numeric code or LaTeX.",
     "audit": "Compare printed formulas with derived ones.",
+    "report": "Write a report: a page, a PDF, figures, code, data.",
     "new": "Write a specification to start from.",
     "elements": "List the element and block library.",
 }

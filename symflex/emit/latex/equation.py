@@ -19,7 +19,7 @@ from symflex.expressions import Call, Derivative, Expression, Name, Negative, Nu
 from symflex.kernels import LAPLACE
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from symflex.emit.forms import PrintedForm
     from symflex.model import Input, Model, Output
@@ -42,6 +42,7 @@ _ARGUMENT: Final = 1.3
 _WHERE: Final = r"\text{where}\quad "
 _WHERE_WIDTH: Final = 3.8
 _LEAST_ROOM: Final = 17.5
+_WIDEST_LEFT: Final = 6.0
 _NUMERATORS: Final = (("N", "D"), ("P", "Q"), ("B", "A"), (r"\mathcal{N}", r"\mathcal{D}"))
 
 
@@ -82,7 +83,9 @@ def ratio_latex(tf: TransferFunction) -> str:
     return f"{above}/{below}"
 
 
-def transfer_function_latex(tf: TransferFunction, form: PrintedForm, *, width_mm: float | None) -> str:
+def transfer_function_latex(
+    tf: TransferFunction, form: PrintedForm, *, width_mm: float | None, label: str = ""
+) -> str:
     r"""Return a transfer function as a numbered display, with its definitions in ``where`` lines.
 
     Parameters
@@ -93,18 +96,62 @@ def transfer_function_latex(tf: TransferFunction, form: PrintedForm, *, width_mm
         Its numerator, denominator and definitions.
     width_mm : float or None
         Width of the text, set in ten points, treated as 80 mm when it is less; ``None`` never breaks a line.
+    label : str, optional
+        In place of :func:`equation_label` of the name, where several models share a document.
 
     Returns
     -------
     str
         ``equation`` when one line suffices, else ``align`` with numerator and denominator named and broken.
-        The label is :func:`equation_label` of the name.
     """
     writer = Writer(form_labels(tf, form))
     width = None if width_mm is None else max(width_mm, NARROWEST_MM) / EM_MM
-    parts = [_formula(tf, form, writer, width)]
+    parts = [_formula(tf, form, writer, width, label or equation_label(tf.name))]
     if form.where or form.laws:
         parts.append(_where(form, writer, width))
+    return "\n".join(parts)
+
+
+def formula_latex(
+    left: str,
+    expression: Expression,
+    where: Sequence[tuple[str, Expression]],
+    labels: Mapping[str, str],
+    *,
+    width_mm: float,
+) -> str:
+    r"""Return an equation of any expression as a display without a number, broken where it must be.
+
+    Parameters
+    ----------
+    left : str
+        LaTeX of its left side.
+    expression : Expression
+        Its right side.
+    where : sequence of (str, Expression)
+        Lines below it.
+    labels : Mapping of str to str
+        Declared labels.
+    width_mm : float
+        Width of the text, set in ten points.
+
+    Examples
+    --------
+    >>> print(formula_latex("y", Name("omega_p1"), (), {}, width_mm=80))
+    \begin{align*}
+      y &= \omega_{p1}
+    \end{align*}
+    """
+    writer = Writer(labels)
+    width = max(width_mm, NARROWEST_MM) / EM_MM
+    # The commands of the left side are wider than what they print.
+    left_width = min(float(len(left)), _WIDEST_LEFT)
+    rows = [_row(left, left_width, expression, writer, width, left_width)]
+    parts = [_align(rows, "align*", "")]
+    if where:
+        lines = _broken_rows(where, writer, width - _WHERE_WIDTH)
+        lines[0] = _Row(f"{_WHERE}{lines[0].left}", lines[0].left_width, lines[0].right)
+        parts.append(_align(lines, "align*", ""))
     return "\n".join(parts)
 
 
@@ -186,10 +233,10 @@ def _right_side(form: PrintedForm, writer: Writer) -> tuple[str, float]:
     return rf"{sign}\frac{{{above.latex}}}{{{below.latex}}}", width
 
 
-def _formula(tf: TransferFunction, form: PrintedForm, writer: Writer, width: float | None) -> str:
+def _formula(tf: TransferFunction, form: PrintedForm, writer: Writer, width: float | None, name: str) -> str:
     left, left_width = _left_side(tf)
     right, right_width = _right_side(form, writer)
-    label = rf"\label{{{equation_label(tf.name)}}}"
+    label = rf"\label{{{name}}}"
     # Where only the number lacks room, it stands below the formula by itself.
     if width is None or left_width + RELATION + right_width <= width:
         return f"\\begin{{equation}}\n  {label}\n  {left} = {right}\n\\end{{equation}}"

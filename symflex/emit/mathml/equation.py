@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.emit.latex.equation import form_labels, free_names, is_one, split_sign, varying_names
 from symflex.emit.latex.expression import Style, Writer
-from symflex.emit.mathml.element import EQUALS, identifier, operator, row
+from symflex.emit.mathml.element import identifier, operator, row
 from symflex.emit.mathml.expression import MathmlWriter
 from symflex.emit.mathml.label import label_mathml
 from symflex.expressions import Call, Derivative, Name, names, number
@@ -123,6 +123,3 @@ def _where(form: PrintedForm, writer: MathmlWriter) -> list[Row]:
 
 def _equation(left: Expression, right: Expression, writer: MathmlWriter) -> Row:
     return Row(writer.markup(left).mathml, writer.pieces(right), is_where=True)
-
-
-__all__ = ["EQUALS", "LONGEST", "WIDEST_FRACTION", "Row", "ratio_mathml", "transfer_function_mathml"]

@@ -156,7 +156,7 @@ class MathmlWriter:
             What is not wider [em] stays whole, and so does what has no place to be parted.
         """
         found: list[str] = []
-        # What stands before and after a node, such as a sign or parenthesis, stays with its first or last piece.
+        # A sign or parenthesis beside a node stays with its first or last piece.
         pending: list[tuple[str, Expression, str]] = [("", expression, "")]
         while pending:
             before, node, after = pending.pop()
@@ -170,7 +170,7 @@ class MathmlWriter:
         return tuple(found)
 
     def _parts(self, node: Expression) -> list[tuple[str, Expression, str]] | None:
-        """Return what a node is made of, with what stands before and after each; None when it is one piece."""
+        """Return the parts of a node, each with what stands before and after it; None of what has none."""
         match node:
             case Sum(terms=terms):
                 parts = []

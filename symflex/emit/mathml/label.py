@@ -22,8 +22,8 @@ _LETTERS: Final = {
     **dict(
         zip(
             (
-                "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu xi "
-                "pi varpi rho varrho sigma varsigma tau upsilon phi varphi chi psi omega"
+                "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu "
+                "xi pi varpi rho varrho sigma varsigma tau upsilon phi varphi chi psi omega"
             ).split(),
             "αβγδϵεζηθϑικλμνξπϖρϱσςτυϕφχψω",
             strict=True,

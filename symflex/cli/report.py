@@ -1,0 +1,131 @@
+"""``symflex report``."""
+
+from __future__ import annotations
+
+import os
+import re
+from datetime import UTC, date, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from symflex.cli.reporting import note, reporting
+from symflex.errors import Diagnostic, UsageError
+
+if TYPE_CHECKING:
+    from symflex.report import Report
+    from symflex.roots import Progress
+
+EPOCH_VARIABLE = "SOURCE_DATE_EPOCH"
+
+
+@click.command("report")
+@click.argument("specs", nargs=-1, required=True, type=click.Path(), metavar="SPEC...")
+@click.option("-o", "--output", default="report", show_default=True, type=click.Path(), metavar="DIR",
+              help="Folder to write; what is in it already stays, but for files of the same name.")  # fmt: skip
+@click.option(
+    "--pdf/--no-pdf", "pdf", default=None, help="With report.pdf; by default where pdflatex is there."
+)
+@click.option(
+    "--date", "day", metavar="YYYY-MM-DD", help="Date printed; today, or SOURCE_DATE_EPOCH. 'none' for none."
+)
+@click.option(
+    "-j",
+    "--jobs",
+    type=click.IntRange(1, 64),
+    help="Models computed at once; as many as there are processors.",
+)
+@reporting
+def command(
+    specs: tuple[str, ...], *, output: str, pdf: bool | None, day: str | None, jobs: int | None
+) -> int:
+    """Write a report on models: equations, poles and zeros, figures, comparison, code.
+
+    A SPEC that is a folder stands for all specifications in it. DIR/index.html is one page that opens without
+    a network and holds everything; beside it are report.tex and report.pdf, and the folders figures, code and
+    data. What a specification publishes is audited, models are compared, and the claims of a publication that
+    is known are judged.
+
+    Equal specifications give equal files when the date is fixed. Exit code 4 says that poles or zeros of some
+    model could not be certified, 5 that a budget was exceeded: the report is written, and says where.
+    """
+    from symflex.cli.progress import ProgressBar
+    from symflex.report import compose, find_specifications, name_specifications, write_chapters
+
+    shown = _date(day)
+    folder = Path(output)
+    if folder.exists() and not folder.is_dir():
+        raise UsageError(Diagnostic("SF903", f"cannot write into '{output}': it is not a folder"))
+    found = find_specifications([Path(spec) for spec in specs])
+    named = name_specifications(found)
+    note(f"{len(named)} model{'s' if len(named) > 1 else ''}")
+    with ProgressBar() as bar:
+        chapters = write_chapters(named, jobs or os.cpu_count() or 1, bar)
+        report = compose(chapters, shown)
+        code = _write(report, folder, pdf, shown, bar)
+    for warning in report.warnings:
+        note(f"warning: {warning}")
+    click.echo(f"open {folder / 'index.html'}")
+    return max(code, report.code)
+
+
+def _write(report: Report, folder: Path, pdf: bool | None, shown: str, bar: Progress) -> int:
+    """Write everything and say what; return an exit code."""
+    from symflex.errors import SymflexError
+    from symflex.report import compile_pdf, has_compiler, report_article, report_page, write_tree
+    from symflex.report.pdf import HOW_TO
+
+    bar.report(0.9, "writing")
+    tex = report_article(report)
+    files = {**report.files, "report.tex": tex.encode(), "index.html": report_page(report).encode()}
+    write_tree(folder, files)
+    if pdf is False:
+        return 0
+    if not has_compiler():
+        note(f"no report.pdf: there is no pdflatex on this computer; report.tex is written\n  hint: {HOW_TO}")
+        return 2 if pdf else 0
+    bar.report(0.92, "pdflatex")
+    figures = {name: data for name, data in report.files.items() if name.startswith("figures/")}
+    try:
+        made = compile_pdf(tex, figures, _epoch(shown))
+    except SymflexError as error:
+        note(str(error))
+        return error.exit_code
+    write_tree(folder, {"report.pdf": made})
+    return 0
+
+
+def _date(given: str | None) -> str:
+    """Return the date to print, empty for none."""
+    if given == "none":
+        return ""
+    if given is not None:
+        try:
+            return (
+                date.fromisoformat(given).isoformat()
+                if re.fullmatch(r"\d{4}-\d\d-\d\d", given)
+                else _refuse(given)
+            )
+        except ValueError:
+            return _refuse(given)
+    epoch = os.environ.get(EPOCH_VARIABLE, "")
+    if epoch:
+        try:
+            return datetime.fromtimestamp(int(epoch), UTC).date().isoformat()
+        except (ValueError, OverflowError, OSError):
+            message = f"{EPOCH_VARIABLE} is '{epoch[:40]}', not a number of seconds since 1970"
+            raise UsageError(Diagnostic("SF902", message)) from None
+    return datetime.now(UTC).date().isoformat()
+
+
+def _refuse(given: str) -> str:
+    raise UsageError(
+        Diagnostic("SF902", f"--date takes a day such as 1988-12-31, or none, found '{given[:40]}'")
+    )
+
+
+def _epoch(shown: str) -> int:
+    """Return the seconds since 1970 of the day printed, for the file's own metadata."""
+    day = date.fromisoformat(shown) if shown else date(1970, 1, 2)
+    return int(datetime(day.year, day.month, day.day, tzinfo=UTC).timestamp())
