@@ -23,7 +23,7 @@ EPOCH_VARIABLE = "SOURCE_DATE_EPOCH"
 @click.command("report")
 @click.argument("specs", nargs=-1, required=True, type=click.Path(), metavar="SPEC...")
 @click.option("-o", "--output", default="report", show_default=True, type=click.Path(), metavar="DIR",
-              help="Folder to write; what is in it already stays, but for files of the same name.")  # fmt: skip
+              help="Folder to write; what is in it stays, but for files of the same name.")  # fmt: skip
 @click.option(
     "--pdf/--no-pdf", "pdf", default=None, help="With report.pdf; by default where pdflatex is there."
 )

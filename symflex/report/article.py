@@ -34,8 +34,11 @@ if TYPE_CHECKING:
     from symflex.report.document import Block, Cell, Run
     from symflex.report.report import Report
 
+OVERVIEW: Final = "models"
+"""Anchor of the section that follows the table of contents on its page."""
+
 HEADINGS: Final = ("section", "subsection", "subsubsection", "paragraph")
-CONTENTS_DEPTH: Final = 2
+CONTENTS_DEPTH: Final = 1
 
 _PACKAGES: Final = r"""
 \usepackage{graphicx}
@@ -57,7 +60,8 @@ _NARROWEST_MM: Final = 18.0
 _DEEPEST_INDENT: Final = 24
 _LONGEST_PIECE: Final = 16
 _SMALL: Final = 0.86
-_TALLEST: Final = r"height=0.62\textheight,keepaspectratio"
+_TALLEST_MM: Final = 190.0
+_POINTS_PER_MM: Final = 72 / 25.4
 # Mathematics is narrower than its source, which holds commands.
 _EM_PER_CHARACTER: Final = 0.34
 
@@ -97,7 +101,7 @@ def _section(section: Section, level: int) -> str:
     shown = f"${section.mathematics.latex}$" if section.mathematics else title
     # A heading in mathematics has no counterpart in bookmarks, and none in the table of contents either.
     star = "*" if section.mathematics else ""
-    break_ = "\\clearpage\n" if level == 0 else ""
+    break_ = "\\clearpage\n" if level == 0 and section.anchor != OVERVIEW else ""
     body = "\n\n".join(_block(block, level + 1) for block in section.blocks)
     return f"\n{break_}\\{heading}{star}{{{shown}}}\n\n{body}\n"
 
@@ -113,14 +117,37 @@ def _block(block: Block, level: int) -> str:
         case Table():
             return _table(block)
         case Picture(stem=stem, caption=caption):
-            drawing = rf"\includegraphics[{_TALLEST}]{{figures/{stem}.pdf}}"
-            return f"{{\\centering {drawing}\\par\\nopagebreak\\smallskip {{\\small {escape_text(caption)}}}\\par}}"
+            drawing = rf"\includegraphics[width={_drawn_width(block):.1f}mm]{{figures/{stem}.pdf}}"
+            below = rf"\par\nopagebreak\smallskip {{\small {escape_text(caption)}}}\par"
+            return rf"{{\centering {drawing}{below}}}"
         case Listing(title=title, text=text):
             return f"{escape_text(title)}:\n\n{_verbatim(text)}"
         case Notice(text=text):
             return rf"\textit{{Note:}} {escape_text(text)}"
         case _:
             assert_never(block)
+
+
+def _drawn_width(picture: Picture) -> float:
+    """Return the width of a figure [mm]: its own, less where a page is smaller."""
+    size = picture_size(picture.svg)
+    if size is None:
+        return TEXT_WIDTH_MM / 2
+    width, height = (points / _POINTS_PER_MM for points in size)
+    return width * min(1.0, TEXT_WIDTH_MM / width, _TALLEST_MM / height)
+
+
+def picture_size(svg: str) -> tuple[float, float] | None:
+    """Return width and height of a drawing [pt], None where it does not say.
+
+    Examples
+    --------
+    >>> picture_size('<svg height="10pt" viewBox="0 0 20 10" width="20pt">')
+    (20.0, 10.0)
+    """
+    head = svg[: svg.find(">", svg.find("<svg")) + 1]
+    width, height = (re.search(rf'\s{side}="([0-9.]+)pt"', head) for side in ("width", "height"))
+    return (float(width[1]), float(height[1])) if width and height else None
 
 
 def _verbatim(text: str) -> str:
@@ -154,7 +181,7 @@ def _table(table: Table) -> str:
     head = " & ".join(rf"\textbf{{{_runs(c.head)}}}" for c in table.columns)
     separator = rf"\hspace{{{_GAP_MM}mm}}"
     layout = f"@{{}}{f'@{{{separator}}}'.join(formats)}@{{}}"
-    rows = " \\\\\n".join(" & ".join(_cell(cell) for cell in row) for row in table.rows)
+    rows = " \\\\[2.5pt]\n".join(" & ".join(_cell(cell) for cell in row) for row in table.rows)
     return (
         f"{caption}{{\\footnotesize\n\\begin{{longtable}}{{{layout}}}\n\\toprule\n{head} \\\\\n\\midrule\n"
         f"\\endhead\n\\bottomrule\n\\endfoot\n{rows} \\\\\n\\end{{longtable}}}}"

@@ -120,14 +120,18 @@ def comparison_section(models: Sequence[ModelFacts]) -> Section | None:
     heads = columns(*((head, column.side) for head, column in COLUMNS.items()))
     explained: tuple[Paragraph, ...] = (
         text(
-            "Poles and zeros are counted with multiplicity, and against the same model with all its springs and "
-            "massless beams made rigid (exact limits). For beams and other distributed parts those through the "
+            "Poles and zeros are counted with multiplicity, and against the same model with all its "
+            "springs and "
+            "massless beams made rigid (exact limits). For beams and other distributed parts those "
+            "through the "
             "highest pole listed are counted. Of functions that agree in all of this one is shown."
         ),
         text(
             "Minimum phase means: no zero in the open right half plane. “For all values” is proved for all "
-            "positive values of the parameters. A function is colocated when its output is taken where the input "
-            "acts, or rigidly joined to it. A compliance with an end on ground belongs to the base; between moving "
+            "positive values of the parameters. A function is colocated when its output is taken where "
+            "the input "
+            "acts, or rigidly joined to it. A compliance with an end on ground belongs to the base; "
+            "between moving "
             "parts, one in bending to a link, another to the transmission."
         ),
     )

@@ -1,7 +1,7 @@
 """What a report is made of: blocks that say nothing of the page or paper they end up on.
 
-Text in blocks is plain: the printers (:mod:`symflex.report.page`, :mod:`symflex.report.article`) escape all of
-it. Mathematics comes from the printers of :mod:`symflex.emit`, in both languages, and is sound in them.
+Text in blocks is plain: the printers (:mod:`symflex.report.page`, :mod:`symflex.report.article`) escape all
+of it. Mathematics comes from the printers of :mod:`symflex.emit`, in both languages, and is sound in them.
 """
 
 from __future__ import annotations

@@ -154,7 +154,7 @@ class TransferFacts:
 
     @property
     def modes(self) -> int:
-        """Flexible modes: those that rigid compliances take away, or pairs of poles of a distributed system."""
+        """Flexible modes: those that rigid compliances take away; pairs of poles of distributed systems."""
         if self.rigid is not None and self.counts is not None:
             return (self.counts[1] - self.rigid[1]) // 2
         return sum(p.multiplicity for p in self.poles if p.is_oscillatory) if self.is_infinite else 0
@@ -174,7 +174,7 @@ class TransferFacts:
 
     @property
     def alternates(self) -> bool:
-        """Whether poles and zeros take turns on the positive imaginary axis, and all listed lie on that axis."""
+        """Whether all poles and zeros listed lie on the imaginary axis and take turns there."""
         listed = (*self.poles, *self.zeros)
         if any(r.place not in ("imaginary axis", "origin") for r in listed):
             return False
@@ -306,7 +306,8 @@ def facts_of(study: Study) -> ModelFacts:
                 condition=condition.kind,
                 reason=condition.reason,
                 truncation=_truncation(study, tf, found),
-                **_bracket(condition, tf),
+                bracket="" if condition.expression is None else format_expression(condition.expression),
+                bracket_mathematics=_bracket(condition, tf),
             )
         )
     return ModelFacts(
@@ -321,13 +322,8 @@ def facts_of(study: Study) -> ModelFacts:
     )
 
 
-def _bracket(condition: PhaseCondition, tf: TransferFunction) -> dict[str, object]:
-    if condition.expression is None:
-        return {}
-    return {
-        "bracket": format_expression(condition.expression),
-        "bracket_mathematics": mathematics(condition.expression, tf.model),
-    }
+def _bracket(condition: PhaseCondition, tf: TransferFunction) -> Mathematics | None:
+    return None if condition.expression is None else mathematics(condition.expression, tf.model)
 
 
 def _root_facts(found: PoleZeroMap, kind: Literal["poles", "zeros"]) -> tuple[RootFact, ...]:

@@ -1,9 +1,9 @@
-"""How many poles and zeros a lumped model keeps when its compliances are made rigid, or its losses taken away.
+"""How many poles and zeros a lumped model keeps when its compliances are rigid, or its losses taken away.
 
 Every stiffness (or damping coefficient) is multiplied by one new symbol, and the transfer function is derived
 with that symbol alone among numbers. The leading (or trailing) coefficient in it of numerator and denominator
-is the limit as the symbol grows without bound (or vanishes): an exact polynomial in s, whose degree counts the
-roots that stay.
+is the limit as the symbol grows without bound (or vanishes): an exact polynomial in s, whose degree counts
+the roots that stay.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from symflex import pipeline
-from symflex.elements import Damper, RotaryDamper
 from symflex.expressions import Name, product_of
 from symflex.kernels import LAPLACE
 from symflex.model import Parameter, with_numbers
@@ -32,7 +31,7 @@ Counts = tuple[int, int]
 """Zeros and poles."""
 
 RESONANCES: Final = frozenset(("omega_p", "omega_z"))
-DAMPERS: Final = (Damper, RotaryDamper)
+DAMPERS: Final = frozenset(("damper", "rotary_damper"))
 
 
 def rigid_counts(model: Model) -> Mapping[tuple[str, str], Counts]:
@@ -61,7 +60,7 @@ def rigid_counts(model: Model) -> Mapping[tuple[str, str], Counts]:
     """
 
     def stiffened(use: PlacedElement) -> frozenset[str]:
-        key = next((k for t, k in STIFFNESS.items() if isinstance(use.element, t)), "")
+        key = STIFFNESS.get(use.element.type_name)
         return frozenset((key,)) if key else frozenset()
 
     def tuned(use: PlacedBlock) -> frozenset[str]:
@@ -81,7 +80,7 @@ def undamped_counts(model: Model) -> Mapping[tuple[str, str], Counts]:
     """
 
     def lossy(use: PlacedElement) -> frozenset[str]:
-        return frozenset("b") if isinstance(use.element, DAMPERS) else frozenset()
+        return frozenset("b") if use.element.type_name in DAMPERS else frozenset()
 
     return _limits(model, lossy, lambda _: frozenset(), min)
 

@@ -12,7 +12,6 @@ from importlib import metadata
 from multiprocessing import get_context
 from typing import TYPE_CHECKING, Final
 
-import symflex
 from symflex.errors import Diagnostic, UsageError
 from symflex.report.chapter import Chapter, chapter_of
 from symflex.report.claims import PUBLICATIONS, claim_section, publication_of
@@ -212,7 +211,8 @@ def _overview(
         open_ = len(findings) - held - failed
         blocks.append(
             text(
-                f"Of {counted(len(findings), 'claim')} of the publication {held} hold, {failed} do not, and {open_} "
+                f"Of {counted(len(findings), 'claim')} of the publication {held} hold, {failed} do not, "
+                f"and {open_} "
                 "are not examined here: ",
                 Link("the claims", "#claims"),
                 ".",
@@ -238,19 +238,28 @@ def _overview(
 
 
 def _provenance(date: str) -> Section:
-    versions = [("symflex", symflex.__version__), ("Python", platform.python_version())]
-    versions += [(name, metadata.version(name)) for name in LIBRARIES]
+    versions = [("symflex", _version("symflex")), ("Python", platform.python_version())]
+    versions += [(name, _version(name)) for name in LIBRARIES]
     rows = tuple(((name,), (Code(version),)) for name, version in versions)
     when = f" on {date}" if date else ""
     return Section(
         "Provenance",
         (
             text(
-                f"Written by symflex {symflex.__version__}{when}. Every formula is derived exactly from the "
-                "specification printed with its model; every root marked certified is enclosed in ball arithmetic, "
-                "and none is missing from the region named. What was sampled rather than proved is said to be."
+                f"Written by symflex {_version('symflex')}{when}. Every formula is derived exactly from the "
+                "specification printed with its model; every root marked certified is enclosed in ball "
+                "arithmetic, "
+                "and none is missing from the region named. What was sampled rather than proved is said "
+                "to be."
             ),
             Table(columns("Program", ("Version", "plain")), rows),
         ),
         "provenance",
     )
+
+
+def _version(name: str) -> str:
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return "(not installed as a package)"

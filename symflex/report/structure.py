@@ -10,19 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
 
-from symflex.elements import (
-    Beam,
-    DcMotor,
-    Gyrator,
-    MasslessBeam,
-    RigidLink,
-    Rod,
-    Shaft,
-    Spring,
-    String,
-    TorsionSpring,
-    Transformer,
-)
 from symflex.expressions import Attribute, Call, Derivative, Expression, Name, format_expression, names
 
 if TYPE_CHECKING:
@@ -30,12 +17,12 @@ if TYPE_CHECKING:
 
 Place = Literal["base", "transmission", "link"]
 BENDING_ORDER: Final = 4
-STIFFNESS: Final = {Spring: "k", TorsionSpring: "k", MasslessBeam: "EI"}
-"""Elements that give way without mass, and the parameter that says how little."""
+STIFFNESS: Final = {"spring": "k", "torsion_spring": "k", "massless_beam": "EI"}
+"""Types of elements that give way without mass, and the parameter that says how little."""
 
-_BENDING: Final = (Beam, MasslessBeam)
-_COMPLIANT: Final = (Spring, TorsionSpring, Rod, Shaft, String, *_BENDING)
-_RIGID: Final = (RigidLink, Transformer, Gyrator, DcMotor)
+_BENDING: Final = frozenset(("beam", "massless_beam"))
+_COMPLIANT: Final = _BENDING | {"spring", "torsion_spring", "rod", "shaft", "string"}
+_RIGID: Final = frozenset(("rigid_link", "transformer", "gyrator", "dc_motor"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,8 +62,8 @@ def compliances(model: Model) -> tuple[Compliance, ...]:
     """
     found = []
     for use in model.elements:
-        if isinstance(use.element, _COMPLIANT):
-            is_bending = isinstance(use.element, _BENDING)
+        if use.element.type_name in _COMPLIANT:
+            is_bending = use.element.type_name in _BENDING
             is_grounded = any(r.is_ground for _, references in use.nodes for r in references)
             found.append(Compliance(use.name, is_bending, _place(is_bending, is_grounded=is_grounded)))
     for field in model.fields:
@@ -105,7 +92,7 @@ def is_colocated(model: Model, output: Output, source: Input) -> bool | None:
     if not starts or not ends:
         return None
     joined = set(starts)
-    groups = [_places(use) for use in model.elements if isinstance(use.element, _RIGID)]
+    groups = [_places(use) for use in model.elements if use.element.type_name in _RIGID]
     grown = True
     while grown:
         reached = [group for group in groups if group & joined and not group <= joined]

@@ -91,7 +91,7 @@ class Publication:
     claims: tuple[Claim, ...]
 
 
-def judged(is_true: bool, *evidence: Run, condition: bool = False) -> Finding:  # noqa: FBT001 - the very question
+def judged(is_true: bool, *evidence: Run, condition: bool = False) -> Finding:
     """Return a finding: does not hold unless true, and holds with a condition when the evidence names one."""
     if not is_true:
         return Finding("does not hold", evidence)

@@ -1,7 +1,7 @@
 """What Eppinger and Seering claim about their models, and the checks that judge it.
 
-S. D. Eppinger and W. P. Seering, "Modeling Robot Flexibility for Endpoint Force Control", 1988. Quotations are
-in the order of the text. Verdicts of claims about measured data need the data, which the paper does not print.
+S. D. Eppinger and W. P. Seering, "Modeling Robot Flexibility for Endpoint Force Control", 1988. Quotations
+are in the order of the text. Claims about measured data need the data, which the paper prints as a plot.
 """
 
 from __future__ import annotations
@@ -105,7 +105,8 @@ def _too_few_zeros(models: Models) -> Finding:
     (zeros, poles), (more, _) = chain.added or (0, 0), fitted.added or (0, 0)
     return judged(
         zeros < more,
-        f"With five modes the chain adds {counted(zeros, 'zero')} and {counted(poles, 'pole')}, the resonances "
+        f"With five modes the chain adds {counted(zeros, 'zero')} and {counted(poles, 'pole')}, the "
+        f"resonances "
         f"fitted to the data {counted(more, 'zero')}.",
     )
 
@@ -117,7 +118,8 @@ def _base(models: Models) -> Finding:
     return judged(
         is_true,
         *(f"{f.tf}: {_counts(f)}. " for f in found),
-        "Condition: as modelled here, where force and friction act between carriage and base; the drawing leaves "
+        "Condition: as modelled here, where force and friction act between carriage and base; the "
+        "drawing leaves "
         "that open.",
         condition=True,
     )
@@ -145,7 +147,8 @@ def _through_fifth_mode(models: Models) -> Finding:
         is_true = is_true and kept.five_percent_hz >= kept.last_hz
         shown += [
             f"{tf}: the product of {kept.modes} modes, exact at s = 0, is within 1 % up to "
-            f"{kept.one_percent_hz:.0f} Hz and within 5 % up to {kept.five_percent_hz:.0f} Hz (sampled); mode "
+            f"{kept.one_percent_hz:.0f} Hz and within 5 % up to {kept.five_percent_hz:.0f} Hz "
+            f"(sampled); mode "
             f"{kept.modes} is at {kept.last_hz:.0f} Hz.",
             "\n",
         ]
@@ -159,7 +162,8 @@ def _alternating(models: Models) -> Finding:
     function = models["sliding_free_beam"].of("V_act/F")
     return judged(
         function.alternates and function.certified,
-        f"All {len(function.poles)} poles and {len(function.zeros)} zeros listed lie exactly on the axis (proved) "
+        f"All {len(function.poles)} poles and {len(function.zeros)} zeros listed lie exactly on the "
+        f"axis (proved) "
         "and take turns.",
     )
 
@@ -334,7 +338,8 @@ EPPINGER_1988: Final = Publication(
         Claim(
             "second-order",
             RIGID,
-            "We have a second-order transfer function which becomes third order when endpoint position is made "
+            "We have a second-order transfer function which becomes third order when endpoint position "
+            "is made "
             "the output by adding a free integrator.",
             ("rigid_body",),
             _second_order,
@@ -342,7 +347,8 @@ EPPINGER_1988: Final = Publication(
         Claim(
             "fitted-array",
             POLYNOMIAL,
-            "its pole-zero array includes the two poles of the rigid-body model, the zero at the origin [...], and "
+            "its pole-zero array includes the two poles of the rigid-body model, the zero at the origin "
+            "[...], and "
             "the five pairs of poles and five pairs of zeros of the fitted-polynomial resonance model.",
             ("polynomial_resonance",),
             _polynomial_counts,
@@ -350,7 +356,8 @@ EPPINGER_1988: Final = Publication(
         Claim(
             "one-zero-per-mode",
             LUMPED,
-            "for each mode of vibration modeled between the actuator and endpoint, two poles are added while only "
+            "for each mode of vibration modeled between the actuator and endpoint, two poles are added "
+            "while only "
             "one zero is added in the actuator-to-endpoint transfer function.",
             ("two_mass", "six_mass"),
             _one_zero,
@@ -358,7 +365,8 @@ EPPINGER_1988: Final = Publication(
         Claim(
             "too-few-zeros",
             LUMPED,
-            "The frequency response of this lumped-mass model cannot possibly match the data, since the transfer "
+            "The frequency response of this lumped-mass model cannot possibly match the data, since the "
+            "transfer "
             "function has too few zeros!",
             ("six_mass", "polynomial_resonance"),
             _too_few_zeros,
@@ -366,8 +374,10 @@ EPPINGER_1988: Final = Publication(
         Claim(
             "two-zeros-three-poles",
             LUMPED,
-            "The transfer function from force input to motor (or tip) output velocity now has two zeros and three "
-            "poles. So two poles and two zeros have now been added to the original rigid-body lumped-mass model by "
+            "The transfer function from force input to motor (or tip) output velocity now has two zeros "
+            "and three "
+            "poles. So two poles and two zeros have now been added to the original rigid-body "
+            "lumped-mass model by "
             "the base dynamics.",
             ("base_flexure",),
             _base,
@@ -384,7 +394,8 @@ EPPINGER_1988: Final = Publication(
             "sliding_free_beam",
             "V_act/F",
             "Proved equal to the derived function.",
-            "Proved not to be the derived function: the factor should be −1/2 and the coefficient of C² 6. The "
+            "Proved not to be the derived function: the factor should be −1/2 and the coefficient of C² "
+            "6. The "
             "printed numerator is a perfect square, with double real zeros, against figure 11.",
         ),
         _printed(
@@ -404,7 +415,8 @@ EPPINGER_1988: Final = Publication(
         Claim(
             "fifth-mode",
             BENDING,
-            "These polynomial transfer functions match the response of the real beam transfer functions perfectly "
+            "These polynomial transfer functions match the response of the real beam transfer functions "
+            "perfectly "
             "through the 5th modes.",
             ("sliding_free_beam",),
             _through_fifth_mode,
@@ -412,14 +424,16 @@ EPPINGER_1988: Final = Publication(
         Claim(
             "alternating",
             BENDING,
-            "The collocated beam transfer function has poles and zeros in alternating pairs along the jω axis.",
+            "The collocated beam transfer function has poles and zeros in alternating pairs along the "
+            "jω axis.",
             ("sliding_free_beam",),
             _alternating,
         ),
         Claim(
             "same-poles",
             BENDING,
-            "The noncollocated beam transfer function has pairs of poles along the jω axis (in the same locations, "
+            "The noncollocated beam transfer function has pairs of poles along the jω axis (in the same "
+            "locations, "
             "since the two transfer functions have the same characteristic equation),",
             ("sliding_free_beam",),
             _same_poles,
@@ -448,7 +462,8 @@ EPPINGER_1988: Final = Publication(
         Claim(
             "bending",
             BENDING,
-            "We hypothesize that the right-half plane zeros come from the bending effects and not the distributed "
+            "We hypothesize that the right-half plane zeros come from the bending effects and not the "
+            "distributed "
             "nature of the model.",
             ("six_mass", "lumped_bending_beam"),
             _bending_not_distribution,
@@ -456,14 +471,16 @@ EPPINGER_1988: Final = Publication(
         Claim(
             "lumped-colocated",
             BENDING,
-            "The colocated transfer function, from the force input to the position output, x_act, is minimum phase.",
+            "The colocated transfer function, from the force input to the position output, x_act, is "
+            "minimum phase.",
             ("lumped_bending_beam",),
             _lumped_colocated,
         ),
         Claim(
             "lumped-noncolocated",
             BENDING,
-            "The noncolocated transfer function, from the force input to the position output, x_tip, is nonminimum "
+            "The noncolocated transfer function, from the force input to the position output, x_tip, is "
+            "nonminimum "
             "phase.",
             ("lumped_bending_beam",),
             _lumped_noncolocated,
@@ -479,7 +496,8 @@ EPPINGER_1988: Final = Publication(
         Claim(
             "right-numbers",
             BENDING,
-            "The distributed-parameter beam model’s colocated transfer function has the right numbers of poles and "
+            "The distributed-parameter beam model’s colocated transfer function has the right numbers "
+            "of poles and "
             "zeros for each mode and the correct arrangement thereof in the s-plane.",
             ("sliding_free_beam",),
             _right_numbers,
@@ -487,7 +505,8 @@ EPPINGER_1988: Final = Publication(
         Claim(
             "rigid-matches",
             DISCUSSION,
-            "The rigid-body robot model is capable of matching the overall frequency response, with the exception "
+            "The rigid-body robot model is capable of matching the overall frequency response, with the "
+            "exception "
             "of the resonances.",
             (),
             _needs_data,
@@ -495,7 +514,8 @@ EPPINGER_1988: Final = Publication(
         Claim(
             "two-and-two",
             DISCUSSION,
-            "This model consists of the rigid-body model, cascaded with two poles and two zeros for each flexible "
+            "This model consists of the rigid-body model, cascaded with two poles and two zeros for "
+            "each flexible "
             "mode.",
             ("polynomial_resonance",),
             _rigid_counts,
@@ -503,7 +523,8 @@ EPPINGER_1988: Final = Publication(
         Claim(
             "pair-and-one-zero",
             DISCUSSION,
-            "When used to depict flexibility between the actuator and tip, these models add for each resonance a "
+            "When used to depict flexibility between the actuator and tip, these models add for each "
+            "resonance a "
             "pair of poles, and only one zero",
             ("two_mass", "six_mass"),
             _one_zero,
@@ -511,7 +532,8 @@ EPPINGER_1988: Final = Publication(
         Claim(
             "base-two-zeros",
             DISCUSSION,
-            "When used to describe flexure of the robot base or frame, these models add two zeros with each pair "
+            "When used to describe flexure of the robot base or frame, these models add two zeros with "
+            "each pair "
             "of poles.",
             ("base_flexure",),
             _base_adds_two,
@@ -542,7 +564,8 @@ EPPINGER_1988: Final = Publication(
         Claim(
             "dynamically-colocated",
             DISCUSSION,
-            "It is possible for a tip sensor and joint actuator to be physically noncolocated, but dynamically "
+            "It is possible for a tip sensor and joint actuator to be physically noncolocated, but "
+            "dynamically "
             "colocated.",
             (),
             _needs_loops,
@@ -550,7 +573,8 @@ EPPINGER_1988: Final = Publication(
         Claim(
             "equal-frequencies",
             DISCUSSION,
-            "Even a lumped-mass model of a beam in bending displays nonminimum phase zeros at frequencies equal to "
+            "Even a lumped-mass model of a beam in bending displays nonminimum phase zeros at "
+            "frequencies equal to "
             "the minimum phase zeros that appear.",
             ("lumped_bending_beam",),
             _equal_frequencies,
@@ -558,7 +582,8 @@ EPPINGER_1988: Final = Publication(
         Claim(
             "base-against-link",
             DISCUSSION,
-            "base flexure allows the joint actuators and tip sensors to remain dynamically colocated, while link "
+            "base flexure allows the joint actuators and tip sensors to remain dynamically colocated, "
+            "while link "
             "flexure may not.",
             (),
             _needs_loops,

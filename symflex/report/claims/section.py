@@ -47,7 +47,7 @@ def judge_all(publication: Publication, models: Sequence[ModelFacts]) -> tuple[F
 
 def claim_section(publication: Publication, findings: Sequence[Finding]) -> Section:
     """Return the claims with their verdicts and the evidence."""
-    counts = Counter(finding.verdict for finding in findings)
+    counts: Counter[str] = Counter(finding.verdict for finding in findings)
     summary = ", ".join(f"{counts[v]} {PLURALS[v]}" for v in TONES if counts[v])
     rows = tuple(
         (

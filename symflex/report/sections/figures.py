@@ -31,10 +31,11 @@ def figure_section(study: Study) -> Part | None:
         if figure.kind not in FIGURES:
             blocks.append(Notice(f"{figure.name}: figures of kind '{figure.kind}' are not available yet"))
         elif chosen:
-            block = attempt(lambda f=figure, c=chosen: _picture(study, f, c, files))  # type: ignore[misc]
-            if isinstance(block, SymflexError):
-                block = Notice(f"{figure.name}: {block.diagnostics[0].message}")
-            blocks.append(block)
+            picture = attempt(lambda f=figure, c=chosen: _picture(study, f, c, files))  # type: ignore[misc]
+            if isinstance(picture, SymflexError):
+                blocks.append(Notice(f"{figure.name}: {picture.diagnostics[0].message}"))
+            else:
+                blocks.append(picture)
     return Part("Figures", tuple(blocks), files) if blocks else None
 
 

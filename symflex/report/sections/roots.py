@@ -69,7 +69,8 @@ def _of(found: PoleZeroMap, told: ZeroExplanation | None) -> tuple[Block, ...]:
     for part in found.excluded:
         blocks.append(
             text(
-                f"Left out: {part.radius:.3g} rad/s about {part.re:g} ± {part.im:g} j, where roots accumulate."
+                f"Left out: {part.radius:.3g} rad/s about {part.re:g} ± {part.im:g} j, where roots "
+                f"accumulate."
             )
         )
     for kind, noun in KINDS.items():
