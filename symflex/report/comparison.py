@@ -65,7 +65,8 @@ def added_cell(facts: ModelFacts) -> Cell:
         if function.added is None or not function.modes:
             continue
         zeros, poles = function.added
-        runs += [Code(function.tf), f" {_per_mode(poles, zeros, function)} ", Aside(_where(function)), "\n"]
+        where = {True: ", colocated", False: ", noncolocated", None: ""}[function.colocated]
+        runs += [_per_mode(poles, zeros, function), "\n", Aside(function.tf + where), "\n"]
     return tuple(runs[:-1]) if runs else (NONE,)
 
 
@@ -81,7 +82,7 @@ def both_cell(facts: ModelFacts) -> Cell:
     """Return whether a model has colocated and noncolocated transfer functions."""
     kinds = {f.colocated for f in facts.functions} - {None}
     if kinds == {True, False}:
-        return (Mark("both", "good"), " colocated and noncolocated")
+        return (Mark("both", "good"),)
     return ("colocated only" if kinds == {True} else "noncolocated only" if kinds else NONE,)
 
 
@@ -105,9 +106,9 @@ COLUMNS: dict[str, ComparisonColumn] = {
     "Model": ComparisonColumn(model_cell, "plain"),
     "Flexibility": ComparisonColumn(flexibility_cell),
     "Modes": ComparisonColumn(modes_cell, "number"),
-    "Added by each mode": ComparisonColumn(added_cell),
+    "Added by each mode": ComparisonColumn(added_cell, "plain"),
     "Minimum phase": ComparisonColumn(phase_cell),
-    "Sensors": ComparisonColumn(both_cell),
+    "Colocated or not": ComparisonColumn(both_cell),
 }
 """By their heads, in the order of the table."""
 
@@ -161,11 +162,7 @@ def phase_runs(function: TransferFacts) -> tuple[Run, ...]:
     return (Mark("yes", "good"), f", for these values{shown}")
 
 
-def _where(function: TransferFacts) -> str:
-    return {True: "colocated", False: "noncolocated", None: ""}[function.colocated]
-
-
 def _per_mode(poles: int, zeros: int, function: TransferFacts) -> str:
     if poles % function.modes or zeros % function.modes:
-        return f"{counted(poles, 'pole')}, {counted(zeros, 'zero')} with {counted(function.modes, 'mode')}"
+        return f"{counted(poles, 'pole')}, {counted(zeros, 'zero')} in {counted(function.modes, 'mode')}"
     return f"{counted(poles // function.modes, 'pole')}, {counted(zeros // function.modes, 'zero')}"

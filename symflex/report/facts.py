@@ -17,6 +17,7 @@ from symflex.report.minimum_phase import minimum_phase
 from symflex.report.structure import compliances, is_colocated
 
 if TYPE_CHECKING:
+    from symflex.audit import Audit
     from symflex.report.minimum_phase import PhaseCondition
     from symflex.report.structure import Compliance
     from symflex.report.study import Study
@@ -236,8 +237,8 @@ class ModelFacts:
         It holds signals, blocks or sources besides its structure.
     functions : tuple of TransferFacts
         Of its transfer functions that could be bound to numbers.
-    audits : tuple of (str, str)
-        Printed formulas, "OUT/IN", and their verdicts.
+    audits : tuple of (str, str, str)
+        Printed formulas, "OUT/IN", their verdicts, and what should be changed in them, in words.
     """
 
     stem: str
@@ -247,7 +248,7 @@ class ModelFacts:
     is_distributed: bool
     has_signals: bool
     functions: tuple[TransferFacts, ...]
-    audits: tuple[tuple[str, str], ...]
+    audits: tuple[tuple[str, str, str], ...]
 
     def of(self, tf: str) -> TransferFacts:
         """Return the facts of one transfer function.
@@ -318,8 +319,17 @@ def facts_of(study: Study) -> ModelFacts:
         is_distributed=model.is_distributed,
         has_signals=bool(model.signals or model.blocks),
         functions=tuple(functions),
-        audits=tuple((audit.tf.name, audit.verdict) for audit in study.audits),
+        audits=tuple((audit.tf.name, audit.verdict, _changes(audit)) for audit in study.audits),
     )
+
+
+def _changes(audit: Audit) -> str:
+    shown = [
+        f"{c.place}: {format_expression(c.printed)} should be {format_expression(c.derived)}"
+        for c in audit.changes
+    ]
+    shown += [f"violated: {law.law}" for law in audit.laws if not law.kept]
+    return "; ".join(shown)
 
 
 def _bracket(condition: PhaseCondition, tf: TransferFunction) -> Mathematics | None:

@@ -191,18 +191,28 @@ def _formula(formula: Formula) -> Iterator[str]:
 
 
 def _table(table: Table) -> str:
+    # On a narrow screen the cells of a row stand below each other, each with its head.
+    is_stacked = len(table.columns) > 2 and any(c.side == "text" for c in table.columns)  # noqa: PLR2004
+    kind = ' class="stack"' if is_stacked else ""
     head = "".join(f'<th scope="col" class="{c.side}">{_runs(c.head)}</th>' for c in table.columns)
     body = "\n".join(_row(row, table.columns) for row in table.rows)
     caption = f"<caption>{_escape(table.caption)}</caption>" if table.caption else ""
     return (
         f'<div class="scroll" tabindex="0" role="region" aria-label="{_escape(table.caption or "Table")}">'
-        f"<table>{caption}<thead><tr>{head}</tr></thead>\n<tbody>\n{body}\n</tbody></table></div>"
+        f"<table{kind}>{caption}<thead><tr>{head}</tr></thead>\n<tbody>\n{body}\n</tbody></table></div>"
     )
 
 
 def _row(row: Iterable[tuple[Run, ...]], columns: Iterable[Column]) -> str:
-    cells = "".join(f'<td class="{c.side}">{_runs(cell)}</td>' for cell, c in zip(row, columns, strict=True))
+    cells = "".join(
+        f'<td class="{c.side}" data-head="{_escape(_plain(c.head))}">{_runs(cell)}</td>'
+        for cell, c in zip(row, columns, strict=True)
+    )
     return f"<tr>{cells}</tr>"
+
+
+def _plain(runs: Iterable[Run]) -> str:
+    return "".join(run for run in runs if isinstance(run, str))
 
 
 def _runs(runs: Iterable[Run]) -> str:

@@ -73,7 +73,11 @@ svg.plot *{stroke-linejoin:round;stroke-linecap:butt}
 svg.plot{fill:var(--ink)}
 @media (max-width:40rem){body{padding:0 .9rem 3rem}header{padding-top:1.5rem}h1{font-size:1.5rem}
 h2{font-size:1.3rem}
-.formula{padding-left:.6rem}.row{padding-left:1.2rem;text-indent:-1.2rem}td.text{min-width:7rem}}
+.formula{padding-left:.6rem}.row{padding-left:1.2rem;text-indent:-1.2rem}td.text{min-width:7rem}
+.stack,.stack tbody,.stack tr,.stack td{display:block}.stack thead{display:none}.stack caption{display:block}
+.stack tr{border-bottom:2px solid var(--line);padding:.5rem 0}
+.stack td{border:0;padding:.1rem 0;text-align:left;white-space:normal}
+.stack td:empty{display:none}.stack td:not(:first-child)::before{content:attr(data-head) ": ";color:var(--quiet)}}
 @media print{:root{color-scheme:light;--ink:#000;--paper:#fff;--soft:#f4f5f7;--line:#bbb;--quiet:#555;
 --faint:#ddd;--link:#000;
 --good:#17692f;--fair:#7d5200;--bad:#a8231d;--goodbg:#fff;--fairbg:#fff;--badbg:#fff;

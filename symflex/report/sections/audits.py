@@ -69,7 +69,8 @@ def _of(audit: Audit) -> tuple[Block, ...]:
         )
     if audit.verdict == "equal":
         return tuple(blocks)
-    blocks.append(text(f"The formula {VERDICTS[audit.verdict]}."))
+    if audit.verdict != "differs":
+        blocks.append(text(f"The formula {VERDICTS[audit.verdict]}."))
     if audit.ratio is not None:
         blocks.append(
             text("It is the derived function times ", mathematics(audit.ratio, audit.tf.model), ".")
