@@ -56,7 +56,9 @@ _PACKAGES: Final = r"""
 """
 
 _GAP_MM: Final = 4.3
-_NARROWEST_MM: Final = 18.0
+_BOLD: Final = 1.15
+_TYPEWRITER: Final = 0.55
+_SLACK_MM: Final = 0.8
 _DEEPEST_INDENT: Final = 24
 _LONGEST_PIECE: Final = 16
 _SMALL: Final = 0.86
@@ -189,45 +191,43 @@ def _table(table: Table) -> str:
 
 
 def _widths(table: Table, room: float) -> list[float]:
-    """Return widths [mm]: what is not broken as wide as it is, texts what is left, in proportion."""
-    natural = []
+    """Return widths [mm]: every column as wide as its widest word at least, and what is left as it is needed."""
+    scale = _BOLD * _SMALL * EM_MM
+    natural, least = [], []
     for i, column in enumerate(table.columns):
-        cells = [column.head, *(row[i] for row in table.rows)]
-        # Bold heads are wider.
-        natural.append(1.15 * _SMALL * EM_MM * max(map(_width, cells)) + 0.5)
+        lines = [line for cell in (column.head, *(row[i] for row in table.rows)) for line in _lines(cell)]
+        natural.append(scale * max(sum(width for _, width in line) for line in lines) + _SLACK_MM)
+        words = max((width for line in lines for _, width in line), default=0.0)
+        least.append(min(natural[i], scale * words + _SLACK_MM))
     if sum(natural) <= room:
         return natural
-    loose = [i for i, c in enumerate(table.columns) if c.side == "text"]
-    fixed = sum(w for i, w in enumerate(natural) if i not in loose)
-    if not loose or room - fixed < _NARROWEST_MM * len(loose):
-        loose, fixed = list(range(len(natural))), 0.0
-    left = room - fixed
+    kept = [n if c.side != "text" else m for c, n, m in zip(table.columns, natural, least, strict=True)]
+    if sum(kept) > room:
+        kept = least
     # A root keeps one long text from taking all the room.
-    weights = {i: natural[i] ** 0.5 for i in loose}
-    total = sum(weights.values())
-    return [left * weights[i] / total if i in weights else width for i, width in enumerate(natural)]
+    wants = [(n - k) ** 0.5 for n, k in zip(natural, kept, strict=True)]
+    left = max(room - sum(kept), 0.0) / (sum(wants) or 1.0)
+    return [k + left * w for k, w in zip(kept, wants, strict=True)]
 
 
-def _width(cell: Cell) -> float:
-    """Return the width of a cell's widest line [em of the text]."""
-    lines, width = [0.0], 0.0
+def _lines(cell: Cell) -> list[list[tuple[str, float]]]:
+    """Return the lines of a cell as what is not broken in them, with widths [em of the text]."""
+    lines: list[list[tuple[str, float]]] = [[]]
     for run in cell:
         for i, piece in enumerate(run.split("\n") if isinstance(run, str) else (run,)):
             if i:
-                lines.append(0.0)
+                lines.append([])
             match piece:
                 case str():
-                    width = text_width(piece)
+                    lines[-1] += [(word, text_width(word)) for word in re.split("(?<= )", piece)]
                 case Mathematics(latex=latex):
-                    width = _EM_PER_CHARACTER * len(latex)
-                case Code(text=text):
-                    width = 0.55 * len(text)
-                case Mark(text=text):
-                    width = 1.15 * text_width(text)
+                    # Mathematics in a text may be broken at its signs.
+                    lines[-1] += [(t, _EM_PER_CHARACTER * len(t)) for t in re.split("(?=[+=-])", latex)]
+                case Code(text=text) | Link(text=text):
+                    lines[-1] += [(part, _TYPEWRITER * len(part)) for part in re.split("(?<=[/_. ])", text)]
                 case _:
-                    width = text_width(piece.text)
-            lines[-1] += width
-    return max(lines)
+                    lines[-1] += [(word, text_width(word)) for word in re.split("(?<= )", piece.text)]
+    return [line or [("", 0.0)] for line in lines]
 
 
 def _cell(cell: Cell) -> str:
@@ -252,7 +252,9 @@ def _run(run: Run) -> str:
             return rf"\textit{{{escape_text(text)}}}"
         case Link(text=text, target=target):
             is_file = not target.startswith("#")
-            return rf"\texttt{{{_breakable(text)}}}" if is_file else escape_text(text)
+            return (
+                rf"\texttt{{{_breakable(text)}}}" if is_file else " ".join(map(_breakable, text.split(" ")))
+            )
         case _:
             assert_never(run)
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final, TypeVar
 from symflex import pipeline
 from symflex.emit.forms import print_forms
 from symflex.errors import SymflexError
+from symflex.model import with_numbers
 from symflex.report.facts import facts_of
 from symflex.report.limits import rigid_counts, undamped_counts
 from symflex.response import adaptive_grid, default_band, respond
@@ -66,8 +67,11 @@ class Study:
         ------
         SpecError
             With every problem of the file.
+        ModelError
+            When the equations have no unique solution.
         """
         model = pipeline.load(path)
+        pipeline.check_solvable(pipeline.assemble(with_numbers(model)))
         return Study(path, stem, path.read_text(encoding="utf-8"), model)
 
     @property

@@ -77,7 +77,8 @@ h2{font-size:1.3rem}
 .stack,.stack tbody,.stack tr,.stack td{display:block}.stack thead{display:none}.stack caption{display:block}
 .stack tr{border-bottom:2px solid var(--line);padding:.5rem 0}
 .stack td{border:0;padding:.1rem 0;text-align:left;white-space:normal}
-.stack td:empty{display:none}.stack td:not(:first-child)::before{content:attr(data-head) ": ";color:var(--quiet)}}
+.stack td:empty{display:none}
+.stack td:not(:first-child)::before{content:attr(data-head) ": ";color:var(--quiet)}}
 @media print{:root{color-scheme:light;--ink:#000;--paper:#fff;--soft:#f4f5f7;--line:#bbb;--quiet:#555;
 --faint:#ddd;--link:#000;
 --good:#17692f;--fair:#7d5200;--bad:#a8231d;--goodbg:#fff;--fairbg:#fff;--badbg:#fff;
