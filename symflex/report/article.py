@@ -174,7 +174,7 @@ def _table(table: Table) -> str:
         return f"{caption}{table.latex}"
     if not table.rows:
         return caption
-    room = TEXT_WIDTH_MM - _GAP_MM * (len(table.columns) - 1)
+    room = TEXT_WIDTH_MM - _GAP_MM * (len(table.columns) - 1) - _SLACK_MM
     widths = _widths(table, room)
     formats = []
     for column, width in zip(table.columns, widths, strict=True):
@@ -191,7 +191,7 @@ def _table(table: Table) -> str:
 
 
 def _widths(table: Table, room: float) -> list[float]:
-    """Return widths [mm]: every column as wide as its widest word at least, and what is left as it is needed."""
+    """Return widths [mm]: at least that of the widest word each, and what is left where it is needed."""
     scale = _BOLD * _SMALL * EM_MM
     natural, least = [], []
     for i, column in enumerate(table.columns):
@@ -251,10 +251,8 @@ def _run(run: Run) -> str:
         case Aside(text=text):
             return rf"\textit{{{escape_text(text)}}}"
         case Link(text=text, target=target):
-            is_file = not target.startswith("#")
-            return (
-                rf"\texttt{{{_breakable(text)}}}" if is_file else " ".join(map(_breakable, text.split(" ")))
-            )
+            shown = " ".join(map(_breakable, text.split(" ")))
+            return shown if target.startswith("#") else rf"\texttt{{{shown}}}"
         case _:
             assert_never(run)
 

@@ -27,8 +27,8 @@ FIGURES = {
 }  # fmt: skip
 HOLD = (
     "modes second-order fitted-array too-few-zeros base-only-colocated infinity alternating same-poles "
-    "real-zeros no-phase not-in-lumped lumped-colocated right-numbers two-and-two base-two-zeros printed-rigid-body "
-    "printed-noncolocated"
+    "real-zeros no-phase not-in-lumped lumped-colocated right-numbers two-and-two base-two-zeros "
+    "printed-rigid-body printed-noncolocated"
 ).split()
 CONDITION = (
     "one-zero-per-mode two-zeros-three-poles bending lumped-noncolocated lumped-pair pair-and-one-zero "
