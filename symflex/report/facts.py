@@ -13,12 +13,11 @@ from typing import TYPE_CHECKING, Final, Literal
 
 from symflex.expressions import format_expression
 from symflex.report.document import Mathematics, mathematics
-from symflex.report.minimum_phase import minimum_phase
+from symflex.report.minimum_phase import PhaseCondition, minimum_phase
 from symflex.report.structure import compliances, is_colocated
 
 if TYPE_CHECKING:
     from symflex.audit import Audit
-    from symflex.report.minimum_phase import PhaseCondition
     from symflex.report.structure import Compliance
     from symflex.report.study import Study
     from symflex.roots import PoleZeroMap, Root
@@ -290,7 +289,8 @@ def facts_of(study: Study) -> ModelFacts:
     functions = []
     for tf, found, explained in study.located:
         pair = (tf.output.name, tf.input.name)
-        condition = minimum_phase(tf, explained)
+        # A function of numbers alone says nothing about other values.
+        condition = minimum_phase(tf, explained) if study.has_symbols else PhaseCondition("unknown", "")
         functions.append(
             TransferFacts(
                 tf=tf.name,

@@ -79,7 +79,7 @@ class Study:
         """The transfer functions shown, as (output, input)."""
         return self.model.transfer_functions[:MOST_FUNCTIONS]
 
-    @cached_property
+    @property
     def tfs(self) -> tuple[TransferFunction, ...]:
         """The transfer functions in symbols.
 
@@ -88,14 +88,24 @@ class Study:
         ModelError, BudgetError
             When the equations have no unique solution, or their symbolic one would be too large.
         """
-        return pipeline.derive_all(self.model, self.pairs)
+        return _result(self._derived)
+
+    @cached_property
+    def _derived(self) -> tuple[TransferFunction, ...] | SymflexError:
+        # A derivation that fails may take long: once is enough.
+        return attempt(lambda: pipeline.derive_all(self.model, self.pairs))
+
+    @property
+    def has_symbols(self) -> bool:
+        """Whether the transfer functions could be derived in symbols."""
+        return not isinstance(self._derived, SymflexError)
 
     @cached_property
     def forms(self) -> tuple[PrintedForm, ...]:
         """Each function in its default form."""
         return print_forms(self.tfs)[0]
 
-    @cached_property
+    @property
     def bounds(self) -> tuple[BoundTransferFunction, ...]:
         """The same functions with numbers.
 
@@ -104,30 +114,43 @@ class Study:
         ModelError
             SF229 when a parameter has no value.
         """
-        return pipeline.derive_bound(self.model, self.pairs)
+        return _result(self._bound)
 
     @cached_property
+    def _bound(self) -> tuple[BoundTransferFunction, ...] | SymflexError:
+        return attempt(lambda: pipeline.derive_bound(self.model, self.pairs))
+
+    @property
     def maps(self) -> tuple[PoleZeroMap, ...]:
         """Poles and zeros, the lowest modes of distributed systems; none of functions that are zero."""
+        return _result(self._maps)
+
+    @cached_property
+    def _maps(self) -> tuple[PoleZeroMap, ...] | SymflexError:
         digits = max(self.model.analysis.digits or DIGITS, DIGITS)
-        return tuple(pipeline.roots(b, None, digits, Budget()) for b in self.bounds if not b.ratio.is_zero)
+        return attempt(
+            lambda: tuple(
+                pipeline.roots(b, None, digits, Budget()) for b in self.bounds if not b.ratio.is_zero
+            )
+        )
 
     @cached_property
     def located(self) -> tuple[tuple[TransferFunction, PoleZeroMap, ZeroExplanation], ...]:
         """Every function with numbers that is not zero, with its roots and what its zeros mean.
 
-        Empty where the model has no numbers, or no symbolic solution in reach.
+        The function is the one in symbols where :attr:`has_symbols` says that there is one. Empty where the
+        model has no numbers.
         """
-        found = attempt(lambda: (self.tfs, self.maps))
-        if isinstance(found, SymflexError):
+        if isinstance(self._maps, SymflexError):
             return ()
-        by_name = {each.tf: each for each in found[1]}
-        bounds = {b.name: b for b in self.bounds}
+        by_name = {each.tf: each for each in self.maps}
+        symbolic = {tf.name: tf for tf in self.tfs} if self.has_symbols else {}
         rows = []
-        for tf in found[0]:
-            if tf.name in by_name:
-                explained = pipeline.explain_zeros(self.model, bounds[tf.name], by_name[tf.name])
-                rows.append((tf, by_name[tf.name], explained))
+        for bound in self.bounds:
+            if bound.name in by_name:
+                found = by_name[bound.name]
+                explained = pipeline.explain_zeros(self.model, bound, found)
+                rows.append((symbolic.get(bound.name, bound.source), found, explained))
         return tuple(rows)
 
     @cached_property
@@ -172,15 +195,21 @@ class Study:
         return None if isinstance(found, SymflexError) else found
 
 
+def _result(found: T | SymflexError) -> T:
+    if isinstance(found, SymflexError):
+        raise found
+    return found
+
+
 def attempt(compute: Callable[[], T]) -> T | SymflexError:
     """Return a result, or the error that says why there is none.
 
     Examples
     --------
     >>> def fail():
-    ...     raise ModelError
+    ...     raise SymflexError
     >>> attempt(lambda: 1), attempt(fail)
-    (1, ModelError())
+    (1, SymflexError())
     """
     try:
         return compute()
