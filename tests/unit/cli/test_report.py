@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from symflex.cli import report as report_command
+from symflex.errors import Diagnostic, SymflexError
 
 
 @pytest.fixture(autouse=True)
@@ -27,6 +28,18 @@ def test_without_pdflatex_the_report_says_how_to_get_it(shell):
     assert done.code == 2
     assert "texlive" in done.err
     assert (shell.folder / "report" / "report.tex").exists()
+
+
+def test_a_pdf_that_does_not_compile_is_said_and_the_page_is_there(shell, monkeypatch):
+    def fail(*_):
+        raise SymflexError(Diagnostic("SF912", "pdflatex failed"))
+
+    monkeypatch.setattr("symflex.report.has_compiler", lambda: True)
+    monkeypatch.setattr("symflex.report.compile_pdf", fail)
+    done = shell("report", "x.toml", "-j", "1")
+    assert done.code == 3
+    assert "SF912" in done.err
+    assert (shell.folder / "report" / "index.html").exists()
 
 
 @pytest.mark.parametrize(

@@ -27,16 +27,24 @@ from tests.unit.report.models import HOSTILE, SMALL, SYMBOLIC
 from tests.unit.report.pages import Page
 
 
-def report_on(folder, date="2001-02-03", **texts):
+def chapters_on(folder, **texts):
     for name, text in texts.items():
         (folder / f"{name}.toml").write_text(text, encoding="utf-8")
-    named = name_specifications(find_specifications([folder]))
-    return compose(write_chapters(named, 1, Silent()), date)
+    return write_chapters(name_specifications(find_specifications([folder])), 1, Silent())
+
+
+def report_on(folder, **texts):
+    return compose(chapters_on(folder, **texts), "2001-02-03")
 
 
 @pytest.fixture(scope="module")
-def small(tmp_path_factory):
-    return report_on(tmp_path_factory.mktemp("small"), small=SMALL, symbolic=SYMBOLIC)
+def chapters(tmp_path_factory):
+    return chapters_on(tmp_path_factory.mktemp("small"), small=SMALL, symbolic=SYMBOLIC)
+
+
+@pytest.fixture(scope="module")
+def small(chapters):
+    return compose(chapters, "2001-02-03")
 
 
 @pytest.fixture(scope="module")
@@ -104,9 +112,9 @@ def test_reports_of_equal_models_are_equal(small, tmp_path):
     assert again.files == small.files
 
 
-def test_the_date_stands_in_the_report_once_given(tmp_path):
-    assert "2001-02-03" in report_page(report_on(tmp_path, small=SMALL))
-    assert "2001" not in report_page(report_on(tmp_path, date="", small=SMALL))
+def test_the_date_stands_in_the_report_when_given(small, chapters):
+    assert "2001-02-03" in report_page(small)
+    assert "2001" not in report_page(compose(chapters, ""))
 
 
 def test_what_has_no_numbers_says_so(small):
