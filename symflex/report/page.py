@@ -164,7 +164,8 @@ def _block(block: Block, level: int, anchor: str) -> str:
                 f'<a href="figures/{_escape(block.stem)}.pdf">PDF</a>, '
                 f'<a href="figures/{_escape(block.stem)}.svg">SVG</a>'
             )
-            return f"<figure>{drawn}\n<figcaption>{_escape(block.caption)} {files}</figcaption></figure>"
+            shown = f"{_escape(block.caption)} <span>{files}</span>"
+            return f"<figure>{drawn}\n<figcaption>{shown}</figcaption></figure>"
         case Listing(title=title, text=text):
             lines = "\n".join(_escape(line) for line in text.expandtabs(4).splitlines())
             return f"<details><summary>{_escape(title)}</summary><pre>{lines}</pre></details>"
@@ -175,7 +176,7 @@ def _block(block: Block, level: int, anchor: str) -> str:
 
 
 def _formula(formula: Formula) -> Iterator[str]:
-    yield f'<div class="formula" role="group" aria-label="{_escape(formula.name)}">'
+    yield f'<div class="formula" tabindex="0" role="group" aria-label="{_escape(formula.name)}">'
     is_below = False
     for row in formula.rows:
         if row.is_where and not is_below:

@@ -30,7 +30,8 @@ h4,h5,h6{font-size:1.05rem;margin:1.75rem 0 .4rem}
 h4 math{font-size:1.2em}small{color:var(--quiet);font-size:.9em}
 p{margin:.6rem 0;max-width:46rem}
 a{color:var(--link);text-underline-offset:.15em}
-a:focus-visible,summary:focus-visible,.scroll:focus-visible{outline:2px solid var(--link);
+a:focus-visible,summary:focus-visible,.scroll:focus-visible,.formula:focus-visible{
+outline:2px solid var(--link);
 outline-offset:2px}
 .skip{position:absolute;left:-99rem}.skip:focus{left:1rem;top:1rem;background:var(--paper);padding:.5rem}
 nav ol,nav ul{margin:.3rem 0;padding-left:1.4rem}
@@ -85,5 +86,5 @@ h2{font-size:1.3rem}
 --c1:#0072b2;--c2:#c65300;--c3:#00805d;--c4:#b3538a;--c5:#b87d00;--c6:#2b8fc7}
 body{max-width:none;padding:0;font-size:10pt}nav,.skip{display:none}a{text-decoration:none}
 .scroll,.formula{overflow:visible}table{font-size:8.5pt}h2,h3,h4{break-after:avoid}
-figure,.formula,tr{break-inside:avoid}figcaption a{display:none}pre{white-space:pre-wrap;font-size:7.5pt}}
+figure,.formula,tr{break-inside:avoid}figcaption span{display:none}pre{white-space:pre-wrap;font-size:7.5pt}}
 """

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from symflex.model import Input, Output
     from symflex.transfer import TransferFunction
 
-WIDEST_FRACTION: Final = 36.0
+WIDEST_FRACTION: Final = 42.0
 """Width [em] beyond which numerator and denominator get names and rows of their own."""
 
 LONGEST: Final = 400_000

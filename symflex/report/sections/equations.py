@@ -63,7 +63,9 @@ def _of(tf: TransferFunction, form: PrintedForm, label: str) -> tuple[Block, ...
     for expression, multiplicity in hidden_expressions(tf):
         times = "" if multiplicity == 1 else f" ({multiplicity} times)"
         runs: list[Run] = ["Hidden: the factor ", mathematics(expression, tf.model)]
-        runs.append(f" cancels{times}; its modes are uncontrollable from this input or unobservable here.")
+        runs.append(
+            f" cancels{times}; its modes are uncontrollable from this input or unobservable at this output."
+        )
         blocks.append(text(*runs))
     return tuple(blocks)
 
