@@ -97,6 +97,13 @@ def read_row(children):
     return "".join(texts)
 
 
+@pytest.fixture(autouse=True, scope="module")
+def _many_digits():
+    # Sines of large numbers need them.
+    with mpmath.workdps(60):
+        yield
+
+
 def value_of(mathml):
     text = read(ET.fromstring(f"<mrow>{mathml}</mrow>"))
     return evaluate(re.sub(r"(?<![\w)])\+", "", text), VALUES)
@@ -112,8 +119,11 @@ def expressions():
             st.builds(lambda x, y: product_of([x, y]), inner, inner),
             st.builds(quotient, inner, inner),
             st.builds(power, inner, st.integers(2, 3)),
-            st.builds(Call, st.sampled_from(["sqrt", "exp", "cosh", "sin"]), inner),
-            st.builds(lambda f, x: power(Call(f, x), 2), st.sampled_from(["cosh", "sin"]), inner),
+            st.builds(Call, st.sampled_from(["sqrt", "sin"]), inner),
+            st.builds(lambda x: power(Call("sin", x), 2), inner),
+            # Towers of exponentials have no value that fits into memory.
+            st.builds(Call, st.sampled_from(["exp", "cosh"]), leaves),
+            st.builds(lambda x: power(Call("cosh", x), 2), leaves),
             st.builds(Negative, inner),
         )
 
