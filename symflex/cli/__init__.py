@@ -20,6 +20,7 @@ COMMANDS: dict[str, str] = {
     "audit": "Compare printed formulas with derived ones.",
     "fit": "Fit resonances to measured frequency responses.",
     "measure": "Write a synthetic measurement of a model.",
+    "report": "Write a report: a page, a PDF, figures, code, data.",
     "new": "Write a specification to start from.",
     "elements": "List the element and block library.",
 }

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from symflex.cli.report import emit_json, note, reporting, terminal_width
+from symflex.cli.reporting import emit_json, note, reporting, terminal_width
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from symflex.cli.report import diagnostic_json, emit_json, listed, reporting
+from symflex.cli.reporting import diagnostic_json, emit_json, listed, reporting
 from symflex.errors import SymflexError
 from symflex.errors.diagnostic import printable
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from symflex.cli.report import emit_json, note, reporting, terminal_width
+from symflex.cli.reporting import emit_json, note, reporting, terminal_width
 from symflex.errors import Diagnostic, UsageError
 
 

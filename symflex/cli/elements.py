@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from symflex.cli.report import emit_json, reporting, terminal_width
+from symflex.cli.reporting import emit_json, reporting, terminal_width
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 

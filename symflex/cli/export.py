@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from symflex.cli.report import note, reporting
+from symflex.cli.reporting import note, reporting
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from symflex.cli.report import emit_json, note, reporting, terminal_width
+from symflex.cli.reporting import emit_json, note, reporting, terminal_width
 from symflex.errors import DataError, Diagnostic, UsageError
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from symflex.cli.report import note, reporting
+from symflex.cli.reporting import note, reporting
 from symflex.errors import Diagnostic, UsageError
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from symflex.cli.report import note, reporting
+from symflex.cli.reporting import note, reporting
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 

@@ -1,96 +1,131 @@
-"""What all commands share: errors and notes on stderr, JSON on stdout, exit codes."""
+"""``symflex report``."""
 
 from __future__ import annotations
 
-import json
 import os
-import sys
-from functools import wraps
-from typing import TYPE_CHECKING, ParamSpec
+import re
+from datetime import UTC, date, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from symflex.errors import Diagnostic, SymflexError
+from symflex.cli.reporting import note, reporting
+from symflex.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from symflex.report import Report
+    from symflex.roots import Progress
 
-P = ParamSpec("P")
+EPOCH_VARIABLE = "SOURCE_DATE_EPOCH"
 
 
-def reporting(command: Callable[P, int | None]) -> Callable[P, int]:
-    """Turn a :class:`SymflexError` into its message on stderr and its exit code; a closed pipe is none."""
+@click.command("report")
+@click.argument("specs", nargs=-1, required=True, type=click.Path(), metavar="SPEC...")
+@click.option("-o", "--output", default="report", show_default=True, type=click.Path(), metavar="DIR",
+              help="Folder to write; what is in it stays, but for files of the same name.")  # fmt: skip
+@click.option(
+    "--pdf/--no-pdf", "pdf", default=None, help="With report.pdf; by default where pdflatex is there."
+)
+@click.option(
+    "--date", "day", metavar="YYYY-MM-DD", help="Date printed; today, or SOURCE_DATE_EPOCH. 'none' for none."
+)
+@click.option(
+    "-j",
+    "--jobs",
+    type=click.IntRange(1, 64),
+    help="Models computed at once; as many as there are processors.",
+)
+@reporting
+def command(
+    specs: tuple[str, ...], *, output: str, pdf: bool | None, day: str | None, jobs: int | None
+) -> int:
+    """Write a report on models: equations, poles and zeros, figures, comparison, code.
 
-    @wraps(command)
-    def run(*args: P.args, **kwargs: P.kwargs) -> int:
+    A SPEC that is a folder stands for all specifications in it. DIR/index.html is one page that opens without
+    a network and holds everything; beside it are report.tex and report.pdf, and the folders figures, code and
+    data. What a specification publishes is audited, models are compared, and the claims of a publication that
+    is known are judged.
+
+    Equal specifications give equal files when the date is fixed. Exit code 4 says that poles or zeros of some
+    model could not be certified, 5 that a budget was exceeded: the report is written, and says where.
+    """
+    from symflex.cli.progress import ProgressBar
+    from symflex.report import compose, find_specifications, name_specifications, write_chapters
+
+    shown = _date(day)
+    folder = Path(output)
+    if folder.exists() and not folder.is_dir():
+        raise UsageError(Diagnostic("SF903", f"cannot write into '{output}': it is not a folder"))
+    found = find_specifications([Path(spec) for spec in specs])
+    named = name_specifications(found)
+    note(f"{len(named)} model{'s' if len(named) > 1 else ''}")
+    with ProgressBar() as bar:
+        chapters = write_chapters(named, jobs or os.cpu_count() or 1, bar)
+        report = compose(chapters, shown)
+        code = _write(report, folder, pdf, shown, bar)
+    for warning in report.warnings:
+        note(f"warning: {warning}")
+    click.echo(f"open {folder / 'index.html'}")
+    return max(code, report.code)
+
+
+def _write(report: Report, folder: Path, pdf: bool | None, shown: str, bar: Progress) -> int:
+    """Write everything and say what; return an exit code."""
+    from symflex.errors import SymflexError
+    from symflex.report import compile_pdf, has_compiler, report_article, report_page, write_tree
+    from symflex.report.pdf import HOW_TO
+
+    bar.report(0.9, "writing")
+    tex = report_article(report)
+    files = {**report.files, "report.tex": tex.encode(), "index.html": report_page(report).encode()}
+    write_tree(folder, files)
+    if pdf is False:
+        return 0
+    if not has_compiler():
+        note(f"no report.pdf: there is no pdflatex on this computer; report.tex is written\n  hint: {HOW_TO}")
+        return 2 if pdf else 0
+    bar.report(0.92, "pdflatex")
+    figures = {name: data for name, data in report.files.items() if name.startswith("figures/")}
+    try:
+        made = compile_pdf(tex, figures, _epoch(shown))
+    except SymflexError as error:
+        note(str(error))
+        return error.exit_code
+    write_tree(folder, {"report.pdf": made})
+    return 0
+
+
+def _date(given: str | None) -> str:
+    """Return the date to print, empty for none."""
+    if given == "none":
+        return ""
+    if given is not None:
         try:
-            return command(*args, **kwargs) or 0
-        except SymflexError as error:
-            show_error(error)
-            return error.exit_code
-        except MemoryError:
-            show_error(SymflexError(Diagnostic("SF504", "out of memory")))
-            return 5
-        except BrokenPipeError:
-            # The reader of a pipe went away; nothing is left to tell it, neither now nor at exit.
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            return 0
-
-    return run
-
-
-def colours() -> bool:
-    """Tell whether stderr is a terminal that may be coloured."""
-    return sys.stderr.isatty() and "NO_COLOR" not in os.environ
+            return (
+                date.fromisoformat(given).isoformat()
+                if re.fullmatch(r"\d{4}-\d\d-\d\d", given)
+                else _refuse(given)
+            )
+        except ValueError:
+            return _refuse(given)
+    epoch = os.environ.get(EPOCH_VARIABLE, "")
+    if epoch:
+        try:
+            return datetime.fromtimestamp(int(epoch), UTC).date().isoformat()
+        except (ValueError, OverflowError, OSError):
+            message = f"{EPOCH_VARIABLE} is '{epoch[:40]}', not a number of seconds since 1970"
+            raise UsageError(Diagnostic("SF902", message)) from None
+    return datetime.now(UTC).date().isoformat()
 
 
-def show_error(error: SymflexError) -> None:
-    """Print every diagnostic to stderr."""
-    for diagnostic in error.diagnostics:
-        text = diagnostic.render()
-        if colours():
-            mark = f"error[{diagnostic.code}]"
-            text = text.replace(mark, click.style(mark, fg="red", bold=True), 1)
-        click.echo(text, err=True)
+def _refuse(given: str) -> str:
+    raise UsageError(
+        Diagnostic("SF902", f"--date takes a day such as 1988-12-31, or none, found '{given[:40]}'")
+    )
 
 
-def note(message: str) -> None:
-    """Print a line to stderr."""
-    click.echo(message, err=True)
-
-
-def emit_json(document: Mapping[str, object]) -> None:
-    """Print a document as JSON to stdout; what could drive a terminal is escaped."""
-    text = json.dumps(document, indent=2, ensure_ascii=False)
-    click.echo("".join(c if c.isprintable() or c == "\n" else json.dumps(c)[1:-1] for c in text))
-
-
-def diagnostic_json(diagnostic: Diagnostic) -> dict[str, object]:
-    """Return a diagnostic as JSON data."""
-    span = diagnostic.span
-    return {
-        "code": diagnostic.code,
-        "message": diagnostic.message,
-        "file": span.source.name if span else None,
-        "line": span.line if span else None,
-        "column": span.column if span else None,
-        "hint": diagnostic.hint,
-    }
-
-
-def terminal_width() -> int:
-    """Return the columns to use: the terminal's, at most 120, and 80 when there is none."""
-    if not sys.stdout.isatty():
-        return 80
-    return max(40, min(120, os.get_terminal_size(sys.stdout.fileno()).columns))
-
-
-def listed(title: str, items: Sequence[str], separator: str = ", ", indent: str = "  ") -> str:
-    """Return a title and items in lines that fit the terminal, broken between items only."""
-    width, lines = terminal_width(), [indent + title]
-    for i, item in enumerate(items):
-        piece = item + (separator if i < len(items) - 1 else "")
-        if len(lines[-1]) + len(piece.rstrip()) > width and lines[-1].strip():
-            lines.append(2 * indent)
-        lines[-1] += piece
-    return "\n".join(line.rstrip() for line in lines)
+def _epoch(shown: str) -> int:
+    """Return the seconds since 1970 of the day printed, for the file's own metadata."""
+    day = date.fromisoformat(shown) if shown else date(1970, 1, 2)
+    return int(datetime(day.year, day.month, day.day, tzinfo=UTC).timestamp())

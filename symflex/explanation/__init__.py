@@ -1,7 +1,7 @@
 """Why zeros are where they are: the constrained systems whose poles they are, with proof."""
 
 from symflex.explanation.parts import Part
-from symflex.explanation.text import explanation_json, explanation_text
+from symflex.explanation.text import explanation_json, explanation_paragraphs, explanation_text
 from symflex.explanation.zeros import EndChange, RealZero, ZeroExplanation, explain_zeros
 
 __all__ = [
@@ -11,5 +11,6 @@ __all__ = [
     "ZeroExplanation",
     "explain_zeros",
     "explanation_json",
+    "explanation_paragraphs",
     "explanation_text",
 ]

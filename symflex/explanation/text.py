@@ -38,7 +38,7 @@ def explanation_text(explained: ZeroExplanation, width: int = WIDTH) -> str:
         Columns available; names longer than a line stand over.
     """
     lines = [f"zeros of {explained.tf} explained   {CONTEXT[explained.kind]}"]
-    for paragraph in _paragraphs(explained):
+    for paragraph in explanation_paragraphs(explained):
         lines.append("")
         for i, line in enumerate(paragraph):
             first = INDENT if i == 0 else 2 * INDENT
@@ -86,11 +86,11 @@ def explanation_json(explained: ZeroExplanation) -> dict[str, object]:
         "beam_between": None
         if bending is None
         else {"name": bending.name, "massless": bending.is_massless, "evanescent": bending.is_evanescent},
-        "text": [" ".join(paragraph) for paragraph in _paragraphs(explained)],
+        "text": [" ".join(paragraph) for paragraph in explanation_paragraphs(explained)],
     }
 
 
-def _paragraphs(explained: ZeroExplanation) -> Iterator[list[str]]:
+def explanation_paragraphs(explained: ZeroExplanation) -> Iterator[list[str]]:
     """Yield what there is to say; the lines after the first of a paragraph are items."""
     output, source = explained.output, explained.input
     if explained.kind == "zero":

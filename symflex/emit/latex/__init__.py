@@ -11,9 +11,11 @@ from symflex.emit.latex.document import (
 )
 from symflex.emit.latex.equation import (
     equation_label,
+    formula_latex,
     inline_latex,
     model_labels,
     notebook_latex,
+    ratio_latex,
     transfer_function_latex,
 )
 from symflex.emit.latex.expression import latex_expression
@@ -29,6 +31,7 @@ __all__ = [
     "column_width",
     "equation_label",
     "escape_text",
+    "formula_latex",
     "inline_latex",
     "label_of",
     "latex_document",
@@ -39,6 +42,7 @@ __all__ = [
     "model_labels",
     "notebook_latex",
     "parameter_table",
+    "ratio_latex",
     "root_table",
     "transfer_function_latex",
 ]

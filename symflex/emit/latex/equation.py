@@ -19,7 +19,7 @@ from symflex.expressions import Call, Derivative, Expression, Name, Negative, Nu
 from symflex.kernels import LAPLACE
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from symflex.emit.forms import PrintedForm
     from symflex.model import Input, Model, Output
@@ -43,6 +43,7 @@ _ARGUMENT: Final = 1.25
 _WHERE: Final = r"\text{where}\quad "
 _WHERE_WIDTH: Final = 3.57
 _LEAST_ROOM: Final = 17.5
+_WIDEST_LEFT: Final = 6.0
 _NUMERATORS: Final = (("N", "D"), ("P", "Q"), ("B", "A"), (r"\mathcal{N}", r"\mathcal{D}"))
 
 
@@ -83,7 +84,9 @@ def ratio_latex(tf: TransferFunction) -> str:
     return f"{above}/{below}"
 
 
-def transfer_function_latex(tf: TransferFunction, form: PrintedForm, *, width_mm: float | None) -> str:
+def transfer_function_latex(
+    tf: TransferFunction, form: PrintedForm, *, width_mm: float | None, label: str = ""
+) -> str:
     r"""Return a transfer function as a numbered display, with its definitions in ``where`` lines.
 
     Parameters
@@ -94,24 +97,68 @@ def transfer_function_latex(tf: TransferFunction, form: PrintedForm, *, width_mm
         Its numerator, denominator and definitions.
     width_mm : float or None
         Width of the text, set in ten points, treated as 80 mm when it is less; ``None`` never breaks a line.
+    label : str, optional
+        In place of :func:`equation_label` of the name, where several models share a document.
 
     Returns
     -------
     str
         ``equation`` when one line suffices, else ``align`` with numerator and denominator named and broken.
-        The label is :func:`equation_label` of the name.
     """
-    writer = Writer(_labels(tf, form))
+    writer = Writer(form_labels(tf, form))
     width = None if width_mm is None else max(width_mm, NARROWEST_MM) / EM_MM
-    parts = [_formula(tf, form, writer, width)]
+    parts = [_formula(tf, form, writer, width, label or equation_label(tf.name))]
     if form.where or form.laws:
         parts.append(_where(form, writer, width))
     return "\n".join(parts)
 
 
+def formula_latex(
+    left: str,
+    expression: Expression,
+    where: Sequence[tuple[str, Expression]],
+    labels: Mapping[str, str],
+    *,
+    width_mm: float,
+) -> str:
+    r"""Return an equation of any expression as a display without a number, broken where it must be.
+
+    Parameters
+    ----------
+    left : str
+        LaTeX of its left side.
+    expression : Expression
+        Its right side.
+    where : sequence of (str, Expression)
+        Lines below it.
+    labels : Mapping of str to str
+        Declared labels.
+    width_mm : float
+        Width of the text, set in ten points.
+
+    Examples
+    --------
+    >>> print(formula_latex("y", Name("omega_p1"), (), {}, width_mm=80))
+    \begin{align*}
+      y &= \omega_{p1}
+    \end{align*}
+    """
+    writer = Writer(labels)
+    width = max(width_mm, NARROWEST_MM) / EM_MM
+    # The commands of the left side are wider than what they print.
+    left_width = min(float(len(left)), _WIDEST_LEFT)
+    rows = [_row(left, left_width, expression, writer, width, left_width)]
+    parts = [_align(rows, "align*", "")]
+    if where:
+        lines = _broken_rows(where, writer, width - _WHERE_WIDTH)
+        lines[0] = _Row(f"{_WHERE}{lines[0].left}", lines[0].left_width, lines[0].right)
+        parts.append(_align(lines, "align*", ""))
+    return "\n".join(parts)
+
+
 def inline_latex(tf: TransferFunction, form: PrintedForm) -> str:
     r"""Return a transfer function as one line of mathematics without delimiters, for notebooks and HTML."""
-    writer = Writer(_labels(tf, form))
+    writer = Writer(form_labels(tf, form))
     formula = f"{_left_side(tf)[0]} = {_right_side(form, writer)[0]}"
     if not (form.where or form.laws):
         return formula
@@ -131,7 +178,7 @@ def notebook_latex(tf: TransferFunction, form: PrintedForm) -> str | None:
         :func:`inline_latex`, or an ``aligned`` environment. None when it would be longer than
         :data:`LONGEST_IN_NOTEBOOK` characters, which a page takes seconds to set.
     """
-    writer = Writer(_labels(tf, form))
+    writer = Writer(form_labels(tf, form))
     width = NOTEBOOK_MM / EM_MM
     right, right_width = _right_side(form, writer)
     if len(right) > LONGEST_IN_NOTEBOOK:
@@ -149,7 +196,8 @@ def notebook_latex(tf: TransferFunction, form: PrintedForm) -> str | None:
     return latex if len(latex) <= LONGEST_IN_NOTEBOOK else None
 
 
-def _labels(tf: TransferFunction, form: PrintedForm) -> dict[str, str]:
+def form_labels(tf: TransferFunction, form: PrintedForm) -> dict[str, str]:
+    """Return the labels of every name in a printed form: the model's, and those the form brings."""
     labels = model_labels(tf.model)
     own = [(name, "") for name, _ in (*form.where, *form.laws) if name not in labels]
     return labels_of(own, labels)
@@ -165,29 +213,31 @@ def _left_side(tf: TransferFunction) -> tuple[str, float]:
     return rf"\frac{{{above}}}{{{below}}}", max(above_width, below_width) + FRACTION_EDGES.text
 
 
-def _signed(form: PrintedForm) -> tuple[str, Expression]:
+def split_sign(form: PrintedForm) -> tuple[str, Expression]:
+    """Return the sign that stands before the fraction, and the numerator without it."""
     num = form.num
     return ("-", num.operand) if isinstance(num, Negative) else ("", num)
 
 
-def _is_one(expression: Expression) -> bool:
+def is_one(expression: Expression) -> bool:
+    """Tell whether an expression is the number 1, as the denominator of what has none."""
     return isinstance(expression, Number) and expression.value == 1
 
 
 def _right_side(form: PrintedForm, writer: Writer) -> tuple[str, float]:
-    if _is_one(form.den):
+    if is_one(form.den):
         piece = writer.piece(form.num)
         return piece.latex, piece.width
-    sign, num = _signed(form)
+    sign, num = split_sign(form)
     above, below = writer.piece(num, Style.TEXT), writer.piece(form.den, Style.TEXT)
     width = max(above.width, below.width) + FRACTION_EDGES.text + (MINUS if sign else 0)
     return rf"{sign}\frac{{{above.latex}}}{{{below.latex}}}", width
 
 
-def _formula(tf: TransferFunction, form: PrintedForm, writer: Writer, width: float | None) -> str:
+def _formula(tf: TransferFunction, form: PrintedForm, writer: Writer, width: float | None, name: str) -> str:
     left, left_width = _left_side(tf)
     right, right_width = _right_side(form, writer)
-    label = rf"\label{{{equation_label(tf.name)}}}"
+    label = rf"\label{{{name}}}"
     # Where only the number lacks room, it stands below the formula by itself.
     if width is None or left_width + RELATION + right_width <= width:
         return f"\\begin{{equation}}\n  {label}\n  {left} = {right}\n\\end{{equation}}"
@@ -197,17 +247,17 @@ def _formula(tf: TransferFunction, form: PrintedForm, writer: Writer, width: flo
 def _rows(tf: TransferFunction, form: PrintedForm, writer: Writer, width: float) -> list[_Row]:
     """Return the equations that a formula too wide for one line is made of."""
     left, left_width = _left_side(tf)
-    if _is_one(form.den):
+    if is_one(form.den):
         return [_row(left, left_width, form.num, writer, width, left_width, _TAG)]
     return _named_parts(form, writer, width, left, left_width)
 
 
 def _named_parts(form: PrintedForm, writer: Writer, width: float, left: str, left_width: float) -> list[_Row]:
     """Return the quotient of what is short and of names for what is not, and what the names stand for."""
-    sign, num = _signed(form)
-    varying = _varying(form)
+    sign, num = split_sign(form)
+    varying = varying_names(form)
     parts = []
-    for name, expression in zip(_free_names(form, writer), (num, form.den), strict=True):
+    for name, expression in zip(free_names(form, writer), (num, form.den), strict=True):
         piece = writer.piece(expression, Style.TEXT)
         is_long = left_width + RELATION + MINUS + FRACTION_EDGES.text + piece.width + _TAG > width
         depends = any(n.name in varying for n in names(expression))
@@ -222,7 +272,7 @@ def _named_parts(form: PrintedForm, writer: Writer, width: float, left: str, lef
     return rows
 
 
-def _varying(form: PrintedForm) -> frozenset[str]:
+def varying_names(form: PrintedForm) -> frozenset[str]:
     """Return s, and the names that stand for functions of it."""
     varying = {LAPLACE, *(name for name, _ in form.laws)}
     # A line may use the names of any other.
@@ -233,7 +283,7 @@ def _varying(form: PrintedForm) -> frozenset[str]:
     return frozenset(varying)
 
 
-def _free_names(form: PrintedForm, writer: Writer) -> tuple[str, str]:
+def free_names(form: PrintedForm, writer: Writer) -> tuple[str, str]:
     """Return names for numerator and denominator that no symbol of the formula bears."""
     expressions = [form.num, form.den, *(e for _, e in form.where)]
     used = {n.name for e in expressions for n in names(e) if isinstance(n, Name)}

@@ -12,7 +12,7 @@ import pytest
 
 from symflex import __version__, pipeline
 from symflex.cli import COMMANDS
-from symflex.cli.report import listed
+from symflex.cli.reporting import listed
 from symflex.elements import ELEMENTS
 from symflex.errors import BudgetError, Diagnostic
 from tests.unit.cli.commands import DERIVATIONS, ROOT, TWO_MASS

@@ -163,7 +163,7 @@ def test_responses_to_one_force_give_mass_normalised_mode_shapes(shell, tmp_path
     low = np.array([1, golden]) / np.sqrt(m * (1 + golden**2))
     assert found["responses"] == ["a/F", "b/F"]
     assert found["unit"] == "kg^(-1/2)"
-    assert found["shapes"] == pytest.approx([low.tolist(), [low[1], -low[0]]], rel=1e-4)
+    assert np.array(found["shapes"]) == pytest.approx(np.array([low, [low[1], -low[0]]]), rel=1e-4)
     text = shell("fit", *files, "--driving", "a/F", "--modes", "2").out
     assert "mass-normalised mode shapes [kg^(-1/2)], driven at a/F" in text
     assert max(map(len, text.splitlines())) <= 80

@@ -1,0 +1,96 @@
+"""What all commands share: errors and notes on stderr, JSON on stdout, exit codes."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from functools import wraps
+from typing import TYPE_CHECKING, ParamSpec
+
+import click
+
+from symflex.errors import Diagnostic, SymflexError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+P = ParamSpec("P")
+
+
+def reporting(command: Callable[P, int | None]) -> Callable[P, int]:
+    """Turn a :class:`SymflexError` into its message on stderr and its exit code; a closed pipe is none."""
+
+    @wraps(command)
+    def run(*args: P.args, **kwargs: P.kwargs) -> int:
+        try:
+            return command(*args, **kwargs) or 0
+        except SymflexError as error:
+            show_error(error)
+            return error.exit_code
+        except MemoryError:
+            show_error(SymflexError(Diagnostic("SF504", "out of memory")))
+            return 5
+        except BrokenPipeError:
+            # The reader of a pipe went away; nothing is left to tell it, neither now nor at exit.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            return 0
+
+    return run
+
+
+def colours() -> bool:
+    """Tell whether stderr is a terminal that may be coloured."""
+    return sys.stderr.isatty() and "NO_COLOR" not in os.environ
+
+
+def show_error(error: SymflexError) -> None:
+    """Print every diagnostic to stderr."""
+    for diagnostic in error.diagnostics:
+        text = diagnostic.render()
+        if colours():
+            mark = f"error[{diagnostic.code}]"
+            text = text.replace(mark, click.style(mark, fg="red", bold=True), 1)
+        click.echo(text, err=True)
+
+
+def note(message: str) -> None:
+    """Print a line to stderr."""
+    click.echo(message, err=True)
+
+
+def emit_json(document: Mapping[str, object]) -> None:
+    """Print a document as JSON to stdout; what could drive a terminal is escaped."""
+    text = json.dumps(document, indent=2, ensure_ascii=False)
+    click.echo("".join(c if c.isprintable() or c == "\n" else json.dumps(c)[1:-1] for c in text))
+
+
+def diagnostic_json(diagnostic: Diagnostic) -> dict[str, object]:
+    """Return a diagnostic as JSON data."""
+    span = diagnostic.span
+    return {
+        "code": diagnostic.code,
+        "message": diagnostic.message,
+        "file": span.source.name if span else None,
+        "line": span.line if span else None,
+        "column": span.column if span else None,
+        "hint": diagnostic.hint,
+    }
+
+
+def terminal_width() -> int:
+    """Return the columns to use: the terminal's, at most 120, and 80 when there is none."""
+    if not sys.stdout.isatty():
+        return 80
+    return max(40, min(120, os.get_terminal_size(sys.stdout.fileno()).columns))
+
+
+def listed(title: str, items: Sequence[str], separator: str = ", ", indent: str = "  ") -> str:
+    """Return a title and items in lines that fit the terminal, broken between items only."""
+    width, lines = terminal_width(), [indent + title]
+    for i, item in enumerate(items):
+        piece = item + (separator if i < len(items) - 1 else "")
+        if len(lines[-1]) + len(piece.rstrip()) > width and lines[-1].strip():
+            lines.append(2 * indent)
+        lines[-1] += piece
+    return "\n".join(line.rstrip() for line in lines)

@@ -1,0 +1,28 @@
+"""A report on one or several models: a page, an article, figures, code and data in one folder.
+
+Input: specifications.
+Output: a :class:`Report`, which :func:`report_page` and :func:`report_article` print.
+
+What a report says about each model is in :data:`symflex.report.sections.SECTIONS`, how models are compared in
+:data:`symflex.report.comparison.COLUMNS`, and what publications claim in
+:data:`symflex.report.claims.PUBLICATIONS`.
+"""
+
+from symflex.report.article import report_article
+from symflex.report.folder import write_tree
+from symflex.report.page import report_page
+from symflex.report.pdf import compile_pdf, has_compiler
+from symflex.report.report import Report, compose, find_specifications, name_specifications, write_chapters
+
+__all__ = [
+    "Report",
+    "compile_pdf",
+    "compose",
+    "find_specifications",
+    "has_compiler",
+    "name_specifications",
+    "report_article",
+    "report_page",
+    "write_chapters",
+    "write_tree",
+]

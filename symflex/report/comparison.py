@@ -1,0 +1,168 @@
+"""The models of a report beside each other, as a computed table.
+
+A new column is a function of :class:`~symflex.report.facts.ModelFacts` and a line in :data:`COLUMNS`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from symflex.report.document import (
+    Aside,
+    Cell,
+    Code,
+    Link,
+    Mark,
+    Paragraph,
+    Section,
+    Side,
+    Table,
+    columns,
+    text,
+)
+from symflex.report.facts import ModelFacts
+from symflex.report.numerals import counted
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.report.document import Run
+    from symflex.report.facts import TransferFacts
+
+NONE: Final = "–"
+ANCHOR: Final = "comparison"
+
+
+def model_cell(facts: ModelFacts) -> Cell:
+    """Return the model's file and a link to its chapter."""
+    return (Link(facts.stem, f"#{facts.stem}"),)
+
+
+def flexibility_cell(facts: ModelFacts) -> Cell:
+    """Return which kinds of flexibility a model describes."""
+    runs: list[Run] = []
+    for place in ("base", "transmission", "link"):
+        parts = [c for c in facts.compliances if c.place == place]
+        if parts:
+            how = "bending" if all(c.is_bending for c in parts) else "axial or torsional"
+            runs += [place, " ", Aside(how), "\n"]
+    return tuple(runs[:-1]) if runs else (NONE,)
+
+
+def modes_cell(facts: ModelFacts) -> Cell:
+    """Return the number of flexible modes."""
+    if any(f.is_infinite for f in facts.functions):
+        return ("∞",)
+    return (str(max((f.modes for f in facts.functions), default=0)),)
+
+
+def added_cell(facts: ModelFacts) -> Cell:
+    """Return the poles and zeros that each flexible mode adds to the rigid system."""
+    runs: list[Run] = []
+    for function in representatives(facts):
+        if function.added is None or not function.modes:
+            continue
+        zeros, poles = function.added
+        where = {True: ", colocated", False: ", noncolocated", None: ""}[function.colocated]
+        runs += [_per_mode(poles, zeros, function), "\n", Aside(function.tf + where), "\n"]
+    return tuple(runs[:-1]) if runs else (NONE,)
+
+
+def phase_cell(facts: ModelFacts) -> Cell:
+    """Return which functions are minimum phase, and for which values of the parameters."""
+    runs: list[Run] = []
+    for function in representatives(facts):
+        runs += [Code(function.tf), " ", *phase_runs(function), "\n"]
+    return tuple(runs[:-1]) if runs else (NONE,)
+
+
+def both_cell(facts: ModelFacts) -> Cell:
+    """Return whether a model has colocated and noncolocated transfer functions."""
+    kinds = {f.colocated for f in facts.functions} - {None}
+    if kinds == {True, False}:
+        return (Mark("both", "good"),)
+    return ("colocated only" if kinds == {True} else "noncolocated only" if kinds else NONE,)
+
+
+@dataclass(frozen=True, slots=True)
+class ComparisonColumn:
+    """A column of the comparison.
+
+    Parameters
+    ----------
+    cell : callable
+        Returns its cell in a model's row.
+    side : str
+        As in :class:`~symflex.report.document.Column`.
+    """
+
+    cell: Callable[[ModelFacts], Cell]
+    side: Side = "text"
+
+
+COLUMNS: dict[str, ComparisonColumn] = {
+    "Model": ComparisonColumn(model_cell, "plain"),
+    "Flexibility": ComparisonColumn(flexibility_cell),
+    "Modes": ComparisonColumn(modes_cell, "number"),
+    "Added by each mode": ComparisonColumn(added_cell, "plain"),
+    "Minimum phase": ComparisonColumn(phase_cell),
+    "Colocated or not": ComparisonColumn(both_cell),
+}
+"""By their heads, in the order of the table."""
+
+
+def comparison_section(models: Sequence[ModelFacts]) -> Section | None:
+    """Return the table of models, None for fewer than two."""
+    if len(models) < 2:  # noqa: PLR2004 - one model compares with nothing
+        return None
+    rows = tuple(tuple(column.cell(facts) for column in COLUMNS.values()) for facts in models)
+    heads = columns(*((head, column.side) for head, column in COLUMNS.items()))
+    explained: tuple[Paragraph, ...] = (
+        text(
+            "Poles and zeros are counted with multiplicity, and against the same model with all its "
+            "springs and "
+            "massless beams made rigid (exact limits). For beams and other distributed parts those "
+            "through the "
+            "highest pole listed are counted. Of functions that agree in all of this one is shown."
+        ),
+        text(
+            "Minimum phase means: no zero in the open right half plane. “For all values” is proved for all "
+            "positive values of the parameters. A function is colocated when its output is taken where "
+            "the input "
+            "acts, or rigidly joined to it. A compliance with an end on ground belongs to the base; "
+            "between moving "
+            "parts, one in bending to a link, another to the transmission."
+        ),
+    )
+    return Section("Comparison of models", (Table(heads, rows), *explained), ANCHOR)
+
+
+def representatives(facts: ModelFacts) -> tuple[TransferFacts, ...]:
+    """Return one function of each kind: those that differ only in the power of s of their output are one."""
+    found: dict[tuple[object, ...], TransferFacts] = {}
+    for f in facts.functions:
+        found.setdefault((f.colocated, f.added, f.modes, f.condition, f.right_half_plane_zeros), f)
+    return tuple(found.values())
+
+
+def phase_runs(function: TransferFacts) -> tuple[Run, ...]:
+    """Return whether a function is minimum phase, and the condition where one is known."""
+    shown = ", as far as listed" if function.is_infinite else ""
+    if function.condition == "always":
+        return (Mark("yes", "good"), ", for all values")
+    if function.condition == "if positive" and function.bracket_mathematics is not None:
+        verdict = Mark("yes", "good") if function.is_minimum_phase else Mark("no", "bad")
+        return (verdict, "; exactly when ", function.bracket_mathematics, " ≥ 0")
+    if not function.is_minimum_phase:
+        count = f": {counted(function.right_half_plane_zeros, 'zero')} in the right half plane{shown}"
+        for_all = ", for all values" if function.condition in ("never", "as given") else ", for these values"
+        return (Mark("no", "bad"), for_all + count)
+    return (Mark("yes", "good"), f", for these values{shown}")
+
+
+def _per_mode(poles: int, zeros: int, function: TransferFacts) -> str:
+    if poles % function.modes or zeros % function.modes:
+        return f"{counted(poles, 'pole')}, {counted(zeros, 'zero')} in {counted(function.modes, 'mode')}"
+    return f"{counted(poles // function.modes, 'pole')}, {counted(zeros // function.modes, 'zero')}"

@@ -1,0 +1,218 @@
+"""What a report is made of: blocks that say nothing of the page or paper they end up on.
+
+Text in blocks is plain: the printers (:mod:`symflex.report.page`, :mod:`symflex.report.article`) escape all
+of it. Mathematics comes from the printers of :mod:`symflex.emit`, in both languages, and is sound in them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+from symflex.emit.latex import latex_expression, model_labels
+from symflex.emit.mathml import mathml_expression
+
+if TYPE_CHECKING:
+    from symflex.emit.mathml import Row
+    from symflex.expressions import Expression
+    from symflex.model import Model
+
+Verdict: TypeAlias = Literal["holds", "holds with a condition", "does not hold", "not examined"]
+Side: TypeAlias = Literal["text", "plain", "number"]
+
+
+@dataclass(frozen=True, slots=True)
+class Mathematics:
+    """Mathematics in a line of text.
+
+    Parameters
+    ----------
+    mathml : str
+        Content of a ``math`` element.
+    latex : str
+        For math mode.
+    """
+
+    mathml: str
+    latex: str
+
+
+@dataclass(frozen=True, slots=True)
+class Code:
+    """A name of a file, key or command."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A verdict, or another word that a reader looks for."""
+
+    text: str
+    tone: Literal["good", "fair", "bad", "quiet"] = "quiet"
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """A word that leads to a file of the report's folder, or to a heading (``#...``)."""
+
+    text: str
+    target: str
+
+
+@dataclass(frozen=True, slots=True)
+class Aside:
+    """Words of less weight than those beside them."""
+
+    text: str
+
+
+Run: TypeAlias = "str | Mathematics | Code | Mark | Link | Aside"
+"""A line break is ``"\\n"``."""
+
+Cell: TypeAlias = "tuple[Run, ...]"
+
+
+@dataclass(frozen=True, slots=True)
+class Paragraph:
+    """Running text."""
+
+    runs: tuple[Run, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Formula:
+    """A displayed equation.
+
+    Parameters
+    ----------
+    rows : tuple of Row
+        For pages.
+    latex : str
+        A display for paper, such as an ``equation`` environment.
+    name : str
+        What it is an equation of, for those who do not see it.
+    """
+
+    rows: tuple[Row, ...]
+    latex: str
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A column of a table.
+
+    Parameters
+    ----------
+    head : tuple of Run
+        Its head.
+    side : str
+        ``text`` is broken into lines, ``plain`` is not, a ``number`` stands at the right.
+    """
+
+    head: Cell
+    side: Side = "text"
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A table.
+
+    Parameters
+    ----------
+    columns : tuple of Column
+        Heads and how cells stand.
+    rows : tuple of tuple of Cell
+        As many cells each as there are columns.
+    caption : str
+        Plain text above it.
+    latex : str
+        A table for paper that is printed instead, where one was made for it; empty without.
+    """
+
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    caption: str = ""
+    latex: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A figure.
+
+    Parameters
+    ----------
+    stem : str
+        Of its files in the folder of figures, ``stem.pdf`` and ``stem.svg``.
+    svg : str
+        As matplotlib writes it.
+    caption : str
+        Plain text.
+    """
+
+    stem: str
+    svg: str
+    caption: str
+
+
+@dataclass(frozen=True, slots=True)
+class Listing:
+    """Verbatim text under a title; pages fold it."""
+
+    title: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Notice:
+    """Something that could not be done, and why."""
+
+    text: str
+
+
+Block: TypeAlias = "Paragraph | Formula | Table | Picture | Listing | Notice | Section"
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A heading and what follows it.
+
+    Parameters
+    ----------
+    title : str
+        Plain text.
+    blocks : tuple of Block
+        In order.
+    anchor : str
+        Of letters, digits and hyphens; unique in its report.
+    mathematics : Mathematics or None
+        Stands in place of the title.
+    """
+
+    title: str
+    blocks: tuple[Block, ...]
+    anchor: str
+    mathematics: Mathematics | None = field(default=None)
+
+
+def text(*runs: Run) -> Paragraph:
+    """Return a paragraph."""
+    return Paragraph(runs)
+
+
+def columns(*heads: str | tuple[str, Side]) -> tuple[Column, ...]:
+    """Return columns with plain heads.
+
+    Examples
+    --------
+    >>> [c.side for c in columns("Meaning", ("Value", "number"))]
+    ['text', 'number']
+    """
+    return tuple(Column((h,)) if isinstance(h, str) else Column((h[0],), h[1]) for h in heads)
+
+
+def mathematics(expression: Expression, model: Model) -> Mathematics:
+    """Return an expression with a model's labels."""
+    labels = model_labels(model)
+    return Mathematics(mathml_expression(expression, labels), latex_expression(expression, labels))

@@ -1,0 +1,364 @@
+"""What a report compares and judges: facts about each transfer function of a model, as plain data.
+
+Input: a :class:`~symflex.report.study.Study`.
+Output: a :class:`ModelFacts`. Everything in it can be sent to another process and written as JSON.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from math import inf
+from typing import TYPE_CHECKING, Final, Literal
+
+from symflex.expressions import format_expression
+from symflex.report.document import Mathematics, mathematics
+from symflex.report.minimum_phase import PhaseCondition, minimum_phase
+from symflex.report.structure import compliances, is_colocated
+
+if TYPE_CHECKING:
+    from symflex.audit import Audit
+    from symflex.report.structure import Compliance
+    from symflex.report.study import Study
+    from symflex.roots import PoleZeroMap, Root
+    from symflex.transfer import TransferFunction
+
+Place = Literal["origin", "imaginary axis", "real axis", "plane"]
+
+SCHEMA: Final = "symflex.report-facts/1"
+TRUNCATED_MODES: Final = 5
+
+
+@dataclass(frozen=True, slots=True)
+class RootFact:
+    """A pole or zero.
+
+    Parameters
+    ----------
+    re, im : float
+        [rad/s], in double precision.
+    radius : float
+        Bound on the distance of the printed decimals from the root [rad/s].
+    place : str
+        ``origin``, ``imaginary axis`` or ``real axis`` where that is proved, else ``plane``.
+    multiplicity : int
+        As often as it is counted.
+    frequency_hz : float
+        abs(s)/(2 pi).
+    """
+
+    re: float
+    im: float
+    radius: float
+    place: Place
+    multiplicity: int
+    frequency_hz: float
+
+    @property
+    def is_in_right_half_plane(self) -> bool:
+        """Whether the root is proved to have a positive real part."""
+        return self.place in ("real axis", "plane") and self.re - self.radius > 0
+
+    @property
+    def is_oscillatory(self) -> bool:
+        """Whether it is the upper member of a conjugate pair."""
+        return self.place in ("imaginary axis", "plane") and self.im > 0
+
+
+@dataclass(frozen=True, slots=True)
+class Truncation:
+    """How far a product of the lowest modes is right.
+
+    Parameters
+    ----------
+    modes : int
+        How many it keeps.
+    last_hz : float
+        Natural frequency of the last one [Hz].
+    one_percent_hz, five_percent_hz : float
+        Up to which its relative error stays within 1 % and 5 % (sampled).
+    """
+
+    modes: int
+    last_hz: float
+    one_percent_hz: float
+    five_percent_hz: float
+
+
+@dataclass(frozen=True, slots=True)
+class TransferFacts:
+    """Facts about one transfer function.
+
+    Parameters
+    ----------
+    tf, quantity : str
+        ``"OUT/IN"``; receptance, mobility, ...
+    poles, zeros : tuple of RootFact
+        Those in the report's tables, by natural frequency.
+    certified : bool
+        All of them are proved, and their number.
+    is_infinite : bool
+        There are more: the function is transcendental.
+    counts : (int, int) or None
+        Zeros and poles of a rational function, with multiplicity.
+    rigid, undamped : (int, int) or None
+        The same with all compliances rigid, and with all dampers taken away; None where there is no limit.
+    colocated : bool or None
+        The output is taken where the input acts; None where one of them has no place.
+    explained : str
+        What its zeros are the poles of: a kind of :class:`~symflex.explanation.ZeroExplanation`.
+    condition, reason : str
+        When it is minimum phase; see :class:`~symflex.report.minimum_phase.PhaseCondition`.
+    bracket : str
+        The expression that must not be negative, in the spec language; empty without one.
+    bracket_mathematics : Mathematics or None
+        The same for print.
+    truncation : Truncation or None
+        Of distributed systems.
+    """
+
+    tf: str
+    quantity: str
+    poles: tuple[RootFact, ...]
+    zeros: tuple[RootFact, ...]
+    certified: bool
+    is_infinite: bool
+    counts: tuple[int, int] | None
+    rigid: tuple[int, int] | None
+    undamped: tuple[int, int] | None
+    colocated: bool | None
+    explained: str
+    condition: str
+    reason: str
+    bracket: str = ""
+    bracket_mathematics: Mathematics | None = None
+    truncation: Truncation | None = None
+
+    @property
+    def right_half_plane_zeros(self) -> int:
+        """Zeros in the right half plane among those listed."""
+        return sum(z.multiplicity for z in self.zeros if z.is_in_right_half_plane)
+
+    @property
+    def is_minimum_phase(self) -> bool:
+        """Whether none of the zeros listed lies in the right half plane."""
+        return not self.right_half_plane_zeros
+
+    @property
+    def searched_hz(self) -> float:
+        """Natural frequency up to which both poles and zeros are listed [Hz]; infinite when all are."""
+        if not self.is_infinite:
+            return inf
+        ends = [max((r.frequency_hz for r in roots), default=0.0) for roots in (self.poles, self.zeros)]
+        return min(ends) if self.zeros else ends[0]
+
+    @property
+    def modes(self) -> int:
+        """Flexible modes: those that rigid compliances take away; pairs of poles of distributed systems."""
+        if self.rigid is not None and self.counts is not None:
+            return (self.counts[1] - self.rigid[1]) // 2
+        return sum(p.multiplicity for p in self.poles if p.is_oscillatory) if self.is_infinite else 0
+
+    @property
+    def added(self) -> tuple[int, int] | None:
+        """Zeros and poles that flexibility adds, the listed ones of a distributed system; None without it."""
+        if self.rigid is not None and self.counts is not None:
+            return self.counts[0] - self.rigid[0], self.counts[1] - self.rigid[1]
+        if not self.is_infinite or not self.modes:
+            return None
+        last = max(p.frequency_hz for p in self.poles if p.is_oscillatory)
+        if self.searched_hz < last and len(self.zeros) < len(self.poles) - 1:
+            return None
+        kept = [z for z in self.zeros if 0 < z.frequency_hz < last]
+        return sum(z.multiplicity for z in kept), 2 * self.modes
+
+    @property
+    def alternates(self) -> bool:
+        """Whether all poles and zeros listed lie on the imaginary axis and take turns there."""
+        listed = (*self.poles, *self.zeros)
+        if any(r.place not in ("imaginary axis", "origin") for r in listed):
+            return False
+        ups = [(r.im, kind) for kind, roots in (("pole", self.poles), ("zero", self.zeros)) for r in roots]
+        row = [kind for im, kind in sorted(x for x in ups if x[0] > 0)]
+        return len(row) > 1 and all(a != b for a, b in itertools.pairwise(row))
+
+    @property
+    def has_mirrored_real_zeros(self) -> bool:
+        """Whether there are zeros, all real, each with its mirror image in the imaginary axis."""
+        found = [z for z in self.zeros if z.place != "origin"]
+        right = sorted(z.re for z in found if z.re > 0)
+        left = sorted(-z.re for z in found if z.re < 0)
+        slack = sum(z.radius for z in found)
+        is_mirrored = len(left) == len(right) and all(
+            abs(a - b) <= slack for a, b in zip(left, right, strict=True)
+        )
+        return bool(found) and all(z.place == "real axis" for z in found) and is_mirrored
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return the facts as JSON data; the roots themselves are in the report's ``roots.json``."""
+        added = self.added
+        return {
+            "tf": self.tf,
+            "quantity": self.quantity,
+            "certified": self.certified,
+            "is_infinite": self.is_infinite,
+            "zeros": None if self.counts is None else self.counts[0],
+            "poles": None if self.counts is None else self.counts[1],
+            "modes": self.modes,
+            "zeros_added": None if added is None else added[0],
+            "poles_added": None if added is None else added[1],
+            "colocated": self.colocated,
+            "zeros_are_poles_of": self.explained,
+            "right_half_plane_zeros": self.right_half_plane_zeros,
+            "minimum_phase": {
+                "condition": self.condition,
+                "reason": self.reason,
+                "bracket": self.bracket or None,
+            },
+            "alternates": self.alternates,
+            "mirrored_real_zeros": self.has_mirrored_real_zeros,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class ModelFacts:
+    """Facts about one model.
+
+    Parameters
+    ----------
+    stem, title, source : str
+        Name of its file without suffix, title and source; those may be empty.
+    compliances : tuple of Compliance
+        What gives way in it.
+    is_distributed : bool
+        It has infinitely many modes.
+    has_signals : bool
+        It holds signals, blocks or sources besides its structure.
+    functions : tuple of TransferFacts
+        Of its transfer functions that could be bound to numbers.
+    audits : tuple of (str, str, str)
+        Printed formulas, "OUT/IN", their verdicts, and what should be changed in them, in words.
+    """
+
+    stem: str
+    title: str
+    source: str
+    compliances: tuple[Compliance, ...]
+    is_distributed: bool
+    has_signals: bool
+    functions: tuple[TransferFacts, ...]
+    audits: tuple[tuple[str, str, str], ...]
+
+    def of(self, tf: str) -> TransferFacts:
+        """Return the facts of one transfer function.
+
+        Raises
+        ------
+        KeyError
+            When there are none.
+        """
+        for facts in self.functions:
+            if facts.tf == tf:
+                return facts
+        raise KeyError(tf)
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return the facts as JSON data."""
+        return {
+            "schema": SCHEMA,
+            "model": self.stem,
+            "title": self.title,
+            "source": self.source,
+            "compliances": [
+                {"name": c.name, "bends": c.is_bending, "place": c.place} for c in self.compliances
+            ],
+            "transfer_functions": [f.to_json_dict() for f in self.functions],
+        }
+
+
+def facts_of(study: Study) -> ModelFacts:
+    """Return the facts about a model.
+
+    Parameters
+    ----------
+    study : Study
+        The model with its transfer functions; those that cannot be bound to numbers have no facts.
+    """
+    model = study.model
+    rigid, undamped = study.rigid_counts, study.undamped_counts
+    functions = []
+    for tf, found, explained in study.located:
+        pair = (tf.output.name, tf.input.name)
+        # A function of numbers alone says nothing about other values.
+        condition = minimum_phase(tf, explained) if study.has_symbols else PhaseCondition("unknown", "")
+        functions.append(
+            TransferFacts(
+                tf=tf.name,
+                quantity=tf.quantity,
+                poles=_root_facts(found, "poles"),
+                zeros=_root_facts(found, "zeros"),
+                certified=found.certificate.certified,
+                is_infinite=found.is_infinite,
+                counts=None if found.is_infinite else tf.order,
+                rigid=rigid.get(pair),
+                undamped=undamped.get(pair),
+                colocated=is_colocated(model, tf.output, tf.input),
+                explained=explained.kind,
+                condition=condition.kind,
+                reason=condition.reason,
+                truncation=_truncation(study, tf, found),
+                bracket="" if condition.expression is None else format_expression(condition.expression),
+                bracket_mathematics=_bracket(condition, tf),
+            )
+        )
+    return ModelFacts(
+        stem=study.stem,
+        title=model.title,
+        source=model.source,
+        compliances=compliances(model),
+        is_distributed=model.is_distributed,
+        has_signals=bool(model.signals or model.blocks),
+        functions=tuple(functions),
+        audits=tuple((audit.tf.name, audit.verdict, _changes(audit)) for audit in study.audits),
+    )
+
+
+def _changes(audit: Audit) -> str:
+    shown = [
+        f"{c.place}: {format_expression(c.printed)} should be {format_expression(c.derived)}"
+        for c in audit.changes
+    ]
+    shown += [f"violated: {law.law}" for law in audit.laws if not law.kept]
+    return "; ".join(shown)
+
+
+def _bracket(condition: PhaseCondition, tf: TransferFunction) -> Mathematics | None:
+    return None if condition.expression is None else mathematics(condition.expression, tf.model)
+
+
+def _root_facts(found: PoleZeroMap, kind: Literal["poles", "zeros"]) -> tuple[RootFact, ...]:
+    return tuple(_root_fact(root) for root in getattr(found, kind))
+
+
+def _root_fact(root: Root) -> RootFact:
+    place: Place = "plane"
+    if root.is_zero:
+        place = "origin"
+    elif root.on_imaginary_axis:
+        place = "imaginary axis"
+    elif root.is_real:
+        place = "real axis"
+    radius = float(root.decimal(15).radius)
+    return RootFact(
+        float(root.re.mid()), float(root.im.mid()), radius, place, root.multiplicity, root.frequency_hz()
+    )
+
+
+def _truncation(study: Study, tf: TransferFunction, found: PoleZeroMap) -> Truncation | None:
+    last = max((p.frequency_hz() for p in found.poles if p.im > 0), default=0.0)
+    if not found.is_infinite or not last:
+        return None
+    kept = study.rational(tf)
+    if kept is None:
+        return None
+    return Truncation(kept.modes, last, kept.valid_to(0.01), kept.valid_to(0.05))

@@ -1,0 +1,238 @@
+"""A report as one HTML page that needs nothing else: no script, no network, no font.
+
+Everything that comes from a specification is plain text here and is escaped; mathematics and figures are
+markup that symflex itself wrote.
+"""
+
+from __future__ import annotations
+
+import html
+import re
+from typing import TYPE_CHECKING, Final, assert_never
+
+from symflex.emit.mathml import math_element
+from symflex.emit.mathml.element import EQUALS
+from symflex.report.document import (
+    Aside,
+    Code,
+    Formula,
+    Link,
+    Listing,
+    Mark,
+    Mathematics,
+    Notice,
+    Paragraph,
+    Picture,
+    Section,
+    Table,
+)
+from symflex.report.style import STYLE
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from symflex.report.document import Block, Column, Run
+    from symflex.report.report import Report
+
+DEEPEST_HEADING: Final = 6
+CONTENTS_DEPTH: Final = 2
+
+# Colours that figures draw with, and the variables of the style sheet that stand for them on a page.
+_COLOURS: Final = {
+    "#0072b2": "var(--c1)", "#d55e00": "var(--c2)", "#009e73": "var(--c3)", "#cc79a7": "var(--c4)",
+    "#e69f00": "var(--c5)", "#56b4e9": "var(--c6)", "#000000": "var(--ink)", "#ffffff": "var(--paper)",
+    "#8c8c8c": "var(--quiet)", "#e3e3e3": "var(--faint)",
+}  # fmt: skip
+_COLOUR: Final = re.compile("|".join(_COLOURS), re.IGNORECASE)
+_PROLOGUE: Final = re.compile(r"^.*?(?=<svg\b)", re.DOTALL)
+_METADATA: Final = re.compile(r"\s*<metadata>.*?</metadata>|\s*<style\b.*?</style>", re.DOTALL)
+_IDENTIFIER: Final = re.compile(r'(\bid="|url\(#|href="#)')
+_SIZE: Final = re.compile(r'\s(?:width|height)="[0-9.]+pt"')
+_NAMESPACES: Final = re.compile(r'\sxmlns(?::\w+)?="[^"]*"')
+
+
+def report_page(report: Report) -> str:
+    """Return a report as HTML.
+
+    Parameters
+    ----------
+    report : Report
+        Composed.
+
+    Returns
+    -------
+    str
+        HTML 5 with its style inside.
+    """
+    byline = " · ".join(filter(None, (report.subtitle, report.date)))
+    parts = [
+        "<!DOCTYPE html>",
+        '<html lang="en">',
+        "<head>",
+        '<meta charset="utf-8">',
+        '<meta name="viewport" content="width=device-width, initial-scale=1">',
+        '<meta name="color-scheme" content="light dark">',
+        # Whatever slipped through could still load nothing.
+        '<meta http-equiv="Content-Security-Policy" content="default-src \'none\'; style-src '
+        "'unsafe-inline'\">",
+        f"<title>{_escape(report.title)}</title>",
+        f"<style>{STYLE}</style>",
+        "</head>",
+        '<body id="top">',
+        '<a class="skip" href="#models">To the results</a>',
+        "<header>",
+        f"<h1>{_escape(report.title)}</h1>",
+        f"<p>{_escape(byline)}</p>" if byline else "",
+        "</header>",
+        '<nav id="contents" aria-label="Contents">',
+        "<details open><summary>Contents</summary>",
+        _contents(report.sections, 1),
+        "</details></nav>",
+        "<main>",
+        *(_section(section, 2) for section in report.sections),
+        "</main>",
+        "</body>",
+        "</html>",
+    ]
+    return "\n".join(filter(None, parts)) + "\n"
+
+
+def inline_svg(svg: str, prefix: str, label: str) -> str:
+    """Return a figure that matplotlib wrote as an element of a page.
+
+    Its colours become those of the page, light or dark; its identifiers get a prefix, since a page has each
+    only once.
+    """
+    content = _PROLOGUE.sub("", svg, count=1)
+    content = _METADATA.sub("", content)
+    content = _IDENTIFIER.sub(lambda m: f"{m[1]}{prefix}-", content)
+    content = _COLOUR.sub(lambda m: _COLOURS[m[0].lower()], content)
+    head, tail = content.split(">", 1)
+    width = re.search(r'\swidth="([0-9.]+)pt"', head)
+    points = float(width[1]) if width else 252.0
+    head = _NAMESPACES.sub("", _SIZE.sub("", head))
+    # xlink is not declared in HTML, and not needed there.
+    tail = tail.replace("xlink:href", "href")
+    style = f'style="max-width:{points / 72 * 1.75:.2f}in"'
+    return f'{head} class="plot" role="img" aria-label="{_escape(label)}" {style}>{tail.rstrip()}'
+
+
+def _escape(text: str) -> str:
+    """Return plain text for content and quoted attributes; what does not print vanishes."""
+    shown = "".join(c for c in " ".join(text.split(" ")) if c.isprintable())
+    return html.escape(shown, quote=True)
+
+
+def _contents(sections: Iterable[Section], depth: int) -> str:
+    items = []
+    for section in sections:
+        inner = [b for b in section.blocks if isinstance(b, Section)]
+        below = _contents(inner, depth + 1) if inner and depth < CONTENTS_DEPTH else ""
+        items.append(f'<li><a href="#{_escape(section.anchor)}">{_heading(section)}</a>{below}</li>')
+    return f"<ol>{''.join(items)}</ol>" if depth == 1 else f"<ul>{''.join(items)}</ul>"
+
+
+def _heading(section: Section) -> str:
+    if section.mathematics is None:
+        return _escape(section.title)
+    return math_element(section.mathematics.mathml)
+
+
+def _section(section: Section, level: int) -> str:
+    anchor = _escape(section.anchor)
+    tag = f"h{min(level, DEEPEST_HEADING)}"
+    body = "\n".join(_block(block, level + 1, anchor) for block in section.blocks)
+    return (
+        f'<section id="{anchor}" aria-labelledby="{anchor}-h">\n'
+        f'<{tag} id="{anchor}-h">{_heading(section)}</{tag}>\n{body}\n</section>'
+    )
+
+
+def _block(block: Block, level: int, anchor: str) -> str:
+    match block:
+        case Section():
+            return _section(block, level)
+        case Paragraph(runs=runs):
+            return f"<p>{_runs(runs)}</p>"
+        case Formula():
+            return "\n".join(_formula(block))
+        case Table():
+            return _table(block)
+        case Picture():
+            drawn = inline_svg(block.svg, block.stem, block.caption)
+            files = (
+                f'<a href="figures/{_escape(block.stem)}.pdf">PDF</a>, '
+                f'<a href="figures/{_escape(block.stem)}.svg">SVG</a>'
+            )
+            shown = f"{_escape(block.caption)} <span>{files}</span>"
+            return f"<figure>{drawn}\n<figcaption>{shown}</figcaption></figure>"
+        case Listing(title=title, text=text):
+            lines = "\n".join(_escape(line) for line in text.expandtabs(4).splitlines())
+            return f"<details><summary>{_escape(title)}</summary><pre>{lines}</pre></details>"
+        case Notice(text=text):
+            return f'<p class="notice" role="note">{_escape(text)}</p>'
+        case _:
+            assert_never(block)
+
+
+def _formula(formula: Formula) -> Iterator[str]:
+    yield f'<div class="formula" tabindex="0" role="group" aria-label="{_escape(formula.name)}">'
+    is_below = False
+    for row in formula.rows:
+        if row.is_where and not is_below:
+            yield '<div class="where"><span>where</span>'
+            is_below = True
+        left = math_element(f"<mrow>{row.left}{EQUALS}</mrow>", is_display=True)
+        # Blanks between the pieces are where a line may end.
+        right = " ".join(math_element(f"<mrow>{piece}</mrow>", is_display=True) for piece in row.pieces)
+        yield f'<div class="row">{left} {right}</div>'
+    if is_below:
+        yield "</div>"
+    yield "</div>"
+
+
+def _table(table: Table) -> str:
+    # On a narrow screen the cells of a row stand below each other, each with its head.
+    is_stacked = len(table.columns) > 2 and any(c.side == "text" for c in table.columns)  # noqa: PLR2004
+    kind = ' class="stack"' if is_stacked else ""
+    head = "".join(f'<th scope="col" class="{c.side}">{_runs(c.head)}</th>' for c in table.columns)
+    body = "\n".join(_row(row, table.columns) for row in table.rows)
+    caption = f"<caption>{_escape(table.caption)}</caption>" if table.caption else ""
+    return (
+        f'<div class="scroll" tabindex="0" role="region" aria-label="{_escape(table.caption or "Table")}">'
+        f"<table{kind}>{caption}<thead><tr>{head}</tr></thead>\n<tbody>\n{body}\n</tbody></table></div>"
+    )
+
+
+def _row(row: Iterable[tuple[Run, ...]], columns: Iterable[Column]) -> str:
+    cells = "".join(
+        f'<td class="{c.side}" data-head="{_escape(_plain(c.head))}">{_runs(cell)}</td>'
+        for cell, c in zip(row, columns, strict=True)
+    )
+    return f"<tr>{cells}</tr>"
+
+
+def _plain(runs: Iterable[Run]) -> str:
+    return "".join(run for run in runs if isinstance(run, str))
+
+
+def _runs(runs: Iterable[Run]) -> str:
+    return "".join(map(_run, runs))
+
+
+def _run(run: Run) -> str:
+    match run:
+        case str():
+            return "<br>".join(_escape(line) for line in run.split("\n"))
+        case Mathematics(mathml=mathml):
+            return math_element(mathml)
+        case Code(text=text):
+            return f"<code>{_escape(text)}</code>"
+        case Mark(text=text, tone=tone):
+            return f'<strong class="{tone}">{_escape(text)}</strong>'
+        case Aside(text=text):
+            return f"<small>{_escape(text)}</small>"
+        case Link(text=text, target=target):
+            return f'<a href="{_escape(target)}">{_escape(text)}</a>'
+        case _:
+            assert_never(run)

@@ -1,0 +1,47 @@
+"""What a section of a report hands over: its blocks, and the files that belong to it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from symflex.report.document import Block
+    from symflex.report.study import Study
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """One section of the chapter about a model.
+
+    Parameters
+    ----------
+    title : str
+        Plain text.
+    blocks : tuple of Block
+        What it says.
+    files : mapping of str to bytes
+        Content by path inside the report's folder.
+    warnings : tuple of str
+        What the user should be told on the terminal as well.
+    """
+
+    title: str
+    blocks: tuple[Block, ...]
+    files: Mapping[str, bytes] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+
+
+class SectionMaker(Protocol):
+    """A function that writes one section; a key of :data:`symflex.report.sections.SECTIONS` names it."""
+
+    def __call__(self, study: Study) -> Part | None:
+        """Return the section, None where a model gives no cause for it.
+
+        Raises
+        ------
+        SymflexError
+            When what it needs cannot be computed; the report says so in its place.
+        """
+        ...

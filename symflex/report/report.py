@@ -1,0 +1,265 @@
+"""The report as a whole: chapters, what is said across them, and where all of it comes from."""
+
+from __future__ import annotations
+
+import json
+import platform
+import re
+from collections.abc import Mapping
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from importlib import metadata
+from multiprocessing import get_context
+from typing import TYPE_CHECKING, Final
+
+from symflex.errors import Diagnostic, UsageError
+from symflex.report.chapter import Chapter, chapter_of
+from symflex.report.claims import PUBLICATIONS, claim_section, publication_of
+from symflex.report.claims.section import claims_json, judge_all
+from symflex.report.comparison import comparison_section
+from symflex.report.document import Code, Link, Mark, Section, Table, columns, text
+from symflex.report.numerals import counted
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from symflex.report.claims import Finding, Publication
+    from symflex.report.document import Block, Cell
+    from symflex.roots import Progress
+
+MOST_MODELS: Final = 200
+LIBRARIES: Final = ("python-flint", "numpy", "scipy", "sympy", "mpmath", "matplotlib")
+RESERVED: Final = frozenset(("comparison", "claims", "contents", "models", "provenance", "top"))
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """A report before it is printed.
+
+    Parameters
+    ----------
+    title : str
+        Plain text.
+    subtitle : str
+        Whose models these are; may be empty.
+    date : str
+        As shown; empty for none.
+    sections : tuple of Section
+        Overview, claims, comparison, a chapter per model, provenance.
+    files : mapping of str to bytes
+        Figures, code and data, by path inside the report's folder.
+    warnings : tuple of str
+        What the user should be told.
+    code : int
+        Exit code.
+    """
+
+    title: str
+    subtitle: str
+    date: str
+    sections: tuple[Section, ...]
+    files: Mapping[str, bytes]
+    warnings: tuple[str, ...]
+    code: int
+
+
+def find_specifications(paths: Sequence[Path]) -> tuple[Path, ...]:
+    """Return the specifications that arguments name; a folder stands for the ``.toml`` files in it, by name.
+
+    Raises
+    ------
+    UsageError
+        SF902 for a folder without any, and for more than :data:`MOST_MODELS`.
+    """
+    found: list[Path] = []
+    for path in paths:
+        if path.is_dir():
+            inside = sorted(p for p in path.iterdir() if p.suffix == ".toml" and p.is_file())
+            if not inside:
+                raise UsageError(
+                    Diagnostic(
+                        "SF902",
+                        f"the folder '{path}' holds no specification",
+                        None,
+                        "a specification is a file whose name ends in .toml",
+                    )
+                )
+            found += inside
+        else:
+            found.append(path)
+    distinct = tuple(dict.fromkeys(found))
+    if len(distinct) > MOST_MODELS:
+        raise UsageError(Diagnostic("SF902", f"{len(distinct)} specifications; a report takes {MOST_MODELS}"))
+    return distinct
+
+
+def name_specifications(paths: Sequence[Path]) -> dict[str, Path]:
+    """Return paths by the name their files in the report begin with.
+
+    The names are made of letters, digits and underscores, and differ also where capitals count as small.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> name_specifications([Path("a/beam.toml"), Path("b/Beam.toml"), Path("2 <x>.toml")])
+    {'beam': PosixPath('a/beam.toml'), 'Beam_2': PosixPath('b/Beam.toml'), 'm_2__x_': PosixPath('2 <x>.toml')}
+    """
+    named: dict[str, Path] = {}
+    taken = set(RESERVED)
+    for path in paths:
+        plain = re.sub(r"[^A-Za-z0-9_]", "_", path.stem)[:64]
+        plain = plain if plain[:1].isalpha() else f"m_{plain}"
+        stem, number = plain, 2
+        while stem.lower() in taken:
+            stem, number = f"{plain}_{number}", number + 1
+        taken.add(stem.lower())
+        named[stem] = path
+    return named
+
+
+def write_chapters(named: Mapping[str, Path], processes: int, progress: Progress) -> tuple[Chapter, ...]:
+    """Return the chapters, in order, computed side by side.
+
+    Parameters
+    ----------
+    named : mapping of str to Path
+        Specifications by name.
+    processes : int
+        How many compute at once; 1 for none besides this one.
+    progress : Progress
+        Told after each chapter.
+
+    Raises
+    ------
+    SpecError, ModelError
+        Of the first file that is no solvable model.
+    """
+    done: dict[str, Chapter] = {}
+    if processes <= 1 or len(named) == 1:
+        for stem, path in named.items():
+            progress.report(len(done) / len(named), f"model {len(done) + 1} of {len(named)}: {stem}")
+            done[stem] = chapter_of(path, stem)
+        return tuple(done.values())
+    # A new interpreter in each process: what this one has open or threaded is not copied.
+    with ProcessPoolExecutor(min(processes, len(named)), mp_context=get_context("spawn")) as pool:
+        waiting = {pool.submit(chapter_of, path, stem): stem for stem, path in named.items()}
+        progress.report(0.0, f"{counted(len(named), 'model')}")
+        try:
+            for finished in as_completed(waiting):
+                done[waiting[finished]] = finished.result()
+                progress.report(
+                    len(done) / (len(named) + 1), f"{len(done)} of {counted(len(named), 'model')}"
+                )
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    return tuple(done[stem] for stem in named)
+
+
+def compose(chapters: Sequence[Chapter], date: str) -> Report:
+    """Return the report of chapters.
+
+    Parameters
+    ----------
+    chapters : sequence of Chapter
+        At least one.
+    date : str
+        As shown; empty for none.
+    """
+    publication = publication_of((c.facts.source for c in chapters), PUBLICATIONS)
+    ordered = _ordered(chapters, publication)
+    facts = [c.facts for c in ordered]
+    findings = judge_all(publication, facts) if publication else ()
+    files = {name: content for c in ordered for name, content in c.files.items()}
+    sections: list[Section] = [_overview(ordered, publication, findings)]
+    if publication:
+        sections.append(claim_section(publication, findings))
+        document = claims_json(publication, findings)
+        files["data/claims.json"] = json.dumps(document, indent=1, ensure_ascii=False).encode()
+    comparison = comparison_section(facts)
+    if comparison:
+        sections.append(comparison)
+    sections += [c.section for c in ordered]
+    sections.append(_provenance(date))
+    title, subtitle = _titles(ordered, publication)
+    warnings = tuple(w for c in ordered for w in c.warnings)
+    return Report(title, subtitle, date, tuple(sections), files, warnings, max(c.code for c in ordered))
+
+
+def _ordered(chapters: Sequence[Chapter], publication: Publication | None) -> list[Chapter]:
+    """Return chapters as their publication orders its models, all others as they were named."""
+    order = {name: i for i, name in enumerate(publication.models)} if publication else {}
+    return sorted(chapters, key=lambda c: order.get(c.facts.stem, len(order)))
+
+
+def _titles(chapters: Sequence[Chapter], publication: Publication | None) -> tuple[str, str]:
+    if publication:
+        return publication.title, f"The models of {publication.name}, derived and examined"
+    if len(chapters) == 1:
+        return chapters[0].section.title, ""
+    return counted(len(chapters), "model"), "Derived and examined"
+
+
+def _overview(
+    chapters: Sequence[Chapter], publication: Publication | None, findings: Sequence[Finding]
+) -> Section:
+    blocks: list[Block] = []
+    if publication:
+        held = sum(f.verdict.startswith("holds") for f in findings)
+        failed = sum(f.verdict == "does not hold" for f in findings)
+        open_ = len(findings) - held - failed
+        blocks.append(
+            text(
+                f"Of {counted(len(findings), 'claim')} of the publication {held} hold, {failed} do not, "
+                f"and {open_} "
+                "are not examined here: ",
+                Link("the claims", "#claims"),
+                ".",
+            )
+        )
+    rows: list[tuple[Cell, ...]] = []
+    for c in chapters:
+        functions = c.facts.functions
+        certified = bool(functions) and all(f.certified for f in functions)
+        if certified:
+            mark: Mark = Mark("certified", "good")
+        else:
+            mark = Mark("not certified", "bad") if functions else Mark("no numbers", "quiet")
+        rows.append(
+            (
+                (Link(c.section.title, f"#{c.stem}"),),
+                (c.facts.source or "–",),
+                (mark,),
+            )
+        )
+    blocks.append(Table(columns("Model", "Source", ("Poles and zeros", "plain")), tuple(rows)))
+    return Section("Overview", tuple(blocks), "models")
+
+
+def _provenance(date: str) -> Section:
+    versions = [("symflex", _version("symflex")), ("Python", platform.python_version())]
+    versions += [(name, _version(name)) for name in LIBRARIES]
+    rows = tuple(((name,), (Code(version),)) for name, version in versions)
+    when = f" on {date}" if date else ""
+    return Section(
+        "Provenance",
+        (
+            text(
+                f"Written by symflex {_version('symflex')}{when}. Every formula is derived exactly from the "
+                "specification printed with its model; every root marked certified is enclosed in ball "
+                "arithmetic, "
+                "and none is missing from the region named. What was sampled rather than proved is said "
+                "to be."
+            ),
+            Table(columns("Program", ("Version", "plain")), rows),
+        ),
+        "provenance",
+    )
+
+
+def _version(name: str) -> str:
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return "(not installed as a package)"

@@ -1,0 +1,21 @@
+"""The sections of a model's chapter. A new one is a module here and a line in :data:`SECTIONS`."""
+
+from symflex.report.part import SectionMaker
+from symflex.report.sections.audits import audit_section
+from symflex.report.sections.equations import equation_section
+from symflex.report.sections.exports import export_section
+from symflex.report.sections.figures import figure_section
+from symflex.report.sections.parameters import parameter_section
+from symflex.report.sections.roots import root_section
+from symflex.report.sections.specification import specification_section
+
+SECTIONS: dict[str, SectionMaker] = {
+    "parameters": parameter_section,
+    "equations": equation_section,
+    "printed": audit_section,
+    "figures": figure_section,
+    "roots": root_section,
+    "files": export_section,
+    "specification": specification_section,
+}
+"""In the order of the page."""

@@ -1,0 +1,112 @@
+"""Poles and zeros, with what is proved about them."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Final
+
+from symflex.emit.latex import ratio_latex, root_table
+from symflex.emit.latex.table import KINDS, damping_text, frequency_text, one_of_each_pair
+from symflex.emit.text import region_text
+from symflex.errors import SymflexError
+from symflex.explanation import explanation_paragraphs
+from symflex.report.document import Mark, Mathematics, Section, Table, columns, text
+from symflex.report.numerals import exponents
+from symflex.report.part import Part
+from symflex.report.sections.equations import ratio_line
+from symflex.report.study import attempt
+
+if TYPE_CHECKING:
+    from symflex.emit.latex.table import Entry
+    from symflex.explanation import ZeroExplanation
+    from symflex.report.document import Block, Cell
+    from symflex.report.study import Study
+    from symflex.roots import PoleZeroMap
+
+DIGITS: Final = 10
+LONGEST: Final = 80
+HEADS: Final = columns(
+    ("Re s [rad/s]", "number"),
+    ("Im s [rad/s]", "number"),
+    ("radius", "number"),
+    ("frequency [Hz]", "number"),
+    ("damping ratio", "number"),
+    ("times", "number"),
+)
+
+
+def root_section(study: Study) -> Part:
+    """Return the poles and zeros of every transfer function, enclosed, and what its zeros mean."""
+    explained = {found.tf: told for _, found, told in study.located}
+    derived = attempt(lambda: study.tfs)
+    tfs = {} if isinstance(derived, SymflexError) else {tf.name: tf for tf in derived}
+    blocks = []
+    warnings = []
+    for i, found in enumerate(study.maps):
+        tf = tfs.get(found.tf)
+        title = Mathematics(ratio_line(tf), ratio_latex(tf)) if tf else None
+        content = _of(found, explained.get(found.tf))
+        blocks.append(Section(found.tf, content, f"{study.stem}-roots-{i + 1}", title))
+        if not found.certificate.certified:
+            warnings.append(f"{study.stem}: poles and zeros of {found.tf} are not certified")
+    document = {"schema": "symflex.report-roots/1", "roots": [found.to_json_dict() for found in study.maps]}
+    data = {f"data/{study.stem}_roots.json": json.dumps(document, indent=1).encode()}
+    return Part("Poles and zeros", tuple(blocks), data, tuple(warnings))
+
+
+def _of(found: PoleZeroMap, told: ZeroExplanation | None) -> tuple[Block, ...]:
+    certificate = found.certificate
+    blocks: list[Block] = []
+    if certificate.certified:
+        mark = Mark("certified", "good")
+        said = (
+            f": {certificate.found} of {certificate.counted} roots enclosed, each within its radius [rad/s]."
+        )
+    else:
+        mark, said = Mark("not certified", "bad"), f": {certificate.reason or 'no reason given'}."
+    shown = f" Listed: {region_text(found.region)}." if region_text(found.region) else ""
+    blocks.append(text(mark, said + shown))
+    for part in found.excluded:
+        blocks.append(
+            text(
+                f"Left out: {part.radius:.3g} rad/s about {part.re:g} ± {part.im:g} j, where roots "
+                f"accumulate."
+            )
+        )
+    for kind, noun in KINDS.items():
+        roots = tuple(h.root for h in found.hidden) if kind == "hidden" else getattr(found, kind)
+        entries = one_of_each_pair(roots)
+        title = {"poles": "Poles", "zeros": "Zeros", "hidden": "Hidden roots"}[kind]
+        if entries:
+            rows = tuple(map(_row, entries[:LONGEST]))
+            count = sum(r.multiplicity for r in roots)
+            cut = f" ({LONGEST} of {len(entries)} lines)" if len(entries) > LONGEST else ""
+            blocks.append(Table(HEADS, rows, f"{title}: {count}{cut}", root_table(found, kind)))
+        elif noun != "hidden root":
+            blocks.append(text(f"{title}: none."))
+    if told is not None:
+        blocks += [text(*lines) for lines in _told(told)]
+    return tuple(blocks)
+
+
+def _told(told: ZeroExplanation) -> list[tuple[str, ...]]:
+    """Return what the zeros mean, a paragraph as its lines; what concerns the command line is left out."""
+    found = []
+    for paragraph in explanation_paragraphs(told):
+        if not paragraph[0].startswith("To see that system"):
+            found.append(tuple(x for line in paragraph for x in (line, "\n"))[:-1])
+    return found
+
+
+def _row(entry: Entry) -> tuple[Cell, ...]:
+    root = entry.root
+    printed = root.decimal(DIGITS)
+    cells = (
+        exponents(printed.re),
+        ("±" if entry.is_pair else "") + exponents(printed.im),
+        exponents(printed.radius),
+        exponents(frequency_text(root, DIGITS)),
+        exponents(damping_text(root, DIGITS)),
+        str(root.multiplicity),
+    )
+    return tuple((cell,) for cell in cells)

@@ -1,0 +1,165 @@
+"""Where a model bends and gives way, and whether an output is taken where an input acts.
+
+Eppinger and Seering (1988, "Discussion") divide flexibility into that of the base, the transmission and the
+links. Here the three are told apart by what a compliance joins: one with an end on ground belongs to the
+base; between moving parts one in bending belongs to a link, one in tension or torsion to the transmission.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, Literal
+
+from symflex.expressions import Attribute, Call, Derivative, Expression, Name, format_expression, names
+
+if TYPE_CHECKING:
+    from symflex.model import Input, Model, Output, PlacedElement
+
+Place = Literal["base", "transmission", "link"]
+BENDING_ORDER: Final = 4
+STIFFNESS: Final = {"spring": "k", "torsion_spring": "k", "massless_beam": "EI"}
+"""Types of elements that give way without mass, and the parameter that says how little."""
+
+_BENDING: Final = frozenset(("beam", "massless_beam"))
+_COMPLIANT: Final = _BENDING | {"spring", "torsion_spring", "rod", "shaft", "string"}
+_RIGID: Final = frozenset(("rigid_link", "transformer", "gyrator", "dc_motor"))
+
+
+@dataclass(frozen=True, slots=True)
+class Compliance:
+    """A part that gives way.
+
+    Parameters
+    ----------
+    name : str
+        The element or field.
+    is_bending : bool
+        It bends; else it is stretched or twisted.
+    place : str
+        ``base``, ``transmission`` or ``link``.
+    """
+
+    name: str
+    is_bending: bool
+    place: Place
+
+
+def compliances(model: Model) -> tuple[Compliance, ...]:
+    """Return what gives way in a model, in the order of its text.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... elements.body = { type = "mass", at = "x", m = 2 }
+    ... elements.wall = { type = "spring", between = ["x", "ground"], k = 12 }
+    ... inputs.F = { force = "x" }
+    ... outputs.X = "x"
+    ... ''')
+    >>> compliances(model)
+    (Compliance(name='wall', is_bending=False, place='base'),)
+    """
+    found = []
+    for use in model.elements:
+        if use.element.type_name in _COMPLIANT:
+            is_bending = use.element.type_name in _BENDING
+            is_grounded = any(r.is_ground for _, references in use.nodes for r in references)
+            found.append(Compliance(use.name, is_bending, _place(is_bending, is_grounded=is_grounded)))
+    for field in model.fields:
+        orders = [n.order for e in field.equations for n in names(e) if isinstance(n, Derivative)]
+        is_bending = max(orders, default=0) >= BENDING_ORDER or len(field.unknowns) > 1
+        found.append(Compliance(field.name, is_bending, _place(is_bending, is_grounded=False)))
+    return tuple(found)
+
+
+def is_colocated(model: Model, output: Output, source: Input) -> bool | None:
+    """Tell whether an output is taken where an input acts, or rigidly joined to it.
+
+    Parameters
+    ----------
+    model : Model
+        Resolved.
+    output, source : Output, Input
+        The pair.
+
+    Returns
+    -------
+    bool or None
+        None where the output shows no motion of a place, or where the input acts at none.
+    """
+    starts, ends = _acted_on(model, source), _shown(model, output)
+    if not starts or not ends:
+        return None
+    joined = set(starts)
+    groups = [_places(use) for use in model.elements if use.element.type_name in _RIGID]
+    grown = True
+    while grown:
+        reached = [group for group in groups if group & joined and not group <= joined]
+        joined |= {place for group in reached for place in group}
+        grown = bool(reached)
+    return ends <= joined
+
+
+def _place(is_bending: bool, *, is_grounded: bool) -> Place:
+    if is_grounded:
+        return "base"
+    return "link" if is_bending else "transmission"
+
+
+def _places(use: PlacedElement) -> set[str]:
+    return {r.node for _, references in use.nodes for r in references if not r.is_ground}
+
+
+def _acted_on(model: Model, source: Input) -> set[str]:
+    """Return the nodes an input acts on, directly or through signals, and the points of fields."""
+    found = {r.node for r in source.nodes if not r.is_ground}
+    mentioned = _depending(model, source.name)
+    for use in model.elements:
+        if any(_named(e) & mentioned for _, e in use.values):
+            found |= _places(use)
+    for field in model.fields:
+        for condition in field.conditions:
+            if _named(condition) & mentioned:
+                found |= _points(condition, field.unknowns)
+    return found
+
+
+def _shown(model: Model, output: Output) -> set[str]:
+    """Return the nodes and points whose motion an output is made of."""
+    nodes = {n.name for n in model.nodes}
+    signals = {x.name: x.expression for x in model.signals}
+    pending, seen, found = [output.expression], set(), set()
+    while pending:
+        expression = pending.pop()
+        for name in _named(expression):
+            if name in nodes:
+                found.add(name)
+            elif name in signals and name not in seen:
+                seen.add(name)
+                pending.append(signals[name])
+        for field in model.fields:
+            found |= _points(expression, field.unknowns)
+    return found
+
+
+def _depending(model: Model, name: str) -> set[str]:
+    """Return a name and the signals that depend on it."""
+    found = {name}
+    for _ in model.signals:
+        found |= {x.name for x in model.signals if _named(x.expression) & found}
+    return found
+
+
+def _named(expression: Expression) -> set[str]:
+    return {
+        n.owner if isinstance(n, Attribute) else n.name
+        for n in names(expression)
+        if isinstance(n, Name | Attribute)
+    }
+
+
+def _points(expression: Expression, unknowns: tuple[str, ...]) -> set[str]:
+    # No node bears such a name.
+    calls = [n for n in names(expression) if isinstance(n, Call) and n.name in unknowns]
+    return {f"{unknowns[0]}({format_expression(n.argument)})" for n in calls}

@@ -1,0 +1,217 @@
+"""One model with everything that the sections of a report need, each computed once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Final, TypeVar
+
+from symflex import pipeline
+from symflex.emit.forms import print_forms
+from symflex.errors import SymflexError
+from symflex.model import with_numbers
+from symflex.report.facts import facts_of
+from symflex.report.limits import rigid_counts, undamped_counts
+from symflex.response import adaptive_grid, default_band, respond
+from symflex.roots import Budget
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from pathlib import Path
+
+    from symflex.audit import Audit
+    from symflex.emit.forms import PrintedForm
+    from symflex.explanation import ZeroExplanation
+    from symflex.model import Model
+    from symflex.rational import RationalApproximation
+    from symflex.report.facts import ModelFacts
+    from symflex.report.limits import Counts
+    from symflex.response import FrequencyResponse
+    from symflex.roots import PoleZeroMap
+    from symflex.transfer import BoundTransferFunction, TransferFunction
+
+MOST_FUNCTIONS: Final = 24
+"""Transfer functions of one model that a report shows; the number of those it leaves out is said."""
+
+DIGITS: Final = 15
+MODES: Final = 5
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Study:
+    """A model, and what the pipeline makes of it.
+
+    Parameters
+    ----------
+    path : Path
+        Where its text was read.
+    stem : str
+        The name its files in the report begin with.
+    text : str
+        The specification.
+    model : Model
+        Resolved.
+    """
+
+    path: Path
+    stem: str
+    text: str
+    model: Model
+
+    @staticmethod
+    def of(path: Path, stem: str) -> Study:
+        """Read a specification.
+
+        Raises
+        ------
+        SpecError
+            With every problem of the file.
+        ModelError
+            When the equations have no unique solution.
+        """
+        model = pipeline.load(path)
+        pipeline.check_solvable(pipeline.assemble(with_numbers(model)))
+        return Study(path, stem, path.read_text(encoding="utf-8"), model)
+
+    @property
+    def pairs(self) -> tuple[tuple[str, str], ...]:
+        """The transfer functions shown, as (output, input)."""
+        return self.model.transfer_functions[:MOST_FUNCTIONS]
+
+    @property
+    def tfs(self) -> tuple[TransferFunction, ...]:
+        """The transfer functions in symbols.
+
+        Raises
+        ------
+        ModelError, BudgetError
+            When the equations have no unique solution, or their symbolic one would be too large.
+        """
+        return _result(self._derived)
+
+    @cached_property
+    def _derived(self) -> tuple[TransferFunction, ...] | SymflexError:
+        # A derivation that fails may take long: once is enough.
+        return attempt(lambda: pipeline.derive_all(self.model, self.pairs))
+
+    @property
+    def has_symbols(self) -> bool:
+        """Whether the transfer functions could be derived in symbols."""
+        return not isinstance(self._derived, SymflexError)
+
+    @cached_property
+    def forms(self) -> tuple[PrintedForm, ...]:
+        """Each function in its default form."""
+        return print_forms(self.tfs)[0]
+
+    @property
+    def bounds(self) -> tuple[BoundTransferFunction, ...]:
+        """The same functions with numbers.
+
+        Raises
+        ------
+        ModelError
+            SF229 when a parameter has no value.
+        """
+        return _result(self._bound)
+
+    @cached_property
+    def _bound(self) -> tuple[BoundTransferFunction, ...] | SymflexError:
+        return attempt(lambda: pipeline.derive_bound(self.model, self.pairs))
+
+    @property
+    def maps(self) -> tuple[PoleZeroMap, ...]:
+        """Poles and zeros, the lowest modes of distributed systems; none of functions that are zero."""
+        return _result(self._maps)
+
+    @cached_property
+    def _maps(self) -> tuple[PoleZeroMap, ...] | SymflexError:
+        digits = max(self.model.analysis.digits or DIGITS, DIGITS)
+        return attempt(
+            lambda: tuple(
+                pipeline.roots(b, None, digits, Budget()) for b in self.bounds if not b.ratio.is_zero
+            )
+        )
+
+    @cached_property
+    def located(self) -> tuple[tuple[TransferFunction, PoleZeroMap, ZeroExplanation], ...]:
+        """Every function with numbers that is not zero, with its roots and what its zeros mean.
+
+        The function is the one in symbols where :attr:`has_symbols` says that there is one. Empty where the
+        model has no numbers.
+        """
+        if isinstance(self._maps, SymflexError):
+            return ()
+        by_name = {each.tf: each for each in self.maps}
+        symbolic = {tf.name: tf for tf in self.tfs} if self.has_symbols else {}
+        rows = []
+        for bound in self.bounds:
+            if bound.name in by_name:
+                found = by_name[bound.name]
+                explained = pipeline.explain_zeros(self.model, bound, found)
+                rows.append((symbolic.get(bound.name, bound.source), found, explained))
+        return tuple(rows)
+
+    @cached_property
+    def audits(self) -> tuple[Audit, ...]:
+        """What is found about printed formulas."""
+        return pipeline.audit(self.model)
+
+    @cached_property
+    def rigid_counts(self) -> Mapping[tuple[str, str], Counts]:
+        """Zeros and poles with rigid compliances; see :func:`symflex.report.limits.rigid_counts`."""
+        found = attempt(lambda: rigid_counts(self.model))
+        return {} if isinstance(found, SymflexError) else found
+
+    @cached_property
+    def undamped_counts(self) -> Mapping[tuple[str, str], Counts]:
+        """Zeros and poles without dampers; see :func:`symflex.report.limits.undamped_counts`."""
+        found = attempt(lambda: undamped_counts(self.model))
+        return {} if isinstance(found, SymflexError) else found
+
+    @cached_property
+    def facts(self) -> ModelFacts:
+        """What the report compares and judges."""
+        return facts_of(self)
+
+    @cached_property
+    def responses(self) -> tuple[FrequencyResponse, ...]:
+        """Frequency responses over the model's band, on grids that miss no resonance."""
+        band = self.model.analysis.band
+        found = []
+        for bound in self.bounds:
+            if bound.ratio.is_zero:
+                continue
+            low, high = (float(f) for f in band) if band else default_band(pipeline.roots(bound))
+            found.append(respond(bound, adaptive_grid(bound, low, high)))
+        return tuple(found)
+
+    def rational(self, tf: TransferFunction) -> RationalApproximation | None:
+        """Return the product of the lowest modes of a function, None where there is no such approximation."""
+        (bound,) = (b for b in self.bounds if b.name == tf.name)
+        modes = self.model.analysis.modes or MODES
+        found = attempt(lambda: pipeline.rational(bound, modes))
+        return None if isinstance(found, SymflexError) else found
+
+
+def _result(found: T | SymflexError) -> T:
+    if isinstance(found, SymflexError):
+        raise found
+    return found
+
+
+def attempt(compute: Callable[[], T]) -> T | SymflexError:
+    """Return a result, or the error that says why there is none.
+
+    Examples
+    --------
+    >>> def fail():
+    ...     raise SymflexError
+    >>> attempt(lambda: 1), attempt(fail)
+    (1, SymflexError())
+    """
+    try:
+        return compute()
+    except SymflexError as error:
+        return error

@@ -1,0 +1,226 @@
+"""The report on the paper's models: what the paper states is computed, and the report opens and prints."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from symflex.report import compose, name_specifications, report_page, write_chapters
+from symflex.report.claims.eppinger1988 import EPPINGER_1988
+from symflex.roots.budget import Silent
+from tests.independent import eppinger1988
+from tests.unit.report.pages import Page
+
+ROOT = Path(__file__).parents[2]
+FOLDER = ROOT / "derivations" / "eppinger1988"
+
+# Read off the paper: counts where it gives them, and figures by their numbers.
+FIGURES = {
+    "fig5": "rigid_body", "fig6": "polynomial_resonance", "fig7": "polynomial_resonance",
+    "fig10": "sliding_free_beam", "fig11": "sliding_free_beam", "fig13": "lumped_bending_beam",
+}  # fmt: skip
+HOLD = (
+    "modes second-order fitted-array too-few-zeros base-only-colocated infinity alternating same-poles "
+    "real-zeros no-phase not-in-lumped lumped-colocated right-numbers two-and-two base-two-zeros "
+    "printed-rigid-body printed-noncolocated"
+).split()
+CONDITION = (
+    "one-zero-per-mode two-zeros-three-poles bending lumped-noncolocated lumped-pair pair-and-one-zero "
+    "same-character equal-frequencies"
+).split()
+FAIL = ["printed-colocated", "fifth-mode"]
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def report():
+    named = name_specifications(sorted(FOLDER.glob("*.toml")))
+    return compose(write_chapters(named, 2, Silent()), "2001-02-03")
+
+
+@pytest.fixture(scope="module")
+def claims(report):
+    return {c["key"]: c for c in json.loads(report.files["data/claims.json"])["claims"]}
+
+
+@pytest.fixture(scope="module")
+def facts(report):
+    found = {}
+    for path in FOLDER.glob("*.toml"):
+        document = json.loads(report.files[f"data/{path.stem}_facts.json"])
+        found[path.stem] = {f["tf"]: f for f in document["transfer_functions"]}
+    return found
+
+
+def roots(report, stem, tf, kind):
+    document = json.loads(report.files[f"data/{stem}_roots.json"])
+    (found,) = (r for r in document["roots"] if r["tf"] == tf)
+    return [complex(float(r["re"]), float(r["im"])) for r in found[kind] for _ in range(r["multiplicity"])]
+
+
+def test_everything_is_certified(report):
+    assert report.code == 0
+    assert report.warnings == ()
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_every_figure_of_the_paper_is_drawn(name, report):
+    stem = FIGURES[name]
+    number = name.removeprefix("fig")
+    assert report.files[f"figures/{stem}_{name}.pdf"].startswith(b"%PDF")
+    assert f"Figure {number}:" in report_page(report)
+
+
+@pytest.mark.parametrize(("stem", "tf"), [("polynomial_resonance", "A_tip/V_cmd"), ("six_mass", "X_tip/F")])
+def test_the_measured_modes_are_in_the_report(stem, tf, report):
+    found = sorted(abs(s) for s in roots(report, stem, tf, "poles") if s.imag > 0)
+    expected = [eppinger1988.radians_per_second(f) for f in eppinger1988.MODES_HZ]
+    assert found == pytest.approx(expected, rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("stem", "tf", "zeros", "poles"),
+    [
+        ("rigid_body", "V_tip/V_cmd", 0, 2),  # "a second-order transfer function"
+        ("polynomial_resonance", "A_tip/V_cmd", 11, 12),  # "five pairs of poles and five pairs of zeros"
+        ("base_flexure", "V_tip/F", 2, 3),  # "two zeros and three poles"
+        ("base_flexure", "V_motor/F", 2, 3),
+        ("lumped_bending_beam", "X_tip/F", 2, 6),  # 'a "pair" of real zeros'
+    ],
+)
+def test_the_counts_are_the_paper_s(stem, tf, zeros, poles, facts):
+    found = facts[stem][tf]
+    assert (found["zeros"], found["poles"]) == (zeros, poles)
+
+
+@pytest.mark.parametrize(
+    ("stem", "tf", "zeros", "poles"),
+    [
+        ("two_mass", "X_tip/F", 1, 2),  # "two poles are added while only one zero is added"
+        ("six_mass", "X_tip/F", 5, 10),
+        ("base_flexure", "V_tip/F", 2, 2),  # "two poles and two zeros have now been added"
+        ("polynomial_resonance", "A_tip/V_cmd", 10, 10),  # "two poles and two zeros for each flexible mode"
+    ],
+)
+def test_what_modes_add_is_the_paper_s(stem, tf, zeros, poles, facts):
+    found = facts[stem][tf]
+    assert (found["zeros_added"], found["poles_added"]) == (zeros, poles)
+
+
+def test_the_beam_s_zeros_are_arranged_as_in_figure_11(report, facts):
+    colocated, tip = (facts["sliding_free_beam"][tf] for tf in ("V_act/F", "V_tip/F"))
+    assert colocated["alternates"]
+    assert tip["mirrored_real_zeros"]
+    on_axis = roots(report, "sliding_free_beam", "V_act/F", "zeros")
+    real = roots(report, "sliding_free_beam", "V_tip/F", "zeros")
+    assert all(z.real == 0 for z in on_axis)
+    assert all(z.imag == 0 for z in real)
+    assert sorted(z.real for z in real) == sorted(-z.real for z in real)
+
+
+@pytest.mark.parametrize(
+    ("key", "verdict"),
+    [
+        *((key, "holds") for key in HOLD),
+        *((key, "holds with a condition") for key in CONDITION),
+        *((key, "does not hold") for key in FAIL),
+    ],
+)
+def test_claims_are_judged(key, verdict, claims):
+    assert claims[key]["verdict"] == verdict
+    assert claims[key]["evidence"]
+
+
+def test_every_claim_is_expected_here_or_not_examined(claims):
+    rest = set(claims) - {*HOLD, *CONDITION, *FAIL}
+    assert all(claims[key]["verdict"] == "not examined" for key in rest)
+
+
+def test_quotations_are_short_and_keys_unique():
+    keys = [claim.key for claim in EPPINGER_1988.claims]
+    assert len(keys) == len(set(keys))
+    assert all(re.fullmatch(r"[a-z-]+", key) for key in keys)
+
+
+def test_a_claim_is_refuted_where_the_model_is_another(tmp_path):
+    # With the tip at the joint, Newton's law on the body puts the zeros on the imaginary axis.
+    text = (FOLDER / "lumped_bending_beam.toml").read_text("utf-8")
+    (tmp_path / "lumped_bending_beam.toml").write_text(text.replace('"150 mm"', '"1 mm"'), encoding="utf-8")
+    named = name_specifications([tmp_path / "lumped_bending_beam.toml"])
+    files = compose(write_chapters(named, 1, Silent()), "").files
+    judged = {c["key"]: c["verdict"] for c in json.loads(files["data/claims.json"])["claims"]}
+    assert judged["lumped-noncolocated"] == "does not hold"
+    assert judged["lumped-pair"] == "does not hold"
+    assert judged["lumped-colocated"] == "holds"
+    assert judged["modes"] == "not examined"
+
+
+def test_the_page_is_sound(report):
+    page = Page(report_page(report))
+    assert "script" not in page.elements
+    assert len(page.ids) == len(set(page.ids))
+    assert {a[1:] for a in page.addresses if a.startswith("#")} <= set(page.ids)
+    assert {a for a in page.addresses if not a.startswith("#")} <= set(report.files)
+
+
+# ------------------------------------------------------------------------------------ browser and paper
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    """The report written by the command line, twice, under two hash seeds."""
+    folders = []
+    for seed in ("1", "2025"):
+        folder = tmp_path_factory.mktemp("report") / "out"
+        command = [sys.executable, "-m", "symflex", "report", str(FOLDER), "-o", str(folder), "-j", "2"]
+        environment = {**os.environ, "PYTHONHASHSEED": seed, "SOURCE_DATE_EPOCH": "1000000000"}
+        done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        assert done.stdout.splitlines()[-1] == f"open {folder / 'index.html'}"
+        folders.append(folder)
+    return folders
+
+
+def test_the_same_models_give_the_same_bytes(written):
+    one, other = ({p.relative_to(f): p.read_bytes() for p in f.rglob("*") if p.is_file()} for f in written)
+    assert one.keys() == other.keys()
+    assert [name for name in one if one[name] != other[name]] == []
+
+
+@pytest.mark.needs_tool("chromium")
+@pytest.mark.parametrize("width", [390, 1200])
+def test_a_browser_shows_the_page_without_a_complaint(width, written, tmp_path):
+    shot = tmp_path / "shot.png"
+    log = tmp_path / "net.json"
+    command = [
+        "chromium", "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'profile'}",
+        "--disable-component-update", "--disable-background-networking", "--no-first-run", "--disable-sync",
+        "--enable-logging=stderr", "--v=0", f"--log-net-log={log}", f"--window-size={width},1000",
+        f"--screenshot={shot}", (written[0] / "index.html").as_uri(),
+    ]  # fmt: skip
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
+    assert shot.stat().st_size > 10_000
+    assert "CONSOLE" not in done.stderr
+    # A browser asks for things of its own; the page must be the reason for none.
+    asked = re.findall(r'"url":"(https?:[^"]*)"', log.read_text("utf-8"))
+    own = re.compile(r"https?://[\w.-]*(google|gstatic|googleapis|chromium|gvt1)[\w.-]*/")
+    assert [url for url in asked if not own.match(url)] == []
+
+
+@pytest.mark.needs_tool("pdflatex")
+def test_the_article_compiles_without_a_warning(written, tmp_path):
+    for name in ("report.tex", "figures"):
+        (tmp_path / name).symlink_to(written[0] / name)
+    command = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "report.tex"]
+    for _ in range(3):
+        subprocess.run(command, cwd=tmp_path, capture_output=True, check=True, timeout=120)
+    log = (tmp_path / "report.log").read_text("latin-1")
+    assert re.findall(r"^.*(?:Warning|Overfull|Underfull).*$", log, re.MULTILINE) == []
+    assert (written[0] / "report.pdf").read_bytes().startswith(b"%PDF")

@@ -1,0 +1,74 @@
+"""Conditions for minimum phase, against Routh's and derivations that share no code."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import sympy
+
+from symflex import pipeline
+from symflex.expressions import format_expression
+from symflex.report.minimum_phase import minimum_phase
+from tests.independent import eppinger1988
+
+FOLDER = Path(__file__).parents[3] / "derivations" / "eppinger1988"
+
+
+def condition(model, name):
+    (pair,) = pipeline.pick_pairs(model, [name])
+    (tf,) = pipeline.derive_all(model, [pair])
+    bound = pipeline.bind(tf, {p.name: 1 for p in model.parameters if p.value is None})
+    return minimum_phase(tf, pipeline.explain_zeros(model, bound, pipeline.roots(bound)))
+
+
+def test_the_bracket_of_the_lumped_bending_beam_is_that_of_the_hand_derivation():
+    found = condition(pipeline.load(FOLDER / "lumped_bending_beam.toml"), "X_tip/F")
+    assert found.kind == "if positive"
+    names = {n: sympy.Symbol(n) for n in ("m_2", "J", "c", "h", "l", "EI")}
+    printed = sympy.sympify(format_expression(found.expression).replace("^", "**"), locals=names)
+    assert sympy.simplify(printed - eppinger1988.tip_bracket()) == 0
+
+
+FILTER = """
+symflex = 1
+parameters = {{ a = {a}, b = {{}}, c = {{}} }}
+inputs.u = {{}}
+outputs.y = "({num})*u/(s + 1)^4"
+"""
+
+
+@pytest.mark.parametrize(
+    ("num", "expected"),
+    [
+        ("a*s^2 + b*s + c", "always"),  # Routh: all coefficients positive, degree 2
+        ("(a*s + b)*(b*s + c)", "always"),
+        ("a*s - b", "never"),
+        ("a*s^2 - b", "never"),
+        ("a*s^2 - b*s + c", "unknown"),  # two changes of sign: a complex pair in the right half plane, or two
+        ("(a - b)*s^2 + c", "if positive"),
+        ("a*s^3 + b*s^2 + c*s + a", "unknown"),  # Routh: only if b*c > a^2
+        ("a", "always"),
+    ],
+)
+def test_the_signs_of_coefficients_decide_what_they_can(num, expected):
+    assert condition(pipeline.loads(FILTER.format(num=num, a="{}")), "y/u").kind == expected
+
+
+def test_a_parameter_of_any_sign_decides_nothing():
+    model = pipeline.loads(FILTER.format(num="a*s + b", a='{ assume = "real" }'))
+    assert condition(model, "y/u").kind == "unknown"
+
+
+def test_two_conditions_at_once_are_not_one():
+    model = pipeline.loads(FILTER.format(num="((a - b)*s^2 + c)*((b - c)*s^2 + a)", a="{}"))
+    assert condition(model, "y/u").kind == "unknown"
+
+
+def test_the_zeros_of_a_beam_without_losses_move_along_rays():
+    model = pipeline.load(FOLDER / "sliding_free_beam.toml")
+    assert condition(model, "V_tip/F").kind == "as given"
+
+
+def test_a_driving_point_of_a_passive_structure_is_minimum_phase():
+    assert condition(pipeline.load(FOLDER / "six_mass.toml"), "X_act/F").kind == "always"

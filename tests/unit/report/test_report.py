@@ -1,0 +1,176 @@
+"""Reports on small models: the page, the article and the files."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import re
+
+import pytest
+
+from symflex.errors import SpecError, UsageError
+from symflex.report import (
+    compose,
+    find_specifications,
+    name_specifications,
+    report_article,
+    report_page,
+    write_chapters,
+)
+from symflex.report.comparison import COLUMNS
+from symflex.report.page import inline_svg
+from symflex.report.sections import SECTIONS
+from symflex.roots.budget import Silent
+from tests.unit.report.models import HOSTILE, SMALL, SYMBOLIC
+from tests.unit.report.pages import Page
+
+
+def chapters_on(folder, **texts):
+    for name, text in texts.items():
+        (folder / f"{name}.toml").write_text(text, encoding="utf-8")
+    return write_chapters(name_specifications(find_specifications([folder])), 1, Silent())
+
+
+def report_on(folder, **texts):
+    return compose(chapters_on(folder, **texts), "2001-02-03")
+
+
+@pytest.fixture(scope="module")
+def chapters(tmp_path_factory):
+    return chapters_on(tmp_path_factory.mktemp("small"), small=SMALL, symbolic=SYMBOLIC)
+
+
+@pytest.fixture(scope="module")
+def small(chapters):
+    return compose(chapters, "2001-02-03")
+
+
+@pytest.fixture(scope="module")
+def hostile(tmp_path_factory):
+    return report_on(tmp_path_factory.mktemp("hostile"), hostile=HOSTILE)
+
+
+@pytest.fixture(scope="module", params=["small", "hostile"])
+def page(request):
+    return Page(report_page(request.getfixturevalue(request.param)))
+
+
+def test_a_page_needs_nothing_but_itself(page):
+    assert not {"script", "link", "img", "iframe", "object", "embed", "base", "form"} & set(page.elements)
+    assert page.handlers == []
+    assert all(re.fullmatch(r"#[\w.-]+|(code|data|figures)/[\w.-]+", a) for a in page.addresses)
+
+
+def test_every_identifier_of_a_page_is_there_once(page):
+    assert len(page.ids) == len(set(page.ids))
+
+
+def test_every_link_inside_a_page_leads_somewhere(page):
+    assert {a[1:] for a in page.addresses if a.startswith("#")} <= set(page.ids)
+
+
+def test_every_linked_file_is_written(small):
+    linked = {a for a in Page(report_page(small)).addresses if not a.startswith("#")}
+    # What a section could not compute is not linked from another.
+    assert {a for a in linked if "symbolic_roots" not in a} <= set(small.files)
+
+
+def test_hostile_text_is_shown_as_text(hostile):
+    shown = Page(report_page(hostile)).text()
+    assert "</title><script>alert(1)</script>" in shown
+    assert "<script src='//evil'></script>" in shown
+    assert "<script>alert(2)</script>" in shown
+    assert "\u202e" not in shown
+
+
+def test_hostile_text_reaches_no_command_of_tex(hostile):
+    article = report_article(hostile)
+    assert article.isascii()
+    assert not re.search(r"\\(input|write18|immediate|csname|include)\b", article)
+    assert article.count(r"\end{document}") == 1
+
+
+def test_hostile_names_lead_to_plain_files(tmp_path):
+    (tmp_path / '<b> ..%2f" onx=1.toml').write_text(SMALL, encoding="utf-8")
+    named = name_specifications(find_specifications([tmp_path]))
+    (stem,) = named
+    assert re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", stem)
+
+
+def test_names_that_would_collide_differ(tmp_path):
+    found = name_specifications([tmp_path / n for n in ("a/x.toml", "b/X.toml", "c/x.toml", "claims.toml")])
+    assert len({name.lower() for name in found}) == 4
+    assert "claims" not in found
+
+
+def test_reports_of_equal_models_are_equal(small, tmp_path):
+    again = report_on(tmp_path, small=SMALL, symbolic=SYMBOLIC)
+    assert report_page(again) == report_page(small)
+    assert report_article(again) == report_article(small)
+    assert again.files == small.files
+
+
+def test_the_date_stands_in_the_report_when_given(small, chapters):
+    assert "2001-02-03" in report_page(small)
+    assert "2001" not in report_page(compose(chapters, ""))
+
+
+def test_what_has_no_numbers_says_so(small):
+    shown = Page(report_page(small)).text()
+    assert "no numbers" in shown
+    assert any("symbolic" in warning for warning in small.warnings)
+    assert small.code == 0
+
+
+def test_the_response_in_the_data_is_that_of_two_masses(small):
+    rows = list(csv.DictReader(io.StringIO(small.files["data/small_Y_over_F.csv"].decode())))
+    m_1, m_2, k, b = 3, 2, 24, 0.1
+    for row in rows[:: len(rows) // 7]:
+        s = 2j * math.pi * float(row["frequency_hz"])
+        expected = (b * s + k) / (s**2 * (m_1 * m_2 * s**2 + (b * s + k) * (m_1 + m_2)))
+        assert complex(float(row["re"]), float(row["im"])) == pytest.approx(expected, rel=1e-7)
+        assert float(row["magnitude_db"]) == pytest.approx(20 * math.log10(abs(expected)), abs=1e-6)
+
+
+def test_the_facts_in_the_data_are_those_of_two_masses(small):
+    facts = json.loads(small.files["data/small_facts.json"])
+    (first, last) = facts["transfer_functions"]
+    assert (first["zeros_added"], first["poles_added"], first["colocated"]) == (2, 2, True)
+    assert (last["zeros_added"], last["poles_added"], last["colocated"]) == (1, 2, False)
+
+
+def test_every_section_of_the_registry_is_in_a_full_chapter(hostile):
+    anchors = set(Page(report_page(hostile)).ids)
+    assert {f"hostile-{key}" for key in SECTIONS} <= anchors
+
+
+def test_every_column_of_the_registry_is_in_the_comparison(small):
+    shown = report_page(small)
+    assert all(f">{head}</th>" in shown for head in COLUMNS)
+
+
+def test_a_single_model_is_not_compared(hostile):
+    assert "comparison" not in Page(report_page(hostile)).ids
+
+
+def test_a_wrong_specification_is_an_error_with_its_place(tmp_path):
+    with pytest.raises(SpecError, match=r"wrong\.toml:"):
+        report_on(tmp_path, wrong=SMALL.replace('"24 N/m"', '"24 N"'))
+
+
+def test_a_folder_without_specifications_is_an_error(tmp_path):
+    with pytest.raises(UsageError, match="SF902"):
+        find_specifications([tmp_path])
+
+
+def test_identifiers_of_figures_get_a_prefix():
+    drawn = (
+        '<?xml version="1.0"?><svg width="72pt" xmlns="u"><g id="a"/><use href="#a" fill="url(#a)"/></svg>'
+    )
+    shown = inline_svg(drawn, "f", 'x" onload="y')
+    assert re.findall(r'id="([^"]*)"|href="#([^"]*)"|url\(#([^)]*)\)', shown) == [
+        ("f-a", "", ""), ("", "f-a", ""), ("", "", "f-a")
+    ]  # fmt: skip
+    assert 'onload="' not in shown

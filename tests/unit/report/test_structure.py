@@ -1,0 +1,80 @@
+from __future__ import annotations
+
+import pytest
+
+from symflex import pipeline
+from symflex.report.structure import compliances, is_colocated
+
+JOINTED = """
+symflex = 1
+inputs  = { F = { force = "a" }, u = {} }
+outputs = { A = "a", B = "b", C = "s*c", flow = "link.f", both = "a - c" }
+[elements]
+m_a   = { type = "mass", at = "a", m = 1 }
+m_b   = { type = "mass", at = "b", m = 1 }
+m_c   = { type = "mass", at = "c", m = 1 }
+lever = { type = "transformer", from = "a", to = "b", ratio = 2 }
+link  = { type = "spring", between = ["b", "c"], k = 5 }
+base  = { type = "spring", between = ["c", "ground"], k = 5 }
+push  = { type = "force_source", at = "c", f = "u" }
+"""
+
+
+@pytest.fixture(scope="module")
+def jointed():
+    return pipeline.loads(JOINTED)
+
+
+def colocated(model, output, source):
+    outputs = {o.name: o for o in model.outputs}
+    inputs = {i.name: i for i in model.inputs}
+    return is_colocated(model, outputs[output], inputs[source])
+
+
+def test_a_spring_to_ground_is_the_base_s(jointed):
+    assert {c.name: c.place for c in compliances(jointed)} == {"link": "transmission", "base": "base"}
+
+
+@pytest.mark.parametrize(
+    ("output", "source", "expected"),
+    [
+        ("A", "F", True),
+        ("B", "F", True),  # the lever is rigid
+        ("C", "F", False),  # the spring is not
+        ("both", "F", False),
+        ("C", "u", True),  # a signal acts where the source stands
+        ("A", "u", False),
+        ("flow", "F", None),  # a force has no place
+    ],
+)
+def test_colocated_means_rigidly_joined(jointed, output, source, expected):
+    assert colocated(jointed, output, source) is expected
+
+
+def test_a_field_bends_from_fourth_order_on():
+    text = """
+symflex = 1
+parameters = {{ l = "1 m", c = "{unit}" }}
+inputs = {{ F = {{}} }}
+outputs = {{ X = "w(0)", Y = "w(l)" }}
+[fields.w]
+domain = ["0", "l"]
+equation = "c*{derivative} + s^2*w = 0"
+conditions = {conditions}
+"""
+    bending = pipeline.loads(
+        text.format(
+            unit="1 m^4/s^2",
+            derivative="w''''",
+            conditions="[\"w'(0) = 0\", \"w'''(0) = F\", \"w''(l) = 0\", \"w'''(l) = 0\"]",
+        )
+    )
+    axial = pipeline.loads(
+        text.format(unit="-1 m^2/s^2", derivative="w''", conditions='["w\'(0) = F", "w\'(l) = 0"]').replace(
+            'c = "-1 m^2/s^2"', 'c = { value = "-1 m^2/s^2", assume = "real" }'
+        )
+    )
+    assert [c.place for c in compliances(bending)] == ["link"]
+    assert [c.place for c in compliances(axial)] == ["transmission"]
+    assert colocated(axial, "X", "F") is True
+    assert colocated(bending, "Y", "F") is False
