@@ -16,7 +16,7 @@ def commands():
 
 def test_the_readme_has_exactly_two_commands():
     assert commands() == [
-        "python -m pip install . && symflex derive derivations/eppinger1988/rigid_body.toml",
+        "python -m pip install . && symflex report derivations/eppinger1988",
         "python -m pip install '.[test]' && python -m pytest",
     ]
 
