@@ -87,6 +87,7 @@ def _shape_lines(shapes: FittedModeShapes, width: int) -> list[str]:
     head = f"mass-normalised mode shapes [{shapes.unit}], driven at {shapes.names[shapes.driving]}"
     lines = _wrapped(head, width)
     wide = max(len(name) for name in shapes.names)
+    lines += _wrapped("from poles that suit all responses best", width)
     lines.append(f"  mode  {'response':{wide}}        value   std. error   off real [deg]")
     for i in range(shapes.shapes.shape[1]):
         for r, name in enumerate(shapes.names):
@@ -103,6 +104,8 @@ def _shapes_json(shapes: FittedModeShapes) -> dict[str, object]:
         "driving": shapes.names[shapes.driving],
         "unit": shapes.unit,
         "responses": list(shapes.names),
+        "frequency_hz": shapes.frequency_hz.tolist(),
+        "damping_ratio": shapes.damping_ratio.tolist(),
         "shapes": shapes.shapes.T.tolist(),
         "standard_errors": shapes.errors.T.tolist(),
         "degrees_off_real": shapes.turned.T.tolist(),

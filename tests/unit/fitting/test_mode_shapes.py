@@ -53,7 +53,7 @@ def shapes_of(data, driving=DRIVEN, **asked):
 def test_shapes_are_the_eigenvectors_normalised_by_mass(power, unit, factor):
     found = shapes_of(responses(power, unit, factor))
     assert found.unit == "kg^(-1/2)"
-    assert found.shapes == pytest.approx(expected(), rel=1e-3)
+    assert found.shapes == pytest.approx(expected(), rel=1e-6)
     assert np.max(np.abs(found.turned)) < 1
 
 
