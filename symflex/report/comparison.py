@@ -86,6 +86,28 @@ def both_cell(facts: ModelFacts) -> Cell:
     return ("colocated only" if kinds == {True} else "noncolocated only" if kinds else NONE,)
 
 
+def together_cell(facts: ModelFacts) -> Cell:
+    """Return up to which frequency outputs elsewhere move with colocated ones."""
+    runs: list[Run] = []
+    for found in facts.colocations:
+        end = f"{found.bandwidth_hz:.4g} Hz" if found.bandwidth_hz else f"over {found.examined_hz:.4g} Hz"
+        runs += [end if found.is_together else "not at all", " ", Aside(found.tf), "\n"]
+    return tuple(runs[:-1]) if runs else (NONE,)
+
+
+def loop_cell(facts: ModelFacts) -> Cell:
+    """Return for which gains a loop is stable."""
+    runs: list[Run] = []
+    for loop in facts.loops:
+        for low, high in loop.stable:
+            above = "" if not low else f"{low:.4g} < "
+            below = "" if high is None else f" < {high:.4g}"
+            runs += [f"{above}{loop.gain}{below}" if above or below else f"all {loop.gain} > 0", "\n"]
+        if not loop.stable:
+            runs += [f"no {loop.gain}", "\n"]
+    return tuple(runs[:-1]) if runs else (NONE,)
+
+
 @dataclass(frozen=True, slots=True)
 class ComparisonColumn:
     """A column of the comparison.
@@ -110,15 +132,25 @@ COLUMNS: dict[str, ComparisonColumn] = {
     "Minimum phase": ComparisonColumn(phase_cell),
     "Colocated or not": ComparisonColumn(both_cell),
 }
-"""By their heads, in the order of the table."""
+"""Of the structures, by their heads, in the order of the table."""
+
+LOOP_COLUMNS: dict[str, ComparisonColumn] = {
+    "Model": ComparisonColumn(model_cell, "plain"),
+    "Outputs together up to": ComparisonColumn(together_cell),
+    "Loop stable for": ComparisonColumn(loop_cell),
+}
+"""Of what matters to control: models with loops, or with outputs here and elsewhere."""
 
 
 def comparison_section(models: Sequence[ModelFacts]) -> Section | None:
     """Return the table of models, None for fewer than two."""
     if len(models) < 2:  # noqa: PLR2004 - one model compares with nothing
         return None
-    rows = tuple(tuple(column.cell(facts) for column in COLUMNS.values()) for facts in models)
-    heads = columns(*((head, column.side) for head, column in COLUMNS.items()))
+    structures = [facts for facts in models if not facts.loops]
+    controlled = [facts for facts in models if facts.loops or facts.colocations]
+    tables = [
+        _table(chosen, some) for chosen, some in ((structures, COLUMNS), (controlled, LOOP_COLUMNS)) if chosen
+    ]
     explained: tuple[Paragraph, ...] = (
         text(
             "Poles and zeros are counted with multiplicity, and against the same model with all its "
@@ -136,7 +168,21 @@ def comparison_section(models: Sequence[ModelFacts]) -> Section | None:
             "parts, one in bending to a link, another to the transmission."
         ),
     )
-    return Section("Comparison of models", (Table(heads, rows), *explained), ANCHOR)
+    if controlled:
+        explained = (
+            *explained,
+            text(
+                "Outputs are together where one differs from the output on which the input does work by at "
+                "most 10 degrees of phase and 1 dB. A loop is stable with all closed-loop poles in the left "
+                "half plane; for which gains is proved as far as the model's chapter says."
+            ),
+        )
+    return Section("Comparison of models", (*tables, *explained), ANCHOR)
+
+
+def _table(models: Sequence[ModelFacts], chosen: dict[str, ComparisonColumn]) -> Table:
+    rows = tuple(tuple(column.cell(facts) for column in chosen.values()) for facts in models)
+    return Table(columns(*((head, column.side) for head, column in chosen.items())), rows)
 
 
 def representatives(facts: ModelFacts) -> tuple[TransferFacts, ...]:

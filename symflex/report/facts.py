@@ -7,20 +7,24 @@ Output: a :class:`ModelFacts`. Everything in it can be sent to another process a
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
-from math import inf
+from dataclasses import asdict, dataclass
+from math import inf, tau
 from typing import TYPE_CHECKING, Final, Literal
 
+from symflex.errors import SymflexError
 from symflex.expressions import format_expression
 from symflex.report.document import Mathematics, mathematics
 from symflex.report.minimum_phase import PhaseCondition, minimum_phase
 from symflex.report.structure import compliances, is_colocated
 
 if TYPE_CHECKING:
+    from flint import arb
+
     from symflex.audit import Audit
     from symflex.report.structure import Compliance
     from symflex.report.study import Study
     from symflex.roots import PoleZeroMap, Root
+    from symflex.stability import DynamicColocation, StabilityMap
     from symflex.transfer import TransferFunction
 
 Place = Literal["origin", "imaginary axis", "real axis", "plane"]
@@ -221,6 +225,67 @@ class TransferFacts:
 
 
 @dataclass(frozen=True, slots=True)
+class LoopFacts:
+    """For which gains a feedback loop is stable.
+
+    Parameters
+    ----------
+    gain, unit : str
+        Name and SI unit.
+    stable : tuple of (float or None, float or None)
+        Intervals with all closed-loop poles in the left half plane; None where there is no end.
+    unstable_at_last : int
+        Poles right of the imaginary axis for the largest gains examined.
+    crossings_hz : tuple of float
+        Where poles are on the axis at the boundaries [Hz].
+    is_bounded : bool
+        Gains were examined up to an end.
+    certified : bool
+        All of it is proved, for all poles.
+    """
+
+    gain: str
+    unit: str
+    stable: tuple[tuple[float | None, float | None], ...]
+    unstable_at_last: int
+    crossings_hz: tuple[float, ...]
+    is_bounded: bool
+    certified: bool
+
+    @property
+    def is_always_stable(self) -> bool:
+        """Whether all gains examined are stable."""
+        return len(self.stable) == 1 and not self.crossings_hz
+
+
+@dataclass(frozen=True, slots=True)
+class ColocationFact:
+    """Up to which frequency an output moves with one where the input acts.
+
+    Parameters
+    ----------
+    tf, reference : str
+        Of the output elsewhere and of the colocated one.
+    phase_degrees, magnitude_db : float
+        Within which.
+    bandwidth_hz : float or None
+        None when they stay together throughout.
+    examined_hz : float
+        Up to which frequency that was examined.
+    is_together : bool
+        At the lowest frequency they are.
+    """
+
+    tf: str
+    reference: str
+    phase_degrees: float
+    magnitude_db: float
+    bandwidth_hz: float | None
+    examined_hz: float
+    is_together: bool
+
+
+@dataclass(frozen=True, slots=True)
 class ModelFacts:
     """Facts about one model.
 
@@ -238,6 +303,10 @@ class ModelFacts:
         Of its transfer functions that could be bound to numbers.
     audits : tuple of (str, str, str)
         Printed formulas, "OUT/IN", their verdicts, and what should be changed in them, in words.
+    loops : tuple of LoopFacts
+        Of the gains that figures name.
+    colocations : tuple of ColocationFact
+        Of functions that are not colocated, where a colocated one of the same kind is there.
     """
 
     stem: str
@@ -248,6 +317,8 @@ class ModelFacts:
     has_signals: bool
     functions: tuple[TransferFacts, ...]
     audits: tuple[tuple[str, str, str], ...]
+    loops: tuple[LoopFacts, ...] = ()
+    colocations: tuple[ColocationFact, ...] = ()
 
     def of(self, tf: str) -> TransferFacts:
         """Return the facts of one transfer function.
@@ -273,6 +344,8 @@ class ModelFacts:
                 {"name": c.name, "bends": c.is_bending, "place": c.place} for c in self.compliances
             ],
             "transfer_functions": [f.to_json_dict() for f in self.functions],
+            "loops": [asdict(loop) for loop in self.loops],
+            "colocations": [asdict(colocation) for colocation in self.colocations],
         }
 
 
@@ -320,6 +393,36 @@ def facts_of(study: Study) -> ModelFacts:
         has_signals=bool(model.signals or model.blocks),
         functions=tuple(functions),
         audits=tuple((audit.tf.name, audit.verdict, _changes(audit)) for audit in study.audits),
+        loops=tuple(_loop(found) for found in study.loops if not isinstance(found, SymflexError)),
+        colocations=tuple(_colocation(found) for found in study.colocations),
+    )
+
+
+def _loop(found: StabilityMap) -> LoopFacts:
+    return LoopFacts(
+        gain=found.gain,
+        unit=found.unit,
+        stable=tuple((_end(i.low), _end(i.high)) for i in found.stable),
+        unstable_at_last=found.intervals[-1].poles.right,
+        crossings_hz=tuple(float(w.mid()) / tau for b in found.boundaries for w in b.frequencies),
+        is_bounded=found.limits[1] is not None,
+        certified=found.certified,
+    )
+
+
+def _end(value: arb | None) -> float | None:
+    return None if value is None else float(value.mid())
+
+
+def _colocation(found: DynamicColocation) -> ColocationFact:
+    return ColocationFact(
+        tf=found.tf,
+        reference=found.reference,
+        phase_degrees=found.phase,
+        magnitude_db=found.magnitude,
+        bandwidth_hz=None if found.edge is None else float(found.edge.mid()) / tau,
+        examined_hz=found.limits[1],
+        is_together=found.begins,
     )
 
 

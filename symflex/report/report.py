@@ -65,7 +65,9 @@ class Report:
 
 
 def find_specifications(paths: Sequence[Path]) -> tuple[Path, ...]:
-    """Return the specifications that arguments name; a folder stands for the ``.toml`` files in it, by name.
+    """Return the specifications that arguments name; a folder stands for the ``.toml`` files in it and below.
+
+    Those of a folder come by name, before those of folders in it.
 
     Raises
     ------
@@ -75,7 +77,8 @@ def find_specifications(paths: Sequence[Path]) -> tuple[Path, ...]:
     found: list[Path] = []
     for path in paths:
         if path.is_dir():
-            inside = sorted(p for p in path.iterdir() if p.suffix == ".toml" and p.is_file())
+            files = (p for p in path.rglob("*.toml") if p.is_file())
+            inside = sorted(files, key=lambda p: (len(p.parts), p))
             if not inside:
                 raise UsageError(
                     Diagnostic(

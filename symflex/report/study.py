@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from symflex.report.limits import Counts
     from symflex.response import FrequencyResponse
     from symflex.roots import PoleZeroMap
+    from symflex.stability import DynamicColocation, StabilityMap
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
 MOST_FUNCTIONS: Final = 24
@@ -186,6 +187,36 @@ class Study:
             low, high = (float(f) for f in band) if band else default_band(pipeline.roots(bound))
             found.append(respond(bound, adaptive_grid(bound, low, high)))
         return tuple(found)
+
+    @cached_property
+    def loops(self) -> tuple[StabilityMap | SymflexError, ...]:
+        """Stable values of every gain that a figure names, or why there are none."""
+        gains = dict.fromkeys(figure.gain for figure in self.model.figures if figure.gain)
+        return tuple(attempt(lambda gain=gain: self._stability(gain)) for gain in gains)  # type: ignore[misc]
+
+    def _stability(self, gain: str) -> StabilityMap:
+        return pipeline.stability(self.model, gain, budget=Budget())
+
+    @cached_property
+    def colocations(self) -> tuple[DynamicColocation, ...]:
+        """Up to which frequency other outputs move with the one on which the input does work.
+
+        What the zeros mean tells which that is: of it they are the poles of the system held there.
+        """
+        joints = {
+            (tf.input.name, tf.quantity): tf for tf, _, told in self.located if told.kind == "colocated"
+        }
+        found = []
+        for tf, _, told in self.located:
+            joint = joints.get((tf.input.name, tf.quantity))
+            if told.kind != "colocated" and joint is not None:
+                one = attempt(self._colocation(tf.name, joint.name))
+                if not isinstance(one, SymflexError):
+                    found.append(one)
+        return tuple(found)
+
+    def _colocation(self, name: str, joint: str) -> Callable[[], DynamicColocation]:
+        return lambda: pipeline.colocation(self.model, name, joint)
 
     def rational(self, tf: TransferFunction) -> RationalApproximation | None:
         """Return the product of the lowest modes of a function, None where there is no such approximation."""

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from symflex.report import compose, name_specifications, report_page, write_chapters
+from symflex.report import compose, find_specifications, name_specifications, report_page, write_chapters
 from symflex.report.claims.eppinger1988 import EPPINGER_1988
 from symflex.roots.budget import Silent
 from tests.independent import eppinger1988
@@ -28,11 +28,11 @@ FIGURES = {
 HOLD = (
     "modes second-order fitted-array too-few-zeros base-only-colocated infinity alternating same-poles "
     "real-zeros no-phase not-in-lumped lumped-colocated right-numbers two-and-two base-two-zeros "
-    "printed-rigid-body printed-noncolocated"
+    "printed-rigid-body printed-noncolocated high-gain base-against-link"
 ).split()
 CONDITION = (
     "one-zero-per-mode two-zeros-three-poles bending lumped-noncolocated lumped-pair pair-and-one-zero "
-    "same-character equal-frequencies"
+    "same-character equal-frequencies dynamically-colocated"
 ).split()
 FAIL = ["printed-colocated", "fifth-mode"]
 
@@ -41,7 +41,7 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(scope="module")
 def report():
-    named = name_specifications(sorted(FOLDER.glob("*.toml")))
+    named = name_specifications(find_specifications([FOLDER]))
     return compose(write_chapters(named, 2, Silent()), "2001-02-03")
 
 
@@ -141,6 +141,20 @@ def test_claims_are_judged(key, verdict, claims):
 def test_every_claim_is_expected_here_or_not_examined(claims):
     rest = set(claims) - {*HOLD, *CONDITION, *FAIL}
     assert all(claims[key]["verdict"] == "not examined" for key in rest)
+
+
+def test_stable_gains_are_those_of_the_loops_readme(report):
+    # tests/derivations/test_loops.py and tests/independent/test_stability_boundaries.py judge the numbers.
+    for stem, end in (
+        ("two_mass_force", 5.4510),
+        ("lumped_bending_beam_force", 4.7665),
+        ("rigid_body_force", None),
+    ):
+        (loop,) = json.loads(report.files[f"data/{stem}_facts.json"])["loops"]
+        ((low, high),) = loop["stable"]
+        assert low == 0
+        assert high is None if end is None else high == pytest.approx(end, rel=1e-4)
+        assert report.files[f"figures/{stem}_locus.pdf"].startswith(b"%PDF")
 
 
 def test_quotations_are_short_and_keys_unique():

@@ -12,7 +12,7 @@ import pytest
 import symflex
 from tests.independent.nyquist import axial_transfer, bending_transfer, poles_right_of_axis
 
-CONTROL = Path(__file__).parents[2] / "derivations" / "control"
+CONTROL = Path(__file__).parents[2] / "derivations" / "eppinger1988" / "loops"
 NEAR = 1e-4
 
 

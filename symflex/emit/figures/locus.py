@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
+from symflex.emit.figures.curves import drawable
 from symflex.emit.figures.labels import label_of_name
 from symflex.emit.figures.style import (
     COLOURS,
@@ -49,11 +50,12 @@ def draw_locus(locus: RootLocus, title: str | None = None, width: float | None =
         [_point(root) for root in roots] for roots in (locus.start.poles, locus.end.poles, locus.start.zeros)
     )
     _set_view(axes, locus, starts, zeros)
-    axes.axvspan(0, 1e300, color="#FBEDE4", zorder=0, linewidth=0)
+    right, seen = max(axes.get_xlim()[1], 0.0), float(np.max(np.abs([axes.get_xlim(), axes.get_ylim()])))
+    axes.axvspan(0, right, color="#FBEDE4", zorder=0, linewidth=0)
     for value, draw in ((0, axes.axhline), (0, axes.axvline)):
         draw(value, color=QUIET, linewidth=0.5, zorder=1)
     for branch in locus.branches:
-        s = np.array(branch)
+        s = drawable(np.array(branch), seen)
         axes.plot(s.real, s.imag, "-", color=COLOURS[0], linewidth=1.0, zorder=2)
     low, high = (number_label(float(x)) for x in locus.limits)
     name = label_of_name(locus.gain)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
+from symflex.emit.figures.curves import drawable
 from symflex.emit.figures.labels import label_of_tf
 from symflex.emit.figures.style import (
     COLOURS,
@@ -66,14 +67,13 @@ def draw_nyquist(
         draw(value, color=QUIET, linewidth=0.5, zorder=1)
     circle = np.exp(1j * np.linspace(0, 2 * np.pi, 361))
     axes.plot(circle.real, circle.imag, ":", color=QUIET, linewidth=0.7, zorder=1)
-    curves = []
-    for i, (bound, colour) in enumerate(zip(bounds, cycle(COLOURS), strict=False)):
-        values = _curve(bound, band_hz)
-        curves.append(values)
+    curves = [_curve(bound, band_hz) for bound in bounds]
+    reach = _reach(np.concatenate(curves), is_loop=bool(labels))
+    for i, (curve, colour) in enumerate(zip(curves, cycle(COLOURS), strict=False)):
+        values = drawable(curve, reach)
         label = labels[i] if labels else label_of_tf(tfs[i])
         axes.plot(values.real, values.imag, "-", color=colour, linewidth=1.0, zorder=2, label=label)
         axes.plot(values.real, -values.imag, "--", color=colour, linewidth=0.6, zorder=2)
-    reach = _reach(np.concatenate(curves), is_loop=bool(labels))
     if reach > 1:
         axes.plot([-1], [0], "+", color="black", markersize=8, markeredgewidth=1.1, zorder=4)
     axes.set_xlim(-reach, reach)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from symflex.report.claims.claim import Models
     from symflex.report.document import Run
-    from symflex.report.facts import TransferFacts
+    from symflex.report.facts import ColocationFact, LoopFacts, TransferFacts
 
 MODES_HZ: Final = (11.0, 38.0, 44.0, 67.0, 77.0)
 """The dominant structural modes, section 'Experimental Robot Dynamics'."""
@@ -30,6 +30,8 @@ POLYNOMIAL: Final = "Polynomial Resonance Model"
 LUMPED: Final = "Lumped-Mass Models"
 BENDING: Final = "Bending Beam Models"
 DISCUSSION: Final = "Discussion"
+
+BENDING_BEAMS: Final = ("sliding_free_beam", "lumped_bending_beam")
 
 _TWO_ZEROS_PER_MODE: Final = 2
 
@@ -296,9 +298,66 @@ def _needs_data(models: Models) -> Finding:
     return _unexamined("The measured response is printed as a plot only; the comparison needs its numbers.")
 
 
-def _needs_loops(models: Models) -> Finding:
-    del models
-    return _unexamined("A statement about closed loops and bands, which this report does not compute.")
+def _high_gain(models: Models) -> Finding:
+    """At high gain noncolocated loops are unstable, colocated ones are not, where there are such zeros."""
+    shown: list[Run] = []
+    is_true = True
+    for stem in BENDING_BEAMS:
+        force, position = (_loop(models, f"{stem}_{kind}") for kind in ("force", "position"))
+        (_, end), *_ = force.stable
+        has_right_zeros = any(f.right_half_plane_zeros for f in models[stem].functions)
+        is_true = is_true and has_right_zeros and force.unstable_at_last > 0 and position.is_always_stable
+        shown += [
+            f"{stem}: force loop unstable for {force.gain} > {end or 0:.4g}, where poles cross at "
+            f"{force.crossings_hz[0]:.4g} Hz; joint position loop stable for all gains examined",
+            "\n",
+        ]
+    return judged(is_true, *shown[:-1])
+
+
+def _dynamically_colocated(models: Models) -> Finding:
+    base = _colocation(models, "base_flexure", "V_tip/F")
+    first = _first_mode(models, "base_flexure", "V_tip/F")
+    shown = f"base_flexure: V_tip/F and {base.reference} are together {_up_to(base)}; mode at {first:.4g} Hz."
+    if not base.is_together or base.bandwidth_hz is None:
+        return judged(base.is_together, shown)
+    return Finding("holds with a condition", (shown, " Condition: below that frequency."))
+
+
+def _base_against_link(models: Models) -> Finding:
+    shown: list[Run] = []
+    shares: list[float] = []
+    for stem in ("base_flexure", "two_mass", "sliding_free_beam"):
+        found = _colocation(models, stem, "V_tip/F")
+        end = (found.bandwidth_hz or found.examined_hz) if found.is_together else 0.0
+        shares.append(end / _first_mode(models, stem, "V_tip/F"))
+        shown += [f"{stem}: together {_up_to(found)}, {shares[-1]:.2g} times its first mode", "\n"]
+    return judged(shares[0] > max(shares[1:]), *shown[:-1])
+
+
+def _loop(models: Models, stem: str) -> LoopFacts:
+    for found in models[stem].loops:
+        return found
+    message = f"stable gains of {stem}"
+    raise KeyError(message)
+
+
+def _colocation(models: Models, stem: str, tf: str) -> ColocationFact:
+    for found in models[stem].colocations:
+        if found.tf == tf:
+            return found
+    raise KeyError(tf)
+
+
+def _first_mode(models: Models, stem: str, tf: str) -> float:
+    return min(p.frequency_hz for p in models[stem].of(tf).poles if p.is_oscillatory)
+
+
+def _up_to(found: ColocationFact) -> str:
+    within = f"within {found.phase_degrees:g} degrees and {found.magnitude_db:g} dB"
+    if found.bandwidth_hz is None:
+        return f"{within} up to {found.examined_hz:.4g} Hz, the end of the band"
+    return f"{within} up to {found.bandwidth_hz:.4g} Hz"
 
 
 def _counts(function: TransferFacts) -> str:
@@ -533,8 +592,8 @@ EPPINGER_1988: Final = Publication(
             DISCUSSION,
             "The presence of these nonminimum phase zeros explains why at high gain the noncolocated control "
             "becomes unstable.",
-            (),
-            _needs_loops,
+            (*BENDING_BEAMS, *(f"{stem}_{loop}" for stem in BENDING_BEAMS for loop in ("force", "position"))),
+            _high_gain,
         ),
         Claim(
             "same-character",
@@ -557,8 +616,8 @@ EPPINGER_1988: Final = Publication(
             "It is possible for a tip sensor and joint actuator to be physically noncolocated, but "
             "dynamically "
             "colocated.",
-            (),
-            _needs_loops,
+            ("base_flexure",),
+            _dynamically_colocated,
         ),
         Claim(
             "equal-frequencies",
@@ -575,8 +634,8 @@ EPPINGER_1988: Final = Publication(
             "base flexure allows the joint actuators and tip sensors to remain dynamically colocated, "
             "while link "
             "flexure may not.",
-            (),
-            _needs_loops,
+            ("base_flexure", "sliding_free_beam", "two_mass"),
+            _base_against_link,
         ),
     ),
 )

@@ -34,14 +34,25 @@ def publication_of(sources: Iterable[str], known: Mapping[str, Publication]) -> 
     """Return the publication that any of the sources names, None without one."""
     for source in sources:
         for name, publication in known.items():
-            if source.startswith(name):
+            if is_of(source, name):
                 return publication
     return None
 
 
+def is_of(source: str, name: str) -> bool:
+    """Tell whether a source is a publication, or a model made after it.
+
+    Examples
+    --------
+    >>> is_of("after Eppinger & Seering 1988, fig. 1", "Eppinger & Seering 1988")
+    True
+    """
+    return source.removeprefix("after ").startswith(name)
+
+
 def judge_all(publication: Publication, models: Sequence[ModelFacts]) -> tuple[Finding, ...]:
     """Return the finding on each claim, in order."""
-    named = {m.stem: m for m in models if m.source.startswith(publication.name)}
+    named = {m.stem: m for m in models if is_of(m.source, publication.name)}
     return tuple(claim.judge(named) for claim in publication.claims)
 
 

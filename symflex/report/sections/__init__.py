@@ -5,6 +5,7 @@ from symflex.report.sections.audits import audit_section
 from symflex.report.sections.equations import equation_section
 from symflex.report.sections.exports import export_section
 from symflex.report.sections.figures import figure_section
+from symflex.report.sections.loops import loop_section
 from symflex.report.sections.parameters import parameter_section
 from symflex.report.sections.roots import root_section
 from symflex.report.sections.specification import specification_section
@@ -15,6 +16,7 @@ SECTIONS: dict[str, SectionMaker] = {
     "printed": audit_section,
     "figures": figure_section,
     "roots": root_section,
+    "loops": loop_section,
     "files": export_section,
     "specification": specification_section,
 }

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from symflex.emit.figures import FIGURES, draw, render
+from symflex import pipeline
+from symflex.emit.figures import FIGURES, LOOP_FIGURES, draw, draw_loop, render
 from symflex.errors import SymflexError
 from symflex.model import Figure
 from symflex.report.document import Notice, Picture
@@ -20,6 +21,12 @@ MOST_CURVES: Final = 4
 WORDS: Final = {"bode": "Bode plot", "poles_zeros": "Poles and zeros", "modes": "Mode shapes"}
 
 
+LOOP_WORDS: Final = {
+    "locus": "Root locus for the gain",
+    "nyquist": "Nyquist plot of the loop with the gain",
+}
+
+
 def figure_section(study: Study) -> Part | None:
     """Return every figure, as SVG for the page and as PDF and SVG for papers."""
     known = {(b.source.output.name, b.source.input.name): b for b in study.bounds}
@@ -28,20 +35,40 @@ def figure_section(study: Study) -> Part | None:
     files: dict[str, bytes] = {}
     for figure in study.model.figures or _defaults(study, drawable):
         chosen = [drawable[pair] for pair in figure.of or tuple(drawable) if pair in drawable]
-        if figure.kind not in FIGURES:
+        picture: Picture | SymflexError
+        if figure.gain and figure.kind in LOOP_FIGURES:
+            picture = attempt(lambda f=figure: _loop_picture(study, f, files))  # type: ignore[misc]
+            blocks.append(_block(figure, picture))
+        elif figure.kind not in FIGURES:
             blocks.append(Notice(f"{figure.name}: figures of kind '{figure.kind}' are not available yet"))
         elif chosen:
             picture = attempt(lambda f=figure, c=chosen: _picture(study, f, c, files))  # type: ignore[misc]
-            if isinstance(picture, SymflexError):
-                blocks.append(Notice(f"{figure.name}: {picture.diagnostics[0].message}"))
-            else:
-                blocks.append(picture)
+            blocks.append(_block(figure, picture))
     return Part("Figures", tuple(blocks), files) if blocks else None
+
+
+def _block(figure: Figure, picture: Picture | SymflexError) -> Block:
+    """Return a picture, or why there is none."""
+    if isinstance(picture, SymflexError):
+        return Notice(f"{figure.name}: {picture.diagnostics[0].message}")
+    return picture
 
 
 def _defaults(study: Study, drawable: dict[tuple[str, str], BoundTransferFunction]) -> tuple[Figure, ...]:
     pairs = tuple(drawable)[:MOST_CURVES]
     return (Figure("bode", "bode", pairs), Figure("poles_zeros", "poles_zeros", pairs)) if pairs else ()
+
+
+def _loop_picture(study: Study, figure: Figure, files: dict[str, bytes]) -> Picture:
+    """Draw a root locus, or a Nyquist plot of the loop gain."""
+    loop = pipeline.characteristic_loop(study.model, figure.gain)
+    drawn = draw_loop(figure.kind, loop)
+    stem = f"{study.stem}_{figure.name}"
+    svg = render(drawn, "svg")
+    files[f"figures/{stem}.svg"] = svg
+    files[f"figures/{stem}.pdf"] = render(drawn, "pdf")
+    caption = f"{figure.title}. " if figure.title else ""
+    return Picture(stem, svg.decode(), f"{caption}{LOOP_WORDS[figure.kind]} {figure.gain}.")
 
 
 def _picture(

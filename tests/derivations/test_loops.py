@@ -1,4 +1,4 @@
-"""The loops of derivations/control: what their README states."""
+"""The loops of derivations/eppinger1988/loops: what their README states."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 import symflex
 from tests.house.repository import ROOT
 
-FOLDER = ROOT / "derivations" / "control"
+FOLDER = ROOT / "derivations" / "eppinger1988" / "loops"
 ROWS = [
     [cell.strip() for cell in line.strip("|").split("|")]
     for line in (FOLDER / "README.md").read_text("utf-8").splitlines()
