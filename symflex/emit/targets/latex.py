@@ -15,6 +15,8 @@ from symflex.transfer import bind
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from matplotlib.figure import Figure
+
     from symflex.emit.forms import PrintedForm
     from symflex.model import Model
     from symflex.roots import PoleZeroMap
@@ -23,6 +25,8 @@ if TYPE_CHECKING:
 
 ROOT_DIGITS = 15
 """Digits to which roots are found for a table; it prints fewer."""
+
+LOOP_TITLES = {"locus": "Root locus", "nyquist": "Nyquist plot of the loop gain"}
 
 DEFAULT_FIGURES = {"bode": "Frequency responses", "poles_zeros": "Poles and zeros", "modes": "Lowest modes"}
 """Figures of kinds that the model asks for none of."""
@@ -88,8 +92,9 @@ class LatexExporter:
             names = {"/".join(pair) for pair in figure.of}
             of = [bound for bound in bounds if not names or bound.name in names]
             if of:
-                title = figure.title or DEFAULT_FIGURES.get(figure.kind, figure.kind)
-                self._add(pictures, warnings, figure.name, figure.kind, of, title)
+                named = {**DEFAULT_FIGURES, **LOOP_TITLES}
+                title = figure.title or named.get(figure.kind, figure.kind)
+                self._add(pictures, warnings, figure.name, figure.kind, of, title, figure.gain)
         asked = {figure.kind for figure in model.figures}
         for kind, title in DEFAULT_FIGURES.items() if bounds else ():
             if kind not in asked:
@@ -104,15 +109,16 @@ class LatexExporter:
         kind: str,
         bounds: Sequence[BoundTransferFunction],
         title: str,
+        gain: str = "",
     ) -> None:
         """Draw one figure, without its title, which stands below it."""
-        from symflex.emit.figures import draw, render  # imports matplotlib
+        from symflex.emit.figures import render  # imports matplotlib
         from symflex.emit.figures.pgf import MM_PER_INCH
 
         of = bounds[:1] if kind == "modes" else bounds  # all functions of a model have the same modes
         sources = [bound.source for bound in of]
         try:
-            figure = draw(kind, sources, of, width_mm=self.width_mm, font="latex")
+            figure = self._drawn(kind, of, gain)
         except SymflexError as error:
             is_without_modes = kind == "modes" and error.diagnostics[0].code == "SF402"
             if not is_without_modes:
@@ -122,10 +128,20 @@ class LatexExporter:
         if height > TALLEST_MM:
             warnings.append(f"the figure {name} is left out: it is {height:.0f} mm high")
             return
-        is_told = kind == "modes" or title not in DEFAULT_FIGURES.values()
+        is_told = kind == "modes" or bool(gain) or title not in DEFAULT_FIGURES.values()
         shown = () if is_told else tuple(sources)
         latex = render(figure, "pgf", font="latex").decode("ascii")
         pictures.append(Picture(name, latex, title, shown))
+
+    def _drawn(self, kind: str, of: Sequence[BoundTransferFunction], gain: str) -> Figure:
+        from symflex.emit.figures import LOOP_FIGURES, draw, draw_loop
+        from symflex.stability import characteristic_loop, pick_gain
+
+        if gain and kind in LOOP_FIGURES:
+            source = of[0].source
+            loop = characteristic_loop(source, pick_gain(source.model.parameters, gain))
+            return draw_loop(kind, loop, width_mm=self.width_mm, font="latex")
+        return draw(kind, [bound.source for bound in of], of, width_mm=self.width_mm, font="latex")
 
     def _parts(
         self, tfs: Sequence[TransferFunction]
