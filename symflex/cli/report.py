@@ -42,29 +42,38 @@ def command(
 ) -> int:
     """Write a report on models: equations, poles and zeros, figures, comparison, code.
 
-    A SPEC that is a folder stands for all specifications in it. DIR/index.html is one page that opens without
-    a network and holds everything; beside it are report.tex and report.pdf, and the folders figures, code and
-    data. What a specification publishes is audited, models are compared, and the claims of a publication that
-    is known are judged.
+    A SPEC that is a folder stands for all specifications in it and below; measured responses (.csv, .uff,
+    .mat, .npz) that stand there are drawn with the transfer functions of their names. DIR/index.html is one
+    page that opens without a network and holds everything; beside it are report.tex and report.pdf, and the
+    folders figures, code and data. What a specification publishes is audited, models are compared, and the
+    claims of a publication that is known are judged.
 
     Equal specifications give equal files when the date is fixed. Exit code 4 says that poles or zeros of some
     model could not be certified, 5 that a budget was exceeded: the report is written, and says where.
     """
     from symflex.cli.progress import ProgressBar
-    from symflex.report import compose, find_specifications, name_specifications, write_chapters
+    from symflex.report import (
+        compose,
+        find_measurements,
+        find_specifications,
+        name_specifications,
+        write_chapters,
+    )
 
     shown = _date(day)
     folder = Path(output)
     if folder.exists() and not folder.is_dir():
         raise UsageError(Diagnostic("SF903", f"cannot write into '{output}': it is not a folder"))
-    found = find_specifications([Path(spec) for spec in specs])
-    named = name_specifications(found)
-    note(f"{len(named)} model{'s' if len(named) > 1 else ''}")
+    paths = [Path(spec) for spec in specs]
+    named = name_specifications(find_specifications(paths, folder))
+    measured, left_out = find_measurements(paths, folder)
+    data = f", {len(measured)} measured response{'s' if len(measured) > 1 else ''}" if measured else ""
+    note(f"{len(named)} model{'s' if len(named) > 1 else ''}{data}")
     with ProgressBar() as bar:
-        chapters = write_chapters(named, jobs or os.cpu_count() or 1, bar)
+        chapters = write_chapters(named, jobs or os.cpu_count() or 1, bar, measured)
         report = compose(chapters, shown)
         code = _write(report, folder, pdf, shown, bar)
-    for warning in report.warnings:
+    for warning in (*left_out, *report.warnings):
         note(f"warning: {warning}")
     click.echo(f"open {folder / 'index.html'}")
     return max(code, report.code)

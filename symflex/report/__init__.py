@@ -12,12 +12,20 @@ from symflex.report.article import report_article
 from symflex.report.folder import write_tree
 from symflex.report.page import report_page
 from symflex.report.pdf import compile_pdf, has_compiler
-from symflex.report.report import Report, compose, find_specifications, name_specifications, write_chapters
+from symflex.report.report import (
+    Report,
+    compose,
+    find_measurements,
+    find_specifications,
+    name_specifications,
+    write_chapters,
+)
 
 __all__ = [
     "Report",
     "compile_pdf",
     "compose",
+    "find_measurements",
     "find_specifications",
     "has_compiler",
     "name_specifications",

@@ -15,6 +15,7 @@ from symflex.report.sections import SECTIONS
 from symflex.report.study import Study, attempt
 
 if TYPE_CHECKING:
+    from symflex.measurement import MeasuredResponse
     from symflex.report.document import Block
 
 
@@ -46,8 +47,8 @@ class Chapter:
     code: int
 
 
-def chapter_of(path: Path, stem: str) -> Chapter:
-    """Read a specification and return its chapter.
+def chapter_of(path: Path, stem: str, measured: tuple[MeasuredResponse, ...] = ()) -> Chapter:
+    """Read a specification and return its chapter, with measured responses where they fit.
 
     A section that cannot be computed, for want of a value or because it would be too large, says why in its
     place; the others stand.
@@ -57,7 +58,7 @@ def chapter_of(path: Path, stem: str) -> Chapter:
     SpecError, ModelError
         When the file is no solvable model.
     """
-    study = Study.of(path, stem)
+    study = Study.of(path, stem, measured)
     model = study.model
     blocks: list[Block] = []
     if model.source:

@@ -95,6 +95,15 @@ def together_cell(facts: ModelFacts) -> Cell:
     return tuple(runs[:-1]) if runs else (NONE,)
 
 
+def data_cell(facts: ModelFacts) -> Cell:
+    """Return how far a model is off measured responses."""
+    runs: list[Run] = []
+    for found in facts.data:
+        kind = ", synthetic data" if found.is_synthetic else ""
+        runs += [f"{found.decibels:.3g} dB, {found.degrees:.3g}° rms", "\n", Aside(f"{found.tf}{kind}"), "\n"]
+    return tuple(runs[:-1]) if runs else (NONE,)
+
+
 def loop_cell(facts: ModelFacts) -> Cell:
     """Return for which gains a loop is stable."""
     runs: list[Run] = []
@@ -134,6 +143,12 @@ COLUMNS: dict[str, ComparisonColumn] = {
 }
 """Of the structures, by their heads, in the order of the table."""
 
+DATA_COLUMNS: dict[str, ComparisonColumn] = {
+    "Model": ComparisonColumn(model_cell, "plain"),
+    "Off the data by": ComparisonColumn(data_cell),
+}
+"""Of models that measured responses are there for."""
+
 LOOP_COLUMNS: dict[str, ComparisonColumn] = {
     "Model": ComparisonColumn(model_cell, "plain"),
     "Outputs together up to": ComparisonColumn(together_cell),
@@ -147,10 +162,10 @@ def comparison_section(models: Sequence[ModelFacts]) -> Section | None:
     if len(models) < 2:  # noqa: PLR2004 - one model compares with nothing
         return None
     structures = [facts for facts in models if not facts.loops]
+    told = [facts for facts in models if facts.data]
     controlled = [facts for facts in models if facts.loops or facts.colocations]
-    tables = [
-        _table(chosen, some) for chosen, some in ((structures, COLUMNS), (controlled, LOOP_COLUMNS)) if chosen
-    ]
+    chosen = ((structures, COLUMNS), (told, DATA_COLUMNS), (controlled, LOOP_COLUMNS))
+    tables = [_table(rows, heads) for rows, heads in chosen if rows]
     explained: tuple[Paragraph, ...] = (
         text(
             "Poles and zeros are counted with multiplicity, and against the same model with all its "

@@ -286,6 +286,26 @@ class ColocationFact:
 
 
 @dataclass(frozen=True, slots=True)
+class DataFact:
+    """How far a model is off a measured response, root mean squares over its lines.
+
+    Parameters
+    ----------
+    tf : str
+        ``"OUT/IN"``.
+    decibels, degrees : float
+        Of magnitude and phase.
+    is_synthetic : bool
+        The data are computed.
+    """
+
+    tf: str
+    decibels: float
+    degrees: float
+    is_synthetic: bool
+
+
+@dataclass(frozen=True, slots=True)
 class ModelFacts:
     """Facts about one model.
 
@@ -307,6 +327,8 @@ class ModelFacts:
         Of the gains that figures name.
     colocations : tuple of ColocationFact
         Of functions that are not colocated, where a colocated one of the same kind is there.
+    data : tuple of DataFact
+        Of measured responses named like a transfer function.
     """
 
     stem: str
@@ -319,6 +341,7 @@ class ModelFacts:
     audits: tuple[tuple[str, str, str], ...]
     loops: tuple[LoopFacts, ...] = ()
     colocations: tuple[ColocationFact, ...] = ()
+    data: tuple[DataFact, ...] = ()
 
     def of(self, tf: str) -> TransferFacts:
         """Return the facts of one transfer function.
@@ -346,6 +369,7 @@ class ModelFacts:
             "transfer_functions": [f.to_json_dict() for f in self.functions],
             "loops": [asdict(loop) for loop in self.loops],
             "colocations": [asdict(colocation) for colocation in self.colocations],
+            "data": [asdict(one) for one in self.data],
         }
 
 
@@ -395,6 +419,10 @@ def facts_of(study: Study) -> ModelFacts:
         audits=tuple((audit.tf.name, audit.verdict, _changes(audit)) for audit in study.audits),
         loops=tuple(_loop(found) for found in study.loops if not isinstance(found, SymflexError)),
         colocations=tuple(_colocation(found) for found in study.colocations),
+        data=tuple(
+            DataFact(c.measured.name, c.decibels, c.degrees, c.measured.is_synthetic)
+            for c in study.comparisons
+        ),
     )
 
 

@@ -8,27 +8,33 @@ import re
 from collections.abc import Mapping
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
+from functools import partial
 from importlib import metadata
 from multiprocessing import get_context
 from typing import TYPE_CHECKING, Final
 
-from symflex.errors import Diagnostic, UsageError
+from symflex.errors import Diagnostic, SymflexError, UsageError
 from symflex.report.chapter import Chapter, chapter_of
 from symflex.report.claims import PUBLICATIONS, claim_section, publication_of
 from symflex.report.claims.section import claims_json, judge_all
 from symflex.report.comparison import comparison_section
 from symflex.report.document import Code, Link, Mark, Section, Table, columns, text
 from symflex.report.numerals import counted
+from symflex.report.study import attempt
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from symflex.measurement import MeasuredResponse
     from symflex.report.claims import Finding, Publication
     from symflex.report.document import Block, Cell
     from symflex.roots import Progress
 
 MOST_MODELS: Final = 200
+DATA_SUFFIXES: Final = frozenset((".csv", ".tsv", ".npz", ".mat", ".uff", ".unv"))
+"""Of data files that are looked for in folders."""
+
 LIBRARIES: Final = ("python-flint", "numpy", "scipy", "sympy", "mpmath", "matplotlib")
 RESERVED: Final = frozenset(("comparison", "claims", "contents", "models", "provenance", "top"))
 
@@ -64,10 +70,11 @@ class Report:
     code: int
 
 
-def find_specifications(paths: Sequence[Path]) -> tuple[Path, ...]:
+def find_specifications(paths: Sequence[Path], output: Path | None = None) -> tuple[Path, ...]:
     """Return the specifications that arguments name; a folder stands for the ``.toml`` files in it and below.
 
-    Those of a folder come by name, before those of folders in it.
+    Those of a folder come by name, before those of folders in it. What stands in ``output``, the folder that
+    reports are written into, is left out.
 
     Raises
     ------
@@ -77,8 +84,7 @@ def find_specifications(paths: Sequence[Path]) -> tuple[Path, ...]:
     found: list[Path] = []
     for path in paths:
         if path.is_dir():
-            files = (p for p in path.rglob("*.toml") if p.is_file())
-            inside = sorted(files, key=lambda p: (len(p.parts), p))
+            inside = _inside(path, frozenset((".toml",)), output)
             if not inside:
                 raise UsageError(
                     Diagnostic(
@@ -121,7 +127,41 @@ def name_specifications(paths: Sequence[Path]) -> dict[str, Path]:
     return named
 
 
-def write_chapters(named: Mapping[str, Path], processes: int, progress: Progress) -> tuple[Chapter, ...]:
+def find_measurements(
+    paths: Sequence[Path], output: Path | None = None
+) -> tuple[tuple[MeasuredResponse, ...], tuple[str, ...]]:
+    """Return the measured responses in the data files of folders and below, and why others were left out.
+
+    What stands in ``output``, the folder that reports are written into, is no measurement.
+    """
+    from symflex.measurement import read_measurement
+
+    found: list[MeasuredResponse] = []
+    warnings: list[str] = []
+    for path in paths:
+        for file in _inside(path, DATA_SUFFIXES, output) if path.is_dir() else ():
+            read = attempt(partial(read_measurement, file))
+            if isinstance(read, SymflexError):
+                warnings.append(f"{file} is left out: {read.diagnostics[0].message}")
+            else:
+                found += read
+    return tuple(found), tuple(warnings)
+
+
+def _inside(folder: Path, suffixes: frozenset[str], output: Path | None) -> list[Path]:
+    """Return the files of a folder and below with some suffixes, those at the top first."""
+    left_out = None if output is None else output.resolve()
+    files = (p for p in folder.rglob("*") if p.suffix in suffixes and p.is_file())
+    kept = (p for p in files if left_out is None or left_out not in p.resolve().parents)
+    return sorted(kept, key=lambda p: (len(p.parts), p))
+
+
+def write_chapters(
+    named: Mapping[str, Path],
+    processes: int,
+    progress: Progress,
+    measured: tuple[MeasuredResponse, ...] = (),
+) -> tuple[Chapter, ...]:
     """Return the chapters, in order, computed side by side.
 
     Parameters
@@ -132,6 +172,8 @@ def write_chapters(named: Mapping[str, Path], processes: int, progress: Progress
         How many compute at once; 1 for none besides this one.
     progress : Progress
         Told after each chapter.
+    measured : tuple of MeasuredResponse
+        Drawn with the transfer functions of the same names.
 
     Raises
     ------
@@ -142,11 +184,11 @@ def write_chapters(named: Mapping[str, Path], processes: int, progress: Progress
     if processes <= 1 or len(named) == 1:
         for stem, path in named.items():
             progress.report(len(done) / len(named), f"model {len(done) + 1} of {len(named)}: {stem}")
-            done[stem] = chapter_of(path, stem)
+            done[stem] = chapter_of(path, stem, measured)
         return tuple(done.values())
     # A new interpreter in each process: what this one has open or threaded is not copied.
     with ProcessPoolExecutor(min(processes, len(named)), mp_context=get_context("spawn")) as pool:
-        waiting = {pool.submit(chapter_of, path, stem): stem for stem, path in named.items()}
+        waiting = {pool.submit(chapter_of, path, stem, measured): stem for stem, path in named.items()}
         progress.report(0.0, f"{counted(len(named), 'model')}")
         try:
             for finished in as_completed(waiting):

@@ -10,6 +10,7 @@ from symflex import pipeline
 from symflex.emit.forms import print_forms
 from symflex.errors import SymflexError
 from symflex.model import with_numbers
+from symflex.report.data_comparison import compared
 from symflex.report.facts import facts_of
 from symflex.report.limits import rigid_counts, undamped_counts
 from symflex.response import adaptive_grid, default_band, respond
@@ -22,8 +23,10 @@ if TYPE_CHECKING:
     from symflex.audit import Audit
     from symflex.emit.forms import PrintedForm
     from symflex.explanation import ZeroExplanation
+    from symflex.measurement import MeasuredResponse
     from symflex.model import Model
     from symflex.rational import RationalApproximation
+    from symflex.report.data_comparison import DataComparison
     from symflex.report.facts import ModelFacts
     from symflex.report.limits import Counts
     from symflex.response import FrequencyResponse
@@ -53,15 +56,18 @@ class Study:
         The specification.
     model : Model
         Resolved.
+    measured : tuple of MeasuredResponse
+        Responses that models may be compared with.
     """
 
     path: Path
     stem: str
     text: str
     model: Model
+    measured: tuple[MeasuredResponse, ...] = ()
 
     @staticmethod
-    def of(path: Path, stem: str) -> Study:
+    def of(path: Path, stem: str, measured: tuple[MeasuredResponse, ...] = ()) -> Study:
         """Read a specification.
 
         Raises
@@ -73,7 +79,7 @@ class Study:
         """
         model = pipeline.load(path)
         pipeline.check_solvable(pipeline.assemble(with_numbers(model)))
-        return Study(path, stem, path.read_text(encoding="utf-8"), model)
+        return Study(path, stem, path.read_text(encoding="utf-8"), model, measured)
 
     @property
     def pairs(self) -> tuple[tuple[str, str], ...]:
@@ -187,6 +193,14 @@ class Study:
             low, high = (float(f) for f in band) if band else default_band(pipeline.roots(bound))
             found.append(respond(bound, adaptive_grid(bound, low, high)))
         return tuple(found)
+
+    @cached_property
+    def comparisons(self) -> tuple[DataComparison, ...]:
+        """Measured responses that a transfer function of the model is named like, with that function."""
+        if isinstance(self._bound, SymflexError):
+            return ()
+        named = {b.name: b for b in self.bounds if not b.ratio.is_zero}
+        return tuple(compared(one, named[one.name]) for one in self.measured if one.name in named)
 
     @cached_property
     def loops(self) -> tuple[StabilityMap | SymflexError, ...]:

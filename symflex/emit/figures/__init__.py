@@ -14,6 +14,7 @@ from symflex.emit.figures.drawing import Drawing
 from symflex.emit.figures.fit import draw_fit
 from symflex.emit.figures.labels import label_of_name
 from symflex.emit.figures.locus import draw_locus, number_label
+from symflex.emit.figures.measured import draw_measured
 from symflex.emit.figures.modes import draw_modes
 from symflex.emit.figures.nyquist import draw_nyquist
 from symflex.emit.figures.pgf import MM_PER_INCH
@@ -55,6 +56,7 @@ __all__ = [
     "draw",
     "draw_fit",
     "draw_loop",
+    "draw_measured",
     "draw_response",
     "render",
     "save",

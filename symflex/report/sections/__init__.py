@@ -2,6 +2,7 @@
 
 from symflex.report.part import SectionMaker
 from symflex.report.sections.audits import audit_section
+from symflex.report.sections.data import data_section
 from symflex.report.sections.equations import equation_section
 from symflex.report.sections.exports import export_section
 from symflex.report.sections.figures import figure_section
@@ -15,6 +16,7 @@ SECTIONS: dict[str, SectionMaker] = {
     "equations": equation_section,
     "printed": audit_section,
     "figures": figure_section,
+    "data": data_section,
     "roots": root_section,
     "loops": loop_section,
     "files": export_section,

@@ -8,11 +8,13 @@ import json
 import math
 import re
 
+import numpy as np
 import pytest
 
 from symflex.errors import SpecError, UsageError
 from symflex.report import (
     compose,
+    find_measurements,
     find_specifications,
     name_specifications,
     report_article,
@@ -143,7 +145,7 @@ def test_the_facts_in_the_data_are_those_of_two_masses(small):
 
 def test_every_section_of_the_registry_is_in_a_full_chapter(hostile):
     anchors = set(Page(report_page(hostile)).ids)
-    assert {f"hostile-{key}" for key in SECTIONS if key != "loops"} <= anchors
+    assert {f"hostile-{key}" for key in SECTIONS if key not in ("loops", "data")} <= anchors
 
 
 LOOP = """
@@ -183,6 +185,43 @@ def test_the_stable_gains_of_a_loop_are_in_its_chapter_and_in_a_table_of_loops(t
     assert report.files["figures/loop_locus.pdf"].startswith(b"%PDF")
     # No number that a reader of figures could not hold.
     assert not re.search(rb"[0-9]{12}", report.files["figures/loop_locus.svg"])
+
+
+def test_measured_responses_in_a_folder_are_drawn_with_the_models_over_them(tmp_path):
+    # Two masses of 3 and 2 kg, 24 N/m and 0.1 N s/m between; the data are 1 dB smaller and 30 degrees behind.
+    frequency = np.arange(0.2, 5.0, 0.1)
+    s = 2j * np.pi * frequency
+    link = 0.1 * s + 24
+    receptance = (2 * s**2 + link) / (s**2 * (6 * s**2 + 5 * link))
+    values = receptance * 10 ** (-1 / 20) * np.exp(-1j * np.pi / 6)
+    pairs = zip(frequency.tolist(), values.tolist(), strict=True)
+    rows = "\n".join(f"{f},{v.real!r},{v.imag!r}" for f, v in pairs)
+    (tmp_path / "data").mkdir()
+    (tmp_path / "data" / "one.csv").write_text(f"# tf: X/F\n# synthetic: yes\nfrequency_hz,re,im\n{rows}\n")
+    (tmp_path / "data" / "other.csv").write_text("name,price\nbolt,3\n")
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "old.csv").write_text("no data")
+    found, warnings = find_measurements([tmp_path], tmp_path / "out")
+    assert [one.name for one in found] == ["X/F"]
+    assert len(warnings) == 1
+    assert "other.csv is left out" in warnings[0]
+    (tmp_path / "small.toml").write_text(SMALL, encoding="utf-8")
+    named = name_specifications(find_specifications([tmp_path], tmp_path / "out"))
+    report = compose(write_chapters(named, 1, Silent(), found), "")
+    (told,) = json.loads(report.files["data/small_facts.json"])["data"]
+    assert told["decibels"] == pytest.approx(1.0)
+    assert told["degrees"] == pytest.approx(30.0)
+    assert told["is_synthetic"]
+    assert "SYNTHETIC" in report_page(report)
+    assert report.files["figures/small_data_1.pdf"].startswith(b"%PDF")
+
+
+def test_specifications_in_the_folder_that_is_written_are_left_out(tmp_path):
+    for name in ("a.toml", "below/b.toml", "report/data/a.toml"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(SMALL, encoding="utf-8")
+    found = find_specifications([tmp_path], tmp_path / "report")
+    assert [p.relative_to(tmp_path).as_posix() for p in found] == ["a.toml", "below/b.toml"]
 
 
 def test_every_column_of_the_registry_is_in_the_comparison(small):
