@@ -24,21 +24,10 @@ def main(arguments: list[str] | None = None) -> int:
     asked = parser.parse_args(arguments)
 
     measurements, claims = startup.measure()
-    chain_measurements, chain_claims = chains.measure(asked.limit)
-    measurements += chain_measurements
-    claims += chain_claims
-    beam_measurements, beam_claims = distributed.measure(asked.limit)
-    measurements += beam_measurements
-    claims += beam_claims
-    export_measurements, export_claims = exports.measure(asked.limit)
-    measurements += export_measurements
-    claims += export_claims
-    lumped_measurements, lumped_claims = lumped.measure(asked.limit)
-    measurements += lumped_measurements
-    claims += lumped_claims
-    root_measurements, root_claims = roots.measure(asked.limit)
-    measurements += root_measurements
-    claims += root_claims
+    for benchmark in (chains, distributed, exports, lumped, roots):
+        measured, bounds = benchmark.measure(asked.limit)
+        measurements += measured
+        claims += bounds
 
     print(_markdown(measurements, claims))
     if asked.json:

@@ -6,7 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
+from symflex.emit.figures import render
+from symflex.report.document import Picture
+
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from symflex.report.document import Block
     from symflex.report.study import Study
 
@@ -31,6 +36,14 @@ class Part:
     blocks: tuple[Block, ...]
     files: Mapping[str, bytes] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
+
+
+def picture(stem: str, drawn: Figure, caption: str, files: dict[str, bytes]) -> Picture:
+    """Return a figure as a block: its SVG stands on the page, and beside its PDF in ``files`` for papers."""
+    svg = render(drawn, "svg")
+    files[f"figures/{stem}.svg"] = svg
+    files[f"figures/{stem}.pdf"] = render(drawn, "pdf")
+    return Picture(stem, svg.decode(), caption)
 
 
 class SectionMaker(Protocol):

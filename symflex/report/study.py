@@ -15,6 +15,7 @@ from symflex.report.facts import facts_of
 from symflex.report.limits import rigid_counts, undamped_counts
 from symflex.response import adaptive_grid, default_band, respond
 from symflex.roots import Budget
+from symflex.stability import find_stable_gains
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from symflex.report.limits import Counts
     from symflex.response import FrequencyResponse
     from symflex.roots import PoleZeroMap
-    from symflex.stability import DynamicColocation, StabilityMap
+    from symflex.stability import DynamicColocation, Loop, StabilityMap
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
 MOST_FUNCTIONS: Final = 24
@@ -209,7 +210,23 @@ class Study:
         return tuple(attempt(lambda gain=gain: self._stability(gain)) for gain in gains)  # type: ignore[misc]
 
     def _stability(self, gain: str) -> StabilityMap:
-        return pipeline.stability(self.model, gain, budget=Budget())
+        return find_stable_gains(self.loop(gain), budget=Budget())
+
+    def loop(self, gain: str) -> Loop:
+        """Return the characteristic function as a polynomial in a gain.
+
+        Raises
+        ------
+        ModelError
+            SF801 when it does not depend on the gain.
+        """
+        if gain not in self._characteristic:
+            self._characteristic[gain] = attempt(lambda: pipeline.characteristic_loop(self.model, gain))
+        return _result(self._characteristic[gain])
+
+    @cached_property
+    def _characteristic(self) -> dict[str, Loop | SymflexError]:
+        return {}
 
     @cached_property
     def colocations(self) -> tuple[DynamicColocation, ...]:

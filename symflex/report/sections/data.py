@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symflex.emit.figures import draw_measured, render
-from symflex.report.document import Code, Picture, text
-from symflex.report.part import Part
+from symflex.emit.figures import draw_measured
+from symflex.report.document import Code, text
+from symflex.report.part import Part, picture
 
 if TYPE_CHECKING:
     from symflex.report.document import Block
@@ -19,14 +19,10 @@ def data_section(study: Study) -> Part | None:
     files: dict[str, bytes] = {}
     for i, found in enumerate(study.comparisons):
         measured = found.measured
-        stem = f"{study.stem}_data_{i + 1}"
         drawn = draw_measured(measured, found.model, found.unit)
-        svg = render(drawn, "svg")
-        files[f"figures/{stem}.svg"] = svg
-        files[f"figures/{stem}.pdf"] = render(drawn, "pdf")
         kind = "SYNTHETIC data, computed and not measured," if measured.is_synthetic else "measured data"
         caption = f"{measured.name}: the model over {kind} of {measured.values.size} lines."
-        blocks.append(Picture(stem, svg.decode(), caption))
+        blocks.append(picture(f"{study.stem}_data_{i + 1}", drawn, caption, files))
         band = f"{measured.frequency_hz[0]:.4g} to {measured.frequency_hz[-1]:.4g} Hz"
         misfit = f"{found.decibels:.3g} dB and {found.degrees:.3g} degrees rms"
         blocks.append(

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from symflex import pipeline
-from symflex.emit.figures import FIGURES, LOOP_FIGURES, draw, draw_loop, render
+from symflex.emit.figures import FIGURES, LOOP_FIGURES, draw, draw_loop
 from symflex.errors import SymflexError
 from symflex.model import Figure
-from symflex.report.document import Notice, Picture
-from symflex.report.part import Part
+from symflex.report.document import Notice
+from symflex.report.part import Part, picture
 from symflex.report.study import attempt
 
 if TYPE_CHECKING:
-    from symflex.report.document import Block
+    from symflex.report.document import Block, Picture
     from symflex.report.study import Study
     from symflex.transfer import BoundTransferFunction
 
@@ -35,23 +34,23 @@ def figure_section(study: Study) -> Part | None:
     files: dict[str, bytes] = {}
     for figure in study.model.figures or _defaults(study, drawable):
         chosen = [drawable[pair] for pair in figure.of or tuple(drawable) if pair in drawable]
-        picture: Picture | SymflexError
+        drawn: Picture | SymflexError
         if figure.gain and figure.kind in LOOP_FIGURES:
-            picture = attempt(lambda f=figure: _loop_picture(study, f, files))  # type: ignore[misc]
-            blocks.append(_block(figure, picture))
+            drawn = attempt(lambda f=figure: _loop_picture(study, f, files))  # type: ignore[misc]
+            blocks.append(_block(figure, drawn))
         elif figure.kind not in FIGURES:
             blocks.append(Notice(f"{figure.name}: figures of kind '{figure.kind}' are not available yet"))
         elif chosen:
-            picture = attempt(lambda f=figure, c=chosen: _picture(study, f, c, files))  # type: ignore[misc]
-            blocks.append(_block(figure, picture))
+            drawn = attempt(lambda f=figure, c=chosen: _picture(study, f, c, files))  # type: ignore[misc]
+            blocks.append(_block(figure, drawn))
     return Part("Figures", tuple(blocks), files) if blocks else None
 
 
-def _block(figure: Figure, picture: Picture | SymflexError) -> Block:
+def _block(figure: Figure, drawn: Picture | SymflexError) -> Block:
     """Return a picture, or why there is none."""
-    if isinstance(picture, SymflexError):
-        return Notice(f"{figure.name}: {picture.diagnostics[0].message}")
-    return picture
+    if isinstance(drawn, SymflexError):
+        return Notice(f"{figure.name}: {drawn.diagnostics[0].message}")
+    return drawn
 
 
 def _defaults(study: Study, drawable: dict[tuple[str, str], BoundTransferFunction]) -> tuple[Figure, ...]:
@@ -61,14 +60,10 @@ def _defaults(study: Study, drawable: dict[tuple[str, str], BoundTransferFunctio
 
 def _loop_picture(study: Study, figure: Figure, files: dict[str, bytes]) -> Picture:
     """Draw a root locus, or a Nyquist plot of the loop gain."""
-    loop = pipeline.characteristic_loop(study.model, figure.gain)
-    drawn = draw_loop(figure.kind, loop)
-    stem = f"{study.stem}_{figure.name}"
-    svg = render(drawn, "svg")
-    files[f"figures/{stem}.svg"] = svg
-    files[f"figures/{stem}.pdf"] = render(drawn, "pdf")
+    drawn = draw_loop(figure.kind, study.loop(figure.gain))
     caption = f"{figure.title}. " if figure.title else ""
-    return Picture(stem, svg.decode(), f"{caption}{LOOP_WORDS[figure.kind]} {figure.gain}.")
+    caption += f"{LOOP_WORDS[figure.kind]} {figure.gain}."
+    return picture(f"{study.stem}_{figure.name}", drawn, caption, files)
 
 
 def _picture(
@@ -77,13 +72,6 @@ def _picture(
     if figure.kind == "modes":
         chosen = chosen[:1]  # all functions of a model have the same modes
     drawn = draw(figure.kind, [b.source for b in chosen], chosen)
-    stem = f"{study.stem}_{figure.name}"
-    svg = render(drawn, "svg")
-    files[f"figures/{stem}.svg"] = svg
-    files[f"figures/{stem}.pdf"] = render(drawn, "pdf")
-    named = ", ".join(b.name for b in chosen)
-    what = WORDS.get(figure.kind, figure.kind)
-    caption = f"{figure.title}." if figure.title else f"{what} of {named}."
-    if figure.title:
-        caption += f" {what} of {named}."
-    return Picture(stem, svg.decode(), caption)
+    caption = f"{figure.title}. " if figure.title else ""
+    caption += f"{WORDS.get(figure.kind, figure.kind)} of {', '.join(b.name for b in chosen)}."
+    return picture(f"{study.stem}_{figure.name}", drawn, caption, files)
