@@ -145,15 +145,11 @@ class Fit:
 
     def misfit_db(self, response: int) -> float:
         """Return the root mean square of model over data on the lines [dB], magnitude alone."""
-        line = self.problem.lines[response]
-        ratio = self.problem.values(self.resonances, response) / line.measured.values
-        return float(np.sqrt(np.mean((20 * np.log10(np.abs(ratio))) ** 2)))
+        return self.measured[response].misfit_db(self.problem.values(self.resonances, response))
 
     def misfit_degrees(self, response: int) -> float:
         """Return the root mean square of the phase difference on the lines [deg]."""
-        line = self.problem.lines[response]
-        ratio = self.problem.values(self.resonances, response) / line.measured.values
-        return float(np.degrees(np.sqrt(np.mean(np.angle(ratio) ** 2))))
+        return self.measured[response].misfit_degrees(self.problem.values(self.resonances, response))
 
 
 def fit_resonances(

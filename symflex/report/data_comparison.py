@@ -42,13 +42,5 @@ class DataComparison:
 def compared(measured: MeasuredResponse, bound: BoundTransferFunction) -> DataComparison:
     """Return a comparison with the values of the data as they stand, windows and sensors included."""
     model = np.asarray(respond(bound, measured.omega).values, np.complex128)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = model / measured.values
-        level = 20 * np.log10(np.abs(ratio))
-    return DataComparison(
-        measured,
-        model,
-        bound.source.unit,
-        float(np.sqrt(np.mean(level**2))),
-        float(np.degrees(np.sqrt(np.mean(np.angle(ratio) ** 2)))),
-    )
+    unit = bound.source.unit
+    return DataComparison(measured, model, unit, measured.misfit_db(model), measured.misfit_degrees(model))
