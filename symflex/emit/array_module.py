@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING
 
 from symflex.emit import array_support
 from symflex.emit.array_pieces import ArrayPieces
+from symflex.emit.members import members_of, verifications
 from symflex.emit.module_text import COST, ITERATED, default_value
 from symflex.emit.numpy_expression import statement
 from symflex.emit.numpy_pieces import private_copy
 from symflex.emit.program import (
     Piecewise,
     Verification,
-    choose_programs,
     identifiers,
     nearest_double,
 )
@@ -34,6 +34,7 @@ from symflex.emit.python_text import (
     function_table,
     header,
     parameter_table,
+    public_names,
 )
 from symflex.kernels import modal_amplitudes, mode_values
 
@@ -237,38 +238,32 @@ def array_module(
     >>> "def V_over_F(" in array_module(pipeline.derive_all(model), model, JAX).text
     True
     """
-    chosen = {tf.name: (tf, *choose_programs(tf, band_hz, samples)) for tf in tfs}
+    members = members_of(tfs, band_hz, samples)
     reserved = dialect.reserved
     names = identifiers({p.name: p.name for p in model.parameters}, reserved)
-    functions = identifiers(
-        {key: f"{tf.output.name}_over_{tf.input.name}" for key, (tf, _, _) in chosen.items()}, reserved
-    )
-    real = {key: made for key, (_, _, made) in chosen.items() if made is not None}
-    responses = identifiers({key: f"{functions[key]}_at" for key in real}, {*reserved, *functions.values()})
+    functions, responses = public_names(members, reserved)
     values = {
         p.name: nearest_double(p.value.rational, p.value.pi_power)
         for p in model.parameters
         if p.value is not None
     }
     printed: list[_Function] = []
-    for key, (tf, (program, verification), _) in chosen.items():
-        named = (functions[key], names, values, dialect)
-        printed.append(_Function(tf, in_pieces(program), verification.text(digits), *named))
-        if key in real:
-            response, measured = real[key]
-            named = (responses[key], names, values, dialect)
-            printed.append(_Function(tf, response, measured.text(digits), *named))
-    made = [*(first for _, first, _ in chosen.values()), *real.values()]
+    for member in members:
+        public = (responses if member.program.is_real else functions)[member.tf.name]
+        sentence = member.verification.text(digits)
+        printed.append(
+            _Function(member.tf, in_pieces(member.program), sentence, public, names, values, dialect)
+        )
     code = ["\n".join(function.code()) for function in printed]
     texts = [f"{function.head()}\n\n\n{own}\n" for function, own in zip(printed, code, strict=True)]
     used = _support([f.program for f in printed], dialect)
     used += [array_support.LARGER] if any(_CALLS_LARGER.search(own) for own in code) else []
     blocks = [parameter_table(model, names), *texts, *(dialect.support(text) for text in used)]
     blocks.append(function_table("TRANSFER_FUNCTIONS", functions))
-    if any(isinstance(program, Piecewise) for program, _ in made):
+    if any(isinstance(member.program, Piecewise) for member in members):
         blocks.append(function_table("FREQUENCY_RESPONSES", responses))
-    verified = tuple(verification for _, verification in made)
-    text = header(dialect.first, model, verified[: len(chosen)], digits)
+    verified = verifications(members)
+    text = header(dialect.first, model, verified[: len(functions)], digits)
     if dialect is JAX:
         text = text.rstrip().removesuffix('"""') + f'\n{DOUBLE_PRECISION}"""\n'
     lints = f"# ruff: noqa: {LINTS}  (names and texts are the model's)\n\n"

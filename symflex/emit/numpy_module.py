@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from symflex.emit.members import members_of, verifications
 from symflex.emit.module_text import COST, default_value
 from symflex.emit.numpy_expression import Printer, statement
 from symflex.emit.numpy_pieces import LINTS, PiecesText, support
@@ -16,7 +17,6 @@ from symflex.emit.program import (
     Piecewise,
     Program,
     Verification,
-    choose_programs,
     identifiers,
 )
 from symflex.emit.python_text import (
@@ -26,6 +26,7 @@ from symflex.emit.python_text import (
     function_table,
     header,
     parameter_table,
+    public_names,
 )
 
 if TYPE_CHECKING:
@@ -164,29 +165,22 @@ def numpy_module(
     >>> "def V_over_F(" in export.text
     True
     """
-    chosen = {tf.name: (tf, *choose_programs(tf, band_hz, samples)) for tf in tfs}
+    members = members_of(tfs, band_hz, samples)
     names = identifiers({p.name: p.name for p in model.parameters}, RESERVED)
-    functions = identifiers(
-        {key: f"{tf.output.name}_over_{tf.input.name}" for key, (tf, _, _) in chosen.items()}, RESERVED
-    )
-    real = {key: made for key, (_, _, made) in chosen.items() if made is not None}
-    taken = {*RESERVED, *functions.values()}
-    responses = identifiers({key: f"{functions[key]}_at" for key in real}, taken)
+    functions, responses = public_names(members, RESERVED)
     blocks = [parameter_table(model, names)]
-    for key, (tf, (program, verification), _) in chosen.items():
-        blocks.append(_Function(tf, program, functions[key], names, verification.text(digits)).text())
-        if key in real:
-            response, measured = real[key]
-            blocks.append(_Function(tf, response, responses[key], names, measured.text(digits)).text())
-    made = [*(first for _, first, _ in chosen.values()), *real.values()]
-    pieces = [program for program, _ in made if isinstance(program, Piecewise)]
-    rational = [IN_BLOCKS] if len(pieces) < len(made) else []
+    for member in members:
+        public = (responses if member.program.is_real else functions)[member.tf.name]
+        sentence = member.verification.text(digits)
+        blocks.append(_Function(member.tf, member.program, public, names, sentence).text())
+    pieces = [member.program for member in members if isinstance(member.program, Piecewise)]
+    rational = [IN_BLOCKS] if len(pieces) < len(members) else []
     blocks += [SUPPORT, BLOCK, *rational, *support(pieces), function_table("TRANSFER_FUNCTIONS", functions)]
     if pieces:
         blocks.append(function_table("FREQUENCY_RESPONSES", responses))
     lints = f"{LINTS_OF_NAMES}, {LINTS if pieces else LINTS_OF_BLOCKS}"
-    verified = tuple(verification for _, verification in made)
-    text = header(FIRST, model, verified[: len(chosen)], digits)
+    verified = verifications(members)
+    text = header(FIRST, model, verified[: len(functions)], digits)
     return NumpyExport(f"{text}{IMPORTS.format(lints=lints)}\n" + "\n\n".join(blocks), verified)
 
 

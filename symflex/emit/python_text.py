@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING
 
 from symflex.emit.module_text import default_value, described, formula_lines, headline, origin_lines
 from symflex.emit.numpy_expression import WIDTH
-from symflex.emit.program import inert, wrapped
+from symflex.emit.program import identifiers, inert, wrapped
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
+    from symflex.emit.members import Member
     from symflex.emit.program import Verification
     from symflex.model import Model
     from symflex.transfer import TransferFunction
@@ -109,6 +110,16 @@ def docstring(lines: Sequence[str], indent: str) -> str:
     """Return lines, which hold no double quote, as a docstring, raw when a backslash is in them."""
     text = "\n".join(line.rstrip() for line in lines)
     return f'{indent}{"r" if chr(92) in text else ""}"""{text.lstrip()}\n{indent}"""\n'
+
+
+def public_names(
+    members: Sequence[Member], reserved: Collection[str]
+) -> tuple[Mapping[str, str], Mapping[str, str]]:
+    """Return the names of the functions of s, and of the responses, by ``OUT/IN``."""
+    of_s = {m.tf.name: m.wanted for m in members if not m.program.is_real}
+    functions = identifiers(of_s, reserved)
+    on_axis = {m.tf.name: f"{functions[m.tf.name]}_at" for m in members if m.program.is_real}
+    return functions, identifiers(on_axis, {*reserved, *functions.values()})
 
 
 def parameter_table(model: Model, names: Mapping[str, str]) -> str:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from symflex.emit.infix import in_lines
 from symflex.emit.julia.expression import WIDTH
 from symflex.emit.julia.pieces import PrivateFunctions, support_of
+from symflex.emit.members import Member, members_of, verifications
 from symflex.emit.module_text import (
     COST,
     default_value,
@@ -23,9 +24,7 @@ from symflex.emit.module_text import (
 )
 from symflex.emit.program import (
     Piecewise,
-    Program,
     Verification,
-    choose_programs,
     identifiers,
     inert,
     wrapped,
@@ -139,15 +138,7 @@ def julia_module(
     >>> "function V_over_F(s::Number; m::Number = 2.0, b::Number = 3.0)" in export.text
     True
     """
-    members: list[_Member] = []
-    measured: list[Verification] = []
-    for tf in {tf.name: tf for tf in tfs}.values():
-        (program, verification), real = choose_programs(tf, band_hz, samples)
-        wanted = f"{tf.output.name}_over_{tf.input.name}"
-        members.append(_Member(tf, program, wanted, verification))
-        measured.append(verification)
-        if real is not None:
-            members.append(_Member(tf, real[0], f"{wanted}_at", real[1]))
+    members = members_of(tfs, band_hz, samples)
     main = module_name(name or model.title)
     taken = RESERVED | {main}
     public = identifiers({m.key: m.wanted for m in members}, taken)
@@ -167,22 +158,7 @@ def julia_module(
     if public:
         header += [*_exported(list(public.values())), ""]
     text = "\n".join([*header, "\n".join(blocks), f"end # module {main}", ""])
-    verified = (*measured, *(m.verification for m in members if m.program.is_real))
-    return JuliaExport(text, main, verified)
-
-
-@dataclass(frozen=True, slots=True)
-class _Member:
-    """One function of the module."""
-
-    tf: TransferFunction
-    program: Program | Piecewise
-    wanted: str
-    verification: Verification
-
-    @property
-    def key(self) -> str:
-        return f"{'at' if self.program.is_real else 'of'} {self.tf.name}"
+    return JuliaExport(text, main, verifications(members))
 
 
 def module_name(text: str) -> str:
@@ -226,7 +202,7 @@ def _character(c: str) -> str:
     return f"\\u{ord(c):04x}" if ord(c) <= LAST_OF_FOUR_DIGITS else f"\\U{ord(c):08x}"
 
 
-def _header(model: Model, members: Sequence[_Member], digits: int) -> list[str]:
+def _header(model: Model, members: Sequence[Member], digits: int) -> list[str]:
     lines = ["Transfer functions of a linear system.", ""]
     if origin := origin_lines(model, WIDTH):
         lines += [*(_disarmed(line) for line in origin), ""]
@@ -254,7 +230,7 @@ def _parameter_table(model: Model, names: Mapping[str, str]) -> str:
     return "\n".join([*lines, ")", ""])
 
 
-def _function_table(table: str, members: Sequence[_Member], public: Mapping[str, str]) -> str:
+def _function_table(table: str, members: Sequence[Member], public: Mapping[str, str]) -> str:
     lines = [f"    {_string(m.tf.name)} => {public[m.key]}," for m in members]
     opening = f"const {table} = Dict{{String, Function}}("
     return "\n".join([opening, *lines, ")", ""] if lines else [f"{opening})", ""])
@@ -265,7 +241,7 @@ def _exported(names: Sequence[str]) -> list[str]:
     return [f"export {first}", *(f"    {line}" for line in others)]
 
 
-def _public(member: _Member, functions: PrivateFunctions, digits: int) -> str:
+def _public(member: Member, functions: PrivateFunctions, digits: int) -> str:
     """Return the function that a user calls."""
     tf, variable = member.tf, functions.variable
     kind = "Real" if member.program.is_real else "Number"

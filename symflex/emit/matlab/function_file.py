@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from symflex.emit.matlab.expression import WIDTH, continued
 from symflex.emit.matlab.pieces import LONGEST, LocalFunctions, roles_of, support_of
 from symflex.emit.matlab.support import NAMES
+from symflex.emit.members import Member, members_of, verifications
 from symflex.emit.module_text import (
     COST,
     default_value,
@@ -23,9 +24,7 @@ from symflex.emit.module_text import (
 )
 from symflex.emit.program import (
     Piecewise,
-    Program,
     Verification,
-    choose_programs,
     identifiers,
     inert,
     wrapped,
@@ -149,16 +148,7 @@ def matlab_function_file(
     >>> "G.V_over_F = @V_over_F;" in export.text
     True
     """
-    members: list[_Member] = []
-    measured: list[Verification] = []
-    for tf in {tf.name: tf for tf in tfs}.values():
-        (program, verification), real = choose_programs(tf, band_hz, samples)
-        wanted = f"{tf.output.name}_over_{tf.input.name}"
-        members.append(_Member(tf, program, wanted, verification.text(digits)))
-        measured.append(verification)
-        if real is not None:
-            members.append(_Member(tf, real[0], f"{wanted}_at", real[1].text(digits)))
-            measured.append(real[1])
+    members = members_of(tfs, band_hz, samples)
     main = main_name(name or model.title)
     fields = identifiers({m.key: m.wanted for m in members}, RESERVED | _OTHER_FIELDS, LONGEST)
     taken = RESERVED | {main}
@@ -168,34 +158,18 @@ def matlab_function_file(
     private = identifiers(roles, taken, LONGEST)
     taken |= set(private.values())
     parameters = identifiers({p.name: p.name for p in model.parameters}, taken, LONGEST)
-    blocks = [_main(model, main, members, fields, public, parameters), _defaults(model, parameters)]
+    blocks = [_main(model, main, members, fields, public, parameters, digits), _defaults(model, parameters)]
     for m in members:
         own = {role: private[f"{m.key} {role}"] for role in roles_of(m.program)}
         functions = LocalFunctions(m.program, own, parameters, taken - WORDS)
-        blocks += [_public(m, public[m.key], functions), *functions.blocks()]
+        blocks += [_public(m, public[m.key], functions, digits), *functions.blocks()]
     blocks += support_of([m.program for m in members])
-    of_axis = [v for v, m in zip(measured, members, strict=True) if m.program.is_real]
-    others = [v for v, m in zip(measured, members, strict=True) if not m.program.is_real]
-    return MatlabExport("\n".join(blocks), main, (*others, *of_axis))
+    return MatlabExport("\n".join(blocks), main, verifications(members))
 
 
 _OTHER_FIELDS = frozenset(
     {"parameters", "units", "descriptions", "transfer_functions", "frequency_responses"}
 )
-
-
-@dataclass(frozen=True, slots=True)
-class _Member:
-    """One function of the file."""
-
-    tf: TransferFunction
-    program: Program | Piecewise
-    wanted: str
-    sentence: str
-
-    @property
-    def key(self) -> str:
-        return f"{'at' if self.program.is_real else 'of'} {self.tf.name}"
 
 
 def main_name(text: str) -> str:
@@ -236,15 +210,16 @@ def _string(text: str) -> str:
 def _main(
     model: Model,
     main: str,
-    members: Sequence[_Member],
+    members: Sequence[Member],
     fields: Mapping[str, str],
     public: Mapping[str, str],
     parameters: Mapping[str, str],
+    digits: int,
 ) -> str:
     title = _text(model.title).strip()
     first = f"%{main.upper()}  Transfer functions{f' of: {title}' if title else ' of a linear system.'}"
     lines = [f"function G = {main}()", *wrapped(first, WIDTH, "", "%   "), "%"]
-    lines += _comment(_usage(main, [(m, fields[m.key]) for m in members], model, parameters))
+    lines += _comment(_usage(main, [(m, fields[m.key]) for m in members], model, parameters, digits))
     lines += ["", *(f"  G.{fields[m.key]} = @{public[m.key]};" for m in members)]
     lines.append("  G.parameters = default_parameters();")
     for field, texts in (
@@ -262,7 +237,11 @@ def _main(
 
 
 def _usage(
-    main: str, members: Sequence[tuple[_Member, str]], model: Model, parameters: Mapping[str, str]
+    main: str,
+    members: Sequence[tuple[Member, str]],
+    model: Model,
+    parameters: Mapping[str, str],
+    digits: int,
 ) -> list[str]:
     """Return the body of the help text."""
     lines: list[str] = []
@@ -280,7 +259,7 @@ def _usage(
         lines += wrapped(
             f"{field}: {_disarmed(headline(m.tf, is_real=m.program.is_real))}", _ROOM, "  ", "      "
         )
-        lines += wrapped(_text(m.sentence), _ROOM, "      ")
+        lines += wrapped(_text(m.verification.text(digits)), _ROOM, "      ")
     if model.parameters:
         lines += ["", "Parameters"]
         for p in model.parameters:
@@ -295,7 +274,7 @@ def _usage(
 _ROOM = WIDTH - 4
 
 
-def _examples(main: str, members: Sequence[tuple[_Member, str]], parameters: Mapping[str, str]) -> list[str]:
+def _examples(main: str, members: Sequence[tuple[Member, str]], parameters: Mapping[str, str]) -> list[str]:
     member, field = members[0]
     rows = [(f"G = {main}();", ""), (f"G.{field}(s)", "s: Laplace variable [rad/s], of any size")]
     if member.tf.parameters:
@@ -325,7 +304,7 @@ def _defaults(model: Model, parameters: Mapping[str, str]) -> str:
     return "\n".join([*lines, "end", ""])
 
 
-def _public(member: _Member, name: str, functions: LocalFunctions) -> str:
+def _public(member: Member, name: str, functions: LocalFunctions, digits: int) -> str:
     """Return the function behind a handle."""
     tf, variable = member.tf, functions.variable
     lines = [f"function value = {name}({variable}, varargin)"]
@@ -334,7 +313,7 @@ def _public(member: _Member, name: str, functions: LocalFunctions) -> str:
     help_text = ["", *(_disarmed(line) for line in formula_lines(tf, _ROOM)), ""]
     if origin := origin_lines(tf.model, _ROOM):
         help_text += [*(_disarmed(line) for line in origin), ""]
-    help_text += wrapped(_text(member.sentence), _ROOM)
+    help_text += wrapped(_text(member.verification.text(digits)), _ROOM)
     if isinstance(member.program, Piecewise) and member.program.solves:
         help_text += wrapped(COST, _ROOM)
     lines += _comment(help_text)
