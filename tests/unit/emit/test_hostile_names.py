@@ -15,20 +15,19 @@ import pytest
 
 from symflex import pipeline
 from symflex.emit import array_module as arrays
+from symflex.emit import members
 from symflex.emit import numpy_module as numpys
 from symflex.emit.c import c_files
 from symflex.emit.c import module as c_module
 from symflex.emit.exporters import EXPORTERS
 from symflex.emit.julia import julia_module
-from symflex.emit.julia import module as julia_room
-from symflex.emit.matlab import function_file as matlab_room
 from symflex.emit.matlab import matlab_function_file
 from symflex.emit.program import choose_programs
 from symflex.emit.state_space_module import state_space_module
 from tests.unit.emit.hostile_names import NAMES, PARAMETERS, C, benign, mass_on_springs, with_names
 
 COUNT = len(NAMES)
-ROOMS = (numpys, arrays, c_module, julia_room, matlab_room)
+ROOMS = (members, c_module)
 TOTAL = COUNT * (COUNT + 1) // 2
 """N/m: the stiffness of all springs."""
 
