@@ -11,7 +11,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from symflex.kernels import LAPLACE, Factored, Ring
+from symflex.kernels import LAPLACE, Factored, Ring, expanded_length
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -23,17 +23,22 @@ if TYPE_CHECKING:
 
 SparseRow = dict[int, "fmpz_mpoly"]
 
+TERM_LIMIT = 6_000_000
+MEMORY_LIMIT = 300_000_000
+"""Terms and bytes of one opened polynomial: a free chain of twelve masses, all symbolic, has 5.6 million."""
+
 
 @dataclass(frozen=True)
 class Closure:
-    """A ring extended by one generator per closed sum, and the way back.
+    """A ring with one generator per closed sum, and the way back.
 
     Parameters
     ----------
     base : Ring
         s, parameters, definitions, pi, functions of constants.
     ring : Ring
-        The same generators and then the closed sums.
+        Those of the same generators that stand outside closed sums, s and pi in any case, and then the sums: a
+        monomial takes a byte per generator.
     sums : tuple of (str, fmpz_mpoly)
         Each closed generator's name and its polynomial in ``base``.
     """
@@ -45,7 +50,8 @@ class Closure:
     @cached_property
     def images(self) -> tuple[fmpz_mpoly, ...]:
         """What every generator of ``ring`` is in ``base``."""
-        return (*self.base.context.gens(), *(p for _, p in self.sums))
+        plain = self.ring.names[: len(self.ring.names) - len(self.sums)]
+        return (*(self.base.generator(n) for n in plain), *(p for _, p in self.sums))
 
     @cached_property
     def _closed(self) -> Mapping[str, fmpz_mpoly]:
@@ -62,8 +68,15 @@ class Closure:
         closed = self._closed.get(str(factor)) if len(factor) > 1 else None
         return self._embed(factor) if closed is None else closed
 
+    @cached_property
+    def _embedding(self) -> tuple[fmpz_mpoly, ...]:
+        """What every generator of ``base`` is in ``ring``, where it is there."""
+        absent = self.ring.constant(0)
+        index = self.ring.index
+        return tuple(self.ring.generator(n) if n in index else absent for n in self.base.names)
+
     def _embed(self, factor: fmpz_mpoly) -> fmpz_mpoly:
-        return factor.compose(*self.ring.context.gens()[: len(self.base.names)], ctx=self.ring.context)
+        return factor.compose(*self._embedding, ctx=self.ring.context)
 
     def open(self, polynomial: fmpz_mpoly) -> Factored:
         """Return a closed polynomial over ``base``; factors that stand in front stay factored."""
@@ -77,7 +90,12 @@ class Closure:
         rest = polynomial / content
         if rest.is_constant():
             return result * int(rest.leading_coefficient())
-        return result * Factored.polynomial(self.base, self.base.compose(rest, self.images))
+        opened = self.base.compose(rest, self.images, TERM_LIMIT, MEMORY_LIMIT)
+        return result * Factored.polynomial(self.base, opened)
+
+    def opened_length(self, polynomial: fmpz_mpoly) -> int | None:
+        """Return a bound on the terms of a closed polynomial over ``base``; see ``expanded_length``."""
+        return expanded_length(polynomial, [len(image) for image in self.images])
 
 
 @dataclass(frozen=True)
@@ -103,17 +121,22 @@ def _is_symbolic(ring: Ring, factor: fmpz_mpoly) -> bool:
 def close(equations: Equations) -> ClosedSystem:
     """Return the equations with every sum of two or more terms closed."""
     sums: dict[str, fmpz_mpoly] = {}
+    outside = {LAPLACE, "pi"}
     forms = [r.form for r in equations.rows] + [o.form for o in equations.outputs]
     entries = [c for form in forms for _, c in form.terms] + [o.divisor for o in equations.outputs]
     for entry in entries:
         for factor, _ in entry.factors:
             if _is_symbolic(equations.ring, factor):
                 sums.setdefault(str(factor), factor)
+            else:
+                names = equations.ring.names
+                outside |= {names[i] for i, d in enumerate(factor.degrees()) if int(d)}
     named = tuple((f"sum{i}", factor) for i, factor in enumerate(sums.values()))
     # A parameter may be called like a closed sum; generator names must differ.
     taken = set(equations.ring.names)
     named = tuple((name if name not in taken else f"{name}!", factor) for name, factor in named)
-    closure = Closure(equations.ring, Ring((*equations.ring.names, *(n for n, _ in named))), named)
+    kept = (n for n in equations.ring.names if n in outside)
+    closure = Closure(equations.ring, Ring((*kept, *(n for n, _ in named))), named)
     columns = {v: i for i, v in enumerate((*equations.unknowns, *equations.inputs))}
 
     def sparse(form: LinearForm) -> SparseRow:

@@ -63,7 +63,7 @@ class Determinants:
         if len(reduced.rows) != len(reduced.columns):
             raise explain_singular(equations)
         order = expansion_order(reduced.rows, reduced.columns)
-        minors = Minors(system.closure.ring, tuple(reduced.rows[i] for i in order))
+        minors = Minors(tuple(reduced.rows[i] for i in order), ring=system.closure.ring)
         den = minors.determinant(sum(1 << c for c in reduced.columns))
         if den.is_zero():
             raise explain_singular(equations)
@@ -74,12 +74,18 @@ class Determinants:
 
         Over :attr:`den` it is ``output/input`` times the output's divisor.
         """
-        names = [row.name for row in self.equations.outputs]
-        sparse = self.reduced.outputs[names.index(output)]
-        column = len(self.system.unknowns) + [v.owner for v in self.system.inputs].index(source)
         # Cramer: det [C D; A B] over det A, up to the sign of moving the border from last row to first.
-        found = self.minors.bordered(sparse, sum(1 << c for c in self.reduced.columns) | 1 << column)
+        found = self.minors.bordered(self.reduced.outputs[self.position(output)], self.border(source))
         return -found if len(self.reduced.columns) & 1 else found
+
+    def position(self, output: str) -> int:
+        """Return where an output stands among the rows of outputs."""
+        return [row.name for row in self.equations.outputs].index(output)
+
+    def border(self, source: str) -> int:
+        """Return the columns of the unknowns left, and that of an input, as bits."""
+        column = len(self.system.unknowns) + [v.owner for v in self.system.inputs].index(source)
+        return sum(1 << c for c in self.reduced.columns) | 1 << column
 
     def opened(self, polynomial: fmpz_mpoly) -> Factored:
         """Return a determinant over the ring of the equations."""

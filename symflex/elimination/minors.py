@@ -7,29 +7,35 @@ with elimination for polynomial entries).
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from symflex.errors import BudgetError, Diagnostic
-from symflex.kernels import MEMORY_LIMIT, Ring
+from symflex.kernels import Ring
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from flint import fmpz_mpoly
 
     from symflex.elimination.closing import SparseRow
 
 MINOR_LIMIT = 200_000
 ROW_LIMIT = 700
+MEMORY_LIMIT = 400_000_000
+"""Bytes that all minors of a system may take together: a free chain of sixteen masses needs half of it."""
+
+Entry = TypeVar("Entry")
+Value = TypeVar("Value")
 
 
 @dataclass
-class Minors:
-    """The minors of some rows over any set of columns, each computed once.
+class LaplaceExpansion(ABC, Generic[Entry, Value]):
+    """Values of all minors of some rows, each found once from smaller ones.
 
     Parameters
     ----------
-    ring : Ring
-        Where the entries live.
     rows : tuple of dict
         Sparse rows, in the order of expansion.
 
@@ -39,31 +45,40 @@ class Minors:
         SF502 when the expansion exceeds its limits.
     """
 
-    ring: Ring
-    rows: tuple[SparseRow, ...]
-    _known: dict[int, fmpz_mpoly] = field(default_factory=dict)
-    _bytes: int = 0
+    rows: tuple[Mapping[int, Entry], ...]
+    _known: dict[int, Value] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if len(self.rows) > ROW_LIMIT:
             raise _too_large(f"{len(self.rows)} unknowns remain after elimination, more than {ROW_LIMIT}")
 
-    def determinant(self, columns: int) -> fmpz_mpoly:
+    @abstractmethod
+    def _one(self) -> Value:
+        """Return the value of the minor without rows."""
+
+    @abstractmethod
+    def _expand(self, entries: Mapping[int, Entry], below: int, columns: int) -> Value:
+        """Return a minor along one row from those that begin with row ``below``."""
+
+    def _note(self, value: Value) -> None:
+        """Take notice of a value that is about to be kept."""
+
+    def determinant(self, columns: int) -> Value:
         """Return the determinant over the columns whose bits are set, taken in increasing order."""
         self._find(columns)
         return self._minor(0, columns)
 
-    def bordered(self, top: SparseRow, columns: int) -> fmpz_mpoly:
+    def bordered(self, top: Mapping[int, Entry], columns: int) -> Value:
         """Return the determinant with one more row on top."""
         for left in self._left(top, columns):
             self._find(left)
         return self._expand(top, 0, columns)
 
-    def _minor(self, row: int, columns: int) -> fmpz_mpoly:
+    def _minor(self, row: int, columns: int) -> Value:
         # The number of columns left tells the row, so the columns alone are the key.
-        return self.ring.constant(1) if row == len(self.rows) else self._known[columns]
+        return self._one() if row == len(self.rows) else self._known[columns]
 
-    def _left(self, entries: SparseRow, columns: int) -> set[int]:
+    def _left(self, entries: Mapping[int, Entry], columns: int) -> set[int]:
         return {columns & ~(1 << column) for column in entries if columns >> column & 1}
 
     def _find(self, columns: int) -> None:
@@ -80,11 +95,38 @@ class Minors:
             for each in wanted[row]:
                 known = self._expand(self.rows[row], row + 1, each)
                 self._known[each] = known
-                self._bytes += self.ring.bytes_of(len(known))
-                if self._bytes > MEMORY_LIMIT:
-                    raise _too_large("the determinant has too many minors or terms")
+                self._note(known)
 
-    def _expand(self, entries: SparseRow, below: int, columns: int) -> fmpz_mpoly:
+
+@dataclass
+class Minors(LaplaceExpansion["fmpz_mpoly", "fmpz_mpoly"]):
+    """The minors of polynomial rows over any set of columns, each computed once.
+
+    Parameters
+    ----------
+    rows : tuple of dict
+        Sparse rows, in the order of expansion.
+    ring : Ring
+        Where the entries live.
+
+    Raises
+    ------
+    BudgetError
+        SF502 when the expansion exceeds its limits.
+    """
+
+    ring: Ring = field(kw_only=True)
+    _bytes: int = 0
+
+    def _one(self) -> fmpz_mpoly:
+        return self.ring.constant(1)
+
+    def _note(self, value: fmpz_mpoly) -> None:
+        self._bytes += self.ring.bytes_of(len(value))
+        if self._bytes > MEMORY_LIMIT:
+            raise _too_large("the determinant has too many minors or terms")
+
+    def _expand(self, entries: Mapping[int, fmpz_mpoly], below: int, columns: int) -> fmpz_mpoly:
         total = self.ring.constant(0)
         for column in sorted(entries):
             bit = 1 << column
@@ -100,6 +142,25 @@ class Minors:
             odd = (columns & (bit - 1)).bit_count() & 1
             total = total - term if odd else total + term
         return total
+
+
+@dataclass
+class DegreeBounds(LaplaceExpansion[int, int]):
+    """What the degrees of minors can be at most, from those of the entries: products add, sums take the larger.
+
+    A minor that is zero for its pattern alone has degree -1.
+    """
+
+    def _one(self) -> int:
+        return 0
+
+    def _expand(self, entries: Mapping[int, int], below: int, columns: int) -> int:
+        highest = -1
+        for column, degree in entries.items():
+            bit = 1 << column
+            if columns & bit and (minor := self._minor(below, columns & ~bit)) >= 0:
+                highest = max(highest, degree + minor)
+        return highest
 
 
 def _too_large(message: str) -> BudgetError:

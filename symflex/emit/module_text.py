@@ -38,7 +38,7 @@ def formula_lines(tf: TransferFunction, width: int) -> list[str]:
         Columns of a line.
     """
     above, below = tf.order
-    if sum(len(f) for f, _ in tf.ratio.factors) <= FORMULA_TERMS:
+    if tf.length <= FORMULA_TERMS:
         form = print_form(tf)
     elif tf.closed is not None and len(tf.closed.num) + len(tf.closed.den) <= FORMULA_TERMS:
         form = print_form(tf, "definitions")

@@ -7,7 +7,7 @@ from symflex.kernels.memo import PolynomialMemo
 from symflex.kernels.modal_sum import ModalSums, modal_amplitudes, mode_values
 from symflex.kernels.propagators import Propagation, Propagator, propagate
 from symflex.kernels.residue import PRIME, random_point, residue
-from symflex.kernels.ring import LAPLACE, MEMORY_LIMIT, Ring, degree_in
+from symflex.kernels.ring import LAPLACE, MEMORY_LIMIT, Ring, degree_in, expanded_length
 
 __all__ = [
     "FUNCTIONS",
@@ -27,6 +27,7 @@ __all__ = [
     "Ring",
     "common_denominator",
     "degree_in",
+    "expanded_length",
     "least_common_multiple",
     "modal_amplitudes",
     "mode_values",

@@ -64,7 +64,7 @@ class Factored:
         if value.is_zero():
             return Factored(ring, Fraction(0))
         content = value.term_content()
-        rest = value / content
+        rest = value if content.is_one() else value / content
         unit = int(content.leading_coefficient())
         if int(rest.leading_coefficient()) < 0:
             rest, unit = -rest, -unit

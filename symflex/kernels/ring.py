@@ -68,20 +68,53 @@ class Ring:
         """Return an integer as a polynomial."""
         return self.context.constant(value)
 
-    def compose(self, polynomial: fmpz_mpoly, images: Sequence[fmpz_mpoly]) -> fmpz_mpoly:
+    def compose(
+        self,
+        polynomial: fmpz_mpoly,
+        images: Sequence[fmpz_mpoly],
+        term_limit: int = TERM_LIMIT,
+        memory_limit: int = MEMORY_LIMIT,
+    ) -> fmpz_mpoly:
         """Replace every generator of ``polynomial``'s ring by its image in this ring.
 
         Raises
         ------
         BudgetError
-            SF501 when the result could exceed the size limit.
+            SF501 when the result could exceed the limits, terms and bytes.
         """
-        check_expansion(self, polynomial, images)
+        check_expansion(self, polynomial, images, min(term_limit, memory_limit // self.bytes_of(1)))
         return polynomial.compose(*images, ctx=self.context)
 
 
-def check_expansion(ring: Ring, polynomial: fmpz_mpoly, images: Sequence[fmpz_mpoly]) -> None:
+def expanded_length(polynomial: fmpz_mpoly, lengths: Sequence[int]) -> int | None:
+    """Return a bound on the terms of a polynomial whose generators are sums of some lengths.
+
+    ``None`` when there is no quick one: coefficients of both signs.
+
+    Examples
+    --------
+    >>> ring = Ring(("s", "x", "y"))
+    >>> s, x, y = ring.context.gens()
+    >>> expanded_length(s * x + x * y, (1, 2, 3))
+    8
+    """
+    if any(c < 0 for c in polynomial.coeffs()):
+        return None
+    # Every monomial counts at least once: positive integers are coefficients of at least one.
+    return int(polynomial(*lengths))
+
+
+def check_expansion(
+    ring: Ring, polynomial: fmpz_mpoly, images: Sequence[fmpz_mpoly], most: int | None = None
+) -> None:
     """Refuse a substitution whose result in ``ring`` could be too large.
+
+    Parameters
+    ----------
+    ring, polynomial, images
+        See :meth:`Ring.compose`.
+    most : int, optional
+        Number of terms.
 
     Raises
     ------
@@ -90,9 +123,15 @@ def check_expansion(ring: Ring, polynomial: fmpz_mpoly, images: Sequence[fmpz_mp
     """
     lengths = [len(image) for image in images]
     degrees = [int(image.total_degree()) if len(image) else 0 for image in images]
-    if max(lengths, default=0) <= 1 and polynomial.total_degree() * max(degrees, default=0) <= DEGREE_LIMIT:
+    small_degree = polynomial.total_degree() * max(degrees, default=0) <= DEGREE_LIMIT
+    if max(lengths, default=0) <= 1 and small_degree:
         return
-    terms, most = 0, min(TERM_LIMIT, MEMORY_LIMIT // ring.bytes_of(1))
+    if most is None:
+        most = min(TERM_LIMIT, MEMORY_LIMIT // ring.bytes_of(1))
+    bound = expanded_length(polynomial, lengths) if small_degree else None
+    if bound is not None and bound <= most:
+        return
+    terms = 0
     for monomial in polynomial.monoms():
         product, degree = 1, 0
         for i, exponent in enumerate(monomial):

@@ -6,24 +6,24 @@ Output: :class:`TransferFunction` for every pair asked for, reduced exactly.
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symflex.elimination import Determinants, explain_singular
-from symflex.errors import Diagnostic, ModelError
-from symflex.kernels import LAPLACE, NO_KERNELS, Factored, KernelTable, Ring, degree_in
+from symflex.kernels import LAPLACE, NO_KERNELS, Factored, KernelTable, degree_in
 from symflex.transfer.cancel import cancel
-from symflex.transfer.compose import compose_rational
 from symflex.transfer.coprimality import Images
 from symflex.transfer.distributed import KernelReduction, embedded_table
+from symflex.transfer.expansion import Expansion, Opening
+from symflex.transfer.line import DeterminantsOnLine
 from symflex.transfer.quantity import name_quantity, unit_of_quotient
 from symflex.transfer.transfer_function import ClosedForm, HiddenFactor, TransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from flint import fmpz_mpoly
+    from flint import fmpz, fmpz_mpoly
 
-    from symflex.elimination import Closure
     from symflex.equations import Equations, OutputRow
     from symflex.kernels import Propagation
     from symflex.model import Input, Output
@@ -52,7 +52,7 @@ def derive(equations: Equations, output: str, source: str) -> TransferFunction:
 def derive_all(equations: Equations, pairs: Sequence[tuple[str, str]]) -> tuple[TransferFunction, ...]:
     """Return several transfer functions that share one elimination; see :func:`derive`."""
     determinants = Determinants.of(equations)
-    workshop = _Workshop(equations, determinants.system.closure, determinants.den)
+    workshop = _Workshop(equations, determinants)
     outputs = {row.name: row for row in equations.outputs}
     return tuple(
         workshop.finish(outputs[output], source, determinants.num(output, source)) for output, source in pairs
@@ -62,76 +62,88 @@ def derive_all(equations: Equations, pairs: Sequence[tuple[str, str]]) -> tuple[
 class _Workshop:
     """Reduces one Cramer quotient after the other over the same denominator."""
 
-    def __init__(self, equations: Equations, closure: Closure, den: fmpz_mpoly) -> None:
+    def __init__(self, equations: Equations, determinants: Determinants) -> None:
         self._equations = equations
-        self._closure = closure
-        self._den = den
-        model = equations.model
-        plain = (
-            LAPLACE,
-            *(p.name for p in model.parameters),
-            "pi",
-            *(c.generator for c in equations.constants),
-        )
+        self._determinants = determinants
+        self._closure = determinants.system.closure
+        self._den = determinants.den
+        self._expansion = Expansion.of(equations)
+        self._images = Images(self._expansion.ring)
+        self._opening = Opening(self._closure, self._expansion)
         propagation = equations.propagation
-        self._plain = Ring(plain)
-        self._ring = self._plain if propagation is None else Ring((*plain, *propagation.table.generators))
-        self._images = Images(self._ring)
-        self._denominators: list[tuple[fmpz_mpoly, Factored]] = []
-        self._definitions: dict[str, Factored] = {}
-        if propagation is not None:
-            # Propagators hold no definitions, but definitions may hold delays.
-            images = [self._generator(n) for n in propagation.kernel_ring.names]
-            for p in propagation.propagators:
-                self._definitions[p.generator] = compose_rational(self._ring, p.image, images)
-        for name, value in equations.definitions:
-            self._definitions[name] = self._expanded(value)
         self._reduction = None if propagation is None else self._kernel_reduction(propagation)
+
+    @cached_property
+    def _line(self) -> DeterminantsOnLine:
+        return DeterminantsOnLine(self._determinants, self._expansion.plain, self._expansion.images)
 
     def _kernel_reduction(self, propagation: Propagation) -> KernelReduction:
         """Return how quotients of kernels are reduced, with definitions opened everywhere."""
         table = propagation.table
-        opened = [(v, self._expanded(propagation.embed(v))) for v in table.values]
-        self._cleared = self._expanded(self._equations.cleared or Factored.number(propagation.ring, 1))
+        opened = [(v, self._expansion.expanded(propagation.embed(v))) for v in table.values]
+        self._cleared = self._expansion.expanded(self._equations.cleared or Factored.number(propagation.ring, 1))
         parameters = [p.name for p in self._equations.model.parameters]
-        return KernelReduction(self._ring, embedded_table(table, opened), parameters, propagation.coordinates)
+        ring = self._expansion.ring
+        return KernelReduction(ring, embedded_table(table, opened), parameters, propagation.coordinates)
 
     def finish(self, row: OutputRow, source: str, num: fmpz_mpoly) -> TransferFunction:
         """Return the reduced transfer function ``num / den / divisor``."""
         model = self._equations.model
         output = next(o for o in model.outputs if o.name == row.name)
         given = next(i for i in model.inputs if i.name == source)
-        known = dict(model.quotients).get((output.name, given.name))
+        if self._reduction is None and row.divisor.is_one and self._line.prove_coprime(row.name, source):
+            return self._lumped(output, given, self._primitive(num, self._den), None)
         # For a zero numerator the common factor is the whole denominator: every mode is hidden.
         common = num.gcd(self._den)
         num_closed, den_closed = num / common, self._den / common
-        shared = self._expanded(self._closure.open(common))
+        shared = self._expansion.expanded(self._closure.open(common))
         divisor = self._closure.close(row.divisor)
         den_closed = den_closed * divisor
         final = num_closed.gcd(den_closed)
         num_closed, den_closed = num_closed / final, den_closed / final
-        shared = shared * self._expanded(self._closure.open(final))
-        denominator = self._opened_denominator(den_closed)
+        shared = shared * self._expansion.expanded(self._closure.open(final))
+        denominator = self._opening(den_closed)
         if self._reduction is not None:
             return self._finish_distributed(output, given, num_closed, denominator, shared)
         if denominator.is_zero:
             raise explain_singular(self._equations)
         if denominator.unit < 0:
             num_closed, den_closed, denominator = -num_closed, -den_closed, -denominator
-        numerator = self._expanded(self._closure.open(num_closed))
+        numerator = self._expansion.expanded(self._closure.open(num_closed))
         ratio, cancelled = cancel(numerator, denominator, self._images)
+        closed = ClosedForm(self._opening, num_closed, den_closed) if cancelled.is_one else None
+        return self._lumped(output, given, closed, ratio, self._hidden(shared * cancelled))
+
+    def _primitive(self, num: fmpz_mpoly, den: fmpz_mpoly) -> ClosedForm:
+        """Return a quotient of coprime determinants without common integer, its denominator's sign settled."""
+        common = _integer_content(num).gcd(_integer_content(den))
+        if common != 1:
+            num, den = num / common, den / common
+        closed = ClosedForm(self._opening, num, den)
+        leading = den.leading_coefficient() if closed.is_large else self._opening(den).unit
+        return closed if leading > 0 else ClosedForm(self._opening, -num, -den)
+
+    def _lumped(
+        self,
+        output: Output,
+        given: Input,
+        closed: ClosedForm | None,
+        ratio: Factored | None,
+        hidden: tuple[HiddenFactor, ...] = (),
+    ) -> TransferFunction:
+        known = dict(self._equations.model.quotients).get((output.name, given.name))
         return TransferFunction(
             output,
             given,
             ratio,
-            ClosedForm(self._closure, num_closed, den_closed) if cancelled.is_one else None,
-            self._hidden(shared * cancelled),
+            closed,
+            hidden,
             name_quantity(output, given, known),
             unit_of_quotient(output, given, known),
             self._equations.ring,
             self._equations.definitions,
             self._equations.constants,
-            model,
+            self._equations.model,
         )
 
     def _finish_distributed(
@@ -144,7 +156,7 @@ class _Workshop:
     ) -> TransferFunction:
         """Return the transfer function of a distributed system, with the kernels' relations used."""
         reduction = self._reduction
-        numerator = self._expanded(self._closure.open(num))
+        numerator = self._expansion.expanded(self._closure.open(num))
         reduced = (
             None
             if reduction is None or denominator.is_zero
@@ -155,7 +167,7 @@ class _Workshop:
         above, below, table = reduced.num, reduced.den, reduced.table
         if below.unit < 0:
             above, below = -above, -below
-        determinant = self._expanded(self._closure.open(self._den)) / self._cleared
+        determinant = self._expansion.expanded(self._closure.open(self._den)) / self._cleared
         cancelled = reduced.shared * reduction.hidden_where_waves_vanish(determinant, reduced)
         ratio = above / below
         if not any(reduction.has_kernels(f) for f, _ in ratio.factors):
@@ -185,47 +197,17 @@ class _Workshop:
 
     def _without_kernels(self, value: Factored) -> Factored:
         """Return the factors that hold no kernel or wavenumber, over the ring without them."""
-        gens = self._plain.context.gens()
-        zero = self._plain.constant(0)
-        images = [gens[i] if i < len(gens) else zero for i in range(len(self._ring.names))]
+        ring = self._expansion.plain
+        gens = ring.context.gens()
+        zero = ring.constant(0)
+        images = [gens[i] if i < len(gens) else zero for i in range(len(self._expansion.ring.names))]
         count = len(gens)
-        result = Factored.number(self._plain, value.unit)
+        result = Factored.number(ring, value.unit)
         for factor, exponent in value.factors:
             if not any(int(d) for d in factor.degrees()[count:]):
-                plain = Factored.polynomial(self._plain, factor.compose(*images, ctx=self._plain.context))
+                plain = Factored.polynomial(ring, factor.compose(*images, ctx=ring.context))
                 result = result * plain**exponent
         return result
-
-    def _opened_denominator(self, closed: fmpz_mpoly) -> Factored:
-        """Return a closed denominator over the parameters; most pairs share one."""
-        for known, opened in self._denominators:
-            if known == closed:
-                return opened
-        opened = self._expanded(self._closure.open(closed))
-        self._denominators.append((closed, opened))
-        return opened
-
-    def _expanded(self, value: Factored) -> Factored:
-        """Return a value over the equations' ring with its definitions opened."""
-        if self._ring == self._equations.ring:
-            return value
-        names = self._equations.ring.names
-        images = [self._definitions[n] if n in self._definitions else self._generator(n) for n in names]
-        return value.map_factors(self._ring, lambda factor: self._open(factor, images))
-
-    def _generator(self, name: str) -> Factored | None:
-        return Factored.generator(self._ring, name) if name in self._ring.index else None
-
-    def _open(self, factor: fmpz_mpoly, images: Sequence[Factored | None]) -> Factored:
-        degrees = factor.degrees()
-        used = [images[i] for i, d in enumerate(degrees) if int(d)]
-        known = [image for image in used if image is not None]
-        if len(known) != len(used):
-            message = "a definition uses one that is not resolved yet"
-            raise ModelError(Diagnostic("SF215", message))
-        if len(factor) == 1:
-            return known[0]
-        return compose_rational(self._ring, factor, images)
 
     def _hidden(self, value: Factored, table: KernelTable = NO_KERNELS) -> tuple[HiddenFactor, ...]:
         """Return the factors that depend on s, directly or through a kernel."""
@@ -234,6 +216,10 @@ class _Workshop:
         return tuple(
             HiddenFactor(f, e) for f, e in value.factors if e > 0 and any(degree_in(f, i) for i in varying)
         )
+
+
+def _integer_content(polynomial: fmpz_mpoly) -> fmpz:
+    return polynomial.term_content().leading_coefficient()
 
 
 def _generators_in(*values: Factored) -> set[str]:

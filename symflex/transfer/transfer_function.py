@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from random import Random
 from typing import TYPE_CHECKING
 
 from symflex.expressions import Name, names
-from symflex.kernels import LAPLACE, NO_KERNELS, KernelTable, ModalSums, degree_in
+from symflex.kernels import LAPLACE, NO_KERNELS, KernelTable, ModalSums, Ring, degree_in
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -16,8 +17,13 @@ if TYPE_CHECKING:
 
     from symflex.elimination import Closure
     from symflex.equations import ConstantFunction
-    from symflex.kernels import Factored, Ring
+    from symflex.kernels import Factored
     from symflex.model import Input, Model, Output, Parameter
+    from symflex.transfer.expansion import Opening
+
+
+LARGE = 50_000
+"""Number of expanded terms from which a transfer function is opened only when that is asked for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,15 +40,71 @@ class ClosedForm:
 
     Parameters
     ----------
-    closure : Closure
-        The ring with one generator per closed sum, and what each sum is.
+    opening : Opening
+        The ring with one generator per closed sum, and the way to the one without.
     num, den : fmpz_mpoly
-        Coprime polynomials in that ring.
+        Polynomials in that ring, coprime also when they are opened.
     """
 
-    closure: Closure
+    opening: Opening
     num: fmpz_mpoly
     den: fmpz_mpoly
+
+    @property
+    def closure(self) -> Closure:
+        """The ring, and what each sum is."""
+        return self.opening.closure
+
+    @cached_property
+    def length(self) -> int | None:
+        """How many terms both have at most when their sums are opened; None when no quick bound is known."""
+        found = [self.closure.opened_length(p) for p in (self.num, self.den)]
+        known = [n for n in found if n is not None]
+        return sum(known) if len(known) == len(found) else None
+
+    @property
+    def is_large(self) -> bool:
+        """True when opening it may cost more than what else is done with a transfer function."""
+        return len(self.num) + len(self.den) > LARGE or (self.length or 0) > LARGE
+
+    @cached_property
+    def ratio(self) -> Factored:
+        """The function with all sums and definitions opened.
+
+        Raises
+        ------
+        BudgetError
+            SF501 when it would be too large.
+        """
+        return self.opening(self.num) / self.opening(self.den)
+
+    @cached_property
+    def order(self) -> tuple[int, int]:
+        """Degrees in s of numerator and denominator, from random numbers in place of all other names."""
+        expansion = self.opening.expansion
+        if any(name in expansion.images for name in self.generators):
+            return degree(self.ratio.numerator()), degree(self.ratio.denominator())
+        line, random = Ring((LAPLACE,)), Random(2)
+        base = [
+            line.generator(n) if n == LAPLACE else line.constant(random.randrange(2**20, 2**21))
+            for n in self.closure.base.names
+        ]
+        known = dict(zip(self.closure.base.names, base, strict=True))
+        known |= {n: p.compose(*base, ctx=line.context) for n, p in self.closure.sums}
+        images = [known[n] for n in self.closure.ring.names]
+        above, below = (degree_in(p.compose(*images, ctx=line.context), 0) for p in (self.num, self.den))
+        return above, below
+
+    @cached_property
+    def generators(self) -> frozenset[str]:
+        """The names that occur in it, also within its sums; those of definitions are not opened."""
+        ring = self.closure.ring
+        used = {n for p in (self.num, self.den) for n, d in zip(ring.names, p.degrees(), strict=True) if int(d)}
+        base = self.closure.base.names
+        for name, polynomial in self.closure.sums:
+            if name in used:
+                used |= {n for n, d in zip(base, polynomial.degrees(), strict=True) if int(d)}
+        return frozenset(used)
 
 
 @dataclass(frozen=True)
@@ -53,8 +115,9 @@ class TransferFunction:
     ----------
     output, input : Output, Input
         What is measured and what drives.
-    ratio : Factored
-        Numerator over denominator; every factor of one is coprime to every factor of the other.
+    reduced : Factored or None
+        Numerator over denominator; every factor of one is coprime to every factor of the other. ``None`` when
+        it is that of ``closed``, which is then opened when it is first asked for: see :attr:`ratio`.
     closed : ClosedForm or None
         The compact form; ``None`` when it could not be reduced without opening its sums.
     hidden : tuple of HiddenFactor
@@ -62,7 +125,7 @@ class TransferFunction:
     quantity, unit : str
         ``receptance``, ``mobility``, ...; SI unit, empty when unknown.
     base : Ring
-        The equations' ring: as ``ratio.ring``, and one generator per definition.
+        The equations' ring: as :attr:`ring`, and one generator per definition.
     definitions : tuple of (str, Factored)
         The definitions over ``base``, each in terms of earlier ones.
     constants : tuple of ConstantFunction
@@ -77,7 +140,7 @@ class TransferFunction:
 
     output: Output
     input: Input
-    ratio: Factored
+    reduced: Factored | None
     closed: ClosedForm | None
     hidden: tuple[HiddenFactor, ...]
     quantity: str
@@ -88,6 +151,48 @@ class TransferFunction:
     model: Model
     kernels: KernelTable = NO_KERNELS
     parts: tuple[Factored, Factored] | None = None
+
+    @cached_property
+    def ratio(self) -> Factored:
+        """Numerator over denominator, expanded in s and the parameters.
+
+        Raises
+        ------
+        BudgetError
+            SF501 when it would be too large.
+        """
+        if self.reduced is not None:
+            return self.reduced
+        if self.closed is None:
+            message = f"{self.name} has neither form"
+            raise ValueError(message)
+        return self.closed.ratio
+
+    @property
+    def ring(self) -> Ring:
+        """Where :attr:`ratio` lives."""
+        if self.reduced is None and self.closed is not None:
+            return self.closed.opening.expansion.ring
+        return self.ratio.ring
+
+    @property
+    def is_zero(self) -> bool:
+        """True when the output does not depend on the input."""
+        if self.reduced is None and self.closed is not None:
+            return bool(self.closed.num.is_zero())
+        return self.ratio.is_zero
+
+    @property
+    def is_large(self) -> bool:
+        """True when it has not been expanded, because that may cost more than all else: see :attr:`closed`."""
+        return self.reduced is None and self.closed is not None and self.closed.is_large
+
+    @property
+    def length(self) -> int:
+        """The number of terms of all factors when expanded; of a large function a bound."""
+        if self.is_large and self.closed is not None:
+            return self.closed.length or len(self.closed.num) + len(self.closed.den)
+        return sum(len(f) for f, _ in self.ratio.factors)
 
     @property
     def num(self) -> Factored:
@@ -129,6 +234,8 @@ class TransferFunction:
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
         """The parameters that occur, in declared order."""
+        if self.is_large and self.closed is not None:
+            return self._parameters_named(self._opened_names(self.closed.generators))
         return self._parameters_in([f for f, _ in self.all_factors])
 
     @property
@@ -147,7 +254,20 @@ class TransferFunction:
         return self._parameters_in([h.polynomial for h in self.hidden])
 
     def _parameters_in(self, polynomials: Sequence[fmpz_mpoly]) -> tuple[Parameter, ...]:
-        used = {n for i, n in enumerate(self.ratio.ring.names) if any(degree_in(p, i) for p in polynomials)}
+        return self._parameters_named(
+            {n for i, n in enumerate(self.ring.names) if any(degree_in(p, i) for p in polynomials)}
+        )
+
+    def _opened_names(self, found: frozenset[str]) -> set[str]:
+        """Return names with those in definitions among them, and in definitions of these."""
+        used = set(found)
+        for name, value in reversed(self.definitions):
+            if name in used:
+                ring = value.ring
+                used |= {n for f, _ in value.factors for i, n in enumerate(ring.names) if degree_in(f, i)}
+        return used
+
+    def _parameters_named(self, used: set[str]) -> tuple[Parameter, ...]:
         for constant in self.constants:
             if constant.generator in used:
                 used |= {n.name for n in names(constant.expression) if isinstance(n, Name)}
@@ -155,7 +275,12 @@ class TransferFunction:
 
     @property
     def order(self) -> tuple[int, int]:
-        """Degrees in s of numerator and denominator."""
+        """Degrees in s of numerator and denominator.
+
+        Those of a large function are told from random numbers in place of all else.
+        """
+        if self.is_large and self.closed is not None:
+            return self.closed.order
         return degree(self.ratio.numerator()), degree(self.ratio.denominator())
 
 

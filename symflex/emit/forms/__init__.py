@@ -110,7 +110,7 @@ def _candidates(tf: TransferFunction) -> tuple[str, ...]:
     found: tuple[str, ...] = CANDIDATES
     if tf.is_distributed:
         found = tuple(name for name in DISTRIBUTED_CANDIDATES if name in forms_of(tf))
-    return found if sum(len(f) for f, _ in tf.ratio.factors) <= LARGE else found[:1]
+    return found if tf.length <= LARGE else found[:1]
 
 
 def _length(form: PrintedForm) -> int:

@@ -50,7 +50,7 @@ def definitions_form(tf: TransferFunction, digits: int) -> PrintedForm:
 
 def _is_large(tf: TransferFunction) -> bool:
     """Tell whether rewriting the expanded polynomials would cost more than it can shorten."""
-    terms = max(sum(len(f) for f, _ in tf.ratio.factors), 1)
+    terms = max(tf.length, 1)
     return terms > (REWRITE_LIMIT if tf.definitions else SMALL)
 
 

@@ -85,7 +85,7 @@ def _doubled(tf: TransferFunction, length: Factored) -> TransferFunction | None:
         ),
     )
     ratio = NormalForm(ring, table).reduce_factored(result)
-    return replace(tf, ratio=ratio, kernels=table, parts=None)
+    return replace(tf, reduced=ratio, kernels=table, parts=None)
 
 
 def _in_doubles(tf: TransferFunction, factor: fmpz_mpoly, angles: Sequence[Angle]) -> Factored | None:

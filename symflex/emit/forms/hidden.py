@@ -20,10 +20,10 @@ def hidden_expressions(tf: TransferFunction) -> tuple[tuple[Expression, int], ..
 
     Kernels are written out, ``cosh(l*sqrt(s/(2*sqrt(E*I/(rho*A)))))``: the names of a form mean nothing here.
     """
-    used = used_generators(tf.ratio.ring, (h.polynomial for h in tf.hidden))
+    used = used_generators(tf.ring, (h.polynomial for h in tf.hidden))
     if used & set(tf.kernels.generators):
         return _with_kernels(tf, used)
-    arranger = Arranger.plain(tf.ratio.ring, constant_symbols(tf))
+    arranger = Arranger.plain(tf.ring, constant_symbols(tf))
     return tuple((arranger.collected(h.polynomial), h.multiplicity) for h in tf.hidden)
 
 

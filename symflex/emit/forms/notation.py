@@ -70,7 +70,7 @@ class Naming:
     @staticmethod
     def of(tf: TransferFunction) -> Naming:
         """Return the naming for a form of a transfer function."""
-        return Naming((*names_of(tf.model), *tf.ratio.ring.names))
+        return Naming((*names_of(tf.model), *tf.ring.names))
 
     def take(self, stem: str, wanted: int = 1) -> tuple[str, ...]:
         """Return that many free names; see :func:`free_names`."""
@@ -111,7 +111,7 @@ def angles_of(table: KernelTable, used: Collection[str] | None = None) -> tuple[
 
 def plain_printer(tf: TransferFunction, ring: Ring | None = None) -> ProductPrinter:
     """Return a printer for values of s and parameters alone."""
-    return ProductPrinter(Arranger.plain(ring or tf.ratio.ring, constant_symbols(tf)))
+    return ProductPrinter(Arranger.plain(ring or tf.ring, constant_symbols(tf)))
 
 
 def notation_of(

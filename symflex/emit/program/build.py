@@ -73,7 +73,7 @@ def build_program(tf: TransferFunction, form: str | None = None) -> Program:
         raise BudgetError(Diagnostic("SF503", message, None, "keep repeated sums in [definitions]"))
     parameters = tuple(p.name for p in tf.parameters)
     forge = Forge()
-    if tf.ratio.is_zero:
+    if tf.is_zero:
         return schedule(forge, parameters, forge.constant(0), None, inf)
     make = _maker(tf, form or forms[0])
     near, degree = make(Generators(forge, tf, is_far=False))
@@ -89,12 +89,12 @@ def available_forms(tf: TransferFunction) -> tuple[str, ...]:
     forms: list[str] = []
     if tf.is_distributed:
         return ()
-    if tf.closed is not None and not tf.ratio.is_zero and _closes_polynomially(tf):
+    if tf.closed is not None and not tf.is_zero and _closes_polynomially(tf):
         closed = tf.closed
         terms = [len(closed.num), len(closed.den), *(len(p) for _, p in closed.closure.sums)]
         if sum(terms) <= TERM_LIMIT:
             forms += ["closed", "closed in s", "nested"]
-    if sum(len(f) for f, _ in tf.ratio.factors) <= TERM_LIMIT:
+    if tf.length <= TERM_LIMIT:
         forms.append("factors")
     return tuple(forms)
 

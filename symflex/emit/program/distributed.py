@@ -88,7 +88,7 @@ def build_piecewise(tf: TransferFunction, reach: float | None = None) -> Piecewi
     BudgetError
         SF503 when the program would be too large.
     """
-    if sum(len(f) for f, _ in tf.ratio.factors) > TERM_LIMIT:
+    if tf.length > TERM_LIMIT:
         message = f"a program for {tf.name} would have more than {TERM_LIMIT} terms"
         raise BudgetError(Diagnostic("SF503", message, None, "keep repeated sums in [definitions]"))
     chosen = reaches_of(tf)[0] if reach is None else reach
@@ -107,7 +107,7 @@ def build_real(tf: TransferFunction, reach: float = REACHES[0]) -> Piecewise | N
     reach : float
         As for :func:`build_piecewise`.
     """
-    if sum(len(f) for f, _ in tf.ratio.factors) > REAL_TERMS:
+    if tf.length > REAL_TERMS:
         return None
     positive = tuple(p.name for p in tf.parameters if p.assume == "positive")
     axis = RealAxis(tf.ratio.ring, tf.kernels, positive)

@@ -273,7 +273,7 @@ class _Gauge:
 
     def verified(self, form: str, error: float | None, reach: Reach | None = None) -> Verification:
         samples = 0 if self.references is None else len(self.references.s)
-        if error is not None and not samples and not self.tf.ratio.is_zero:
+        if error is not None and not samples and not self.tf.is_zero:
             return Verification(self.tf.name, form, None, self.band, 0, "no value could be enclosed")
         return Verification(self.tf.name, form, error, self.band, samples, self.reason, reach)
 
@@ -291,14 +291,14 @@ def _gauge(tf: TransferFunction, band_hz: tuple[Fraction, Fraction] | None, samp
 
 def _choose(gauge: _Gauge) -> tuple[Program | Piecewise, Verification]:
     tf, references = gauge.tf, gauge.references
-    if tf.is_distributed and not tf.ratio.is_zero:
+    if tf.is_distributed and not tf.is_zero:
         usual, *others = reaches_of(tf)
         rest = (build_piecewise(tf, reach) for reach in others)
         return _choose_pieces(build_piecewise(tf, usual), rest, gauge, "pieces")
     forms = available_forms(tf)
     if references is None:
         return _unmeasured(gauge, forms)
-    is_long = sum(len(f) for f, _ in tf.ratio.factors) > LONG
+    is_long = tf.length > LONG
     candidates: list[tuple[Program, str, float]] = []
     for form in forms:
         is_spare = form == "closed in s" or (form == "factors" and is_long)
@@ -319,7 +319,7 @@ def _choose(gauge: _Gauge) -> tuple[Program | Piecewise, Verification]:
 def _choose_real(gauge: _Gauge) -> tuple[Piecewise, Verification] | None:
     """Return the program of the frequency response, in half-angle tangents where that serves as well."""
     tf, references = gauge.tf, gauge.references
-    if not tf.is_distributed or tf.ratio.is_zero:
+    if not tf.is_distributed or tf.is_zero:
         return None
     usual, *others = reaches_of(tf)
     first = build_real(tf, usual)

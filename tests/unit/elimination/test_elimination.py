@@ -135,7 +135,7 @@ RING = Ring(("s", "a", "b"))
 @pytest.mark.parametrize("seed", range(12))
 def test_a_determinant_of_minors_is_sympys(seed):
     rows = random_sparse(seed, 4, RING, units=False)
-    found = Minors(RING, rows).determinant(0b1111)
+    found = Minors(rows, ring=RING).determinant(0b1111)
     expected = dense(rows, range(4), RING).det(method="berkowitz")
     assert sympy.expand(expected - dense(({0: found},), [0], RING)[0]) == 0
 
@@ -144,8 +144,8 @@ def test_a_determinant_of_minors_is_sympys(seed):
 def test_the_order_of_expansion_changes_the_determinant_by_its_sign_only(seed):
     rows = random_sparse(seed, 5, RING, units=False)
     order = expansion_order(rows, (0, 1, 2, 3, 4))
-    plain = Minors(RING, rows).determinant(0b11111)
-    ordered = Minors(RING, tuple(rows[i] for i in order)).determinant(0b11111)
+    plain = Minors(rows, ring=RING).determinant(0b11111)
+    ordered = Minors(tuple(rows[i] for i in order), ring=RING).determinant(0b11111)
     assert sorted(order) == [0, 1, 2, 3, 4]
     assert ordered in (plain, -plain)
 
@@ -156,13 +156,13 @@ def test_unit_pivots_leave_the_quotient_as_it_is(seed):
     rows = random_sparse(seed, size, RING, units=True)
     goal = ({0: RING.generator("a"), 3: RING.constant(1), size: RING.generator("b")},)
     whole = (1 << size) - 1
-    before = Minors(RING, rows)
+    before = Minors(rows, ring=RING)
     den = before.determinant(whole)
     if den.is_zero():
         pytest.skip("this matrix is singular")
     num = before.bordered(goal[0], whole | 1 << size)
     reduced = eliminate_unit_pivots(rows, goal, size)
-    after = Minors(RING, reduced.rows)
+    after = Minors(reduced.rows, ring=RING)
     columns = sum(1 << c for c in reduced.columns)
     den_after = after.determinant(columns)
     num_after = after.bordered(reduced.outputs[0], columns | 1 << size)
@@ -188,7 +188,7 @@ def test_minors_are_shared_between_outputs():
     text, *_ = random_network(4)
     equations = pipeline.assemble(pipeline.loads(text))
     system = close(equations)
-    minors = Minors(system.closure.ring, system.rows)
+    minors = Minors(system.rows, ring=system.closure.ring)
     every = (1 << len(system.unknowns)) - 1
     minors.determinant(every)
     known = dict(minors._known)
@@ -198,7 +198,7 @@ def test_minors_are_shared_between_outputs():
 
 def test_more_rows_than_the_limit_are_refused():
     with pytest.raises(BudgetError) as caught:
-        Minors(RING, tuple({0: RING.constant(1)} for _ in range(701)))
+        Minors(tuple({0: RING.constant(1)} for _ in range(701)), ring=RING)
     assert caught.value.diagnostics[0].code == "SF502"
 
 
@@ -208,14 +208,14 @@ def test_a_chain_may_be_longer_than_calls_may_be_deep():
     rows = tuple(
         {j: RING.constant(2 if j == i else -1) for j in range(max(i - 1, 0), min(i + 2, n))} for i in range(n)
     )
-    assert Minors(RING, rows).determinant((1 << n) - 1) == RING.constant(n + 1)
+    assert Minors(rows, ring=RING).determinant((1 << n) - 1) == RING.constant(n + 1)
 
 
 def test_a_dense_matrix_with_too_many_minors_is_refused(monkeypatch):
     monkeypatch.setattr("symflex.elimination.minors.MINOR_LIMIT", 50)
     rows = tuple({j: RING.generator("a") + i + j for j in range(8)} for i in range(8))
     with pytest.raises(BudgetError) as caught:
-        Minors(RING, rows).determinant(255)
+        Minors(rows, ring=RING).determinant(255)
     assert caught.value.diagnostics[0].code == "SF502"
 
 

@@ -1,0 +1,120 @@
+"""Opening definitions: from the equations' ring to the one without them.
+
+Input: factored rational functions over the ring of the equations.
+Output: the same over a ring that has no generator for definitions, nor for propagators.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from symflex.errors import Diagnostic, ModelError
+from symflex.kernels import LAPLACE, Factored, Ring
+from symflex.transfer.compose import compose_rational
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.elimination import Closure
+    from symflex.equations import Equations
+
+
+@dataclass(frozen=True, eq=False)
+class Expansion:
+    """How values over the ring of some equations are opened.
+
+    Parameters
+    ----------
+    source : Ring
+        The equations' own.
+    plain : Ring
+        s, parameters, pi and functions of constants.
+    ring : Ring
+        The same and, of a distributed system, its wavenumbers and kernels.
+    images : dict of str to Factored
+        What definitions, and propagators, are over ``ring``.
+    """
+
+    source: Ring
+    plain: Ring
+    ring: Ring
+    images: dict[str, Factored] = field(default_factory=dict)
+
+    @staticmethod
+    def of(equations: Equations) -> Expansion:
+        """Return the expansion of some equations, each definition opened once."""
+        plain = (
+            LAPLACE,
+            *(p.name for p in equations.model.parameters),
+            "pi",
+            *(c.generator for c in equations.constants),
+        )
+        propagation = equations.propagation
+        ring = Ring(plain) if propagation is None else Ring((*plain, *propagation.table.generators))
+        made = Expansion(equations.ring, Ring(plain), ring)
+        if propagation is not None:
+            # Propagators hold no definitions, but definitions may hold delays.
+            inner = [made.generator(n) for n in propagation.kernel_ring.names]
+            for p in propagation.propagators:
+                made.images[p.generator] = compose_rational(ring, p.image, inner)
+        for name, value in equations.definitions:
+            made.images[name] = made.expanded(value)
+        return made
+
+    def expanded(self, value: Factored) -> Factored:
+        """Return a value over the equations' ring with its definitions opened."""
+        if self.ring == self.source:
+            return value
+        names = self.source.names
+        images = [self.images[n] if n in self.images else self.generator(n) for n in names]
+        return value.map_factors(self.ring, lambda factor: self._open(factor, images))
+
+    def generator(self, name: str) -> Factored | None:
+        """Return a generator of the plain ring, None for a name it does not have."""
+        return Factored.generator(self.ring, name) if name in self.ring.index else None
+
+    def _open(self, factor: fmpz_mpoly, images: Sequence[Factored | None]) -> Factored:
+        degrees = factor.degrees()
+        used = [images[i] for i, d in enumerate(degrees) if int(d)]
+        known = [image for image in used if image is not None]
+        if len(known) != len(used):
+            message = "a definition uses one that is not resolved yet"
+            raise ModelError(Diagnostic("SF215", message))
+        if len(factor) == 1:
+            return known[0]
+        return compose_rational(self.ring, factor, images)
+
+
+@dataclass(frozen=True, eq=False)
+class Opening:
+    """How closed polynomials are opened, sums and definitions, each polynomial once.
+
+    Parameters
+    ----------
+    closure : Closure
+        Where they live.
+    expansion : Expansion
+        What follows.
+    """
+
+    closure: Closure
+    expansion: Expansion
+    _known: list[tuple[fmpz_mpoly, Factored]] = field(default_factory=list)
+
+    def __call__(self, closed: fmpz_mpoly) -> Factored:
+        """Return a closed polynomial over the plain ring.
+
+        Raises
+        ------
+        BudgetError
+            SF501 when it would be too large.
+        """
+        for known, opened in self._known:
+            if known == closed:
+                return opened
+        opened = self.expansion.expanded(self.closure.open(closed))
+        self._known.append((closed, opened))
+        return opened
