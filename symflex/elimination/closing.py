@@ -37,8 +37,8 @@ class Closure:
     base : Ring
         s, parameters, definitions, pi, functions of constants.
     ring : Ring
-        Those of the same generators that stand outside closed sums, s and pi in any case, and then the sums: a
-        monomial takes a byte per generator.
+        Those of the same generators that stand outside closed sums, s and pi in any case, and then the sums:
+        a monomial takes a byte per generator.
     sums : tuple of (str, fmpz_mpoly)
         Each closed generator's name and its polynomial in ``base``.
     """

@@ -146,7 +146,7 @@ class Minors(LaplaceExpansion["fmpz_mpoly", "fmpz_mpoly"]):
 
 @dataclass
 class DegreeBounds(LaplaceExpansion[int, int]):
-    """What the degrees of minors can be at most, from those of the entries: products add, sums take the larger.
+    """What the degrees of minors can be at most: those of entries add in products, the larger one is a sum's.
 
     A minor that is zero for its pattern alone has degree -1.
     """

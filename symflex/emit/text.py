@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from re import compile as compile_pattern
 from typing import TYPE_CHECKING
 
 from symflex.emit.forms import PrintedForm, hidden_expressions
@@ -183,12 +184,17 @@ def _split(text: str, breaks: Callable[[str, int], bool]) -> list[str]:
     """Return the parts of a text between the places outside parentheses where it may break."""
     depth, start = 0, 0
     parts: list[str] = []
-    for i, character in enumerate(text):
+    for found in _STOPS.finditer(text):
+        i = found.start()
         if not depth and i > start and breaks(text, i):
             parts.append(text[start:i].rstrip())
             start = i
-        depth += {"(": 1, ")": -1}.get(character, 0)
+        depth += {"(": 1, ")": -1}.get(text[i], 0)
     return [*parts, text[start:]]
+
+
+_STOPS = compile_pattern(r"[()+\-/]|(?<=\*).")
+"""Where a text may break, and what opens and closes a group."""
 
 
 def _at_sign(text: str, i: int) -> bool:

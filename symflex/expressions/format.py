@@ -112,6 +112,10 @@ def _parts(node: Expression, place: _Place, multiply: str, power: str) -> tuple[
             # A sign before a product is the whole product's, a sign inside one its next factor's alone.
             within = _Place.FACTOR if place is _Place.FACTOR else _Place.TERM
             return ["-", (operand, within)], _BARE_NEGATIVE
+        case Power(base=Name(name=name), exponent=Number(value=value)) if (
+            value.denominator == 1 and value >= 0
+        ):
+            return [f"{name}{power}{number_text(value)}"], _BARE_POWER
         case Power(base=base, exponent=exponent):
             return [(base, _Place.BASE), power, (exponent, _Place.FACTOR)], _BARE_POWER
         case Quotient(numerator=numerator, denominator=denominator):
@@ -119,7 +123,7 @@ def _parts(node: Expression, place: _Place, multiply: str, power: str) -> tuple[
         case Product(factors=factors):
             parts: _Work = [(factors[0], _Place.LEAD)]
             for factor in factors[1:]:
-                parts += [multiply, (factor, _Place.FACTOR)]
+                parts += [multiply, factor.name if isinstance(factor, Name) else (factor, _Place.FACTOR)]
             return parts, _BARE_PRODUCT
         case Sum(terms=terms):
             return _sum_parts(terms), _BARE_SUM

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import comb
+from math import comb, prod
 from typing import TYPE_CHECKING
 
 from flint import Ordering, fmpz_mpoly, fmpz_mpoly_ctx
@@ -24,6 +24,10 @@ DEGREE_LIMIT = 20_000
 MEMORY_LIMIT = 100_000_000
 """Bytes an expansion or elimination may take."""
 COEFFICIENT_BYTES = 8
+FEW = 16
+"""How large coefficients may be that do not spoil a count of terms much."""
+MANY = 5_000
+"""Terms that are not counted one by one."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +93,7 @@ class Ring:
 def expanded_length(polynomial: fmpz_mpoly, lengths: Sequence[int]) -> int | None:
     """Return a bound on the terms of a polynomial whose generators are sums of some lengths.
 
-    ``None`` when there is no quick one: coefficients of both signs.
+    ``None`` when there is no quick one: many coefficients of both signs, or large ones.
 
     Examples
     --------
@@ -98,10 +102,15 @@ def expanded_length(polynomial: fmpz_mpoly, lengths: Sequence[int]) -> int | Non
     >>> expanded_length(s * x + x * y, (1, 2, 3))
     8
     """
-    if any(c < 0 for c in polynomial.coeffs()):
+    if all(length <= 1 for length, d in zip(lengths, polynomial.degrees(), strict=True) if int(d)):
+        return len(polynomial)
+    values = polynomial.coeffs()
+    if min(values) >= 1 and max(values) <= FEW:
+        # Every monomial counts at least once, as its coefficient is at least one.
+        return int(polynomial(*lengths))
+    if len(values) > MANY:
         return None
-    # Every monomial counts at least once: positive integers are coefficients of at least one.
-    return int(polynomial(*lengths))
+    return sum(int(prod(map(pow, lengths, map(int, m)))) for m in polynomial.monoms())
 
 
 def check_expansion(
@@ -132,7 +141,8 @@ def check_expansion(
     if bound is not None and bound <= most:
         return
     terms = 0
-    for monomial in polynomial.monoms():
+    for position in range(len(polynomial)):
+        monomial = polynomial.monomial(position)  # one by one: most refusals come early
         product, degree = 1, 0
         for i, exponent in enumerate(monomial):
             if exponent:

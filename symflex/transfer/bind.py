@@ -6,7 +6,7 @@ Output: a :class:`BoundTransferFunction`, whose coefficients are exact in pi and
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, acb_series, arb, ctx
 
+from symflex.equations import assemble
 from symflex.errors import Diagnostic, ModelError, Source, Span, Text, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.kernels import (
@@ -27,13 +28,15 @@ from symflex.kernels import (
     Ring,
     degree_in,
 )
-from symflex.model import ExactValue
+from symflex.model import ExactValue, with_numbers
 from symflex.quantities import parse_quantity, unit_of
 from symflex.transfer.balls import ball, enclose, rational_value
 from symflex.transfer.cancel import cancel
+from symflex.transfer.derive import derive
 from symflex.transfer.distributed import embedded_table
 from symflex.transfer.enclose_kernels import KernelValues, expansion
 from symflex.transfer.monomials import Plan, plan
+from symflex.transfer.nested import nested_transfer
 from symflex.transfer.transfer_function import HiddenFactor, TransferFunction
 
 if TYPE_CHECKING:
@@ -413,6 +416,8 @@ def bind(
         read_values(tuple(everything.values()), {unknown[0]: given[unknown[0]]})
     exact = read_values((*used, *extra), given)
     table = dict(exact)
+    if tf.is_large:
+        return _derived_with_numbers(tf, exact)
     ring = Ring((LAPLACE, "pi", *_used_constants(tf), *tf.kernels.generators))
     images = _Substitution(ring, tf.ratio.ring, table, _rational_squares(tf, ring, table))
     # Kept apart, so that factors which these values make equal are still seen to cancel.
@@ -448,6 +453,15 @@ def bind(
             raise ModelError(Diagnostic("SF231", message, None, hint))
     parts = (images.apply_factored(tf.num), images.apply_factored(tf.den))
     return BoundTransferFunction(tf, exact, ratio, tuple(hidden), kernels, parts)
+
+
+def _derived_with_numbers(
+    tf: TransferFunction, values: tuple[tuple[str, ExactValue], ...]
+) -> BoundTransferFunction:
+    """Return a large function with numbers, derived with them from the start: none of its terms is made."""
+    numeric = with_numbers(tf.model, (), dict(values))
+    found = derive(assemble(numeric, nested_transfer), tf.output.name, tf.input.name)
+    return replace(bind(found), values=values)
 
 
 def bind_polynomials(

@@ -77,11 +77,18 @@ class _Workshop:
     def _line(self) -> DeterminantsOnLine:
         return DeterminantsOnLine(self._determinants, self._expansion.plain, self._expansion.images)
 
+    @cached_property
+    def _line_in_s(self) -> DeterminantsOnLine:
+        plain, definitions = self._expansion.plain, self._expansion.images
+        return DeterminantsOnLine(self._determinants, plain, definitions, LAPLACE)
+
     def _kernel_reduction(self, propagation: Propagation) -> KernelReduction:
         """Return how quotients of kernels are reduced, with definitions opened everywhere."""
         table = propagation.table
         opened = [(v, self._expansion.expanded(propagation.embed(v))) for v in table.values]
-        self._cleared = self._expansion.expanded(self._equations.cleared or Factored.number(propagation.ring, 1))
+        self._cleared = self._expansion.expanded(
+            self._equations.cleared or Factored.number(propagation.ring, 1)
+        )
         parameters = [p.name for p in self._equations.model.parameters]
         ring = self._expansion.ring
         return KernelReduction(ring, embedded_table(table, opened), parameters, propagation.coordinates)
@@ -92,7 +99,7 @@ class _Workshop:
         output = next(o for o in model.outputs if o.name == row.name)
         given = next(i for i in model.inputs if i.name == source)
         if self._reduction is None and row.divisor.is_one and self._line.prove_coprime(row.name, source):
-            return self._lumped(output, given, self._primitive(num, self._den), None)
+            return self._lumped(output, given, self._primitive(row.name, source, num), None)
         # For a zero numerator the common factor is the whole denominator: every mode is hidden.
         common = num.gcd(self._den)
         num_closed, den_closed = num / common, self._den / common
@@ -114,14 +121,18 @@ class _Workshop:
         closed = ClosedForm(self._opening, num_closed, den_closed) if cancelled.is_one else None
         return self._lumped(output, given, closed, ratio, self._hidden(shared * cancelled))
 
-    def _primitive(self, num: fmpz_mpoly, den: fmpz_mpoly) -> ClosedForm:
-        """Return a quotient of coprime determinants without common integer, its denominator's sign settled."""
+    def _primitive(self, output: str, source: str, num: fmpz_mpoly) -> ClosedForm:
+        """Return a quotient of coprime determinants without common integer, the denominator positive."""
+        den = self._den
         common = _integer_content(num).gcd(_integer_content(den))
         if common != 1:
             num, den = num / common, den / common
         closed = ClosedForm(self._opening, num, den)
         leading = den.leading_coefficient() if closed.is_large else self._opening(den).unit
-        return closed if leading > 0 else ClosedForm(self._opening, -num, -den)
+        if leading < 0:
+            num, den = -num, -den
+        order = self._line_in_s.order(output, source) if closed.is_large else None
+        return ClosedForm(self._opening, num, den, order)
 
     def _lumped(
         self,

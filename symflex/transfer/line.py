@@ -2,9 +2,9 @@
 
 Every generator x_i of the ring without sums and definitions is set to ``a_i + b_i*t`` with random integers. A
 common factor of two polynomials becomes a common factor of their images; it could become a number only if its
-highest homogeneous part vanished at b. That is excluded where both images have the degree that their polynomials
-have at most, for then no factor of either lost degree. So coprime images of full degree prove the polynomials
-coprime. The images of determinants come from the images of their entries: nothing is multiplied out.
+highest homogeneous part vanished at b. That is excluded where both images have the degree that their
+polynomials have at most, for then no factor of either lost degree. So coprime images of full degree prove the
+polynomials coprime. The images of determinants come from the images of their entries: nothing is expanded.
 """
 
 from __future__ import annotations
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.elimination import Determinants
-    from symflex.elimination.closing import SparseRow
 
 LINE = Ring((LAPLACE,))
 Image = tuple["fmpz_mpoly", int]
@@ -39,16 +38,26 @@ class DeterminantsOnLine:
         Generators without sums and definitions.
     definitions : mapping of str to Factored
         Each over ``plain``.
+    along : str, optional
+        The only generator that varies; all do by default.
     """
 
     def __init__(
-        self, determinants: Determinants, plain: Ring, definitions: Mapping[str, Factored]
+        self,
+        determinants: Determinants,
+        plain: Ring,
+        definitions: Mapping[str, Factored],
+        along: str | None = None,
     ) -> None:
         self._determinants = determinants
         random = Random(1)
         t = LINE.generator(LAPLACE)
-        self._plain = [t * random.randrange(1, 2**10) + random.randrange(1, 2**10) for _ in plain.names]
-        known: dict[str, Image] = {name: (p, 1) for name, p in zip(plain.names, self._plain, strict=True)}
+        moving = [along in (None, name) for name in plain.names]
+        plain_images = [t * random.randrange(1, 2**10) * m + random.randrange(1, 2**10) for m in moving]
+        known: dict[str, Image] = {
+            name: (p, int(m)) for name, p, m in zip(plain.names, plain_images, moving, strict=True)
+        }
+        self._plain_images = [known[name] for name in plain.names]
         known |= {n: i for n, v in definitions.items() if (i := self._definition(v)) is not None}
         closure = determinants.system.closure
         base = [known.get(name) for name in closure.base.names]
@@ -72,20 +81,32 @@ class DeterminantsOnLine:
 
     def prove_coprime(self, output: str, source: str) -> bool:
         """Tell whether a bordered determinant is proved coprime to the determinant; False decides nothing."""
+        num = self._num(output, source)
+        return num is not None and self._den is not None and bool(num.gcd(self._den).is_constant())
+
+    def order(self, output: str, source: str) -> tuple[int, int] | None:
+        """Return the degrees of both in what varies, None where they are not proved."""
+        num = self._num(output, source)
+        if num is None or self._den is None:
+            return None
+        return int(num.total_degree()), int(self._den.total_degree())
+
+    def _num(self, output: str, source: str) -> fmpz_mpoly | None:
         if self._den is None:
-            return False
+            return None
         values, degrees = self._outputs[self._determinants.position(output)]
         columns = self._determinants.border(source)
-        num = _kept(self._values.bordered(values, columns), self._degrees.bordered(degrees, columns))
-        return num is not None and bool(num.gcd(self._den).is_constant())
+        return _kept(self._values.bordered(values, columns), self._degrees.bordered(degrees, columns))
 
     def _definition(self, value: Factored) -> Image | None:
         if value.unit.denominator != 1 or any(e < 0 for _, e in value.factors):
             return None
         image, degree = LINE.constant(int(value.unit)), 0
         for factor, exponent in value.factors:
-            image = image * factor.compose(*self._plain, ctx=LINE.context) ** exponent
-            degree += int(factor.total_degree()) * exponent
+            found = _composed(factor, self._plain_images)
+            if found is None:
+                return None
+            image, degree = image * found[0] ** exponent, degree + found[1] * exponent
         return image, degree
 
     def _row(self, row: Mapping[int, fmpz_mpoly]) -> dict[int, Image] | None:
@@ -102,7 +123,8 @@ def _composed(polynomial: fmpz_mpoly, images: Sequence[Image | None]) -> Image |
     values = [LINE.constant(0) if image is None else image[0] for image in images]
     degrees = [0 if image is None else image[1] for image in images]
     highest = max(
-        (sum(int(e) * d for e, d in zip(m, degrees, strict=True) if e) for m in polynomial.monoms()), default=-1
+        (sum(int(e) * d for e, d in zip(m, degrees, strict=True) if e) for m in polynomial.monoms()),
+        default=-1,
     )
     return polynomial.compose(*values, ctx=LINE.context), highest
 

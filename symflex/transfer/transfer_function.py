@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from random import Random
 from typing import TYPE_CHECKING
 
 from symflex.expressions import Name, names
-from symflex.kernels import LAPLACE, NO_KERNELS, KernelTable, ModalSums, Ring, degree_in
+from symflex.kernels import LAPLACE, NO_KERNELS, KernelTable, ModalSums, degree_in
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,7 +16,7 @@ if TYPE_CHECKING:
 
     from symflex.elimination import Closure
     from symflex.equations import ConstantFunction
-    from symflex.kernels import Factored
+    from symflex.kernels import Factored, Ring
     from symflex.model import Input, Model, Output, Parameter
     from symflex.transfer.expansion import Opening
 
@@ -44,11 +43,14 @@ class ClosedForm:
         The ring with one generator per closed sum, and the way to the one without.
     num, den : fmpz_mpoly
         Polynomials in that ring, coprime also when they are opened.
+    order : tuple of int, optional
+        Degrees in s of both when they are opened, where these have been found without that.
     """
 
     opening: Opening
     num: fmpz_mpoly
     den: fmpz_mpoly
+    order: tuple[int, int] | None = None
 
     @property
     def closure(self) -> Closure:
@@ -79,27 +81,12 @@ class ClosedForm:
         return self.opening(self.num) / self.opening(self.den)
 
     @cached_property
-    def order(self) -> tuple[int, int]:
-        """Degrees in s of numerator and denominator, from random numbers in place of all other names."""
-        expansion = self.opening.expansion
-        if any(name in expansion.images for name in self.generators):
-            return degree(self.ratio.numerator()), degree(self.ratio.denominator())
-        line, random = Ring((LAPLACE,)), Random(2)
-        base = [
-            line.generator(n) if n == LAPLACE else line.constant(random.randrange(2**20, 2**21))
-            for n in self.closure.base.names
-        ]
-        known = dict(zip(self.closure.base.names, base, strict=True))
-        known |= {n: p.compose(*base, ctx=line.context) for n, p in self.closure.sums}
-        images = [known[n] for n in self.closure.ring.names]
-        above, below = (degree_in(p.compose(*images, ctx=line.context), 0) for p in (self.num, self.den))
-        return above, below
-
-    @cached_property
     def generators(self) -> frozenset[str]:
         """The names that occur in it, also within its sums; those of definitions are not opened."""
         ring = self.closure.ring
-        used = {n for p in (self.num, self.den) for n, d in zip(ring.names, p.degrees(), strict=True) if int(d)}
+        used = {
+            n for p in (self.num, self.den) for n, d in zip(ring.names, p.degrees(), strict=True) if int(d)
+        }
         base = self.closure.base.names
         for name, polynomial in self.closure.sums:
             if name in used:
@@ -184,7 +171,7 @@ class TransferFunction:
 
     @property
     def is_large(self) -> bool:
-        """True when it has not been expanded, because that may cost more than all else: see :attr:`closed`."""
+        """True when it is expanded only if asked, as that may cost more than all else; see :attr:`closed`."""
         return self.reduced is None and self.closed is not None and self.closed.is_large
 
     @property
@@ -279,7 +266,7 @@ class TransferFunction:
 
         Those of a large function are told from random numbers in place of all else.
         """
-        if self.is_large and self.closed is not None:
+        if self.is_large and self.closed is not None and self.closed.order is not None:
             return self.closed.order
         return degree(self.ratio.numerator()), degree(self.ratio.denominator())
 

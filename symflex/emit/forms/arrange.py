@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from math import gcd
-from operator import add
+from operator import add, mul, neg
 from typing import TYPE_CHECKING
 
 from symflex.expressions import (
@@ -24,7 +24,7 @@ from symflex.expressions import (
 from symflex.kernels import LAPLACE, Ring, degree_in
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from flint import fmpz_mpoly
 
@@ -236,9 +236,9 @@ class Arranger:
         return self._monomial_key(best)
 
     def _monomial_key(self, monomial: tuple[int, ...]) -> tuple[int, ...]:
-        degree = sum(e * d for e, d in zip(monomial, self._s_degree, strict=True))
-        sums = sum(e for e, is_sum in zip(monomial, self._is_sum, strict=True) if is_sum)
-        return (-degree, -sums, *(-e for e in monomial[1:]))
+        degree = sum(map(mul, monomial, self._s_degree))
+        sums = sum(map(mul, monomial, self._is_sum))
+        return (-degree, -sums, *map(neg, monomial[1:]))
 
     def _sum(self, terms: dict[tuple[int, ...], int]) -> Expression:
         ordered = sorted(terms, key=self._monomial_key)
@@ -246,20 +246,28 @@ class Arranger:
 
     def _monomial(self, monomial: tuple[int, ...], coefficient: int) -> Expression:
         """Return number, pi, parameters in declared order, s, closed sums."""
-        plain: list[Expression] = []
-        functions: list[Expression] = []
-        sums: list[Expression] = []
-        for i, exponent in enumerate(monomial):
-            if i and exponent:
-                target = sums if self._is_sum[i] else functions if self._is_apart[i] else plain
-                target.append(_raised(self._symbols[i], exponent))
-        pi = self.ring.index.get("pi")
-        if pi is not None and monomial[pi]:
-            symbol = power(Name("pi"), monomial[pi])
-            plain.remove(symbol)
-            plain.insert(0, symbol)
-        laplace = [power(self._symbols[0], monomial[0])] if monomial and monomial[0] else []
-        return product_of([number(coefficient), *plain, *laplace, *functions, *sums])
+        factors = [self._powers(i, monomial[i]) for i in self._print_order if monomial[i]]
+        return product_of([number(coefficient), *factors])
+
+    @cached_property
+    def _print_order(self) -> tuple[int, ...]:
+        """The generators in the order in which a product shows them."""
+
+        def place(i: int) -> int:
+            if i == 0:
+                return 2
+            if self._is_sum[i]:
+                return 4
+            if self._is_apart[i]:
+                return 3
+            return 0 if self.ring.names[i] == "pi" else 1
+
+        return tuple(sorted(range(len(self.ring.names)), key=place))
+
+    @cached_property
+    def _powers(self) -> Callable[[int, int], Expression]:
+        """Return a power of a generator, the same object every time."""
+        return cache(lambda i, exponent: _raised(self._symbols[i], exponent))
 
 
 def _raised(symbol: Expression, exponent: int) -> Expression:

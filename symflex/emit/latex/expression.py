@@ -31,6 +31,7 @@ from symflex.emit.latex.width import (
     UPRIGHT,
     Width,
     always,
+    total,
     widest,
 )
 from symflex.expressions import (
@@ -145,6 +146,7 @@ class Writer:
     def __init__(self, labels: Mapping[str, str]) -> None:
         self._labels = labels
         self._names: dict[str, Piece] = {}
+        self._powers: dict[tuple[str, Fraction], Piece] = {}
 
     def piece(self, expression: Expression, style: Style = Style.DISPLAY) -> Piece:
         """Return a subtree printed in a style; see :func:`latex_expression`."""
@@ -161,6 +163,9 @@ class Writer:
             if isinstance(node, Number):
                 done.append(_number(node.value, where))
                 continue
+            if isinstance(node, Power) and (power := self._power_of_name(node)) is not None:
+                done.append(power)
+                continue
             children = node.children
             if not is_ready:
                 pending.append((node, where, True))
@@ -174,6 +179,17 @@ class Writer:
                 else:
                     done.append(_combined(node, pieces, where))
         return done[0]
+
+    def _power_of_name(self, node: Power) -> Piece | None:
+        """Return an integer power of a name, written once; None for any other power."""
+        base, exponent = node.base, node.exponent
+        if not isinstance(base, Name) or not isinstance(exponent, Number) or exponent.value.denominator != 1:
+            return None
+        key = base.name, exponent.value
+        if key not in self._powers:
+            raised = _number(exponent.value, Style.INLINE)
+            self._powers[key] = _power(base, exponent, (self._name(base.name), raised))
+        return self._powers[key]
 
     def _primed(self, name: str, order: int) -> Piece:
         """Return a function of x or one of its derivatives."""
@@ -214,12 +230,13 @@ class Writer:
 def joined(factors: Sequence[Piece]) -> tuple[str, Width]:
     """Return factors, already fenced where they must be, side by side, and the width of the signs between."""
     parts = [factors[0].latex]
-    extra = NOTHING
+    extra: list[Width] = []
     for left, right in pairwise(factors):
         between, size = between_factors(left, right)
         parts += [between, right.latex]
-        extra += size
-    return "".join(parts), extra
+        if size is not NOTHING:
+            extra.append(size)
+    return "".join(parts), total(extra)
 
 
 def between_factors(left: Piece, right: Piece) -> tuple[str, Width]:
@@ -358,12 +375,10 @@ def _negative(operand: Piece) -> Piece:
 
 
 def _product(factors: Sequence[Piece]) -> Piece:
-    latex, size = joined(factors)
-    for factor in factors:
-        size += factor.size
+    latex, between = joined(factors)
     return Piece(
         latex,
-        size,
+        total([between, *(factor.size for factor in factors)]),
         Shape.PRODUCT,
         any(f.is_tall for f in factors),
         max(f.nesting for f in factors),

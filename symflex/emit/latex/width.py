@@ -15,7 +15,7 @@ from string import digits, punctuation
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +57,22 @@ class Width:
     def raised(self) -> Width:
         """The width as a script, or of what stands in a fraction of a line of text."""
         return Width(self.script, self.tiny, self.tiny)
+
+
+def total(widths: Iterable[Width]) -> Width:
+    """Return the width of things side by side.
+
+    Examples
+    --------
+    >>> total([Width(1.0, 0.7, 0.5), Width(0.5, 0.4, 0.35)])
+    Width(text=1.5, script=1.1, tiny=0.85)
+    """
+    text = script = tiny = 0.0
+    for width in widths:
+        text += width.text
+        script += width.script
+        tiny += width.tiny
+    return Width(text, script, tiny)
 
 
 def always(em: float) -> Width:
