@@ -10,7 +10,7 @@ from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 
-from benchmarks import chains, distributed, exports, lumped, roots, startup
+from benchmarks import chains, distributed, exports, lumped, numeric_chain, roots, startup
 from benchmarks.measure import Claim, Measurement
 from symflex import __version__
 
@@ -24,7 +24,7 @@ def main(arguments: list[str] | None = None) -> int:
     asked = parser.parse_args(arguments)
 
     measurements, claims = startup.measure()
-    for benchmark in (chains, distributed, exports, lumped, roots):
+    for benchmark in (chains, numeric_chain, distributed, exports, lumped, roots):
         measured, bounds = benchmark.measure(asked.limit)
         measurements += measured
         claims += bounds
@@ -41,11 +41,13 @@ def _markdown(measurements: list[Measurement], claims: list[Claim]) -> str:
     lines = [f"symflex {__version__}{others}, {system}"]
     for task in dict.fromkeys(m.task for m in measurements):
         rows = [m for m in measurements if m.task == task]
-        lines += ["", f"## {task}", "", "| way | time [ms] | ratio to the first |", "|---|---:|---:|"]
+        lines += ["", f"## {task}", "", "| way | time [ms] | ratio to the first | peak [MB] |"]
+        lines += ["|---|---:|---:|---:|"]
         for row in rows:
             more = "> " if row.seconds is None else ""
             ratio = row.at_least / rows[0].at_least
-            lines.append(f"| {row.way} | {more}{1e3 * row.at_least:.2f} | {more}{ratio:.3g} |")
+            peak = "" if row.peak_mb is None else f"{row.peak_mb:.0f}"
+            lines.append(f"| {row.way} | {more}{1e3 * row.at_least:.2f} | {more}{ratio:.3g} | {peak} |")
     lines += ["", "## bounds", "", "| measured | bound | this run | |", "|---|---:|---:|---|"]
     for claim in claims:
         verdict = "holds" if claim.holds else "MISSED"
@@ -60,7 +62,13 @@ def _json(measurements: list[Measurement], claims: list[Claim]) -> str:
         "python": platform.python_version(),
         "machine": platform.machine(),
         "measurements": [
-            {"task": m.task, "way": m.way, "seconds": m.seconds, "reached_limit": m.seconds is None}
+            {
+                "task": m.task,
+                "way": m.way,
+                "seconds": m.seconds,
+                "reached_limit": m.seconds is None,
+                "peak_mb": m.peak_mb,
+            }
             for m in measurements
         ],
         "claims": [{**asdict(claim), "holds": claim.holds} for claim in claims],

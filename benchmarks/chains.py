@@ -1,21 +1,27 @@
-"""Free-free chains of masses, every m, k and b symbolic: symflex against four ways of doing it in sympy.
+"""Free-free chains of masses, every m, k and b symbolic: symflex against other ways to the same polynomials.
 
 The task is the same for all: numerator and denominator of the driving-point receptance x_1/F_1 and of the
 transfer receptance x_N/F_1, as polynomials expanded in s and all parameters. symflex starts from a resolved
-model, so that assembling A(s), cancelling common factors and keeping the closed form as well are timed; sympy
-starts from the finished matrix. Times are processor times: other programs on the machine count little.
+model, so that assembling A(s), cancelling common factors and keeping the closed form as well are timed; SymPy
+and SymEngine start from the finished matrix, Lcapy from its own description and with the first function alone.
+Times are processor times: other programs on the machine count little.
 """
 
 from __future__ import annotations
 
-from benchmarks.measure import Claim, Measurement, run_snippet
+from benchmarks.measure import Claim, Measurement, interpreter_with, run_snippet
 
-SIZES = (2, 4, 6, 8)
+SIZES = (2, 4, 6, 8, 10, 12)
+COMPARED = 8
+"""Masses up to which medians of eleven runs are taken; beyond, of three."""
 
-FLOORS = {6: 2.5, 8: 6.8}
-"""Per size, how many times as fast as the fastest way in sympy: half of what docs/benchmarks.md reports."""
-CEILINGS = {6: 0.020, 8: 0.300}
+FLOORS = {6: 10.0, 8: 85.0}
+"""Per size, how many times as fast as the fastest other way: half of what docs/benchmarks.md reports."""
+CEILINGS = {6: 0.003, 8: 0.030, 10: 0.3, 12: 4.0}
 """Per size, seconds the derivation may take."""
+CLOSED = 16
+CLOSED_CEILING = 1.0
+"""Masses, and seconds, with every link's impedance k + b*s kept as one symbol."""
 
 SYMFLEX = """
 import statistics
@@ -28,8 +34,10 @@ model = pipeline.loads(specification({n}))
 times = []
 for _ in range({repeats}):
     begin = time.process_time()
-    derive_all(pipeline.assemble(model), model.transfer_functions)
+    found = derive_all(pipeline.assemble(model), model.transfer_functions)
+    opened = [{result} for tf in found]
     times.append(time.process_time() - begin)
+    del found, opened
 print({statistic})
 """
 SYMFLEX_WAYS = {
@@ -39,51 +47,79 @@ SYMFLEX_WAYS = {
 
 MATRIX = """
 import time
-import sympy
-from sympy.polys.matrices import DomainMatrix
+import {library} as library
 
 n = {n}
-s = sympy.Symbol("s")
-m = sympy.symbols(f"m_1:{{n + 1}}")
-k = sympy.symbols(f"k_1:{{n}}")
-b = sympy.symbols(f"b_1:{{n}}")
+s = library.Symbol("s")
+m = [library.Symbol(f"m_{{i}}") for i in range(1, n + 1)]
+k = [library.Symbol(f"k_{{i}}") for i in range(1, n)]
+b = [library.Symbol(f"b_{{i}}") for i in range(1, n)]
 names = (s, *m, *k, *b)
-A = sympy.zeros(n, n)
+rows = [[library.Integer(0)] * n for _ in range(n)]
 for i in range(n):
-    A[i, i] += m[i] * s**2
+    rows[i][i] += m[i] * s**2
 for i in range(n - 1):
     w = k[i] + b[i] * s
-    A[i, i] += w
-    A[i + 1, i + 1] += w
-    A[i, i + 1] -= w
-    A[i + 1, i] -= w
-minors = [A, A.minor_submatrix(0, 0), A.minor_submatrix(0, n - 1)]
-exact = [DomainMatrix.from_Matrix(a).convert_to(sympy.ZZ[names]) for a in minors]
+    rows[i][i] += w
+    rows[i + 1][i + 1] += w
+    rows[i][i + 1] -= w
+    rows[i + 1][i] -= w
+minors = [rows, [r[1:] for r in rows[1:]], [r[:-1] for r in rows[1:]]]
+"""
+SYMPY = """
+from sympy.polys.matrices import DomainMatrix
+A, *_ = minors = [library.Matrix(r) for r in minors]
+exact = [DomainMatrix.from_Matrix(a).convert_to(library.ZZ[names]) for a in minors]
 begin = time.process_time()
 """
+SYMENGINE = """
+minors = [library.DenseMatrix(r) for r in minors]
+begin = time.process_time()
+"""
+END = "print(time.process_time() - begin)"
 
-WAYS = {
-    "sympy `Matrix.det(method='berkowitz')`": """
+SYMPY_WAYS = {
+    "SymPy `Matrix.det(method='berkowitz')`": """
 for a in minors:
-    sympy.Poly(a.det(method="berkowitz"), *names)
+    library.Poly(a.det(method="berkowitz"), *names)
 """,
-    "sympy `Matrix.det(method='bareiss')`": """
+    "SymPy `Matrix.det(method='bareiss')`": """
 for a in minors:
-    sympy.Poly(a.det(method="bareiss"), *names)
+    library.Poly(a.det(method="bareiss"), *names)
 """,
-    "sympy `DomainMatrix.det()` over ZZ[s, m, k, b]": """
+    "SymPy `DomainMatrix.det()` over ZZ[s, m, k, b]": """
 for a in exact:
     a.det()
 """,
-    "sympy `DomainMatrix.charpoly()` over ZZ[s, m, k, b]": """
+    "SymPy `DomainMatrix.charpoly()` over ZZ[s, m, k, b]": """
 for a in exact:
     a.charpoly()[-1]
 """,
-    "sympy `Matrix.LUsolve`, then `cancel`": """
-x = A.LUsolve(sympy.eye(n)[:, 0])
-sympy.cancel(x[0]), sympy.cancel(x[n - 1])
+    "SymPy `Matrix.LUsolve`, then `cancel`": """
+x = A.LUsolve(library.eye(n)[:, 0])
+library.cancel(x[0]), library.cancel(x[n - 1])
 """,
 }
+SYMENGINE_WAYS = {
+    "SymEngine `DenseMatrix.det()`, then `expand`": """
+for a in minors:
+    a.det().expand()
+""",
+}
+
+LCAPY = """
+import time
+from lcapy import Circuit
+
+n = {n}
+lines = [f"C{{i}} {{i}} 0 m_{{i}}" for i in range(1, n + 1)]
+lines += [f"L{{i}} {{i}} {{i + 1}} l_{{i}}" for i in range(1, n)]
+lines += [f"R{{i}} {{i}} {{i + 1}} r_{{i}}" for i in range(1, n)]
+circuit = Circuit("\\n".join(lines))
+begin = time.process_time()
+circuit.impedance(1, 0).N
+"""
+"""Masses as capacitors, springs as inductors, dampers as resistors: the impedance is a mobility."""
 
 
 def specification(n: int) -> str:
@@ -124,24 +160,52 @@ def specification(n: int) -> str:
 
 
 def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
-    """Measure every size and way, each within ``limit`` seconds, and compare with sympy's fastest."""
+    """Measure every size and way, each within ``limit`` seconds, and compare with the fastest other way."""
     found: list[Measurement] = []
     claims: list[Claim] = []
+    gone: set[str] = set()
     for n in SIZES:
         task = f"chain of {n} masses"
-        ours = [
-            run_snippet(task, way, SYMFLEX.format(n=n, **asked), limit) for way, asked in SYMFLEX_WAYS.items()
-        ]
-        theirs = [
-            run_snippet(task, way, MATRIX.format(n=n) + code + "print(time.process_time() - begin)", limit)
-            for way, code in WAYS.items()
-        ]
+        ours = [_ours(task, way, n, "tf.ratio", asked, limit) for way, asked in SYMFLEX_WAYS.items()]
+        theirs = []
+        for way, (interpreter, code) in _others(n).items():
+            if way not in gone:
+                theirs.append(run_snippet(task, way, code + END, limit, interpreter))
+        # What reached the limit once does so at every larger size.
+        gone |= {other.way for other in theirs if other.seconds is None}
         found += [*ours, *theirs]
         if n in FLOORS:
             ratio = min(other.at_least for other in theirs) / ours[0].at_least
-            claims.append(Claim(f"{n} masses: times as fast as sympy's fastest way", FLOORS[n], ratio))
+            claims.append(Claim(f"{n} masses: times as fast as the fastest other way", FLOORS[n], ratio))
         if n in CEILINGS:
-            text = f"{n} masses: milliseconds, first run of a process"
-            taken = 1e3 * ours[1].at_least
-            claims.append(Claim(text, 1e3 * CEILINGS[n], taken, larger_is_better=False, is_ratio=False))
-    return found, claims
+            text = f"{n} masses: milliseconds, median of a process"
+            claims.append(_ceiling(text, CEILINGS[n], ours[0]))
+    task = f"chain of {CLOSED} masses, links kept as one symbol"
+    way, asked = "symflex, first run of a process", SYMFLEX_WAYS["symflex, first run of a process"]
+    closed = _ours(task, way, CLOSED, "tf.closed", asked, limit)
+    claims.append(_ceiling(f"{task}: milliseconds", CLOSED_CEILING, closed))
+    return [*found, closed], claims
+
+
+def _ours(task: str, way: str, n: int, result: str, asked: dict[str, object], limit: float) -> Measurement:
+    repeats = asked["repeats"] if n <= COMPARED else min(3, int(str(asked["repeats"])))
+    code = SYMFLEX.format(n=n, result=result, repeats=repeats, statistic=asked["statistic"])
+    return run_snippet(task, way, code, limit)
+
+
+def _ceiling(text: str, seconds: float, ours: Measurement) -> Claim:
+    return Claim(text, 1e3 * seconds, 1e3 * ours.at_least, larger_is_better=False, is_ratio=False)
+
+
+def _others(n: int) -> dict[str, tuple[str, str]]:
+    """Return the other ways that can run here: interpreter and code."""
+    ways: dict[str, tuple[str, str]] = {}
+    for library, begin, codes in (("sympy", SYMPY, SYMPY_WAYS), ("symengine", SYMENGINE, SYMENGINE_WAYS)):
+        interpreter = interpreter_with(library)
+        if interpreter is not None:
+            start = MATRIX.format(n=n, library=library) + begin
+            ways |= {way: (interpreter, start + code) for way, code in codes.items()}
+    interpreter = interpreter_with("lcapy")
+    if interpreter is not None:
+        ways["Lcapy `Circuit.impedance`, one function"] = (interpreter, LCAPY.format(n=n))
+    return ways

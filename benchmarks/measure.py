@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import os
 import statistics
 import subprocess
 import sys
 import time
 from dataclasses import dataclass
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,6 +18,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import NDArray
+
+OTHER_PYTHON = "SYMFLEX_BENCH_PYTHON"
+"""Environment variable: an interpreter that has the programs symflex is compared with."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,12 +37,16 @@ class Measurement:
         ``None`` when the limit was reached.
     limit : float
         The limit in seconds.
+    peak_mb : float, optional
+        The most memory its process held, interpreter and libraries included [MB]; ``None`` when it was not
+        measured.
     """
 
     task: str
     way: str
     seconds: float | None
     limit: float
+    peak_mb: float | None = None
 
     @property
     def at_least(self) -> float:
@@ -109,11 +118,31 @@ def run_snippet(
     """Run Python code that prints the seconds it took, and stop it at the limit."""
     try:
         done = subprocess.run(
-            [interpreter, "-c", code], capture_output=True, text=True, timeout=limit, check=True
+            [interpreter, "-c", code + PEAK], capture_output=True, text=True, timeout=limit, check=True
         )
     except subprocess.TimeoutExpired:
         return Measurement(task, way, None, limit)
-    return Measurement(task, way, float(done.stdout), limit)
+    seconds, *peak = done.stdout.split()
+    return Measurement(task, way, float(seconds), limit, float(peak[0]) / 1e3 if peak else None)
+
+
+PEAK = """
+from pathlib import Path
+status = Path("/proc/self/status")
+if status.exists():
+    print(*(line.split()[1] for line in status.read_text().splitlines() if line.startswith("VmHWM")))
+"""
+"""Linux: the high-water mark of this process alone; getrusage passes on that of the process that started it."""
+
+
+def interpreter_with(module: str) -> str | None:
+    """Return an interpreter that has a module: this one, or that of ``SYMFLEX_BENCH_PYTHON``, or None."""
+    if find_spec(module) is not None:
+        return sys.executable
+    other = os.environ.get(OTHER_PYTHON)
+    if other and not subprocess.run([other, "-c", f"import {module}"], capture_output=True).returncode:
+        return other
+    return None
 
 
 def time_commands(task: str, commands: Mapping[str, Sequence[str]], repeats: int) -> list[Measurement]:

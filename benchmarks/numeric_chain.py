@@ -1,0 +1,146 @@
+"""Long chains with rational numbers: exact transfer functions and proved poles, against other ways.
+
+The task is the driving-point receptance of a free chain of N masses whose every m, k and b is a number, as an exact
+quotient of polynomials in s; then all its poles and zeros at 30 digits. symflex starts from a resolved model, SymPy
+from the finished matrix over ZZ[s], Lcapy from its own description. Times are processor times.
+"""
+
+from __future__ import annotations
+
+from benchmarks.measure import Claim, Measurement, interpreter_with, run_snippet
+
+SIZES = (10, 50, 200)
+LARGEST = 200
+CEILING = 1.0
+"""Seconds the exact transfer function of the largest chain may take."""
+ROOT_CEILINGS = {"undamped": 1.0, "damped": 4.0}
+"""Seconds for all its poles and zeros, proved, at 30 digits."""
+FLOOR = 10.0
+"""Times as fast as the fastest other way, at fifty masses."""
+MEDIUM = 50
+
+SYMFLEX = """
+import time
+from benchmarks.numeric_chain import specification
+from symflex import pipeline
+
+model = pipeline.loads(specification({n}, damped={damped}))
+begin = time.process_time()
+(bound,) = pipeline.derive_bound(model, model.transfer_functions)
+{then}
+print(time.process_time() - begin)
+"""
+ROOTS = """
+begin = time.process_time()
+found = pipeline.roots(bound, None, 30)
+assert found.certificate.certified and len(found.poles) == 2 * {n} - 1, found.certificate
+"""
+
+SYMPY = """
+import time
+from sympy import Matrix, Symbol, ZZ
+from sympy.polys.matrices import DomainMatrix
+from benchmarks.numeric_chain import values
+
+s = Symbol("s")
+n = {n}
+rows = [[0 * s] * n for _ in range(n)]
+for i, (m, k, b) in enumerate(values(n)):
+    rows[i][i] += m * s**2
+    if i < n - 1:
+        w = k + b * s
+        rows[i][i] += w
+        rows[i + 1][i + 1] += w
+        rows[i][i + 1] -= w
+        rows[i + 1][i] -= w
+exact = [DomainMatrix.from_Matrix(Matrix(a)).convert_to(ZZ[s]) for a in (rows, [r[1:] for r in rows[1:]])]
+begin = time.process_time()
+for a in exact:
+    a.{method}
+print(time.process_time() - begin)
+"""
+SYMPY_METHODS = {"det()": "det()", "charpoly()": "charpoly()[-1]"}
+
+LCAPY = """
+import time
+from lcapy import Circuit
+
+def values(n):
+    return [(2 + i % 7, 1000 + 37 * (i % 11), 1 + i % 5) for i in range(n)]
+
+lines = []
+for i, (m, k, b) in enumerate(values({n}), 1):
+    lines.append(f"C{{i}} {{i}} 0 {{m}}")
+    if i < {n}:
+        lines += [f"L{{i}} {{i}} {{i + 1}} {{{{1/{{k}}}}}}", f"R{{i}} {{i}} {{i + 1}} {{{{1/{{b}}}}}}"]
+circuit = Circuit("\\n".join(lines))
+begin = time.process_time()
+circuit.impedance(1, 0).N
+print(time.process_time() - begin)
+"""
+
+
+def values(n: int) -> list[tuple[int, int, int]]:
+    """Return m, k and b of every mass and the link after it."""
+    return [(2 + i % 7, 1000 + 37 * (i % 11), 1 + i % 5) for i in range(n)]
+
+
+def specification(n: int, *, damped: bool) -> str:
+    """Return the specification of a chain with these numbers."""
+    lines = ["symflex = 1", 'inputs = { F = { force = "x_1" } }', 'outputs = { X = "x_1" }', "[elements]"]
+    for i, (m, k, b) in enumerate(values(n), 1):
+        lines.append(f'm_{i} = {{ type = "mass", at = "x_{i}", m = "{m} kg" }}')
+        if i < n:
+            ends = f'between = ["x_{i}", "x_{i + 1}"]'
+            lines.append(f'k_{i} = {{ type = "spring", {ends}, k = "{k} N/m" }}')
+            if damped:
+                lines.append(f'b_{i} = {{ type = "damper", {ends}, b = "{b} N*s/m" }}')
+    return "\n".join(lines)
+
+
+def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
+    """Measure the transfer function at every size, and the roots at the largest."""
+    found: list[Measurement] = []
+    claims: list[Claim] = []
+    gone: set[str] = set()
+    for n in SIZES:
+        task = f"exact transfer function of {n} masses with numbers"
+        ours = run_snippet(task, "symflex", SYMFLEX.format(n=n, damped=True, then=""), limit)
+        theirs = [
+            run_snippet(task, way, code, limit, interpreter)
+            for way, (interpreter, code) in _others(n).items()
+            if way not in gone
+        ]
+        gone |= {other.way for other in theirs if other.seconds is None}
+        found += [ours, *theirs]
+        if n == MEDIUM and theirs:
+            ratio = min(other.at_least for other in theirs) / ours.at_least
+            claims.append(
+                Claim(f"{n} masses with numbers: times as fast as the fastest other way", FLOOR, ratio)
+            )
+        if n == LARGEST:
+            claims.append(_ceiling(f"{n} masses with numbers: milliseconds", CEILING, ours))
+    for kind, ceiling in ROOT_CEILINGS.items():
+        task = f"poles and zeros of {LARGEST} masses, {kind}, proved at 30 digits"
+        then = ROOTS.format(n=LARGEST)
+        code = SYMFLEX.format(n=LARGEST, damped=kind == "damped", then=then)
+        ours = run_snippet(task, "symflex", code, limit)
+        found.append(ours)
+        claims.append(_ceiling(f"{task}: milliseconds", ceiling, ours))
+    return found, claims
+
+
+def _ceiling(text: str, seconds: float, ours: Measurement) -> Claim:
+    return Claim(text, 1e3 * seconds, 1e3 * ours.at_least, larger_is_better=False, is_ratio=False)
+
+
+def _others(n: int) -> dict[str, tuple[str, str]]:
+    """Return the other ways that can run here: interpreter and code."""
+    ways: dict[str, tuple[str, str]] = {}
+    if (interpreter := interpreter_with("sympy")) is not None:
+        for name, method in SYMPY_METHODS.items():
+            way = f"SymPy `DomainMatrix.{name}` over ZZ[s]"
+            ways[way] = interpreter, SYMPY.format(n=n, method=method)
+    if (interpreter := interpreter_with("lcapy")) is not None:
+        ways["Lcapy `Circuit.impedance`"] = interpreter, LCAPY.format(n=n)
+    return ways
