@@ -1,7 +1,7 @@
 """Specifications written to harm: each ends soon, in little memory, with a documented exit code.
 
 Every case runs in a process of its own that may use 512 MB of address space and 20 s of processor time; texts
-that are refused at sight (towers of powers, deep nesting) get 2 s.
+that are refused at sight (towers of powers, deep nesting) get 1 s.
 Nothing a specification says may run: no payload succeeds in making the file ``canary``. Nothing it says may
 drive a terminal: all output is printable. There is never a traceback.
 """
@@ -105,7 +105,7 @@ EXPRESSIONS = {
 @pytest.mark.parametrize(("name", "expression"), EXPRESSIONS.items(), ids=EXPRESSIONS)
 def test_a_hostile_expression_is_answered(name, expression, tmp_path):
     at_sight = name.startswith(("a tower", "a hundred thousand"))
-    code, _ = check(tmp_path, model(expression), seconds=2 if at_sight else 20)
+    code, _ = check(tmp_path, model(expression), seconds=1 if at_sight else 20)
     assert code == 3 or not at_sight
 
 
@@ -297,7 +297,7 @@ TOML = {
 
 @pytest.mark.parametrize("text", TOML.values(), ids=TOML)
 def test_hostile_toml_is_refused(text, tmp_path):
-    code, _ = check(tmp_path, f"symflex = 1\n{text}\n", seconds=2)
+    code, _ = check(tmp_path, f"symflex = 1\n{text}\n", seconds=1)
     assert code == 3
 
 
