@@ -132,7 +132,7 @@ status = Path("/proc/self/status")
 if status.exists():
     print(*(line.split()[1] for line in status.read_text().splitlines() if line.startswith("VmHWM")))
 """
-"""Linux: the high-water mark of this process alone; getrusage passes on that of the process that started it."""
+"""Linux: the high-water mark of this process alone; getrusage passes on that of its parent."""
 
 
 def interpreter_with(module: str) -> str | None:
@@ -140,9 +140,10 @@ def interpreter_with(module: str) -> str | None:
     if find_spec(module) is not None:
         return sys.executable
     other = os.environ.get(OTHER_PYTHON)
-    if other and not subprocess.run([other, "-c", f"import {module}"], capture_output=True).returncode:
-        return other
-    return None
+    if not other:
+        return None
+    tried = subprocess.run([other, "-c", f"import {module}"], capture_output=True, check=False)
+    return other if tried.returncode == 0 else None
 
 
 def time_commands(task: str, commands: Mapping[str, Sequence[str]], repeats: int) -> list[Measurement]:

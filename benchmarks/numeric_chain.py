@@ -1,8 +1,8 @@
 """Long chains with rational numbers: exact transfer functions and proved poles, against other ways.
 
-The task is the driving-point receptance of a free chain of N masses whose every m, k and b is a number, as an exact
-quotient of polynomials in s; then all its poles and zeros at 30 digits. symflex starts from a resolved model, SymPy
-from the finished matrix over ZZ[s], Lcapy from its own description. Times are processor times.
+The task is the driving-point receptance of a free chain of N masses whose every m, k and b is a number, as an
+exact quotient of polynomials in s; then all its poles and zeros at 30 digits. symflex starts from a resolved
+model, SymPy from the finished matrix over ZZ[s], Lcapy from its own description. Times are processor times.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What all tests share: how a test asks for a program outside Python or a library."""
+"""What all tests share: one thread each, and how a test asks for a program outside Python or a library."""
 
 from __future__ import annotations
 
@@ -7,6 +7,9 @@ import shutil
 from importlib.util import find_spec
 
 import pytest
+
+# Tests run side by side: threads that wait for each other in small matrices only double the work.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 REQUIRE_TOOLS = "SYMFLEX_REQUIRE_TOOLS"
 REASON = "which is not installed"

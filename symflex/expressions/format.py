@@ -40,11 +40,12 @@ class _Place(Enum):
     BASE = "the base of a power"
 
 
-_BARE_SUM = frozenset({_Place.ALONE})
-_BARE_NEGATIVE = frozenset({_Place.ALONE, _Place.TERM, _Place.FACTOR})
-_BARE_PRODUCT = frozenset({_Place.ALONE, _Place.TERM, _Place.LEAD})
-_BARE_POWER = frozenset(_Place) - {_Place.BASE}
-_BARE_LEAF = frozenset(_Place)
+# Tuples: so few places are found sooner by identity than by their hashes.
+_BARE_SUM = (_Place.ALONE,)
+_BARE_NEGATIVE = (_Place.ALONE, _Place.TERM, _Place.FACTOR)
+_BARE_PRODUCT = (_Place.ALONE, _Place.TERM, _Place.LEAD)
+_BARE_POWER = tuple(place for place in _Place if place is not _Place.BASE)
+_BARE_LEAF = tuple(_Place)
 
 # Work still to do, last piece first: finished text, or a subtree and its place.
 _Work = list["str | tuple[Expression, _Place]"]
@@ -98,7 +99,7 @@ def format_expression(expression: Expression, *, multiply: str = "*", power: str
     return "".join(pieces)
 
 
-def _parts(node: Expression, place: _Place, multiply: str, power: str) -> tuple[_Work, frozenset[_Place]]:
+def _parts(node: Expression, place: _Place, multiply: str, power: str) -> tuple[_Work, tuple[_Place, ...]]:
     """Return the pieces a node prints as, and the places where they need no parentheses."""
     match node:
         case Number(value=value):

@@ -6,18 +6,22 @@ import doctest
 import re
 import shlex
 import shutil
-import subprocess
-import sys
 
 import pytest
 
 import symflex
-from tests.house.repository import ROOT, all_blocks, blocks, pages
+from symflex.cli import run
+from tests.house.repository import ROOT, all_blocks, blocks, pages, slow_ones
 
 SPECIFICATIONS = [block for block in all_blocks("toml") if block.text.startswith("symflex = 1")]
 SESSIONS = [block for block in all_blocks("console") if block.text.startswith("$ symflex")]
 PYTHON = [block for block in all_blocks("python") if ">>>" in block.text]
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
+
+
+def chooses_an_order(block):
+    """Tell whether a session fits every number of resonances to measured lines, which takes long."""
+    return block.text.startswith("$ symflex fit") and "BIC" in block.text
 
 
 @pytest.fixture
@@ -35,10 +39,16 @@ def reader(tmp_path, monkeypatch):
     return copy
 
 
-def symflex_output(arguments, folder):
-    command = [sys.executable, "-m", "symflex", *arguments]
-    environment = {"PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "error", "NO_COLOR": "1"}
-    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+@pytest.fixture
+def symflex_output(capsys):
+    """Return a function that runs a command in the reader's folder and returns its stdout and its stderr."""
+
+    def output(arguments):
+        capsys.readouterr()
+        run(arguments)
+        return capsys.readouterr()
+
+    return output
 
 
 def test_there_is_something_to_check():
@@ -58,13 +68,13 @@ def test_a_specification_shown_as_wrong_is_refused(block):
         symflex.loads(block.text)
 
 
-@pytest.mark.parametrize("block", SESSIONS, ids=str)
-def test_every_session_on_a_page_shows_what_the_program_prints(block, reader):
-    folder = reader(block.page)
+@pytest.mark.parametrize("block", slow_ones(SESSIONS, chooses_an_order), ids=str)
+def test_every_session_on_a_page_shows_what_the_program_prints(block, reader, symflex_output):
+    reader(block.page)
     for session in re.split(r"^\$ ", block.text, flags=re.MULTILINE)[1:]:
         command, _, expected = session.partition("\n")
-        done = symflex_output(shlex.split(command)[1:], folder)
-        printed = done.stderr + done.stdout  # notes come before results
+        done = symflex_output(shlex.split(command)[1:])
+        printed = done.err + done.out  # notes come before results
         if not doctest.OutputChecker().check_output(expected, printed, doctest.ELLIPSIS):
             pytest.fail(f"{block}: `{command}` prints\n{printed}", pytrace=False)
 
@@ -85,11 +95,11 @@ def test_the_python_examples_of_a_page_run_in_order(page, reader):
             assert not runner.failures, "".join(report)
 
 
-def test_the_readme_shows_what_its_examples_print(reader):
+def test_the_readme_shows_what_its_examples_print(reader, symflex_output):
     readme = ROOT / "README.md"
     found = [b for b in blocks(readme) if b.title or b.language == "text"]
     options = ([], ["--tf", "V_tip/F", "--form", "vaughan"])
-    folder = reader(readme)
+    reader(readme)
     for specification, shown, chosen in zip(found[::2], found[1::2], options, strict=True):
-        printed = symflex_output(["derive", specification.title, *chosen], folder).stdout
+        printed = symflex_output(["derive", specification.title, *chosen]).out
         assert printed.strip() == shown.text.strip()

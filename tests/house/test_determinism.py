@@ -8,9 +8,11 @@ import sys
 
 import pytest
 
-from tests.house.repository import ROOT, in_turns
+from tests.house.repository import ROOT, slow_ones
 
 SPECIFICATIONS = sorted((ROOT / "derivations").rglob("*.toml"))
+EACH_TIME = {"two_mass_force", "sliding_free_beam", "rod_tip_mass"}
+"""A network, a loop and fields, of models that take seconds; the others with -m slow."""
 COMMANDS = (
     ("derive", "--format", "text"),
     ("derive", "--format", "json"),
@@ -45,6 +47,8 @@ def test_there_are_derivations_to_compare():
     assert SPECIFICATIONS
 
 
-@pytest.mark.parametrize("path", in_turns(SPECIFICATIONS))
+@pytest.mark.parametrize(
+    "path", slow_ones(SPECIFICATIONS, lambda path: path.stem not in EACH_TIME), ids=lambda path: path.stem
+)
 def test_output_does_not_depend_on_the_hash_seed(path):
     assert outputs(path, "1") == outputs(path, "2025")

@@ -27,14 +27,19 @@ def help_modules():
     return modules_after("--help")
 
 
+@pytest.fixture(scope="module")
+def template_modules():
+    return modules_after("new")
+
+
 @pytest.mark.parametrize("heavy", HEAVY)
 def test_help_does_not_import(heavy, help_modules):
     assert heavy not in help_modules
 
 
 @pytest.mark.parametrize("heavy", HEAVY)
-def test_the_list_of_templates_does_not_import(heavy):
-    assert heavy not in modules_after("new")
+def test_the_list_of_templates_does_not_import(heavy, template_modules):
+    assert heavy not in template_modules
 
 
 def test_deriving_as_text_does_not_import_sympy_or_matplotlib():

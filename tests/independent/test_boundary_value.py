@@ -11,6 +11,7 @@ import pytest
 from mpmath import mp, mpc, mpf
 
 import symflex
+from tests.house.repository import slow_ones
 from tests.independent.boundary_value import DIGITS, Problem, bending, exponential
 from tests.independent.distributed import CASES
 from tests.independent.distributed.removable import REMOVABLE
@@ -32,10 +33,14 @@ COSTLY = {
     "coupled bending and torsion",
     "pipe conveying fluid",
     "pipe conveying fluid with a bare tail",
+    "dispersive wave of third order",
+    "Timoshenko element with all losses, clamped and pinned",
+    "motor, screw, carriage, flexible arm, gripper: current",
+    "motor, screw, carriage, flexible arm, gripper: carriage",
 }
 """Their exports take seconds each."""
 
-EXPORTED = [pytest.param(name, marks=pytest.mark.slow) if name in COSTLY else name for name in NAMES]
+EXPORTED = slow_ones(NAMES, lambda name: name in COSTLY)
 
 UNNAMED = {
     "pipe conveying fluid",
@@ -195,6 +200,8 @@ COLOCATED = (
     "Timoshenko element, driving point",
     "rod element with a tip mass",
 )
+FAR_EACH_TIME = ("clamped-free, driving point", "cantilever in tension", "rod element with a tip mass")
+"""Whose references of so many digits are computed in every run."""
 FAST_DIGITS = 1400
 VERY_SLOW = (1e-9 + 2e-9j, -3e-9 + 1e-10j)
 """[rad/s]"""
@@ -223,14 +230,14 @@ def very_fast(name):
     return np.array([far * (0.02 + 1j), far * (-0.3 - 0.9j)])
 
 
-@pytest.mark.parametrize("name", COLOCATED)
+@pytest.mark.parametrize("name", slow_ones(COLOCATED, lambda name: name not in FAR_EACH_TIME))
 def test_the_exact_evaluation_is_right_beyond_the_range_of_exponentials(name):
     points = very_fast(name)
     found = bound(name)(points)
     assert relative_error(found, expected_at(name, points, FAST_DIGITS)) < WORST_RELATIVE_ERROR
 
 
-@pytest.mark.parametrize("name", COLOCATED)
+@pytest.mark.parametrize("name", slow_ones(COLOCATED, lambda name: name not in FAR_EACH_TIME))
 def test_the_exported_function_is_right_beyond_the_range_of_exponentials(exported, name):
     points = very_fast(name)
     found = exported(name)(points)

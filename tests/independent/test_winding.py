@@ -139,6 +139,7 @@ def test_the_program_finds_as_many_poles_and_zeros_as_the_argument_turns(low, hi
     assert sum(root.multiplicity for root in found.zeros) == zeros
 
 
+@pytest.mark.slow
 def test_the_sliding_free_beam_turns_as_often_as_its_printed_equation():
     # sinh 2q + sin 2q over q is even in q, hence a function of s = 2 q^2 without branches.
     def printed(s):
@@ -156,6 +157,7 @@ def test_the_sliding_free_beam_turns_as_often_as_its_printed_equation():
     assert count_inside(printed, -7 + 1j, 7 + 320j) == count_inside(sliding, -7 + 1j, 7 + 320j) == 5
 
 
+@pytest.mark.slow
 def test_a_load_at_the_tip_does_not_change_the_homogeneous_problem():
     values = {name: mpf(1) for name in ("E", "I", "rho", "A")}
 

@@ -11,12 +11,15 @@ import pytest
 from symflex.emit.julia import julia_module
 from symflex.emit.program.verify import doubles
 from symflex.transfer import bind
+from tests.house.repository import slow_ones
 from tests.integration.julia import Julia
 from tests.integration.julia_in_python import functions_of
 from tests.unit.emit.against_balls import axis_points, worst_errors
 from tests.unit.emit.exportable import DERIVATIONS, SPECS, derived, public_name
 
 ACCURACY = 1e-13
+COSTLY = ("robot_axis", "two_beams", "pipe_with_flow")
+"""Their exports take more than a second each."""
 
 # Debian has had no package of Julia since version 11, so its absence is no failure anywhere.
 needs_julia = pytest.mark.skipif(shutil.which("julia") is None, reason="julia is not installed")
@@ -57,7 +60,10 @@ def test_powers_that_overflow_are_taken_of_one_over_s():
     assert worst_errors(tf, s, read(functions_of(made.text)["_value_of_X_over_F"], tf, s))[0] <= ACCURACY
 
 
-@pytest.mark.parametrize("name", ["six_mass", "timoshenko_cantilever", "robot_axis", *SPECS])
+@pytest.mark.parametrize(
+    "name",
+    slow_ones(["six_mass", "timoshenko_cantilever", "robot_axis", *SPECS], lambda name: name in COSTLY),
+)
 def test_blocks_and_brackets_are_balanced(name):
     _, made = exported(name, samples=5)
     code = re.sub(r'"""(?:[^"\\]|\\.|"(?!""))*"""|"(?:[^"\\\n]|\\.)*"', '""', made.text)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import gcd
-from operator import add, mul, neg
+from operator import add, neg, sub
 from typing import TYPE_CHECKING
 
 from symflex.expressions import (
@@ -68,8 +68,10 @@ class Arranger:
         return tuple(self.names.get(n, Name(n)) for n in self.ring.names)
 
     @cached_property
-    def _s_degree(self) -> tuple[int, ...]:
-        return tuple(1 if n == LAPLACE else self.degrees.get(n, 0) for n in self.ring.names)
+    def _s_degree(self) -> tuple[tuple[int, int], ...]:
+        """The generators that bear s, by index, and their degrees."""
+        degrees = enumerate(1 if n == LAPLACE else self.degrees.get(n, 0) for n in self.ring.names)
+        return tuple((i, degree) for i, degree in degrees if degree)
 
     @cached_property
     def _is_apart(self) -> tuple[bool, ...]:
@@ -78,6 +80,10 @@ class Arranger:
     @cached_property
     def _is_sum(self) -> tuple[bool, ...]:
         return tuple(n in self.degrees for n in self.ring.names)
+
+    @cached_property
+    def _sums(self) -> tuple[int, ...]:
+        return tuple(i for i, is_sum in enumerate(self._is_sum) if is_sum)
 
     def collected(self, polynomial: fmpz_mpoly, *, factored: bool = True) -> Expression:
         """Return a polynomial by descending powers of s, each coefficient factored."""
@@ -236,8 +242,8 @@ class Arranger:
         return self._monomial_key(best)
 
     def _monomial_key(self, monomial: tuple[int, ...]) -> tuple[int, ...]:
-        degree = sum(map(mul, monomial, self._s_degree))
-        sums = sum(map(mul, monomial, self._is_sum))
+        degree = sum([monomial[i] * d for i, d in self._s_degree])
+        sums = sum([monomial[i] for i in self._sums])
         return (-degree, -sums, *map(neg, monomial[1:]))
 
     def _sum(self, terms: dict[tuple[int, ...], int]) -> Expression:
@@ -320,7 +326,7 @@ def _order_key(polynomial: fmpz_mpoly) -> tuple[tuple[int, ...], ...]:
 
 
 def _terms(polynomial: fmpz_mpoly) -> dict[tuple[int, ...], int]:
-    return {tuple(int(e) for e in m): int(c) for m, c in polynomial.terms()}
+    return {tuple(map(int, m)): int(c) for m, c in polynomial.terms()}
 
 
 def _pull_content(
@@ -328,7 +334,7 @@ def _pull_content(
 ) -> tuple[tuple[int, ...], dict[tuple[int, ...], int]]:
     """Return the common monomial and the terms without it."""
     content = tuple(min(column) for column in zip(*terms, strict=True))
-    return content, {tuple(e - c for e, c in zip(m, content, strict=True)): n for m, n in terms.items()}
+    return content, {tuple(map(sub, m, content)): n for m, n in terms.items()}
 
 
 def _pull_number(terms: dict[tuple[int, ...], int]) -> tuple[int, dict[tuple[int, ...], int]]:
@@ -343,6 +349,6 @@ def coefficients(ring: Ring, polynomial: fmpz_mpoly) -> dict[int, fmpz_mpoly]:
     """Return the coefficient of every power of s that occurs, over the same ring."""
     parts: dict[int, dict[tuple[int, ...], int]] = {}
     for monomial, coefficient in polynomial.terms():
-        key = (0, *(int(e) for e in monomial[1:]))
+        key = (0, *map(int, monomial[1:]))
         parts.setdefault(int(monomial[0]), {})[key] = int(coefficient)
     return {exponent: ring.context.from_dict(part) for exponent, part in parts.items()}

@@ -15,6 +15,7 @@ from symflex.cli import COMMANDS
 from symflex.cli.reporting import listed
 from symflex.elements import ELEMENTS
 from symflex.errors import BudgetError, Diagnostic
+from tests.house.repository import in_turns
 from tests.unit.cli.commands import DERIVATIONS, ROOT, TWO_MASS
 
 SPEC_COMMANDS = (
@@ -100,7 +101,7 @@ def test_the_version_is_the_packages(shell):
     assert shell("--version").out == f"symflex, version {__version__}\n"
 
 
-@pytest.mark.parametrize("path", DERIVATIONS, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", in_turns(DERIVATIONS))
 @pytest.mark.parametrize(
     "command", [("check",), ("derive",), ("roots",), ("roots", "--digits", "15")], ids=" ".join
 )

@@ -9,6 +9,8 @@ from tests.house.repository import in_turns
 from tests.unit.cli.commands import DERIVATIONS, TWO_MASS
 from tests.unit.emit.residues import point_for
 
+LONG = {"six_mass", "fitted_resonances", "polynomial_resonance"}
+"""Their forms take seconds to print and to read."""
 ENTRY_KEYS = {"tf", "quantity", "unit", "form", "num", "den", "where", "laws", "latex", "hidden"}
 
 
@@ -82,7 +84,11 @@ def test_what_cancelled_is_named(shell):
     assert "hidden: s cancelled" in shell("derive", TWO_MASS, "--tf", "V_act/F").out
 
 
-@pytest.mark.parametrize("path", in_turns(DERIVATIONS))
+@pytest.mark.parametrize(
+    "path",
+    in_turns([path for path in DERIVATIONS if path.stem not in LONG])
+    + [pytest.param(path, marks=pytest.mark.slow, id=path.stem) for path in DERIVATIONS if path.stem in LONG],
+)
 def test_json_reads_back_to_the_same_function_exactly(shell, path):
     model = pipeline.load(path)
     derived = pipeline.derive_all(model)

@@ -22,7 +22,7 @@ from symflex.emit.exporters import EXPORTERS
 from symflex.emit.program import verify
 from symflex.errors import UsageError
 from symflex.transfer import bind
-from tests.house.repository import ROOT, blocks, in_turns
+from tests.house.repository import ROOT, blocks, slow_ones
 from tests.unit.emit.against_balls import axis_points, worst_errors
 from tests.unit.emit.exportable import MASSLESS, PIPE
 from tests.unit.emit.test_numpy_distributed import BAR, COMPRESSED, DELAY, SENSOR, specification
@@ -31,6 +31,8 @@ pytestmark = pytest.mark.needs_tool("gcc")
 
 SPECS = sorted((ROOT / "derivations").glob("*/*.toml"))
 STRICT = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic"]
+FEW = ("two_mass", "six_mass", "rigid_body", "sliding_free_beam", "rod_tip_mass", "two_mass_force")
+"""Models whose values are compared in every run; the others with -m slow."""
 ACCURACY = 1e-13
 POINTER = ctypes.POINTER(ctypes.c_double)
 
@@ -104,7 +106,7 @@ def exported(text, **options):
 # ------------------------------------------------------------------------------------------ values
 
 
-@pytest.mark.parametrize("path", in_turns(SPECS))
+@pytest.mark.parametrize("path", slow_ones(SPECS, lambda path: path.stem not in FEW), ids=lambda p: p.stem)
 def test_values_agree_with_balls_over_the_band_and_beside_resonances(path, tmp_path, monkeypatch):
     model = pipeline.load(path)
     tfs = pipeline.derive_all(model)
@@ -149,7 +151,7 @@ KINDS = {
 }
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", slow_ones(KINDS, lambda kind: kind == "two beams"))
 def test_other_kinds_of_kernels_agree_with_balls(kind, tmp_path):
     model = pipeline.loads(KINDS[kind])
     tfs = pipeline.derive_all(model)[:1]

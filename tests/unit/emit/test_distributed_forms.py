@@ -26,13 +26,21 @@ from symflex.expressions import (
     format_expression,
 )
 from tests.contract.exact import read
+from tests.house.repository import slow_ones
 from tests.unit.emit.models_with_kernels import MODELS, NAMES, derived, spec
 from tests.unit.emit.residues import PRIME, point_for
 
 EVERY_FORM = ("hyperbolic", "factored", "krylov", "vaughan", "frequency", "polynomial", "definitions", None)
 NO_FORMULA = {"third order"}
+LONG = {"two beams of pairs", "two beams", "robot_axis"}
 
 of_case = cache(derived)
+
+
+@cache
+def printed(name, number, form):
+    """Return a form of one of a case's functions, printed once for all tests of it."""
+    return print_form(of_case(name)[number], form)
 
 
 def reread(form):
@@ -55,20 +63,19 @@ def case(name, pair):
 
 
 def turns(names):
-    """The names, the one whose print is hundreds of lines long with -m slow only."""
-    long = {"two beams of pairs": [pytest.mark.slow]}
-    return [pytest.param(name, marks=long.get(name, []), id=name) for name in names]
+    """The names, those whose prints are the longest with -m slow only."""
+    return slow_ones(names, lambda name: name in LONG)
 
 
 @pytest.mark.parametrize("form", EVERY_FORM, ids=str)
 @pytest.mark.parametrize("name", turns(NAMES))
 def test_a_form_is_the_function_in_exact_arithmetic(name, form):
-    for tf in of_case(name):
+    for number, tf in enumerate(of_case(name)):
         if form is not None and form != "definitions" and form not in forms_of(tf):
             continue
         for seed in (1, 2):
             point = point_for(tf, seed)
-            assert point.form(*reread(print_form(tf, form))) == point.truth
+            assert point.form(*reread(printed(name, number, form))) == point.truth
 
 
 def test_a_form_with_a_wrong_sign_is_told_apart():
@@ -81,7 +88,7 @@ def test_a_form_with_a_wrong_sign_is_told_apart():
     assert point.truth < PRIME
 
 
-def number(expression, values):
+def value_of(expression, values):
     """Return the value of an expression to mpmath's precision, by principal branches."""
     match expression:
         case Number(value):
@@ -89,17 +96,17 @@ def number(expression, values):
         case Name(name):
             return values(name)
         case Negative(operand):
-            return -number(operand, values)
+            return -value_of(operand, values)
         case Sum(terms):
-            return mpmath.fsum(number(t, values) for t in terms)
+            return mpmath.fsum(value_of(t, values) for t in terms)
         case Product(factors):
-            return mpmath.fprod(number(f, values) for f in factors)
+            return mpmath.fprod(value_of(f, values) for f in factors)
         case Quotient(above, below):
-            return number(above, values) / number(below, values)
+            return value_of(above, values) / value_of(below, values)
         case Power(base, exponent):
-            return number(base, values) ** number(exponent, values)
+            return value_of(base, values) ** value_of(exponent, values)
         case Call(name, argument):
-            return getattr(mpmath, name)(number(argument, values))
+            return getattr(mpmath, name)(value_of(argument, values))
     raise TypeError(type(expression).__name__)
 
 
@@ -108,19 +115,19 @@ def value_at(form, known):
     where = dict(where)
 
     def values(name):
-        return number(where[name], values) if name in where else known[name]
+        return value_of(where[name], values) if name in where else known[name]
 
-    return number(num, values) / number(den, values)
+    return value_of(num, values) / value_of(den, values)
 
 
 @pytest.mark.parametrize("name", turns(n for n in NAMES if n not in NO_FORMULA))
 def test_all_forms_agree_to_45_digits_at_complex_points(name):
     with mpmath.workdps(60):
-        for tf in of_case(name):
+        for number, tf in enumerate(of_case(name)):
             parameters = {p.name: mpmath.mpf(3 + i) / (4 + i % 5) for i, p in enumerate(tf.model.parameters)}
             for s in (mpmath.mpc(1, 2) / 3, mpmath.mpc(-2, 1) / 5):
                 known = {**parameters, "s": s, "pi": mpmath.pi}
-                first, *others = (value_at(print_form(tf, form), known) for form in forms_of(tf))
+                first, *others = (value_at(printed(name, number, form), known) for form in forms_of(tf))
                 assert max(abs(v / first - 1) for v in others) < mpmath.mpf(10) ** -45
 
 
@@ -306,8 +313,8 @@ def test_a_hidden_factor_of_kernels_is_written_out():
 
 @pytest.mark.parametrize("name", turns(NAMES))
 def test_text_keeps_to_80_columns(name):
-    for tf in of_case(name):
+    for number, tf in enumerate(of_case(name)):
         for form in forms_of(tf):
-            rows = derive_text(tf, print_form(tf, form)).split("\n")
+            rows = derive_text(tf, printed(name, number, form)).split("\n")
             # Nobody reads a formula of a hundred lines.
             assert max(map(len, rows)) <= 80 or len(rows) > 100

@@ -24,6 +24,7 @@ from symflex.emit.julia import julia_module
 from symflex.emit.matlab import matlab_function_file
 from symflex.emit.program import choose_programs
 from symflex.emit.state_space_module import state_space_module
+from tests.house.repository import slow_ones
 from tests.unit.emit.hostile_names import NAMES, PARAMETERS, C, benign, mass_on_springs, with_names
 
 COUNT = len(NAMES)
@@ -58,6 +59,8 @@ WRITERS = {
     "julia": lambda tfs, model: julia_module(tfs, model, "plant").text,
     "state-space": lambda tfs, model: state_space_module(pipeline.state_space(model), tfs, samples=3).text,
 }
+EACH_TIME = ("numpy", "c", "matlab")
+"""Their structure is compared in every run; that of the others, written alike, with -m slow."""
 PYTHON = ("numpy", "array-api", "jax", "state-space")
 
 
@@ -115,7 +118,7 @@ def structure(target, text):
     return python_structure(text) if target in PYTHON else token_structure(text, target)
 
 
-@pytest.mark.parametrize("target", WRITERS)
+@pytest.mark.parametrize("target", slow_ones(WRITERS, lambda target: target not in EACH_TIME))
 def test_parameters_of_any_names_leave_the_structure_of_the_code_as_it_is(target):
     hostile, plain = (with_parameters(target, names) for names in (PARAMETERS, tuple(benign(COUNT))))
     assert COUNT >= 300

@@ -18,6 +18,8 @@ from symflex.model.labels import ALLOWED_COMMANDS
 from tests.independent.web_mathematics import COMMANDS, ENVIRONMENTS
 
 DERIVATIONS = Path(__file__).parents[3] / "derivations"
+LONG = {"six_mass", "fitted_resonances", "polynomial_resonance"}
+"""Models whose expanded forms run over pages."""
 # What numbers an equation and lets pages break within it, in a paper.
 OF_PAPERS = {"begin", "end", "label", "notag", "begingroup", "endgroup", "allowdisplaybreaks"}
 
@@ -38,7 +40,7 @@ def printed():
         tfs = pipeline.derive_all(pipeline.load(path))
         # What differs between the functions of a model is not their commands, and expanded forms can be long.
         for tf in tfs[:2]:
-            for form in (None, *forms_of(tf)) if path.stem != "six_mass" else (None, "monic"):
+            for form in (None, *forms_of(tf)) if path.stem not in LONG else (None, "monic"):
                 try:
                     found.append((tf, print_form(tf, form)))
                 except SymflexError:
