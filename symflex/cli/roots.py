@@ -74,9 +74,7 @@ def command(
     """
     from symflex import pipeline
     from symflex.cli.progress import ProgressBar
-    from symflex.emit.sensitivity import sensitivity_text
     from symflex.emit.text import roots_text
-    from symflex.explanation import explanation_json, explanation_text
     from symflex.roots import Budget
 
     chosen = _region(modes, mode, band, region)
@@ -97,13 +95,19 @@ def command(
         if wanted:
             more["sensitivity"] = [m.to_json_dict(shown) for m in moved]
         if explained is not None:
+            from symflex.explanation import explanation_json  # most calls need none of it
+
             more["explanation"] = explanation_json(explained)
         emit_json({**found.to_json_dict(), **more})
     else:
         click.echo(roots_text(found, shown, terminal_width()))
         if wanted:
+            from symflex.emit.sensitivity import sensitivity_text  # most calls need none of it
+
             click.echo(sensitivity_text(moved, terminal_width()))
         if explained is not None:
+            from symflex.explanation import explanation_text
+
             click.echo("\n" + explanation_text(explained, terminal_width()))
     certificate = found.certificate
     if certificate.is_exceeded:
