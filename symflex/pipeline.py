@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from symflex import equations as equations_room
 from symflex import spec as spec_room
 from symflex import transfer as transfer_room
+from symflex.cache import entered_cache
 from symflex.elimination import explain_singular, is_singular
 from symflex.errors import Diagnostic, Source, SpecError, UsageError
 from symflex.errors.diagnostic import nearest
@@ -88,13 +89,23 @@ def derive_all(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> 
     Those in which some wavenumbers have a formula and others have none take a second one, without names.
     """
     wanted = model.transfer_functions if pairs is None else tuple(pairs)
-    found = transfer_room.derive_all(assemble(model), wanted)
+    found = _derive_all(assemble(model), wanted)
     mixed = [i for i, tf in enumerate(found) if tf.is_mixed]
     if not mixed:
         return found
     nameless = equations_room.assemble(model, transfer_room.nested_transfer, is_nameless=True)
-    again = dict(zip(mixed, transfer_room.derive_all(nameless, [wanted[i] for i in mixed]), strict=True))
+    again = dict(zip(mixed, _derive_all(nameless, [wanted[i] for i in mixed]), strict=True))
     return tuple(again.get(i, tf) for i, tf in enumerate(found))
+
+
+def _derive_all(equations: Equations, pairs: Sequence[tuple[str, str]]) -> tuple[TransferFunction, ...]:
+    """Return the transfer functions from the cache that is entered, if one is and it has them."""
+    store = entered_cache()
+    if store is None or (equations.propagation is None and len(equations.unknowns) < store.unknowns):
+        return transfer_room.derive_all(equations, pairs)
+    from symflex.cache.remember import derive_or_recall  # most derivations are over before it is imported
+
+    return derive_or_recall(equations, pairs, store)
 
 
 def derive_bound(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[BoundTransferFunction, ...]:

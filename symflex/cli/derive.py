@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, note, reporting, terminal_width
 from symflex.errors import Diagnostic, UsageError
 
@@ -27,6 +28,7 @@ from symflex.errors import Diagnostic, UsageError
 )
 @click.option("--json", "as_json", is_flag=True, help="The same as --format json.")
 @click.option("--digits", type=click.IntRange(1, 1000), default=6, show_default=True, help="Digits of zpk.")
+@caching
 @reporting
 def command(
     spec: str,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, note, reporting, terminal_width
 from symflex.errors import Diagnostic, UsageError
 
@@ -46,6 +47,7 @@ DIGITS_LIMIT = 10_000
 )
 @click.option("--strict", is_flag=True, help="Exit with code 4 also when a part of the region is left out.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@caching
 @reporting
 def command(
     spec: str,

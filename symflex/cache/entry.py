@@ -1,0 +1,132 @@
+"""Transfer functions as the content of an entry, and back.
+
+An entry holds what is costly to derive. What is read off the equations and the model (names, units,
+definitions) is taken from those at hand.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any, Final
+
+from symflex.cache.exact import Reader, Writer, mapping, nonzero, pick, sequence, text
+from symflex.elimination import Closure
+from symflex.kernels import NO_KERNELS
+from symflex.transfer import ClosedForm, HiddenFactor, TransferFunction
+from symflex.transfer.quantity import name_quantity, unit_of_quotient
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.equations import Equations
+
+SCHEMA: Final = "symflex.derivation/1"
+BYTES_PER_SECOND: Final = 5e6
+"""About how much of an entry's content is read in a second."""
+
+
+def entry_content(derived: Sequence[TransferFunction]) -> bytes:
+    """Return the content of an entry: JSON."""
+    writer = Writer()
+    closures: list[Closure] = []
+    functions = [_function(writer, closures, tf) for tf in derived]
+    rows = [_closure(writer, c) for c in closures]
+    document = {"schema": SCHEMA, "functions": functions, "closures": rows, **writer.data}
+    return json.dumps(document, separators=(",", ":")).encode()
+
+
+def read_entry(
+    content: bytes, equations: Equations, pairs: Sequence[tuple[str, str]]
+) -> tuple[TransferFunction, ...] | None:
+    """Return the transfer functions of some pairs, ``None`` where the content is not that of an entry."""
+    try:
+        document = mapping(json.loads(content))
+        if document.get("schema") != SCHEMA:
+            return None
+        reader = Reader(document)
+        closures = [_read_closure(reader, row) for row in sequence(document.get("closures"))]
+        rows = sequence(document.get("functions"), len(pairs))
+        return tuple(
+            _read_function(reader, closures, row, equations, pair)
+            for row, pair in zip(rows, pairs, strict=True)
+        )
+    except (ValueError, OverflowError, RecursionError):
+        return None
+
+
+def _function(writer: Writer, closures: list[Closure], tf: TransferFunction) -> list[Any]:
+    closed = None
+    if tf.closed is not None:
+        closure = tf.closed.closure
+        place = next((i for i, c in enumerate(closures) if c is closure), len(closures))
+        if place == len(closures):
+            closures.append(closure)
+        ring = closure.ring
+        closed = [place, writer.polynomial(ring, tf.closed.num), writer.polynomial(ring, tf.closed.den)]
+    return [
+        tf.output.name,
+        tf.input.name,
+        writer.value(tf.ratio),
+        closed,
+        [[writer.polynomial(tf.ratio.ring, h.polynomial), h.multiplicity] for h in tf.hidden],
+        None if tf.kernels is NO_KERNELS else writer.table(tf.kernels),
+        None if tf.parts is None else [writer.value(part) for part in tf.parts],
+    ]
+
+
+def _closure(writer: Writer, closure: Closure) -> list[Any]:
+    sums = [[name, writer.polynomial(closure.base, value)] for name, value in closure.sums]
+    return [writer.ring(closure.base), writer.ring(closure.ring), sums]
+
+
+def _read_closure(reader: Reader, row: object) -> Closure:
+    base, ring, sums = sequence(row, 3)
+    known = pick(reader.rings, base)
+    pairs = [sequence(pair, 2) for pair in sequence(sums)]
+    return Closure(
+        known,
+        pick(reader.rings, ring),
+        tuple((text(name), reader.polynomial(value, known)) for name, value in pairs),
+    )
+
+
+def _read_function(
+    reader: Reader, closures: list[Closure], row: object, equations: Equations, pair: tuple[str, str]
+) -> TransferFunction:
+    name, source, position, closed, hidden, table, parts = sequence(row, 7)
+    if (name, source) != pair:
+        raise ValueError
+    model = equations.model
+    output = next(o for o in model.outputs if o.name == name)
+    given = next(i for i in model.inputs if i.name == source)
+    known = dict(model.quotients).get(pair)
+    ratio = pick(reader.values, position)
+    return TransferFunction(
+        output,
+        given,
+        ratio,
+        None if closed is None else _read_closed(reader, closures, closed),
+        tuple(
+            HiddenFactor(reader.polynomial(f, ratio.ring), nonzero(e))
+            for f, e in (sequence(h, 2) for h in sequence(hidden))
+        ),
+        name_quantity(output, given, known),
+        unit_of_quotient(output, given, known),
+        equations.ring,
+        equations.definitions,
+        equations.constants,
+        model,
+        NO_KERNELS if table is None else pick(reader.tables, table),
+        None if parts is None else _read_parts(reader, parts),
+    )
+
+
+def _read_closed(reader: Reader, closures: list[Closure], row: object) -> ClosedForm:
+    place, num, den = sequence(row, 3)
+    closure = pick(closures, place)
+    return ClosedForm(closure, reader.polynomial(num, closure.ring), reader.polynomial(den, closure.ring))
+
+
+def _read_parts(reader: Reader, row: object) -> tuple[Any, Any]:
+    num, den = sequence(row, 2)
+    return pick(reader.values, num), pick(reader.values, den)
