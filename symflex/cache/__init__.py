@@ -25,7 +25,9 @@ def entered_cache() -> Store | None:
 
 
 @contextmanager
-def derivation_cache(folder: str | Path | None = None) -> Iterator[Store | None]:
+def derivation_cache(
+    folder: str | Path | None = None, seconds: float | None = None
+) -> Iterator[Store | None]:
     """Keep derived transfer functions in a folder while the context lasts, in this thread.
 
     A derivation is found again by the content of its equations, the pairs asked for, and the versions of the
@@ -37,6 +39,8 @@ def derivation_cache(folder: str | Path | None = None) -> Iterator[Store | None]
     folder : str or Path, optional
         By default what SYMFLEX_CACHE_DIR names, or ``symflex`` in the user's cache folder; nothing is kept
         there under SYMFLEX_NO_CACHE=1, or when the user has no such folder.
+    seconds : float, optional
+        What took less to derive is not kept, by default 0.05; 0 to keep everything.
 
     Yields
     ------
@@ -47,14 +51,14 @@ def derivation_cache(folder: str | Path | None = None) -> Iterator[Store | None]
     --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder, derivation_cache(folder) as store:
-    ...     store.usage().entries
-    0
+    ...     store.usage()
+    Usage(entries=0, size=0)
     """
     from symflex.cache.folder import cache_folder  # a process without a cache needs none of it
-    from symflex.cache.store import Store
+    from symflex.cache.store import SECONDS, Store
 
     place = cache_folder() if folder is None else folder
-    store = None if place is None else Store(place)
+    store = None if place is None else Store(place, SECONDS if seconds is None else seconds)
     token = _ENTERED.set(store)
     try:
         yield store

@@ -21,8 +21,22 @@ if TYPE_CHECKING:
     from symflex.equations import Equations
 
 SCHEMA: Final = "symflex.derivation/1"
-BYTES_PER_SECOND: Final = 5e6
-"""About how much of an entry's content is read in a second."""
+
+
+def numbers_in(derived: Sequence[TransferFunction]) -> int:
+    """Return about how many exponents and coefficients an entry would hold."""
+    total = 0
+    for tf in derived:
+        closed = [] if tf.closed is None else [tf.closed.num, tf.closed.den]
+        shared = [f for v in (*tf.kernels.values, *(tf.parts or ())) for f, _ in v.factors]
+        polynomials = [
+            *closed,
+            *shared,
+            *(f for f, _ in tf.ratio.factors),
+            *(h.polynomial for h in tf.hidden),
+        ]
+        total += sum(len(p) * (p.context().nvars() + 1) for p in polynomials)
+    return total
 
 
 def entry_content(derived: Sequence[TransferFunction]) -> bytes:

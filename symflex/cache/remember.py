@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
-from symflex.cache.entry import BYTES_PER_SECOND, entry_content, read_entry
+from symflex.cache.entry import entry_content, numbers_in, read_entry
 from symflex.cache.key import derivation_key
 from symflex.transfer import derive_all
 
@@ -17,12 +17,17 @@ if TYPE_CHECKING:
     from symflex.transfer import TransferFunction
 
 
+NUMBERS_PER_SECOND: Final = 500_000
+"""Less than the exponents and coefficients that are read in a second (some millions)."""
+
+
 def derive_or_recall(
     equations: Equations, pairs: Sequence[tuple[str, str]], store: Store
 ) -> tuple[TransferFunction, ...]:
     """Return what :func:`symflex.transfer.derive_all` returns, from the store where that has it.
 
-    A derivation is kept when it took longer than the store asks for and than reading it back is going to.
+    A derivation is kept when it took longer than the store asks for and several times as long as reading it
+    back: an expanded form of a million terms is derived again in less time than it is read.
 
     Raises
     ------
@@ -39,8 +44,7 @@ def derive_or_recall(
     begin = perf_counter()
     derived = derive_all(equations, pairs)
     seconds = perf_counter() - begin
-    if seconds >= store.seconds:
-        content = entry_content(derived)
-        if not store.seconds or len(content) < seconds * BYTES_PER_SECOND / 2:
-            store.write(key, content)
+    pays = seconds >= store.seconds and numbers_in(derived) < seconds * NUMBERS_PER_SECOND
+    if pays or not store.seconds:
+        store.write(key, entry_content(derived))
     return derived

@@ -58,9 +58,7 @@ class Store:
     folder : str or Path
         Made when something is first written.
     seconds : float
-        What took less to derive is not kept.
-    unknowns : int
-        Lumped systems with fewer unknowns are not looked for.
+        What took less to derive is not kept; 0 to keep everything.
     maximum : int
         Bytes of all entries together.
 
@@ -76,8 +74,12 @@ class Store:
 
     folder: str | Path
     seconds: float = SECONDS
-    unknowns: int = UNKNOWNS
     maximum: int = MAXIMUM_BYTES
+
+    @property
+    def unknowns(self) -> int:
+        """Lumped systems of fewer unknowns are not looked for."""
+        return UNKNOWNS if self.seconds else 0
 
     def read(self, key: str) -> bytes | None:
         """Return the content of an entry, ``None`` when there is none that is sound."""

@@ -213,7 +213,7 @@ def _chapter_in(
     """Return a chapter, with the cache of the process that asks for it."""
     if store is None:
         return chapter_of(path, stem, measured)
-    with derivation_cache(store.folder):
+    with derivation_cache(store.folder, store.seconds):
         return chapter_of(path, stem, measured)
 
 
