@@ -37,7 +37,12 @@ def reader(tmp_path, monkeypatch):
 
 def symflex_output(arguments, folder):
     command = [sys.executable, "-m", "symflex", *arguments]
-    environment = {"PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "error", "NO_COLOR": "1"}
+    environment = {
+        "PYTHONPATH": str(ROOT),
+        "PYTHONWARNINGS": "error",
+        "NO_COLOR": "1",
+        "SYMFLEX_NO_CACHE": "1",
+    }
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
 
 
