@@ -38,7 +38,8 @@ def _user_folder() -> Path | None:
         home = Path.home()
     except RuntimeError:
         return None
-    if not home.is_absolute():
+    # Accounts of services have a home that does not exist, and should not.
+    if not home.is_absolute() or not home.is_dir():
         return None
     if sys.platform == "win32":
         return home / "AppData" / "Local"

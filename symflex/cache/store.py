@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import os
 import re
-import secrets
 import stat
 import time
 import zlib
@@ -102,7 +101,7 @@ class Store:
         if len(data) > min(MAXIMUM_ENTRY, self.maximum):
             return
         path = self._path(key)
-        temporary = path.with_name(f"{key}.{secrets.token_hex(8)}.tmp")
+        temporary = path.with_name(f"{key}.{os.urandom(8).hex()}.tmp")
         try:
             Path(self.folder).mkdir(mode=0o700, parents=True, exist_ok=True)
             with os.fdopen(os.open(temporary, _WRITING, 0o600), "wb") as file:
