@@ -2,8 +2,8 @@
 
 The task is the same for all: numerator and denominator of the driving-point receptance x_1/F_1 and of the
 transfer receptance x_N/F_1, as polynomials expanded in s and all parameters. symflex starts from a resolved
-model, so that assembling A(s), proving numerator and denominator coprime and keeping the closed form as well are
-timed; SymPy and SymEngine start from the matrix, Lcapy from its own description, for the first function alone.
+model: assembling A(s), proving numerator and denominator coprime and keeping the closed form count as well.
+SymPy and SymEngine start from the matrix, Lcapy from its own description, for the first function alone.
 Times are processor times: other programs on the machine count little.
 """
 

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
         load,
         loads,
     )
+    from symflex.cache import derivation_cache
     from symflex.errors import SymflexError
 
 __version__ = "0.1.0"
@@ -59,6 +60,7 @@ _HOME = {
     "StateSpace": "symflex.api",
     "SymflexError": "symflex.errors",
     "TransferFunction": "symflex.api",
+    "derivation_cache": "symflex.cache",
     "load": "symflex.api",
     "loads": "symflex.api",
 }
@@ -76,6 +78,7 @@ __all__ = [
     "SymflexError",
     "TransferFunction",
     "__version__",
+    "derivation_cache",
     "load",
     "loads",
 ]

@@ -13,17 +13,14 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from symflex import audit as audit_room
 from symflex import equations as equations_room
-from symflex import explanation as explanation_room
 from symflex import spec as spec_room
 from symflex import transfer as transfer_room
+from symflex.cache import entered_cache
 from symflex.elimination import explain_singular, is_singular
 from symflex.errors import Diagnostic, Source, SpecError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.model import Model, load_model, with_numbers
-from symflex.roots.locate import locate
-from symflex.sensitivity import differentiate
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -92,13 +89,23 @@ def derive_all(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> 
     Those in which some wavenumbers have a formula and others have none take a second one, without names.
     """
     wanted = model.transfer_functions if pairs is None else tuple(pairs)
-    found = transfer_room.derive_all(assemble(model), wanted)
+    found = _derive_all(assemble(model), wanted)
     mixed = [i for i, tf in enumerate(found) if tf.is_mixed]
     if not mixed:
         return found
     nameless = equations_room.assemble(model, transfer_room.nested_transfer, is_nameless=True)
-    again = dict(zip(mixed, transfer_room.derive_all(nameless, [wanted[i] for i in mixed]), strict=True))
+    again = dict(zip(mixed, _derive_all(nameless, [wanted[i] for i in mixed]), strict=True))
     return tuple(again.get(i, tf) for i, tf in enumerate(found))
+
+
+def _derive_all(equations: Equations, pairs: Sequence[tuple[str, str]]) -> tuple[TransferFunction, ...]:
+    """Return the transfer functions from the cache that is entered, if one is and it has them."""
+    store = entered_cache()
+    if store is None or (equations.propagation is None and len(equations.unknowns) < store.unknowns):
+        return transfer_room.derive_all(equations, pairs)
+    from symflex.cache.remember import derive_or_recall  # most derivations are over before it is imported
+
+    return derive_or_recall(equations, pairs, store)
 
 
 def derive_bound(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[BoundTransferFunction, ...]:
@@ -144,6 +151,8 @@ def roots(
     budget: Budget | None = None,
 ) -> PoleZeroMap:
     """Return poles, zeros and hidden modes, proved; see :func:`symflex.roots.locate.locate`."""
+    from symflex.roots.locate import locate  # imports numpy
+
     return locate(bound, region, digits, budget)
 
 
@@ -209,6 +218,8 @@ def sensitivities(
     UsageError
         SF902 for a parameter the model does not have.
     """
+    from symflex.sensitivity import differentiate  # imports numpy
+
     declared = {p.name: p for p in model.parameters}
     for name in names:
         if name not in declared:
@@ -312,6 +323,8 @@ def colocation(
 
 def explain_zeros(model: Model, bound: BoundTransferFunction, found: PoleZeroMap) -> ZeroExplanation:
     """Return what the zeros are the poles of; see :func:`symflex.explanation.explain_zeros`."""
+    from symflex import explanation as explanation_room  # imports numpy
+
     return explanation_room.explain_zeros(model, bound, found, transfer_room.nested_transfer)
 
 
@@ -325,6 +338,8 @@ def audit(model: Model, names: Sequence[str] = ()) -> tuple[Audit, ...]:
     SpecError
         With every problem of all formulas, each at its place.
     """
+    from symflex import audit as audit_room  # most commands need none of it
+
     printed = {"/".join(p.tf): p for p in model.published}
     for name in names:
         if name not in printed:
@@ -435,6 +450,7 @@ def measure(model: Model, pair: tuple[str, str], plan: MeasurementPlan) -> Measu
     from symflex.measurement import synthesise  # imports numpy
     from symflex.response import respond
     from symflex.roots import Band
+    from symflex.roots.locate import locate
 
     plan.check()
     (bound,) = derive_bound(model, [pair])

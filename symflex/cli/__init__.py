@@ -23,6 +23,7 @@ COMMANDS: dict[str, str] = {
     "measure": "Write a synthetic measurement of a model.",
     "report": "Write a report: a page, a PDF, figures, code, data.",
     "new": "Write a specification to start from.",
+    "cache": "Show or clear the cache of derivations.",
     "elements": "List the element and block library.",
 }
 

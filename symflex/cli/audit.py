@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, note, reporting, terminal_width
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 @click.option("--tf", "tfs", multiple=True, metavar="OUT/IN", help="Only this formula; repeatable.")
 @click.option("--strict", is_flag=True, help="Exit with code 4 unless every formula is proved equal.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@caching
 @reporting
 def command(spec: str, *, tfs: tuple[str, ...], strict: bool, as_json: bool) -> int:
     """Compare what SPEC says was printed with what is derived.

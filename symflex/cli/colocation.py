@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, reporting
 from symflex.errors import Diagnostic, UsageError
 
@@ -21,6 +22,7 @@ from symflex.errors import Diagnostic, UsageError
     "--budget", type=click.FloatRange(min=0, min_open=True), metavar="SECONDS", help="Stop the search then."
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@caching
 @reporting
 def command(
     spec: str,

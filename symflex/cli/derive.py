@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, note, reporting, terminal_width
 from symflex.errors import Diagnostic, UsageError
 
@@ -27,6 +28,7 @@ from symflex.errors import Diagnostic, UsageError
 )
 @click.option("--json", "as_json", is_flag=True, help="The same as --format json.")
 @click.option("--digits", type=click.IntRange(1, 1000), default=6, show_default=True, help="Digits of zpk.")
+@caching
 @reporting
 def command(
     spec: str,
@@ -44,26 +46,34 @@ def command(
     """
     from symflex import pipeline
     from symflex.emit.forms import print_forms
-    from symflex.emit.json_format import derive_document
-    from symflex.emit.latex import column_width, transfer_function_latex
-    from symflex.emit.text import derive_text
 
     if width is not None and (as_json or format_ != "latex"):
         raise UsageError(Diagnostic("SF902", "--width is for --format latex"))
-    column = None if width is None else column_width(width)
+    column = None
+    if width is not None:
+        from symflex.emit.latex import column_width
+
+        column = column_width(width)
     model = pipeline.load(spec)
     derived = pipeline.derive_all(model, pipeline.pick_pairs(model, tfs))
     forms, sentences = print_forms(derived, form, digits)
     for sentence in sentences:
         note(sentence)
     entries = list(zip(derived, forms, strict=True))
+    # Each format is imported where it is printed, so that a terminal does not wait for LaTeX.
     if as_json or format_ == "json":
+        from symflex.emit.json_format import derive_document
+
         emit_json(derive_document(entries))
     elif format_ == "latex":
+        from symflex.emit.latex import transfer_function_latex
+
         click.echo(
             "\n\n".join(transfer_function_latex(tf, printed, width_mm=column) for tf, printed in entries)
         )
     else:
+        from symflex.emit.text import derive_text
+
         room = terminal_width()
         click.echo("\n".join(derive_text(tf, printed, room) for tf, printed in entries).rstrip("\n"))
     return 0

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, note, reporting, terminal_width
 from symflex.errors import DataError, Diagnostic, UsageError
 
@@ -62,6 +63,7 @@ SUFFIXES = (".pdf", ".png", ".svg")
 @click.option("-o", "--output", type=click.Path(), help="Specification to write.")
 @click.option("--plot", "figure", type=click.Path(), help="Figure to write: .pdf, .svg or .png.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@caching
 @reporting
 def command(
     data: tuple[str, ...],

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from symflex.cli.caching import caching
 from symflex.cli.reporting import note, reporting
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
@@ -24,6 +25,7 @@ SUFFIXES = (".pdf", ".pgf", ".png", ".svg")
 @click.option("-o", "--output", type=click.Path(), help="File to write: .pdf, .pgf, .svg or .png.")
 @click.option("--width", metavar="ieee|a4|MM", help="Width of the figure: 88.5, 170 or so many mm.")
 @click.option("--font", metavar="FONT", help="times (the default), latex or sans.")
+@caching
 @reporting
 def command(
     spec: str,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, note, reporting
 
 
@@ -21,6 +22,7 @@ from symflex.cli.reporting import emit_json, note, reporting
     help="Poles and zeros, or residues.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@caching
 @reporting
 def command(spec: str, *, tf: str | None, modes: int | None, form: str, as_json: bool) -> None:
     """Print a rational approximation of one transfer function of SPEC.

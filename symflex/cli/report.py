@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from symflex.cli.caching import caching
 from symflex.cli.reporting import note, reporting
 from symflex.errors import Diagnostic, UsageError
 
@@ -36,6 +37,7 @@ EPOCH_VARIABLE = "SOURCE_DATE_EPOCH"
     type=click.IntRange(1, 64),
     help="Models computed at once; as many as there are processors.",
 )
+@caching
 @reporting
 def command(
     specs: tuple[str, ...], *, output: str, pdf: bool | None, day: str | None, jobs: int | None

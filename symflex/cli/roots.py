@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, note, reporting, terminal_width
 from symflex.errors import Diagnostic, UsageError
 
@@ -46,6 +47,7 @@ DIGITS_LIMIT = 10_000
 )
 @click.option("--strict", is_flag=True, help="Exit with code 4 also when a part of the region is left out.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@caching
 @reporting
 def command(
     spec: str,
@@ -74,9 +76,7 @@ def command(
     """
     from symflex import pipeline
     from symflex.cli.progress import ProgressBar
-    from symflex.emit.sensitivity import sensitivity_text
     from symflex.emit.text import roots_text
-    from symflex.explanation import explanation_json, explanation_text
     from symflex.roots import Budget
 
     chosen = _region(modes, mode, band, region)
@@ -97,13 +97,19 @@ def command(
         if wanted:
             more["sensitivity"] = [m.to_json_dict(shown) for m in moved]
         if explained is not None:
+            from symflex.explanation import explanation_json  # most calls need none of it
+
             more["explanation"] = explanation_json(explained)
         emit_json({**found.to_json_dict(), **more})
     else:
         click.echo(roots_text(found, shown, terminal_width()))
         if wanted:
+            from symflex.emit.sensitivity import sensitivity_text  # most calls need none of it
+
             click.echo(sensitivity_text(moved, terminal_width()))
         if explained is not None:
+            from symflex.explanation import explanation_text
+
             click.echo("\n" + explanation_text(explained, terminal_width()))
     certificate = found.certificate
     if certificate.is_exceeded:

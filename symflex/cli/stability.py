@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, reporting
 from symflex.errors import Diagnostic, UsageError
 
@@ -42,6 +43,7 @@ UNBOUNDED = ("inf", "-inf", "+inf")
     "--budget", type=click.FloatRange(min=0, min_open=True), metavar="SECONDS", help="Stop the search then."
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@caching
 @reporting
 def command(
     spec: str,

@@ -15,7 +15,6 @@ from symflex.expressions import (
     format_expression,
     names,
 )
-from symflex.roots import Band, Mode, Modes, Rectangle
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -247,6 +246,8 @@ def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
 
 def region_text(region: Region) -> str:
     """Say what was asked for, nothing when it was everything."""
+    from symflex.roots import Band, Mode, Modes, Rectangle  # imports numpy
+
     match region:
         case Modes(count):
             modes = "mode" if count == 1 else f"{count} modes"

@@ -13,6 +13,7 @@ from importlib import metadata
 from multiprocessing import get_context
 from typing import TYPE_CHECKING, Final
 
+from symflex.cache import derivation_cache, entered_cache
 from symflex.errors import Diagnostic, SymflexError, UsageError
 from symflex.report.chapter import Chapter, chapter_of
 from symflex.report.claims import PUBLICATIONS, claim_section, publication_of
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from symflex.cache.store import Store
     from symflex.measurement import MeasuredResponse
     from symflex.report.claims import Finding, Publication
     from symflex.report.document import Block, Cell
@@ -187,8 +189,11 @@ def write_chapters(
             done[stem] = chapter_of(path, stem, measured)
         return tuple(done.values())
     # A new interpreter in each process: what this one has open or threaded is not copied.
+    store = entered_cache()
     with ProcessPoolExecutor(min(processes, len(named)), mp_context=get_context("spawn")) as pool:
-        waiting = {pool.submit(chapter_of, path, stem, measured): stem for stem, path in named.items()}
+        waiting = {
+            pool.submit(_chapter_in, store, path, stem, measured): stem for stem, path in named.items()
+        }
         progress.report(0.0, f"{counted(len(named), 'model')}")
         try:
             for finished in as_completed(waiting):
@@ -200,6 +205,16 @@ def write_chapters(
             pool.shutdown(wait=False, cancel_futures=True)
             raise
     return tuple(done[stem] for stem in named)
+
+
+def _chapter_in(
+    store: Store | None, path: Path, stem: str, measured: tuple[MeasuredResponse, ...]
+) -> Chapter:
+    """Return a chapter, with the cache of the process that asks for it."""
+    if store is None:
+        return chapter_of(path, stem, measured)
+    with derivation_cache(store.folder, store.seconds):
+        return chapter_of(path, stem, measured)
 
 
 def compose(chapters: Sequence[Chapter], date: str) -> Report:

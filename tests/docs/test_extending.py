@@ -57,7 +57,7 @@ def extended(tmp_path_factory):
 
 
 def python(folder, *arguments):
-    environment = {"PYTHONPATH": str(folder), "NO_COLOR": "1"}
+    environment = {"PYTHONPATH": str(folder), "NO_COLOR": "1", "SYMFLEX_NO_CACHE": "1"}
     command = [sys.executable, *arguments]
     done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr

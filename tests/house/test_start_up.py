@@ -7,7 +7,39 @@ import pytest
 
 from tests.house.repository import ROOT
 
-HEAVY = ("sympy", "numpy", "scipy", "matplotlib", "flint", "lark", "mpmath", "tree_sitter")
+LIBRARIES = {
+    "click",
+    "flint",
+    "lark",
+    "matplotlib",
+    "mpmath",
+    "numpy",
+    "pyuff",
+    "scipy",
+    "sympy",
+    "tree_sitter",
+    "tree_sitter_toml",
+}
+READING = {"click", "flint", "lark", "tree_sitter", "tree_sitter_toml"}
+LUMPED = "derivations/eppinger1988/rigid_body.toml"
+BEAM = "derivations/classics/pinned_pinned.toml"
+ALLOWED = [
+    (("--help",), {"click"}),
+    (("derive", "--help"), {"click"}),
+    (("new",), {"click"}),
+    (("elements",), {"click"}),
+    (("check", LUMPED), READING),
+    (("check", BEAM, "--json"), READING),
+    (("derive", LUMPED), READING),
+    (("derive", BEAM), READING),
+    (("derive", LUMPED, "--json"), READING),
+    (("derive", LUMPED, "--format", "latex"), READING),
+    (("audit", LUMPED), READING),
+    (("roots", LUMPED), {*READING, "numpy"}),
+    (("export", LUMPED, "--to", "c"), {*READING, "numpy"}),
+    (("rational", LUMPED), {*READING, "numpy", "mpmath"}),
+]
+NUMBERS = {"audit", "explanation", "fitting", "rational", "report", "response", "roots", "sensitivity"}
 CODE = """
 import sys
 from symflex.cli import run
@@ -19,29 +51,15 @@ print("modules:", *sys.modules)
 def modules_after(*arguments):
     command = [sys.executable, "-c", CODE.format(arguments=list(arguments))]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
-    return done.stdout.partition("modules:")[2].split()
+    return set(done.stdout.partition("modules:")[2].split())
 
 
-@pytest.fixture(scope="module")
-def help_modules():
-    return modules_after("--help")
+@pytest.mark.parametrize(("arguments", "allowed"), ALLOWED, ids=[" ".join(a) for a, _ in ALLOWED])
+def test_a_command_imports_the_libraries_it_needs_and_no_other(arguments, allowed):
+    assert modules_after(*arguments) & LIBRARIES == allowed
 
 
-@pytest.fixture(scope="module")
-def template_modules():
-    return modules_after("new")
-
-
-@pytest.mark.parametrize("heavy", HEAVY)
-def test_help_does_not_import(heavy, help_modules):
-    assert heavy not in help_modules
-
-
-@pytest.mark.parametrize("heavy", HEAVY)
-def test_the_list_of_templates_does_not_import(heavy, template_modules):
-    assert heavy not in template_modules
-
-
-def test_deriving_as_text_does_not_import_sympy_or_matplotlib():
-    imported = modules_after("derive", "derivations/eppinger1988/two_mass.toml")
-    assert not {"sympy", "matplotlib"} & set(imported)
+@pytest.mark.parametrize("command", ["check", "derive"])
+def test_what_prints_formulas_does_not_import_the_rooms_of_numbers(command):
+    imported = modules_after(command, LUMPED)
+    assert not {f"symflex.{room}" for room in NUMBERS} & imported

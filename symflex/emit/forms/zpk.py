@@ -11,13 +11,12 @@ from symflex.emit.forms.printed import PrintedForm
 from symflex.emit.forms.usage import require_rational
 from symflex.expressions import Expression, Name, number, power, product_of, sum_of
 from symflex.kernels import LAPLACE
-from symflex.roots import Root, precision
-from symflex.roots.locate import locate
 from symflex.transfer import EnclosedTransferFunction, bind
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from symflex.roots import Root
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
 GUARD_DIGITS = 10
@@ -34,6 +33,8 @@ def zpk_form(tf: TransferFunction, digits: int) -> PrintedForm:
     UsageError
         SF902 for a function with kernels.
     """
+    from symflex.roots.locate import locate  # imports numpy
+
     require_rational(tf, "zpk")
     bound = bind(tf)
     if bound.ratio.is_zero:
@@ -47,6 +48,8 @@ def zpk_form(tf: TransferFunction, digits: int) -> PrintedForm:
 
 def _gain(bound: BoundTransferFunction, digits: int) -> arb:
     """Return the ratio of the leading coefficients of numerator and denominator."""
+    from symflex.roots import precision  # imports numpy
+
     bits = 64 + BITS_PER_DIGIT * (digits + GUARD_DIGITS)
     enclosed = bound.enclosed(bits)
     assert isinstance(enclosed, EnclosedTransferFunction)
@@ -59,6 +62,8 @@ def _gain(bound: BoundTransferFunction, digits: int) -> arb:
 
 def _factors(roots: Sequence[Root], digits: int) -> list[Expression]:
     """Return one factor per real root or conjugate pair, in the order of the roots."""
+    from symflex.roots import precision  # imports numpy
+
     s = Name(LAPLACE)
     factors: list[Expression] = []
     for root in roots:

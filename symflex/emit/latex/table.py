@@ -24,8 +24,6 @@ from symflex.emit.latex.tabular import (
 from symflex.emit.latex.text import escape_text, text_width
 from symflex.emit.latex.units import quantity_latex, siunitx_unit, unit_latex
 from symflex.emit.latex.width import EM_MM
-from symflex.roots import decimals, precision
-from symflex.roots.root import overlap
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -151,6 +149,8 @@ def mode_table(
     maps : sequence of PoleZeroMap
         Of transfer functions of one model.
     """
+    from symflex.roots.root import overlap  # imports numpy
+
     modes: list[Entry] = []
     for found in maps:
         for entry in one_of_each_pair(found.poles):
@@ -296,6 +296,8 @@ def _imaginary_part(entry: Entry, digits: int) -> str:
 
 
 def _angular_frequency(entry: Entry, digits: int) -> str:
+    from symflex.roots import decimals  # imports numpy
+
     return _certified(
         decimals(entry.root.natural_frequency(), arb(0), digits).re, is_exact=entry.root.is_zero
     )
@@ -312,6 +314,8 @@ def _damping(entry: Entry, digits: int) -> str:
 
 def frequency_text(root: Root, digits: int) -> str:
     """Return the natural frequency abs(s)/(2 pi) of a root [Hz] with at most so many certified digits."""
+    from symflex.roots import decimals, precision  # imports numpy
+
     with precision(max(_FREQUENCY_BITS, root.working_bits())):
         frequency = root.natural_frequency() / (2 * arb.pi())
     return decimals(frequency, arb(0), digits).re
@@ -319,6 +323,8 @@ def frequency_text(root: Root, digits: int) -> str:
 
 def damping_text(root: Root, digits: int) -> str:
     """Return ``-re/abs(s)`` with at most so many certified digits, empty at 0 and where s may be 0."""
+    from symflex.roots import decimals, precision  # imports numpy
+
     frequency = root.natural_frequency()
     if root.is_zero or not frequency > 0:
         return ""
