@@ -110,6 +110,7 @@ class LevelPolynomial:
         """Return a nearby zero of the derivative of order ``count - 1``, and p expanded about it."""
         is_real = centre.imag == 0
         shifted = self.shifted(centre)
+        last = arb("+inf")
         for _ in range(CENTRE_STEPS):
             self.budget.spend()
             step = shifted[count - 1] / (count * shifted[count])
@@ -117,9 +118,12 @@ class LevelPolynomial:
                 return None
             moved = (centre - step).mid()
             moved = acb(moved.real) if is_real else moved
-            if step.abs_upper() <= moved.abs_upper() * arb(2) ** (16 - ctx.prec):
+            size = step.abs_upper()
+            # Where the coefficients' own balls end it, steps stop shrinking long before they are that small.
+            is_at_its_end = last <= moved.abs_upper() * GROUPING and not size < last / 2
+            if is_at_its_end or size <= moved.abs_upper() * arb(2) ** (16 - ctx.prec):
                 break
-            centre, shifted = moved, self.shifted(moved)
+            centre, shifted, last = moved, self.shifted(moved), size
         return centre, shifted
 
     def separate(
