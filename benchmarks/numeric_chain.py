@@ -7,6 +7,8 @@ model, SymPy from the finished matrix over ZZ[s], Lcapy from its own description
 
 from __future__ import annotations
 
+import sympy
+
 from benchmarks.measure import Claim, Measurement, interpreter_with, run_snippet
 
 SIZES = (10, 50, 200)
@@ -23,6 +25,7 @@ SYMFLEX = """
 import time
 from benchmarks.numeric_chain import specification
 from symflex import pipeline
+from symflex.roots import locate  # imported before the clock starts, as the other ways' libraries are
 
 model = pipeline.loads(specification({n}, damped={damped}))
 begin = time.process_time()
@@ -61,6 +64,44 @@ print(time.process_time() - begin)
 """
 SYMPY_METHODS = {"det()": "det()", "charpoly()": "charpoly()[-1]"}
 
+END = "print(time.process_time() - begin)"
+FEW = 6
+POLES_FLOOR = 40.0
+"""Times as fast as other ways with thirty digits or a proof, at six masses."""
+COEFFICIENTS = """
+import time
+from benchmarks.numeric_chain import coefficients
+
+num, den = coefficients({n})
+"""
+POLE_WAYS = {
+    "mpmath `polyroots`, 30 digits": """
+import mpmath
+
+mpmath.mp.dps = 30
+begin = time.process_time()
+for each in (num, den):
+    mpmath.polyroots(each, maxsteps=500, extraprec=200)
+""",
+    "sympy.physics.control `poles()` and `zeros()`, exact, without digits": """
+from sympy import Poly, Symbol
+from sympy.physics.control import TransferFunction
+
+s = Symbol("s")
+system = TransferFunction(Poly(num, s).as_expr(), Poly(den, s).as_expr(), s)
+begin = time.process_time()
+system.poles(), system.zeros()
+""",
+    "`numpy.roots`, double precision, no proof": """
+import numpy as np
+
+begin = time.process_time()
+for each in (num, den):
+    np.roots([float(c) for c in each])
+""",
+}
+UNPROVED = "`numpy.roots`, double precision, no proof"
+
 LCAPY = """
 import time
 from lcapy import Circuit
@@ -98,6 +139,23 @@ def specification(n: int, *, damped: bool) -> str:
     return "\n".join(lines)
 
 
+def coefficients(n: int) -> tuple[list[int], list[int]]:
+    """Return the coefficients of numerator and denominator of the damped chain, highest power first.
+
+    From determinants over ZZ[s], by SymPy.
+    """
+    s = sympy.Symbol("s")
+    rows = [[sympy.Integer(0)] * n for _ in range(n)]
+    for i, (m, k, b) in enumerate(values(n)):
+        rows[i][i] += m * s**2
+        if i < n - 1:
+            for row, column, sign in ((i, i, 1), (i + 1, i + 1, 1), (i, i + 1, -1), (i + 1, i, -1)):
+                rows[row][column] += sign * (k + b * s)
+    minors = (sympy.Matrix([r[1:] for r in rows[1:]]), sympy.Matrix(rows))
+    num, den = (sympy.Poly(a.det(method="berkowitz"), s).all_coeffs() for a in minors)
+    return [int(c) for c in num], [int(c) for c in den]
+
+
 def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
     """Measure the transfer function at every size, and the roots at the largest."""
     found: list[Measurement] = []
@@ -127,7 +185,20 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
         ours = run_snippet(task, "symflex", code, limit)
         found.append(ours)
         claims.append(_ceiling(f"{task}: milliseconds", ceiling, ours))
-    return found, claims
+    ours, *theirs = _pole_ways(limit)
+    ratio = min(other.at_least for other in theirs if other.way != UNPROVED) / ours.at_least
+    text = f"{FEW} masses, poles and zeros: times as fast as mpmath and sympy.physics.control"
+    claims.append(Claim(text, POLES_FLOOR, ratio))
+    return [*found, ours, *theirs], claims
+
+
+def _pole_ways(limit: float) -> list[Measurement]:
+    """Return how long poles and zeros of a short chain take each way, ours first."""
+    task = f"poles and zeros of {FEW} masses, damped"
+    code = SYMFLEX.format(n=FEW, damped=True, then=ROOTS.format(n=FEW))
+    start = COEFFICIENTS.format(n=FEW)
+    ours = run_snippet(task, "symflex, proved, 30 digits", code, limit)
+    return [ours, *(run_snippet(task, way, start + c + END, limit) for way, c in POLE_WAYS.items())]
 
 
 def _ceiling(text: str, seconds: float, ours: Measurement) -> Claim:
