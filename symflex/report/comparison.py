@@ -24,6 +24,7 @@ from symflex.report.document import (
 )
 from symflex.report.facts import ModelFacts
 from symflex.report.numerals import counted
+from symflex.report.structure import PLACES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -43,7 +44,7 @@ def model_cell(facts: ModelFacts) -> Cell:
 def flexibility_cell(facts: ModelFacts) -> Cell:
     """Return which kinds of flexibility a model describes."""
     runs: list[Run] = []
-    for place in ("base", "transmission", "link"):
+    for place in PLACES:
         parts = [c for c in facts.compliances if c.place == place]
         if parts:
             how = "bending" if all(c.is_bending for c in parts) else "axial or torsional"
@@ -178,9 +179,9 @@ def comparison_section(models: Sequence[ModelFacts]) -> Section | None:
             "Minimum phase means: no zero in the open right half plane. “For all values” is proved for all "
             "positive values of the parameters. A function is colocated when its output is taken where "
             "the input "
-            "acts, or rigidly joined to it. A compliance with an end on ground belongs to the base; "
-            "between moving "
-            "parts, one in bending to a link, another to the transmission."
+            "acts, or rigidly joined to it. A compliance with an end on ground belongs to the base, or is a "
+            "contact where its force is measured; between moving parts, one in bending belongs to a link, "
+            "another to the transmission."
         ),
     )
     if controlled:
