@@ -2,9 +2,9 @@
 
 The error of a line is the mean over records of X* E, over that of abs(X)^2, where X is the record's spectrum
 and E what a line's own H leaves of the output: noise, and leakage, the response at neighbouring frequencies
-less that at the line, seen through the window. X and E are circular Gaussian, and uncorrelated on one line,
-so that by the rule for fourth moments (Isserlis 1918), with P the covariance of X on two lines k and l, Q that
-of E, and C those of X on one and E on the other,
+less that at the line, seen through the window. X and E are circular Gaussian, and uncorrelated on one line.
+By the rule for fourth moments (Isserlis 1918), with P the covariance of X on two lines k and l, Q that of E,
+and C those of X on one and E on the other,
 
     n cov(e_k, e_l) = sum_d P_kl(d) Q_kl(d),    n pcov(e_k, e_l) = sum_d C_kl(d) C_lk(-d),
 

@@ -37,8 +37,8 @@ class Observation:
     mirror : sparse array, shape (n, k), or None
         Acts on the conjugate values: what negative frequencies give to the lowest lines.
     places : array of int, shape (n, u), or None
-        Which of :attr:`omega` each line sees, from :data:`REACH_IN_LINES` below it to as many above; a negative
-        number, one's complement, stands for the negative frequency.
+        Which of :attr:`omega` each line sees, from :data:`REACH_IN_LINES` below it to as many above; a
+        negative number, one's complement, stands for the negative frequency.
     """
 
     omega: Real
@@ -109,7 +109,7 @@ def seen_amplitudes() -> Real:
     """Return with which amplitudes a line sees the frequencies around it; their squares add up to 1."""
     steps = np.arange(-REACH_IN_LINES * STEPS_PER_LINE, REACH_IN_LINES * STEPS_PER_LINE + 1)
     spectrum = _hann_spectrum(steps / STEPS_PER_LINE)
-    return spectrum / np.sqrt(np.sum(spectrum**2))
+    return np.asarray(spectrum / np.sqrt(np.sum(spectrum**2)), np.float64)
 
 
 def _hann_spectrum(line: Real) -> Real:

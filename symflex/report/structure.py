@@ -3,8 +3,8 @@
 Eppinger and Seering (1988, "Discussion") divide flexibility into that of the base, the transmission and the
 links. Here the three are told apart by what a compliance joins: one with an end on ground belongs to the
 base; between moving parts one in bending belongs to a link, one in tension or torsion to the transmission.
-None of them is what an axis touches: a compliance on ground whose force an output or a signal shows, as that of a
-force sensor, is a contact.
+None of them is what an axis touches: a compliance on ground whose force an output or a signal shows, as that
+of a force sensor, is a contact.
 """
 
 from __future__ import annotations
@@ -114,15 +114,16 @@ def _place(is_bending: bool, *, is_grounded: bool) -> Place:
 
 
 def _is_felt(model: Model, use: PlacedElement) -> bool:
-    """Return whether an output or a signal shows the force of an element: by name, or as stiffness times place."""
-    parts = set().union(*(_named(value) for _, value in use.values)) | _places(use)
-    shown = [x.expression for x in (*model.outputs, *model.signals)]
-    return any(
-        parts <= _named(expression)
-        and bool(parts - _places(use))
-        or any(isinstance(n, Attribute) and n.owner == use.name for n in names(expression))
-        for expression in shown
-    )
+    """Return whether an output or a signal shows an element's force, by name or as stiffness times place."""
+    places = _places(use)
+    stiffness = set().union(*(_named(value) for _, value in use.values))
+    shown = [x.expression for x in model.outputs] + [x.expression for x in model.signals]
+    for expression in shown:
+        if stiffness and stiffness | places <= _named(expression):
+            return True
+        if any(isinstance(n, Attribute) and n.owner == use.name for n in names(expression)):
+            return True
+    return False
 
 
 def _places(use: PlacedElement) -> set[str]:
