@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import inf
 from typing import TYPE_CHECKING, Final
 
 from symflex.report.document import (
@@ -118,6 +119,18 @@ def loop_cell(facts: ModelFacts) -> Cell:
     return tuple(runs[:-1]) if runs else (NONE,)
 
 
+def bandwidth_cell(facts: ModelFacts) -> Cell:
+    """Return the bandwidth a loop allows with a gain margin of 6 dB."""
+    runs: list[Run] = []
+    for loop in facts.loops:
+        if loop.bandwidth_hz == inf:
+            runs += ["no limit", "\n"]
+        elif loop.bandwidth_hz is not None:
+            at_least = "" if loop.is_bandwidth_limited else "≥ "
+            runs += [f"{at_least}{loop.bandwidth_hz:.4g} Hz", "\n"]
+    return tuple(runs[:-1]) if runs else (NONE,)
+
+
 @dataclass(frozen=True, slots=True)
 class ComparisonColumn:
     """A column of the comparison.
@@ -154,6 +167,7 @@ LOOP_COLUMNS: dict[str, ComparisonColumn] = {
     "Model": ComparisonColumn(model_cell, "plain"),
     "Outputs together up to": ComparisonColumn(together_cell),
     "Loop stable for": ComparisonColumn(loop_cell),
+    "Bandwidth allowed": ComparisonColumn(bandwidth_cell),
 }
 """Of what matters to control: models with loops, or with outputs here and elsewhere."""
 
@@ -190,7 +204,9 @@ def comparison_section(models: Sequence[ModelFacts]) -> Section | None:
             text(
                 "Outputs are together where one differs from the output on which the input does work by at "
                 "most 10 degrees of phase and 1 dB. A loop is stable with all closed-loop poles in the left "
-                "half plane; for which gains is proved as far as the model's chapter says."
+                "half plane; for which gains is proved as far as the model's chapter says. The bandwidth "
+                "allowed is the frequency at which the loop gain first falls below one, with half of the gain "
+                "at which the loop becomes unstable (a gain margin of 6 dB)."
             ),
         )
     return Section("Comparison of models", (*tables, *explained), ANCHOR)

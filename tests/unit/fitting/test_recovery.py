@@ -54,22 +54,6 @@ def test_intervals_are_honest_where_leakage_rules():
     assert np.all((inside > 0.60) & (inside < 0.76)), inside
 
 
-def test_the_errors_of_lines_hang_together_as_computed():
-    """The spread of a weighted sum of lines over many measurements, against the covariance of one."""
-    random = np.random.default_rng(11)
-    system = random_system(random, 1)
-    narrow = type(system)(np.array([20.0]), np.array([0.01]), np.array([26.0]), np.array([0.02]))
-    found = []
-    for _ in range(60):
-        data = measured(narrow, random, record=8.0, records=20, noise=0.01)
-        fit = fit_resonances([data], [Base(np.ones_like)], modes=1)
-        error = fit.resonances.omega_p[0] / (2 * np.pi * 20.0) - 1
-        found.append((error, fit.standard_errors().omega_p[0] / (2 * np.pi * 20.0)))
-    errors, deviations = np.array(found).T
-    # 60 values tell a standard deviation to 9 %; lines taken as independent would promise 1.5 times as much.
-    assert np.sqrt(np.mean((errors / deviations) ** 2)) == pytest.approx(1, abs=0.27)
-
-
 def test_without_the_window_damping_comes_out_too_large():
     random = np.random.default_rng(5)
     system = random_system(random, 1)
