@@ -31,6 +31,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from symflex.api import (
         BoundTransferFunction,
+        Fit,
         Form,
         Model,
         ModeShape,
@@ -40,16 +41,22 @@ if TYPE_CHECKING:
         Stability,
         StateSpace,
         TransferFunction,
+        WrittenReport,
+        fit,
         load,
         loads,
+        write_report,
     )
     from symflex.errors import SymflexError
+    from symflex.measurement import MeasuredResponse, read_measurement
 
 __version__ = "0.1.0"
 
 _HOME = {
     "BoundTransferFunction": "symflex.api",
+    "Fit": "symflex.api",
     "Form": "symflex.api",
+    "MeasuredResponse": "symflex.measurement",
     "ModeShape": "symflex.api",
     "Model": "symflex.api",
     "Residue": "symflex.api",
@@ -59,13 +66,19 @@ _HOME = {
     "StateSpace": "symflex.api",
     "SymflexError": "symflex.errors",
     "TransferFunction": "symflex.api",
+    "WrittenReport": "symflex.api",
+    "fit": "symflex.api",
     "load": "symflex.api",
     "loads": "symflex.api",
+    "read_measurement": "symflex.measurement",
+    "write_report": "symflex.api",
 }
 
 __all__ = [
     "BoundTransferFunction",
+    "Fit",
     "Form",
+    "MeasuredResponse",
     "ModeShape",
     "Model",
     "Residue",
@@ -75,9 +88,13 @@ __all__ = [
     "StateSpace",
     "SymflexError",
     "TransferFunction",
+    "WrittenReport",
     "__version__",
+    "fit",
     "load",
     "loads",
+    "read_measurement",
+    "write_report",
 ]
 
 

@@ -108,11 +108,11 @@ class Stability:
 
     @property
     def bandwidth_hz(self) -> float:
-        """The bandwidth that the loop allows: where its gain first falls below one, with a gain margin of 6 dB.
+        """The bandwidth allowed: where the loop gain first falls below one, with a gain margin of 6 dB.
 
-        Infinite where every gain is stable, ``nan`` where no gain next to 0 is, where the loop gain is below one
-        from the lowest frequencies on, or where the loop is closed in several places. Where stable gains end
-        with the range examined, it is what half of the largest one gives.
+        Infinite where every gain is stable, ``nan`` where no gain next to 0 is, where the loop gain is below
+        one from the lowest frequencies on, or where the loop is closed in several places. Where stable gains
+        end with the range examined, it is what half of the largest one gives.
         """
         found = self.proved.bandwidth
         if found is not None and found.gain is None:

@@ -205,8 +205,8 @@ def comparison_section(models: Sequence[ModelFacts]) -> Section | None:
                 "Outputs are together where one differs from the output on which the input does work by at "
                 "most 10 degrees of phase and 1 dB. A loop is stable with all closed-loop poles in the left "
                 "half plane; for which gains is proved as far as the model's chapter says. The bandwidth "
-                "allowed is the frequency at which the loop gain first falls below one, with half of the gain "
-                "at which the loop becomes unstable (a gain margin of 6 dB)."
+                "allowed is the frequency at which the loop gain first falls below one, with half of the "
+                "gain at which the loop becomes unstable (a gain margin of 6 dB)."
             ),
         )
     return Section("Comparison of models", (*tables, *explained), ANCHOR)

@@ -36,7 +36,7 @@ def test_the_spread_of_scores_is_that_computed():
     computed = np.diag(score_covariance(line, true.factor(0, line.observation.omega), slopes))
     independent = np.sum(np.abs(slopes) ** 2, axis=0)
     assert spread == pytest.approx(computed, rel=0.4)
-    # omega_p and zeta_z: a third of the variance that independent lines would have, and one and a half times it.
+    # omega_p, zeta_z: a third of the variance that independent lines would have, and one and a half times it.
     assert spread[0] < 0.5 * independent[0]
     assert spread[3] > 1.2 * independent[3]
 
