@@ -145,7 +145,7 @@ def _read(pyuff: ModuleType, name: str, data: bytes, places: Sequence[DatasetPla
             try:
                 entry = pyuff.UFF(path).read_sets(place.number)
             except Exception as error:
-                # Whatever goes wrong in it, pyuff raises Exception itself: no class of its own, and none below.
+                # Whatever goes wrong in it, pyuff raises Exception itself and no class derived from it.
                 if type(error) is not Exception:
                     raise
                 entry = None
