@@ -111,12 +111,17 @@ def loop_cell(facts: ModelFacts) -> Cell:
     runs: list[Run] = []
     for loop in facts.loops:
         for low, high in loop.stable:
-            above = "" if not low else f"{low:.4g} < "
-            below = "" if high is None else f" < {high:.4g}"
+            above = "" if not low else f"{_short(low)} < "
+            below = "" if high is None else f" < {_short(high)}"
             runs += [f"{above}{loop.gain}{below}" if above or below else f"all {loop.gain} > 0", "\n"]
         if not loop.stable:
             runs += [f"no {loop.gain}", "\n"]
     return tuple(runs[:-1]) if runs else (NONE,)
+
+
+def _short(value: float) -> str:
+    """Return a number with four digits, without an exponent where one would be harder to read."""
+    return f"{value:.0f}" if 1e4 <= abs(value) < 1e7 else f"{value:.4g}"  # noqa: PLR2004
 
 
 def bandwidth_cell(facts: ModelFacts) -> Cell:

@@ -304,7 +304,7 @@ def _data(models: Models) -> tuple[list[tuple[str, DataFact]], bool]:
 
 
 def _off(told: Sequence[tuple[str, DataFact]]) -> str:
-    return "; ".join(f"{stem} is off by {f.decibels:.2g} dB, {f.degrees:.2g} degrees rms" for stem, f in told)
+    return "; ".join(f"{stem} is off by {f.decibels:.3g} dB, {f.degrees:.3g} degrees rms" for stem, f in told)
 
 
 def _without_data(told: Sequence[tuple[str, DataFact]]) -> Finding:
