@@ -112,7 +112,8 @@ def loop_cell(facts: ModelFacts) -> Cell:
     for loop in facts.loops:
         for low, high in loop.stable:
             above = "" if not low else f"{_short(low)} < "
-            below = "" if high is None else f" < {_short(high)}"
+            unit = f" {loop.unit}" if loop.unit else ""
+            below = "" if high is None else f" < {_short(high)}{unit}"
             runs += [f"{above}{loop.gain}{below}" if above or below else f"all {loop.gain} > 0", "\n"]
         if not loop.stable:
             runs += [f"no {loop.gain}", "\n"]
