@@ -36,6 +36,8 @@ CAP = 0.05
 """Added to the deviation in the logarithmic residual: no line may be so heavy that a poor start is torn by
 it."""
 LARGEST_LAG = 3
+HANN_SHARES = (4 / 9, 1 / 36, 0.0)
+"""Correlation of noise on lines 1, 2 and 3 apart, seen through a Hann window."""
 SINGULAR = 1e-12
 EDGE = 12.0
 """Logarithms of parameters are kept within this of their start, so that nothing overflows on the way."""
@@ -187,9 +189,10 @@ def _covariance(
     """Return the covariance of the parameters, None when it is singular, and the factor of correlation.
 
     Windows and overlapping records correlate neighbouring lines, so that the inverse of J'J alone would
-    promise too much. Where the window is known for all responses, the covariance of J'e follows from it and
-    stands between two such inverses; else the correlation up to :data:`LARGEST_LAG` lines is estimated from
-    the residuals (White 1980; Newey & West 1987). The scale is that of the residuals.
+    promise too much. The correlation up to :data:`LARGEST_LAG` lines is estimated from the residuals, and
+    enters between two such inverses (White 1980; Newey & West 1987). Where the window is known for all
+    responses, the covariance of J'e that follows from it stands there, with as much of that correlation as a
+    window does not bring: what a model lacks is no noise. The scale is that of the residuals.
     """
     stacked = np.concatenate([_parts(s) for s in slopes])
     if not stacked.shape[1]:
@@ -205,7 +208,8 @@ def _covariance(
     if freedom <= 0:
         return None, 1.0
     power = sum(float(np.sum(np.abs(r) ** 2)) for r in residuals)
-    middle = np.array(normal)
+    is_explained = len(scores) == len(residuals)
+    middle = np.sum(scores, axis=0) / np.outer(size, size) if is_explained else np.array(normal)
     factor = 1.0
     for lag in range(1, LARGEST_LAG + 1):
         pairs = sum(max(r.size - lag, 0) for r in residuals)
@@ -215,10 +219,12 @@ def _covariance(
         if share < 2 / np.sqrt(max(pairs, 1)):
             break
         cross = sum((np.conj(s[:-lag]).T @ s[lag:]).real for s in scaled)
-        middle = middle + share * (cross + cross.T)
         factor += 2 * share
-    if len(scores) == len(residuals):
-        middle = np.sum(scores, axis=0) / np.outer(size, size)
+        kept = share
+        if is_explained:
+            kept -= HANN_SHARES[lag - 1]
+            kept = kept if kept > 2 / np.sqrt(pairs) else 0.0
+        middle = middle + kept * (cross + cross.T)
     inverse = np.linalg.inv(normal)
     covariance = inverse @ middle @ inverse * (power / freedom)
     return covariance / np.outer(size, size), factor
