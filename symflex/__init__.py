@@ -31,6 +31,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from symflex.api import (
         BoundTransferFunction,
+        Fit,
         Form,
         Model,
         ModeShape,
@@ -40,17 +41,23 @@ if TYPE_CHECKING:
         Stability,
         StateSpace,
         TransferFunction,
+        WrittenReport,
+        fit,
         load,
         loads,
+        write_report,
     )
     from symflex.cache import derivation_cache
     from symflex.errors import SymflexError
+    from symflex.measurement import MeasuredResponse, read_measurement
 
 __version__ = "0.1.0"
 
 _HOME = {
     "BoundTransferFunction": "symflex.api",
+    "Fit": "symflex.api",
     "Form": "symflex.api",
+    "MeasuredResponse": "symflex.measurement",
     "ModeShape": "symflex.api",
     "Model": "symflex.api",
     "Residue": "symflex.api",
@@ -61,13 +68,19 @@ _HOME = {
     "SymflexError": "symflex.errors",
     "TransferFunction": "symflex.api",
     "derivation_cache": "symflex.cache",
+    "WrittenReport": "symflex.api",
+    "fit": "symflex.api",
     "load": "symflex.api",
     "loads": "symflex.api",
+    "read_measurement": "symflex.measurement",
+    "write_report": "symflex.api",
 }
 
 __all__ = [
     "BoundTransferFunction",
+    "Fit",
     "Form",
+    "MeasuredResponse",
     "ModeShape",
     "Model",
     "Residue",
@@ -77,10 +90,14 @@ __all__ = [
     "StateSpace",
     "SymflexError",
     "TransferFunction",
+    "WrittenReport",
     "__version__",
     "derivation_cache",
+    "fit",
     "load",
     "loads",
+    "read_measurement",
+    "write_report",
 ]
 
 

@@ -1,10 +1,12 @@
 """The classes a user meets: thin faces over the pipeline, with SymPy and mpmath at the surface."""
 
 from symflex.api.bound import BoundTransferFunction
+from symflex.api.fitted import Fit, fit
 from symflex.api.form import Form
 from symflex.api.mode import Mode
 from symflex.api.mode_shape import ModeShape
 from symflex.api.model import Model, Table, load, loads
+from symflex.api.report import WrittenReport, write_report
 from symflex.api.residue import Residue
 from symflex.api.root import Root
 from symflex.api.sensitivity import Sensitivity
@@ -14,6 +16,7 @@ from symflex.api.transfer_function import Number, TransferFunction
 
 __all__ = [
     "BoundTransferFunction",
+    "Fit",
     "Form",
     "Mode",
     "ModeShape",
@@ -27,6 +30,9 @@ __all__ = [
     "StateSpace",
     "Table",
     "TransferFunction",
+    "WrittenReport",
+    "fit",
     "load",
     "loads",
+    "write_report",
 ]

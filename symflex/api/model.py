@@ -19,6 +19,7 @@ from symflex.spec import write
 
 if TYPE_CHECKING:
     from symflex import model as model_room
+    from symflex.measurement import MeasuredResponse
     from symflex.stability import DynamicColocation
 
 Table = Mapping[str, object]
@@ -269,6 +270,66 @@ class Model:
         return pipeline.colocation(
             self.resolved, f"{output}/{input}", f"{reference}/{input}", phase, magnitude, band
         )
+
+    def measure(
+        self,
+        output: str,
+        input: str,
+        band: tuple[float, float],
+        spacing: float,
+        *,
+        averages: int = 40,
+        noise: float = 0.03,
+        rolloff: float | None = 5000.0,
+        seed: int = 1,
+    ) -> MeasuredResponse:
+        """Return what an analyser would measure of a transfer function: synthetic data, and labelled so.
+
+        Parameters
+        ----------
+        output, input : str
+            Names.
+        band : (float, float)
+            The lines shown [Hz].
+        spacing : float
+            Distance of lines [Hz], one over the length of a record.
+        averages : int
+            Records averaged, with half an overlap and a Hann window.
+        noise : float
+            Of the sensor over its signal, rms.
+        rolloff : float, optional
+            Corner of the accelerometer [Hz]; ``None`` for none.
+        seed : int
+            Of the random numbers.
+
+        Raises
+        ------
+        UsageError
+            SF902 an undamped pole, an unknown name or a band that cannot be meant.
+
+        Examples
+        --------
+        >>> import symflex
+        >>> model = Model(
+        ...     elements={
+        ...         "body": {"type": "mass", "at": "x", "m": "1 kg"},
+        ...         "wall": {"type": "spring", "between": ["x", "ground"], "k": "4 kN/m"},
+        ...         "loss": {"type": "damper", "between": ["x", "ground"], "b": "3 N*s/m"},
+        ...     },
+        ...     inputs={"F": {"force": "x"}},
+        ...     outputs={"A": "s^2*x"},
+        ... )
+        >>> data = model.measure("A", "F", (2, 40), 0.1)
+        >>> data.is_synthetic, data.frequency_hz.size
+        (True, 381)
+        >>> symflex.fit(data, modes=1, slope=2)
+        <Fit to synthetic data: 10.1 Hz>
+        """
+        from symflex.measurement import MeasurementPlan  # imports numpy
+
+        (pair,) = pipeline.pick_pairs(self.resolved, [f"{output}/{input}"])
+        plan = MeasurementPlan(band[0], band[1], spacing, averages, noise, rolloff, seed)
+        return pipeline.measure(self.resolved, pair, plan)
 
     def export_numpy(self) -> str:
         """Return a numpy module with a function per transfer function."""

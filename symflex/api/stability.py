@@ -106,6 +106,21 @@ class Stability:
             for m in self.proved.phase_margins
         )
 
+    @property
+    def bandwidth_hz(self) -> float:
+        """The bandwidth allowed: where the loop gain first falls below one, with a gain margin of 6 dB.
+
+        Infinite where every gain is stable, ``nan`` where no gain next to 0 is, where the loop gain is below
+        one from the lowest frequencies on, or where the loop is closed in several places. Where stable gains
+        end with the range examined, it is what half of the largest one gives.
+        """
+        found = self.proved.bandwidth
+        if found is not None and found.gain is None:
+            return float("inf")
+        if found is None or found.frequency is None:
+            return float("nan")
+        return float(hertz(found.frequency).mid())
+
     def to_json_dict(self) -> dict[str, object]:
         """Return the result in the schema ``symflex.stability/1``."""
         return self.proved.to_json_dict()

@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, note, reporting, terminal_width
-from symflex.errors import DataError, Diagnostic, UsageError
-
-if TYPE_CHECKING:
-    from symflex.measurement import MeasuredResponse
+from symflex.errors import Diagnostic, UsageError
 
 SUFFIXES = (".pdf", ".png", ".svg")
 
@@ -97,6 +92,7 @@ def command(
     from symflex.emit.fit_report import fit_json, fit_text
     from symflex.emit.write import write_atomically
     from symflex.fitting import mode_shapes
+    from symflex.measurement import prepared, read_measurement
 
     if tfs and base is None:
         raise UsageError(Diagnostic("SF902", "--tf names a transfer function of --base"))
@@ -105,10 +101,10 @@ def command(
     for path, endings in ((output, (".toml",)), (figure, SUFFIXES)):
         if path and Path(path).suffix.lower() not in endings:
             raise UsageError(Diagnostic("SF902", f"'{Path(path).name}' must end in {' or '.join(endings)}"))
-    measured = _measured(data, band, averages, window)
-    every = measured
+    every = prepared([one for path in data for one in read_measurement(path)], band, averages, window)
+    measured = every
     if driving:
-        measured = [response for response in every if response.name == driving]
+        measured = tuple(response for response in every if response.name == driving)
         if len(measured) != 1:
             hint = "responses: " + ", ".join(response.name for response in every)
             raise UsageError(
@@ -145,24 +141,3 @@ def command(
     else:
         click.echo(fit_text(found, terminal_width(), shapes))
     return 0
-
-
-def _measured(
-    data: tuple[str, ...], band: tuple[float, float] | None, averages: float | None, window: str | None
-) -> list[MeasuredResponse]:
-    from symflex.measurement import read_measurement
-
-    found = [response for path in data for response in read_measurement(path)]
-    if averages is not None:
-        found = [replace(response, averages=averages) for response in found]
-    if window is not None:
-        found = [replace(response, window=window.replace("none", "")) for response in found]
-    if band is not None:
-        if not 0 <= band[0] < band[1]:
-            raise UsageError(Diagnostic("SF902", "--band takes two frequencies in Hz, the lower one first"))
-        found = [response.between(*band) for response in found]
-        for response in found:
-            if not response.values.size:
-                message = f"'{response.name}' has no lines between {band[0]:g} and {band[1]:g} Hz"
-                raise DataError(Diagnostic("SF605", message))
-    return found

@@ -6,17 +6,12 @@ import os
 import re
 from datetime import UTC, date, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from symflex.cli.caching import caching
 from symflex.cli.reporting import note, reporting
 from symflex.errors import Diagnostic, UsageError
-
-if TYPE_CHECKING:
-    from symflex.report import Report
-    from symflex.roots import Progress
 
 EPOCH_VARIABLE = "SOURCE_DATE_EPOCH"
 
@@ -59,6 +54,7 @@ def command(
         find_measurements,
         find_specifications,
         name_specifications,
+        publish,
         write_chapters,
     )
 
@@ -74,37 +70,13 @@ def command(
     with ProgressBar() as bar:
         chapters = write_chapters(named, jobs or os.cpu_count() or 1, bar, measured)
         report = compose(chapters, shown)
-        code = _write(report, folder, pdf, shown, bar)
+        published = publish(report, folder, bar, pdf=pdf)
+    if published.problem:
+        note(published.problem)
     for warning in (*left_out, *report.warnings):
         note(f"warning: {warning}")
-    click.echo(f"open {folder / 'index.html'}")
-    return max(code, report.code)
-
-
-def _write(report: Report, folder: Path, pdf: bool | None, shown: str, bar: Progress) -> int:
-    """Write everything and say what; return an exit code."""
-    from symflex.errors import SymflexError
-    from symflex.report import compile_pdf, has_compiler, report_article, report_page, write_tree
-    from symflex.report.pdf import HOW_TO
-
-    bar.report(0.9, "writing")
-    tex = report_article(report)
-    files = {**report.files, "report.tex": tex.encode(), "index.html": report_page(report).encode()}
-    write_tree(folder, files)
-    if pdf is False:
-        return 0
-    if not has_compiler():
-        note(f"no report.pdf: there is no pdflatex on this computer; report.tex is written\n  hint: {HOW_TO}")
-        return 2 if pdf else 0
-    bar.report(0.92, "pdflatex")
-    figures = {name: data for name, data in report.files.items() if name.startswith("figures/")}
-    try:
-        made = compile_pdf(tex, figures, _epoch(shown))
-    except SymflexError as error:
-        note(str(error))
-        return error.exit_code
-    write_tree(folder, {"report.pdf": made})
-    return 0
+    click.echo(f"open {published.page}")
+    return max(published.code, report.code)
 
 
 def _date(given: str | None) -> str:
@@ -134,9 +106,3 @@ def _refuse(given: str) -> str:
     raise UsageError(
         Diagnostic("SF902", f"--date takes a day such as 1988-12-31, or none, found '{given[:40]}'")
     )
-
-
-def _epoch(shown: str) -> int:
-    """Return the seconds since 1970 of the day printed, for the file's own metadata."""
-    day = date.fromisoformat(shown) if shown else date(1970, 1, 2)
-    return int(datetime(day.year, day.month, day.day, tzinfo=UTC).timestamp())

@@ -274,8 +274,12 @@ def _accuracy(fit: Fit) -> str:
         words.append(f"that is {size:.3g} times what coherence explains")
     words.append("standard errors are scaled to the residual")
     if fit.refined.correlation > 1:
-        words.append(f"and count neighbouring lines as correlated (variance x {fit.refined.correlation:.2f})")
+        words.append(f"and count neighbouring lines as correlated (a mean has {_times(fit)} the variance)")
     return ", ".join(words[:-1]) + (", " if len(words) == 2 else " ") + words[-1]  # noqa: PLR2004
+
+
+def _times(fit: Fit) -> str:
+    return f"{fit.refined.correlation:.2f} times"
 
 
 def _phase_words(test: PhaseTest, fit: Fit, r: int) -> str:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from fractions import Fraction
 
-    from symflex.stability import Boundary, GainInterval, StabilityMap
+    from symflex.stability import AllowedBandwidth, Boundary, GainInterval, StabilityMap
 
 INDENT = "  "
 SHORT_DIGITS = 6
@@ -54,6 +54,9 @@ def stability_text(found: StabilityMap) -> str:
     lines += _aligned(rows)
     if found.gain_margins or found.phase_margins:
         lines += _margins(found)
+    if found.bandwidth is not None:
+        lines += ["", f"{INDENT}bandwidth, where the gain may still double (6 dB)"]
+        lines.append(2 * INDENT + bandwidth_text(found.gain, found.bandwidth))
     if found.boundaries:
         lines += ["", f"{INDENT}radius bounds the distance from the printed gain to the boundary"]
     return "\n".join(lines)
@@ -143,6 +146,27 @@ def _margins(found: StabilityMap) -> list[str]:
         shown = decimals(abs(angle), arb(0), SHORT_DIGITS).re
         rows.append(("phase", f"{shown} deg", direction, place + flag))
     return lines + _aligned(rows)
+
+
+def bandwidth_text(gain: str, found: AllowedBandwidth) -> str:
+    """Return the bandwidth that a loop allows, in one line.
+
+    Parameters
+    ----------
+    gain : str
+        Its name.
+    found : AllowedBandwidth
+        Of the loop.
+    """
+    if found.gain is None:
+        return f"without limit: every {gain} > 0 is stable"
+    at = f"{gain} = {_number(found.gain)}"
+    if found.frequency is None or found.phase_margin is None:
+        return f"none: at {at} the loop gain is below one from the lowest frequencies on"
+    place = f"{float(hertz(found.frequency).mid()):.{SHORT_DIGITS}g} Hz at {at}"
+    angle = float(degrees(found.phase_margin).mid())
+    shown = f"{place}, phase margin {abs(angle):.3g} deg {'lag' if angle > 0 else 'lead'}"
+    return shown if found.is_limited else f"at least {shown}"
 
 
 def _end(value: arb | None, infinite: str) -> str:

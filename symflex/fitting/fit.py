@@ -20,6 +20,7 @@ from symflex.fitting.order import (
     best_of_starts,
     chosen_order,
     too_few,
+    undetermined,
 )
 from symflex.fitting.peaks import find_modes
 from symflex.fitting.phase_test import PhaseTest, judge_phase
@@ -125,9 +126,16 @@ class Fit:
         return line.base_at_lines * (resonances or self.resonances).factor(response, line.omega)
 
     def standard_errors(self) -> Resonances:
-        """Return the standard error of every parameter, in a record of the same shape; 0 if it was fixed."""
+        """Return the standard error of every parameter, in a record of the same shape; 0 if it was fixed.
+
+        Raises
+        ------
+        FitError
+            SF613 where the data do not determine all parameters; :func:`fit_resonances` returns no such fit.
+        """
         covariance = self.refined.covariance
-        assert covariance is not None
+        if covariance is None:
+            raise FitError(undetermined())
         deviation = np.sqrt(np.diag(covariance))
         found = self.resonances
         n, free = found.count, self.problem.free

@@ -21,6 +21,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import least_squares
 
+from symflex.fitting.line_errors import score_covariance
+
 if TYPE_CHECKING:
     from symflex.fitting.problem import FitProblem, FittedLines
     from symflex.fitting.resonances import Resonances
@@ -34,6 +36,8 @@ CAP = 0.05
 """Added to the deviation in the logarithmic residual: no line may be so heavy that a poor start is torn by
 it."""
 LARGEST_LAG = 3
+HANN_SHARES = (4 / 9, 1 / 36, 0.0)
+"""Correlation of noise on lines 1, 2 and 3 apart, seen through a Hann window."""
 SINGULAR = 1e-12
 EDGE = 12.0
 """Logarithms of parameters are kept within this of their start, so that nothing overflows on the way."""
@@ -164,24 +168,31 @@ def _capped(deviation: Real | None) -> Real:
 
 def _absolute(line: FittedLines) -> Real:
     """Return the standard deviation of each part of each line."""
-    assert line.deviation is not None
-    return line.deviation * np.abs(line.measured.values)
+    return (np.ones(1) if line.deviation is None else line.deviation) * np.abs(line.measured.values)
 
 
 def _judged(problem: FitProblem, found: Resonances, *, has_converged: bool) -> Refined:
     kind = "complex" if problem.has_deviations else "logarithmic"
     residuals = _residuals(problem, found, kind)
     slopes = _slopes(problem, found, kind)
-    covariance, correlation = _covariance(residuals, slopes)
+    scores = [
+        score_covariance(line, line.base * found.factor(r, line.observation.omega), slopes[r])
+        for r, line in enumerate(problem.lines)
+    ]
+    covariance, correlation = _covariance(residuals, slopes, [s for s in scores if s is not None])
     return Refined(found, has_converged, tuple(residuals), covariance, correlation, slopes[0].shape[1])
 
 
-def _covariance(residuals: list[Complex], slopes: list[Complex]) -> tuple[Real | None, float]:
+def _covariance(
+    residuals: list[Complex], slopes: list[Complex], scores: list[Real]
+) -> tuple[Real | None, float]:
     """Return the covariance of the parameters, None when it is singular, and the factor of correlation.
 
     Windows and overlapping records correlate neighbouring lines, so that the inverse of J'J alone would
-    promise too much: the correlation up to :data:`LARGEST_LAG` lines is estimated from the residuals and
-    enters between two such inverses (White 1980; Newey & West 1987). The scale is that of the residuals.
+    promise too much. The correlation up to :data:`LARGEST_LAG` lines is estimated from the residuals, and
+    enters between two such inverses (White 1980; Newey & West 1987). Where the window is known for all
+    responses, the covariance of J'e that follows from it stands there, with as much of that correlation as a
+    window does not bring: what a model lacks is no noise. The scale is that of the residuals.
     """
     stacked = np.concatenate([_parts(s) for s in slopes])
     if not stacked.shape[1]:
@@ -197,7 +208,8 @@ def _covariance(residuals: list[Complex], slopes: list[Complex]) -> tuple[Real |
     if freedom <= 0:
         return None, 1.0
     power = sum(float(np.sum(np.abs(r) ** 2)) for r in residuals)
-    middle = np.array(normal)
+    is_explained = len(scores) == len(residuals)
+    middle = np.sum(scores, axis=0) / np.outer(size, size) if is_explained else np.array(normal)
     factor = 1.0
     for lag in range(1, LARGEST_LAG + 1):
         pairs = sum(max(r.size - lag, 0) for r in residuals)
@@ -207,8 +219,12 @@ def _covariance(residuals: list[Complex], slopes: list[Complex]) -> tuple[Real |
         if share < 2 / np.sqrt(max(pairs, 1)):
             break
         cross = sum((np.conj(s[:-lag]).T @ s[lag:]).real for s in scaled)
-        middle = middle + share * (cross + cross.T)
         factor += 2 * share
+        kept = share
+        if is_explained:
+            kept -= HANN_SHARES[lag - 1]
+            kept = kept if kept > 2 / np.sqrt(pairs) else 0.0
+        middle = middle + kept * (cross + cross.T)
     inverse = np.linalg.inv(normal)
     covariance = inverse @ middle @ inverse * (power / freedom)
     return covariance / np.outer(size, size), factor

@@ -18,6 +18,7 @@ from scipy.sparse import csr_array
 
 Real = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
+Places = npt.NDArray[np.intp]
 
 STEPS_PER_LINE = 6
 REACH_IN_LINES = 4
@@ -35,11 +36,15 @@ class Observation:
         Its real and conjugating part; None when the lines are the values themselves.
     mirror : sparse array, shape (n, k), or None
         Acts on the conjugate values: what negative frequencies give to the lowest lines.
+    places : array of int, shape (n, u), or None
+        Which of :attr:`omega` each line sees, from :data:`REACH_IN_LINES` below it to as many above; a
+        negative number, one's complement, stands for the negative frequency.
     """
 
     omega: Real
     matrix: csr_array | None = None
     mirror: csr_array | None = None
+    places: Places | None = None
 
     def __call__(self, values: Complex) -> Complex:
         """Return the lines that values at :attr:`omega` give; shape (k,) or (k, p) to (n,) or (n, p)."""
@@ -47,6 +52,13 @@ class Observation:
             return values
         seen: Complex = np.asarray(self.matrix @ values)
         return seen if self.mirror is None else np.asarray(seen + self.mirror @ np.conj(values))
+
+    def around(self, values: Complex) -> Complex | None:
+        """Return the response at the frequencies that each line sees, shape (n, u); None without a window."""
+        if self.places is None:
+            return None
+        seen = values[np.where(self.places < 0, ~self.places, self.places)]
+        return np.where(self.places < 0, np.conj(seen), seen)
 
 
 def observe(frequency_hz: Real, spacing_hz: float | None, window: str) -> Observation:
@@ -71,8 +83,7 @@ def observe(frequency_hz: Real, spacing_hz: float | None, window: str) -> Observ
     if window != "hann" or spacing_hz is None or frequency_hz.size < REACH_IN_LINES:
         return Observation(2 * np.pi * frequency_hz)
     steps = np.arange(-REACH_IN_LINES * STEPS_PER_LINE, REACH_IN_LINES * STEPS_PER_LINE + 1)
-    power = _hann_spectrum(steps / STEPS_PER_LINE) ** 2
-    power = power / power.sum()
+    power = seen_amplitudes() ** 2
     step = spacing_hz / STEPS_PER_LINE
     first = round(float(frequency_hz[0]) / step)
     lines = first + STEPS_PER_LINE * np.arange(frequency_hz.size)
@@ -90,7 +101,15 @@ def observe(frequency_hz: Real, spacing_hz: float | None, window: str) -> Observ
     if not positive.all():
         mirror = csr_array((np.where(positive, 0, weights).ravel(), (rows, places.ravel())), shape=shape)
     offset = float(frequency_hz[0]) - first * step
-    return Observation(2 * np.pi * np.maximum(grid * step + offset, 0.5 * step), matrix, mirror)
+    seen = np.where(positive, places, ~places)
+    return Observation(2 * np.pi * np.maximum(grid * step + offset, 0.5 * step), matrix, mirror, seen)
+
+
+def seen_amplitudes() -> Real:
+    """Return with which amplitudes a line sees the frequencies around it; their squares add up to 1."""
+    steps = np.arange(-REACH_IN_LINES * STEPS_PER_LINE, REACH_IN_LINES * STEPS_PER_LINE + 1)
+    spectrum = _hann_spectrum(steps / STEPS_PER_LINE)
+    return np.asarray(spectrum / np.sqrt(np.sum(spectrum**2)), np.float64)
 
 
 def _hann_spectrum(line: Real) -> Real:

@@ -229,6 +229,16 @@ def too_few(problem: FitProblem, count: int, kind: str) -> Diagnostic:
     return Diagnostic("SF611", message, None, "ask for fewer with --modes, or try --start vector")
 
 
+def undetermined() -> Diagnostic:
+    """Return the message that the parameters have no covariance."""
+    return Diagnostic(
+        "SF613",
+        "the data do not determine all parameters: their covariance is singular",
+        None,
+        "ask for fewer resonances, or measure a wider band",
+    )
+
+
 def _nothing(problem: FitProblem) -> Resonances:
     gains = []
     for line in problem.lines:
@@ -282,12 +292,7 @@ def _failure(problem: FitProblem, refined: Refined, *, is_quick: bool = False) -
         hint = "ask for fewer resonances, or for another --start"
         return Diagnostic("SF612", "the fit did not converge", None, hint)
     if refined.covariance is None:
-        return Diagnostic(
-            "SF613",
-            "the data do not determine all parameters: their covariance is singular",
-            None,
-            "ask for fewer resonances, or measure a wider band",
-        )
+        return undetermined()
     low, high = problem.band
     for i, omega in enumerate(refined.resonances.omega_p.tolist()):
         if not low <= omega <= high:

@@ -131,12 +131,10 @@ def responses_of(arrays: Mapping[str, np.ndarray], name: str, stem: str) -> tupl
             ),
             None,
         )
-    for found, what in ((frequency, "frequency_hz"), (values, "values")):
-        if found is None:
-            message = f"'{name}' has no array {what}; it has {listed_names(list(arrays)) or 'none'}"
-            raise DataError(Diagnostic("SF602", message, None, _HINT))
-    assert frequency is not None
-    assert values is not None
+    if frequency is None or values is None:
+        what = "frequency_hz" if frequency is None else "values"
+        message = f"'{name}' has no array {what}; it has {listed_names(list(arrays)) or 'none'}"
+        raise DataError(Diagnostic("SF602", message, None, _HINT))
     lines = _numeric(frequency, name, "frequency_hz").real.ravel()
     table = _rows(_numeric(values, name, "values"), lines.size, name, "values")
     coherence = first(COHERENCE)

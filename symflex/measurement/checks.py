@@ -93,11 +93,17 @@ def checked_response(
             lambda i: f"frequency {frequency[i]:.9g} Hz repeats",
             "one line per frequency",
         )
+        backwards = steps < 0
+        others = int(backwards.sum()) - 1
+        # The first one tells: in a file sorted downwards every line would be named.
         note(
             "SF604",
-            steps < 0,
+            backwards & (np.cumsum(backwards) == 1),
             "frequency",
-            lambda i: f"frequency {frequency[i]:.9g} Hz follows {frequency[i - 1]:.9g} Hz",
+            lambda i: (
+                f"frequency {frequency[i]:.9g} Hz follows {frequency[i - 1]:.9g} Hz"
+                + (f", and {others} more lines are out of order" if others else "")
+            ),
             "sort the lines by frequency",
         )
     if problems:

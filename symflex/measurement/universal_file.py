@@ -144,7 +144,10 @@ def _read(pyuff: ModuleType, name: str, data: bytes, places: Sequence[DatasetPla
         for place in places:
             try:
                 entry = pyuff.UFF(path).read_sets(place.number)
-            except Exception:  # noqa: BLE001 - pyuff raises bare Exception, and nothing else tells
+            except Exception as error:
+                # Whatever goes wrong in it, pyuff raises Exception itself and no class derived from it.
+                if type(error) is not Exception:
+                    raise
                 entry = None
             if not isinstance(entry, dict) or "data" not in entry or "x" not in entry:
                 message = f"{name}:{place.line}:1: this dataset 58 cannot be read"

@@ -10,7 +10,7 @@ from symflex.errors.diagnostic import nearest
 from symflex.model.model import Analysis, Figure, Published
 from symflex.model.scope import COMPARED_NAMES, LISTED_NAMES, RESERVED
 from symflex.quantities import unit_of
-from symflex.spec import ArrayValue, NumberValue, TableValue
+from symflex.spec import ArrayValue, BooleanValue, NumberValue, TableValue
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -123,15 +123,33 @@ def read_figures(reader: Reader, section: TableValue | None, model: Model) -> tu
         table = reader.table(entry, what) if reader.name(entry, "a figure") else None
         if table is None:
             continue
-        reader.keys(table, ("kind", "of", "gain", "title", "doc"), what)
+        reader.keys(table, ("kind", "of", "gain", "data", "title", "doc"), what)
         kind = _kind(reader, table, entry, what)
         of = table.get("of")
         texts = reader.strings(of, f"of of {what}") if of else ()
         chosen = tuple(tf for t in texts or () if (tf := pick_tf(reader, t.value, t.span, known)))
         gain = _gain(reader, table, kind, what, model)
         title = reader.plain(table, "title", what)
-        found.append(Figure(entry.key, kind, chosen, title, gain, entry.key_span))
+        has_data = _has_data(reader, table, kind, chosen, what)
+        found.append(Figure(entry.key, kind, chosen, title, gain, entry.key_span, has_data))
     return tuple(found)
+
+
+def _has_data(
+    reader: Reader, table: TableValue, kind: str, chosen: tuple[tuple[str, str], ...], what: str
+) -> bool:
+    """Return whether reports draw measured data into a figure: a Bode plot of one function."""
+    entry = table.get("data")
+    if entry is None:
+        return False
+    if not isinstance(entry.value, BooleanValue):
+        reader.misfit(f"data of {what} must be true or false", entry.value)
+        return False
+    if entry.value.value and (kind != "bode" or len(chosen) != 1):
+        hint = "data are drawn under a Bode plot of one transfer function"
+        reader.note("SF207", f"{what} cannot show measured data", entry.key_span, hint)
+        return False
+    return entry.value.value
 
 
 def _gain(reader: Reader, table: TableValue, kind: str, what: str, model: Model) -> str:

@@ -200,7 +200,7 @@ class Analysis:
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A figure the specification asks for; of a loop when a gain is named."""
+    """A figure the specification asks for; of a loop when a gain is named, in reports over measured data."""
 
     name: str
     kind: str
@@ -208,6 +208,7 @@ class Figure:
     title: str = ""
     gain: str = ""
     span: Span | None = field(default=None, compare=False, repr=False)
+    has_data: bool = False
 
 
 @dataclass(frozen=True, slots=True)

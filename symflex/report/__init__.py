@@ -12,6 +12,7 @@ from symflex.report.article import report_article
 from symflex.report.folder import write_tree
 from symflex.report.page import report_page
 from symflex.report.pdf import compile_pdf, has_compiler
+from symflex.report.published import PublishedReport, publish
 from symflex.report.report import (
     Report,
     compose,
@@ -22,6 +23,7 @@ from symflex.report.report import (
 )
 
 __all__ = [
+    "PublishedReport",
     "Report",
     "compile_pdf",
     "compose",
@@ -29,6 +31,7 @@ __all__ = [
     "find_specifications",
     "has_compiler",
     "name_specifications",
+    "publish",
     "report_article",
     "report_page",
     "write_chapters",

@@ -121,7 +121,7 @@ def _block(block: Block, level: int) -> str:
         case Picture(stem=stem, caption=caption):
             drawing = rf"\includegraphics[width={_drawn_width(block):.1f}mm]{{figures/{stem}.pdf}}"
             below = rf"\par\nopagebreak\smallskip {{\small {escape_text(caption)}}}\par"
-            return rf"{{\centering {drawing}{below}}}"
+            return rf"{{\centering {drawing}{below}}}\medskip"
         case Listing(title=title, text=text):
             return f"{escape_text(title)}:\n\n{_verbatim(text)}"
         case Notice(text=text):
@@ -183,7 +183,10 @@ def _table(table: Table) -> str:
     head = " & ".join(rf"\textbf{{{_runs(c.head)}}}" for c in table.columns)
     separator = rf"\hspace{{{_GAP_MM}mm}}"
     layout = f"@{{}}{f'@{{{separator}}}'.join(formats)}@{{}}"
-    rows = " \\\\[2.5pt]\n".join(" & ".join(_cell(cell) for cell in row) for row in table.rows)
+    # Space after a row of paragraphs is lost in their depth; a line of its own keeps it.
+    rows = " \\\\\n\\addlinespace[2.5pt]\n".join(
+        " & ".join(_cell(cell) for cell in row) for row in table.rows
+    )
     return (
         f"{caption}{{\\footnotesize\n\\begin{{longtable}}{{{layout}}}\n\\toprule\n{head} \\\\\n\\midrule\n"
         f"\\endhead\n\\bottomrule\n\\endfoot\n{rows} \\\\\n\\end{{longtable}}}}"

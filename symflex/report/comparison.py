@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import inf
 from typing import TYPE_CHECKING, Final
 
 from symflex.report.document import (
@@ -24,6 +25,7 @@ from symflex.report.document import (
 )
 from symflex.report.facts import ModelFacts
 from symflex.report.numerals import counted
+from symflex.report.structure import PLACES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -43,7 +45,7 @@ def model_cell(facts: ModelFacts) -> Cell:
 def flexibility_cell(facts: ModelFacts) -> Cell:
     """Return which kinds of flexibility a model describes."""
     runs: list[Run] = []
-    for place in ("base", "transmission", "link"):
+    for place in PLACES:
         parts = [c for c in facts.compliances if c.place == place]
         if parts:
             how = "bending" if all(c.is_bending for c in parts) else "axial or torsional"
@@ -109,11 +111,29 @@ def loop_cell(facts: ModelFacts) -> Cell:
     runs: list[Run] = []
     for loop in facts.loops:
         for low, high in loop.stable:
-            above = "" if not low else f"{low:.4g} < "
-            below = "" if high is None else f" < {high:.4g}"
+            above = "" if not low else f"{_short(low)} < "
+            unit = f" {loop.unit}" if loop.unit else ""
+            below = "" if high is None else f" < {_short(high)}{unit}"
             runs += [f"{above}{loop.gain}{below}" if above or below else f"all {loop.gain} > 0", "\n"]
         if not loop.stable:
             runs += [f"no {loop.gain}", "\n"]
+    return tuple(runs[:-1]) if runs else (NONE,)
+
+
+def _short(value: float) -> str:
+    """Return a number with four digits, without an exponent where one would be harder to read."""
+    return f"{value:.0f}" if 1e4 <= abs(value) < 1e7 else f"{value:.4g}"  # noqa: PLR2004
+
+
+def bandwidth_cell(facts: ModelFacts) -> Cell:
+    """Return the bandwidth a loop allows with a gain margin of 6 dB."""
+    runs: list[Run] = []
+    for loop in facts.loops:
+        if loop.bandwidth_hz == inf:
+            runs += ["no limit", "\n"]
+        elif loop.bandwidth_hz is not None:
+            at_least = "" if loop.is_bandwidth_limited else "≥ "
+            runs += [f"{at_least}{loop.bandwidth_hz:.4g} Hz", "\n"]
     return tuple(runs[:-1]) if runs else (NONE,)
 
 
@@ -153,6 +173,7 @@ LOOP_COLUMNS: dict[str, ComparisonColumn] = {
     "Model": ComparisonColumn(model_cell, "plain"),
     "Outputs together up to": ComparisonColumn(together_cell),
     "Loop stable for": ComparisonColumn(loop_cell),
+    "Bandwidth allowed": ComparisonColumn(bandwidth_cell),
 }
 """Of what matters to control: models with loops, or with outputs here and elsewhere."""
 
@@ -178,9 +199,9 @@ def comparison_section(models: Sequence[ModelFacts]) -> Section | None:
             "Minimum phase means: no zero in the open right half plane. “For all values” is proved for all "
             "positive values of the parameters. A function is colocated when its output is taken where "
             "the input "
-            "acts, or rigidly joined to it. A compliance with an end on ground belongs to the base; "
-            "between moving "
-            "parts, one in bending to a link, another to the transmission."
+            "acts, or rigidly joined to it. A compliance with an end on ground belongs to the base, or is a "
+            "contact where its force is measured; between moving parts, one in bending belongs to a link, "
+            "another to the transmission."
         ),
     )
     if controlled:
@@ -189,7 +210,9 @@ def comparison_section(models: Sequence[ModelFacts]) -> Section | None:
             text(
                 "Outputs are together where one differs from the output on which the input does work by at "
                 "most 10 degrees of phase and 1 dB. A loop is stable with all closed-loop poles in the left "
-                "half plane; for which gains is proved as far as the model's chapter says."
+                "half plane; for which gains is proved as far as the model's chapter says. The bandwidth "
+                "allowed is the frequency at which the loop gain first falls below one, with half of the "
+                "gain at which the loop becomes unstable (a gain margin of 6 dB)."
             ),
         )
     return Section("Comparison of models", (*tables, *explained), ANCHOR)

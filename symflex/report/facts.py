@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from symflex.report.structure import Compliance
     from symflex.report.study import Study
     from symflex.roots import PoleZeroMap, Root
-    from symflex.stability import DynamicColocation, StabilityMap
+    from symflex.stability import AllowedBandwidth, DynamicColocation, StabilityMap
     from symflex.transfer import TransferFunction
 
 Place = Literal["origin", "imaginary axis", "real axis", "plane"]
@@ -242,6 +242,11 @@ class LoopFacts:
         Gains were examined up to an end.
     certified : bool
         All of it is proved, for all poles.
+    bandwidth_hz : float or None
+        Where the loop gain first falls below one with a gain margin of 6 dB [Hz]; infinite when no gain is
+        too high, ``None`` when there is no such frequency.
+    is_bandwidth_limited : bool
+        By a boundary; otherwise by the gains examined.
     """
 
     gain: str
@@ -251,6 +256,8 @@ class LoopFacts:
     crossings_hz: tuple[float, ...]
     is_bounded: bool
     certified: bool
+    bandwidth_hz: float | None
+    is_bandwidth_limited: bool
 
     @property
     def is_always_stable(self) -> bool:
@@ -367,10 +374,20 @@ class ModelFacts:
                 {"name": c.name, "bends": c.is_bending, "place": c.place} for c in self.compliances
             ],
             "transfer_functions": [f.to_json_dict() for f in self.functions],
-            "loops": [asdict(loop) for loop in self.loops],
+            "loops": [_loop_json(loop) for loop in self.loops],
             "colocations": [asdict(colocation) for colocation in self.colocations],
             "data": [asdict(one) for one in self.data],
         }
+
+
+def _loop_json(loop: LoopFacts) -> dict[str, object]:
+    """Return the facts of a loop; JSON has no infinity, and says by a flag that nothing limits it."""
+    is_unlimited = loop.bandwidth_hz == inf
+    return {
+        **asdict(loop),
+        "bandwidth_hz": None if is_unlimited else loop.bandwidth_hz,
+        "is_bandwidth_unlimited": is_unlimited,
+    }
 
 
 def facts_of(study: Study) -> ModelFacts:
@@ -435,7 +452,17 @@ def _loop(found: StabilityMap) -> LoopFacts:
         crossings_hz=tuple(float(w.mid()) / tau for b in found.boundaries for w in b.frequencies),
         is_bounded=found.limits[1] is not None,
         certified=found.certified,
+        bandwidth_hz=_bandwidth_hz(found.bandwidth),
+        is_bandwidth_limited=found.bandwidth is not None and found.bandwidth.is_limited,
     )
+
+
+def _bandwidth_hz(found: AllowedBandwidth | None) -> float | None:
+    if found is None:
+        return None
+    if found.gain is None:
+        return inf
+    return None if found.frequency is None else float(found.frequency.mid()) / tau
 
 
 def _end(value: arb | None) -> float | None:

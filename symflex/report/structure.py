@@ -3,6 +3,8 @@
 Eppinger and Seering (1988, "Discussion") divide flexibility into that of the base, the transmission and the
 links. Here the three are told apart by what a compliance joins: one with an end on ground belongs to the
 base; between moving parts one in bending belongs to a link, one in tension or torsion to the transmission.
+None of them is what an axis touches: a compliance on ground whose force an output or a signal shows, as that
+of a force sensor, is a contact.
 """
 
 from __future__ import annotations
@@ -15,7 +17,8 @@ from symflex.expressions import Attribute, Call, Derivative, Expression, Name, f
 if TYPE_CHECKING:
     from symflex.model import Input, Model, Output, PlacedElement
 
-Place = Literal["base", "transmission", "link"]
+Place = Literal["base", "transmission", "link", "contact"]
+PLACES: Final[tuple[Place, ...]] = ("base", "transmission", "link", "contact")
 BENDING_ORDER: Final = 4
 STIFFNESS: Final = {"spring": "k", "torsion_spring": "k", "massless_beam": "EI"}
 """Types of elements that give way without mass, and the parameter that says how little."""
@@ -36,7 +39,7 @@ class Compliance:
     is_bending : bool
         It bends; else it is stretched or twisted.
     place : str
-        ``base``, ``transmission`` or ``link``.
+        ``base``, ``transmission``, ``link`` or ``contact``.
     """
 
     name: str
@@ -65,7 +68,10 @@ def compliances(model: Model) -> tuple[Compliance, ...]:
         if use.element.type_name in _COMPLIANT:
             is_bending = use.element.type_name in _BENDING
             is_grounded = any(r.is_ground for _, references in use.nodes for r in references)
-            found.append(Compliance(use.name, is_bending, _place(is_bending, is_grounded=is_grounded)))
+            place = _place(is_bending, is_grounded=is_grounded)
+            if is_grounded and _is_felt(model, use):
+                place = "contact"
+            found.append(Compliance(use.name, is_bending, place))
     for field in model.fields:
         orders = [n.order for e in field.equations for n in names(e) if isinstance(n, Derivative)]
         is_bending = max(orders, default=0) >= BENDING_ORDER or len(field.unknowns) > 1
@@ -105,6 +111,19 @@ def _place(is_bending: bool, *, is_grounded: bool) -> Place:
     if is_grounded:
         return "base"
     return "link" if is_bending else "transmission"
+
+
+def _is_felt(model: Model, use: PlacedElement) -> bool:
+    """Return whether an output or a signal shows an element's force, by name or as stiffness times place."""
+    places = _places(use)
+    stiffness = set().union(*(_named(value) for _, value in use.values))
+    shown = [x.expression for x in model.outputs] + [x.expression for x in model.signals]
+    for expression in shown:
+        if stiffness and stiffness | places <= _named(expression):
+            return True
+        if any(isinstance(n, Attribute) and n.owner == use.name for n in names(expression)):
+            return True
+    return False
 
 
 def _places(use: PlacedElement) -> set[str]:

@@ -1,5 +1,6 @@
 """Stable gains of feedback loops, proved: poles right of the imaginary axis counted, none missing."""
 
+from symflex.stability.bandwidth import AllowedBandwidth
 from symflex.stability.colocation import DynamicColocation, dynamic_colocation
 from symflex.stability.crossing import Crossing, PoleCount
 from symflex.stability.find import find_stable_gains
@@ -17,6 +18,7 @@ from symflex.stability.stability_map import (
 )
 
 __all__ = [
+    "AllowedBandwidth",
     "Boundary",
     "Crossing",
     "DynamicColocation",

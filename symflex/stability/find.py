@@ -13,10 +13,11 @@ from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.kernels import degree_in
 from symflex.roots import Budget, precision
 from symflex.roots.root import exact_fraction
+from symflex.stability.bandwidth import allowed_bandwidth
 from symflex.stability.crossing import PoleCount
 from symflex.stability.distributed import DistributedFactors
 from symflex.stability.lumped import LumpedFactor
-from symflex.stability.margins import distributed_crossovers, lumped_crossovers
+from symflex.stability.margins import LoopGain
 from symflex.stability.stability_map import Boundary, GainInterval, GainMargin, PhaseMargin, StabilityMap
 
 if TYPE_CHECKING:
@@ -101,14 +102,20 @@ def find_stable_gains(
         is_complete,
         (),
         digits,
+        None,
     )
+    loop_gain = _loop_gain(plain, distributed, loop, digits + GUARD_DIGITS, budget)
     phase_margins: tuple[PhaseMargin, ...] = ()
-    if found.is_stable and nominal:
-        phase_margins = _phase_margins(plain, distributed, loop, nominal, digits, budget)
+    bandwidth = None
+    if loop_gain is not None:
+        if found.is_stable and nominal:
+            phase_margins = _phase_margins(loop_gain, nominal)
+        bandwidth = allowed_bandwidth(intervals, high, loop_gain)
     return replace(
         found,
         gain_margins=_gain_margins(found),
         phase_margins=phase_margins,
+        bandwidth=bandwidth,
         reasons=tuple(dict.fromkeys((*search.reasons, *reasons))),
     )
 
@@ -289,29 +296,27 @@ def _gain_margins(found: StabilityMap) -> tuple[GainMargin, ...]:
     return tuple(margins)
 
 
-def _phase_margins(
+def _loop_gain(
     plain: Sequence[GainPolynomial],
     distributed: DistributedFactors | None,
     loop: Loop,
-    nominal: Fraction,
     digits: int,
     budget: Budget,
-) -> tuple[PhaseMargin, ...]:
-    """Return the phase margins of a loop that is a straight line in its gain, and closed once."""
+) -> LoopGain | None:
+    """Return the loop gain of a loop that is a straight line in its gain, and closed once."""
     with_gain = loop.with_gain
     if len(with_gain) != 1 or with_gain[0].degree != 1 or with_gain[0].multiplicity != 1:
-        return ()
-    if with_gain[0] in plain:
-        pairs = lumped_crossovers(loop.bound, with_gain[0], nominal, digits + GUARD_DIGITS, budget)
-    elif distributed is not None:
-        pairs = distributed_crossovers(distributed, nominal, digits + GUARD_DIGITS)
-    else:
-        pairs = []
+        return None
+    (factor,) = with_gain
+    return LoopGain(loop.bound, factor, None if factor in plain else distributed, digits, budget)
+
+
+def _phase_margins(loop_gain: LoopGain, nominal: Fraction) -> tuple[PhaseMargin, ...]:
     found = []
-    for omega, ratio in pairs:
+    for omega, ratio in loop_gain.crossovers(nominal):
         bits = max(BITS, 2 * omega.bits())
         with precision(bits):
             # The loop gain is K B/A; its angle beyond that of -1.
             angle = (-ratio * acb(_ball(nominal))).arg()
         found.append(PhaseMargin(angle, omega))
-    return tuple(sorted(found, key=lambda m: float(m.frequency.mid())))
+    return tuple(found)

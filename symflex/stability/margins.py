@@ -1,7 +1,8 @@
-"""Where the loop gain is one: the crossover frequencies, and the loop's value there."""
+"""Where the loop gain is one: the crossover frequencies, the loop's value there, and the phase margins."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from flint import acb, arb
@@ -22,6 +23,49 @@ if TYPE_CHECKING:
 
 BITS = 128
 SHRINKINGS = 30
+
+
+@dataclass(frozen=True)
+class LoopGain:
+    """The loop gain ``K B/A`` of a loop closed once, on the imaginary axis.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        Carries ring, constants and kernels.
+    factor : GainPolynomial
+        A + K B.
+    distributed : DistributedFactors or None
+        Where it has kernels.
+    digits : int
+        Of frequencies.
+    budget : Budget
+        Limits the search.
+    """
+
+    bound: BoundTransferFunction
+    factor: GainPolynomial
+    distributed: DistributedFactors | None
+    digits: int
+    budget: Budget
+
+    def crossovers(self, gain: Fraction) -> list[tuple[arb, acb]]:
+        """Return the frequencies [rad/s] at which it is one in magnitude, ascending, and B/A there."""
+        if self.distributed is None:
+            found = lumped_crossovers(self.bound, self.factor, gain, self.digits, self.budget)
+        else:
+            found = distributed_crossovers(self.distributed, gain, self.digits)
+        return sorted(found, key=lambda pair: float(pair[0].mid()))
+
+    def ratio(self, omega: arb) -> acb:
+        """Return an enclosure of B/A at a frequency [rad/s]."""
+        if self.distributed is None:
+            with precision(BITS):
+                return _ratio(self.bound, self.factor, omega)
+        (function,) = self.distributed.with_gain
+        around, _ = function.on(omega, BITS)
+        with precision(BITS):
+            return around.b / around.a
 
 
 def lumped_crossovers(
@@ -47,9 +91,13 @@ def lumped_crossovers(
         if root.on_imaginary_axis and root.im > 0:
             with precision(2 * root.working_bits()):
                 omega = root.im
-                values = [_value(bound, part, acb(0, omega)) for part in (a, b)]
-                found.append((omega, values[1] / values[0]))
+                found.append((omega, _ratio(bound, factor, omega)))
     return found
+
+
+def _ratio(bound: BoundTransferFunction, factor: GainPolynomial, omega: arb) -> acb:
+    a, b = (_value(bound, part, acb(0, omega)) for part in factor.coefficients)
+    return b / a
 
 
 def _mirrored(value: Factored) -> Factored:

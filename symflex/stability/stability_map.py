@@ -12,6 +12,7 @@ from symflex.roots import decimals, precision
 if TYPE_CHECKING:
     from fractions import Fraction
 
+    from symflex.stability.bandwidth import AllowedBandwidth
     from symflex.stability.crossing import Crossing, PoleCount
 
 SCHEMA = "symflex.stability/1"
@@ -124,6 +125,9 @@ class StabilityMap:
         What is not proved.
     digits : int
         Asked for.
+    bandwidth : AllowedBandwidth or None
+        Which the stable gains next to 0 allow; ``None`` where there are none, or the loop is closed in
+        several places.
     """
 
     gain: str
@@ -138,6 +142,7 @@ class StabilityMap:
     is_complete: bool
     reasons: tuple[str, ...]
     digits: int
+    bandwidth: AllowedBandwidth | None
 
     @property
     def certified(self) -> bool:
@@ -208,6 +213,20 @@ class StabilityMap:
                 }
                 for m in self.phase_margins
             ],
+            "bandwidth": self._bandwidth(),
+        }
+
+    def _bandwidth(self) -> dict[str, object] | None:
+        found = self.bandwidth
+        if found is None:
+            return None
+        omega, angle = found.frequency, found.phase_margin
+        return {
+            "gain": None if found.gain is None else float(found.gain),
+            "omega": None if omega is None else real_json(omega, self.digits),
+            "frequency_hz": None if omega is None else float(hertz(omega).mid()),
+            "phase_margin_degrees": None if angle is None else float(degrees(angle).mid()),
+            "limited": found.is_limited,
         }
 
     def change(self, index: int) -> int:

@@ -38,6 +38,9 @@ def test_every_gain_and_frequency_of_the_table(row):
     for boundary, gain, frequency in zip(force.boundaries, gains, frequencies, strict=True):
         assert abs(float(boundary.gain) / gain - 1) < 1e-4
         assert abs(boundary.frequencies_hz[0] / frequency - 1) < 1e-4
+    bandwidth = [float(x) for x in NUMBER.findall(row[4])]
+    assert force.bandwidth_hz == (pytest.approx(bandwidth[0], rel=1e-4) if bandwidth else float("inf"))
+    assert position.bandwidth_hz == (pytest.approx(6.591, rel=1e-3) if "range" in row[1] else float("inf"))
 
 
 def test_the_beam_goes_to_its_zero_in_the_right_half_plane():

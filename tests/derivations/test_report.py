@@ -13,6 +13,7 @@ import pytest
 
 from symflex.report import compose, find_specifications, name_specifications, report_page, write_chapters
 from symflex.report.claims.eppinger1988 import EPPINGER_1988
+from symflex.report.facts import DataFact, ModelFacts
 from symflex.roots.budget import Silent
 from tests.independent import eppinger1988
 from tests.unit.report.pages import Page
@@ -141,6 +142,40 @@ def test_claims_are_judged(key, verdict, claims):
 def test_every_claim_is_expected_here_or_not_examined(claims):
     rest = set(claims) - {*HOLD, *CONDITION, *FAIL}
     assert all(claims[key]["verdict"] == "not examined" for key in rest)
+
+
+def told(stem, decibels, *, is_synthetic=False):
+    """Return facts as they would be beside data; nothing here is measured."""
+    fact = DataFact("A_tip/V_cmd", decibels, 5.0, is_synthetic)
+    return ModelFacts(stem, "", "", (), False, False, (), (), data=(fact,))
+
+
+@pytest.mark.parametrize("key", ["rigid-matches", "only-fit"])
+def test_claims_about_the_experiment_are_not_judged_by_the_synthetic_stand_in(key):
+    (claim,) = [c for c in EPPINGER_1988.claims if c.key == key]
+    models = [told(stem, 0.1, is_synthetic=True) for stem in ("polynomial_resonance", "rigid_body")]
+    found = claim.judge({m.stem: m for m in models})
+    assert found.verdict == "not examined"
+    assert "synthetic and was computed from polynomial_resonance" in "".join(map(str, found.evidence))
+
+
+def test_only_the_model_fitted_by_hand_is_said_to_match_measured_data():
+    (claim,) = [c for c in EPPINGER_1988.claims if c.key == "only-fit"]
+    good, bad = told("polynomial_resonance", 1.0), told("rigid_body", 9.0)
+    assert claim.judge({m.stem: m for m in (good, bad)}).verdict == "holds"
+    assert claim.judge({m.stem: m for m in (good, told("rigid_body", 1.0))}).verdict == "does not hold"
+    synthetic = told("polynomial_resonance", 0.1, is_synthetic=True)
+    assert claim.judge({synthetic.stem: synthetic}).verdict == "not examined"
+
+
+@pytest.mark.parametrize(
+    ("stem", "hertz"),
+    [("two_mass_force", 4.7585), ("base_flexure_force", 6.9054), ("rigid_body_force", None)],
+)
+def test_the_bandwidth_of_each_loop_is_that_of_the_loops_readme(stem, hertz, report):
+    (loop,) = json.loads(report.files[f"data/{stem}_facts.json"])["loops"]
+    assert loop["is_bandwidth_unlimited"] is (hertz is None)
+    assert loop["bandwidth_hz"] == (None if hertz is None else pytest.approx(hertz, rel=1e-4))
 
 
 def test_stable_gains_are_those_of_the_loops_readme(report):

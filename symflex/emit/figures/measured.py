@@ -77,7 +77,7 @@ def draw_data(
     name = "synthetic data" if measured.is_synthetic else "measured"
     aside = np.degrees(np.angle(measured.values / model))
     for axes, values, label in ((top, decibels(measured.values), name), (bottom, phase + aside, None)):
-        axes.plot(measured.frequency_hz, values, ".", color=DATA_COLOUR, markersize=1.6, label=label)
+        axes.plot(measured.frequency_hz, values, ".", color=DATA_COLOUR, markersize=2.4, label=label)
 
 
 def finish(

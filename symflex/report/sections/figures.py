@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from symflex.emit.figures import FIGURES, LOOP_FIGURES, draw, draw_loop
+from symflex.emit.figures import FIGURES, LOOP_FIGURES, draw, draw_loop, draw_measured
 from symflex.errors import SymflexError
 from symflex.model import Figure
 from symflex.report.document import Notice
@@ -71,7 +71,13 @@ def _picture(
 ) -> Picture:
     if figure.kind == "modes":
         chosen = chosen[:1]  # all functions of a model have the same modes
-    drawn = draw(figure.kind, [b.source for b in chosen], chosen)
     caption = f"{figure.title}. " if figure.title else ""
+    told = next((c for c in study.comparisons if c.measured.name == chosen[0].name), None)
+    if figure.has_data and told is not None:
+        drawn = draw_measured(told.measured, told.model, told.unit)
+        kind = "SYNTHETIC data, computed and not measured" if told.measured.is_synthetic else "measured data"
+        caption += f"{told.measured.name} over {kind}, {told.measured.values.size} lines."
+        return picture(f"{study.stem}_{figure.name}", drawn, caption, files)
+    drawn = draw(figure.kind, [b.source for b in chosen], chosen)
     caption += f"{WORDS.get(figure.kind, figure.kind)} of {', '.join(b.name for b in chosen)}."
     return picture(f"{study.stem}_{figure.name}", drawn, caption, files)

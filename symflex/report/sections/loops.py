@@ -6,9 +6,11 @@ import json
 from math import tau
 from typing import TYPE_CHECKING, Final
 
+from symflex.emit.stability import bandwidth_text
 from symflex.errors import SymflexError
 from symflex.report.document import Code, Mark, Notice, Section, Table, columns, text
 from symflex.report.part import Part
+from symflex.stability import degrees
 
 if TYPE_CHECKING:
     from flint import arb
@@ -67,9 +69,12 @@ def _of(found: StabilityMap) -> tuple[Block, ...]:
         blocks.append(text(f"Poles are on the axis for {'; '.join(places)}."))
     margins = [f"gain margin {decimal(m.factor)}" for m in found.gain_margins]
     if found.phase_margin is not None:
-        margins.append(f"phase margin {decimal(found.phase_margin.angle)} degrees")
+        margins.append(f"phase margin {decimal(degrees(found.phase_margin.angle))} degrees")
     if margins and found.nominal is not None:
         blocks.append(text(f"With {found.gain} = {float(found.nominal):g}: {', '.join(margins)}."))
+    if found.bandwidth is not None:
+        shown = bandwidth_text(found.gain, found.bandwidth)
+        blocks.append(text(f"Bandwidth, where the gain may still double (6 dB): {shown}."))
     return tuple(blocks)
 
 

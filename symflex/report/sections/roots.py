@@ -94,7 +94,8 @@ def _told(told: ZeroExplanation) -> list[tuple[str, ...]]:
     found = []
     for paragraph in explanation_paragraphs(told):
         if not paragraph[0].startswith("To see that system"):
-            found.append(tuple(x for line in paragraph for x in (line, "\n"))[:-1])
+            lines = (line.replace("+-", "±").replace("*", "·") for line in paragraph)
+            found.append(tuple(x for line in lines for x in (line, "\n"))[:-1])
     return found
 
 

@@ -34,8 +34,8 @@ def test_a_pdf_that_does_not_compile_is_said_and_the_page_is_there(shell, monkey
     def fail(*_):
         raise SymflexError(Diagnostic("SF912", "pdflatex failed"))
 
-    monkeypatch.setattr("symflex.report.has_compiler", lambda: True)
-    monkeypatch.setattr("symflex.report.compile_pdf", fail)
+    monkeypatch.setattr("symflex.report.published.has_compiler", lambda: True)
+    monkeypatch.setattr("symflex.report.published.compile_pdf", fail)
     done = shell("report", "x.toml", "-j", "1")
     assert done.code == 3
     assert "SF912" in done.err

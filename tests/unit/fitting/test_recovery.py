@@ -11,13 +11,13 @@ from tests.unit.fitting.analyser import measured, random_system, rigid
 BASE = [Base(rigid)]
 
 
-def recover(count, seed):
+def recover(count, seed, **settings):
     """Return errors and standard errors: relative ones of f_p, zeta_p and f_z, and those of zeta_z."""
     errors, deviations = [], []
     for k in range(count):
         random = np.random.default_rng([seed, k])
         system = random_system(random)
-        data = measured(lambda f, system=system: system(f) * rigid(2 * np.pi * f), random)
+        data = measured(lambda f, system=system: system(f) * rigid(2 * np.pi * f), random, **settings)
         fit = fit_resonances([data], BASE, modes=5)
         found, spread = fit.resonances, fit.standard_errors()
         true = (2 * np.pi * system.f_p, system.zeta_p, 2 * np.pi * system.f_z, system.zeta_z)
@@ -42,10 +42,16 @@ def test_two_hundred_systems_are_recovered_and_intervals_are_honest():
     errors, deviations = recover(200, seed=2)
     assert errors[:, 0].max() < 0.002
     assert errors[:, 1].max() < 0.10
-    assert 0.60 < np.mean(errors < deviations) < 0.76
-    # Those of omega_p are somewhat wide: leakage, which lowers coherence at a peak, is shared by its lines.
     inside = np.mean(errors < deviations, axis=(0, 2))
-    assert np.all((inside > 0.60) & (inside < 0.80)), inside
+    assert np.all((inside > 0.60) & (inside < 0.76)), inside
+
+
+@pytest.mark.slow
+def test_intervals_are_honest_where_leakage_rules():
+    """Records so short that the narrowest peaks are little more than a line wide."""
+    errors, deviations = recover(100, seed=2, record=8.0)
+    inside = np.mean(errors < deviations, axis=(0, 2))
+    assert np.all((inside > 0.60) & (inside < 0.76)), inside
 
 
 def test_without_the_window_damping_comes_out_too_large():

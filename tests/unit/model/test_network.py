@@ -186,3 +186,10 @@ def test_a_figure_names_its_kind_and_functions():
 
 def test_a_figure_of_a_function_that_is_not_there_is_refused():
     assert codes(MASS + '[figures.one]\nkind = "bode"\nof = ["Y/F"]\n') == ["SF218"]
+
+
+def test_a_figure_with_data_is_a_bode_plot_of_one_function():
+    (figure,) = pipeline.loads(MASS + '[figures.one]\nkind = "bode"\nof = ["X/F"]\ndata = true\n').figures
+    assert figure.has_data
+    assert codes(MASS + '[figures.one]\nkind = "poles_zeros"\nof = ["X/F"]\ndata = true\n') == ["SF207"]
+    assert codes(MASS + '[figures.one]\nkind = "bode"\nof = ["X/F"]\ndata = "yes"\n') == ["SF206"]

@@ -182,6 +182,7 @@ def test_the_stable_gains_of_a_loop_are_in_its_chapter_and_in_a_table_of_loops(t
     assert [float(b["gain"]["value"]) for b in found["boundaries"]] == [12.0]
     assert "K &lt; 12" in page
     assert all(f">{head}</th>" in page for head in LOOP_COLUMNS)
+    assert found["bandwidth"]["limited"] is True
     assert report.files["figures/loop_locus.pdf"].startswith(b"%PDF")
     # No number that a reader of figures could not hold.
     assert not re.search(rb"[0-9]{12}", report.files["figures/loop_locus.svg"])
@@ -214,6 +215,12 @@ def test_measured_responses_in_a_folder_are_drawn_with_the_models_over_them(tmp_
     assert told["is_synthetic"]
     assert "SYNTHETIC" in report_page(report)
     assert report.files["figures/small_data_1.pdf"].startswith(b"%PDF")
+    figure = '[figures.fit]\nkind = "bode"\nof = ["X/F"]\ndata = true\ntitle = "Over data"\n'
+    (tmp_path / "small.toml").write_text(SMALL + figure, encoding="utf-8")
+    again = compose(write_chapters(named, 1, Silent(), found), "")
+    assert "Over data. X/F over SYNTHETIC data, computed and not measured, 48 lines." in report_page(again)
+    # The figure shows them, so that no other does.
+    assert "figures/small_data_1.pdf" not in again.files
 
 
 def test_specifications_in_the_folder_that_is_written_are_left_out(tmp_path):

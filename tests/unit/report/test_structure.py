@@ -35,6 +35,23 @@ def test_a_spring_to_ground_is_the_base_s(jointed):
     assert {c.name: c.place for c in compliances(jointed)} == {"link": "transmission", "base": "base"}
 
 
+@pytest.mark.parametrize("shown", ["k_c*x", "touch.f", "2*k_c*(x - y)"])
+def test_a_spring_to_ground_whose_force_is_shown_is_a_contact(shown):
+    text = """
+symflex = 1
+parameters = { k_c = "2 kN/m" }
+inputs  = { F = { force = "x" } }
+outputs = { F_tip = "SHOWN" }
+[elements]
+body  = { type = "mass", at = "x", m = 1 }
+frame = { type = "mass", at = "y", m = 1 }
+touch = { type = "spring", between = ["x", "ground"], k = "k_c" }
+rest  = { type = "spring", between = ["y", "ground"], k = 7 }
+"""
+    found = compliances(pipeline.loads(text.replace("SHOWN", shown)))
+    assert {c.name: c.place for c in found} == {"touch": "contact", "rest": "base"}
+
+
 @pytest.mark.parametrize(
     ("output", "source", "expected"),
     [

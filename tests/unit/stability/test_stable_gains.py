@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 
+import numpy as np
 import pytest
 
 import symflex
@@ -183,6 +184,31 @@ def test_the_document_is_json(loop):
     assert document["intervals"][1]["right_half_plane_poles"] == 2
     assert document["certified"] is True
     assert document["phase_margins"][0]["smallest"] is True
+
+
+def test_the_bandwidth_is_where_half_of_the_limit_has_loop_gain_one(loop):
+    found = loop("K/(s*(s + 1)*(s + 2))").stability("K")
+    # abs(3/(s (s+1) (s+2))) = 1 with x = omega^2: x (x + 1) (x + 4) = 9.
+    (x,) = [r.real for r in np.roots([1, 5, 4, -9]) if abs(r.imag) < 1e-12 and r.real > 0]
+    assert found.bandwidth_hz == pytest.approx(np.sqrt(x) / (2 * np.pi), rel=1e-12)
+    assert found.to_json_dict()["bandwidth"]["limited"] is True
+    # Its phase is that of -1 plus the margin.
+    s = 1j * np.sqrt(x)
+    margin = np.degrees(np.angle(-3 / (s * (s + 1) * (s + 2))))
+    assert found.to_json_dict()["bandwidth"]["phase_margin_degrees"] == pytest.approx(margin)
+
+
+def test_the_bandwidth_of_a_loop_with_a_delay(loop):
+    found = loop("K*D/s").stability("K", (0, 20))
+    # K/omega = 1, and K is half of pi/(2 T).
+    assert found.bandwidth_hz == pytest.approx(0.25, rel=1e-12)
+
+
+def test_there_may_be_no_bandwidth_or_no_limit_to_it(loop):
+    assert loop("K/(s + 1)").stability("K").bandwidth_hz == float("inf")
+    # Half of the limit is a loop gain of 1/2 where it is largest.
+    assert np.isnan(loop("K*D/(s + 1)", T="1000 s").stability("K", (0, 20)).bandwidth_hz)
+    assert np.isnan(loop("K/(s - 1)").stability("K").bandwidth_hz)
 
 
 def test_the_print_fits_a_terminal(loop):

@@ -1,0 +1,180 @@
+"""Resonances fitted to measured frequency responses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from symflex import pipeline
+from symflex.api.model import Model, loads
+from symflex.measurement import MeasuredResponse, prepared, read_measurement
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from symflex import fitting
+    from symflex.fitting.resonances import Resonances
+
+    Real = npt.NDArray[np.float64]
+    Complex = npt.NDArray[np.complex128]
+
+Data = str | Path | MeasuredResponse
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """Resonances that fit measured responses, with standard errors.
+
+    Parameters
+    ----------
+    found : symflex.fitting.Fit
+        The fit in full: data, start, residuals, covariance.
+    """
+
+    found: fitting.Fit
+
+    @property
+    def resonances(self) -> Resonances:
+        """Poles ``omega_p`` [rad/s], ``zeta_p``, shape (n,), and zeros ``omega_z``, ``zeta_z``, (m, n)."""
+        return self.found.resonances
+
+    @property
+    def standard_errors(self) -> Resonances:
+        """The standard error of each of them, in the same shapes; 0 for what was not fitted."""
+        return self.found.standard_errors()
+
+    @property
+    def frequencies_hz(self) -> Real:
+        """Natural frequencies of the pole pairs [Hz], ascending, shape (n,)."""
+        return self.resonances.omega_p / (2 * np.pi)
+
+    @property
+    def is_minimum_phase(self) -> tuple[bool, ...]:
+        """Of each response, whether its phase is that of a minimum-phase fit to the magnitude alone."""
+        return tuple(test.is_minimum_phase for test in self.found.phase_tests)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What to be careful about."""
+        return self.found.warnings
+
+    def values(self, response: int = 0) -> Complex:
+        """Return the fitted function on the lines of one response, shape (k,)."""
+        return self.found.values(response)
+
+    def specification(self, folder: str | Path = ".") -> str:
+        """Return the text of a specification that will stand in a folder, from where it names the base."""
+        return pipeline.fit_specification(self.found, folder)
+
+    def model(self) -> Model:
+        """Return the fitted model, which derives, prints and exports like any other."""
+        # Specifications given as text refer to files from the current folder.
+        return loads(self.specification(Path()), "<fit>")
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return the result in the schema ``symflex.fit/1``."""
+        from symflex.emit.fit_report import fit_json
+
+        return fit_json(self.found)
+
+    def __str__(self) -> str:
+        from symflex.emit.fit_report import fit_text
+
+        return fit_text(self.found)
+
+    def __repr__(self) -> str:
+        modes = ", ".join(f"{f:.3g}" for f in self.frequencies_hz)
+        kind = " to synthetic data" if any(m.is_synthetic for m in self.found.measured) else ""
+        return f"<Fit{kind}: {modes} Hz>"
+
+
+def fit(
+    data: Data | Sequence[Data],
+    base: str | Path | None = None,
+    tf: str | Sequence[str] = (),
+    *,
+    modes: int | None = None,
+    start: Literal["auto", "peaks", "vector", "aaa"] = "auto",
+    criterion: Literal["bic", "aicc"] = "bic",
+    band: tuple[float, float] | None = None,
+    averages: float | None = None,
+    window: Literal["hann", "none"] | None = None,
+    gain: bool = False,
+    lag: bool = False,
+    slope: int | None = None,
+) -> Fit:
+    """Fit resonances to measured frequency responses.
+
+    Parameters
+    ----------
+    data : str, Path, MeasuredResponse or a sequence of them
+        Files (.csv, .uff, .mat, .npz) or responses; several are fitted together and share their poles.
+    base : str or Path, optional
+        The specification whose transfer function the resonances are multiplied by; without it a gain and a
+        power of s.
+    tf : str or sequence of str
+        That function, "OUT/IN"; one, or one per response.
+    modes : int, optional
+        How many resonances; by default what ``criterion`` prefers.
+    start : str
+        Where the fit begins: ``peaks`` is the procedure of Eppinger and Seering (1988).
+    criterion : str
+        ``bic`` (Schwarz 1978) or ``aicc`` (Hurvich and Tsai 1989).
+    band : (float, float), optional
+        Only lines between these frequencies [Hz].
+    averages : float, optional
+        Independent averages, where the data do not say.
+    window : str, optional
+        ``hann`` or ``none``, where the data do not say.
+    gain, lag : bool
+        Fit a gain besides the base, a lag of the sensor 1/(1 + T s).
+    slope : int, optional
+        Without a base: the power of s; by default the best.
+
+    Raises
+    ------
+    DataError
+        SF601 to SF607: data that cannot be used.
+    FitError
+        SF611 to SF615: no fit came of them, and why.
+    UsageError
+        SF902 names and options that contradict each other.
+
+    Examples
+    --------
+    >>> import symflex
+    >>> found = symflex.fit(
+    ...     "derivations/eppinger1988/data/synthetic_figure_3.csv",
+    ...     "derivations/eppinger1988/rigid_body.toml",
+    ...     "A_tip/V_cmd",
+    ...     modes=5,
+    ...     lag=True,
+    ... )
+    >>> found
+    <Fit to synthetic data: 11, 38, 44, 67, 77 Hz>
+    >>> bool(max(found.standard_errors.zeta_p) < 0.0005), found.is_minimum_phase
+    (True, (True,))
+    >>> found.model().outputs
+    ('A_tip',)
+    """
+    given = [data] if isinstance(data, str | Path | MeasuredResponse) else list(data)
+    responses: list[MeasuredResponse] = []
+    for one in given:
+        responses += [one] if isinstance(one, MeasuredResponse) else read_measurement(one)
+    return Fit(
+        pipeline.fit(
+            prepared(responses, band, averages, window),
+            base,
+            [tf] if isinstance(tf, str) else list(tf),
+            modes=modes,
+            start=start,
+            criterion=criterion,
+            is_gain_free=gain,
+            is_lag_free=lag,
+            slope=slope,
+        )
+    )

@@ -1,0 +1,88 @@
+"""A report written from Python."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from symflex.roots.budget import Silent
+
+if TYPE_CHECKING:
+    from datetime import date
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenReport:
+    """Where a report is, and what it could not say.
+
+    Parameters
+    ----------
+    page : Path
+        The page to open.
+    pdf : Path or None
+        None where there is none.
+    warnings : tuple of str
+        What was left out or is not certified.
+    is_certified : bool
+        All poles and zeros are proved, and no budget was exceeded.
+    """
+
+    page: Path
+    pdf: Path | None
+    warnings: tuple[str, ...]
+    is_certified: bool
+
+
+def write_report(
+    specs: str | Path | Sequence[str | Path],
+    folder: str | Path = "report",
+    *,
+    pdf: bool | None = None,
+    day: date | None = None,
+    jobs: int = 1,
+) -> WrittenReport:
+    """Write a report on models: equations, poles and zeros, figures, comparison, code.
+
+    Parameters
+    ----------
+    specs : str, Path or a sequence of them
+        Specifications; a folder stands for all in it and below, with the measured responses there.
+    folder : str or Path
+        Where to write; what stands there stays, but for files of the same names.
+    pdf : bool, optional
+        Whether to make a PDF; by default where pdflatex is there.
+    day : date, optional
+        Printed; without it equal specifications give equal files.
+    jobs : int
+        How many models are computed at once, each in a process of its own. More than one needs a program that
+        may be imported anew (``if __name__ == "__main__":``).
+
+    Raises
+    ------
+    SpecError, ModelError
+        Of the first file that is no solvable model.
+    UsageError
+        SF902 no specification; SF903 a file cannot be written.
+
+    Examples
+    --------
+    >>> import symflex, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     written = symflex.write_report("derivations/eppinger1988/rigid_body.toml", folder, pdf=False)
+    ...     written.page.name, written.is_certified, written.warnings
+    ('index.html', True, ())
+    """
+    from symflex import report
+
+    paths = [Path(one) for one in ([specs] if isinstance(specs, str | Path) else specs)]
+    target = Path(folder)
+    named = report.name_specifications(report.find_specifications(paths, target))
+    measured, left_out = report.find_measurements(paths, target)
+    chapters = report.write_chapters(named, jobs, Silent(), measured)
+    composed = report.compose(chapters, "" if day is None else day.isoformat())
+    published = report.publish(composed, target, Silent(), pdf=pdf)
+    problems = (published.problem,) if published.problem else ()
+    warnings = (*left_out, *composed.warnings, *problems)
+    return WrittenReport(published.page, published.pdf, warnings, composed.code == 0)

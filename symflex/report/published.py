@@ -1,0 +1,87 @@
+"""A report as files in a folder: page, article, its PDF where that can be made, figures, code and data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import UTC, date, datetime
+from typing import TYPE_CHECKING
+
+from symflex.errors import SymflexError
+from symflex.report.article import report_article
+from symflex.report.folder import write_tree
+from symflex.report.page import report_page
+from symflex.report.pdf import HOW_TO, compile_pdf, has_compiler
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from symflex.report.report import Report
+    from symflex.roots import Progress
+
+
+@dataclass(frozen=True, slots=True)
+class PublishedReport:
+    """What was written.
+
+    Parameters
+    ----------
+    page : Path
+        The page to open.
+    pdf : Path or None
+        None where none was asked for or made.
+    problem : str
+        Why there is no PDF though one was wanted; empty else.
+    code : int
+        Exit code of writing alone.
+    """
+
+    page: Path
+    pdf: Path | None
+    problem: str
+    code: int
+
+
+def publish(report: Report, folder: Path, progress: Progress, *, pdf: bool | None = None) -> PublishedReport:
+    """Write a report into a folder; what stands there stays, but for files of the same names.
+
+    Parameters
+    ----------
+    report : Report
+        Composed.
+    folder : Path
+        Made where it is missing.
+    progress : Progress
+        Told of each step.
+    pdf : bool, optional
+        Whether a PDF is wanted; by default where pdflatex is there. The article is written in any case.
+
+    Raises
+    ------
+    UsageError
+        SF903 when a file cannot be written.
+    """
+    progress.report(0.9, "writing")
+    tex = report_article(report)
+    page = folder / "index.html"
+    write_tree(folder, {**report.files, "report.tex": tex.encode(), page.name: report_page(report).encode()})
+    if pdf is False:
+        return PublishedReport(page, None, "", 0)
+    if not has_compiler():
+        problem = (
+            f"no report.pdf: there is no pdflatex on this computer; report.tex is written\n  hint: {HOW_TO}"
+        )
+        return PublishedReport(page, None, problem, 2 if pdf else 0)
+    progress.report(0.92, "pdflatex")
+    figures = {name: data for name, data in report.files.items() if name.startswith("figures/")}
+    try:
+        made = compile_pdf(tex, figures, _epoch(report.date))
+    except SymflexError as error:
+        return PublishedReport(page, None, str(error), error.exit_code)
+    write_tree(folder, {"report.pdf": made})
+    return PublishedReport(page, folder / "report.pdf", "", 0)
+
+
+def _epoch(shown: str) -> int:
+    """Return the seconds since 1970 of the day printed, for the file's own metadata."""
+    day = date.fromisoformat(shown) if shown else date(1970, 1, 2)
+    return int(datetime(day.year, day.month, day.day, tzinfo=UTC).timestamp())
