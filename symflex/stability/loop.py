@@ -88,7 +88,7 @@ class Loop:
 def characteristic_loop(
     tf: TransferFunction,
     gain: Parameter,
-    values: Mapping[str, int | float | Fraction | Decimal | str] | None = None,
+    values: Mapping[str, Given] | None = None,
 ) -> Loop:
     """Return the characteristic function of the model a transfer function is of.
 
@@ -131,7 +131,7 @@ def _depends(tf: TransferFunction, position: int) -> bool:
 
 
 def _bound(
-    tf: TransferFunction, gain: Parameter, given: dict[str, int | float | Fraction | Decimal | str]
+    tf: TransferFunction, gain: Parameter, given: dict[str, Given]
 ) -> BoundTransferFunction:
     """Return the function with numbers, the gain with one for which nothing is singular."""
     candidates = [given] if gain.name in given or gain.value is not None else []

@@ -1,0 +1,242 @@
+"""Names of modes along a sweep: which root at one point is which at the next.
+
+Every point but one has a predecessor next to it in the design, whose names it takes over. Where the functions
+at both are similar, roots correspond one to one, exactly. Elsewhere each root takes the name of the nearest,
+measured in ln(s) so that all frequencies count alike, under the assignment whose distances add up to the
+least; the result says whether that was in doubt. Roots are sets of points of the closed upper half plane:
+a pair that meets on the real axis becomes two real roots, of which one keeps the name.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import linear_sum_assignment
+from scipy.spatial import cKDTree
+
+if TYPE_CHECKING:
+    from symflex.sweep.design import Design
+
+Doubles = npt.NDArray[np.float64]
+Complexes = npt.NDArray[np.complex128]
+Integers = npt.NDArray[np.int64]
+
+CLEAR = 0.5
+"""A root is clearly the one that moved if no other is nearer than the distance moved over this."""
+NEIGHBOURS = 32
+FAR = 1e6
+
+
+class Link(IntEnum):
+    """How a root got its name.
+
+    ``START``: here names begin, in order of natural frequency. ``SIMILAR``: from the predecessor, whose roots
+    are the same but for one factor. ``CLEAR``: the nearest by far. ``DOUBTFUL``: another root is about as near;
+    modes come close, cross, or the step is too long. ``REAL_AXIS``: a pair became two real roots or the
+    reverse. ``APPEARS``: no root of the predecessor is left for it.
+    """
+
+    ABSENT = 0
+    START = 1
+    SIMILAR = 2
+    CLEAR = 3
+    DOUBTFUL = 4
+    REAL_AXIS = 5
+    APPEARS = 6
+
+
+@dataclass(frozen=True)
+class Names:
+    """The names of roots.
+
+    Parameters
+    ----------
+    mode : array of int, shape (points, roots)
+        Which mode, from 0; -1 where there is no root.
+    link : array of int, shape (points, roots)
+        A :class:`Link` each.
+    modes : int
+        How many names there are.
+    """
+
+    mode: Integers
+    link: npt.NDArray[np.int8]
+    modes: int
+
+
+@dataclass(frozen=True)
+class Predecessors:
+    """In which order points get names, and from whom.
+
+    Parameters
+    ----------
+    order : tuple of int
+        All points; predecessors come first.
+    before : tuple of int
+        Of every point its predecessor; -1 for the first.
+    """
+
+    order: tuple[int, ...]
+    before: tuple[int, ...]
+
+
+def predecessors(design: Design) -> Predecessors:
+    """Return the predecessors in a design.
+
+    In a grid that is the neighbour towards the first value of the last axis that is not there yet. Draws are
+    reached from the one in the middle outwards, each from the nearest that is closer to the middle.
+
+    Examples
+    --------
+    >>> from fractions import Fraction
+    >>> from symflex.model import ExactValue
+    >>> from symflex.sweep.design import Axis, Design
+    >>> two = tuple(ExactValue(Fraction(n)) for n in (1, 2))
+    >>> predecessors(Design((Axis("a", two), Axis("b", two)))).before
+    (-1, 0, 0, 2)
+    """
+    draws = max(design.draws, 1)
+    order, nearest = _outwards(design) if design.draws else ((0,), (-1,))
+    middle = order[0]
+    sizes = [len(axis.values) for axis in design.axes]
+    before, ordered = [0] * design.count, []
+    for cell in range(design.count // draws):
+        neighbour = _neighbour(cell, sizes)
+        for draw in order:
+            i = cell * draws + draw
+            ordered.append(i)
+            if draw != middle:
+                before[i] = cell * draws + nearest[draw]
+            else:
+                before[i] = -1 if neighbour is None else neighbour * draws + draw
+    return Predecessors(tuple(ordered), tuple(before))
+
+
+def _neighbour(cell: int, sizes: list[int]) -> int | None:
+    """Return the grid point before one, along the last axis on which it is not the first."""
+    stride, rest = 1, cell
+    for size in reversed(sizes):
+        rest, place = divmod(rest, size)
+        if place:
+            return cell - stride
+        stride *= size
+    return None
+
+
+def _outwards(design: Design) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Return the draws from the middle outwards, and of each the nearest of those before it."""
+    places = np.array(design.shares).T
+    distance = np.sum((places - 0.5) ** 2, axis=1)
+    order = np.argsort(distance, kind="stable")
+    rank = np.empty(len(order), np.int64)
+    rank[order] = np.arange(len(order))
+    count = min(NEIGHBOURS, len(order))
+    _, near = cKDTree(places).query(places, k=list(range(1, count + 1)))
+    nearest = np.full(len(order), -1)
+    for i in range(len(order)):
+        closer = near[i][rank[near[i]] < rank[i]]
+        if closer.size:
+            nearest[i] = closer[0]
+        elif rank[i]:
+            earlier = order[: rank[i]]
+            nearest[i] = earlier[np.argmin(np.sum((places[earlier] - places[i]) ** 2, axis=1))]
+    return tuple(order.tolist()), tuple(nearest.tolist())
+
+
+def follow(s: Complexes, family: Integers, steps: Predecessors) -> Names:
+    """Name the roots of all points.
+
+    Parameters
+    ----------
+    s : array of complex, shape (points, roots)
+        In the closed upper half plane and not 0, by natural frequency; NaN behind the last of a point.
+    family : array of int, shape (points,)
+        Equal and not 0 for points whose roots are the same but for one factor, in the same order.
+    steps : Predecessors
+        The way through the design.
+
+    Examples
+    --------
+    >>> s = np.array([[1j, 2j], [1.1j, 1.9j]])
+    >>> follow(s, np.zeros(2, int), Predecessors((0, 1), (-1, 0))).mode.tolist()
+    [[0, 1], [0, 1]]
+    """
+    count = np.sum(~np.isnan(s.real), axis=1)
+    mode = np.full(s.shape, -1, np.int64)
+    link = np.zeros(s.shape, np.int8)
+    logarithms = np.log(s)
+    # Where every name was seen last on the way to a point; NaN for one not met on it.
+    seen: dict[int, Complexes] = {}
+    modes = 0
+    for i in steps.order:
+        n, parent = int(count[i]), steps.before[i]
+        own = logarithms[i, :n]
+        if parent < 0:
+            names, links = np.arange(n), np.full(n, Link.START, np.int8)
+            last = np.full(n, complex(np.nan, np.nan))
+        else:
+            last = seen[parent]
+            old = mode[parent, : count[parent]]
+            if family[i] and family[i] == family[parent] and n == count[parent]:
+                names, links = old.copy(), np.full(n, Link.SIMILAR, np.int8)
+            else:
+                names, links = _continued(logarithms[parent, : len(old)], old, last, own, modes)
+        modes = max(modes, int(names.max(initial=-1)) + 1)
+        mode[i, :n], link[i, :n] = names, links
+        here = np.full(modes, complex(np.nan, np.nan))
+        here[: len(last)] = last
+        here[names] = own
+        seen[i] = here
+    return Names(mode, link, modes)
+
+
+def _continued(
+    before: Complexes, old: Integers, last: Complexes, now: Complexes, modes: int
+) -> tuple[Integers, npt.NDArray[np.int8]]:
+    """Return names and links of roots, from those of the predecessor."""
+    names = np.full(len(now), -1, np.int64)
+    links = np.full(len(now), Link.APPEARS, np.int8)
+    shifts = [0j]
+    if len(before) == len(now) and len(now):
+        # All frequencies may have moved by one factor.
+        shifts.append(complex(np.median((now - before).real)))
+    best = min((_assigned(before + shift, now) for shift in shifts), key=lambda found: found[:2])
+    for (row, column), is_clear in zip(best[2], best[3], strict=True):
+        names[column] = old[row]
+        met = _is_real(before[row]) != _is_real(now[column])
+        links[column] = Link.REAL_AXIS if met else Link.CLEAR if is_clear else Link.DOUBTFUL
+    left = np.nonzero(names < 0)[0]
+    sleeping = np.array([k for k in range(len(last)) if k not in set(old.tolist()) and not np.isnan(last[k])])
+    if left.size and sleeping.size:
+        rows, columns = linear_sum_assignment(_distances(last[sleeping], now[left]))
+        names[left[columns]] = sleeping[rows]
+        left = np.nonzero(names < 0)[0]
+    names[left] = modes + np.arange(len(left))
+    return names, links
+
+
+def _assigned(before: Complexes, now: Complexes) -> tuple[int, float, list[tuple[int, int]], list[bool]]:
+    """Return how many are in doubt, the sum of distances, the pairs, and which of them are clear."""
+    if not len(before) or not len(now):
+        return 0, 0.0, [], []
+    cost = _distances(before, now)
+    rows, columns = linear_sum_assignment(cost)
+    own = cost[rows, columns]
+    others = cost.copy()
+    others[rows, columns] = FAR
+    nearest = np.minimum(others[rows].min(axis=1), others[:, columns].min(axis=0))
+    clear = own < CLEAR * nearest
+    pairs = [(int(r), int(c)) for r, c in zip(rows, columns, strict=True)]
+    return int(np.sum(~clear)), float(own.sum()), pairs, clear.tolist()
+
+
+def _distances(a: Complexes, b: Complexes) -> Doubles:
+    return np.abs(a[:, None] - b[None, :])
+
+
+def _is_real(logarithm: complex) -> bool:
+    return abs(logarithm.imag) in (0.0, np.pi)

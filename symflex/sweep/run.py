@@ -1,0 +1,201 @@
+"""Running a sweep: chunks of points go to an executor and come back in any order."""
+
+from __future__ import annotations
+
+import pickle
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, wait
+from hashlib import sha256
+from time import monotonic
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from symflex.errors import BudgetError, Diagnostic
+from symflex.roots.budget import Silent
+from symflex.sweep.design import written
+from symflex.sweep.solve import solve_chunk
+from symflex.sweep.sweep import assembled
+from symflex.sweep.task import fingerprint
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from concurrent.futures import Executor, Future
+
+    from symflex.roots import Progress
+    from symflex.sweep.design import Design
+    from symflex.sweep.sweep import Sweep
+    from symflex.sweep.task import Array, Rows, Task
+
+CHUNK = 50
+"""Points that a worker solves at a time, and the most that a kill loses per worker."""
+AHEAD = 4
+"""Chunks per worker that are handed out before any is back."""
+MINUTE = 60.0
+HOUR = 3600.0
+
+
+class Journal(Protocol):
+    """Keeps the chunks that are done."""
+
+    def read(self, chunk: int) -> Rows | None:
+        """Return a chunk that was kept, ``None`` where it was not."""
+        ...
+
+    def write(self, chunk: int, rows: Rows) -> None:
+        """Keep a chunk."""
+        ...
+
+
+def sweep_key(task: Task, design: Design, version: str) -> str:
+    """Return what tells a sweep from every other: a hash of the model, the design and the version.
+
+    Parameters
+    ----------
+    task, design : Task, Design
+        What is asked for.
+    version : str
+        Of the program: another may print other bytes.
+    """
+    digest = sha256(f"{version}\n{CHUNK}\n{fingerprint(task)}\n{design.shape}\n".encode())
+    for point in design.points:
+        digest.update(";".join(map(written, point)).encode())
+    return digest.hexdigest()
+
+
+def run_sweep(
+    task: Task,
+    design: Design,
+    executor: Executor | None = None,
+    *,
+    workers: int = 1,
+    journal: Journal | None = None,
+    progress: Progress | None = None,
+    attributes: Mapping[str, str] | None = None,
+    clock: Callable[[], float] = monotonic,
+) -> Sweep:
+    """Solve all points of a design.
+
+    Parameters
+    ----------
+    task : Task
+        What is wanted at each.
+    design : Design
+        The points.
+    executor : concurrent.futures.Executor, optional
+        Where chunks are solved: processes, or a cluster's; in this process without one.
+    workers : int
+        How many work at a time there.
+    journal : Journal, optional
+        Keeps chunks as they come; what it holds already is not solved again.
+    progress : Progress, optional
+        Told how many points are done and how long the rest will take.
+    attributes : mapping of str to str, optional
+        Kept with the result.
+    clock : callable
+        Returns the time [s].
+
+    Returns
+    -------
+    Sweep
+        The same, byte for byte, whatever the executor, the workers and the journal.
+
+    Raises
+    ------
+    BudgetError
+        SF508 when workers end before their work.
+    """
+    starts = range(0, design.count, CHUNK)
+    done: dict[int, Rows] = {}
+    missing = []
+    for chunk in range(len(starts)):
+        rows = None if journal is None else journal.read(chunk)
+        if rows is None:
+            missing.append(chunk)
+        else:
+            done[chunk] = rows
+    shown = _Shown(progress or Silent(), design.count, min(len(done) * CHUNK, design.count), clock)
+    pickled = pickle.dumps(task)
+    solved = _solved(pickled, design, missing, executor, AHEAD * max(workers, 1))
+    try:
+        for chunk, rows in solved:
+            done[chunk] = rows
+            if journal is not None:
+                journal.write(chunk, rows)
+            shown.add(len(rows["point_status"]))
+    except BrokenExecutor as error:
+        hint = "there may be too little memory; with -o, the same command goes on where this one stopped"
+        message = f"a worker ended before its work: {error}"
+        raise BudgetError(Diagnostic("SF508", message, None, hint)) from None
+    return assembled(task, design, _joined([done[i] for i in range(len(starts))]), attributes or {})
+
+
+def _solved(
+    pickled: bytes, design: Design, missing: Sequence[int], executor: Executor | None, ahead: int
+) -> Iterator[tuple[int, Rows]]:
+    """Yield chunks as they are solved."""
+
+    def points(chunk: int) -> tuple[bytes, object]:
+        return pickled, design.points[chunk * CHUNK : (chunk + 1) * CHUNK]
+
+    if executor is None:
+        for chunk in missing:
+            yield chunk, solve_chunk(pickled, design.points[chunk * CHUNK : (chunk + 1) * CHUNK])
+        return
+    queue = iter(missing)
+    running: dict[Future[Rows], int] = {}
+    while True:
+        for chunk in queue:
+            running[executor.submit(solve_chunk, *points(chunk))] = chunk
+            if len(running) >= ahead:
+                break
+        if not running:
+            return
+        finished, _ = wait(running, return_when=FIRST_COMPLETED)
+        for future in finished:
+            yield running.pop(future), future.result()
+
+
+def _joined(chunks: Sequence[Rows]) -> Rows:
+    """Return the rows of all chunks; those with fewer roots are filled up."""
+    return {name: _stacked([chunk[name] for chunk in chunks]) for name in chunks[0]}
+
+
+def _stacked(arrays: Sequence[Array]) -> Array:
+    if arrays[0].ndim == 1:
+        return np.concatenate(arrays)
+    width = max(array.shape[1] for array in arrays)
+    empty = np.nan if arrays[0].dtype.kind == "f" else 0
+    return np.concatenate(
+        [np.pad(a, ((0, 0), (0, width - a.shape[1])), constant_values=empty) for a in arrays]
+    )
+
+
+class _Shown:
+    """Says how many points are done and how long the others will take."""
+
+    def __init__(self, progress: Progress, count: int, before: int, clock: Callable[[], float]) -> None:
+        self._progress, self._count, self._before = progress, count, before
+        self._done, self._clock, self._start = before, clock, clock()
+
+    def add(self, points: int) -> None:
+        """Count points that are done."""
+        self._done += points
+        rate = (self._clock() - self._start) / (self._done - self._before)
+        left = time_left(rate * (self._count - self._done))
+        self._progress.report(self._done / self._count, f"{self._done} of {self._count} points, {left} left")
+
+
+def time_left(seconds: float) -> str:
+    """Return a time in words.
+
+    Examples
+    --------
+    >>> time_left(7.2), time_left(190.0), time_left(7300.0)
+    ('8 s', '3 min 10 s', '2 h 2 min')
+    """
+    whole = int(-(-seconds // 1))
+    if whole < MINUTE:
+        return f"{whole} s"
+    if whole < HOUR:
+        return f"{whole // 60} min {whole % 60} s"
+    return f"{whole // 3600} h {-(-(whole % 3600) // 60)} min"
