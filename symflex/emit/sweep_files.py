@@ -38,7 +38,7 @@ def archive(arrays: Mapping[str, Array]) -> bytes:
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as file:
         for name, values in arrays.items():
             content = BytesIO()
-            np.lib.format.write_array(content, np.ascontiguousarray(values), allow_pickle=False)
+            np.lib.format.write_array(content, np.asarray(values, order="C"), allow_pickle=False)
             file.writestr(zipfile.ZipInfo(f"{name}.npy", NEW_YEAR), content.getvalue())
     return buffer.getvalue()
 

@@ -570,6 +570,10 @@ class _Substitution:
         if not terms:
             return Factored.number(self.ring, 0)
         lowest = min(m[pi] for m in terms)
+        if len(terms) == 1 and lowest >= 0:
+            ((monomial, number),) = terms.items()
+            generators = ((self.ring.context.gen(i), e) for i, e in enumerate(monomial) if e)
+            return Factored(self.ring, number, tuple(generators))
         shift = min(lowest, 0)
         scale = lcm(*(c.denominator for c in terms.values()))
         integers = {
