@@ -9,6 +9,7 @@ text --parse--> Spec --resolve--> Model --assemble--> Equations --derive--> Tran
 
 from __future__ import annotations
 
+import sys
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -490,13 +491,14 @@ def sweep(
     is_fresh : bool
         Discard what an earlier run kept.
     """
-    from symflex import __version__  # the package is complete by now
     from symflex import sweep as sweep_room  # most commands need none of it
     from symflex.emit import sweep_files, sweep_journal
     from symflex.emit.write import write_atomically
 
-    key = sweep_room.sweep_key(task, design, __version__)
-    said = {"title": task.model.title, "key": key, "version": __version__}
+    # The package imports api, which stands above: its version is read without importing it.
+    version = str(vars(sys.modules["symflex"])["__version__"])
+    key = sweep_room.sweep_key(task, design, version)
+    said = {"title": task.model.title, "key": key, "version": version}
     if output is None:
         return sweep_room.run_sweep(
             task, design, executor, workers=workers, progress=progress, attributes=said

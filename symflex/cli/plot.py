@@ -62,10 +62,8 @@ def command(
     from symflex.stability import pick_gain
 
     if SWEEP in (spec, kind):
-        if tfs or gain or limits:
-            raise UsageError(Diagnostic("SF902", "--tf, --gain and --range are not for a sweep"))
-        _plot_sweep(spec if kind == SWEEP else kind, modes, output, width, font)
-        return 0
+        options = bool(tfs or gain or limits)
+        return _plot_sweep(spec if kind == SWEEP else kind, modes, output, width, font, is_more=options)
     model = pipeline.load(spec)
     if modes is not None:
         model = replace(model, analysis=replace(model.analysis, modes=modes))
@@ -116,9 +114,17 @@ def command(
 
 
 def _plot_sweep(
-    file: str, modes: int | None, output: str | None, width: str | None, font: str | None
-) -> None:
+    file: str,
+    modes: int | None,
+    output: str | None,
+    width: str | None,
+    font: str | None,
+    *,
+    is_more: bool,
+) -> int:
     """Draw what 'symflex sweep -o' wrote."""
+    if is_more:
+        raise UsageError(Diagnostic("SF902", "--tf, --gain and --range are not for a sweep"))
     from symflex.emit.figures import DEFAULT_FONT, draw_sweep, save
     from symflex.emit.figures.pgf import MM_PER_INCH
     from symflex.emit.latex import column_width
@@ -129,6 +135,7 @@ def _plot_sweep(
     inches = None if width is None else column_width(width) / MM_PER_INCH
     save(draw_sweep(read_sweep(file), modes=modes, width=inches, font=chosen), path, font=chosen)
     note(f"wrote {path}")
+    return 0
 
 
 def _checked_path(name: str) -> Path:

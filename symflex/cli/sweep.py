@@ -28,7 +28,7 @@ BUDGET_CODE = "SF5"
     "over",
     multiple=True,
     metavar="NAME=VALUES",
-    help="k=1e4:1e6:log:200, k=1:5:lin:9, m=1,2,5; to draw from: k=1e4:1e6, k=1e4:1e6:log, k=+-5%. Repeatable.",
+    help="k=1e4:1e6:log:200, k=1:5:lin:9, m=1,2,5; to draw from: k=1e4:1e6[:log], k=+-5%. Repeatable.",
 )
 @click.option("--monte-carlo", "draws", type=click.IntRange(1), metavar="N", help="Draw N points.")
 @click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the random numbers.")
@@ -111,9 +111,7 @@ def command(
         others = ", ".join("/".join(pair) for pair in pairs[1:])
         note(f"sweeping {'/'.join(pairs[0])}; choose with --tf: {others}")
     with ProgressBar() as bar, open_executor(workers, scheduler) as (executor, size):
-        found = pipeline.sweep(
-            task, design, output, executor, workers=size, is_fresh=fresh, progress=bar
-        )
+        found = pipeline.sweep(task, design, output, executor, workers=size, is_fresh=fresh, progress=bar)
     if output:
         note(f"wrote {Path(output)}")
     if as_json:

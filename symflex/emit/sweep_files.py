@@ -1,4 +1,4 @@
-"""Sweeps as files: netCDF and .npz with named axes, CSV and Parquet as long tables; equal sweeps, equal bytes."""
+"""Sweeps as files: netCDF and .npz with named axes, CSV and Parquet as tables; equal sweeps, equal bytes."""
 
 from __future__ import annotations
 

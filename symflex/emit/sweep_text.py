@@ -126,7 +126,12 @@ def sweep_json(sweep: Sweep) -> dict[str, object]:
         "points": sweep.counts,
         "shape": list(sweep["point_status"].shape),
         "parameters": [
-            {"name": each.name, "unit": each.unit, "count": int(each.values.size), "range": _ends(each.values)}
+            {
+                "name": each.name,
+                "unit": each.unit,
+                "count": int(each.values.size),
+                "range": _ends(each.values),
+            }
             for each in sweep.parameters
         ],
         "codes": sorted({code for code in sweep["code"].reshape(-1).tolist() if code}),
@@ -139,7 +144,7 @@ def sweep_json(sweep: Sweep) -> dict[str, object]:
                 "points": int(np.sum(sweep["status"][..., k] > 0)),
                 "frequency_hz": _ends(sweep["frequency_hz"][..., k]),
                 "damping_ratio": _ends(sweep["damping_ratio"][..., k]),
-                "largest_radius": (_ends(sweep["radius"][..., k]) or [None])[-1],
+                "largest_radius": _largest(sweep["radius"][..., k]),
             }
             for k in range(sweep["status"].shape[-1])
         ]
@@ -148,6 +153,11 @@ def sweep_json(sweep: Sweep) -> dict[str, object]:
         for name in ("gain_margin_up", "gain_margin_down", "phase_margin", "crossover"):
             document[name] = _ends(sweep[name])
     return document
+
+
+def _largest(values: Array) -> float | None:
+    ends = _ends(values)
+    return None if ends is None else ends[1]
 
 
 def _ends(values: Array) -> list[float] | None:

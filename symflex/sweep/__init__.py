@@ -6,7 +6,7 @@ workers, nor the order in which they finish, nor a restart in between changes a 
 """
 
 from symflex.sweep.design import Axis, Design, Range
-from symflex.sweep.read import read_design
+from symflex.sweep.read import design_of, read_design
 from symflex.sweep.run import CHUNK, Journal, run_sweep, sweep_key
 from symflex.sweep.solve import QUANTITIES, solve_chunk
 from symflex.sweep.sweep import Labelled, Sweep
@@ -22,6 +22,7 @@ __all__ = [
     "Range",
     "Sweep",
     "Task",
+    "design_of",
     "fingerprint",
     "read_design",
     "run_sweep",

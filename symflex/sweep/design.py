@@ -19,7 +19,7 @@ Point = tuple[ExactValue, ...]
 
 POINTS_LIMIT = 1_000_000
 DIGITS = 15
-"""Significant digits of values between limits: as many as a double tells apart, so that files hold them all."""
+"""Significant digits of values between limits: as many as a double tells apart, so that files hold all."""
 WORKING_DIGITS = 40
 
 

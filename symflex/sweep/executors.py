@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
+from importlib import import_module
 from multiprocessing import get_context
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from symflex.errors import BudgetError, Diagnostic, UsageError
 from symflex.sweep.sweep import missing_library
@@ -64,11 +65,11 @@ def open_executor(
 @contextmanager
 def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
     try:
-        from distributed import Client, KilledWorker  # an extra
+        distributed: Any = import_module("distributed")  # an extra; it has no types
     except ImportError:
         raise missing_library("distributed", "a cluster") from None
     try:
-        client = Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
+        client = distributed.Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
     except (OSError, ValueError, TypeError, ImportError) as error:
         hint = "start one with: dask scheduler; and workers with: dask worker tcp://HOST:8786"
         said = "".join(c for c in str(error) if c.isprintable())[:100]
@@ -81,5 +82,5 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
                 yield executor, max(sum(client.nthreads().values()), 1)
             finally:
                 executor.shutdown(wait=False)
-    except KilledWorker as error:
+    except distributed.KilledWorker as error:
         raise BudgetError(Diagnostic("SF508", f"a worker ended before its work: {error}")) from None

@@ -35,9 +35,9 @@ class Link(IntEnum):
     """How a root got its name.
 
     ``START``: here names begin, in order of natural frequency. ``SIMILAR``: from the predecessor, whose roots
-    are the same but for one factor. ``CLEAR``: the nearest by far. ``DOUBTFUL``: another root is about as near;
-    modes come close, cross, or the step is too long. ``REAL_AXIS``: a pair became two real roots or the
-    reverse. ``APPEARS``: no root of the predecessor is left for it.
+    are the same but for one factor. ``CLEAR``: the nearest by far. ``DOUBTFUL``: another root is about as
+    near; modes come close, cross, or the step is too long. ``REAL_AXIS``: a pair became two real roots or
+    the reverse. ``APPEARS``: no root of the predecessor is left for it.
     """
 
     ABSENT = 0

@@ -13,10 +13,11 @@ from symflex.sweep.design import POINTS_LIMIT, Axis, Design, Range, between
 from symflex.transfer.bind import read_values
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from symflex.model import Parameter
     from symflex.sweep.design import Scale
+    from symflex.transfer import Given
 
 FORMS = "NAME=LO:HI:lin|log:COUNT or NAME=V1,V2,..., or NAME=LO:HI[:log] or NAME=+-5% with draws"
 LIMITS = 2
@@ -59,16 +60,46 @@ def read_design(
     if not texts:
         raise UsageError(Diagnostic("SF902", "nothing is swept", None, f"say what: {FORMS}"))
     known = {p.name: p for p in parameters}
+    return _design([_read(known, text) for text in texts], draws, seed)
+
+
+def design_of(
+    parameters: Sequence[Parameter], over: Mapping[str, str | Sequence[Given]], draws: int = 0, seed: int = 1
+) -> Design:
+    """Return the design that a mapping says: per parameter a text as for :func:`read_design`, or values.
+
+    Examples
+    --------
+    >>> from symflex.model import Parameter
+    >>> design_of([Parameter("k", None), Parameter("m", None)], {"k": "1:2:lin:2", "m": [0.5, "3"]}).shape
+    (2, 2)
+    """
+    known = {p.name: p for p in parameters}
+    read: list[Axis | Range] = []
+    for name, said in over.items():
+        if isinstance(said, str):
+            read.append(_read(known, f"{name}={said}"))
+            continue
+        parameter = _known(known, name)
+        exact = tuple(read_values((parameter,), {name: value})[0][1] for value in said)
+        if not exact:
+            raise UsageError(Diagnostic("SF902", f"'{name}' has no values"))
+        read.append(Axis(name, exact))
+    if not read:
+        raise UsageError(Diagnostic("SF902", "nothing is swept"))
+    return _design(read, draws, seed)
+
+
+def _design(found: Sequence[Axis | Range], draws: int, seed: int) -> Design:
     axes: list[Axis] = []
     ranges: list[Range] = []
-    for text in texts:
-        read = _read(known, text)
-        if read.name in {other.name for other in (*axes, *ranges)}:
-            raise UsageError(Diagnostic("SF902", f"'{read.name}' is swept twice"))
-        if isinstance(read, Axis):
-            axes.append(read)
+    for each in found:
+        if each.name in {other.name for other in (*axes, *ranges)}:
+            raise UsageError(Diagnostic("SF902", f"'{each.name}' is swept twice"))
+        if isinstance(each, Axis):
+            axes.append(each)
         else:
-            ranges.append(read)
+            ranges.append(each)
     if ranges and not draws:
         hint = "give a count, as in k=1:10:lin:50, or draw with --monte-carlo N"
         raise UsageError(Diagnostic("SF902", f"how many values of '{ranges[0].name}'?", None, hint))
@@ -83,10 +114,7 @@ def _read(known: dict[str, Parameter], text: str) -> Axis | Range:
     name, said = name.strip(), said.strip()
     if not sign or not name or not said:
         raise _unreadable(text)
-    if name not in known:
-        hint = nearest(name, known) or "parameters: " + ", ".join(list(known)[:8])
-        raise UsageError(Diagnostic("SF902", f"there is no parameter '{name[:64]}'", None, hint))
-    parameter = known[name]
+    parameter = _known(known, name)
     if said[:2] in ("+-", "±") or said[:1] == "±":
         return _about(parameter, said.removeprefix("+-").removeprefix("±"), text)
     parts = [part.strip() for part in said.split(":")]
@@ -102,6 +130,13 @@ def _read(known: dict[str, Parameter], text: str) -> Axis | Range:
         return limits
     Design((), (limits,), count)  # refuses too many before they are made
     return Axis(name, between(limits, count))
+
+
+def _known(known: dict[str, Parameter], name: str) -> Parameter:
+    if name not in known:
+        hint = nearest(name, known) or "parameters: " + ", ".join(list(known)[:8])
+        raise UsageError(Diagnostic("SF902", f"there is no parameter '{name[:64]}'", None, hint))
+    return known[name]
 
 
 def _scale_and_count(parts: list[str], text: str) -> tuple[Scale, int | None]:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor, Future
 
     from symflex.roots import Progress
-    from symflex.sweep.design import Design
+    from symflex.sweep.design import Design, Point
     from symflex.sweep.sweep import Sweep
     from symflex.sweep.task import Array, Rows, Task
 
@@ -134,18 +134,18 @@ def _solved(
 ) -> Iterator[tuple[int, Rows]]:
     """Yield chunks as they are solved."""
 
-    def points(chunk: int) -> tuple[bytes, object]:
-        return pickled, design.points[chunk * CHUNK : (chunk + 1) * CHUNK]
+    def points(chunk: int) -> Sequence[Point]:
+        return design.points[chunk * CHUNK : (chunk + 1) * CHUNK]
 
     if executor is None:
         for chunk in missing:
-            yield chunk, solve_chunk(pickled, design.points[chunk * CHUNK : (chunk + 1) * CHUNK])
+            yield chunk, solve_chunk(pickled, points(chunk))
         return
     queue = iter(missing)
     running: dict[Future[Rows], int] = {}
     while True:
         for chunk in queue:
-            running[executor.submit(solve_chunk, *points(chunk))] = chunk
+            running[executor.submit(solve_chunk, pickled, points(chunk))] = chunk
             if len(running) >= ahead:
                 break
         if not running:

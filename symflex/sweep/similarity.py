@@ -1,9 +1,9 @@
 """When two bound transfer functions are one function of s up to a scale of s.
 
-A uniform beam has the same characteristic function of its wavenumber whatever its dimensions are: all roots of
-one such beam are those of another times one factor. Lengths are counted in the first kernel's, frequencies in
-what makes the first dispersion relation's leading coefficient one; what is left are ratios without dimension.
-Where all of them are equal, exactly, the functions are similar.
+A uniform beam has the same characteristic function of its wavenumber whatever its dimensions are: all roots
+of one such beam are those of another times one factor. Lengths are counted in the first kernel's, frequencies
+in what makes the first dispersion relation's leading coefficient one; what is left are ratios without
+dimension. Where all of them are equal, exactly, the functions are similar.
 """
 
 from __future__ import annotations
@@ -45,8 +45,8 @@ class Similarity:
 def similarity_of(bound: BoundTransferFunction) -> Similarity | None:
     """Return the similarity of a function, ``None`` where it has no such scale.
 
-    Lumped systems have none, nor those with delays or waves without a formula; that their frequencies could be
-    scaled is not looked for.
+    Lumped systems have none, nor those with delays or waves without a formula; that their frequencies could
+    be scaled is not looked for.
     """
     table = bound.kernels
     if not table.kernels or any(kernel.function not in KERNELS for kernel in table.kernels):

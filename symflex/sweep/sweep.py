@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -117,7 +117,7 @@ class Sweep:
             return False
         return self.of not in ("poles", "zeros") or not bool(np.any(self["status"] == RootStatus.TOGETHER))
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self) -> object:
         """Return the sweep as an ``xarray.Dataset``, with roots and responses as complex numbers ``s``.
 
         Raises

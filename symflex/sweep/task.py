@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from symflex.sweep.design import Point
     from symflex.transfer import TransferFunction
 
-Array = npt.NDArray[np.generic]
+Array = npt.NDArray[Any]
 Rows = dict[str, Array]
 """Arrays by name; their first axis counts points."""
 

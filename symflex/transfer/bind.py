@@ -391,9 +391,7 @@ def _read_value(parameter: Parameter, given: float | Fraction | Decimal | str | 
     raise UsageError(Diagnostic("SF902", f"the value of '{parameter.name}' must be a finite number"))
 
 
-def bind(
-    tf: TransferFunction, values: Mapping[str, Given] | None = None
-) -> BoundTransferFunction:
+def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> BoundTransferFunction:
     """Return the transfer function with the declared values, or the given ones in their place.
 
     Parameters

@@ -48,6 +48,8 @@ MAP_END: Final = 0.92
 DECADES: Final = 15.0
 """Values that span more than this factor stand on a logarithmic axis."""
 BAND: Final = (5, 95)
+MEDIAN: Final = 50
+PLAIN: Final = (1e3, 1e5)
 UNDAMPED: Final = 1e-12
 MARKS: Final = 40
 CROWD: Final = 4000
@@ -218,7 +220,8 @@ def _damping_lines(axes: Axes, sweep: Sweep, modes: int | None) -> None:
 def _frequency_bands(axes: Axes, sweep: Sweep, modes: int | None) -> None:
     """Draw how far each mode's frequency spreads about its median [%]."""
     values = sweep["frequency_hz"].reshape(-1, sweep["frequency_hz"].shape[-1])[:, :modes]
-    numbers, labels = [], []
+    numbers: list[int] = []
+    labels: list[str] = []
     for k in range(values.shape[1]):
         own = values[np.isfinite(values[:, k]), k]
         if not own.size or not np.median(own):
@@ -241,7 +244,7 @@ def _frequency_bands(axes: Axes, sweep: Sweep, modes: int | None) -> None:
 
 
 def _short(value: float) -> str:
-    return f"{value:.3g}" if value < 1e3 else f"{value:.0f}" if value < 1e5 else f"{value:.1e}"
+    return f"{value:.3g}" if value < PLAIN[0] else f"{value:.0f}" if value < PLAIN[1] else f"{value:.1e}"
 
 
 def _colours(values: Doubles) -> tuple[Normalize, Colormap]:
@@ -336,7 +339,7 @@ def _magnitude_band(axes: Axes, sweep: Sweep, modes: int | None) -> None:
     del modes
     frequency, decibels = _magnitudes(sweep)
     decibels = decibels[np.isfinite(decibels).any(axis=1)]
-    low, middle, high = np.nanpercentile(decibels, (BAND[0], 50, BAND[1]), axis=0)
+    low, middle, high = np.nanpercentile(decibels, (BAND[0], MEDIAN, BAND[1]), axis=0)
     axes.fill_between(frequency, low, high, color=COLOURS[0], alpha=0.25, linewidth=0, label="5 to 95 %")
     axes.plot(frequency, middle, "-", color=COLOURS[0], linewidth=1.0, label="median")
     axes.legend(frameon=False, loc="best", fontsize=7)
@@ -376,9 +379,11 @@ def _margin_histogram(name: str) -> Panel:
         del modes
         values = sweep[name][np.isfinite(sweep[name])]
         axes.hist(values, bins=30, color=COLOURS[0], alpha=0.6)
-        for share in (BAND[0], 50, BAND[1]):
+        for share in (BAND[0], MEDIAN, BAND[1]):
             axes.axvline(
-                float(np.percentile(values, share)), color=COLOURS[1], linewidth=1.0 if share == 50 else 0.6
+                float(np.percentile(values, share)),
+                color=COLOURS[1],
+                linewidth=1.0 if share == MEDIAN else 0.6,
             )
         axes.set_xlabel(f"{MARGIN_LABELS[name]}; lines: 5, 50, 95 %")
         axes.set_ylabel("points")
