@@ -1,16 +1,19 @@
 """Names of modes along a sweep: which root at one point is which at the next.
 
-Every point but one has a predecessor next to it in the design, whose names it takes over. Where the functions
-at both are similar, roots correspond one to one, exactly. Elsewhere each root takes the name of the nearest,
-measured in ln(s) so that all frequencies count alike, under the assignment whose distances add up to the
-least; the result says whether that was in doubt. Roots are sets of points of the closed upper half plane:
-a pair that meets on the real axis becomes two real roots, of which one keeps the name.
+Every point but one has a predecessor next to it in the design, whose names it takes over. Where the
+functions at both are similar, roots correspond one to one, exactly. Elsewhere it is foretold where each root
+goes: along the line through the last two points, by one factor with all others, or nowhere. Distances are
+measured in ln(s), so that all frequencies count alike; the assignment whose distances add up to the least
+gives the names. Where the paths of two roots cross, or come closer to each other than what was foretold is
+right, the result says so. Roots are points of the closed upper half plane: a pair that meets on the real axis
+becomes two real roots, of which one keeps the name.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from math import log
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,26 +21,29 @@ import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 from scipy.spatial import cKDTree
 
+from symflex.sweep.design import number
+
 if TYPE_CHECKING:
-    from symflex.sweep.design import Design
+    from symflex.sweep.design import Axis, Design
 
 Doubles = npt.NDArray[np.float64]
 Complexes = npt.NDArray[np.complex128]
 Integers = npt.NDArray[np.int64]
 
-CLEAR = 0.5
-"""A root is clearly the one that moved if no other is nearer than the distance moved over this."""
+CLEAR = 2.0
+"""Paths are told apart when they stay further apart than this many times the errors of what was foretold."""
+MEETING = 1e-9
+"""Closer than this in ln(s), paths meet."""
 NEIGHBOURS = 32
-FAR = 1e6
 
 
 class Link(IntEnum):
     """How a root got its name.
 
     ``START``: here names begin, in order of natural frequency. ``SIMILAR``: from the predecessor, whose roots
-    are the same but for one factor. ``CLEAR``: the nearest by far. ``DOUBTFUL``: another root is about as
-    near; modes come close, cross, or the step is too long. ``REAL_AXIS``: a pair became two real roots or
-    the reverse. ``APPEARS``: no root of the predecessor is left for it.
+    are the same but for one factor. ``CLEAR``: told apart from all others. ``DOUBTFUL``: its path
+    comes close to another's or crosses it, or the step is too long. ``REAL_AXIS``: a pair became two real
+    roots or the reverse. ``APPEARS``: no root of the predecessor is left for it.
     """
 
     ABSENT = 0
@@ -78,10 +84,16 @@ class Predecessors:
         All points; predecessors come first.
     before : tuple of int
         Of every point its predecessor; -1 for the first.
+    earlier : tuple of int
+        Of every point the one before its predecessor on the same axis; -1 where there is none.
+    ratio : tuple of float
+        The step to every point over the step before it.
     """
 
     order: tuple[int, ...]
     before: tuple[int, ...]
+    earlier: tuple[int, ...]
+    ratio: tuple[float, ...]
 
 
 def predecessors(design: Design) -> Predecessors:
@@ -104,6 +116,8 @@ def predecessors(design: Design) -> Predecessors:
     middle = order[0]
     sizes = [len(axis.values) for axis in design.axes]
     before, ordered = [0] * design.count, []
+    earlier, ratio = [-1] * design.count, [1.0] * design.count
+    scales = [_scale(axis) for axis in design.axes]
     for cell in range(design.count // draws):
         neighbour = _neighbour(cell, sizes)
         for draw in order:
@@ -112,19 +126,32 @@ def predecessors(design: Design) -> Predecessors:
             if draw != middle:
                 before[i] = cell * draws + nearest[draw]
             else:
-                before[i] = -1 if neighbour is None else neighbour * draws + draw
-    return Predecessors(tuple(ordered), tuple(before))
+                before[i] = -1 if neighbour is None else neighbour[0] * draws + draw
+                if neighbour is not None and neighbour[1] >= 0:
+                    earlier[i] = neighbour[1] * draws + draw
+                    places = scales[neighbour[2]][neighbour[3] - 2 : neighbour[3] + 1]
+                    ratio[i] = (places[2] - places[1]) / (places[1] - places[0] or 1.0)
+    return Predecessors(tuple(ordered), tuple(before), tuple(earlier), tuple(ratio))
 
 
-def _neighbour(cell: int, sizes: list[int]) -> int | None:
-    """Return the grid point before one, along the last axis on which it is not the first."""
+def _neighbour(cell: int, sizes: list[int]) -> tuple[int, int, int, int] | None:
+    """Return the two grid points before one, along the last axis on which it is not the first.
+
+    Behind them that axis, and the place there; -1 where there is no second.
+    """
     stride, rest = 1, cell
-    for size in reversed(sizes):
-        rest, place = divmod(rest, size)
+    for axis in reversed(range(len(sizes))):
+        rest, place = divmod(rest, sizes[axis])
         if place:
-            return cell - stride
-        stride *= size
+            return cell - stride, cell - 2 * stride if place > 1 else -1, axis, place
+        stride *= sizes[axis]
     return None
+
+
+def _scale(axis: Axis) -> list[float]:
+    """Return where the values of an axis stand: by their logarithms where they are positive."""
+    values = [number(value) for value in axis.values]
+    return [log(value) for value in values] if min(values) > 0 else values
 
 
 def _outwards(design: Design) -> tuple[tuple[int, ...], tuple[int, ...]]:
@@ -162,7 +189,7 @@ def follow(s: Complexes, family: Integers, steps: Predecessors) -> Names:
     Examples
     --------
     >>> s = np.array([[1j, 2j], [1.1j, 1.9j]])
-    >>> follow(s, np.zeros(2, int), Predecessors((0, 1), (-1, 0))).mode.tolist()
+    >>> follow(s, np.zeros(2, int), Predecessors((0, 1), (-1, 0), (-1, -1), (1.0, 1.0))).mode.tolist()
     [[0, 1], [0, 1]]
     """
     count = np.sum(~np.isnan(s.real), axis=1)
@@ -184,7 +211,8 @@ def follow(s: Complexes, family: Integers, steps: Predecessors) -> Names:
             if family[i] and family[i] == family[parent] and n == count[parent]:
                 names, links = old.copy(), np.full(n, Link.SIMILAR, np.int8)
             else:
-                names, links = _continued(logarithms[parent, : len(old)], old, last, own, modes)
+                step = _steps_before(seen, steps, i, old)
+                names, links = _continued(logarithms[parent, : len(old)], old, last, own, step, modes)
         modes = max(modes, int(names.max(initial=-1)) + 1)
         mode[i, :n], link[i, :n] = names, links
         here = np.full(modes, complex(np.nan, np.nan))
@@ -194,17 +222,32 @@ def follow(s: Complexes, family: Integers, steps: Predecessors) -> Names:
     return Names(mode, link, modes)
 
 
+def _steps_before(seen: dict[int, Complexes], steps: Predecessors, i: int, old: Integers) -> Complexes | None:
+    """Return how far each root of the predecessor would move on; 0 for one that is new there."""
+    if steps.earlier[i] < 0:
+        return None
+    here, there = seen[steps.before[i]], seen[steps.earlier[i]]
+    change = np.zeros(len(here), np.complex128)
+    change[: len(there)] = here[: len(there)] - there
+    return np.asarray(np.nan_to_num(change[old], nan=0.0) * steps.ratio[i], np.complex128)
+
+
 def _continued(
-    before: Complexes, old: Integers, last: Complexes, now: Complexes, modes: int
+    before: Complexes,
+    old: Integers,
+    last: Complexes,
+    now: Complexes,
+    step: Complexes | None,
+    modes: int,
 ) -> tuple[Integers, npt.NDArray[np.int8]]:
     """Return names and links of roots, from those of the predecessor."""
     names = np.full(len(now), -1, np.int64)
     links = np.full(len(now), Link.APPEARS, np.int8)
-    shifts = [0j]
+    foretold = [before] if step is None else [before + step, before]
     if len(before) == len(now) and len(now):
         # All frequencies may have moved by one factor.
-        shifts.append(complex(np.median((now - before).real)))
-    best = min((_assigned(before + shift, now) for shift in shifts), key=lambda found: found[:2])
+        foretold.append(before + np.median((now - before).real))
+    best = min((_assigned(before, place, now) for place in foretold), key=lambda found: found[:2])
     for (row, column), is_clear in zip(best[2], best[3], strict=True):
         names[column] = old[row]
         met = _is_real(before[row]) != _is_real(now[column])
@@ -219,19 +262,29 @@ def _continued(
     return names, links
 
 
-def _assigned(before: Complexes, now: Complexes) -> tuple[int, float, list[tuple[int, int]], list[bool]]:
+def _assigned(
+    before: Complexes, foretold: Complexes, now: Complexes
+) -> tuple[int, float, list[tuple[int, int]], list[bool]]:
     """Return how many are in doubt, the sum of distances, the pairs, and which of them are clear."""
     if not len(before) or not len(now):
         return 0, 0.0, [], []
-    cost = _distances(before, now)
+    cost = _distances(foretold, now)
     rows, columns = linear_sum_assignment(cost)
-    own = cost[rows, columns]
-    others = cost.copy()
-    others[rows, columns] = FAR
-    nearest = np.minimum(others[rows].min(axis=1), others[:, columns].min(axis=0))
-    clear = own < CLEAR * nearest
+    error = cost[rows, columns]
+    apart = _closest(before[rows], now[columns])
+    np.fill_diagonal(apart, np.inf)
+    doubtful = np.any(apart <= CLEAR * (error[:, None] + error[None, :]) + MEETING, axis=1)
     pairs = [(int(r), int(c)) for r, c in zip(rows, columns, strict=True)]
-    return int(np.sum(~clear)), float(own.sum()), pairs, clear.tolist()
+    return int(np.sum(doubtful)), float(error.sum()), pairs, (~doubtful).tolist()
+
+
+def _closest(start: Complexes, end: Complexes) -> Doubles:
+    """Return how close every two paths come that run straight from one point to another, at one time."""
+    first = start[:, None] - start[None, :]
+    change = end[:, None] - end[None, :] - first
+    size = np.abs(change) ** 2
+    time = np.divide(-(first * change.conj()).real, size, out=np.zeros(size.shape), where=size > 0)
+    return np.asarray(np.abs(first + np.clip(time, 0, 1) * change), np.float64)
 
 
 def _distances(a: Complexes, b: Complexes) -> Doubles:

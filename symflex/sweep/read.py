@@ -93,9 +93,11 @@ def design_of(
 def _design(found: Sequence[Axis | Range], draws: int, seed: int) -> Design:
     axes: list[Axis] = []
     ranges: list[Range] = []
+    names: set[str] = set()
     for each in found:
-        if each.name in {other.name for other in (*axes, *ranges)}:
+        if each.name in names:
             raise UsageError(Diagnostic("SF902", f"'{each.name}' is swept twice"))
+        names.add(each.name)
         if isinstance(each, Axis):
             axes.append(each)
         else:
