@@ -460,9 +460,18 @@ def sweep_task(
     frequencies: Sequence[float] = (),
     gain: str = "",
 ) -> Task:
-    """Return what is wanted at every point of a design; see :class:`symflex.sweep.Task`."""
-    from symflex import sweep as sweep_room  # most commands need none of it
+    """Return what is wanted at every point of a design; see :class:`symflex.sweep.Task`.
 
+    Raises
+    ------
+    UsageError
+        SF902 when margins are wanted and there is no such gain.
+    """
+    from symflex import sweep as sweep_room  # most commands need none of it
+    from symflex.stability import pick_gain
+
+    if of == "margins":
+        pick_gain(model.parameters, gain)
     return sweep_room.Task(
         model, pair, of, design.names, derive_all, region, tuple(map(float, frequencies)), gain
     )

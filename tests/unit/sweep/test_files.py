@@ -168,20 +168,24 @@ def test_lines_fit_a_terminal(spec, capsys):
     assert max(map(len, capsys.readouterr().out.splitlines())) <= 80
 
 
+RESPONSE = ["--of", "response", "--band", "0.01", "10", "--count", "20"]
+
+
+def slow(arguments):
+    return pytest.param(arguments, marks=pytest.mark.slow)
+
+
 @pytest.mark.parametrize(
     "arguments",
     [
         ["a.toml", "--over", "b=0.1:3:lin:9"],
-        ["a.toml", "--over", "b=0.1:3:lin:4", "--over", "k=1,2"],
-        ["a.toml", "--over", "b=0.1:1", "--monte-carlo", "9"],
-        ["a.toml", "--over", "k=1:100:log:5", "--of", "response", "--band", "0.01", "10", "--count", "20"],
-        [
-            *("a.toml", "--over", "k=1:100", "--monte-carlo", "9"),
-            *("--of", "response", "--band", "0.01", "10", "--count", "20"),
-        ],
-        ["loop.toml", "--over", "K=0.5:5:lin:5", "--of", "margins", "--gain", "K"],
-        ["loop.toml", "--over", "T=0.5:5", "--monte-carlo", "5", "--of", "margins", "--gain", "K"],
-        ["beam.toml", "--over", "l=1:2", "--monte-carlo", "5", "--modes", "2"],
+        slow(["a.toml", "--over", "b=0.1:3:lin:4", "--over", "k=1,2"]),
+        slow(["a.toml", "--over", "b=0.1:1", "--monte-carlo", "9"]),
+        slow(["a.toml", "--over", "k=1:100:log:5", *RESPONSE]),
+        ["a.toml", "--over", "k=1:100", "--monte-carlo", "9", *RESPONSE],
+        slow(["loop.toml", "--over", "K=0.5:5:lin:5", "--of", "margins", "--gain", "K"]),
+        slow(["loop.toml", "--over", "T=0.5:5", "--monte-carlo", "5", "--of", "margins", "--gain", "K"]),
+        slow(["beam.toml", "--over", "l=1:2", "--monte-carlo", "5", "--modes", "2"]),
     ],
 )
 def test_every_kind_of_sweep_is_drawn_the_same_twice(spec, arguments, tmp_path):
