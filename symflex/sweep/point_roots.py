@@ -8,20 +8,21 @@ from hashlib import sha256
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from flint import arb, fmpq
+from flint import arb
 
 from symflex.errors import SymflexError
 from symflex.roots import Everything, Modes, precision
 from symflex.roots.locate import locate
 from symflex.roots.vanishing import without_lengths_of_zero
 from symflex.sweep.rounding import Doubles, doubles
-from symflex.sweep.similarity import similarity_of
+from symflex.sweep.similarity import Similarities
 from symflex.sweep.task import codes_of, derived
 from symflex.transfer import bind
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from symflex.model import ExactValue
     from symflex.roots import PoleZeroMap, Region, Root
     from symflex.sweep.design import Point
     from symflex.sweep.similarity import Similarity
@@ -120,41 +121,50 @@ class RootSolver:
         self, tf: TransferFunction, names: Sequence[str], kind: RootKind, region: Region | None
     ) -> None:
         self._tf, self._names, self._kind, self._region = tf, tuple(names), kind, region
+        # A band or a rectangle does not scale with the roots.
+        scalable = region is None or isinstance(region, Modes | Everything)
+        self._similarities = Similarities(tf) if scalable else None
+        used = {p.name: p.value for p in (*tf.parameters, *tf.hidden_parameters)}
+        self._declared = {name: value for name, value in used.items() if value is not None}
+        if any(value is None and name not in self._names for name, value in used.items()):
+            self._similarities = None
         self._models: dict[object, tuple[PointRoots | None, Similarity, tuple[Root, ...]]] = {}
 
     def __call__(self, point: Point) -> PointRoots:
         """Return the roots at a point; what fails there is said, not raised."""
         try:
-            bound = without_lengths_of_zero(bind(self._tf, dict(zip(self._names, point, strict=True))))
-            return self._solve(bound)
+            return self._solve(dict(zip(self._names, point, strict=True)))
         except SymflexError as error:
             return PointRoots((), 0, PointStatus.FAILED, error.diagnostics[0].code)
 
-    def _solve(self, bound: BoundTransferFunction) -> PointRoots:
-        # A band or a rectangle does not scale with the roots.
-        scalable = self._region is None or isinstance(self._region, Modes | Everything)
-        similarity = similarity_of(bound) if scalable else None
+    def _bound(self, values: dict[str, ExactValue]) -> BoundTransferFunction:
+        return without_lengths_of_zero(bind(self._tf, values))
+
+    def _solve(self, values: dict[str, ExactValue]) -> PointRoots:
+        similarity = None
+        if self._similarities is not None:
+            similarity = self._similarities.at({**self._declared, **values})
         if similarity is None:
-            return self._searched(bound, 0)
+            return self._searched(self._bound(values), 0)
         family = _family(similarity)
         if similarity.key not in self._models:
             if len(self._models) >= REMEMBERED:
                 self._models.clear()
             self._models[similarity.key] = (None, similarity, ())
-            return self._searched(bound, family)
+            return self._searched(self._bound(values), family)
         model, known, roots = self._models[similarity.key]
         if not roots:
             # Asked for a second time: worth many digits.
-            found = locate(bound, self._region, SIMILAR_DIGITS)
+            found = locate(self._bound(values), self._region, SIMILAR_DIGITS)
             model, roots = self._chosen(found, family), _upper(self._all(found))
             if model.status is PointStatus.CERTIFIED and all(root.certified for root in roots):
                 self._models[similarity.key] = (model, similarity, roots)
                 known = similarity
             else:
-                return self._searched(bound, family)
+                return self._searched(self._bound(values), family)
         scaled = _scaled(roots, known, similarity)
         if model is None or not all(root.place.is_nearest for root in scaled):
-            return self._searched(bound, family)
+            return self._searched(self._bound(values), family)
         return PointRoots(scaled, model.at_zero, model.status, "", family)
 
     def _searched(self, bound: BoundTransferFunction, family: int) -> PointRoots:
@@ -192,9 +202,7 @@ def _upper(roots: Sequence[Root]) -> tuple[Root, ...]:
 
 def _scaled(roots: Sequence[Root], known: Similarity, wanted: Similarity) -> tuple[FoundRoot, ...]:
     with precision(SCALE_BITS):
-        share = wanted.scale / known.scale
-        power = arb(fmpq(share.numerator, share.denominator))
-        factor = power.root(wanted.degree)
+        factor = arb(wanted.scale / known.scale).root(wanted.degree)
         found = []
         for root in roots:
             place = doubles(root.re * factor, root.im * factor)

@@ -11,12 +11,11 @@ from fractions import Fraction
 from math import hypot, inf, isfinite, nextafter, ulp
 from typing import TYPE_CHECKING
 
-from symflex.roots.root import exact_fraction
-
 if TYPE_CHECKING:
     from flint import arb
 
-LARGEST = Fraction(2) ** 1023
+LARGEST = 1023
+"""Exponent of two beyond which nothing is told."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,16 +65,25 @@ def rounded(ball: arb) -> tuple[float, float, bool]:
         return 0.0, 0.0, True
     if not ball.is_finite():
         return float("nan"), inf, False
-    middle, radius = exact_fraction(ball), exact_fraction(ball.rad())
-    low, high = middle - radius, middle + radius
-    if max(abs(low), abs(high)) > LARGEST:
+    mantissa, exponent = (int(x) for x in ball.mid().man_exp())
+    spread, finer = (int(x) for x in ball.rad().man_exp())
+    if max(mantissa.bit_length() + exponent, spread.bit_length() + finer) >= LARGEST:
         return float("nan"), inf, False
-    first, last = float(low), float(high)
+    least = min(exponent, finer)
+    size, around = mantissa << (exponent - least), spread << (finer - least)
+    first, last = (_nearest(end, least) for end in (size - around, size + around))
     if first == last and first:
         # Within one rounding interval of the double, which is half a unit in the last place wide at most.
-        return first, ulp(first) / 2, True
-    centre = float(middle)
-    return centre, _upwards(max(abs(Fraction(centre) - low), abs(high - Fraction(centre)))), False
+        return first, ulp(first) / 2 or ulp(first), True
+    centre = _nearest(size, least)
+    unit = Fraction(2) ** least
+    ends = ((size - around) * unit, (size + around) * unit)
+    return centre, _upwards(max(abs(Fraction(centre) - end) for end in ends)), False
+
+
+def _nearest(mantissa: int, exponent: int) -> float:
+    """Return the double nearest to ``mantissa * 2^exponent``: quotients of integers are rounded correctly."""
+    return mantissa / (1 << -exponent) if exponent < 0 else float(mantissa << exponent)
 
 
 def _upwards(value: Fraction) -> float:
