@@ -170,7 +170,7 @@ def check_writable(path: Path) -> None:
     ------
     UsageError
         SF902 an ending that stands for no format; SF914 the library it needs is not installed; SF903 no such
-        folder.
+        folder, or what is there is no file.
     """
     if path.suffix.lower() not in WRITERS:
         raise UsageError(Diagnostic("SF902", f"'{path.name}' must end in {', '.join(WRITERS)}"))
@@ -179,8 +179,13 @@ def check_writable(path: Path) -> None:
             import pyarrow  # noqa: F401 (an extra)
         except ImportError:
             raise missing_library("pyarrow", "Parquet") from None
+    reason = ""
     if not path.parent.is_dir():
-        raise UsageError(Diagnostic("SF903", f"cannot write '{path}': there is no folder '{path.parent}'"))
+        reason = f"there is no folder '{path.parent}'"
+    elif path.is_symlink() or (path.exists() and not path.is_file()):
+        reason = "it is a symbolic link, or no regular file"
+    if reason:
+        raise UsageError(Diagnostic("SF903", f"cannot write '{path}': {reason}"))
 
 
 def sweep_bytes(sweep: Sweep, suffix: str) -> bytes:

@@ -158,6 +158,13 @@ def test_exit_codes(spec, arguments, code, capsys):
     assert capsys.readouterr().err
 
 
+def test_a_link_is_refused_before_anything_is_computed(spec, tmp_path, capsys):
+    (tmp_path / "a.nc").symlink_to(tmp_path / "elsewhere.nc")
+    assert run(["sweep", spec, "--over", "k=1,2", "--workers", "1", "-o", "a.nc"]) == 2
+    assert "SF903" in capsys.readouterr().err
+    assert not (tmp_path / "a.nc.part").exists()
+
+
 def test_a_point_that_fails_is_no_success(spec, capsys):
     assert run(["sweep", "beam.toml", "--over", "E=0,1", "--modes", "1", "--workers", "1"]) == 4
     assert "1 failed" in capsys.readouterr().out
