@@ -7,13 +7,12 @@ workers, nor the order in which they finish, nor a restart in between changes a 
 
 from symflex.sweep.design import Axis, Design, Range
 from symflex.sweep.read import design_of, read_design
-from symflex.sweep.run import CHUNK, Journal, run_sweep, sweep_key
+from symflex.sweep.run import Journal, chunk_size, run_sweep, sweep_key
 from symflex.sweep.solve import QUANTITIES, solve_chunk
 from symflex.sweep.sweep import Labelled, Sweep
 from symflex.sweep.task import Task, fingerprint
 
 __all__ = [
-    "CHUNK",
     "QUANTITIES",
     "Axis",
     "Design",
@@ -22,6 +21,7 @@ __all__ = [
     "Range",
     "Sweep",
     "Task",
+    "chunk_size",
     "design_of",
     "fingerprint",
     "read_design",

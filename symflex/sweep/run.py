@@ -26,8 +26,9 @@ if TYPE_CHECKING:
     from symflex.sweep.sweep import Sweep
     from symflex.sweep.task import Array, Rows, Task
 
-CHUNK = 50
-"""Points that a worker solves at a time, and the most that a kill loses per worker."""
+CHUNKS = 200
+"""Into about how many a sweep is cut."""
+LARGEST_CHUNK = 1000
 AHEAD = 4
 """Chunks per worker that are handed out before any is back."""
 MINUTE = 60.0
@@ -46,6 +47,17 @@ class Journal(Protocol):
         ...
 
 
+def chunk_size(count: int) -> int:
+    """Return how many points a worker solves at a time, and the most that a kill loses per worker.
+
+    Examples
+    --------
+    >>> [chunk_size(count) for count in (7, 10_000, 1_000_000)]
+    [1, 50, 1000]
+    """
+    return min(max(count // CHUNKS, 1), LARGEST_CHUNK)
+
+
 def sweep_key(task: Task, design: Design, version: str) -> str:
     """Return what tells a sweep from every other: a hash of the model, the design and the version.
 
@@ -56,7 +68,7 @@ def sweep_key(task: Task, design: Design, version: str) -> str:
     version : str
         Of the program: another may print other bytes.
     """
-    digest = sha256(f"{version}\n{CHUNK}\n{fingerprint(task)}\n{design.shape}\n".encode())
+    digest = sha256(f"{version}\n{CHUNKS}\n{fingerprint(task)}\n{design.shape}\n".encode())
     for point in design.points:
         digest.update(";".join(map(written, point)).encode())
     return digest.hexdigest()
@@ -104,16 +116,19 @@ def run_sweep(
     BudgetError
         SF508 when workers end before their work.
     """
-    starts = range(0, design.count, CHUNK)
+    size = chunk_size(design.count)
+    chunks = range(-(-design.count // size))
     done: dict[int, Rows] = {}
     missing = []
-    for chunk in range(len(starts)):
+    for chunk in chunks:
         rows = None if journal is None else journal.read(chunk)
         if rows is None:
             missing.append(chunk)
         else:
             done[chunk] = rows
-    shown = _Shown(progress or Silent(), design.count, min(len(done) * CHUNK, design.count), clock)
+    shown = _Shown(
+        progress or Silent(), design.count, sum(len(rows["point_status"]) for rows in done.values()), clock
+    )
     pickled = pickle.dumps(task)
     solved = _solved(pickled, design, missing, executor, AHEAD * max(workers, 1))
     try:
@@ -126,16 +141,17 @@ def run_sweep(
         hint = "there may be too little memory; with -o, the same command goes on where this one stopped"
         message = f"a worker ended before its work: {error}"
         raise BudgetError(Diagnostic("SF508", message, None, hint)) from None
-    return assembled(task, design, _joined([done[i] for i in range(len(starts))]), attributes or {})
+    return assembled(task, design, _joined([done[i] for i in chunks]), attributes or {})
 
 
 def _solved(
     pickled: bytes, design: Design, missing: Sequence[int], executor: Executor | None, ahead: int
 ) -> Iterator[tuple[int, Rows]]:
     """Yield chunks as they are solved."""
+    size = chunk_size(design.count)
 
     def points(chunk: int) -> Sequence[Point]:
-        return design.points[chunk * CHUNK : (chunk + 1) * CHUNK]
+        return design.points[chunk * size : (chunk + 1) * size]
 
     if executor is None:
         for chunk in missing:

@@ -15,7 +15,7 @@ from symflex import pipeline
 from symflex.emit.sweep_files import npz_bytes
 from symflex.emit.sweep_journal import open_journal
 from symflex.errors import BudgetError, UsageError
-from symflex.sweep import CHUNK, read_design, run_sweep, sweep_key
+from symflex.sweep import chunk_size, read_design, run_sweep, sweep_key
 from tests.house.repository import ROOT
 from tests.unit.sweep.models import LOOP, SLIDING_FREE, oscillator
 
@@ -46,15 +46,15 @@ def task_and_design(count):
 
 
 def test_the_order_in_which_chunks_come_back_does_not_matter():
-    task, design = task_and_design(6 * CHUNK - 7)
+    task, design = task_and_design(401)
     here, there = run_sweep(task, design), run_sweep(task, design, Backwards(), workers=3)
     assert npz_bytes(here) == npz_bytes(there)
 
 
 def test_chunks_of_several_widths_are_joined():
     model = oscillator()
-    sweep = model.sweep({"b": f"0.1:4:lin:{2 * CHUNK + 20}"})
-    assert sweep["status"].shape == (2 * CHUNK + 20, 2)
+    sweep = model.sweep({"b": "0.1:4:lin:20"})
+    assert sweep["status"].shape == (20, 2)
     assert np.sum(sweep["status"] > 0, axis=1).tolist() == [1 if b < 2 else 2 for b in sweep["b"]]
 
 
@@ -82,17 +82,17 @@ class Shown:
 
 
 def test_progress_says_how_much_is_left():
-    task, design = task_and_design(2 * CHUNK)
+    task, design = task_and_design(2)
     shown, clock = Shown(), iter([0.0, 10.0, 20.0])
     run_sweep(task, design, progress=shown, clock=lambda: next(clock))
     assert shown.said == [
-        (0.5, f"{CHUNK} of {2 * CHUNK} points, 10 s left"),
-        (1.0, f"{2 * CHUNK} of {2 * CHUNK} points, 0 s left"),
+        (0.5, "1 of 2 points, 10 s left"),
+        (1.0, "2 of 2 points, 0 s left"),
     ]
 
 
 def test_what_a_journal_holds_is_not_solved_again(tmp_path, monkeypatch):
-    task, design = task_and_design(2 * CHUNK)
+    task, design = task_and_design(2)
     journal = open_journal(tmp_path / "a.nc", "key")
     expected = npz_bytes(run_sweep(task, design, journal=journal))
     assert journal.kept == 2
@@ -106,7 +106,7 @@ def test_what_a_journal_holds_is_not_solved_again(tmp_path, monkeypatch):
 
 
 def test_a_chunk_that_cannot_be_read_is_solved_again(tmp_path):
-    task, design = task_and_design(2 * CHUNK)
+    task, design = task_and_design(2)
     expected = npz_bytes(run_sweep(task, design, journal=open_journal(tmp_path / "a.nc", "key")))
     (tmp_path / "a.nc.part" / "chunk-000001.npz").write_bytes(b"PK\x03\x04 torn")
     (tmp_path / "a.nc.part" / ".symflex-0123.tmp").write_bytes(b"left by a kill")
@@ -193,12 +193,12 @@ def test_a_sweep_that_is_killed_goes_on_to_the_same_bytes(tmp_path):
         command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     ) as p:
         for _ in range(6000):
-            if len(list(journal.glob("chunk-*.npz"))) >= 6 or p.poll() is not None:
+            if len(list(journal.glob("chunk-*.npz"))) >= 60 or p.poll() is not None:
                 break
             time.sleep(0.01)
         p.send_signal(signal.SIGKILL)
     kept = {path.name: path.stat().st_mtime_ns for path in journal.glob("chunk-*.npz")}
-    assert 0 < len(kept) < 600 // CHUNK
+    assert 0 < len(kept) < 600 // chunk_size(600)
     assert not (tmp_path / "killed.nc").exists()
     assert run(tmp_path, "killed.nc", "--workers", "2") == expected
     assert not journal.exists()
