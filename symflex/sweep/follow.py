@@ -5,12 +5,13 @@ functions at both are similar, roots correspond one to one, exactly. Elsewhere i
 goes: along the line through the last two points, by one factor with all others, or nowhere. Distances are
 measured in ln(s), so that all frequencies count alike; the assignment whose distances add up to the least
 gives the names. Where the paths of two roots cross, or come closer to each other than what was foretold is
-right, the result says so. Roots are points of the closed upper half plane: a pair that meets on the real axis
-becomes two real roots, of which one keeps the name.
+right, the step is divided, and where doubt remains the result says so. Roots are points of the closed upper
+half plane: a pair that meets on the real axis becomes two real roots, of which one keeps the name.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from math import log
@@ -28,13 +29,19 @@ if TYPE_CHECKING:
 
 Doubles = npt.NDArray[np.float64]
 Complexes = npt.NDArray[np.complex128]
+Between = Callable[[int, int, int], Sequence[Complexes] | None]
+"""From two points and a number of pieces to the roots where pieces meet; ``None`` where they are not had."""
 Integers = npt.NDArray[np.int64]
 
 CLEAR = 2.0
 """Paths are told apart when they stay further apart than this many times the errors of what was foretold."""
+LINE, FACTOR = 0.25, 0.5
+"""What was foretold along a line, or by one factor, is trusted no further than to these shares of a move."""
 MEETING = 1e-9
 """Closer than this in ln(s), paths meet."""
 NEIGHBOURS = 32
+PIECES = (4, 16)
+"""Into how many a step is divided on which names are in doubt."""
 
 
 class Link(IntEnum):
@@ -174,7 +181,7 @@ def _outwards(design: Design) -> tuple[tuple[int, ...], tuple[int, ...]]:
     return tuple(order.tolist()), tuple(nearest.tolist())
 
 
-def follow(s: Complexes, family: Integers, steps: Predecessors) -> Names:
+def follow(s: Complexes, family: Integers, steps: Predecessors, between: Between | None = None) -> Names:
     """Name the roots of all points.
 
     Parameters
@@ -185,6 +192,8 @@ def follow(s: Complexes, family: Integers, steps: Predecessors) -> Names:
         Equal and not 0 for points whose roots are the same but for one factor, in the same order.
     steps : Predecessors
         The way through the design.
+    between : callable, optional
+        Asked where names are in doubt.
 
     Examples
     --------
@@ -212,13 +221,16 @@ def follow(s: Complexes, family: Integers, steps: Predecessors) -> Names:
                 names, links = old.copy(), np.full(n, Link.SIMILAR, np.int8)
             else:
                 step = _steps_before(seen, steps, i, old)
-                names, links = _continued(logarithms[parent, : len(old)], old, last, own, step, modes)
+                here = logarithms[parent, : len(old)]
+                names, links = _continued(here, old, last, own, step, modes)
+                if between is not None and Link.DOUBTFUL in links:
+                    names, links = _divided(between, (parent, i), here, old, own) or (names, links)
         modes = max(modes, int(names.max(initial=-1)) + 1)
         mode[i, :n], link[i, :n] = names, links
-        here = np.full(modes, complex(np.nan, np.nan))
-        here[: len(last)] = last
-        here[names] = own
-        seen[i] = here
+        places = np.full(modes, complex(np.nan, np.nan))
+        places[: len(last)] = last
+        places[names] = own
+        seen[i] = places
     return Names(mode, link, modes)
 
 
@@ -232,6 +244,37 @@ def _steps_before(seen: dict[int, Complexes], steps: Predecessors, i: int, old: 
     return np.asarray(np.nan_to_num(change[old], nan=0.0) * steps.ratio[i], np.complex128)
 
 
+def _divided(
+    between: Between, ends: tuple[int, int], before: Complexes, old: Integers, own: Complexes
+) -> tuple[Integers, npt.NDArray[np.int8]] | None:
+    """Return names and links by way of points in between, ``None`` where roots come or go on the way."""
+    result = None
+    for pieces in PIECES:
+        found = between(*ends, pieces)
+        if found is None:
+            return result
+        here, names = before, old
+        doubtful: set[int] = set()
+        step: Complexes | None = None
+        for there in (*(np.log(s) for s in found), own):
+            if len(there) != len(here):
+                break
+            # Nobody sleeps and nobody is new: all roots go on.
+            now, links = _continued(here, names, here[:0], there, step, 0)
+            if not np.isin(links, (Link.CLEAR, Link.DOUBTFUL)).all():
+                break
+            doubtful.update(now[links == Link.DOUBTFUL].tolist())
+            places = {int(name): j for j, name in enumerate(names)}
+            step = there - here[[places[int(name)] for name in now]]
+            here, names = there, now
+        else:
+            sure = [Link.DOUBTFUL if name in doubtful else Link.CLEAR for name in names.tolist()]
+            result = names, np.array(sure, np.int8)
+            if not doubtful:
+                break
+    return result
+
+
 def _continued(
     before: Complexes,
     old: Integers,
@@ -243,11 +286,11 @@ def _continued(
     """Return names and links of roots, from those of the predecessor."""
     names = np.full(len(now), -1, np.int64)
     links = np.full(len(now), Link.APPEARS, np.int8)
-    foretold = [before] if step is None else [before + step, before]
+    foretold = [(before, 0.0)] if step is None else [(before + step, LINE), (before, 0.0)]
     if len(before) == len(now) and len(now):
         # All frequencies may have moved by one factor.
-        foretold.append(before + np.median((now - before).real))
-    best = min((_assigned(before, place, now) for place in foretold), key=lambda found: found[:2])
+        foretold.append((before + np.median((now - before).real), FACTOR))
+    best = min((_assigned(before, *place, now) for place in foretold), key=lambda found: found[:2])
     for (row, column), is_clear in zip(best[2], best[3], strict=True):
         names[column] = old[row]
         met = _is_real(before[row]) != _is_real(now[column])
@@ -263,19 +306,19 @@ def _continued(
 
 
 def _assigned(
-    before: Complexes, foretold: Complexes, now: Complexes
+    before: Complexes, foretold: Complexes, least: float, now: Complexes
 ) -> tuple[int, float, list[tuple[int, int]], list[bool]]:
     """Return how many are in doubt, the sum of distances, the pairs, and which of them are clear."""
     if not len(before) or not len(now):
         return 0, 0.0, [], []
     cost = _distances(foretold, now)
     rows, columns = linear_sum_assignment(cost)
-    error = cost[rows, columns]
+    error = np.maximum(cost[rows, columns], least * np.abs(now[columns] - before[rows]))
     apart = _closest(before[rows], now[columns])
     np.fill_diagonal(apart, np.inf)
     doubtful = np.any(apart <= CLEAR * (error[:, None] + error[None, :]) + MEETING, axis=1)
     pairs = [(int(r), int(c)) for r, c in zip(rows, columns, strict=True)]
-    return int(np.sum(doubtful)), float(error.sum()), pairs, (~doubtful).tolist()
+    return int(np.sum(doubtful)), float(cost[rows, columns].sum()), pairs, (~doubtful).tolist()
 
 
 def _closest(start: Complexes, end: Complexes) -> Doubles:

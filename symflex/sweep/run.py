@@ -12,7 +12,8 @@ import numpy as np
 
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.budget import Silent
-from symflex.sweep.design import written
+from symflex.sweep.design import points_between, written
+from symflex.sweep.point_roots import PointStatus
 from symflex.sweep.solve import solve_chunk
 from symflex.sweep.sweep import assembled
 from symflex.sweep.task import fingerprint
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
     from symflex.roots import Progress
     from symflex.sweep.design import Design, Point
+    from symflex.sweep.follow import Between, Complexes
     from symflex.sweep.sweep import Sweep
     from symflex.sweep.task import Array, Rows, Task
 
@@ -31,6 +33,8 @@ CHUNKS = 200
 LARGEST_CHUNK = 1000
 AHEAD = 4
 """Chunks per worker that are handed out before any is back."""
+MOST_BETWEEN = (40, 400)
+"""Points solved between others, where names are in doubt: a tenth of all, at least and at most these."""
 MINUTE = 60.0
 HOUR = 3600.0
 
@@ -141,7 +145,8 @@ def run_sweep(
         hint = "there may be too little memory; with -o, the same command goes on where this one stopped"
         message = f"a worker ended before its work: {error}"
         raise BudgetError(Diagnostic("SF508", message, None, hint)) from None
-    return assembled(task, design, _joined([done[i] for i in chunks]), attributes or {})
+    rows = _joined([done[i] for i in chunks])
+    return assembled(task, design, rows, attributes or {}, _between(pickled, design))
 
 
 def _solved(
@@ -169,6 +174,25 @@ def _solved(
         finished, _ = wait(running, return_when=FIRST_COMPLETED)
         for future in finished:
             yield running.pop(future), future.result()
+
+
+def _between(pickled: bytes, design: Design) -> Between:
+    """Return what solves points between two of a design, in this process, until there were many."""
+    left = max(MOST_BETWEEN[0], min(design.count // 10, MOST_BETWEEN[1]))
+
+    def solve(start: int, end: int, pieces: int) -> list[Complexes] | None:
+        nonlocal left
+        places = points_between(design.points[start], design.points[end], pieces)
+        if places is None or left < len(places):
+            return None
+        left -= len(places)
+        rows = solve_chunk(pickled, places)
+        if np.any(rows["point_status"] > PointStatus.EXCEPT_ACCUMULATION):
+            return None
+        every = rows["re"] + 1j * rows["im"]
+        return [s[rows["status"][i] > 0] for i, s in enumerate(every)]
+
+    return solve
 
 
 def _joined(chunks: Sequence[Rows]) -> Rows:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from symflex.sweep.design import Design
+    from symflex.sweep.follow import Between
     from symflex.sweep.task import Array, Rows, Task
 
 SCHEMA = "symflex.sweep/1"
@@ -152,7 +153,13 @@ def _described(each: Labelled) -> dict[str, str]:
     return {k: v for k, v in (("units", each.unit), ("long_name", each.doc)) if v}
 
 
-def assembled(task: Task, design: Design, rows: Rows, attributes: Mapping[str, str]) -> Sweep:
+def assembled(
+    task: Task,
+    design: Design,
+    rows: Rows,
+    attributes: Mapping[str, str],
+    between: Between | None = None,
+) -> Sweep:
     """Return the sweep that the rows of all points make.
 
     Parameters
@@ -163,13 +170,15 @@ def assembled(task: Task, design: Design, rows: Rows, attributes: Mapping[str, s
         As :func:`symflex.sweep.solve.solve_chunk` returns them, for all points in order.
     attributes : mapping of str to str
         Added to what the task says.
+    between : callable, optional
+        Solves points between others where names are in doubt; see :func:`symflex.sweep.follow.follow`.
     """
     dims = tuple(label(axis.name) for axis in design.axes) + ((DRAW,) if design.draws else ())
     coordinates = list(_parameters(task, design))
     if design.draws:
         coordinates.append(Labelled(DRAW, (DRAW,), np.arange(design.draws, dtype=np.int32), "", "number"))
     if task.of in ("poles", "zeros"):
-        found, more = _roots(design, rows)
+        found, more = _roots(design, rows, between)
         coordinates.append(Labelled(MODE, (MODE,), np.arange(1, more + 1, dtype=np.int32), "", "name"))
     elif task.of == "response":
         values = np.array(task.frequencies)
@@ -225,10 +234,10 @@ def _parameters(task: Task, design: Design) -> list[Labelled]:
 Named = tuple[str, tuple[str, ...], "Array", str, str]
 
 
-def _roots(design: Design, rows: Rows) -> tuple[list[Named], int]:
+def _roots(design: Design, rows: Rows, between: Between | None) -> tuple[list[Named], int]:
     """Return the arrays of roots, sorted by the names of modes, and how many modes there are."""
     s = rows["re"] + 1j * rows["im"]
-    names = follow(s, rows["family"].astype(np.int64), predecessors(design))
+    names = follow(s, rows["family"].astype(np.int64), predecessors(design), between)
     shape = (design.count, names.modes)
     points, places = np.nonzero(names.mode >= 0)
     modes = names.mode[points, places]
