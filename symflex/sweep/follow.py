@@ -11,6 +11,7 @@ half plane: a pair that meets on the real axis becomes two real roots, of which 
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
@@ -207,6 +208,7 @@ def follow(s: Complexes, family: Integers, steps: Predecessors, between: Between
     logarithms = np.log(s)
     # Where every name was seen last on the way to a point; NaN for one not met on it.
     seen: dict[int, Complexes] = {}
+    needed = Counter((*steps.before, *steps.earlier))
     modes = 0
     for i in steps.order:
         n, parent = int(count[i]), steps.before[i]
@@ -231,6 +233,10 @@ def follow(s: Complexes, family: Integers, steps: Predecessors, between: Between
         places[: len(last)] = last
         places[names] = own
         seen[i] = places
+        for one in (steps.before[i], steps.earlier[i]):
+            needed[one] -= 1
+            if not needed[one]:
+                seen.pop(one, None)
     return Names(mode, link, modes)
 
 

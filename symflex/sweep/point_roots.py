@@ -99,6 +99,15 @@ class PointRoots:
     family: int = 0
 
 
+@dataclass(frozen=True, slots=True)
+class _Known:
+    """A point that stands for all similar ones; ``model`` is ``None`` where it does not serve."""
+
+    similarity: Similarity
+    model: PointRoots | None
+    roots: tuple[Root, ...]
+
+
 class RootSolver:
     """Finds the roots of one transfer function at many points.
 
@@ -128,7 +137,7 @@ class RootSolver:
         self._declared = {name: value for name, value in used.items() if value is not None}
         if any(value is None and name not in self._names for name, value in used.items()):
             self._similarities = None
-        self._models: dict[object, tuple[PointRoots | None, Similarity, tuple[Root, ...]]] = {}
+        self._models: dict[object, _Known | None] = {}
 
     def __call__(self, point: Point) -> PointRoots:
         """Return the roots at a point; what fails there is said, not raised."""
@@ -150,22 +159,25 @@ class RootSolver:
         if similarity.key not in self._models:
             if len(self._models) >= REMEMBERED:
                 self._models.clear()
-            self._models[similarity.key] = (None, similarity, ())
+            self._models[similarity.key] = None
+            result = self._searched(self._bound(values), family)
+            if result.status is PointStatus.CERTIFIED:
+                return result
+        # Asked for a second time: worth many digits.
+        known = self._models[similarity.key] or self._known(values, similarity, family)
+        self._models[similarity.key] = known
+        scaled = _scaled(known.roots, known.similarity, similarity)
+        if known.model is None or not all(root.place.is_nearest for root in scaled):
             return self._searched(self._bound(values), family)
-        model, known, roots = self._models[similarity.key]
-        if not roots:
-            # Asked for a second time: worth many digits.
-            found = locate(self._bound(values), self._region, SIMILAR_DIGITS)
-            model, roots = self._chosen(found, family), _upper(self._all(found))
-            if model.status is PointStatus.CERTIFIED and all(root.certified for root in roots):
-                self._models[similarity.key] = (model, similarity, roots)
-                known = similarity
-            else:
-                return self._searched(self._bound(values), family)
-        scaled = _scaled(roots, known, similarity)
-        if model is None or not all(root.place.is_nearest for root in scaled):
-            return self._searched(self._bound(values), family)
-        return PointRoots(scaled, model.at_zero, model.status, "", family)
+        return PointRoots(scaled, known.model.at_zero, known.model.status, "", family)
+
+    def _known(self, values: dict[str, ExactValue], similarity: Similarity, family: int) -> _Known:
+        """Return the roots at a point to many digits, none where not all is proved."""
+        found = locate(self._bound(values), self._region, SIMILAR_DIGITS)
+        model, roots = self._chosen(found, family), _upper(self._all(found))
+        if model.status is PointStatus.CERTIFIED and all(root.certified for root in roots):
+            return _Known(similarity, model, roots)
+        return _Known(similarity, None, ())
 
     def _searched(self, bound: BoundTransferFunction, family: int) -> PointRoots:
         for digits in LADDER:
