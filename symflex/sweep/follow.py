@@ -38,6 +38,8 @@ CLEAR = 2.0
 """Paths are told apart when they stay further apart than this many times the errors of what was foretold."""
 LINE, FACTOR = 0.25, 0.5
 """What was foretold along a line, or by one factor, is trusted no further than to these shares of a move."""
+FAR = 1.5
+"""A root further in ln(s) from where any was foretold has a name of its own."""
 MEETING = 1e-9
 """Closer than this in ln(s), paths meet."""
 NEIGHBOURS = 32
@@ -298,14 +300,18 @@ def _continued(
         foretold.append((before + np.median((now - before).real), FACTOR))
     best = min((_assigned(before, *place, now) for place in foretold), key=lambda found: found[:2])
     for (row, column), is_clear in zip(best[2], best[3], strict=True):
+        if abs(now[column] - before[row]) > FAR and not is_clear:
+            continue
         names[column] = old[row]
         met = _is_real(before[row]) != _is_real(now[column])
         links[column] = Link.REAL_AXIS if met else Link.CLEAR if is_clear else Link.DOUBTFUL
     left = np.nonzero(names < 0)[0]
     sleeping = np.array([k for k in range(len(last)) if k not in set(old.tolist()) and not np.isnan(last[k])])
     if left.size and sleeping.size:
-        rows, columns = linear_sum_assignment(_distances(last[sleeping], now[left]))
-        names[left[columns]] = sleeping[rows]
+        apart = _distances(last[sleeping], now[left])
+        rows, columns = linear_sum_assignment(apart)
+        near = apart[rows, columns] <= FAR
+        names[left[columns[near]]] = sleeping[rows[near]]
         left = np.nonzero(names < 0)[0]
     names[left] = modes + np.arange(len(left))
     return names, links

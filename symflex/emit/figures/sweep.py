@@ -50,6 +50,10 @@ DECADES: Final = 15.0
 BAND: Final = (5, 95)
 MEDIAN: Final = 50
 PLAIN: Final = (1e3, 1e5)
+FEW_DECADES: Final = 300.0
+"""Below this factor, decades are divided."""
+OVERDAMPED: Final = 1.5
+"""Real roots are shown as far to the left as so many times the highest imaginary part."""
 UNDAMPED: Final = 1e-12
 MARKS: Final = 40
 CROWD: Final = 4000
@@ -148,17 +152,19 @@ def _spans_decades(values: Doubles) -> bool:
 
 def _set_parameter_axis(axes: Axes, parameter: Labelled) -> None:
     axes.set_xlabel(_label(parameter))
+    if parameter.values.size > 1:
+        axes.set_xlim(float(parameter.values.min()), float(parameter.values.max()))
     if _spans_decades(parameter.values):
         axes.set_xscale("log")
         _set_plain_ticks(axes.xaxis)
-    if parameter.values.size > 1:
-        axes.set_xlim(float(parameter.values.min()), float(parameter.values.max()))
     axes.grid(visible=True)
 
 
 def _set_plain_ticks(axis: Axis) -> None:
     """Write the decades of a logarithmic axis alone; where there are few, two numbers in between."""
-    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=8))
+    low, high = axis.get_view_interval()
+    few = 0 < low and high < FEW_DECADES * low
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,), numticks=8))
     axis.set_major_formatter(FuncFormatter(lambda value, _: label_of_frequency(value)))
     axis.set_minor_formatter(NullFormatter())
 
@@ -299,6 +305,10 @@ def _loci(axes: Axes, sweep: Sweep, modes: int | None) -> None:
         axes.axvspan(0, right, color="#FBEDE4", zorder=0, linewidth=0)
         axes.set_xlim(right=right)
     axes.set_ylim(bottom=0)
+    farthest = -OVERDAMPED * float(np.max(im[there]))
+    if farthest < 0 and float(np.min(re[there])) < farthest:
+        rightmost = max(float(np.max(re[there])), 0.0)
+        axes.set_xlim(farthest, rightmost - 0.06 * farthest)
     axes.set_xlabel(r"$\mathrm{Re}(s)$ [rad/s]")
     axes.set_ylabel(r"$\mathrm{Im}(s)$ [rad/s]")
     for each in (axes.xaxis, axes.yaxis):

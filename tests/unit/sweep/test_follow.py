@@ -40,6 +40,13 @@ def test_where_nothing_can_be_asked_doubt_remains():
     assert names.link[1].tolist() == [Link.DOUBTFUL, Link.DOUBTFUL]
 
 
+def test_a_root_that_is_nowhere_near_has_a_name_of_its_own():
+    s = np.array([[1j, 2j], [1j, 400j]])
+    names = follow(s, NO_FAMILY, ONE_STEP)
+    assert names.mode[1].tolist() == [0, 2]
+    assert names.link[1].tolist()[1] == Link.APPEARS
+
+
 def test_modes_that_swap_places_within_one_step():
     sweep = symflex.loads(TWO_RESONANCES).sweep({"k_1": "1:30:lin:4"})
     assert np.allclose(sweep["im"][:, 0], np.sqrt(np.linspace(1, 30, 4)))
