@@ -9,6 +9,7 @@ text --parse--> Spec --resolve--> Model --assemble--> Equations --derive--> Tran
 
 from __future__ import annotations
 
+import sys
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,6 +25,7 @@ from symflex.model import Model, load_model, with_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+    from concurrent.futures import Executor
     from decimal import Decimal
 
     import numpy as np
@@ -35,11 +37,12 @@ if TYPE_CHECKING:
     from symflex.fitting import Fit
     from symflex.measurement import MeasuredResponse, MeasurementPlan
     from symflex.rational import RationalApproximation, Residue
-    from symflex.roots import Budget, PoleZeroMap, Region
+    from symflex.roots import Budget, PoleZeroMap, Progress, Region
     from symflex.sensitivity import Sensitivity
     from symflex.spec import Spec
     from symflex.stability import DynamicColocation, Loop, StabilityMap
     from symflex.state_space import StateSpace
+    from symflex.sweep import Design, Sweep, Task
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
     Array = npt.NDArray[np.float64]
@@ -462,3 +465,75 @@ def measure(model: Model, pair: tuple[str, str], plan: MeasurementPlan) -> Measu
                 Diagnostic("SF902", message, None, "only damped systems have a stationary response")
             )
     return synthesise("/".join(pair), lambda omega: respond(bound, omega).values, plan, bound.source.unit)
+
+
+def sweep_task(
+    model: Model,
+    pair: tuple[str, str],
+    design: Design,
+    of: str = "poles",
+    region: Region | None = None,
+    frequencies: Sequence[float] = (),
+    gain: str = "",
+) -> Task:
+    """Return what is wanted at every point of a design; see :class:`symflex.sweep.Task`.
+
+    Raises
+    ------
+    UsageError
+        SF902 when margins are wanted and there is no such gain.
+    """
+    from symflex import sweep as sweep_room  # most commands need none of it
+    from symflex.stability import pick_gain
+
+    if of == "margins":
+        pick_gain(model.parameters, gain)
+    return sweep_room.Task(
+        model, pair, of, design.names, derive_all, region, tuple(map(float, frequencies)), gain
+    )
+
+
+def sweep(
+    task: Task,
+    design: Design,
+    output: str | Path | None = None,
+    executor: Executor | None = None,
+    *,
+    workers: int = 1,
+    is_fresh: bool = False,
+    progress: Progress | None = None,
+) -> Sweep:
+    """Solve all points of a design; with an output, write it, and go on where a killed sweep stopped.
+
+    Parameters
+    ----------
+    task, design : Task, Design
+        What is wanted, and where.
+    output : str or Path, optional
+        The file to write: .nc, .npz, .csv or .parquet; chunks are kept in ``FILE.part`` until it is written.
+    executor, workers, progress
+        See :func:`symflex.sweep.run_sweep`.
+    is_fresh : bool
+        Discard what an earlier run kept.
+    """
+    from symflex import sweep as sweep_room  # most commands need none of it
+    from symflex.emit import sweep_files, sweep_journal
+    from symflex.emit.write import write_atomically
+
+    # The package imports api, which stands above: its version is read without importing it.
+    version = str(vars(sys.modules["symflex"])["__version__"])
+    key = sweep_room.sweep_key(task, design, version)
+    said = {"title": task.model.title, "key": key, "version": version}
+    if output is None:
+        return sweep_room.run_sweep(
+            task, design, executor, workers=workers, progress=progress, attributes=said
+        )
+    path = Path(output)
+    sweep_files.check_writable(path)
+    journal = sweep_journal.open_journal(path, key, is_fresh=is_fresh)
+    found = sweep_room.run_sweep(
+        task, design, executor, workers=workers, journal=journal, progress=progress, attributes=said
+    )
+    write_atomically(path, sweep_files.sweep_bytes(found, path.suffix))
+    journal.remove()
+    return found

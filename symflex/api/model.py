@@ -18,9 +18,12 @@ from symflex.api.transfer_function import Number, TransferFunction
 from symflex.spec import write
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from symflex import model as model_room
     from symflex.measurement import MeasuredResponse
     from symflex.stability import DynamicColocation
+    from symflex.sweep import Sweep
 
 Table = Mapping[str, object]
 SHOWN_PAIRS = 6
@@ -331,6 +334,100 @@ class Model:
         plan = MeasurementPlan(band[0], band[1], spacing, averages, noise, rolloff, seed)
         return pipeline.measure(self.resolved, pair, plan)
 
+    def sweep(
+        self,
+        over: Mapping[str, str | Sequence[Number]],
+        *,
+        of: str = "poles",
+        tf: str | None = None,
+        modes: int | None = None,
+        band: tuple[float, float] | None = None,
+        frequencies: Sequence[float] = (),
+        gain: str = "",
+        draws: int = 0,
+        seed: int = 1,
+        output: str | Path | None = None,
+        fresh: bool = False,
+        executor: Executor | None = None,
+        workers: int = 1,
+    ) -> Sweep:
+        """Solve the model at many values of its parameters, as ``symflex sweep`` does.
+
+        Parameters
+        ----------
+        over : mapping of str to str or sequence
+            Values per parameter, in SI units or with a unit: a sequence; ``"1e4:1e6:log:200"`` for so many
+            between two limits; to draw from, ``"1e4:1e6"``, ``"1e4:1e6:log"`` or ``"+-5%"``.
+        of : str
+            ``poles``, ``zeros``, ``response`` or ``margins``.
+        tf : str, optional
+            ``"OUT/IN"``; the first transfer function by default.
+        modes, band : int, (float, float), optional
+            Which roots: so many of the lowest modes, or those in a band [Hz].
+        frequencies : sequence of float
+            Of a response [Hz].
+        gain : str
+            That closes the loop, for margins.
+        draws, seed : int
+            How many points are drawn from ranges, as a Latin hypercube, and of which random numbers.
+        output : str or Path, optional
+            A .nc, .npz, .csv or .parquet to write; until then, what is done is kept in ``FILE.part``, and the
+            same call goes on after a kill.
+        fresh : bool
+            Discard what an earlier call kept there.
+        executor : concurrent.futures.Executor, optional
+            Where points are solved; in this process by default.
+        workers : int
+            How many points the executor solves at a time.
+
+        Returns
+        -------
+        symflex.sweep.Sweep
+            Labelled arrays; ``to_xarray()`` makes a dataset of them.
+
+        Raises
+        ------
+        UsageError
+            SF902 what cannot be swept or read, SF916 ``FILE.part`` belongs to another sweep.
+        BudgetError
+            SF507 too many points, SF508 a worker died.
+
+        Examples
+        --------
+        >>> model = Model(
+        ...     parameters={"k": "4 N/m"},
+        ...     elements={
+        ...         "m": {"type": "mass", "at": "x", "m": "1 kg"},
+        ...         "k": {"type": "spring", "between": ["x", "ground"], "k": "k"},
+        ...     },
+        ...     inputs={"F": {"force": "x"}},
+        ...     outputs={"X": "x"},
+        ... )
+        >>> sweep = model.sweep({"k": [1, 4, 9]})
+        >>> sweep["im"].tolist(), sweep.is_certified
+        ([[1.0], [2.0], [3.0]], True)
+        """
+        from symflex import sweep as sweep_room  # imports numpy and scipy
+        from symflex.errors import Diagnostic, UsageError
+        from symflex.roots import Band, Modes
+
+        if of not in sweep_room.QUANTITIES:
+            hint = "choose from: " + ", ".join(sweep_room.QUANTITIES)
+            raise UsageError(Diagnostic("SF902", f"nothing is called '{of[:64]}' in a sweep", None, hint))
+        if of == "response" and not len(frequencies):
+            raise UsageError(Diagnostic("SF902", "a response needs frequencies"))
+        region = (
+            Modes(modes)
+            if modes is not None
+            else None
+            if band is None
+            else Band(_limit(band[0]), _limit(band[1]))
+        )
+        design = sweep_room.design_of(self.resolved.parameters, over, draws, seed)
+        pair = pipeline.pick_pairs(self.resolved, [] if tf is None else [tf])[0]
+        task = pipeline.sweep_task(self.resolved, pair, design, of, region, frequencies, gain)
+        return pipeline.sweep(task, design, output, executor, workers=workers, is_fresh=fresh)
+
     def export_numpy(self) -> str:
         """Return a numpy module with a function per transfer function."""
         return self._export("numpy")
@@ -371,8 +468,11 @@ class Model:
 
 def _exact(number: float | None) -> Fraction | None:
     """Return the shortest decimal that prints a number, ``None`` for an infinite one."""
-    if number is None or isinf(number):
-        return None
+    return None if number is None or isinf(number) else _limit(number)
+
+
+def _limit(number: float) -> Fraction:
+    """Return the shortest decimal that prints a number."""
     return Fraction(Decimal(repr(float(number))))
 
 

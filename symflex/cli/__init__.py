@@ -14,6 +14,7 @@ COMMANDS: dict[str, str] = {
     "derive": "Print transfer functions in closed form.",
     "roots": "Print poles and zeros with proved enclosures.",
     "rational": "Print rational approximations and where they are valid.",
+    "sweep": "Solve a model at many values of its parameters.",
     "stability": "Print for which values of a gain a feedback loop is stable.",
     "colocation": "Print up to which frequency two outputs move together.",
     "plot": "Draw a Bode plot, a pole-zero array, mode shapes, a root locus or a Nyquist plot.",

@@ -13,6 +13,7 @@ from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 
 SUFFIXES = (".pdf", ".pgf", ".png", ".svg")
+SWEEP = "sweep"
 
 
 @click.command("plot")
@@ -46,6 +47,9 @@ def command(
     distributed system those of the lowest modes. nyquist draws a transfer function, or with --gain K the loop
     gain.
 
+    'symflex plot sweep FILE' draws a .nc or .npz that 'symflex sweep -o' wrote: modes over one parameter and
+    their loci, or medians and what holds 90 % of the points.
+
     Without -o the figure is written to the current folder as SPEC_KIND.pdf.
 
     A .pgf is for papers set with LaTeX: load the package pgf and input the file. Its texts take the paper's
@@ -59,6 +63,9 @@ def command(
     from symflex.model.analysis import FIGURE_KINDS
     from symflex.stability import pick_gain
 
+    if SWEEP in (spec, kind):
+        options = bool(tfs or gain or limits)
+        return _plot_sweep(spec if kind == SWEEP else kind, modes, output, width, font, is_more=options)
     model = pipeline.load(spec)
     if modes is not None:
         model = replace(model, analysis=replace(model.analysis, modes=modes))
@@ -70,9 +77,7 @@ def command(
     drawn = figure.kind if figure else kind
     if drawn not in (*FIGURES, *LOOP_FIGURES):
         raise UsageError(Diagnostic("SF911", f"figures of kind '{drawn}' are not available yet"))
-    path = Path(output) if output else Path(f"{Path(spec).stem}_{kind}.pdf")
-    if path.suffix not in SUFFIXES:
-        raise UsageError(Diagnostic("SF902", f"'{path.name}' must end in .pdf, .pgf, .svg or .png"))
+    path = _checked_path(output or f"{Path(spec).stem}_{kind}.pdf")
     width_mm = None if width is None else column_width(width)
     font = _checked_font(font or ("latex" if path.suffix == ".pgf" else DEFAULT_FONT))
     named = gain or (figure.gain if figure else "")
@@ -108,6 +113,45 @@ def command(
     save(draw(drawn, sources, bounds, title=title or None, width_mm=width_mm, font=font), path, font=font)
     note(f"wrote {path}")
     return 0
+
+
+def _plot_sweep(
+    file: str,
+    modes: int | None,
+    output: str | None,
+    width: str | None,
+    font: str | None,
+    *,
+    is_more: bool,
+) -> int:
+    """Draw what 'symflex sweep -o' wrote."""
+    if is_more:
+        raise UsageError(Diagnostic("SF902", "--tf, --gain and --range are not for a sweep"))
+    from symflex.emit.figures import DEFAULT_FONT, draw_sweep, save
+    from symflex.emit.figures.pgf import MM_PER_INCH
+    from symflex.emit.latex import column_width
+    from symflex.emit.sweep_files import read_sweep
+
+    path = _checked_path(output or f"{Path(file).stem}_{SWEEP}.pdf")
+    chosen = _checked_font(font or ("latex" if path.suffix == ".pgf" else DEFAULT_FONT))
+    inches = None if width is None else column_width(width) / MM_PER_INCH
+    save(draw_sweep(read_sweep(file), modes=modes, width=inches, font=chosen), path, font=chosen)
+    note(f"wrote {path}")
+    return 0
+
+
+def _checked_path(name: str) -> Path:
+    """Return the path of a figure.
+
+    Raises
+    ------
+    UsageError
+        SF902 when it ends in nothing a figure is written as.
+    """
+    path = Path(name)
+    if path.suffix not in SUFFIXES:
+        raise UsageError(Diagnostic("SF902", f"'{path.name}' must end in .pdf, .pgf, .svg or .png"))
+    return path
 
 
 def _checked_font(font: str) -> str:

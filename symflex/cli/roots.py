@@ -79,7 +79,7 @@ def command(
     from symflex.emit.text import roots_text
     from symflex.roots import Budget
 
-    chosen = _region(modes, mode, band, region)
+    chosen = region_of(modes, mode, band, region)
     model = pipeline.load(spec)
     pairs = pipeline.pick_pairs(model, [tf] if tf else [])
     if tf is None and len(pairs) > 1:
@@ -119,12 +119,19 @@ def command(
     return 0 if certificate.certified and not (strict and found.excluded) else 4
 
 
-def _region(
+def region_of(
     modes: int | None,
     mode: int | None,
     band: tuple[str, str] | None,
     region: tuple[str, str, str, str] | None,
 ) -> Region | None:
+    """Return the region that options say, ``None`` when they say nothing.
+
+    Raises
+    ------
+    UsageError
+        SF902 for more than one of them, or limits that are none.
+    """
     from symflex.roots import Band, Mode, Modes, Rectangle
 
     if sum(choice is not None for choice in (modes, mode, band, region)) > 1:

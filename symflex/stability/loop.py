@@ -16,12 +16,11 @@ from symflex.transfer import bind, bind_polynomials
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from decimal import Decimal
 
     from flint import fmpz_mpoly
 
     from symflex.model import ExactValue, Parameter
-    from symflex.transfer import BoundTransferFunction, TransferFunction
+    from symflex.transfer import BoundTransferFunction, Given, TransferFunction
 
 TRIALS = ("1", "2", "0.37")
 """Values of a gain without one, for which the other parameters are bound; one is no singular case."""
@@ -88,7 +87,7 @@ class Loop:
 def characteristic_loop(
     tf: TransferFunction,
     gain: Parameter,
-    values: Mapping[str, int | float | Fraction | Decimal | str] | None = None,
+    values: Mapping[str, Given] | None = None,
 ) -> Loop:
     """Return the characteristic function of the model a transfer function is of.
 
@@ -130,9 +129,7 @@ def _depends(tf: TransferFunction, position: int) -> bool:
     return any(degree_in(f, position) for f in polynomials)
 
 
-def _bound(
-    tf: TransferFunction, gain: Parameter, given: dict[str, int | float | Fraction | Decimal | str]
-) -> BoundTransferFunction:
+def _bound(tf: TransferFunction, gain: Parameter, given: dict[str, Given]) -> BoundTransferFunction:
     """Return the function with numbers, the gain with one for which nothing is singular."""
     candidates = [given] if gain.name in given or gain.value is not None else []
     candidates += [{**given, gain.name: trial} for trial in TRIALS]

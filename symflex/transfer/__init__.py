@@ -3,6 +3,7 @@
 from symflex.transfer.bind import (
     BoundTransferFunction,
     EnclosedTransferFunction,
+    Given,
     bind,
     bind_polynomials,
     coefficients_in_s,
@@ -15,6 +16,7 @@ __all__ = [
     "BoundTransferFunction",
     "ClosedForm",
     "EnclosedTransferFunction",
+    "Given",
     "HiddenFactor",
     "TransferFunction",
     "bind",

@@ -47,6 +47,9 @@ if TYPE_CHECKING:
     from symflex.expressions import Expression
     from symflex.model import Parameter
 
+Given = int | float | Fraction | Decimal | str | ExactValue
+"""A value as a user gives it; one that was read before stays exact."""
+
 FIRST_BITS = 96
 LAST_BITS = 6144
 DOUBLE_BITS = 54
@@ -330,7 +333,7 @@ def coefficients_in_s(polynomial: fmpz_mpoly, constants: Ring) -> tuple[fmpz_mpo
 
 
 def read_values(
-    parameters: tuple[Parameter, ...], given: Mapping[str, int | float | Fraction | Decimal | str]
+    parameters: tuple[Parameter, ...], given: Mapping[str, Given]
 ) -> tuple[tuple[str, ExactValue], ...]:
     """Return every parameter's exact value, the given ones instead of the declared ones.
 
@@ -369,7 +372,9 @@ def _check_sign(parameter: Parameter, value: ExactValue | None) -> None:
         raise UsageError(Diagnostic("SF209", message, None, 'say assume = "real" in the model'))
 
 
-def _read_value(parameter: Parameter, given: float | Fraction | Decimal | str) -> ExactValue:
+def _read_value(parameter: Parameter, given: float | Fraction | Decimal | str | ExactValue) -> ExactValue:
+    if isinstance(given, ExactValue):
+        return given
     if isinstance(given, str):
         quantity = parse_quantity(Text(given, Span(Source("<value>", given), 0, len(given))))
         wanted = unit_of(parameter.unit) if parameter.unit else None
@@ -389,9 +394,7 @@ def _read_value(parameter: Parameter, given: float | Fraction | Decimal | str) -
     raise UsageError(Diagnostic("SF902", f"the value of '{parameter.name}' must be a finite number"))
 
 
-def bind(
-    tf: TransferFunction, values: Mapping[str, int | float | Fraction | Decimal | str] | None = None
-) -> BoundTransferFunction:
+def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> BoundTransferFunction:
     """Return the transfer function with the declared values, or the given ones in their place.
 
     Parameters
@@ -579,6 +582,10 @@ class _Substitution:
         if not terms:
             return Factored.number(self.ring, 0)
         lowest = min(m[pi] for m in terms)
+        if len(terms) == 1 and lowest >= 0:
+            ((monomial, number),) = terms.items()
+            generators = ((self.ring.context.gen(i), e) for i, e in enumerate(monomial) if e)
+            return Factored(self.ring, number, tuple(generators))
         shift = min(lowest, 0)
         scale = lcm(*(c.denominator for c in terms.values()))
         integers = {

@@ -21,6 +21,7 @@ from symflex.emit.figures.pgf import MM_PER_INCH
 from symflex.emit.figures.poles_zeros import draw_poles_zeros
 from symflex.emit.figures.save import FORMATS, render, save
 from symflex.emit.figures.style import DEFAULT_FONT, FONTS, family_of, paper_style
+from symflex.emit.figures.sweep import draw_sweep
 from symflex.emit.latex.column import checked_width
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
@@ -58,6 +59,7 @@ __all__ = [
     "draw_loop",
     "draw_measured",
     "draw_response",
+    "draw_sweep",
     "render",
     "save",
 ]

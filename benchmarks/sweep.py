@@ -1,0 +1,207 @@
+"""The ten lowest poles of 10,000 sliding-free beams, against scipy's ``brentq`` and ``mpmath.findroot``.
+
+Wall time, since processes of their own do the work; loading, drawing, solving on two processes, naming modes
+and writing the file are all in it. The rivals get perfect brackets and guesses for the equation
+tan x + tanh x = 0 of each beam and prove nothing.
+"""
+
+from __future__ import annotations
+
+import math
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.measure import Claim, Measurement, run_snippet
+from symflex import pipeline
+from symflex.roots import Modes
+from symflex.sweep import Sweep, read_design
+from symflex.sweep.executors import open_executor
+
+POINTS = (2500, 5000, 10_000)
+MODES = 10
+WORKERS = 2
+MPMATH_POINTS = 20
+FASTER_THAN_FINDROOT = 3.0
+FASTER_THAN_SEARCHES = 10.0
+LINEAR_WITHIN = 1.5
+CEILING = 20.0
+"""Seconds for all 10,000 on two processors that do nothing else."""
+SEARCHED = 200
+MEBIBYTE = 1024
+BEAM = Path(__file__).parents[1] / "derivations" / "eppinger1988" / "sliding_free_beam.toml"
+OVER = ("E=+-5%", "I=+-10%", "rho=7700:8000", "A=+-10%", "l=+-2%")
+I_NOMINAL, A_NOMINAL = 4000e-12, 480e-6
+
+
+def time_sweep(points: int) -> float:
+    """Return the seconds for a sweep of so many points on two processes, file and all."""
+    begin = time.perf_counter()
+    model = pipeline.load(BEAM)
+    design = read_design(model.parameters, OVER, points)
+    task = pipeline.sweep_task(model, model.transfer_functions[0], design, "poles", Modes(MODES))
+    with tempfile.TemporaryDirectory() as folder, open_executor(WORKERS) as (executor, size):
+        found = pipeline.sweep(task, design, Path(folder) / "a.nc", executor, workers=size)
+    taken = time.perf_counter() - begin
+    _check(found, points)
+    return taken
+
+
+def _check(found: Sweep, points: int) -> None:
+    """Compare with the asymptotic wavenumbers, exact to 1e-3 from the first on and far better beyond."""
+    if not found.is_certified or found["im"].shape != (points, MODES):
+        message = "the sweep is not certified"
+        raise RuntimeError(message)
+    unit = np.sqrt(found["E"] * found["I"] / (found["rho"] * found["A"])) / found["l"] ** 2
+    expected = np.array([x**2 for x in wavenumbers()])
+    if not np.allclose(found["im"] / unit[:, None], expected, rtol=1e-12):
+        message = "the poles do not agree with those of the characteristic equation"
+        raise RuntimeError(message)
+
+
+def wavenumbers() -> list[float]:
+    """Return the roots of tan x + tanh x = 0."""
+    from scipy.optimize import brentq  # slow to import
+
+    return [
+        float(brentq(_equation, (n - 0.5) * math.pi, n * math.pi, xtol=1e-15, rtol=1e-15))
+        for n in range(1, MODES + 1)
+    ]
+
+
+def _equation(x: float) -> float:
+    return math.sin(x) + math.cos(x) * math.tanh(x)
+
+
+def _draws(points: int) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
+    return np.random.default_rng(1).uniform(0.9, 1.1, (points, 5))
+
+
+def time_brentq(points: int) -> float:
+    """Return the seconds of scipy for the same in one process, from brackets that hold one root each."""
+    from scipy.optimize import brentq  # slow to import
+
+    draws = _draws(points)
+    begin = time.perf_counter()
+    for e, i, rho, a, length in draws:
+        share = math.sqrt(7850 * rho * A_NOMINAL * a / (200e9 * e * I_NOMINAL * i)) * (1.086 * length) ** 2
+
+        def equation(omega: float, share: float = share) -> float:
+            return _equation(math.sqrt(omega * share))
+
+        for n in range(1, MODES + 1):
+            ends = [((n - part) * math.pi) ** 2 / share for part in (0.5, 0.0)]
+            brentq(equation, *ends, xtol=1e-12, rtol=1e-15)
+    return time.perf_counter() - begin
+
+
+def time_findroot(points: int) -> float:
+    """Return the seconds of mpmath for the same at 20 digits, from guesses right to double precision."""
+    import mpmath  # slow to import
+    from mpmath import mp, mpf
+
+    guesses, draws = wavenumbers(), _draws(MPMATH_POINTS)
+    begin = time.perf_counter()
+    with mp.workdps(20):
+        for e, i, rho, a, length in draws:
+            share = mpmath.sqrt(7850 * mpf(rho) * A_NOMINAL * a / (200e9 * mpf(e) * I_NOMINAL * i))
+            share *= (mpf("1.086") * length) ** 2
+
+            def equation(omega: mpf, share: mpf = share) -> mpf:
+                x = mpmath.sqrt(omega * share)
+                return mpmath.sin(x) + mpmath.cos(x) * mpmath.tanh(x)
+
+            for x in guesses:
+                mpmath.findroot(equation, mpf(x) ** 2 / share)
+    return (time.perf_counter() - begin) * points / MPMATH_POINTS
+
+
+def time_searches(points: int) -> float:
+    """Return the seconds of a certified search at every point, in one process, extrapolated."""
+    model = pipeline.load(BEAM)
+    design = read_design(model.parameters, OVER, SEARCHED)
+    (tf,) = pipeline.derive_all(model, model.transfer_functions[:1])
+    begin = time.perf_counter()
+    for point in design.points:
+        bound = pipeline.bind(
+            tf,
+            {
+                n: str(v.rational.numerator / v.rational.denominator)
+                for n, v in zip(design.names, point, strict=True)
+            },
+        )
+        pipeline.roots(bound, Modes(MODES))
+    return (time.perf_counter() - begin) * points / SEARCHED
+
+
+def peak_memory(points: int) -> float:
+    """Return the largest memory [MiB] of this process during a sweep, or of one of its workers."""
+    time_sweep(points)
+    who = (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
+    return max(resource.getrusage(each).ru_maxrss for each in who) / MEBIBYTE
+
+
+def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
+    """Measure the sweeps, each way with ``limit`` seconds."""
+    measurements: list[Measurement] = []
+
+    def run(task: str, way: str, call: str) -> Measurement:
+        code = f"from benchmarks import sweep\nif __name__ == '__main__':\n    print(sweep.{call})"
+        found = run_snippet(task, way, code, limit)
+        measurements.append(found)
+        return found
+
+    task = f"sweep of sliding-free beams, {MODES} poles each, {WORKERS} processes"
+    ours = [run(task, f"{points} points", f"time_sweep({points})") for points in POINTS]
+    most = POINTS[-1]
+    task = f"{MODES} poles of {most} sliding-free beams"
+    measurements.append(
+        Measurement(task, f"symflex sweep, certified, {WORKERS} processes", ours[-1].seconds, limit)
+    )
+    run(task, "scipy `brentq`, brackets given, one process", f"time_brentq({most})")
+    findroot = run(
+        task,
+        f"`mpmath.findroot` at 20 digits, guesses given (from {MPMATH_POINTS})",
+        f"time_findroot({most})",
+    )
+    searches = run(
+        task, f"a certified search at every point, one process (from {SEARCHED})", f"time_searches({most})"
+    )
+    # Starting processes takes the same however many points there are.
+    growth = (ours[2].at_least - ours[1].at_least) / (2 * (ours[1].at_least - ours[0].at_least))
+    try:
+        code = (
+            f"from benchmarks import sweep\nif __name__ == '__main__':\n    print(sweep.peak_memory({most}))"
+        )
+        memory = run_snippet(task, "memory", code, limit).at_least
+    except subprocess.CalledProcessError as failure:
+        print(f"not done: memory of a sweep: {failure.stderr[-200:]}", file=sys.stderr)
+        memory = math.inf
+    name = f"sweep of {most} beams"
+    return measurements, [
+        Claim(f"{name}: times as fast as `findroot`", FASTER_THAN_FINDROOT, _ratio(findroot, ours[-1])),
+        Claim(f"{name}: times as fast as searches", FASTER_THAN_SEARCHES, _ratio(searches, ours[-1])),
+        Claim(
+            f"{name}: time per point of the second half over that of the second quarter",
+            LINEAR_WITHIN,
+            growth,
+            larger_is_better=False,
+        ),
+        Claim(f"{name} [s]", CEILING, ours[-1].at_least, larger_is_better=False, is_ratio=False),
+        Claim(
+            f"{name}: largest memory of a process [MiB]",
+            1024.0,
+            memory,
+            larger_is_better=False,
+            is_ratio=False,
+        ),
+    ]
+
+
+def _ratio(theirs: Measurement, ours: Measurement) -> float:
+    return theirs.at_least / ours.at_least

@@ -1,0 +1,31 @@
+"""Sweeps: a design of parameter points, each solved on its own, the results put in order and named.
+
+Input: a model, a :class:`Design` of values, and what is wanted at each point. Output: a :class:`Sweep` of
+labelled arrays. What is computed at a point depends on nothing but the point, so that neither the number of
+workers, nor the order in which they finish, nor a restart in between changes a byte of the result.
+"""
+
+from symflex.sweep.design import Axis, Design, Range
+from symflex.sweep.read import design_of, read_design
+from symflex.sweep.run import Journal, chunk_size, run_sweep, sweep_key
+from symflex.sweep.solve import QUANTITIES, solve_chunk
+from symflex.sweep.sweep import Labelled, Sweep
+from symflex.sweep.task import Task, fingerprint
+
+__all__ = [
+    "QUANTITIES",
+    "Axis",
+    "Design",
+    "Journal",
+    "Labelled",
+    "Range",
+    "Sweep",
+    "Task",
+    "chunk_size",
+    "design_of",
+    "fingerprint",
+    "read_design",
+    "run_sweep",
+    "solve_chunk",
+    "sweep_key",
+]

@@ -1,0 +1,86 @@
+"""Where chunks are solved: in this process, in others on this computer, or on a cluster."""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+from importlib import import_module
+from multiprocessing import get_context
+from typing import TYPE_CHECKING, Any
+
+from symflex.errors import BudgetError, Diagnostic, UsageError
+from symflex.sweep.sweep import missing_library
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from concurrent.futures import Executor
+
+CONNECT_SECONDS = 10
+
+
+@contextmanager
+def open_executor(
+    workers: int | None = None, scheduler: str | None = None
+) -> Iterator[tuple[Executor | None, int]]:
+    """Open an executor, and close it in the end.
+
+    Parameters
+    ----------
+    workers : int, optional
+        Processes on this computer; as many as it has processors by default. One needs no process of its own.
+    scheduler : str, optional
+        Address of a ``dask.distributed`` scheduler, such as ``tcp://10.0.0.1:8786``; symflex must be
+        installed where its workers are.
+
+    Yields
+    ------
+    executor : Executor or None
+        ``None``: this process.
+    workers : int
+        How many chunks are solved at a time.
+
+    Raises
+    ------
+    UsageError
+        SF914 dask.distributed is not installed; SF917 no scheduler answers.
+    BudgetError
+        SF508 workers of a cluster died.
+    """
+    if scheduler is not None:
+        with _cluster(scheduler) as opened:
+            yield opened
+        return
+    count = workers or os.cpu_count() or 1
+    if count == 1:
+        yield None, 1
+        return
+    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"))
+    try:
+        yield pool, count
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+@contextmanager
+def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
+    try:
+        distributed: Any = import_module("distributed")  # an extra; it has no types
+    except ImportError:
+        raise missing_library("distributed", "a cluster") from None
+    try:
+        client = distributed.Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
+    except (OSError, ValueError, TypeError, ImportError) as error:
+        hint = "start one with: dask scheduler; and workers with: dask worker tcp://HOST:8786"
+        said = "".join(c for c in str(error) if c.isprintable())[:100]
+        message = f"no scheduler answers at '{address[:100]}': {said}"
+        raise UsageError(Diagnostic("SF917", message, None, hint)) from None
+    try:
+        with client:
+            executor = client.get_executor()
+            try:
+                yield executor, max(sum(client.nthreads().values()), 1)
+            finally:
+                executor.shutdown(wait=False)
+    except distributed.KilledWorker as error:
+        raise BudgetError(Diagnostic("SF508", f"a worker ended before its work: {error}")) from None

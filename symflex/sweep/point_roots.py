@@ -1,0 +1,263 @@
+"""Poles or zeros at one point of a sweep, certified and rounded to doubles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+from hashlib import sha256
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from flint import arb
+
+from symflex.errors import SymflexError
+from symflex.roots import Everything, Modes, precision
+from symflex.roots.locate import locate
+from symflex.roots.vanishing import without_lengths_of_zero
+from symflex.sweep.rounding import Doubles, doubles
+from symflex.sweep.similarity import Similarities
+from symflex.sweep.task import codes_of, derived
+from symflex.transfer import bind
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.model import ExactValue
+    from symflex.roots import PoleZeroMap, Region, Root
+    from symflex.sweep.design import Point
+    from symflex.sweep.similarity import Similarity
+    from symflex.sweep.task import Rows, Solver, Task
+    from symflex.transfer import BoundTransferFunction, TransferFunction
+
+RootKind = Literal["poles", "zeros"]
+LADDER = (20, 40, 80)
+"""Digits, until the nearest doubles are known."""
+SIMILAR_DIGITS = 40
+SCALE_BITS = 192
+REMEMBERED = 256
+FAMILY_BYTES = 7
+
+
+class RootStatus(IntEnum):
+    """What is proved of one root."""
+
+    ABSENT = 0
+    CERTIFIED = 1
+    TOGETHER = 2
+
+
+class PointStatus(IntEnum):
+    """What is proved of all roots at one point."""
+
+    CERTIFIED = 0
+    EXCEPT_ACCUMULATION = 1
+    NOT_CERTIFIED = 2
+    FAILED = 3
+
+
+@dataclass(frozen=True, slots=True)
+class FoundRoot:
+    """One root in the closed upper half plane, other than 0.
+
+    Parameters
+    ----------
+    place : Doubles
+        Centre and radius [rad/s].
+    multiplicity : int
+        Exact where certified; else how many roots the disc holds.
+    status : RootStatus
+        Certified, or several that could not be told apart.
+    """
+
+    place: Doubles
+    multiplicity: int
+    status: RootStatus
+
+
+@dataclass(frozen=True, slots=True)
+class PointRoots:
+    """The roots at one point.
+
+    Parameters
+    ----------
+    roots : tuple of FoundRoot
+        By natural frequency.
+    at_zero : int
+        Multiplicity of the root at s = 0.
+    status : PointStatus
+        Whether none is missing.
+    code : str
+        Of the error, where the point failed.
+    family : int
+        Equal for functions that are similar, whose roots then stand in the same order; 0 where not known.
+    """
+
+    roots: tuple[FoundRoot, ...]
+    at_zero: int
+    status: PointStatus
+    code: str = ""
+    family: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class _Known:
+    """A point that stands for all similar ones; ``model`` is ``None`` where it does not serve."""
+
+    similarity: Similarity
+    model: PointRoots | None
+    roots: tuple[Root, ...]
+
+
+class RootSolver:
+    """Finds the roots of one transfer function at many points.
+
+    Where a point's function is similar to one that was solved, its roots are those times one factor; else the
+    search with proof is made. Both give the doubles nearest to the true roots, so the way does not show.
+
+    Parameters
+    ----------
+    tf : TransferFunction
+        With the swept parameters as symbols.
+    names : sequence of str
+        What the values of a point belong to.
+    kind : str
+        ``poles`` or ``zeros``.
+    region : Region, optional
+        As for :func:`symflex.roots.locate.locate`.
+    """
+
+    def __init__(
+        self, tf: TransferFunction, names: Sequence[str], kind: RootKind, region: Region | None
+    ) -> None:
+        self._tf, self._names, self._kind, self._region = tf, tuple(names), kind, region
+        # A band or a rectangle does not scale with the roots.
+        scalable = region is None or isinstance(region, Modes | Everything)
+        self._similarities = Similarities(tf) if scalable else None
+        used = {p.name: p.value for p in (*tf.parameters, *tf.hidden_parameters)}
+        self._declared = {name: value for name, value in used.items() if value is not None}
+        if any(value is None and name not in self._names for name, value in used.items()):
+            self._similarities = None
+        self._models: dict[object, _Known | None] = {}
+
+    def __call__(self, point: Point) -> PointRoots:
+        """Return the roots at a point; what fails there is said, not raised."""
+        try:
+            return self._solve(dict(zip(self._names, point, strict=True)))
+        except SymflexError as error:
+            return PointRoots((), 0, PointStatus.FAILED, error.diagnostics[0].code)
+
+    def _bound(self, values: dict[str, ExactValue]) -> BoundTransferFunction:
+        return without_lengths_of_zero(bind(self._tf, values))
+
+    def _solve(self, values: dict[str, ExactValue]) -> PointRoots:
+        similarity = None
+        if self._similarities is not None:
+            similarity = self._similarities.at({**self._declared, **values})
+        if similarity is None:
+            return self._searched(self._bound(values), 0)
+        family = _family(similarity)
+        if similarity.key not in self._models:
+            if len(self._models) >= REMEMBERED:
+                self._models.clear()
+            self._models[similarity.key] = None
+            result = self._searched(self._bound(values), family)
+            if result.status is PointStatus.CERTIFIED:
+                return result
+        # Asked for a second time: worth many digits.
+        known = self._models[similarity.key] or self._known(values, similarity, family)
+        self._models[similarity.key] = known
+        scaled = _scaled(known.roots, known.similarity, similarity)
+        if known.model is None or not all(root.place.is_nearest for root in scaled):
+            return self._searched(self._bound(values), family)
+        return PointRoots(scaled, known.model.at_zero, known.model.status, "", family)
+
+    def _known(self, values: dict[str, ExactValue], similarity: Similarity, family: int) -> _Known:
+        """Return the roots at a point to many digits, none where not all is proved."""
+        found = locate(self._bound(values), self._region, SIMILAR_DIGITS)
+        model, roots = self._chosen(found, family), _upper(self._all(found))
+        if model.status is PointStatus.CERTIFIED and all(root.certified for root in roots):
+            return _Known(similarity, model, roots)
+        return _Known(similarity, None, ())
+
+    def _searched(self, bound: BoundTransferFunction, family: int) -> PointRoots:
+        for digits in LADDER:
+            result = self._chosen(locate(bound, self._region, digits), family)
+            if all(r.place.is_nearest or r.status is RootStatus.TOGETHER for r in result.roots):
+                break
+        return result
+
+    def _all(self, found: PoleZeroMap) -> tuple[Root, ...]:
+        return found.poles if self._kind == "poles" else found.zeros
+
+    def _chosen(self, found: PoleZeroMap, family: int) -> PointRoots:
+        certificate = found.certificate
+        status = PointStatus.EXCEPT_ACCUMULATION if found.excluded else PointStatus.CERTIFIED
+        if not certificate.certified:
+            status = PointStatus.NOT_CERTIFIED
+        every = self._all(found)
+        rows = tuple(
+            FoundRoot(
+                doubles(root.re, root.im),
+                root.multiplicity,
+                RootStatus.CERTIFIED if root.certified else RootStatus.TOGETHER,
+            )
+            for root in _upper(every)
+        )
+        at_zero = sum(root.multiplicity for root in every if root.is_zero)
+        return PointRoots(rows, at_zero, status, certificate.code or "", family)
+
+
+def _upper(roots: Sequence[Root]) -> tuple[Root, ...]:
+    """Return one root of each conjugate pair, and real ones; none that is 0."""
+    return tuple(root for root in roots if not root.is_zero and not root.im < 0)
+
+
+def _scaled(roots: Sequence[Root], known: Similarity, wanted: Similarity) -> tuple[FoundRoot, ...]:
+    with precision(SCALE_BITS):
+        factor = arb(wanted.scale / known.scale).root(wanted.degree)
+        found = []
+        for root in roots:
+            place = doubles(root.re * factor, root.im * factor)
+            found.append(FoundRoot(place, root.multiplicity, RootStatus.CERTIFIED))
+    return tuple(found)
+
+
+def _family(similarity: Similarity) -> int:
+    text = repr((similarity.degree, similarity.key)).encode()
+    return int.from_bytes(sha256(text).digest()[:FAMILY_BYTES], "big") + 1
+
+
+def solve_poles(task: Task) -> Solver:
+    """Return what finds the poles of the task's transfer function."""
+    return _solving(task, "poles")
+
+
+def solve_zeros(task: Task) -> Solver:
+    """Return what finds the zeros of the task's transfer function."""
+    return _solving(task, "zeros")
+
+
+def _solving(task: Task, kind: RootKind) -> Solver:
+    solver = RootSolver(derived(task), task.names, kind, task.region)
+    return lambda points: _rows([solver(point) for point in points])
+
+
+def _rows(found: Sequence[PointRoots]) -> Rows:
+    shape = len(found), max((len(point.roots) for point in found), default=0)
+    re, im, radius = (np.full(shape, np.nan) for _ in range(3))
+    status, multiplicity = np.zeros(shape, np.int8), np.zeros(shape, np.int32)
+    for i, point in enumerate(found):
+        for j, root in enumerate(point.roots):
+            re[i, j], im[i, j], radius[i, j] = root.place.re, root.place.im, root.place.radius
+            status[i, j], multiplicity[i, j] = root.status, root.multiplicity
+    return {
+        "re": re,
+        "im": im,
+        "radius": radius,
+        "status": status,
+        "multiplicity": multiplicity,
+        "at_zero": np.array([point.at_zero for point in found], np.int32),
+        "point_status": np.array([point.status for point in found], np.int8),
+        "family": np.array([point.family for point in found], np.int64),
+        "code": codes_of([point.code for point in found]),
+    }

@@ -1,0 +1,213 @@
+"""Reading what is swept: ``k=1e4:1e6:log:200``, ``m_2=1,2,5``, ``l=+-5%``."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from symflex.errors import Diagnostic, Source, Span, SpecError, Text, UsageError
+from symflex.errors.diagnostic import nearest
+from symflex.model import ExactValue
+from symflex.quantities import parse_quantity
+from symflex.sweep.design import POINTS_LIMIT, Axis, Design, Range, between
+from symflex.transfer.bind import read_values
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from symflex.model import Parameter
+    from symflex.sweep.design import Scale
+    from symflex.transfer import Given
+
+FORMS = "NAME=LO:HI:lin|log:COUNT or NAME=V1,V2,..., or NAME=LO:HI[:log] or NAME=+-5% with draws"
+LIMITS = 2
+COUNT_DIGITS = 9
+
+
+def read_design(
+    parameters: Sequence[Parameter], texts: Sequence[str], draws: int = 0, seed: int = 1
+) -> Design:
+    """Return the design that texts say.
+
+    Parameters
+    ----------
+    parameters : sequence of Parameter
+        Of the model.
+    texts : sequence of str
+        ``NAME=LO:HI:lin|log:COUNT`` and ``NAME=V1,V2,...`` are axes of a grid; ``NAME=LO:HI``,
+        ``NAME=LO:HI:log`` and ``NAME=+-5%`` (about the declared value) are ranges to draw from. Numbers are
+        in SI units or carry a unit.
+    draws : int
+        How many points are drawn from the ranges.
+    seed : int
+        Of the random numbers.
+
+    Raises
+    ------
+    UsageError
+        SF902 what cannot be read, an unknown parameter, one that is swept twice, ranges without draws or
+        draws without ranges; SF203 another unit, SF209 another sign than assumed of the parameter.
+    BudgetError
+        SF507 too many points.
+
+    Examples
+    --------
+    >>> from symflex.model import Parameter
+    >>> design = read_design([Parameter("k", None)], ["k=1:100:log:3"])
+    >>> [str(point[0].rational) for point in design.points]
+    ['1', '10', '100']
+    """
+    if not texts:
+        raise UsageError(Diagnostic("SF902", "nothing is swept", None, f"say what: {FORMS}"))
+    known = {p.name: p for p in parameters}
+    return _design([_read(known, text) for text in texts], draws, seed)
+
+
+def design_of(
+    parameters: Sequence[Parameter], over: Mapping[str, str | Sequence[Given]], draws: int = 0, seed: int = 1
+) -> Design:
+    """Return the design that a mapping says: per parameter a text as for :func:`read_design`, or values.
+
+    Examples
+    --------
+    >>> from symflex.model import Parameter
+    >>> design_of([Parameter("k", None), Parameter("m", None)], {"k": "1:2:lin:2", "m": [0.5, "3"]}).shape
+    (2, 2)
+    """
+    known = {p.name: p for p in parameters}
+    read: list[Axis | Range] = []
+    for name, said in over.items():
+        if isinstance(said, str):
+            read.append(_read(known, f"{name}={said}"))
+            continue
+        parameter = _known(known, name)
+        exact = tuple(read_values((parameter,), {name: value})[0][1] for value in said)
+        if not exact:
+            raise UsageError(Diagnostic("SF902", f"'{name}' has no values"))
+        read.append(Axis(name, exact))
+    if not read:
+        raise UsageError(Diagnostic("SF902", "nothing is swept"))
+    return _design(read, draws, seed)
+
+
+def _design(found: Sequence[Axis | Range], draws: int, seed: int) -> Design:
+    axes: list[Axis] = []
+    ranges: list[Range] = []
+    names: set[str] = set()
+    for each in found:
+        if each.name in names:
+            raise UsageError(Diagnostic("SF902", f"'{each.name}' is swept twice"))
+        names.add(each.name)
+        if isinstance(each, Axis):
+            axes.append(each)
+        else:
+            ranges.append(each)
+    if ranges and not draws:
+        hint = "give a count, as in k=1:10:lin:50, or draw with --monte-carlo N"
+        raise UsageError(Diagnostic("SF902", f"how many values of '{ranges[0].name}'?", None, hint))
+    if draws and not ranges:
+        hint = "leave out the count of a range, as in k=1:10 or k=1:10:log"
+        raise UsageError(Diagnostic("SF902", "there is no range to draw from", None, hint))
+    return Design(tuple(axes), tuple(ranges), draws, seed)
+
+
+def _read(known: dict[str, Parameter], text: str) -> Axis | Range:
+    name, sign, said = text.partition("=")
+    name, said = name.strip(), said.strip()
+    if not sign or not name or not said:
+        raise _unreadable(text)
+    parameter = _known(known, name)
+    if said[:2] in ("+-", "±") or said[:1] == "±":
+        return _about(parameter, said.removeprefix("+-").removeprefix("±"), text)
+    parts = [part.strip() for part in said.split(":")]
+    if len(parts) == 1:
+        items = said.split(",")
+        if len(items) > POINTS_LIMIT:
+            raise _unreadable(text)
+        return Axis(name, tuple(_value(parameter, item.strip(), text) for item in items))
+    low, high = (_value(parameter, part, text) for part in parts[:LIMITS])
+    scale, count = _scale_and_count(parts[LIMITS:], text)
+    limits = _range(parameter, low, high, scale, text)
+    if count is None:
+        return limits
+    Design((), (limits,), count)  # refuses too many before they are made
+    return Axis(name, between(limits, count))
+
+
+def _known(known: dict[str, Parameter], name: str) -> Parameter:
+    if name not in known:
+        hint = nearest(name, known) or "parameters: " + ", ".join(list(known)[:8])
+        raise UsageError(Diagnostic("SF902", f"there is no parameter '{name[:64]}'", None, hint))
+    return known[name]
+
+
+def _scale_and_count(parts: list[str], text: str) -> tuple[Scale, int | None]:
+    scale: Scale = "lin"
+    count: int | None = None
+    for i, part in enumerate(parts):
+        if i == 0 and part in ("lin", "log"):
+            scale = "log" if part == "log" else "lin"
+        elif i == len(parts) - 1 and part.isascii() and part.isdigit() and len(part) <= COUNT_DIGITS:
+            count = int(part)
+        else:
+            raise _unreadable(text)
+    if count == 0:
+        raise _unreadable(text)
+    return scale, count
+
+
+def _about(parameter: Parameter, said: str, text: str) -> Range:
+    """Return a range about the declared value: ``5%`` of it, or an amount in its unit."""
+    if parameter.value is None:
+        message = f"'{parameter.name}' has no declared value to vary about"
+        raise UsageError(Diagnostic("SF902", message, None, "give both limits"))
+    value = parameter.value
+    if said.endswith("%"):
+        source = Text(said[:-1].strip(), Span(Source("--over", said), 0, len(said)))
+        try:
+            share = parse_quantity(source)
+        except SpecError:
+            raise _unreadable(text) from None
+        if share.unit:
+            raise _unreadable(text)
+        amount = abs(value.rational) * share.angular()[0] / 100
+    else:
+        by = _value(parameter, said, text)
+        if by.pi_power != value.pi_power:
+            raise _unreadable(text)
+        amount = by.rational
+    if amount <= 0:
+        raise _unreadable(text)
+    low, high = (ExactValue(value.rational + side * amount, value.pi_power) for side in (-1, 1))
+    for limit in (low, high):
+        read_values((parameter,), {parameter.name: limit})
+    return _range(parameter, low, high, "lin", text)
+
+
+def _range(parameter: Parameter, low: ExactValue, high: ExactValue, scale: Scale, text: str) -> Range:
+    if low.pi_power != high.pi_power and low.rational and high.rational:
+        message = f"the limits of '{parameter.name}' differ by a power of pi"
+        raise UsageError(Diagnostic("SF902", message, None, "write both in the same unit"))
+    power = high.pi_power if high.rational else low.pi_power
+    low, high = ExactValue(low.rational, power), ExactValue(high.rational, power)
+    if low.rational == high.rational:
+        raise UsageError(Diagnostic("SF902", f"the limits of '{parameter.name}' are equal: '{text[:60]}'"))
+    if scale == "log" and not Fraction(0) < low.rational * high.rational:
+        message = f"a logarithmic range of '{parameter.name}' needs limits of one sign, other than 0"
+        raise UsageError(Diagnostic("SF902", message))
+    return Range(parameter.name, low, high, scale)
+
+
+def _value(parameter: Parameter, item: str, text: str) -> ExactValue:
+    if not item:
+        raise _unreadable(text)
+    try:
+        return read_values((parameter,), {parameter.name: item})[0][1]
+    except SpecError as error:
+        reason = error.diagnostics[0].message
+        message = f"--over '{text[:60]}': {reason}"
+        raise UsageError(Diagnostic("SF902", message, None, error.diagnostics[0].hint)) from None
+
+
+def _unreadable(text: str) -> UsageError:
+    return UsageError(Diagnostic("SF902", f"cannot read '{text[:60]}'", None, f"write {FORMS}"))

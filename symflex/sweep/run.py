@@ -1,0 +1,241 @@
+"""Running a sweep: chunks of points go to an executor and come back in any order."""
+
+from __future__ import annotations
+
+import pickle
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, wait
+from hashlib import sha256
+from time import monotonic
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from symflex.errors import BudgetError, Diagnostic
+from symflex.roots.budget import Silent
+from symflex.sweep.design import points_between, written
+from symflex.sweep.point_roots import PointStatus
+from symflex.sweep.solve import solve_chunk
+from symflex.sweep.sweep import assembled
+from symflex.sweep.task import fingerprint
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from concurrent.futures import Executor, Future
+
+    from symflex.roots import Progress
+    from symflex.sweep.design import Design, Point
+    from symflex.sweep.follow import Between, Complexes
+    from symflex.sweep.sweep import Sweep
+    from symflex.sweep.task import Array, Rows, Task
+
+CHUNKS = 200
+"""Into about how many a sweep is cut."""
+LARGEST_CHUNK = 1000
+AHEAD = 4
+"""Chunks per worker that are handed out before any is back."""
+MOST_BETWEEN = (40, 400)
+"""Points solved between others, where names are in doubt: a tenth of all, at least and at most these."""
+MINUTE = 60.0
+HOUR = 3600.0
+
+
+class Journal(Protocol):
+    """Keeps the chunks that are done."""
+
+    def read(self, chunk: int) -> Rows | None:
+        """Return a chunk that was kept, ``None`` where it was not."""
+        ...
+
+    def write(self, chunk: int, rows: Rows) -> None:
+        """Keep a chunk."""
+        ...
+
+
+def chunk_size(count: int) -> int:
+    """Return how many points a worker solves at a time, and the most that a kill loses per worker.
+
+    Examples
+    --------
+    >>> [chunk_size(count) for count in (7, 10_000, 1_000_000)]
+    [1, 50, 1000]
+    """
+    return min(max(count // CHUNKS, 1), LARGEST_CHUNK)
+
+
+def sweep_key(task: Task, design: Design, version: str) -> str:
+    """Return what tells a sweep from every other: a hash of the model, the design and the version.
+
+    Parameters
+    ----------
+    task, design : Task, Design
+        What is asked for.
+    version : str
+        Of the program: another may print other bytes.
+    """
+    digest = sha256(f"{version}\n{CHUNKS}\n{fingerprint(task)}\n{design.shape}\n".encode())
+    for point in design.points:
+        digest.update(";".join(map(written, point)).encode())
+    return digest.hexdigest()
+
+
+def run_sweep(
+    task: Task,
+    design: Design,
+    executor: Executor | None = None,
+    *,
+    workers: int = 1,
+    journal: Journal | None = None,
+    progress: Progress | None = None,
+    attributes: Mapping[str, str] | None = None,
+    clock: Callable[[], float] = monotonic,
+) -> Sweep:
+    """Solve all points of a design.
+
+    Parameters
+    ----------
+    task : Task
+        What is wanted at each.
+    design : Design
+        The points.
+    executor : concurrent.futures.Executor, optional
+        Where chunks are solved: processes, or a cluster's; in this process without one.
+    workers : int
+        How many work at a time there.
+    journal : Journal, optional
+        Keeps chunks as they come; what it holds already is not solved again.
+    progress : Progress, optional
+        Told how many points are done and how long the rest will take.
+    attributes : mapping of str to str, optional
+        Kept with the result.
+    clock : callable
+        Returns the time [s].
+
+    Returns
+    -------
+    Sweep
+        The same, byte for byte, whatever the executor, the workers and the journal.
+
+    Raises
+    ------
+    BudgetError
+        SF508 when workers end before their work.
+    """
+    size = chunk_size(design.count)
+    chunks = range(-(-design.count // size))
+    done: dict[int, Rows] = {}
+    missing = []
+    for chunk in chunks:
+        rows = None if journal is None else journal.read(chunk)
+        if rows is None:
+            missing.append(chunk)
+        else:
+            done[chunk] = rows
+    shown = _Shown(
+        progress or Silent(), design.count, sum(len(rows["point_status"]) for rows in done.values()), clock
+    )
+    pickled = pickle.dumps(task)
+    solved = _solved(pickled, design, missing, executor, AHEAD * max(workers, 1))
+    try:
+        for chunk, rows in solved:
+            done[chunk] = rows
+            if journal is not None:
+                journal.write(chunk, rows)
+            shown.add(len(rows["point_status"]))
+    except BrokenExecutor as error:
+        hint = "there may be too little memory; with -o, the same command goes on where this one stopped"
+        message = f"a worker ended before its work: {error}"
+        raise BudgetError(Diagnostic("SF508", message, None, hint)) from None
+    rows = _joined([done[i] for i in chunks])
+    return assembled(task, design, rows, attributes or {}, _between(pickled, design))
+
+
+def _solved(
+    pickled: bytes, design: Design, missing: Sequence[int], executor: Executor | None, ahead: int
+) -> Iterator[tuple[int, Rows]]:
+    """Yield chunks as they are solved."""
+    size = chunk_size(design.count)
+
+    def points(chunk: int) -> Sequence[Point]:
+        return design.points[chunk * size : (chunk + 1) * size]
+
+    if executor is None:
+        for chunk in missing:
+            yield chunk, solve_chunk(pickled, points(chunk))
+        return
+    queue = iter(missing)
+    running: dict[Future[Rows], int] = {}
+    while True:
+        for chunk in queue:
+            running[executor.submit(solve_chunk, pickled, points(chunk))] = chunk
+            if len(running) >= ahead:
+                break
+        if not running:
+            return
+        finished, _ = wait(running, return_when=FIRST_COMPLETED)
+        for future in finished:
+            yield running.pop(future), future.result()
+
+
+def _between(pickled: bytes, design: Design) -> Between:
+    """Return what solves points between two of a design, in this process, until there were many."""
+    left = max(MOST_BETWEEN[0], min(design.count // 10, MOST_BETWEEN[1]))
+
+    def solve(start: int, end: int, pieces: int) -> list[Complexes] | None:
+        nonlocal left
+        places = points_between(design.points[start], design.points[end], pieces)
+        if places is None or left < len(places):
+            return None
+        left -= len(places)
+        rows = solve_chunk(pickled, places)
+        if np.any(rows["point_status"] > PointStatus.EXCEPT_ACCUMULATION):
+            return None
+        every = rows["re"] + 1j * rows["im"]
+        return [s[rows["status"][i] > 0] for i, s in enumerate(every)]
+
+    return solve
+
+
+def _joined(chunks: Sequence[Rows]) -> Rows:
+    """Return the rows of all chunks; those with fewer roots are filled up."""
+    return {name: _stacked([chunk[name] for chunk in chunks]) for name in chunks[0]}
+
+
+def _stacked(arrays: Sequence[Array]) -> Array:
+    if arrays[0].ndim == 1:
+        return np.concatenate(arrays)
+    width = max(array.shape[1] for array in arrays)
+    empty = np.nan if arrays[0].dtype.kind == "f" else 0
+    return np.concatenate(
+        [np.pad(a, ((0, 0), (0, width - a.shape[1])), constant_values=empty) for a in arrays]
+    )
+
+
+class _Shown:
+    """Says how many points are done and how long the others will take."""
+
+    def __init__(self, progress: Progress, count: int, before: int, clock: Callable[[], float]) -> None:
+        self._progress, self._count, self._before = progress, count, before
+        self._done, self._clock, self._start = before, clock, clock()
+
+    def add(self, points: int) -> None:
+        """Count points that are done."""
+        self._done += points
+        rate = (self._clock() - self._start) / (self._done - self._before)
+        left = time_left(rate * (self._count - self._done))
+        self._progress.report(self._done / self._count, f"{self._done} of {self._count} points, {left} left")
+
+
+def time_left(seconds: float) -> str:
+    """Return a time in words.
+
+    Examples
+    --------
+    >>> time_left(7.2), time_left(190.0), time_left(7300.0)
+    ('8 s', '3 min 10 s', '2 h 2 min')
+    """
+    whole = int(-(-seconds // 1))
+    if whole < MINUTE:
+        return f"{whole} s"
+    if whole < HOUR:
+        return f"{whole // 60} min {whole % 60} s"
+    return f"{whole // 3600} h {-(-(whole % 3600) // 60)} min"

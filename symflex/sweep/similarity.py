@@ -1,0 +1,258 @@
+"""When a transfer function is, at two points, one function of s up to a scale of s.
+
+A uniform beam has the same characteristic function of its wavenumber whatever its dimensions are: all roots
+of one such beam are those of another times one factor. Lengths are counted in the first kernel's, frequencies
+in what makes the first dispersion relation's leading coefficient one; what is left are ratios without
+dimension. Where all of them are equal, exactly, the functions are similar.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from flint import fmpq
+
+from symflex.kernels import degree_in
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from flint import fmpz_mpoly
+
+    from symflex.kernels import Factored
+    from symflex.model import ExactValue
+    from symflex.transfer import TransferFunction
+
+KERNELS = ("cosh", "sinh", "cos", "sin")
+PI = "pi"
+
+Key = tuple[object, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Similarity:
+    """Which functions a function is similar to, and its scale of s.
+
+    Parameters
+    ----------
+    key : tuple
+        Equal, and of the same ``degree``, for similar functions.
+    scale : fmpq
+        The n-th power of the scale [rad/s]: roots divided by the scale are those of all similar functions.
+    degree : int
+        n.
+    """
+
+    key: Key
+    scale: fmpq
+    degree: int
+
+
+@dataclass(frozen=True, slots=True)
+class _Term:
+    """One term of a polynomial: exponents of what varies, of the parameters, and its coefficient."""
+
+    varying: tuple[int, ...]
+    parameters: tuple[tuple[str, int], ...]
+    coefficient: int
+
+
+@dataclass(frozen=True, slots=True)
+class _Product:
+    """A rational function: its unit, and polynomials with their exponents."""
+
+    unit: fmpq
+    factors: tuple[tuple[tuple[_Term, ...], int], ...]
+
+
+class Similarities:
+    """Finds the similarity of a transfer function at points.
+
+    Lumped systems have none, nor those with delays, waves without a formula, or functions of constants; that
+    their frequencies could be scaled is not looked for.
+
+    Parameters
+    ----------
+    tf : TransferFunction
+        With symbols.
+    """
+
+    def __init__(self, tf: TransferFunction) -> None:
+        table, ring = tf.kernels, tf.ratio.ring
+        constants = [ring.index[c.generator] for c in tf.constants if c.generator in ring.index]
+        self._is_possible = (
+            bool(table.kernels)
+            and all(kernel.function in KERNELS for kernel in table.kernels)
+            and not tf.ratio.is_zero
+        )
+        if not self._is_possible:
+            return
+        self._varying = (0, ring.index[PI], *(ring.index[name] for name in table.generators))
+        self._waves = len(table.wavenumbers)
+        self._known: dict[str, tuple[_Term, ...]] = {}
+        self._names = ring.names
+        self._laws = [(law.kind, law.order, len(law.characteristic)) for law in table.dispersions]
+        parts = (tf.num, tf.den)
+        hidden = [h.polynomial for h in tf.hidden]
+        values = [value for law in table.dispersions for value in (*law.characteristic, law.shift)]
+        lengths = [kernel.length for kernel in table.kernels]
+        polynomials = [f for value in (*parts, *values, *lengths) for f, _ in value.factors] + hidden
+        self._is_possible = not any(degree_in(f, i) for f in polynomials for i in constants)
+        self._parts = [self._product(part) for part in parts]
+        self._hidden = [(self._terms(h.polynomial), h.multiplicity) for h in tf.hidden]
+        self._values = [self._product(value) for value in values]
+        self._lengths = [self._product(value) for value in lengths]
+        first = table.kernels[0].dispersion
+        place = next(i for i, law in enumerate(table.dispersions) if law is first)
+        self._leading = sum(count + 1 for _, _, count in self._laws[:place])
+        self._order = first.order
+
+    def at(self, values: Mapping[str, ExactValue]) -> Similarity | None:
+        """Return the similarity at a point, ``None`` where the function has no such scale.
+
+        Parameters
+        ----------
+        values : mapping of str to ExactValue
+            Of all parameters that occur.
+        """
+        if not self._is_possible:
+            return None
+        found = _Point(values, self._waves)
+        length = found.number(self._lengths[0])
+        leading = found.leading(self._values[self._leading])
+        if length is None or length == 0 or leading is None:
+            return None
+        coefficient, degree = leading
+        found.set_units(length, 1 / (abs(coefficient) * abs(length) ** self._order), degree)
+        orders = [
+            power for _, order, count in self._laws for power in (*(order - i for i in range(count)), 1)
+        ]
+        try:
+            key = (
+                degree,
+                tuple(found.product(part) for part in self._parts),
+                tuple((found.polynomial(terms), times) for terms, times in self._hidden),
+                tuple(found.value(v, order) for v, order in zip(self._values, orders, strict=True)),
+                tuple(found.value(v, -1) for v in self._lengths),
+            )
+        except ZeroDivisionError:
+            return None  # something vanishes here, and the function is another
+        return Similarity(key, found.scale, degree)
+
+    def _product(self, value: Factored) -> _Product:
+        unit = fmpq(value.unit.numerator, value.unit.denominator)
+        return _Product(unit, tuple((self._terms(f), e) for f, e in value.factors))
+
+    def _terms(self, polynomial: fmpz_mpoly) -> tuple[_Term, ...]:
+        varying, name = set(self._varying), str(polynomial)
+        if name not in self._known:
+            self._known[name] = tuple(
+                _Term(
+                    tuple(int(monomial[i]) for i in self._varying),
+                    tuple((self._names[i], int(e)) for i, e in enumerate(monomial) if e and i not in varying),
+                    int(coefficient),
+                )
+                for monomial, coefficient in polynomial.terms()
+            )
+        return self._known[name]
+
+
+class _Point:
+    """Writes coefficients without dimension: their signs, and the n-th powers of their absolute values."""
+
+    def __init__(self, values: Mapping[str, ExactValue], waves: int) -> None:
+        self._values = {
+            name: (fmpq(value.rational.numerator, value.rational.denominator), value.pi_power)
+            for name, value in values.items()
+        }
+        self._waves = waves
+        self._images: dict[int, list[tuple[tuple[int, ...], fmpq]]] = {}
+        self.scale, self._length, self._degree = fmpq(1), fmpq(1), 1
+
+    def set_units(self, length: fmpq, scale: fmpq, degree: int) -> None:
+        """Say what lengths and frequencies are counted in."""
+        self._length, self.scale, self._degree = abs(length), scale, degree
+
+    def number(self, value: _Product) -> fmpq | None:
+        """Return a value that is a rational number."""
+        result = value.unit
+        for terms, power in value.factors:
+            image = self._image(terms)
+            if len(image) != 1 or any(image[0][0]):
+                return None
+            result *= image[0][1] ** power
+        return result
+
+    def leading(self, value: _Product) -> tuple[fmpq, int] | None:
+        """Return coefficient and exponent of the lowest power of s; ``None`` without a power of s."""
+        coefficient, exponent = value.unit, 0
+        for terms, power in value.factors:
+            image = self._image(terms)
+            if not image:
+                return None
+            monomial, number = min(image, key=lambda term: term[0][0])
+            if any(monomial[1:]):
+                return None
+            coefficient *= number**power
+            exponent += monomial[0] * power
+        return (coefficient, exponent) if coefficient != 0 and exponent > 0 else None
+
+    def product(self, value: _Product) -> Key:
+        """Return a product up to a constant factor."""
+        return tuple((self.polynomial(terms), power) for terms, power in value.factors)
+
+    def value(self, value: _Product, lengths: int) -> Key:
+        """Return a value that is measured in a power of 1/length, exactly."""
+        n = self._degree
+        if value.unit == 0:
+            return (0,)
+        sign = 1 if value.unit > 0 else -1
+        size = abs(value.unit) ** n * self._length ** (n * lengths)
+        for terms, power in value.factors:
+            image = self._image(terms)
+            if not image:
+                raise ZeroDivisionError
+            own, first = self._measured(*image[0])
+            size *= first**power
+            sign *= own**power
+        return (sign, str(size), self.product(value))
+
+    def polynomial(self, terms: tuple[_Term, ...]) -> Key:
+        """Return a polynomial up to a constant factor."""
+        image = self._image(terms)
+        if not image:
+            raise ZeroDivisionError
+        if len(image) == 1:
+            return (image[0][0],)
+        sign, size = self._measured(*image[0])
+        found: list[object] = [image[0][0]]
+        for monomial, number in image[1:]:
+            own, power = self._measured(monomial, number)
+            found.append((monomial, own * sign, str(power / size)))
+        return tuple(found)
+
+    def _measured(self, monomial: tuple[int, ...], number: fmpq) -> tuple[int, fmpq]:
+        n, waves = self._degree, sum(monomial[2 : 2 + self._waves])
+        size = abs(number) ** n * self.scale ** monomial[0]
+        return (1 if number > 0 else -1), size / self._length ** (n * waves) if waves else size
+
+    def _image(self, terms: tuple[_Term, ...]) -> list[tuple[tuple[int, ...], fmpq]]:
+        """Return a polynomial with numbers for its parameters."""
+        known = self._images.get(id(terms))
+        if known is not None:
+            return known
+        collected: dict[tuple[int, ...], fmpq] = {}
+        for term in terms:
+            number, turns = fmpq(term.coefficient), 0
+            for name, exponent in term.parameters:
+                value, power = self._values[name]
+                number *= value**exponent
+                turns += power * exponent
+            place = term.varying
+            if turns:
+                place = (place[0], place[1] + turns, *place[2:])
+            collected[place] = collected[place] + number if place in collected else number
+        image = [(place, number) for place, number in sorted(collected.items()) if number != 0]
+        self._images[id(terms)] = image
+        return image

@@ -1,0 +1,89 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import symflex
+from symflex.sweep import read_design
+from symflex.sweep.follow import Link, Predecessors, follow, predecessors
+from tests.unit.sweep.models import TWO_RESONANCES, oscillator
+
+NO_FAMILY = np.zeros(2, np.int64)
+ONE_STEP = Predecessors((0, 1), (-1, 0), (-1, -1), (1.0, 1.0))
+
+
+def rising(share):
+    """Two roots that both move far, and stay apart."""
+    return np.array([1j * (1 + 2 * share), 1j * (3 + 2 * share)])
+
+
+def test_a_long_step_is_in_doubt():
+    s = np.array([rising(0), rising(1)])
+    assert follow(s, NO_FAMILY, ONE_STEP).link[1].tolist() == [Link.DOUBTFUL, Link.DOUBTFUL]
+
+
+def test_a_long_step_is_divided():
+    asked = []
+
+    def between(start, end, pieces):
+        asked.append((start, end, pieces))
+        return [rising(i / pieces) for i in range(1, pieces)]
+
+    names = follow(np.array([rising(0), rising(1)]), NO_FAMILY, ONE_STEP, between)
+    assert names.mode.tolist() == [[0, 1], [0, 1]]
+    assert names.link[1].tolist() == [Link.CLEAR, Link.CLEAR]
+    assert asked and all(each[:2] == (0, 1) for each in asked)
+
+
+def test_where_nothing_can_be_asked_doubt_remains():
+    names = follow(np.array([rising(0), rising(1)]), NO_FAMILY, ONE_STEP, lambda *step: None)
+    assert names.link[1].tolist() == [Link.DOUBTFUL, Link.DOUBTFUL]
+
+
+def test_a_root_that_is_nowhere_near_has_a_name_of_its_own():
+    s = np.array([[1j, 2j], [1j, 400j]])
+    names = follow(s, NO_FAMILY, ONE_STEP)
+    assert names.mode[1].tolist() == [0, 2]
+    assert names.link[1].tolist()[1] == Link.APPEARS
+
+
+def test_modes_that_swap_places_within_one_step():
+    sweep = symflex.loads(TWO_RESONANCES).sweep({"k_1": "1:30:lin:4"})
+    assert np.allclose(sweep["im"][:, 0], np.sqrt(np.linspace(1, 30, 4)))
+    assert (sweep["im"][:, 1] == 2).all()
+    assert sweep["link"][1].tolist() == [Link.DOUBTFUL, Link.DOUBTFUL]
+
+
+def test_names_do_not_depend_on_the_direction():
+    up = symflex.loads(TWO_RESONANCES).sweep({"k_1": "1:9:lin:12"})
+    down = symflex.loads(TWO_RESONANCES).sweep({"k_1": "9:1:lin:12"})
+    # Names begin with the lower mode, which is the moving one upwards and the still one downwards.
+    assert np.allclose(up["im"], down["im"][::-1, ::-1])
+
+
+def test_similar_functions_need_no_distances():
+    s = np.array([[1j, 2j], [50j, 100j]])
+    names = follow(s, np.array([7, 7]), ONE_STEP)
+    assert names.link[1].tolist() == [Link.SIMILAR, Link.SIMILAR]
+    assert names.mode[1].tolist() == [0, 1]
+
+
+@pytest.mark.parametrize(
+    "texts", [["k=1,2,3"], ["k=1,2", "m=1,2,3"], ["k=1,2,3,4", "m=1:2"], ["k=1:2", "m=1:3"]]
+)
+def test_everyone_but_one_comes_after_a_neighbour(texts):
+    draws = 25 if any(text.count(":") == 1 for text in texts) else 0
+    design = read_design(oscillator().parameters, texts, draws)
+    steps = predecessors(design)
+    assert sorted(steps.order) == list(range(design.count))
+    assert [i for i in range(design.count) if steps.before[i] < 0] == [steps.order[0]]
+    place = {i: k for k, i in enumerate(steps.order)}
+    assert all(place[steps.before[i]] < place[i] for i in steps.order[1:])
+
+
+def test_a_grid_is_walked_along_its_axes():
+    design = read_design(oscillator().parameters, ["k=1,2,4", "m=1,3,9"])
+    steps = predecessors(design)
+    assert steps.before == (-1, 0, 1, 0, 3, 4, 3, 6, 7)
+    assert steps.earlier == (-1, -1, 0, -1, -1, 3, 0, -1, 6)
+    assert steps.ratio[2] == pytest.approx(1)  # by the logarithms of 1, 3, 9
