@@ -56,6 +56,9 @@ OVERDAMPED: Final = 1.5
 """Real roots are shown as far to the left as so many times the highest imaginary part."""
 UNDAMPED: Final = 1e-12
 MARKS: Final = 40
+FEW_LINES: Final = 12
+"""Lines per mode that are told apart by how pale they are."""
+PALEST: Final = 0.3
 CROWD: Final = 4000
 """Points of a cloud beyond which marks become dots."""
 
@@ -71,8 +74,9 @@ def draw_sweep(
     """Draw a sweep.
 
     Over one parameter: natural frequencies and damping ratios of all modes, and their loci in the s plane,
-    coloured by the parameter; of a response, its magnitudes. Of several parameters, or of draws: medians and
-    what holds 90 % of the points, from the 5th to the 95th percentile.
+    coloured by the parameter; of a response, its magnitudes. Over one parameter at a few values of others: a
+    line for each of these. Otherwise, and of draws: medians and what holds 90 % of the points, from the 5th
+    to the 95th percentile.
 
     Parameters
     ----------
@@ -122,6 +126,7 @@ def _panels(sweep: Sweep, modes: int | None) -> list[str]:
     there = sweep["status"][..., :modes] > 0
     if not there.any():
         raise _nothing()
+    line = _family(sweep) is not None
     damped = bool(np.max(np.abs(sweep["damping_ratio"][..., :modes][there])) > UNDAMPED)
     first = ["frequency lines"] if line else ["frequency bands"]
     if line and damped:
@@ -138,6 +143,25 @@ def _line(sweep: Sweep) -> Labelled | None:
     shape = sweep["point_status"].shape
     only = [p for p in sweep.parameters if p.dims != ("draw",)]
     return only[0] if len(shape) == 1 and len(only) == 1 == len(sweep.parameters) else None
+
+
+def _family(sweep: Sweep) -> tuple[Labelled, int] | None:
+    """Return the parameter that lines run along, and its axis: the others, if any, have few values."""
+    shape = sweep["point_status"].shape
+    if any(p.dims == ("draw",) for p in sweep.parameters) or len(sweep.parameters) != len(shape):
+        return None
+    axis = int(np.argmax(shape))
+    if np.prod(shape) > FEW_LINES * shape[axis]:
+        return None
+    dims = next(v.dims for v in sweep.variables if v.name == "point_status")
+    return next(p for p in sweep.parameters if p.dims == (dims[axis],)), axis
+
+
+def _others(sweep: Sweep, parameter: Labelled) -> str:
+    """Say what tells the lines of a family apart."""
+    others = [p for p in sweep.parameters if p is not parameter and p.values.size > 1]
+    shown = [f"{_label(p)}: {_short(p.values[0])} to {_short(p.values[-1])}" for p in others]
+    return "pale to full, " + "; ".join(shown) if shown else ""
 
 
 def _label(parameter: Labelled) -> str:
@@ -170,29 +194,35 @@ def _set_plain_ticks(axis: Axis) -> None:
 
 
 def _mode_lines(axes: Axes, sweep: Sweep, modes: int | None, values: Doubles) -> None:
-    parameter = _line(sweep)
-    if parameter is None:
+    found = _family(sweep)
+    if found is None:
         return
+    parameter, axis = found
+    values = np.moveaxis(values, axis, 0).reshape(parameter.values.size, -1, values.shape[-1])
     mark = "." if parameter.values.size <= MARKS else "None"
     order = np.argsort(parameter.values, kind="stable")
+    members = values.shape[1]
+    axes.set_title(_others(sweep, parameter), fontsize=7, loc="right", pad=2)
     for k in range(values.shape[-1] if modes is None else min(modes, values.shape[-1])):
         style = DASHES[(k // len(COLOURS)) % len(DASHES)]
         colour = COLOURS[k % len(COLOURS)]
-        axes.plot(
-            parameter.values[order],
-            values[order, k],
-            marker=mark,
-            linestyle=style,
-            color=colour,
-            markersize=2.5,
-            linewidth=1.0,
-        )
-        there = np.nonzero(np.isfinite(values[order, k]))[0]
+        for member in range(members):
+            axes.plot(
+                parameter.values[order],
+                values[order, member, k],
+                marker=mark,
+                linestyle=style,
+                color=colour,
+                alpha=1.0 if members == 1 else PALEST + (1 - PALEST) * member / (members - 1),
+                markersize=2.5,
+                linewidth=1.0,
+            )
+        there = np.nonzero(np.isfinite(values[order, -1, k]))[0]
         if there.size:
             last = order[there[-1]]
             axes.annotate(
                 str(k + 1),
-                (float(parameter.values[last]), float(values[last, k])),
+                (float(parameter.values[last]), float(values[last, -1, k])),
                 xytext=(2, 0),
                 textcoords="offset points",
                 fontsize=6,

@@ -202,6 +202,21 @@ def test_every_kind_of_sweep_is_drawn_the_same_twice(spec, arguments, tmp_path):
     assert (tmp_path / "s.svg").read_bytes() == (tmp_path / "t.svg").read_bytes()
 
 
+def test_a_few_values_of_a_second_parameter_are_lines_of_their_own():
+    frequencies = draw_sweep(oscillator().sweep({"b": [0.1, 0.5, 1], "k": [1, 2]})).axes[0]
+    for line, k in zip(frequencies.lines, (1, 2), strict=True):
+        assert np.allclose(line.get_xdata(), [0.1, 0.5, 1])
+        assert np.allclose(line.get_ydata(), np.sqrt(k) / (2 * np.pi))
+    pale, full = (line.get_alpha() for line in frequencies.lines)
+    assert pale < full == 1
+
+
+def test_many_values_of_two_parameters_are_bars():
+    many = oscillator().sweep({"b": [0.1 * i for i in range(1, 14)], "k": [1.0 * i for i in range(1, 15)]})
+    (bar,) = [line for line in draw_sweep(many).axes[0].lines if line.get_linewidth() > 3]
+    assert len(bar.get_xdata()) == 2
+
+
 def test_loci_show_every_point(sweep):
     figure = draw_sweep(sweep)
     marks = [c for axes in figure.axes for c in axes.collections if len(c.get_offsets()) > 1]
