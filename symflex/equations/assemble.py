@@ -41,6 +41,8 @@ if TYPE_CHECKING:
 PI = "pi"
 GENERATOR_LIMIT = 1_000
 UNKNOWN_LIMIT = 2_500
+SPARSE_LIMIT = 500_000
+"""Names, and unknowns, of equations over a sparse ring."""
 
 
 def assemble(
@@ -48,6 +50,7 @@ def assemble(
     nested: Callable[[PlacedBlock, Ring], Factored] | None = None,
     *,
     is_nameless: bool = False,
+    is_sparse: bool = False,
 ) -> Equations:
     """Stamp every element and signal of a model into one linear system.
 
@@ -60,6 +63,8 @@ def assemble(
     is_nameless : bool
         True to give no wavenumber a name: a quotient with named and nameless ones has no form in which what
         cancels is seen.
+    is_sparse : bool
+        True for a ring of any number of names, in which nothing is expanded; not for distributed models.
 
     Raises
     ------
@@ -70,10 +75,9 @@ def assemble(
     """
     constants = _constant_functions(model)
     count = len(model.parameters) + len(model.definitions) + len(constants)
-    if count > GENERATOR_LIMIT:
-        message = (
-            f"{count} parameters, definitions and functions of them; at most {GENERATOR_LIMIT} are carried"
-        )
+    most = SPARSE_LIMIT if is_sparse else GENERATOR_LIMIT
+    if count > most:
+        message = f"{count} parameters, definitions and functions of them; at most {most} are carried"
         raise _too_large(message, "write numbers in place of parameters that need no name")
     ring = Ring(
         (
@@ -82,7 +86,8 @@ def assemble(
             *(d.name for d in model.definitions),
             PI,
             *(c.generator for c in constants),
-        )
+        ),
+        is_sparse,
     )
     distributed = _Assembly(model, ring, constants, nested).survey(is_nameless=is_nameless)
     whole = ring if distributed is None else distributed.propagation.ring
@@ -187,8 +192,9 @@ class _Assembly:
             too_large = all(d.code.startswith("SF5") for d in self.problems)
             raise (BudgetError if too_large else ModelError)(*self.problems)
         count = len(self.balance) + len(self.unknowns)
-        if count > UNKNOWN_LIMIT:
-            raise _too_large(f"{count} unknowns; at most {UNKNOWN_LIMIT} are solved for", "split the model")
+        most = SPARSE_LIMIT if self.ring.is_sparse else UNKNOWN_LIMIT
+        if count > most:
+            raise _too_large(f"{count} unknowns; at most {most} are solved for", "split the model")
         return Equations(
             self.model,
             self.ring,

@@ -7,7 +7,7 @@ from symflex.kernels.memo import PolynomialMemo
 from symflex.kernels.modal_sum import ModalSums, modal_amplitudes, mode_values
 from symflex.kernels.propagators import Propagation, Propagator, propagate
 from symflex.kernels.residue import PRIME, random_point, residue
-from symflex.kernels.ring import LAPLACE, MEMORY_LIMIT, Ring, degree_in
+from symflex.kernels.ring import LAPLACE, MEMORY_LIMIT, Ring, degree_in, terms_of
 
 __all__ = [
     "FUNCTIONS",
@@ -33,4 +33,5 @@ __all__ = [
     "propagate",
     "random_point",
     "residue",
+    "terms_of",
 ]
