@@ -21,6 +21,7 @@ from symflex import transfer as transfer_room
 from symflex.elimination import explain_singular, is_singular
 from symflex.errors import Diagnostic, Source, SpecError, UsageError
 from symflex.errors.diagnostic import nearest
+from symflex.kernels import uncollected
 from symflex.model import Model, load_model, with_numbers
 from symflex.roots.locate import locate
 from symflex.sensitivity import differentiate
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
     from symflex.spec import Spec
     from symflex.stability import DynamicColocation, Loop, StabilityMap
     from symflex.state_space import StateSpace
-    from symflex.transfer import BoundTransferFunction, TransferFunction
+    from symflex.transfer import BoundTransferFunction, NestedTransferFunction, TransferFunction
 
     Array = npt.NDArray[np.float64]
     ComplexArray = npt.NDArray[np.complex128]
@@ -99,6 +100,29 @@ def derive_all(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> 
     nameless = equations_room.assemble(model, transfer_room.nested_transfer, is_nameless=True)
     again = dict(zip(mixed, transfer_room.derive_all(nameless, [wanted[i] for i in mixed]), strict=True))
     return tuple(again.get(i, tf) for i, tf in enumerate(found))
+
+
+def assemble_sparse(model: Model) -> Equations:
+    """Return the equations over a ring of any number of names, for the nested form.
+
+    A model inside a block is expanded first, and needs the ordinary ring.
+    """
+    is_sparse = not any(block.submodel is not None for block in model.blocks)
+    with uncollected():
+        return equations_room.assemble(
+            model, transfer_room.nested_transfer, is_sparse=is_sparse and not model.is_distributed
+        )
+
+
+def derive_nested(
+    model: Model, pairs: Sequence[tuple[str, str]] | None = None
+) -> tuple[NestedTransferFunction, ...]:
+    """Return the transfer functions of the given pairs, all by default, as straight-line programs.
+
+    See :func:`symflex.transfer.derive_nested`.
+    """
+    wanted = model.transfer_functions if pairs is None else tuple(pairs)
+    return transfer_room.derive_nested(assemble_sparse(model), wanted)
 
 
 def derive_bound(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[BoundTransferFunction, ...]:

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 from symflex.elimination.singular import explain_singular
 from symflex.elimination.straight_line import ONE, ZERO, Step, StraightLine, Workbench
 from symflex.errors import Diagnostic, ModelError
-from symflex.kernels import random_point
+from symflex.kernels import uncollected
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -96,7 +96,12 @@ def eliminate(equations: Equations, pairs: Sequence[tuple[str, str]]) -> Elimina
     """
     if len(equations.rows) != len(equations.unknowns):
         raise _singular(equations, ())
-    bench = Workbench(equations.ring.names, random_point(equations.ring.names))
+    with uncollected():
+        return _eliminate(equations, pairs)
+
+
+def _eliminate(equations: Equations, pairs: Sequence[tuple[str, str]]) -> Elimination:
+    bench = Workbench(equations.ring.names)
     index = equations.ring.index
     for name, value in equations.definitions:
         bench.define(index[name], bench.factored(value))
@@ -152,14 +157,15 @@ class _Network:
         loads: dict[str, list[int]] = {}
         diagonal: list[int] = []
         for variable, coefficient in form.terms:
-            step = bench.factored(coefficient)
             column = columns.get(variable, -1)
             if column == own:
-                diagonal.append(step)
-            elif column >= 0:
-                row.entries.setdefault(column, []).append(bench.negate(step))
+                diagonal.append(bench.factored(coefficient))
+            elif column < 0:
+                loads.setdefault(variable.owner, []).append(bench.factored(coefficient, -1))
+            elif column in row.entries:
+                row.entries[column].append(bench.factored(coefficient, -1))
             else:
-                loads.setdefault(variable.owner, []).append(bench.negate(step))
+                row.entries[column] = [bench.factored(coefficient, -1)]
         ground = self._ground(row, diagonal) if is_balance else None
         if ground is None:
             if diagonal:
@@ -217,12 +223,13 @@ class _Run:
         self.solved: list[_Solved] = []
         loaded = 0
         for i, (row, loads) in enumerate(network.rows):
-            entries = {c: list(steps) for c, steps in row.entries.items()}
-            load = list(loads.get(source, ()))
+            load = list(loads.get(source, ())) if loads else []
             loaded += bool(load)
-            self.rows.append(_Row(entries, row.own, row.implicit, list(row.ground), load, row.is_balance))
-            for column in entries:
+            entries = {}
+            for column, steps in row.entries.items():
+                entries[column] = steps.copy()
                 self.users[column][i] = None
+            self.rows.append(_Row(entries, row.own, row.implicit, row.ground.copy(), load, row.is_balance))
             if row.implicit >= 0:
                 self.hidden[row.implicit] += 1
         self.keeps_last = loaded <= KEPT_LAST
@@ -284,7 +291,7 @@ class _Run:
         if row.implicit >= 0:
             self.hidden[row.implicit] -= 1
             ground = add(row.ground)
-            if len(row.ground) > 1 and ground:
+            if bench.kinds[ground] > Step.NUMBER:
                 bench.roles.setdefault(ground, "Z")
             kind = classes[row.implicit]
             whole = add([ground, *(v for c, v in values.items() if classes[c] == kind)])

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import IntEnum
 from fractions import Fraction
+from random import Random
 from typing import TYPE_CHECKING
 
 from symflex.kernels import PRIME, terms_of
@@ -85,6 +86,11 @@ class StraightLine:
         operands = self.operands[step]
         return operands[:1] if kind == _POWER else operands
 
+    def fraction(self, step: int) -> Fraction:
+        """Return the value of a number."""
+        above, below = self.operands[step]
+        return Fraction(above, below)
+
     def size(self, *roots: int) -> int:
         """Return how many operations some values take, each shared one counted once."""
         kinds = self.kinds
@@ -106,20 +112,19 @@ class Workbench:
     ----------
     names : sequence of str
         Generators.
-    point : mapping of str to int
-        The random point.
 
     Examples
     --------
-    >>> bench = Workbench(("s", "k"), {"s": 5, "k": 7})
+    >>> bench = Workbench(("s", "k"))
     >>> s, k = bench.generator(0), bench.generator(1)
     >>> bench.add([bench.multiply(s, k), bench.negate(bench.multiply(k, s))]) == ZERO
     True
     """
 
-    def __init__(self, names: Sequence[str], point: Mapping[str, int]) -> None:
+    def __init__(self, names: Sequence[str]) -> None:
         self.names = tuple(names)
-        self.point = point
+        random = Random(20)
+        self.point = [random.getrandbits(60) + 1 for _ in names]
         self.kinds: list[int] = [_NUMBER, _NUMBER]
         self.operands: list[Key] = [(0, 1), (1, 1)]
         self.residues: list[int] = [0, 1]
@@ -150,7 +155,7 @@ class Workbench:
         known = self._known.get(key)
         if known is not None:
             return known
-        return self._make(_GENERATOR, (position,), key, self.point[self.names[position]] % PRIME)
+        return self._make(_GENERATOR, (position,), key, self.point[position])
 
     def define(self, position: int, value: int) -> None:
         """Let a generator stand for a value, under its own name."""
@@ -310,6 +315,9 @@ class Workbench:
             return known
         terms: list[int] = []
         for monomial, coefficient in terms_of(polynomial):
+            if coefficient == 1 and len(monomial) == 1 and monomial[0][1] == 1:
+                terms.append(self.generator(monomial[0][0]))
+                continue
             step = self._monomial(monomial)
             if abs(coefficient) != 1:
                 step = self.multiply(self.number(abs(coefficient)), step)
@@ -333,19 +341,22 @@ class Workbench:
             result = self.multiply(result, factor)
         return result
 
-    def factored(self, value: Factored) -> int:
-        """Return a rational function that is kept as a product."""
+    def factored(self, value: Factored, sign: int = 1) -> int:
+        """Return a rational function that is kept as a product; minus it with ``sign`` -1."""
+        factors = value.factors
         above, below = ONE, ONE
-        for factor, exponent in value.factors:
-            step = self.polynomial(factor)
-            if exponent > 0:
-                above = self.multiply(above, step if exponent == 1 else self.power(step, exponent))
-            else:
-                below = self.multiply(below, step if exponent == -1 else self.power(step, -exponent))
-        unit = value.unit
-        if unit != 1:
-            if unit == -1:
-                above = self.negate(above)
-            else:
-                above = self.multiply(self.number(unit), above)
+        if len(factors) == 1 and factors[0][1] == 1:
+            above = self.polynomial(factors[0][0])
+        else:
+            for factor, exponent in factors:
+                step = self.polynomial(factor)
+                if exponent > 0:
+                    above = self.multiply(above, step if exponent == 1 else self.power(step, exponent))
+                else:
+                    below = self.multiply(below, step if exponent == -1 else self.power(step, -exponent))
+        numerator, denominator = sign * value.unit.numerator, value.unit.denominator
+        if denominator != 1 or abs(numerator) != 1:
+            above = self.multiply(self.number(Fraction(numerator, denominator)), above)
+        elif numerator < 0:
+            above = self.negate(above)
         return above if below == ONE else self.divide(above, below)

@@ -1,5 +1,6 @@
 """The exact ring, factored rational functions over it, and the functions that may appear as generators."""
 
+from symflex.kernels.collection import uncollected
 from symflex.kernels.dispersion import NO_KERNELS, Dispersion, Kernel, KernelTable
 from symflex.kernels.factored import Factored, common_denominator, least_common_multiple
 from symflex.kernels.functions import FUNCTIONS, ElementaryFunction
@@ -34,4 +35,5 @@ __all__ = [
     "random_point",
     "residue",
     "terms_of",
+    "uncollected",
 ]

@@ -34,7 +34,7 @@ class SparsePolynomial:
     >>> ring = SparseContext(("s", "k", "b"))
     >>> s, k, b = (ring.gen(i) for i in range(3))
     >>> (b * s + k) ** 2 - k * k
-    2*s*k*b + s^2*b^2
+    s^2*b^2 + 2*s*k*b
     """
 
     __slots__ = ("_hash", "context", "parts")
@@ -135,6 +135,9 @@ class SparsePolynomial:
 
     def terms(self) -> Iterator[tuple[Monomial, int]]:
         """Yield monomials, which name their generators only, with coefficients, in lexicographic order."""
+        if len(self.parts) == 1:
+            yield from self.parts.items()
+            return
         yield from sorted(self.parts.items(), key=lambda term: _place(term[0]), reverse=True)
 
     def __str__(self) -> str:
@@ -160,14 +163,18 @@ class SparseContext:
         What they are called.
     """
 
-    __slots__ = ("names",)
+    __slots__ = ("_generators", "names")
 
     def __init__(self, names: Sequence[str]) -> None:
         self.names = names
+        self._generators: dict[int, SparsePolynomial] = {}
 
     def gen(self, i: int) -> SparsePolynomial:
-        """Return the generator at a position."""
-        return SparsePolynomial(self, {((i, 1),): 1})
+        """Return the generator at a position, always the same object."""
+        known = self._generators.get(i)
+        if known is None:
+            known = self._generators[i] = SparsePolynomial(self, {((i, 1),): 1})
+        return known
 
     def constant(self, value: int) -> SparsePolynomial:
         """Return an integer."""

@@ -128,7 +128,7 @@ class Generators:
     """Makes an expression for every generator, in powers of s or of 1/s."""
 
     forge: Forge
-    tf: TransferFunction
+    tf: TransferFunction | NestedTransferFunction
     is_far: bool
     _known: dict[str, tuple[int, int]] = field(default_factory=dict)
 
@@ -184,7 +184,7 @@ class Generators:
                 return self._definition(name, value)
         for constant in tf.constants:
             if constant.generator == name:
-                return self._constant(constant.expression), 0
+                return self.constant(constant.expression), 0
         if tf.closed is not None:
             for label, polynomial in tf.closed.closure.sums:
                 if label == name:
@@ -204,7 +204,7 @@ class Generators:
         suffix = "_far" if self.is_far and self.forge.depends[value] else ""
         return self.forge.label(value, name + suffix)
 
-    def _constant(self, expression: Expression) -> int:
+    def constant(self, expression: Expression) -> int:
         """Return an expression of constants as the model writes it."""
         forge = self.forge
         match expression:
@@ -215,21 +215,21 @@ class Generators:
                 is_known = name == PI or any(p.name == name for p in self.tf.model.parameters)
                 if is_known or inner is None:
                     return self._generator(name)[0]
-                return forge.label(self._constant(inner), name)
+                return forge.label(self.constant(inner), name)
             case Negative(operand):
-                return forge.negate(self._constant(operand))
+                return forge.negate(self.constant(operand))
             case Sum(terms):
-                return forge.add([self._constant(t) for t in terms])
+                return forge.add([self.constant(t) for t in terms])
             case Product(factors):
-                return forge.multiply([self._constant(f) for f in factors])
+                return forge.multiply([self.constant(f) for f in factors])
             case Quotient(numerator, denominator):
-                return forge.divide(self._constant(numerator), self._constant(denominator))
+                return forge.divide(self.constant(numerator), self.constant(denominator))
             case Power(base, exponent):
                 power = integer_exponent(exponent) or 0
-                raised = forge.power(self._constant(base), abs(power))
+                raised = forge.power(self.constant(base), abs(power))
                 return raised if power >= 0 else forge.divide(forge.constant(1), raised)
             case Call(name, argument):
-                return forge.apply(name, self._constant(argument))
+                return forge.apply(name, self.constant(argument))
         message = f"unexpected expression {type(expression).__name__}"
         raise TypeError(message)
 
