@@ -98,6 +98,17 @@ class NestedTransferFunction:
         """The steps numerator and denominator are made of, in order."""
         return tuple(self.program.steps_of(self.num, self.den))
 
+    @cached_property
+    def operations(self) -> tuple[_Operation, ...]:
+        """The steps with their operands, and with the steps that nothing needs after each."""
+        program, kept = self.program, {self.num, self.den}
+        found: list[_Operation] = []
+        for i in reversed(self.steps):
+            gone = tuple(x for x in dict.fromkeys(program.inner(i)) if x not in kept)
+            kept.update(gone)
+            found.append((program.kinds[i], i, program.operands[i], gone))
+        return tuple(reversed(found))
+
     @property
     def size(self) -> int:
         """The number of operations, shared ones counted once."""
@@ -218,7 +229,7 @@ class BoundNested:
         """Return the function, evaluated in balls at the given precision."""
         with ctx.workprec(bits):
             used = self.source.generators - {LAPLACE}
-            return EnclosedNested(bits, self.source, {n: self._enclosures[n]() for n in used})
+            return EnclosedNested(bits, self.source, {n: acb(self._enclosures[n]()) for n in used})
 
     @cached_property
     def _first(self) -> EnclosedNested:
@@ -280,13 +291,13 @@ class EnclosedNested:
         The precision everything is computed at.
     source : NestedTransferFunction
         The function.
-    constants : mapping of str to arb
+    constants : mapping of str to acb
         Its generators but for s.
     """
 
     bits: int
     source: NestedTransferFunction
-    constants: Mapping[str, arb]
+    constants: Mapping[str, acb]
 
     def __call__(self, s: acb) -> acb:
         """Return a ball that contains the values on the ball ``s`` [rad/s]; not finite near a pole."""
@@ -294,37 +305,17 @@ class EnclosedNested:
             num, den = _values(self.source, {**self.constants, LAPLACE: s}, _ball)
             return acb(num) / acb(den)
 
-    def logarithmic_derivative(self, s: acb) -> acb:
-        """Return a ball around ``G'(s)/G(s)``."""
+    def value_and_slope(self, s: acb) -> tuple[acb, acb]:
+        """Return balls around the value and around ``G'(s)/G(s)``."""
         with ctx.workprec(self.bits):
-            values = {name: _Dual(acb(value), acb(0)) for name, value in self.constants.items()}
-            values[LAPLACE] = _Dual(s, acb(1))
-            num, den = _values(self.source, values, lambda f: _Dual(acb(_ball(f)), acb(0)))
-            return acb(num.slope / num.value - den.slope / den.value)
+            num, den, above, below = _values_and_slopes(self.source, self.constants, s)
+            return num / den, above / num - below / den
 
 
-@dataclass(frozen=True, slots=True)
-class _Dual:
-    """A value with its derivative by s."""
+_Operation = tuple[int, int, tuple[int, ...], tuple[int, ...]]
+"""Kind, step, operands, and the steps that nothing needs afterwards."""
 
-    value: Any
-    slope: Any
-
-    def __add__(self, other: _Dual) -> _Dual:
-        return _Dual(self.value + other.value, self.slope + other.slope)
-
-    def __mul__(self, other: _Dual) -> _Dual:
-        return _Dual(self.value * other.value, self.slope * other.value + self.value * other.slope)
-
-    def __truediv__(self, other: _Dual) -> _Dual:
-        quotient = self.value / other.value
-        return _Dual(quotient, (self.slope - quotient * other.slope) / other.value)
-
-    def __neg__(self) -> _Dual:
-        return _Dual(-self.value, -self.slope)
-
-    def __pow__(self, exponent: int) -> _Dual:
-        return _Dual(self.value**exponent, exponent * self.value ** (exponent - 1) * self.slope)
+_GENERATOR, _NUMBER, _ADD, _MULTIPLY, _DIVIDE, _NEGATE, _POWER = map(int, Step)
 
 
 def _values(
@@ -332,45 +323,85 @@ def _values(
 ) -> tuple[Any, Any]:
     """Return numerator and denominator in whatever arithmetic the generators' values have."""
     program = tf.program
-    kinds, operands = program.kinds, program.operands
     values: dict[int, Any] = {}
-    for i, gone in zip(tf.steps, _last_uses(tf), strict=True):
-        args = operands[i]
-        match kinds[i]:
-            case Step.GENERATOR:
-                values[i] = known[program.names[args[0]]]
-            case Step.NUMBER:
-                values[i] = number(program.fraction(i))
-            case Step.ADD:
-                total = values[args[0]]
-                for x in args[1:]:
-                    total = total + values[x]
-                values[i] = total
-            case Step.MULTIPLY:
-                product = values[args[0]]
-                for x in args[1:]:
-                    product = product * values[x]
-                values[i] = product
-            case Step.DIVIDE:
-                values[i] = values[args[0]] / values[args[1]]
-            case Step.NEGATE:
-                values[i] = -values[args[0]]
-            case Step.POWER:
-                values[i] = values[args[0]] ** args[1]
+    for kind, i, args, gone in tf.operations:
+        if kind == _MULTIPLY:
+            value = values[args[0]]
+            for x in args[1:]:
+                value = value * values[x]
+        elif kind == _ADD:
+            value = values[args[0]]
+            for x in args[1:]:
+                value = value + values[x]
+        elif kind == _DIVIDE:
+            value = values[args[0]] / values[args[1]]
+        elif kind == _GENERATOR:
+            value = known[program.names[args[0]]]
+        elif kind == _NEGATE:
+            value = -values[args[0]]
+        elif kind == _POWER:
+            value = values[args[0]] ** args[1]
+        else:
+            value = number(program.fraction(i))
+        values[i] = value
         for x in gone:
             del values[x]
     return values[tf.num], values[tf.den]
 
 
-def _last_uses(tf: NestedTransferFunction) -> list[list[int]]:
-    """Return, per step, the steps that nothing needs after it."""
-    kept = {tf.num, tf.den}
-    found: list[list[int]] = []
-    for i in reversed(tf.steps):
-        fresh = [x for x in dict.fromkeys(tf.program.inner(i)) if x not in kept]
-        kept.update(fresh)
-        found.append(fresh)
-    return found[::-1]
+def _values_and_slopes(
+    tf: NestedTransferFunction, known: Mapping[str, acb], s: acb
+) -> tuple[acb, acb, acb, acb]:
+    """Return numerator and denominator, and their derivatives by s; what is free of s has none on the way."""
+    program = tf.program
+    values: dict[int, acb] = {}
+    slopes: dict[int, acb] = {}
+    for kind, i, args, gone in tf.operations:
+        if kind == _MULTIPLY:
+            value, slope = values[args[0]], slopes.get(args[0])
+            for x in args[1:]:
+                factor, own = values[x], slopes.get(x)
+                if slope is not None:
+                    slope = slope * factor
+                if own is not None:
+                    slope = value * own if slope is None else slope + value * own
+                value = value * factor
+        elif kind == _ADD:
+            value, slope = values[args[0]], slopes.get(args[0])
+            for x in args[1:]:
+                value = value + values[x]
+                own = slopes.get(x)
+                if own is not None:
+                    slope = own if slope is None else slope + own
+        elif kind == _DIVIDE:
+            above, below = args
+            value, slope = values[above] / values[below], slopes.get(above)
+            own = slopes.get(below)
+            if own is not None:
+                slope = (-value * own if slope is None else slope - value * own) / values[below]
+            elif slope is not None:
+                slope = slope / values[below]
+        elif kind == _GENERATOR:
+            name = program.names[args[0]]
+            value, slope = (s, acb(1)) if name == LAPLACE else (known[name], None)
+        elif kind == _NEGATE:
+            value, slope = -values[args[0]], slopes.get(args[0])
+            slope = None if slope is None else -slope
+        elif kind == _POWER:
+            base, exponent = args
+            value, slope = values[base] ** exponent, slopes.get(base)
+            if slope is not None:
+                slope = exponent * values[base] ** (exponent - 1) * slope
+        else:
+            value, slope = acb(_ball(program.fraction(i))), None
+        values[i] = value
+        if slope is not None:
+            slopes[i] = slope
+        for x in gone:
+            del values[x]
+            slopes.pop(x, None)
+    zero = acb(0)
+    return values[tf.num], values[tf.den], slopes.get(tf.num, zero), slopes.get(tf.den, zero)
 
 
 def _ball(value: Fraction) -> arb:

@@ -23,6 +23,7 @@ from symflex.emit.program.real_axis import for_positive, in_half_angles
 from symflex.errors import BudgetError, ModelError
 from symflex.transfer import BoundNested, NestedTransferFunction, bind, bind_nested
 from symflex.transfer.bind import EnclosedTransferFunction
+from symflex.transfer.nested_form import EnclosedNested
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
     from symflex.emit.program.nodes import Piecewise, Program
     from symflex.transfer import BoundTransferFunction, TransferFunction
     from symflex.transfer.bind import Enclosed
-    from symflex.transfer.nested_form import EnclosedNested
 
 DEFAULT_BAND = (Fraction(1, 10), Fraction(10_000))
 """Hz."""
@@ -65,8 +65,11 @@ SCAN = 3000
 MOST_EXTREMES = 40
 """Resonances, and antiresonances, around which the error is measured; the first and the last ones of more."""
 
-LIGHT_NESTED = 2_000
+LIGHT_NESTED = 600
 """Operations of a nested form from which fewer frequencies are looked at."""
+
+LEAST = 0.05
+"""The part of them that is looked at in any case."""
 
 NAMED = 6
 """Parameters without value that are named."""
@@ -472,7 +475,7 @@ def _vanishes(bound: BoundTransferFunction | BoundNested) -> bool:
 def _part(bound: BoundTransferFunction | BoundNested) -> float:
     """Return which part of the usual number of frequencies is looked at."""
     if isinstance(bound, BoundNested):
-        return min(1.0, LIGHT_NESTED / max(bound.source.size, 1))
+        return max(LEAST, min(1.0, LIGHT_NESTED / max(bound.source.size, 1)))
     if not bound.source.is_nameless:
         return 1.0
     return min(1.0, LIGHT / sum(len(f) for f, _ in bound.ratio.factors))
@@ -512,6 +515,7 @@ class References:
         is_plain: bool = False,
     ) -> None:
         self.bound = bound
+        self._first_bits = FIRST_BITS
         self._known: dict[int, Enclosed | EnclosedNested] = {}
         low, high = (float(f) for f in band_hz)
         count = max(1, int(samples * _part(bound)))
@@ -563,11 +567,16 @@ class References:
         point = acb(s.real, s.imag)
         if _vanishes(self.bound):
             return _Reference(acb(0), FIRST_BITS, acb(1).abs_lower())
-        bits = FIRST_BITS
+        bits = self._first_bits
         while bits <= LAST_BITS:
             function = self._at(bits)
-            value, slope = function(point), function.logarithmic_derivative(point)
+            if isinstance(function, EnclosedNested):
+                value, slope = function.value_and_slope(point)
+            else:
+                value, slope = function(point), function.logarithmic_derivative(point)
             if value.is_finite() and slope.is_finite() and value.rel_accuracy_bits() >= ENOUGH_BITS:
+                if isinstance(function, EnclosedNested):
+                    self._first_bits = bits  # the next point most likely needs as many
                 with ctx.workprec(bits):
                     return _Reference(value, bits, value.abs_lower() * (1 + (point * slope).abs_lower()))
             bits *= 2
