@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from symflex.cli.derive import chosen_representation
 from symflex.cli.reporting import note, reporting
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
@@ -40,6 +41,13 @@ class ExportCommand(click.Command):
 @click.option("--form", metavar="FORM", help="latex: form of the functions, as for derive.")
 @click.option("--width", metavar="ieee|a4|MM", help="latex: width of the column; a4 (170 mm) by default.")
 @click.option("--no-figures", "no_figures", is_flag=True, help="latex: a folder without figures.")
+@click.option(
+    "--representation",
+    type=click.Choice(["auto", "expanded", "nested"]),
+    default="auto",
+    show_default=True,
+    help="Quotients of polynomials or nested expressions, as for derive.",
+)
 @click.option("-o", "--output", type=click.Path(), help="File to write; standard output by default.")
 @click.option("--minimal", "is_minimal", is_flag=True, help="state-space: without hidden states.")
 @click.option("--strict", is_flag=True, help="Exit with 4 when the verified accuracy falls short.")
@@ -52,6 +60,7 @@ def command(
     form: str | None,
     width: str | None,
     no_figures: bool,
+    representation: str,
     output: str | None,
     is_minimal: bool,
     strict: bool,
@@ -80,7 +89,11 @@ def command(
         raise UsageError(Diagnostic("SF902", f"there is no export target '{target[:64]}'", None, hint))
     exporter = _chosen(EXPORTERS[target], form, width, no_figures=no_figures, is_minimal=is_minimal)
     model = pipeline.load(spec)
-    derived = pipeline.derive_all(model, pipeline.pick_pairs(model, tfs))
+    derived, reason = pipeline.derive_as(
+        model, pipeline.pick_pairs(model, tfs), chosen_representation(representation, form)
+    )
+    if reason:
+        note(reason)
     if isinstance(exporter, LatexExporter) and output and _is_folder(output):
         return _write_fragments(exporter, model, derived, output, strict=strict)
     stem = Path(output).stem if output else identifiers({"": Path(spec).stem}, ())[""]

@@ -2,6 +2,7 @@
 
 from symflex.elimination.closing import ClosedSystem, Closure, close
 from symflex.elimination.determinants import Determinants
+from symflex.elimination.expanded_size import expanded_terms
 from symflex.elimination.minors import Minors, expansion_order
 from symflex.elimination.singular import explain_singular, is_singular
 from symflex.elimination.star_mesh import Elimination, eliminate
@@ -21,6 +22,7 @@ __all__ = [
     "close",
     "eliminate",
     "eliminate_unit_pivots",
+    "expanded_terms",
     "expansion_order",
     "explain_singular",
     "is_singular",

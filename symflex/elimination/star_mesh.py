@@ -47,10 +47,13 @@ class Elimination:
         Over the generators of the equations; definitions stand for their values.
     quotients : tuple of (int, int)
         Per pair, numerator and denominator; neither need be a polynomial.
+    pivots : tuple of int
+        What was divided by: the product of these is the determinant, up to its sign.
     """
 
     program: StraightLine
     quotients: tuple[tuple[int, int], ...]
+    pivots: tuple[int, ...]
 
 
 @dataclass(slots=True)
@@ -108,13 +111,16 @@ def _eliminate(equations: Equations, pairs: Sequence[tuple[str, str]]) -> Elimin
     network = _Network.of(equations, bench)
     outputs = {o.name: o for o in equations.outputs}
     found: dict[tuple[str, str], tuple[int, int]] = {}
+    pivots: tuple[int, ...] = ()
     for source in dict.fromkeys(source for _, source in pairs):
         wanted = [o for o, i in dict.fromkeys(pairs) if i == source]
         rows = [network.output(outputs[name].form, source) for name in wanted]
-        quotients = _Run(network, source).quotients([row for row, _ in rows], [load for _, load in rows])
+        run = _Run(network, source)
+        pivots = tuple(solved.below for solved in run.solved)
+        quotients = run.quotients([row for row, _ in rows], [load for _, load in rows])
         for name, (num, den) in zip(wanted, quotients, strict=True):
             found[name, source] = (num, bench.multiply(bench.factored(outputs[name].divisor), den))
-    return Elimination(bench.finished(), tuple(found[pair] for pair in pairs))
+    return Elimination(bench.finished(), tuple(found[pair] for pair in pairs), pivots)
 
 
 def _singular(equations: Equations, columns: Sequence[int]) -> ModelError:

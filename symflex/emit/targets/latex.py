@@ -10,7 +10,7 @@ from symflex.emit.forms import print_forms
 from symflex.emit.latex import TEXT_WIDTH_MM, Picture, latex_document, latex_files
 from symflex.errors import ModelError, SymflexError
 from symflex.roots.locate import locate
-from symflex.transfer import bind
+from symflex.transfer import NestedTransferFunction, bind
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -80,6 +80,8 @@ class LatexExporter:
         """Return the model's figures, one of each kind besides, and why others are left out."""
         bounds: list[BoundTransferFunction] = []
         for tf in tfs:
+            if isinstance(tf, NestedTransferFunction):
+                continue
             try:
                 bound = bind(tf)
             except ModelError:
@@ -150,6 +152,9 @@ class LatexExporter:
         forms, sentences = print_forms(tfs, self.form)
         maps, warnings = [], list(sentences)
         for tf in tfs:
+            if isinstance(tf, NestedTransferFunction):
+                warnings.append(f"poles and zeros of {tf.name} are left out: it is in nested form")
+                continue
             try:
                 bound = bind(tf)
             except ModelError:
