@@ -80,9 +80,7 @@ def network(branches: Iterable[tuple[int, int]]) -> Model:
     )
 
 
-def _placed(
-    kind: str, name: str, port: str, ends: tuple[int, ...], value: tuple[str, str]
-) -> PlacedElement:
+def _placed(kind: str, name: str, port: str, ends: tuple[int, ...], value: tuple[str, str]) -> PlacedElement:
     return PlacedElement(
         name,
         ELEMENTS[kind],

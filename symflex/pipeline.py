@@ -45,7 +45,12 @@ if TYPE_CHECKING:
     from symflex.spec import Spec
     from symflex.stability import DynamicColocation, Loop, StabilityMap
     from symflex.state_space import StateSpace
-    from symflex.transfer import BoundTransferFunction, NestedTransferFunction, TransferFunction
+    from symflex.transfer import (
+        AnyTransferFunction,
+        BoundTransferFunction,
+        NestedTransferFunction,
+        TransferFunction,
+    )
 
     Array = npt.NDArray[np.float64]
     ComplexArray = npt.NDArray[np.complex128]
@@ -134,7 +139,7 @@ def derive_nested(
 
 def derive_as(
     model: Model, pairs: Sequence[tuple[str, str]], representation: str = "auto"
-) -> tuple[tuple[TransferFunction | NestedTransferFunction, ...], str]:
+) -> tuple[tuple[AnyTransferFunction, ...], str]:
     """Return transfer functions in one of the two exact representations, and why in that one.
 
     Parameters

@@ -32,7 +32,7 @@ def chosen_representation(representation: str, form: str | None) -> str:
     "--form",
     metavar="FORM",
     help="polynomial, monic, constant, factored, definitions, zpk, frequency; for beams, rods and delays "
-    "also hyperbolic, krylov, vaughan; nested is --representation nested. The shortest symbolic form by default.",
+    "also hyperbolic, krylov, vaughan; nested is that representation. The shortest symbolic form by default.",
 )
 @click.option(
     "--format", "format_", type=click.Choice(["text", "latex", "json"]), default="text", show_default=True

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from symflex.emit.export import Exporter
     from symflex.emit.targets.latex import LatexExporter
     from symflex.model import Model
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 
 class ExportCommand(click.Command):
@@ -140,7 +140,12 @@ def _is_folder(output: str) -> bool:
 
 
 def _write_fragments(
-    exporter: LatexExporter, model: Model, derived: Sequence[TransferFunction], folder: str, *, strict: bool
+    exporter: LatexExporter,
+    model: Model,
+    derived: Sequence[AnyTransferFunction],
+    folder: str,
+    *,
+    strict: bool,
 ) -> int:
     from symflex.emit.write import write_folder
 

@@ -152,10 +152,12 @@ class _Network:
             classes.append(kinds.setdefault(kind, len(kinds)) if v.kind == "node" else -1)
         network = _Network(equations, bench, columns, classes, [])
         for row in equations.rows:
-            network.rows.append(network._row(row.about, row.form, is_balance=row.role == "balance"))  # noqa: SLF001
+            network.rows.append(network._row(row.about, row.form, is_balance=row.role == "balance"))
         return network
 
-    def _row(self, about: Variable, form: LinearForm, *, is_balance: bool) -> tuple[_Row, dict[str, list[int]]]:
+    def _row(
+        self, about: Variable, form: LinearForm, *, is_balance: bool
+    ) -> tuple[_Row, dict[str, list[int]]]:
         """Return a row, and what inputs contribute to it."""
         bench, columns = self.bench, self.columns
         own = columns[about]
@@ -430,9 +432,7 @@ class _Run:
         rows = self.rows
         candidates = (column, *self.handed.get(column, ()))
         return [
-            j
-            for j in dict.fromkeys(candidates)
-            if (row := rows[j]) is not None and row.implicit == column
+            j for j in dict.fromkeys(candidates) if (row := rows[j]) is not None and row.implicit == column
         ]
 
     def _unfold(self, j: int, row: _Row, pivot: int, values: dict[int, int]) -> int:

@@ -226,7 +226,7 @@ class Workbench:
             return ZERO if not x or not y else y if x == ONE else x
         kinds = self.kinds
         a, b = kinds[x], kinds[y]
-        if a == _NEGATE or b == _NEGATE:
+        if _NEGATE in (a, b):
             inner_x = self.operands[x][0] if a == _NEGATE else x
             inner_y = self.operands[y][0] if b == _NEGATE else y
             product = self.multiply(inner_x, inner_y)
@@ -267,7 +267,7 @@ class Workbench:
             return ONE
         kinds = self.kinds
         a, b = kinds[x], kinds[y]
-        if a == _NEGATE or b == _NEGATE:
+        if _NEGATE in (a, b):
             inner_x = self.operands[x][0] if a == _NEGATE else x
             inner_y = self.operands[y][0] if b == _NEGATE else y
             quotient = self.divide(inner_x, inner_y)

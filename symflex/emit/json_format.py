@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
     from symflex.emit.forms import PrintedForm
     from symflex.expressions import Expression
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 SCHEMA = "symflex.derive/1"
 
 
-def derive_json(tf: TransferFunction | NestedTransferFunction, form: PrintedForm) -> dict[str, object]:
+def derive_json(tf: AnyTransferFunction, form: PrintedForm) -> dict[str, object]:
     """Return one entry of ``transfer_functions``; ``hidden`` is None where that was not examined."""
     hidden = [{"factor": format_expression(e), "multiplicity": m} for e, m in hidden_expressions(tf)]
     return {
@@ -47,7 +47,7 @@ def _in_order_of_definition(form: PrintedForm) -> list[tuple[str, Expression]]:
 
 
 def derive_document(
-    entries: Sequence[tuple[TransferFunction | NestedTransferFunction, PrintedForm]],
+    entries: Sequence[tuple[AnyTransferFunction, PrintedForm]],
 ) -> dict[str, object]:
     """Return the document ``symflex derive --json`` prints."""
     return {"schema": SCHEMA, "transfer_functions": [derive_json(tf, form) for tf, form in entries]}

@@ -12,7 +12,7 @@ from symflex.transfer import NestedTransferFunction
 if TYPE_CHECKING:
     from symflex.emit.forms import PrintedForm
     from symflex.model import Model, Parameter
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 FORMULA_LINES = 20
 FORMULA_TERMS = 1000
@@ -31,7 +31,7 @@ ITERATED = (
 """What is said of those that find their exponents otherwise than the code that was measured."""
 
 
-def formula_lines(tf: TransferFunction | NestedTransferFunction, width: int) -> list[str]:
+def formula_lines(tf: AnyTransferFunction, width: int) -> list[str]:
     """Return the formula in lines of inert text, shortened when it is long.
 
     Parameters
@@ -42,9 +42,11 @@ def formula_lines(tf: TransferFunction | NestedTransferFunction, width: int) -> 
         Columns of a line.
     """
     if isinstance(tf, NestedTransferFunction):
-        return _lines_of(tf.name, print_form(tf), width) if tf.size <= NESTED_SIZE else [
-            f"A quotient of nested expressions of {tf.size} operations."
-        ]
+        return (
+            _lines_of(tf.name, print_form(tf), width)
+            if tf.size <= NESTED_SIZE
+            else [f"A quotient of nested expressions of {tf.size} operations."]
+        )
     above, below = tf.order
     if sum(len(f) for f, _ in tf.ratio.factors) <= FORMULA_TERMS:
         form = print_form(tf)
@@ -78,7 +80,7 @@ def origin_lines(model: Model, width: int) -> list[str]:
     return lines
 
 
-def headline(tf: TransferFunction | NestedTransferFunction, *, is_real: bool = False) -> str:
+def headline(tf: AnyTransferFunction, *, is_real: bool = False) -> str:
     """Return what a function computes, in one inert line.
 
     Parameters

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from symflex.roots import PoleZeroMap, Region, Root
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction, TransferFunction
 
 Row = tuple[str, ...]
 
@@ -47,7 +47,7 @@ def form_text(tf: TransferFunction, form: PrintedForm) -> str:
     return "\n".join(lines)
 
 
-def derive_text(tf: TransferFunction | NestedTransferFunction, form: PrintedForm, width: int = WIDTH) -> str:
+def derive_text(tf: AnyTransferFunction, form: PrintedForm, width: int = WIDTH) -> str:
     """Return a transfer function as a fraction, with its definitions and hidden modes.
 
     Parameters

@@ -1,4 +1,4 @@
-"""Pausing the collector of reference cycles while millions of objects are made and none of them is garbage."""
+"""Pausing the collector of reference cycles while millions of objects are made and none is garbage."""
 
 from __future__ import annotations
 

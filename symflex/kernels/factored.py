@@ -10,7 +10,15 @@ from typing import TYPE_CHECKING
 from flint import fmpz
 
 from symflex.errors import BudgetError, Diagnostic
-from symflex.kernels.ring import DEGREE_LIMIT, MEMORY_LIMIT, TERM_LIMIT, Ring, degree_in, highest_degree, terms_of
+from symflex.kernels.ring import (
+    DEGREE_LIMIT,
+    MEMORY_LIMIT,
+    TERM_LIMIT,
+    Ring,
+    degree_in,
+    highest_degree,
+    terms_of,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence

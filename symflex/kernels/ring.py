@@ -130,15 +130,20 @@ def check_expansion(ring: Ring, polynomial: fmpz_mpoly, images: Sequence[fmpz_mp
 
 def degree_in(polynomial: fmpz_mpoly, generator: int) -> int:
     """Return the degree of ``polynomial`` in the generator at position ``generator``; 0 for zero."""
-    if isinstance(polynomial, SparsePolynomial):
-        return max((dict(m).get(generator, 0) for m in polynomial.parts), default=0)
+    if (sparse := _sparse(polynomial)) is not None:
+        return max((dict(m).get(generator, 0) for m in sparse.parts), default=0)
     return int(polynomial.degrees()[generator]) if len(polynomial) else 0
+
+
+def _sparse(polynomial: object) -> SparsePolynomial | None:
+    """Return what passes for an ``fmpz_mpoly`` as what it is."""
+    return polynomial if isinstance(polynomial, SparsePolynomial) else None
 
 
 def highest_degree(polynomial: fmpz_mpoly) -> int:
     """Return the largest degree of a nonzero polynomial in any one generator."""
-    if isinstance(polynomial, SparsePolynomial):
-        return max((e for m in polynomial.parts for _, e in m), default=0)
+    if (sparse := _sparse(polynomial)) is not None:
+        return max((e for m in sparse.parts for _, e in m), default=0)
     return max(map(int, polynomial.degrees()))
 
 
@@ -152,8 +157,8 @@ def terms_of(polynomial: fmpz_mpoly) -> Iterator[tuple[Monomial, int]]:
     >>> list(terms_of(m * s**2 - 3 * b))
     [(((0, 2), (1, 1)), 1), (((2, 1),), -3)]
     """
-    if isinstance(polynomial, SparsePolynomial):
-        yield from polynomial.terms()
+    if (sparse := _sparse(polynomial)) is not None:
+        yield from sparse.terms()
         return
     for monomial, coefficient in polynomial.terms():
         yield tuple((i, int(e)) for i, e in enumerate(monomial) if e), int(coefficient)

@@ -22,6 +22,7 @@ from symflex.kernels import LAPLACE
 from symflex.transfer.balls import enclose
 from symflex.transfer.bind import read_values
 from symflex.transfer.quantity import name_quantity, unit_of_quotient
+from symflex.transfer.transfer_function import TransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -118,9 +119,7 @@ class NestedTransferFunction:
     def generators(self) -> frozenset[str]:
         """The names of the generators that occur."""
         kinds, operands = self.program.kinds, self.program.operands
-        return frozenset(
-            self.program.names[operands[i][0]] for i in self.steps if kinds[i] == Step.GENERATOR
-        )
+        return frozenset(self.program.names[operands[i][0]] for i in self.steps if kinds[i] == Step.GENERATOR)
 
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -130,6 +129,10 @@ class NestedTransferFunction:
             if constant.generator in used:
                 used |= {n.name for n in names(constant.expression) if isinstance(n, Name)}
         return tuple(p for p in self.model.parameters if p.name in used)
+
+
+AnyTransferFunction = TransferFunction | NestedTransferFunction
+"""Either of the two exact representations."""
 
 
 def derive_nested(
@@ -349,7 +352,7 @@ def _values(
     return values[tf.num], values[tf.den]
 
 
-def _values_and_slopes(
+def _values_and_slopes(  # noqa: PLR0912  (one branch per kind of step, in one loop for speed)
     tf: NestedTransferFunction, known: Mapping[str, acb], s: acb
 ) -> tuple[acb, acb, acb, acb]:
     """Return numerator and denominator, and their derivatives by s; what is free of s has none on the way."""

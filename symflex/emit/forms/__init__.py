@@ -26,7 +26,7 @@ from symflex.transfer import NestedTransferFunction
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction, TransferFunction
 
 FORMS: dict[str, Form] = {
     "polynomial": polynomial_form,
@@ -49,7 +49,7 @@ DISTRIBUTED_CANDIDATES = ("hyperbolic", "factored", "vaughan", "krylov")
 """The same for functions with kernels."""
 
 
-def print_form(tf: TransferFunction | NestedTransferFunction, form: str | None = None, digits: int = 6) -> PrintedForm:
+def print_form(tf: AnyTransferFunction, form: str | None = None, digits: int = 6) -> PrintedForm:
     """Return a transfer function in the named form, or in the one that prints shortest.
 
     Parameters
@@ -87,7 +87,7 @@ def print_form(tf: TransferFunction | NestedTransferFunction, form: str | None =
 
 
 def print_forms(
-    tfs: Sequence[TransferFunction | NestedTransferFunction], form: str | None = None, digits: int = 6
+    tfs: Sequence[AnyTransferFunction], form: str | None = None, digits: int = 6
 ) -> tuple[tuple[PrintedForm, ...], tuple[str, ...]]:
     """Return all functions in the named form, and a sentence on each that lacks it, in its default form.
 

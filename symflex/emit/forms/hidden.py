@@ -13,10 +13,10 @@ from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
     from symflex.expressions import Expression
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction, TransferFunction
 
 
-def hidden_expressions(tf: TransferFunction | NestedTransferFunction) -> tuple[tuple[Expression, int], ...]:
+def hidden_expressions(tf: AnyTransferFunction) -> tuple[tuple[Expression, int], ...]:
     """Return the cancelled factors in s, by descending powers of s, with their multiplicities.
 
     Kernels are written out, ``cosh(l*sqrt(s/(2*sqrt(E*I/(rho*A)))))``: the names of a form mean nothing here.

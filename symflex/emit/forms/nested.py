@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from itertools import count
 from typing import TYPE_CHECKING
 
-from symflex.elimination import Step
+from symflex.elimination import ONE, Step
 from symflex.emit.forms.names import names_of
 from symflex.emit.forms.printed import PrintedForm
 from symflex.expressions import Expression, Name, Negative, Number, Power, Product, Quotient, Sum, number
@@ -151,8 +151,8 @@ class _Printer:
         num, den = self.known[tf.num], self.known[tf.den]
         if isinstance(den, Negative):
             num, den = _negated(num), den.operand
-        if isinstance(num, Quotient) and tf.den == 1:
-            num, den = num.numerator, num.denominator
+        if tf.den == ONE and isinstance(num, Quotient):
+            return PrintedForm("nested", num.numerator, num.denominator, tuple(self.lines))
         return PrintedForm("nested", num, den, tuple(self.lines))
 
     def _made(self, i: int) -> Expression:

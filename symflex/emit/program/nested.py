@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from symflex.elimination import Step
 from symflex.emit.forms import step_names
-from symflex.emit.program.build import PI, Generators
+from symflex.emit.program.build import PI, constant_of
 from symflex.emit.program.forge import Forge
 from symflex.emit.program.schedule import schedule
 from symflex.errors import BudgetError, Diagnostic
@@ -56,7 +56,6 @@ def build_nested(tf: NestedTransferFunction) -> Program:
     program = tf.program
     parameters = {p.name for p in tf.model.parameters}
     constants = {c.generator: c.expression for c in tf.constants}
-    generators = Generators(forge, tf, is_far=False)
     names = step_names(tf)
     made: dict[int, int] = {}
 
@@ -65,7 +64,7 @@ def build_nested(tf: NestedTransferFunction) -> Program:
             return forge.s
         if name == PI:
             return forge.constant(1, 1)
-        return forge.parameter(name) if name in parameters else generators.constant(constants[name])
+        return forge.parameter(name) if name in parameters else constant_of(forge, tf.model, constants[name])
 
     for i in tf.steps:
         operands = program.operands[i]

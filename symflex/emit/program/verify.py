@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from symflex.emit.program.nodes import Piecewise, Program
-    from symflex.transfer import BoundTransferFunction, TransferFunction
+    from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction
     from symflex.transfer.bind import Enclosed
 
 DEFAULT_BAND = (Fraction(1, 10), Fraction(10_000))
@@ -197,7 +197,9 @@ def frequency_text(hertz: Fraction) -> str:
 
 
 def choose_program(
-    tf: TransferFunction | NestedTransferFunction, band_hz: tuple[Fraction, Fraction] | None = None, samples: int = SAMPLES
+    tf: AnyTransferFunction,
+    band_hz: tuple[Fraction, Fraction] | None = None,
+    samples: int = SAMPLES,
 ) -> tuple[Program | Piecewise, Verification]:
     """Return the program of the form with the smallest measured error, and the measurement.
 
@@ -224,7 +226,9 @@ def choose_program(
 
 
 def choose_programs(
-    tf: TransferFunction | NestedTransferFunction, band_hz: tuple[Fraction, Fraction] | None = None, samples: int = SAMPLES
+    tf: AnyTransferFunction,
+    band_hz: tuple[Fraction, Fraction] | None = None,
+    samples: int = SAMPLES,
 ) -> tuple[tuple[Program | Piecewise, Verification], tuple[Piecewise, Verification] | None]:
     """Return what :func:`choose_program` does, and the same for the frequency response in real arithmetic.
 
@@ -245,7 +249,7 @@ def choose_programs(
 
 
 def measure_values(
-    tf: TransferFunction,
+    tf: AnyTransferFunction,
     values: Callable[[NDArray[np.complex128]], Sequence[complex]],
     form: str,
     band_hz: tuple[Fraction, Fraction] | None = None,
@@ -277,7 +281,7 @@ class _Gauge:
     Without ``references`` nothing can be measured, for the ``reason`` given.
     """
 
-    tf: TransferFunction | NestedTransferFunction
+    tf: AnyTransferFunction
     band: tuple[Fraction, Fraction]
     references: References | None
     reason: str = ""
@@ -289,7 +293,7 @@ class _Gauge:
         return Verification(self.tf.name, form, error, self.band, samples, self.reason, reach)
 
 
-def _gauge(tf: TransferFunction | NestedTransferFunction, band_hz: tuple[Fraction, Fraction] | None, samples: int) -> _Gauge:
+def _gauge(tf: AnyTransferFunction, band_hz: tuple[Fraction, Fraction] | None, samples: int) -> _Gauge:
     band = band_hz or tf.model.analysis.band or DEFAULT_BAND
     missing = [p.name for p in tf.parameters if p.value is None]
     if missing:
@@ -306,8 +310,9 @@ def _gauge(tf: TransferFunction | NestedTransferFunction, band_hz: tuple[Fractio
 def _choose(gauge: _Gauge) -> tuple[Program | Piecewise, Verification]:
     tf, references = gauge.tf, gauge.references
     if isinstance(tf, NestedTransferFunction):
-        program = build_nested(tf)
-        return program, gauge.verified("nested", None if references is None else references.worst_error(program))
+        nested = build_nested(tf)
+        worst = None if references is None else references.worst_error(nested)
+        return nested, gauge.verified("nested", worst)
     if tf.is_distributed and not tf.ratio.is_zero:
         usual, *others = reaches_of(tf)
         rest = (build_piecewise(tf, reach) for reach in others)
@@ -398,13 +403,11 @@ def _program(tf: TransferFunction, form: str) -> Program | None:
         return None
 
 
-def _is_zero(tf: TransferFunction | NestedTransferFunction) -> bool:
+def _is_zero(tf: AnyTransferFunction) -> bool:
     return tf.is_zero if isinstance(tf, NestedTransferFunction) else tf.ratio.is_zero
 
 
-def _unmeasured(
-    gauge: _Gauge, tf: TransferFunction, forms: Sequence[str]
-) -> tuple[Program, Verification]:
+def _unmeasured(gauge: _Gauge, tf: TransferFunction, forms: Sequence[str]) -> tuple[Program, Verification]:
     # Expanded coefficients of a model without numbers would be pages long.
     compact = [form for form in forms if form != "factors"] or forms
     programs = [(form, program) for form in compact if (program := _program(tf, form)) is not None]
@@ -599,7 +602,9 @@ class _Aside:
         [Hz].
     """
 
-    def __init__(self, bound: BoundTransferFunction | BoundNested, band_hz: tuple[Fraction, Fraction]) -> None:
+    def __init__(
+        self, bound: BoundTransferFunction | BoundNested, band_hz: tuple[Fraction, Fraction]
+    ) -> None:
         low, high = band_hz
         self._below = References(bound, (LOWEST, low), ASIDE_SAMPLES, is_plain=True) if low > LOWEST else None
         self._above = (
