@@ -455,8 +455,8 @@ class _Assembly:
                     self.balance[end] = _side_by_side(self.balance[end], form)
 
     def _polynomial(self, row: EquationRow) -> EquationRow:
-        cleared = row.form * common_denominator(self.ring, row.form.coefficients)
-        return EquationRow(row.about, row.role, cleared)
+        below = common_denominator(self.ring, row.form.coefficients)
+        return row if below.is_one else EquationRow(row.about, row.role, row.form * below)
 
     def _equal(self, variable: Variable, expression: Expression, evaluator: Evaluator) -> None:
         """Add the row ``variable = expression``."""

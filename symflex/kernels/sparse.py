@@ -135,10 +135,13 @@ class SparsePolynomial:
 
     def terms(self) -> Iterator[tuple[Monomial, int]]:
         """Yield monomials, which name their generators only, with coefficients, in lexicographic order."""
+        yield from self.ordered()
+
+    def ordered(self) -> list[tuple[Monomial, int]]:
+        """Return the terms as :meth:`terms` yields them."""
         if len(self.parts) == 1:
-            yield from self.parts.items()
-            return
-        yield from sorted(self.parts.items(), key=lambda term: _place(term[0]), reverse=True)
+            return list(self.parts.items())
+        return sorted(self.parts.items(), key=lambda term: _place(term[0]), reverse=True)
 
     def __str__(self) -> str:
         names = self.context.names
@@ -192,4 +195,4 @@ def _merged(left: Monomial, right: Monomial, sign: int) -> Monomial:
 
 def _place(monomial: Monomial) -> tuple[tuple[int, int], ...]:
     """Return what sorts monomials as the lexicographic order does: earlier generators count most."""
-    return tuple((-i, e) for i, e in monomial)
+    return tuple([(-i, e) for i, e in monomial])
