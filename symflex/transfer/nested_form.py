@@ -39,6 +39,8 @@ FIRST_BITS = 96
 LAST_BITS = 6144
 DOUBLE_BITS = 54
 CONSTANT_BITS = 256
+NEAR = (200, 220)
+"""Negative powers of two at which the behaviour near a point is read off."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -241,8 +243,9 @@ class BoundNested:
     def __call__(self, s: complex) -> complex:
         """Return the value at one complex frequency [rad/s] to double precision.
 
-        The precision is raised until the ball's radius is below the last bit. At a pole the value is
-        ``inf + nan*1j``; so it is where a part of the expression has one that cancels in the whole.
+        The precision is raised until the ball's radius is below the last bit. Where the expression has no
+        value, at s = 0 mostly, it is the limit, found from two points close by; at a pole that is
+        ``inf + nan*1j``.
         """
         if self.is_zero:
             return 0j
@@ -253,9 +256,23 @@ class BoundNested:
             value = function(point)
             if value.is_finite() and value.rel_accuracy_bits() >= DOUBLE_BITS:
                 return complex(float(value.real.mid()), float(value.imag.mid()))
+            if not value.is_finite() and function.bits > FIRST_BITS:
+                return self._limit_at(s)
             if function.bits >= LAST_BITS:
-                return 0j if value.is_finite() else complex(inf, nan)
+                return 0j
             function = self.enclosed(2 * function.bits)
+
+    def _limit_at(self, s: complex) -> complex:
+        """Return the limit at a point where parts of the expression have none, by the order it goes with."""
+        with ctx.workprec(LAST_BITS):
+            function, scale = self.enclosed(LAST_BITS), max(abs(s), 1.0)
+            near, nearer = (function(acb(s.real, s.imag) + arb(2) ** -e * scale) for e in NEAR)
+            if not nearer.is_finite() or not near.is_finite() or nearer.contains(0):
+                return complex(inf, nan)
+            order = round(float((abs(nearer / near).log() / arb(2).log()).mid()) / (NEAR[0] - NEAR[1]))
+        if order:
+            return 0j if order > 0 else complex(inf, nan)
+        return complex(float(nearer.real.mid()), float(nearer.imag.mid()))
 
     def at(self, s: npt.ArrayLike) -> npt.NDArray[np.complex128]:
         """Return the values in double precision at many complex frequencies at once.

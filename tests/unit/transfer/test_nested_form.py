@@ -91,6 +91,22 @@ def test_a_pole_at_the_origin_is_not_finite():
     assert np.isnan(H(complex("inf")))
 
 
+def test_the_value_at_the_origin_is_the_limit():
+    text = """
+symflex = 1
+parameters = { m = "2 kg", b = "4 N*s/m", c = "8 N*s/m" }
+inputs = { F = { force = "y" } }
+outputs = { V = "s*y", A = "s^2*y" }
+[elements]
+body = { type = "mass", at = "x", m = "m" }
+loss = { type = "damper", between = ["x", "y"], b = "b" }
+slip = { type = "damper", between = ["x", "ground"], b = "c" }
+"""
+    # Two dampers in series carry a constant force: v = F (1/b + 1/c).
+    assert bind_nested(nested(text)["V/F"])(0j) == pytest.approx(3 / 8, rel=1e-15)
+    assert bind_nested(nested(text)["A/F"])(0j) == 0
+
+
 def test_values_stay_finite_at_extreme_frequencies():
     H = bind_nested(nested(CHAIN)["X_1/F"])
     omega = np.logspace(-9, 12, 22)
