@@ -136,13 +136,13 @@ class _Network:
 
     equations: Equations
     bench: Workbench
-    columns: dict[Variable, int]
+    columns: dict[tuple[str, str, str], int]
     classes: list[int]
     rows: list[tuple[_Row, dict[str, list[int]]]]
 
     @staticmethod
     def of(equations: Equations, bench: Workbench) -> _Network:
-        columns = {v: i for i, v in enumerate(equations.unknowns)}
+        columns = {(v.kind, v.owner, v.component): i for i, v in enumerate(equations.unknowns)}
         domains = {n.name: n.domain for n in equations.model.nodes}
         kinds: dict[tuple[str, str], int] = {}
         classes: list[int] = []
@@ -160,12 +160,13 @@ class _Network:
     ) -> tuple[_Row, dict[str, list[int]]]:
         """Return a row, and what inputs contribute to it."""
         bench, columns = self.bench, self.columns
-        own = columns[about]
+        own = columns[about.kind, about.owner, about.component]
         row = _Row({}, own, is_balance=is_balance)
         loads: dict[str, list[int]] = {}
         diagonal: list[int] = []
         for variable, coefficient in form.terms:
-            column = columns.get(variable, -1)
+            # Variables as keys would cost as much as all the rest.
+            column = columns.get((variable.kind, variable.owner, variable.component), -1)
             if column == own:
                 diagonal.append(bench.factored(coefficient))
             elif column < 0:
@@ -207,8 +208,9 @@ class _Network:
         load: list[int] = []
         for variable, coefficient in form.terms:
             step = self.bench.factored(coefficient)
-            if variable in self.columns:
-                terms.setdefault(self.columns[variable], []).append(step)
+            column = self.columns.get((variable.kind, variable.owner, variable.component), -1)
+            if column >= 0:
+                terms.setdefault(column, []).append(step)
             elif variable.owner == source:
                 load.append(step)
         found = {c: self.bench.add(steps) for c, steps in terms.items()}

@@ -185,8 +185,13 @@ class Workbench:
 
     def add(self, terms: Sequence[int]) -> int:
         """Return a sum; equal terms are counted, and opposite ones cancel."""
-        if len(terms) == 1:
+        count = len(terms)
+        if count == 1:
             return terms[0]
+        if count == 2:  # noqa: PLR2004
+            x, y = terms
+            if x > 0 < y != x and self.kinds[x] != _NEGATE != self.kinds[y]:
+                return self._pair(x, y)
         kept = tuple(t for t in terms if t)
         if len(set(kept)) < len(kept):
             kept = self._counted(kept)
@@ -204,6 +209,15 @@ class Workbench:
         if any(kinds[t] == _NEGATE for t in kept):
             return self._signed_sum(kept, key, residue)
         return self._make(_ADD, kept, key, residue)
+
+    def _pair(self, x: int, y: int) -> int:
+        """Return the sum of two different steps without sign: most sums are of this kind."""
+        key = (_ADD, x, y) if x < y else (_ADD, y, x)
+        known = self._known.get(key)
+        if known is not None:
+            return known
+        residue = (self.residues[x] + self.residues[y]) % PRIME
+        return self._make(_ADD, (x, y), key, residue) if residue else ZERO
 
     def _counted(self, terms: Key) -> Key:
         counts: dict[int, int] = {}
@@ -346,16 +360,17 @@ class Workbench:
         factors = value.factors
         above, below = ONE, ONE
         if len(factors) == 1 and factors[0][1] == 1:
-            above = self.polynomial(factors[0][0])
+            known = self._polynomials.get(id(factors[0][0]))
+            above = self.polynomial(factors[0][0]) if known is None else known
         else:
             for factor, exponent in factors:
-                step = self.polynomial(factor)
+                step = self._polynomials.get(id(factor)) or self.polynomial(factor)
                 if exponent > 0:
                     above = self.multiply(above, step if exponent == 1 else self.power(step, exponent))
                 else:
                     below = self.multiply(below, step if exponent == -1 else self.power(step, -exponent))
         numerator, denominator = sign * value.unit.numerator, value.unit.denominator
-        if denominator != 1 or abs(numerator) != 1:
+        if denominator != 1 or numerator not in (1, -1):
             above = self.multiply(self.number(Fraction(numerator, denominator)), above)
         elif numerator < 0:
             above = self.negate(above)
