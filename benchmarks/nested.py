@@ -29,7 +29,7 @@ SIZES = {
 CEILINGS = {1_000: 0.1, 50_000: 2.0}
 """Per length of a chain, seconds the elimination may take."""
 EVEN = 1.02
-"""How far the operations per mass of linear networks may differ between 1000 masses and the largest number."""
+"""How far the operations per mass may differ between 1000 masses and the largest number."""
 MASSES, POINTS, ROUNDS = 200, 1_000, 5
 TIMES_FASTER = 30.0
 AGREEMENT = 1e-11

@@ -142,7 +142,9 @@ class _Network:
 
     @staticmethod
     def of(equations: Equations, bench: Workbench) -> _Network:
-        columns = {(v.kind, v.owner, v.component): i for i, v in enumerate(equations.unknowns)}
+        columns: dict[tuple[str, str, str], int] = {
+            (v.kind, v.owner, v.component): i for i, v in enumerate(equations.unknowns)
+        }
         domains = {n.name: n.domain for n in equations.model.nodes}
         kinds: dict[tuple[str, str], int] = {}
         classes: list[int] = []

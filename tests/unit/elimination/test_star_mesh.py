@@ -1,6 +1,7 @@
 """Straight-line programs of networks: their values, their size, and what singular systems say."""
 
 from fractions import Fraction
+from itertools import pairwise
 
 import pytest
 from flint import fmpq, fmpq_mat
@@ -111,7 +112,7 @@ def test_the_size_grows_by_the_same_for_every_mass(make, steps):
     for n in steps:
         found = eliminate(assemble(network(make(n)), is_sparse=True), PAIRS[:1])
         sizes.append(found.program.size(*found.quotients[0]))
-    growth = {b - a for a, b in zip(sizes, sizes[1:], strict=False)}
+    growth = {b - a for a, b in pairwise(sizes)}
     assert len(growth) == 1
 
 

@@ -8,9 +8,7 @@ from symflex.errors import BudgetError
 from symflex.kernels import Factored, Ring, degree_in, terms_of
 
 NAMES = ("s", "m", "b", "k")
-TERMS = st.lists(
-    st.tuples(st.tuples(*[st.integers(0, 2)] * 4), st.integers(-4, 4)), min_size=0, max_size=4
-)
+TERMS = st.lists(st.tuples(st.tuples(*[st.integers(0, 2)] * 4), st.integers(-4, 4)), min_size=0, max_size=4)
 
 
 def built(ring, terms):
