@@ -1,9 +1,9 @@
 """The nested form: chains, rings, trees, ladders and square grids, every m, k and b symbolic.
 
-Timed is the elimination, from assembled equations to the straight-line programs of the driving-point receptance
-X_first/F and of X_last/F, each size in a process of its own; the ways are sizes of one shape of network. Then a
-damped chain of 200 masses at 1000 frequencies, evaluated by its nested form and by ``numpy.linalg.solve`` on the
-dense matrices of the same equations. Times are processor times.
+Timed is the elimination, from assembled equations to the straight-line programs of the driving-point
+receptance X_first/F and of X_last/F, each size in a process of its own; the ways are sizes of one shape of
+network. Then a damped chain of 200 masses at 1000 frequencies, evaluated by its nested form and by
+``numpy.linalg.solve`` on the dense matrices of the same equations. Times are processor times.
 """
 
 from __future__ import annotations
