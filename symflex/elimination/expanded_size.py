@@ -84,7 +84,7 @@ def _monomials(equations: Equations) -> float:
                 terms = list(terms_of(factor))
                 used = {i: e for monomial, _ in terms for i, e in monomial}
                 if len(terms) > 1 and any(names[i] not in (LAPLACE, "pi") for i in used):
-                    here[factor] = max(here.get(factor, 0), exponent)
+                    here[tuple(terms)] = max(here.get(tuple(terms), 0), exponent)
                     continue
                 for i, e in used.items():
                     here[i] = max(here.get(i, 0), e * exponent)

@@ -371,7 +371,10 @@ class Workbench:
                     below = self.multiply(below, step if exponent == -1 else self.power(step, -exponent))
         numerator, denominator = sign * value.unit.numerator, value.unit.denominator
         if denominator != 1 or numerator not in (1, -1):
+            role = self.roles.get(above)
             above = self.multiply(self.number(Fraction(numerator, denominator)), above)
+            if role == "w":
+                self.roles.setdefault(above, role)
         elif numerator < 0:
             above = self.negate(above)
         return above if below == ONE else self.divide(above, below)

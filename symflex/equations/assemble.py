@@ -64,7 +64,8 @@ def assemble(
         True to give no wavenumber a name: a quotient with named and nameless ones has no form in which what
         cancels is seen.
     is_sparse : bool
-        True for a ring of any number of names, in which nothing is expanded; not for distributed models.
+        True for a ring of any number of names, in which nothing is expanded; not for distributed models. Rows
+        are not cleared of denominators then.
 
     Raises
     ------
@@ -455,6 +456,8 @@ class _Assembly:
                     self.balance[end] = _side_by_side(self.balance[end], form)
 
     def _polynomial(self, row: EquationRow) -> EquationRow:
+        if self.ring.is_sparse:
+            return row  # nothing is expanded, and rows scaled differently would lose their symmetry
         below = common_denominator(self.ring, row.form.coefficients)
         return row if below.is_one else EquationRow(row.about, row.role, row.form * below)
 

@@ -46,7 +46,7 @@ def build_nested(tf: NestedTransferFunction) -> Program:
     ... outputs.V = "s*x"
     ... '''))
     >>> build_nested(G).size
-    5
+    4
     """
     size = tf.size
     if size > OPERATION_LIMIT:

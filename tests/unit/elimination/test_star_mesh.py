@@ -8,7 +8,7 @@ from flint import fmpq, fmpq_mat
 
 from benchmarks.networks import NETWORKS, chain, ladder, network, ring, tree
 from symflex import pipeline
-from symflex.elimination import Step, Workbench, eliminate
+from symflex.elimination import Step, Workbench, eliminate, expanded_terms
 from symflex.elimination.straight_line import ONE, ZERO
 from symflex.equations import assemble
 from symflex.errors import ModelError
@@ -133,6 +133,30 @@ def test_opposite_and_equal_terms_are_seen():
     assert bench.add([left, bench.negate(right)]) == ZERO
     with pytest.raises(ZeroDivisionError):
         bench.divide(k, ZERO)
+
+
+@pytest.mark.parametrize("is_sparse", [True, False])
+@pytest.mark.parametrize(("n", "terms"), [(2, 3), (3, 8), (6, 144), (12, 46368)])
+def test_the_terms_of_a_chain_are_counted_by_fibonacci(n, terms, is_sparse):
+    """The spanning forests of a chain: its determinant in w and m has F(2n) terms."""
+    equations = assemble(network(chain(n)), is_sparse=is_sparse)
+    assert expanded_terms(equations, eliminate(equations, PAIRS[:1])) == pytest.approx(terms, rel=1e-9)
+
+
+def test_numbers_in_place_of_symbols_leave_few_terms():
+    text = """
+symflex = 1
+inputs.F = { force = "x_1" }
+outputs.X = "x_1"
+[elements]
+"""
+    for i in range(1, 9):
+        text += f'm{i} = {{ type = "mass", at = "x_{i}", m = "{i} kg" }}\n'
+        text += f'k{i} = {{ type = "spring", between = ["x_{i}", "x_{i + 1}"], k = "{i}.5 N/m" }}\n'
+    text += 'm9 = { type = "mass", at = "x_9", m = "3 kg" }\n'
+    equations = pipeline.assemble_sparse(pipeline.loads(text))
+    # Nothing but powers of s up to the eighteenth.
+    assert expanded_terms(equations, eliminate(equations, [("X", "F")])) == pytest.approx(19)
 
 
 FLOATING = """
