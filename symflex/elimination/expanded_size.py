@@ -34,14 +34,15 @@ def expanded_terms(equations: Equations, elimination: Elimination) -> float:
     >>> from symflex.elimination import eliminate
     >>> equations = pipeline.assemble(pipeline.loads('''
     ... symflex = 1
-    ... parameters = {m = {}, k = {}}
-    ... elements.body = {type = "mass", at = "x", m = "m"}
-    ... elements.spring = {type = "spring", between = ["x", "ground"], k = "k"}
+    ... parameters = {m_1 = {}, m_2 = {}, k = {}}
+    ... elements.first = {type = "mass", at = "x", m = "m_1"}
+    ... elements.second = {type = "mass", at = "y", m = "m_2"}
+    ... elements.spring = {type = "spring", between = ["x", "y"], k = "k"}
     ... inputs.F = {force = "x"}
     ... outputs.X = "x"
     ... '''))
     >>> round(expanded_terms(equations, eliminate(equations, [("X", "F")])))
-    2
+    3
     """
     exponent = min(_forests(elimination), _monomials(equations))
     return inf if exponent > LARGEST else 2.718281828459045**exponent
