@@ -71,6 +71,11 @@ class _Row:
     load: list[int] = field(default_factory=list)
     is_balance: bool = False
 
+    def copy(self) -> _Row:
+        """Return the row for an elimination of its own."""
+        entries = {column: terms.copy() for column, terms in self.entries.items()}
+        return _Row(entries, self.own, self.implicit, self.ground.copy(), [], self.is_balance)
+
 
 @dataclass(frozen=True, slots=True)
 class _Solved:
@@ -112,10 +117,11 @@ def _eliminate(equations: Equations, pairs: Sequence[tuple[str, str]]) -> Elimin
     outputs = {o.name: o for o in equations.outputs}
     found: dict[tuple[str, str], tuple[int, int]] = {}
     pivots: tuple[int, ...] = ()
-    for source in dict.fromkeys(source for _, source in pairs):
+    sources = dict.fromkeys(source for _, source in pairs)
+    for source in sources:
         wanted = [o for o, i in dict.fromkeys(pairs) if i == source]
         rows = [network.output(outputs[name].form, source) for name in wanted]
-        run = _Run(network, source)
+        run = _Run(network, source, is_only=len(sources) == 1)
         pivots = tuple(solved.below for solved in run.solved)
         quotients = run.quotients([row for row, _ in rows], [load for _, load in rows])
         for name, (num, den) in zip(wanted, quotients, strict=True):
@@ -222,7 +228,7 @@ class _Network:
 class _Run:
     """One elimination, for one input."""
 
-    def __init__(self, network: _Network, source: str) -> None:
+    def __init__(self, network: _Network, source: str, *, is_only: bool = False) -> None:
         self.network = network
         self.bench = network.bench
         self.rows: list[_Row | None] = []
@@ -235,15 +241,14 @@ class _Run:
         self.solved: list[_Solved] = []
         loaded = 0
         for i, (row, loads) in enumerate(network.rows):
-            load = list(loads.get(source, ())) if loads else []
-            loaded += bool(load)
-            entries = {}
-            for column, steps in row.entries.items():
-                entries[column] = steps.copy()
+            own = row if is_only else row.copy()
+            own.load = list(loads.get(source, ())) if loads else []
+            loaded += bool(own.load)
+            for column in own.entries:
                 self.users[column][i] = None
-            self.rows.append(_Row(entries, row.own, row.implicit, row.ground.copy(), load, row.is_balance))
-            if row.implicit >= 0:
-                self.hidden[row.implicit] += 1
+            self.rows.append(own)
+            if own.implicit >= 0:
+                self.hidden[own.implicit] += 1
         self.keeps_last = loaded <= KEPT_LAST
         self._eliminate()
 
@@ -296,7 +301,7 @@ class _Run:
         values: dict[int, int] = {}
         for column, terms in row.entries.items():
             del users[column][i]
-            step = add(terms)
+            step = terms[0] if len(terms) == 1 else add(terms)
             if step:
                 values[column] = step
         ground = ZERO

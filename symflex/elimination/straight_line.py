@@ -43,6 +43,11 @@ ZERO, ONE = 0, 1
 """The first two steps of every program are these numbers."""
 
 
+def _pair_key(kind: int, x: int, y: int) -> int:
+    """Return what tells a sum or product of two steps from all others, smaller than a tuple."""
+    return (x << 32 | y) << 3 | kind if x < y else (y << 32 | x) << 3 | kind
+
+
 @dataclass(frozen=True, eq=False)
 class StraightLine:
     """Steps in order, each made of earlier ones.
@@ -129,7 +134,7 @@ class Workbench:
         self.operands: list[Key] = [(0, 1), (1, 1)]
         self.residues: list[int] = [0, 1]
         self.roles: dict[int, str] = {}
-        self._known: dict[Key, int] = {(_NUMBER, 0, 1): 0, (_NUMBER, 1, 1): 1}
+        self._known: dict[Key | int, int] = {(_NUMBER, 0, 1): 0, (_NUMBER, 1, 1): 1}
         self._polynomials: dict[int, int] = {}
         self._inverses: dict[int, int] = {}
         self._defined: dict[int, int] = {}
@@ -138,7 +143,7 @@ class Workbench:
         """Return the program."""
         return StraightLine(self.names, self.kinds, self.operands, self.roles)
 
-    def _make(self, kind: int, operands: Key, key: Key, residue: int) -> int:
+    def _make(self, kind: int, operands: Key, key: Key | int, residue: int) -> int:
         step = len(self.kinds)
         self.kinds.append(kind)
         self.operands.append(operands)
@@ -197,7 +202,7 @@ class Workbench:
             kept = self._counted(kept)
         if len(kept) <= 1:
             return kept[0] if kept else ZERO
-        key = (_ADD, *sorted(kept))
+        key = _pair_key(_ADD, *kept) if len(kept) == 2 else (_ADD, *sorted(kept))  # noqa: PLR2004
         known = self._known.get(key)
         if known is not None:
             return known
@@ -212,7 +217,7 @@ class Workbench:
 
     def _pair(self, x: int, y: int) -> int:
         """Return the sum of two different steps without sign: most sums are of this kind."""
-        key = (_ADD, x, y) if x < y else (_ADD, y, x)
+        key = _pair_key(_ADD, x, y)
         known = self._known.get(key)
         if known is not None:
             return known
@@ -225,7 +230,7 @@ class Workbench:
             counts[term] = counts.get(term, 0) + 1
         return tuple(t if n == 1 else self.multiply(self.number(n), t) for t, n in counts.items())
 
-    def _signed_sum(self, terms: Key, key: Key, residue: int) -> int:
+    def _signed_sum(self, terms: Key, key: Key | int, residue: int) -> int:
         opposite = {self.operands[t][0] for t in terms if self.kinds[t] == _NEGATE}.intersection(terms)
         if opposite:
             gone = opposite | {self.negate(t) for t in opposite}
@@ -247,7 +252,7 @@ class Workbench:
             return product if a == b else self.negate(product)
         if a == b == _NUMBER:
             return self.number(self.fraction(x) * self.fraction(y))
-        key = (_MULTIPLY, x, y) if x < y else (_MULTIPLY, y, x)
+        key = _pair_key(_MULTIPLY, x, y)
         known = self._known.get(key)
         if known is not None:
             return known
@@ -258,7 +263,7 @@ class Workbench:
         kept = tuple(f for f in factors if f != ONE)
         if len(kept) <= 1:
             return kept[0] if kept else ONE
-        key = (_MULTIPLY, *sorted(kept))
+        key = _pair_key(_MULTIPLY, *kept) if len(kept) == 2 else (_MULTIPLY, *sorted(kept))  # noqa: PLR2004
         known = self._known.get(key)
         if known is not None:
             return known
@@ -291,7 +296,7 @@ class Workbench:
                 message = "division by zero"
                 raise ZeroDivisionError(message)
             return self.multiply(self.number(1 / self.fraction(y)), x)
-        key = (_DIVIDE, x, y)
+        key = (x << 32 | y) << 3 | _DIVIDE
         known = self._known.get(key)
         if known is not None:
             return known

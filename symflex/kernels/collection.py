@@ -27,4 +27,8 @@ def uncollected() -> Iterator[None]:
         yield
     finally:
         if was_enabled:
+            if not gc.get_freeze_count():
+                # Now they all count as old, and the next young generation is looked at without them.
+                gc.freeze()
+                gc.unfreeze()
             gc.enable()
