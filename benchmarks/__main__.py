@@ -10,7 +10,7 @@ from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 
-from benchmarks import chains, distributed, exports, lumped, numeric_chain, roots, startup, sweep
+from benchmarks import chains, distributed, exports, lumped, nested, numeric_chain, roots, startup, sweep
 from benchmarks.measure import Claim, Measurement
 from symflex import __version__
 
@@ -24,7 +24,7 @@ def main(arguments: list[str] | None = None) -> int:
     asked = parser.parse_args(arguments)
 
     measurements, claims = startup.measure()
-    for benchmark in (chains, numeric_chain, distributed, exports, lumped, roots, sweep):
+    for benchmark in (chains, numeric_chain, nested, distributed, exports, lumped, roots, sweep):
         measured, bounds = benchmark.measure(asked.limit)
         measurements += measured
         claims += bounds

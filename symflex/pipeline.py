@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import sys
 from fractions import Fraction
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,9 +19,10 @@ from symflex import equations as equations_room
 from symflex import spec as spec_room
 from symflex import transfer as transfer_room
 from symflex.cache import entered_cache
-from symflex.elimination import explain_singular, is_singular
-from symflex.errors import Diagnostic, Source, SpecError, UsageError
+from symflex.elimination import eliminate, expanded_terms, explain_singular, is_singular
+from symflex.errors import BudgetError, Diagnostic, Source, SpecError, UsageError
 from symflex.errors.diagnostic import nearest
+from symflex.kernels import uncollected
 from symflex.model import Model, load_model, with_numbers
 
 if TYPE_CHECKING:
@@ -43,10 +45,21 @@ if TYPE_CHECKING:
     from symflex.stability import DynamicColocation, Loop, StabilityMap
     from symflex.state_space import StateSpace
     from symflex.sweep import Design, Sweep, Task
-    from symflex.transfer import BoundTransferFunction, TransferFunction
+    from symflex.transfer import (
+        AnyTransferFunction,
+        BoundTransferFunction,
+        NestedTransferFunction,
+        TransferFunction,
+    )
 
     Array = npt.NDArray[np.float64]
     ComplexArray = npt.NDArray[np.complex128]
+
+
+EXPANDED_TERMS = 5_000
+"""Terms of a closed determinant beyond which nobody reads it: more than fifty pages."""
+NEVER_LARGE = 20
+"""Elements up to which it is not estimated either."""
 
 
 def parse(text: str, name: str = "<string>") -> Spec:
@@ -109,6 +122,78 @@ def _derive_all(equations: Equations, pairs: Sequence[tuple[str, str]]) -> tuple
     from symflex.cache.remember import derive_or_recall  # most derivations are over before it is imported
 
     return derive_or_recall(equations, pairs, store)
+
+
+def assemble_sparse(model: Model) -> Equations:
+    """Return the equations over a ring of any number of names, for the nested form.
+
+    A model inside a block is expanded first, and needs the ordinary ring.
+    """
+    is_sparse = not any(block.submodel is not None for block in model.blocks)
+    with uncollected():
+        return equations_room.assemble(
+            model, transfer_room.nested_transfer, is_sparse=is_sparse and not model.is_distributed
+        )
+
+
+def derive_nested(
+    model: Model, pairs: Sequence[tuple[str, str]] | None = None
+) -> tuple[NestedTransferFunction, ...]:
+    """Return the transfer functions of the given pairs, all by default, as straight-line programs.
+
+    See :func:`symflex.transfer.derive_nested`.
+    """
+    wanted = model.transfer_functions if pairs is None else tuple(pairs)
+    return transfer_room.derive_nested(assemble_sparse(model), wanted)
+
+
+def derive_as(
+    model: Model, pairs: Sequence[tuple[str, str]], representation: str = "auto"
+) -> tuple[tuple[AnyTransferFunction, ...], str]:
+    """Return transfer functions in one of the two exact representations, and why in that one.
+
+    Parameters
+    ----------
+    model : Model
+        Resolved.
+    pairs : sequence of (str, str)
+        Output and input.
+    representation : str
+        ``expanded``: quotients of polynomials; ``nested``: straight-line programs; ``auto``: expanded, unless
+        that would explode.
+
+    Returns
+    -------
+    tuple
+        The functions, all in the same representation, and a sentence when ``auto`` took the nested one.
+
+    Raises
+    ------
+    BudgetError
+        SF501, SF502 when they are too large expanded, and there is no nested form.
+    """
+    if representation == "nested":
+        return derive_nested(model, pairs), ""
+    if representation == "expanded":
+        return derive_all(model, pairs), ""
+    if len(model.elements) > NEVER_LARGE and not model.is_distributed:
+        terms = _expanded_terms(model, pairs[:1])
+        if terms > EXPANDED_TERMS:
+            count = f"some {terms:.0e}".replace("e+", "e") if terms < inf else "more than 1e300"
+            reason = f"in nested form: the expanded determinant would have {count} terms"
+            return derive_nested(model, pairs), reason
+    try:
+        return derive_all(model, pairs), ""
+    except BudgetError as error:
+        if model.is_distributed:
+            raise
+        return derive_nested(model, pairs), f"in nested form: {error.diagnostics[0].message}"
+
+
+def _expanded_terms(model: Model, pairs: Sequence[tuple[str, str]]) -> float:
+    """Return about how many terms the closed determinant has."""
+    equations = assemble_sparse(model)
+    return expanded_terms(equations, eliminate(equations, pairs))
 
 
 def derive_bound(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[BoundTransferFunction, ...]:

@@ -9,6 +9,23 @@ from symflex.cli.reporting import emit_json, note, reporting, terminal_width
 from symflex.errors import Diagnostic, UsageError
 
 
+def chosen_representation(representation: str, form: str | None) -> str:
+    """Return the representation to derive in: a form belongs to one of them.
+
+    Raises
+    ------
+    UsageError
+        SF902 when the two options contradict each other.
+    """
+    if form is None:
+        return representation
+    wanted = "nested" if form == "nested" else "expanded"
+    if representation not in ("auto", wanted):
+        message = f"--form {form[:64]} is of the {wanted} representation, not the {representation} one"
+        raise UsageError(Diagnostic("SF902", message))
+    return wanted
+
+
 @click.command("derive")
 @click.argument("spec", type=click.Path())
 @click.option("--tf", "tfs", multiple=True, metavar="OUT/IN", help="Only this transfer function; repeatable.")
@@ -16,7 +33,7 @@ from symflex.errors import Diagnostic, UsageError
     "--form",
     metavar="FORM",
     help="polynomial, monic, constant, factored, definitions, zpk, frequency; for beams, rods and delays "
-    "also hyperbolic, krylov, vaughan. The shortest symbolic form by default.",
+    "also hyperbolic, krylov, vaughan; nested is that representation. The shortest symbolic form by default.",
 )
 @click.option(
     "--format", "format_", type=click.Choice(["text", "latex", "json"]), default="text", show_default=True
@@ -25,6 +42,14 @@ from symflex.errors import Diagnostic, UsageError
     "--width",
     metavar="ieee|a4|MM",
     help="Column that equations in LaTeX are broken to, in type of ten points; not broken by default.",
+)
+@click.option(
+    "--representation",
+    type=click.Choice(["auto", "expanded", "nested"]),
+    default="auto",
+    show_default=True,
+    help="Quotients of polynomials, or straight-line programs of named sub-impedances; auto takes the latter "
+    "where expansion would explode, and says so.",
 )
 @click.option("--json", "as_json", is_flag=True, help="The same as --format json.")
 @click.option("--digits", type=click.IntRange(1, 1000), default=6, show_default=True, help="Digits of zpk.")
@@ -37,6 +62,7 @@ def command(
     form: str | None,
     format_: str,
     width: str | None,
+    representation: str,
     as_json: bool,
     digits: int,
 ) -> int:
@@ -55,7 +81,11 @@ def command(
 
         column = column_width(width)
     model = pipeline.load(spec)
-    derived = pipeline.derive_all(model, pipeline.pick_pairs(model, tfs))
+    derived, reason = pipeline.derive_as(
+        model, pipeline.pick_pairs(model, tfs), chosen_representation(representation, form)
+    )
+    if reason:
+        note(reason)
     forms, sentences = print_forms(derived, form, digits)
     for sentence in sentences:
         note(sentence)

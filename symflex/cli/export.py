@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.cli.caching import caching
+from symflex.cli.derive import chosen_representation
 from symflex.cli.reporting import note, reporting
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from symflex.emit.export import Exporter
     from symflex.emit.targets.latex import LatexExporter
     from symflex.model import Model
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 
 class ExportCommand(click.Command):
@@ -41,6 +42,13 @@ class ExportCommand(click.Command):
 @click.option("--form", metavar="FORM", help="latex: form of the functions, as for derive.")
 @click.option("--width", metavar="ieee|a4|MM", help="latex: width of the column; a4 (170 mm) by default.")
 @click.option("--no-figures", "no_figures", is_flag=True, help="latex: a folder without figures.")
+@click.option(
+    "--representation",
+    type=click.Choice(["auto", "expanded", "nested"]),
+    default="auto",
+    show_default=True,
+    help="Quotients of polynomials or nested expressions, as for derive.",
+)
 @click.option("-o", "--output", type=click.Path(), help="File to write; standard output by default.")
 @click.option("--minimal", "is_minimal", is_flag=True, help="state-space: without hidden states.")
 @click.option("--strict", is_flag=True, help="Exit with 4 when the verified accuracy falls short.")
@@ -54,6 +62,7 @@ def command(
     form: str | None,
     width: str | None,
     no_figures: bool,
+    representation: str,
     output: str | None,
     is_minimal: bool,
     strict: bool,
@@ -82,7 +91,11 @@ def command(
         raise UsageError(Diagnostic("SF902", f"there is no export target '{target[:64]}'", None, hint))
     exporter = _chosen(EXPORTERS[target], form, width, no_figures=no_figures, is_minimal=is_minimal)
     model = pipeline.load(spec)
-    derived = pipeline.derive_all(model, pipeline.pick_pairs(model, tfs))
+    derived, reason = pipeline.derive_as(
+        model, pipeline.pick_pairs(model, tfs), chosen_representation(representation, form)
+    )
+    if reason:
+        note(reason)
     if isinstance(exporter, LatexExporter) and output and _is_folder(output):
         return _write_fragments(exporter, model, derived, output, strict=strict)
     stem = Path(output).stem if output else identifiers({"": Path(spec).stem}, ())[""]
@@ -129,7 +142,12 @@ def _is_folder(output: str) -> bool:
 
 
 def _write_fragments(
-    exporter: LatexExporter, model: Model, derived: Sequence[TransferFunction], folder: str, *, strict: bool
+    exporter: LatexExporter,
+    model: Model,
+    derived: Sequence[AnyTransferFunction],
+    folder: str,
+    *,
+    strict: bool,
 ) -> int:
     from symflex.emit.write import write_folder
 

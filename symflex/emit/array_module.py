@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from symflex.model import Model
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 NAMES_IN_USE = frozenset({"s", "space", "arguments", "complex", "float"})
 
@@ -181,7 +181,7 @@ class ArrayModule:
 
 
 def array_module(
-    tfs: Sequence[TransferFunction],
+    tfs: Sequence[AnyTransferFunction],
     model: Model,
     dialect: Dialect = ARRAY_API,
     band_hz: tuple[Fraction, Fraction] | None = None,
@@ -304,7 +304,7 @@ def _support(programs: Sequence[Piecewise], dialect: Dialect) -> list[str]:
 class _Function:
     """Prints one transfer function: what a user calls, and the arithmetic behind it."""
 
-    tf: TransferFunction
+    tf: AnyTransferFunction
     program: Piecewise
     sentence: str
     name: str

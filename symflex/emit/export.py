@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from symflex.emit.program import Verification
     from symflex.model import Model
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 ACCURACY = 1e-13
 """Relative error of exported code above which the user is warned."""
@@ -50,7 +50,7 @@ class Exporter(Protocol):
         ...
 
     def export(
-        self, model: Model, tfs: Sequence[TransferFunction], stem: str = "", *, is_alone: bool = True
+        self, model: Model, tfs: Sequence[AnyTransferFunction], stem: str = "", *, is_alone: bool = True
     ) -> Export:
         """Return the file.
 

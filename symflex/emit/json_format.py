@@ -8,19 +8,21 @@ from typing import TYPE_CHECKING
 from symflex.emit.forms import hidden_expressions
 from symflex.emit.latex import inline_latex
 from symflex.expressions import Name, format_expression, names
+from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.emit.forms import PrintedForm
     from symflex.expressions import Expression
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 SCHEMA = "symflex.derive/1"
 
 
-def derive_json(tf: TransferFunction, form: PrintedForm) -> dict[str, object]:
-    """Return one entry of ``transfer_functions``."""
+def derive_json(tf: AnyTransferFunction, form: PrintedForm) -> dict[str, object]:
+    """Return one entry of ``transfer_functions``; ``hidden`` is None where that was not examined."""
+    hidden = [{"factor": format_expression(e), "multiplicity": m} for e, m in hidden_expressions(tf)]
     return {
         "tf": tf.name,
         "quantity": tf.quantity,
@@ -31,7 +33,7 @@ def derive_json(tf: TransferFunction, form: PrintedForm) -> dict[str, object]:
         "where": [[name, format_expression(e)] for name, e in _in_order_of_definition(form)],
         "laws": [[name, format_expression(law)] for name, law in form.laws],
         "latex": inline_latex(tf, form),
-        "hidden": [{"factor": format_expression(e), "multiplicity": m} for e, m in hidden_expressions(tf)],
+        "hidden": None if isinstance(tf, NestedTransferFunction) else hidden,
     }
 
 
@@ -44,6 +46,8 @@ def _in_order_of_definition(form: PrintedForm) -> list[tuple[str, Expression]]:
     return [(name, lines[name]) for name in TopologicalSorter(graph).static_order()]
 
 
-def derive_document(entries: Sequence[tuple[TransferFunction, PrintedForm]]) -> dict[str, object]:
+def derive_document(
+    entries: Sequence[tuple[AnyTransferFunction, PrintedForm]],
+) -> dict[str, object]:
     """Return the document ``symflex derive --json`` prints."""
     return {"schema": SCHEMA, "transfer_functions": [derive_json(tf, form) for tf, form in entries]}

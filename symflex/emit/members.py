@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from symflex.emit.program import Piecewise, Program, Verification
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class Member:
 
     Parameters
     ----------
-    tf : TransferFunction
+    tf : TransferFunction or NestedTransferFunction
         Whose values it computes.
     program : Program or Piecewise
         Of s; of the angular frequency where it is real.
@@ -35,7 +35,7 @@ class Member:
         How well it agrees with ball arithmetic.
     """
 
-    tf: TransferFunction
+    tf: AnyTransferFunction
     program: Program | Piecewise
     wanted: str
     verification: Verification
@@ -47,7 +47,9 @@ class Member:
 
 
 def members_of(
-    tfs: Sequence[TransferFunction], band_hz: tuple[Fraction, Fraction] | None, samples: int
+    tfs: Sequence[AnyTransferFunction],
+    band_hz: tuple[Fraction, Fraction] | None,
+    samples: int,
 ) -> tuple[Member, ...]:
     """Return the members for some transfer functions; one that is given twice counts once.
 

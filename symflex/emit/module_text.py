@@ -7,13 +7,17 @@ from typing import TYPE_CHECKING
 from symflex.emit.forms import print_form
 from symflex.emit.program import inert, nearest_double, wrapped
 from symflex.expressions import Number, Quotient, format_expression
+from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
+    from symflex.emit.forms import PrintedForm
     from symflex.model import Model, Parameter
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 FORMULA_LINES = 20
 FORMULA_TERMS = 1000
+NESTED_SIZE = 300
+"""Operations of a nested form up to which its formula is written out."""
 
 COST = (
     "Exponents without a formula are found numerically, which costs some hundred times a complex exponential."
@@ -27,16 +31,22 @@ ITERATED = (
 """What is said of those that find their exponents otherwise than the code that was measured."""
 
 
-def formula_lines(tf: TransferFunction, width: int) -> list[str]:
+def formula_lines(tf: AnyTransferFunction, width: int) -> list[str]:
     """Return the formula in lines of inert text, shortened when it is long.
 
     Parameters
     ----------
-    tf : TransferFunction
+    tf : TransferFunction or NestedTransferFunction
         Derived.
     width : int
         Columns of a line.
     """
+    if isinstance(tf, NestedTransferFunction):
+        return (
+            _lines_of(tf.name, print_form(tf), width)
+            if tf.size <= NESTED_SIZE
+            else [f"A quotient of nested expressions of {tf.size} operations."]
+        )
     above, below = tf.order
     if tf.length <= FORMULA_TERMS:
         form = print_form(tf)
@@ -45,12 +55,16 @@ def formula_lines(tf: TransferFunction, width: int) -> list[str]:
     else:
         kind = "sums of kernels" if tf.is_distributed else f"polynomials of degree {above} and {below}"
         return [f"A quotient of {kind} in s."]
+    return _lines_of(tf.name, form, width)
+
+
+def _lines_of(name: str, form: PrintedForm, width: int) -> list[str]:
     is_whole = isinstance(form.den, Number) and form.den.value == 1
     whole = format_expression(form.num if is_whole else Quotient(form.num, form.den))
-    lines = wrapped(inert(f"{tf.name} = {whole}"), width, "", "    ")
-    for i, (name, expression) in enumerate(form.where):
+    lines = wrapped(inert(f"{name} = {whole}"), width, "", "    ")
+    for i, (symbol, expression) in enumerate(form.where):
         word = "where" if i == 0 else "     "
-        lines += wrapped(f"{word} {inert(f'{name} = {format_expression(expression)}')}", width, "", "    ")
+        lines += wrapped(f"{word} {inert(f'{symbol} = {format_expression(expression)}')}", width, "", "    ")
     if len(lines) <= FORMULA_LINES:
         return lines
     kept = lines[: FORMULA_LINES - 1]
@@ -66,12 +80,12 @@ def origin_lines(model: Model, width: int) -> list[str]:
     return lines
 
 
-def headline(tf: TransferFunction, *, is_real: bool = False) -> str:
+def headline(tf: AnyTransferFunction, *, is_real: bool = False) -> str:
     """Return what a function computes, in one inert line.
 
     Parameters
     ----------
-    tf : TransferFunction
+    tf : TransferFunction or NestedTransferFunction
         Derived.
     is_real : bool
         True for its response at an angular frequency in real arithmetic.

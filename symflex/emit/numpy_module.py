@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from symflex.model import Model
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 FIRST = "Transfer functions of a linear system as functions of numpy arrays."
 
@@ -109,7 +109,7 @@ class NumpyExport:
 
 
 def numpy_module(
-    tfs: Sequence[TransferFunction],
+    tfs: Sequence[AnyTransferFunction],
     model: Model,
     band_hz: tuple[Fraction, Fraction] | None = None,
     *,
@@ -194,7 +194,7 @@ def numpy_module(
 class _Function:
     """Prints one transfer function: what a user calls, and the arithmetic behind it."""
 
-    tf: TransferFunction
+    tf: AnyTransferFunction
     program: Program | Piecewise
     name: str
     names: Mapping[str, str]

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from symflex.emit.members import Member
     from symflex.emit.program import Verification
     from symflex.model import Model
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 LITERAL_WIDTH = 60
 
@@ -66,7 +66,7 @@ def header(first: str, model: Model, verified: Sequence[Verification], digits: i
     return docstring(lines, "")
 
 
-def function_docstring(tf: TransferFunction, signature: Signature, notes: Sequence[str]) -> str:
+def function_docstring(tf: AnyTransferFunction, signature: Signature, notes: Sequence[str]) -> str:
     """Return the docstring of a transfer function.
 
     Parameters

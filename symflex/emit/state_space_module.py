@@ -61,7 +61,7 @@ if TYPE_CHECKING:
 
     from symflex.model import Parameter
     from symflex.state_space import StateSpace
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 PI = "pi"
 TERM_LIMIT = 20_000
@@ -107,7 +107,7 @@ class StateSpaceExport:
 
 def state_space_module(
     system: StateSpace,
-    tfs: Sequence[TransferFunction],
+    tfs: Sequence[AnyTransferFunction],
     band_hz: tuple[Fraction, Fraction] | None = None,
     *,
     samples: int = 400,
@@ -191,7 +191,7 @@ class _Module:
     # ------------------------------------------------------------------------------------ numbers
 
     def measured(
-        self, tf: TransferFunction, band_hz: tuple[Fraction, Fraction] | None, samples: int
+        self, tf: AnyTransferFunction, band_hz: tuple[Fraction, Fraction] | None, samples: int
     ) -> Verification:
         """Return how well the matrices of the declared values agree with a transfer function."""
         missing = [p.name for p in self._parameters if p.value is None]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import chain, repeat
 from re import compile as compile_pattern
 from typing import TYPE_CHECKING
 
@@ -15,12 +16,13 @@ from symflex.expressions import (
     format_expression,
     names,
 )
+from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from symflex.roots import PoleZeroMap, Region, Root
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction, TransferFunction
 
 Row = tuple[str, ...]
 
@@ -45,12 +47,12 @@ def form_text(tf: TransferFunction, form: PrintedForm) -> str:
     return "\n".join(lines)
 
 
-def derive_text(tf: TransferFunction, form: PrintedForm, width: int = WIDTH) -> str:
+def derive_text(tf: AnyTransferFunction, form: PrintedForm, width: int = WIDTH) -> str:
     """Return a transfer function as a fraction, with its definitions and hidden modes.
 
     Parameters
     ----------
-    tf : TransferFunction
+    tf : TransferFunction or NestedTransferFunction
         Derived.
     form : PrintedForm
         Its arrangement.
@@ -82,7 +84,9 @@ def derive_text(tf: TransferFunction, form: PrintedForm, width: int = WIDTH) -> 
         times = f", {multiplicity} times" if multiplicity > 1 else ""
         first, *more = wrapped(factor, width - 30)
         lines.append(f"{INDENT}hidden: {first}{' ...' if more else ''} cancelled{times}")
-    if tf.hidden:
+    if isinstance(tf, NestedTransferFunction):
+        lines += [f"{INDENT}hidden modes: not examined in this representation", ""]
+    elif tf.hidden:
         lines.append("")
     return "\n".join(lines)
 
@@ -95,8 +99,8 @@ def law_lines(name: str, law: Equation) -> list[str]:
     return [format_expression(law), f"{start}{name}{chr(39) * (order - 1)}(0) = 1"]
 
 
-def _where_words() -> Sequence[str]:
-    return ["where", *["     "] * 10_000]
+def _where_words() -> Iterator[str]:
+    return chain(["where"], repeat("     "))
 
 
 def _is_one(expression: Expression) -> bool:

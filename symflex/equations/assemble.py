@@ -41,6 +41,8 @@ if TYPE_CHECKING:
 PI = "pi"
 GENERATOR_LIMIT = 1_000
 UNKNOWN_LIMIT = 2_500
+SPARSE_LIMIT = 500_000
+"""Names, and unknowns, of equations over a sparse ring."""
 
 
 def assemble(
@@ -48,6 +50,7 @@ def assemble(
     nested: Callable[[PlacedBlock, Ring], Factored] | None = None,
     *,
     is_nameless: bool = False,
+    is_sparse: bool = False,
 ) -> Equations:
     """Stamp every element and signal of a model into one linear system.
 
@@ -60,6 +63,9 @@ def assemble(
     is_nameless : bool
         True to give no wavenumber a name: a quotient with named and nameless ones has no form in which what
         cancels is seen.
+    is_sparse : bool
+        True for a ring of any number of names, in which nothing is expanded; not for distributed models. Rows
+        are not cleared of denominators then.
 
     Raises
     ------
@@ -70,10 +76,9 @@ def assemble(
     """
     constants = _constant_functions(model)
     count = len(model.parameters) + len(model.definitions) + len(constants)
-    if count > GENERATOR_LIMIT:
-        message = (
-            f"{count} parameters, definitions and functions of them; at most {GENERATOR_LIMIT} are carried"
-        )
+    most = SPARSE_LIMIT if is_sparse else GENERATOR_LIMIT
+    if count > most:
+        message = f"{count} parameters, definitions and functions of them; at most {most} are carried"
         raise _too_large(message, "write numbers in place of parameters that need no name")
     ring = Ring(
         (
@@ -82,7 +87,8 @@ def assemble(
             *(d.name for d in model.definitions),
             PI,
             *(c.generator for c in constants),
-        )
+        ),
+        is_sparse,
     )
     distributed = _Assembly(model, ring, constants, nested).survey(is_nameless=is_nameless)
     whole = ring if distributed is None else distributed.propagation.ring
@@ -187,8 +193,9 @@ class _Assembly:
             too_large = all(d.code.startswith("SF5") for d in self.problems)
             raise (BudgetError if too_large else ModelError)(*self.problems)
         count = len(self.balance) + len(self.unknowns)
-        if count > UNKNOWN_LIMIT:
-            raise _too_large(f"{count} unknowns; at most {UNKNOWN_LIMIT} are solved for", "split the model")
+        most = SPARSE_LIMIT if self.ring.is_sparse else UNKNOWN_LIMIT
+        if count > most:
+            raise _too_large(f"{count} unknowns; at most {most} are solved for", "split the model")
         return Equations(
             self.model,
             self.ring,
@@ -449,8 +456,10 @@ class _Assembly:
                     self.balance[end] = _side_by_side(self.balance[end], form)
 
     def _polynomial(self, row: EquationRow) -> EquationRow:
-        cleared = row.form * common_denominator(self.ring, row.form.coefficients)
-        return EquationRow(row.about, row.role, cleared)
+        if self.ring.is_sparse:
+            return row  # nothing is expanded, and rows scaled differently would lose their symmetry
+        below = common_denominator(self.ring, row.form.coefficients)
+        return row if below.is_one else EquationRow(row.about, row.role, row.form * below)
 
     def _equal(self, variable: Variable, expression: Expression, evaluator: Evaluator) -> None:
         """Add the row ``variable = expression``."""

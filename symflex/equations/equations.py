@@ -28,7 +28,7 @@ class ConstantFunction:
 
 @dataclass(frozen=True, slots=True)
 class EquationRow:
-    """One polynomial row ``form = 0``.
+    """One row ``form = 0``, polynomial but over a sparse ring.
 
     A node's balance, an element's, constraint's or signal's law, or a field's condition.
 

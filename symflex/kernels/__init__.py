@@ -1,5 +1,6 @@
 """The exact ring, factored rational functions over it, and the functions that may appear as generators."""
 
+from symflex.kernels.collection import uncollected
 from symflex.kernels.dispersion import NO_KERNELS, Dispersion, Kernel, KernelTable
 from symflex.kernels.factored import Factored, common_denominator, least_common_multiple
 from symflex.kernels.functions import FUNCTIONS, ElementaryFunction
@@ -7,7 +8,7 @@ from symflex.kernels.memo import PolynomialMemo
 from symflex.kernels.modal_sum import ModalSums, modal_amplitudes, mode_values
 from symflex.kernels.propagators import Propagation, Propagator, propagate
 from symflex.kernels.residue import PRIME, random_point, residue
-from symflex.kernels.ring import LAPLACE, MEMORY_LIMIT, Ring, degree_in, expanded_length
+from symflex.kernels.ring import LAPLACE, MEMORY_LIMIT, Ring, degree_in, expanded_length, terms_of
 
 __all__ = [
     "FUNCTIONS",
@@ -34,4 +35,6 @@ __all__ = [
     "propagate",
     "random_point",
     "residue",
+    "terms_of",
+    "uncollected",
 ]

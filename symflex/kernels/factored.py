@@ -10,7 +10,15 @@ from typing import TYPE_CHECKING
 from flint import fmpz
 
 from symflex.errors import BudgetError, Diagnostic
-from symflex.kernels.ring import DEGREE_LIMIT, MEMORY_LIMIT, TERM_LIMIT, Ring, degree_in
+from symflex.kernels.ring import (
+    DEGREE_LIMIT,
+    MEMORY_LIMIT,
+    TERM_LIMIT,
+    Ring,
+    degree_in,
+    highest_degree,
+    terms_of,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -68,7 +76,8 @@ class Factored:
         unit = int(content.leading_coefficient())
         if int(rest.leading_coefficient()) < 0:
             rest, unit = -rest, -unit
-        factors = [(ring.context.gen(i), int(e)) for i, e in enumerate(content.monoms()[0]) if e]
+        ((monomial, _),) = terms_of(content)
+        factors = [(ring.context.gen(i), e) for i, e in monomial]
         if not rest.is_constant():
             factors.append((rest, 1))
         return Factored(ring, Fraction(unit), tuple(factors))
@@ -199,7 +208,7 @@ class Factored:
         terms, most = 1, min(TERM_LIMIT, MEMORY_LIMIT // self.ring.bytes_of(1))
         for factor, exponent in self.factors:
             terms *= comb(len(factor) + exponent - 1, exponent) if len(factor) > 1 else 1
-            degree = exponent * max(map(int, factor.degrees()))
+            degree = exponent * highest_degree(factor)
             if terms > most or degree > DEGREE_LIMIT:
                 raise BudgetError(
                     Diagnostic(

@@ -5,6 +5,8 @@ from __future__ import annotations
 from random import Random
 from typing import TYPE_CHECKING
 
+from symflex.kernels.ring import terms_of
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
@@ -54,10 +56,9 @@ def _power(base: int, exponent: int) -> int:
 
 def _polynomial(polynomial: fmpz_mpoly, names: Sequence[str], point: Mapping[str, int]) -> int:
     total = 0
-    for monomial, coefficient in polynomial.terms():
-        product = int(coefficient) % PRIME
-        for name, exponent in zip(names, monomial, strict=True):
-            if exponent:
-                product = product * pow(point[name], int(exponent), PRIME) % PRIME
+    for monomial, coefficient in terms_of(polynomial):
+        product = coefficient % PRIME
+        for i, exponent in monomial:
+            product = product * pow(point[names[i]], exponent, PRIME) % PRIME
         total += product
     return total % PRIME

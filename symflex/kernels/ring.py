@@ -1,7 +1,8 @@
 """The exact ring: integer polynomials in s, the parameters, closed definitions and constants.
 
 Input: an ordered tuple of generator names.
-Output: a :class:`Ring` whose elements are python-flint ``fmpz_mpoly``.
+Output: a :class:`Ring` whose elements are python-flint ``fmpz_mpoly``, or sparse polynomials of the same
+interface, as far as assembling needs it, where there are too many names for these.
 """
 
 from __future__ import annotations
@@ -9,14 +10,17 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import comb, prod
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from flint import Ordering, fmpz_mpoly, fmpz_mpoly_ctx
 
 from symflex.errors import BudgetError, Diagnostic
+from symflex.kernels.sparse import SparseContext, SparsePolynomial
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from symflex.kernels.sparse import Monomial
 
 LAPLACE = "s"
 TERM_LIMIT = 3_000_000
@@ -28,6 +32,8 @@ FEW = 16
 """How large coefficients may be that do not spoil a count of terms much."""
 MANY = 5_000
 """Terms that are not counted one by one."""
+SPARSE_BYTES = 1_000
+"""What a term of a sparse polynomial counts for: it takes less memory, but its products take long."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +44,9 @@ class Ring:
     ----------
     names : tuple of str
         Generator names in order; the first one is ``s``.
+    is_sparse : bool
+        True for :class:`~symflex.kernels.sparse.SparsePolynomial` in place of ``fmpz_mpoly``: any number of
+        names, but no substitution and no common divisors.
 
     Examples
     --------
@@ -47,9 +56,13 @@ class Ring:
     """
 
     names: tuple[str, ...]
+    is_sparse: bool = False
     context: fmpz_mpoly_ctx = field(init=False, compare=False, repr=False)
 
     def __post_init__(self) -> None:
+        if self.is_sparse:
+            object.__setattr__(self, "context", cast("fmpz_mpoly_ctx", SparseContext(self.names)))
+            return
         internal = [
             name if name.isascii() and name.isidentifier() else f"_{i}" for i, name in enumerate(self.names)
         ]
@@ -66,7 +79,7 @@ class Ring:
 
     def bytes_of(self, terms: int) -> int:
         """Return about how much memory a polynomial takes: a byte per exponent, and its coefficients."""
-        return terms * (len(self.names) + COEFFICIENT_BYTES)
+        return terms * ((SPARSE_BYTES if self.is_sparse else len(self.names)) + COEFFICIENT_BYTES)
 
     def constant(self, value: int) -> fmpz_mpoly:
         """Return an integer as a polynomial."""
@@ -84,8 +97,11 @@ class Ring:
         Raises
         ------
         BudgetError
-            SF501 when the result could exceed the limits, terms and bytes.
+            SF501 when the result could exceed the limits, terms and bytes; SF502 in a sparse ring.
         """
+        if self.is_sparse:
+            message = f"nothing is multiplied out with {len(self.names)} names"
+            raise BudgetError(Diagnostic("SF502", message, None, "ask for the nested form"))
         check_expansion(self, polynomial, images, min(term_limit, memory_limit // self.bytes_of(1)))
         return polynomial.compose(*images, ctx=self.context)
 
@@ -162,4 +178,35 @@ def check_expansion(
 
 def degree_in(polynomial: fmpz_mpoly, generator: int) -> int:
     """Return the degree of ``polynomial`` in the generator at position ``generator``; 0 for zero."""
+    if (sparse := _sparse(polynomial)) is not None:
+        return max((dict(m).get(generator, 0) for m in sparse.parts), default=0)
     return int(polynomial.degrees()[generator]) if len(polynomial) else 0
+
+
+def _sparse(polynomial: object) -> SparsePolynomial | None:
+    """Return what passes for an ``fmpz_mpoly`` as what it is."""
+    return polynomial if isinstance(polynomial, SparsePolynomial) else None
+
+
+def highest_degree(polynomial: fmpz_mpoly) -> int:
+    """Return the largest degree of a nonzero polynomial in any one generator."""
+    if (sparse := _sparse(polynomial)) is not None:
+        return max((e for m in sparse.parts for _, e in m), default=0)
+    return max(map(int, polynomial.degrees()))
+
+
+def terms_of(polynomial: fmpz_mpoly) -> Iterator[tuple[Monomial, int]]:
+    """Yield the terms in lexicographic order: positions of generators with exponents, and the coefficient.
+
+    Examples
+    --------
+    >>> ring = Ring(("s", "m", "b"))
+    >>> s, m, b = (ring.generator(n) for n in ring.names)
+    >>> list(terms_of(m * s**2 - 3 * b))
+    [(((0, 2), (1, 1)), 1), (((2, 1),), -3)]
+    """
+    if (sparse := _sparse(polynomial)) is not None:
+        yield from sparse.terms()
+        return
+    for monomial, coefficient in polynomial.terms():
+        yield tuple((i, int(e)) for i, e in enumerate(monomial) if e), int(coefficient)

@@ -10,19 +10,31 @@ from symflex.transfer.bind import (
 )
 from symflex.transfer.derive import derive, derive_all
 from symflex.transfer.nested import nested_transfer
+from symflex.transfer.nested_form import (
+    AnyTransferFunction,
+    BoundNested,
+    NestedTransferFunction,
+    bind_nested,
+    derive_nested,
+)
 from symflex.transfer.transfer_function import ClosedForm, HiddenFactor, TransferFunction
 
 __all__ = [
+    "AnyTransferFunction",
+    "BoundNested",
     "BoundTransferFunction",
     "ClosedForm",
     "EnclosedTransferFunction",
     "Given",
     "HiddenFactor",
+    "NestedTransferFunction",
     "TransferFunction",
     "bind",
+    "bind_nested",
     "bind_polynomials",
     "coefficients_in_s",
     "derive",
     "derive_all",
+    "derive_nested",
     "nested_transfer",
 ]

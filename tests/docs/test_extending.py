@@ -95,7 +95,7 @@ def test_the_low_pass_multiplies_the_displacement(extended):
 
 
 def test_the_new_form_multiplies_by_s_once_at_a_time(extended):
-    assert derived(extended, "nested")["Y/F"] == ("1", "((T*(m + B)*s + m + B)*s + k*T)*s + k")
+    assert derived(extended, "horner")["Y/F"] == ("1", "((T*(m + B)*s + m + B)*s + k*T)*s + k")
 
 
 def test_the_new_target_writes_a_module_that_runs(extended):

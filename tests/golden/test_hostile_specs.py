@@ -571,6 +571,20 @@ def test_a_dense_network_of_thirty_masses_is_checked(tmp_path):
 )
 def test_the_closed_form_of_a_dense_network_of_thirty_masses_is_refused_as_too_large(value, tmp_path):
     (tmp_path / "spec.toml").write_text(dense(value))
-    code, printed = symflex(tmp_path, "derive", "spec.toml")
+    code, printed = symflex(tmp_path, "derive", "spec.toml", "--representation", "expanded")
     assert code == 5
     assert "error[SF5" in printed
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        pytest.param(lambda i, j: 30 * i + j + 1, id="with numbers"),
+        pytest.param(lambda i, j: f'"k{i}_{j}"', id="with symbols"),
+    ],
+)
+def test_a_dense_network_of_thirty_masses_has_a_nested_form(value, tmp_path):
+    (tmp_path / "spec.toml").write_text(dense(value))
+    code, printed = symflex(tmp_path, "derive", "spec.toml")
+    assert code == 0
+    assert "in nested form: " in printed

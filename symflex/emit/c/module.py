@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from symflex.model import Model
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 WIDTH = 88
 
@@ -61,7 +61,7 @@ class CExport:
 
 
 def c_files(
-    tfs: Sequence[TransferFunction],
+    tfs: Sequence[AnyTransferFunction],
     model: Model,
     band_hz: tuple[Fraction, Fraction] | None = None,
     *,
@@ -170,7 +170,7 @@ def _harmless(line: str) -> str:
 class _Files:
     def __init__(
         self,
-        tfs: Sequence[TransferFunction],
+        tfs: Sequence[AnyTransferFunction],
         model: Model,
         band_hz: tuple[Fraction, Fraction] | None,
         name: str | None,

@@ -12,6 +12,7 @@ from symflex.emit.forms.frequency import frequency_form
 from symflex.emit.forms.hidden import hidden_expressions
 from symflex.emit.forms.hyperbolic import hyperbolic_form
 from symflex.emit.forms.krylov import krylov_form
+from symflex.emit.forms.nested import nested_form, step_names
 from symflex.emit.forms.polynomial import constant_form, factored_form, monic_form, polynomial_form
 from symflex.emit.forms.printed import Form, PrintedForm
 from symflex.emit.forms.usage import forms_of
@@ -20,11 +21,12 @@ from symflex.emit.forms.zpk import zpk_form
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import format_expression
+from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction, TransferFunction
 
 FORMS: dict[str, Form] = {
     "polynomial": polynomial_form,
@@ -47,15 +49,15 @@ DISTRIBUTED_CANDIDATES = ("hyperbolic", "factored", "vaughan", "krylov")
 """The same for functions with kernels."""
 
 
-def print_form(tf: TransferFunction, form: str | None = None, digits: int = 6) -> PrintedForm:
+def print_form(tf: AnyTransferFunction, form: str | None = None, digits: int = 6) -> PrintedForm:
     """Return a transfer function in the named form, or in the one that prints shortest.
 
     Parameters
     ----------
-    tf : TransferFunction
+    tf : TransferFunction or NestedTransferFunction
         Derived.
     form : str, optional
-        A key of :data:`FORMS`.
+        A key of :data:`FORMS`; ``nested`` for those derived so, which have no other.
     digits : int
         Significant digits of forms that print decimals.
 
@@ -66,6 +68,14 @@ def print_form(tf: TransferFunction, form: str | None = None, digits: int = 6) -
     ModelError
         SF229 when the form needs numbers and a parameter has none.
     """
+    if isinstance(tf, NestedTransferFunction):
+        if form not in (None, "nested"):
+            message = f"{tf.name} is derived in nested form, which is not expanded into others"
+            raise UsageError(Diagnostic("SF902", message, None, "ask for the expanded representation"))
+        return nested_form(tf)
+    if form == "nested":
+        message = f"{tf.name} is derived in expanded form"
+        raise UsageError(Diagnostic("SF902", message, None, "ask for the nested representation"))
     if tf.is_distributed:
         tf = economical(tf)
     if form is None:
@@ -77,7 +87,7 @@ def print_form(tf: TransferFunction, form: str | None = None, digits: int = 6) -
 
 
 def print_forms(
-    tfs: Sequence[TransferFunction], form: str | None = None, digits: int = 6
+    tfs: Sequence[AnyTransferFunction], form: str | None = None, digits: int = 6
 ) -> tuple[tuple[PrintedForm, ...], tuple[str, ...]]:
     """Return all functions in the named form, and a sentence on each that lacks it, in its default form.
 
@@ -127,6 +137,8 @@ __all__ = [
     "PrintedForm",
     "counts_of",
     "hidden_expressions",
+    "nested_form",
     "print_form",
     "print_forms",
+    "step_names",
 ]

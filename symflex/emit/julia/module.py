@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from symflex.model import Model
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 LAST_OF_FOUR_DIGITS = 0xFFFF
 """The last character that ``\\u`` names."""
@@ -80,7 +80,7 @@ class JuliaExport:
 
 
 def julia_module(
-    tfs: Sequence[TransferFunction],
+    tfs: Sequence[AnyTransferFunction],
     model: Model,
     name: str = "",
     band_hz: tuple[Fraction, Fraction] | None = None,

@@ -22,6 +22,7 @@ from symflex.emit.latex.width import EM_MM
 from symflex.emit.text import region_text
 from symflex.errors import Diagnostic, UsageError
 from symflex.kernels import LAPLACE
+from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from symflex.expressions import Expression
     from symflex.model import Model
     from symflex.roots import PoleZeroMap
-    from symflex.transfer import HiddenFactor, TransferFunction
+    from symflex.transfer import AnyTransferFunction, HiddenFactor, TransferFunction
 
 TEXT_WIDTH_MM: Final = COLUMNS_MM["a4"]
 """Width of the text of the document, and of fragments unless asked otherwise."""
@@ -77,7 +78,7 @@ class Picture:
     of: tuple[TransferFunction, ...] = ()
 
 
-def latex_fragment(tf: TransferFunction, form: PrintedForm, *, width_mm: float = TEXT_WIDTH_MM) -> str:
+def latex_fragment(tf: AnyTransferFunction, form: PrintedForm, *, width_mm: float = TEXT_WIDTH_MM) -> str:
     r"""Return one transfer function for ``\input`` in a paper, with its definitions; it needs amsmath.
 
     Parameters
@@ -92,7 +93,7 @@ def latex_fragment(tf: TransferFunction, form: PrintedForm, *, width_mm: float =
 
 def latex_document(
     model: Model,
-    tfs: Sequence[TransferFunction],
+    tfs: Sequence[AnyTransferFunction],
     forms: Sequence[PrintedForm],
     *,
     pole_zero_maps: Sequence[PoleZeroMap] = (),
@@ -127,7 +128,7 @@ def latex_document(
 
 def latex_files(
     model: Model,
-    tfs: Sequence[TransferFunction],
+    tfs: Sequence[AnyTransferFunction],
     forms: Sequence[PrintedForm],
     *,
     pole_zero_maps: Sequence[PoleZeroMap] = (),
@@ -195,7 +196,7 @@ def _opening(model: Model, width_mm: float, packages: Sequence[str] = ()) -> Ite
 
 def _blocks(
     model: Model,
-    tfs: Sequence[TransferFunction],
+    tfs: Sequence[AnyTransferFunction],
     forms: Sequence[PrintedForm],
     maps: Sequence[PoleZeroMap],
     width_mm: float,
@@ -239,13 +240,13 @@ def _table(table: str, file: str, title: str) -> _Block:
     return _Block(f"{table}\n\\medskip\n\n", file, _FOR_TABLES, title)
 
 
-def _equation(tf: TransferFunction, form: PrintedForm, width_mm: float, after: str) -> _Block:
+def _equation(tf: AnyTransferFunction, form: PrintedForm, width_mm: float, after: str) -> _Block:
     display = transfer_function_latex(tf, form, width_mm=width_mm)
     title = f"{_comment(tf.name)}, {_comment(tf.quantity)}: \\eqref{{{equation_label(tf.name)}}}"
     return _Block(f"{display}{after}", _stem(tf), _FOR_EQUATIONS, title)
 
 
-def _stem(tf: TransferFunction) -> str:
+def _stem(tf: AnyTransferFunction) -> str:
     """Return a file's name without its suffix, of letters that every file system has."""
     return _plain_stem(tf.name.replace("/", "_over_"))
 
@@ -269,9 +270,15 @@ def _about_values(model: Model) -> str:
     return f"Values are in SI units, with {VALUE_DIGITS} significant digits where they are not shorter."
 
 
-def _introduction(tf: TransferFunction) -> str:
-    zeros, poles = counts_of(tf)
+def _introduction(tf: AnyTransferFunction) -> str:
     unit = f", in {unit_latex(tf.unit)}" if tf.unit and tf.unit != "1" else ""
+    if isinstance(tf, NestedTransferFunction):
+        quantity = escape_text(tf.quantity)
+        return (
+            f"\\subsection{{${ratio_latex(tf)}$}}\n\nThe {quantity}{unit}, in nested form; "
+            "hidden modes were not looked for:\n"
+        )
+    zeros, poles = counts_of(tf)
     counts = f"{_counted(zeros, 'zero')} and {_counted(poles, 'pole')}"
     if zeros is None and poles is None:
         counts = "infinitely many zeros and poles"
@@ -285,8 +292,10 @@ def _counted(count: int | None, noun: str) -> str:
     return f"{number} {noun}{'' if count == 1 else 's'}"
 
 
-def _hidden_modes(tf: TransferFunction, width_mm: float) -> list[str]:
+def _hidden_modes(tf: AnyTransferFunction, width_mm: float) -> list[str]:
     """Return a sentence for every factor in s that cancelled."""
+    if isinstance(tf, NestedTransferFunction):
+        return []
     writer = Writer(model_labels(tf.model))
     printed = hidden_expressions(tf)
     return [_hidden_mode(h, e, tf, writer, width_mm) for h, (e, _) in zip(tf.hidden, printed, strict=True)]
@@ -317,7 +326,7 @@ def _hidden_mode(
     )
 
 
-def _about_roots(tf: TransferFunction, found: PoleZeroMap) -> list[str]:
+def _about_roots(tf: AnyTransferFunction, found: PoleZeroMap) -> list[str]:
     if not (found.poles or found.zeros or found.hidden):
         return [f"${ratio_latex(tf)}$ has neither poles nor zeros in the region searched."]
     sentences = []

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from symflex.emit.forms import PrintedForm
     from symflex.model import Input, Model, Output
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 _OVER: Final = "_over_"
 
@@ -78,14 +78,18 @@ def equation_label(name: str) -> str:
     return f"eq:{joined if is_unique else plain}"
 
 
-def ratio_latex(tf: TransferFunction) -> str:
+def ratio_latex(tf: AnyTransferFunction) -> str:
     r"""Return output over input on one line, such as ``V_{\mathrm{tip}}(s)/F(s)``."""
     (above, _), (below, _) = _end(tf.output), _end(tf.input)
     return f"{above}/{below}"
 
 
 def transfer_function_latex(
-    tf: TransferFunction, form: PrintedForm, *, width_mm: float | None, label: str = ""
+    tf: AnyTransferFunction,
+    form: PrintedForm,
+    *,
+    width_mm: float | None,
+    label: str = "",
 ) -> str:
     r"""Return a transfer function as a numbered display, with its definitions in ``where`` lines.
 
@@ -156,7 +160,7 @@ def formula_latex(
     return "\n".join(parts)
 
 
-def inline_latex(tf: TransferFunction, form: PrintedForm) -> str:
+def inline_latex(tf: AnyTransferFunction, form: PrintedForm) -> str:
     r"""Return a transfer function as one line of mathematics without delimiters, for notebooks and HTML."""
     writer = Writer(form_labels(tf, form))
     formula = f"{_left_side(tf)[0]} = {_right_side(form, writer)[0]}"
@@ -167,7 +171,7 @@ def inline_latex(tf: TransferFunction, form: PrintedForm) -> str:
     return rf"{formula},\quad \text{{where }} " + r",\; ".join(where)
 
 
-def notebook_latex(tf: TransferFunction, form: PrintedForm) -> str | None:
+def notebook_latex(tf: AnyTransferFunction, form: PrintedForm) -> str | None:
     r"""Return a transfer function as mathematics without delimiters, in lines where one would be too long.
 
     Only commands that KaTeX and MathJax share are used.
@@ -196,7 +200,7 @@ def notebook_latex(tf: TransferFunction, form: PrintedForm) -> str | None:
     return latex if len(latex) <= LONGEST_IN_NOTEBOOK else None
 
 
-def form_labels(tf: TransferFunction, form: PrintedForm) -> dict[str, str]:
+def form_labels(tf: AnyTransferFunction, form: PrintedForm) -> dict[str, str]:
     """Return the labels of every name in a printed form: the model's, and those the form brings."""
     labels = model_labels(tf.model)
     own = [(name, "") for name, _ in (*form.where, *form.laws) if name not in labels]
@@ -208,7 +212,7 @@ def _end(end: Input | Output) -> tuple[str, float]:
     return f"{label.latex}(s)", label.width + _ARGUMENT
 
 
-def _left_side(tf: TransferFunction) -> tuple[str, float]:
+def _left_side(tf: AnyTransferFunction) -> tuple[str, float]:
     (above, above_width), (below, below_width) = _end(tf.output), _end(tf.input)
     return rf"\frac{{{above}}}{{{below}}}", max(above_width, below_width) + FRACTION_EDGES.text
 
@@ -234,7 +238,13 @@ def _right_side(form: PrintedForm, writer: Writer) -> tuple[str, float]:
     return rf"{sign}\frac{{{above.latex}}}{{{below.latex}}}", width
 
 
-def _formula(tf: TransferFunction, form: PrintedForm, writer: Writer, width: float | None, name: str) -> str:
+def _formula(
+    tf: AnyTransferFunction,
+    form: PrintedForm,
+    writer: Writer,
+    width: float | None,
+    name: str,
+) -> str:
     left, left_width = _left_side(tf)
     right, right_width = _right_side(form, writer)
     label = rf"\label{{{name}}}"
@@ -244,7 +254,7 @@ def _formula(tf: TransferFunction, form: PrintedForm, writer: Writer, width: flo
     return _align(_rows(tf, form, writer, width), "align", label)
 
 
-def _rows(tf: TransferFunction, form: PrintedForm, writer: Writer, width: float) -> list[_Row]:
+def _rows(tf: AnyTransferFunction, form: PrintedForm, writer: Writer, width: float) -> list[_Row]:
     """Return the equations that a formula too wide for one line is made of."""
     left, left_width = _left_side(tf)
     if is_one(form.den):
@@ -276,10 +286,16 @@ def varying_names(form: PrintedForm) -> frozenset[str]:
     """Return s, and the names that stand for functions of it."""
     varying = {LAPLACE, *(name for name, _ in form.laws)}
     # A line may use the names of any other.
-    for _ in form.where:
-        varying |= {
-            name for name, e in form.where if any(n.name in varying for n in names(e) if isinstance(n, Name))
-        }
+    users: dict[str, list[str]] = {}
+    for name, expression in form.where:
+        for used in names(expression):
+            if isinstance(used, Name):
+                users.setdefault(used.name, []).append(name)
+    pending = list(varying)
+    while pending:
+        fresh = [name for name in users.get(pending.pop(), ()) if name not in varying]
+        varying.update(fresh)
+        pending += fresh
     return frozenset(varying)
 
 

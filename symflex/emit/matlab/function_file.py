@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from symflex.model import Model
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 KEYWORDS = frozenset(
     "__FILE__ __LINE__ arguments break case catch classdef continue do else elseif end end_try_catch "
@@ -90,7 +90,7 @@ class MatlabExport:
 
 
 def matlab_function_file(
-    tfs: Sequence[TransferFunction],
+    tfs: Sequence[AnyTransferFunction],
     model: Model,
     name: str = "",
     band_hz: tuple[Fraction, Fraction] | None = None,

@@ -4,6 +4,7 @@ from symflex.emit.program.build import available_forms, build_program
 from symflex.emit.program.distributed import build_piecewise, build_real
 from symflex.emit.program.evaluate import evaluate, nearest_double
 from symflex.emit.program.identifiers import identifiers
+from symflex.emit.program.nested import build_nested
 from symflex.emit.program.nodes import (
     Add,
     Apply,
@@ -69,6 +70,7 @@ __all__ = [
     "Straight",
     "Verification",
     "available_forms",
+    "build_nested",
     "build_piecewise",
     "build_program",
     "build_real",

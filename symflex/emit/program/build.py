@@ -184,7 +184,7 @@ class Generators:
                 return self._definition(name, value)
         for constant in tf.constants:
             if constant.generator == name:
-                return self._constant(constant.expression), 0
+                return constant_of(self.forge, self.tf.model, constant.expression), 0
         if tf.closed is not None:
             for label, polynomial in tf.closed.closure.sums:
                 if label == name:
@@ -204,34 +204,39 @@ class Generators:
         suffix = "_far" if self.is_far and self.forge.depends[value] else ""
         return self.forge.label(value, name + suffix)
 
-    def _constant(self, expression: Expression) -> int:
-        """Return an expression of constants as the model writes it."""
-        forge = self.forge
-        match expression:
-            case Number(value):
-                return forge.constant(value)
-            case Name(name):
-                inner = next((e for n, e in _every_definition(self.tf.model) if n == name), None)
-                is_known = name == PI or any(p.name == name for p in self.tf.model.parameters)
-                if is_known or inner is None:
-                    return self._generator(name)[0]
-                return forge.label(self._constant(inner), name)
-            case Negative(operand):
-                return forge.negate(self._constant(operand))
-            case Sum(terms):
-                return forge.add([self._constant(t) for t in terms])
-            case Product(factors):
-                return forge.multiply([self._constant(f) for f in factors])
-            case Quotient(numerator, denominator):
-                return forge.divide(self._constant(numerator), self._constant(denominator))
-            case Power(base, exponent):
-                power = integer_exponent(exponent) or 0
-                raised = forge.power(self._constant(base), abs(power))
-                return raised if power >= 0 else forge.divide(forge.constant(1), raised)
-            case Call(name, argument):
-                return forge.apply(name, self._constant(argument))
-        message = f"unexpected expression {type(expression).__name__}"
-        raise TypeError(message)
+
+def constant_of(forge: Forge, model: Model, expression: Expression) -> int:
+    """Return an expression of constants as the model writes it."""
+
+    def made(inner: Expression) -> int:
+        return constant_of(forge, model, inner)
+
+    match expression:
+        case Number(value):
+            return forge.constant(value)
+        case Name(name):
+            if name == PI:
+                return forge.constant(1, 1)
+            inner = next((e for n, e in _every_definition(model) if n == name), None)
+            if inner is None or any(p.name == name for p in model.parameters):
+                return forge.parameter(name)
+            return forge.label(made(inner), name)
+        case Negative(operand):
+            return forge.negate(made(operand))
+        case Sum(terms):
+            return forge.add([made(t) for t in terms])
+        case Product(factors):
+            return forge.multiply([made(f) for f in factors])
+        case Quotient(numerator, denominator):
+            return forge.divide(made(numerator), made(denominator))
+        case Power(base, exponent):
+            power = integer_exponent(exponent) or 0
+            raised = forge.power(made(base), abs(power))
+            return raised if power >= 0 else forge.divide(forge.constant(1), raised)
+        case Call(name, argument):
+            return forge.apply(name, made(argument))
+    message = f"unexpected expression {type(expression).__name__}"
+    raise TypeError(message)
 
 
 def _every_definition(model: Model) -> Iterator[tuple[str, Expression]]:

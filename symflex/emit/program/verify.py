@@ -18,10 +18,12 @@ from flint import acb, arb, ctx
 from symflex.emit.program.build import available_forms, build_program
 from symflex.emit.program.distributed import build_piecewise, build_real, reaches_of
 from symflex.emit.program.evaluate import evaluate, nearest_double
+from symflex.emit.program.nested import build_nested
 from symflex.emit.program.real_axis import for_positive, in_half_angles
 from symflex.errors import BudgetError, ModelError
-from symflex.transfer import bind
+from symflex.transfer import BoundNested, NestedTransferFunction, bind, bind_nested
 from symflex.transfer.bind import EnclosedTransferFunction
+from symflex.transfer.nested_form import EnclosedNested
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -29,7 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from symflex.emit.program.nodes import Piecewise, Program
-    from symflex.transfer import BoundTransferFunction, TransferFunction
+    from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction
     from symflex.transfer.bind import Enclosed
 
 DEFAULT_BAND = (Fraction(1, 10), Fraction(10_000))
@@ -62,6 +64,15 @@ SCAN = 3000
 
 MOST_EXTREMES = 40
 """Resonances, and antiresonances, around which the error is measured; the first and the last ones of more."""
+
+LIGHT_NESTED = 600
+"""Operations of a nested form from which fewer frequencies are looked at."""
+
+LEAST = 0.05
+"""The part of them that is looked at in any case."""
+
+NAMED = 6
+"""Parameters without value that are named."""
 
 LIGHT = 200
 """Terms of a function with numeric exponents from which fewer frequencies are looked at: each is costly."""
@@ -186,7 +197,9 @@ def frequency_text(hertz: Fraction) -> str:
 
 
 def choose_program(
-    tf: TransferFunction, band_hz: tuple[Fraction, Fraction] | None = None, samples: int = SAMPLES
+    tf: AnyTransferFunction,
+    band_hz: tuple[Fraction, Fraction] | None = None,
+    samples: int = SAMPLES,
 ) -> tuple[Program | Piecewise, Verification]:
     """Return the program of the form with the smallest measured error, and the measurement.
 
@@ -195,7 +208,7 @@ def choose_program(
 
     Parameters
     ----------
-    tf : TransferFunction
+    tf : TransferFunction or NestedTransferFunction
         Derived.
     band_hz : tuple of Fraction, optional
         [Hz]; by default the band of the model's ``[analysis]``, else 0.1 Hz to 10 kHz.
@@ -213,7 +226,9 @@ def choose_program(
 
 
 def choose_programs(
-    tf: TransferFunction, band_hz: tuple[Fraction, Fraction] | None = None, samples: int = SAMPLES
+    tf: AnyTransferFunction,
+    band_hz: tuple[Fraction, Fraction] | None = None,
+    samples: int = SAMPLES,
 ) -> tuple[tuple[Program | Piecewise, Verification], tuple[Piecewise, Verification] | None]:
     """Return what :func:`choose_program` does, and the same for the frequency response in real arithmetic.
 
@@ -234,7 +249,7 @@ def choose_programs(
 
 
 def measure_values(
-    tf: TransferFunction,
+    tf: AnyTransferFunction,
     values: Callable[[NDArray[np.complex128]], Sequence[complex]],
     form: str,
     band_hz: tuple[Fraction, Fraction] | None = None,
@@ -266,7 +281,7 @@ class _Gauge:
     Without ``references`` nothing can be measured, for the ``reason`` given.
     """
 
-    tf: TransferFunction
+    tf: AnyTransferFunction
     band: tuple[Fraction, Fraction]
     references: References | None
     reason: str = ""
@@ -278,26 +293,33 @@ class _Gauge:
         return Verification(self.tf.name, form, error, self.band, samples, self.reason, reach)
 
 
-def _gauge(tf: TransferFunction, band_hz: tuple[Fraction, Fraction] | None, samples: int) -> _Gauge:
+def _gauge(tf: AnyTransferFunction, band_hz: tuple[Fraction, Fraction] | None, samples: int) -> _Gauge:
     band = band_hz or tf.model.analysis.band or DEFAULT_BAND
     missing = [p.name for p in tf.parameters if p.value is None]
     if missing:
+        if isinstance(tf, NestedTransferFunction) and len(missing) > NAMED:
+            missing[NAMED:] = [f"and {len(missing) - NAMED} more"]
         return _Gauge(tf, band, None, "no values for " + ", ".join(missing))
     try:
-        return _Gauge(tf, band, References(bind(tf), band, samples))
+        bound = bind_nested(tf) if isinstance(tf, NestedTransferFunction) else bind(tf)
+        return _Gauge(tf, band, References(bound, band, samples))
     except ModelError as problem:
         return _Gauge(tf, band, None, problem.diagnostics[0].message)
 
 
 def _choose(gauge: _Gauge) -> tuple[Program | Piecewise, Verification]:
     tf, references = gauge.tf, gauge.references
+    if isinstance(tf, NestedTransferFunction):
+        nested = build_nested(tf)
+        worst = None if references is None else references.worst_error(nested)
+        return nested, gauge.verified("nested", worst)
     if tf.is_distributed and not tf.is_zero:
         usual, *others = reaches_of(tf)
         rest = (build_piecewise(tf, reach) for reach in others)
         return _choose_pieces(build_piecewise(tf, usual), rest, gauge, "pieces")
     forms = available_forms(tf)
     if references is None:
-        return _unmeasured(gauge, forms)
+        return _unmeasured(gauge, tf, forms)
     is_long = tf.length > LONG
     candidates: list[tuple[Program, str, float]] = []
     for form in forms:
@@ -319,7 +341,7 @@ def _choose(gauge: _Gauge) -> tuple[Program | Piecewise, Verification]:
 def _choose_real(gauge: _Gauge) -> tuple[Piecewise, Verification] | None:
     """Return the program of the frequency response, in half-angle tangents where that serves as well."""
     tf, references = gauge.tf, gauge.references
-    if not tf.is_distributed or tf.is_zero:
+    if isinstance(tf, NestedTransferFunction) or not tf.is_distributed or tf.is_zero:
         return None
     usual, *others = reaches_of(tf)
     first = build_real(tf, usual)
@@ -381,8 +403,7 @@ def _program(tf: TransferFunction, form: str) -> Program | None:
         return None
 
 
-def _unmeasured(gauge: _Gauge, forms: Sequence[str]) -> tuple[Program, Verification]:
-    tf = gauge.tf
+def _unmeasured(gauge: _Gauge, tf: TransferFunction, forms: Sequence[str]) -> tuple[Program, Verification]:
     # Expanded coefficients of a model without numbers would be pages long.
     compact = [form for form in forms if form != "factors"] or forms
     programs = [(form, program) for form in compact if (program := _program(tf, form)) is not None]
@@ -394,7 +415,7 @@ def _unmeasured(gauge: _Gauge, forms: Sequence[str]) -> tuple[Program, Verificat
 
 
 def sample_frequencies(
-    bound: BoundTransferFunction, band_hz: tuple[Fraction, Fraction], samples: int
+    bound: BoundTransferFunction | BoundNested, band_hz: tuple[Fraction, Fraction], samples: int
 ) -> NDArray[np.float64]:
     """Return frequencies [Hz] over a band, denser around those of poles and zeros."""
     low, high = float(band_hz[0]), float(band_hz[1])
@@ -405,9 +426,9 @@ def sample_frequencies(
     return merged[(merged >= low) & (merged <= high)]
 
 
-def _centers(bound: BoundTransferFunction, low: float, high: float) -> list[float]:
+def _centers(bound: BoundTransferFunction | BoundNested, low: float, high: float) -> list[float]:
     """Return the frequencies [Hz] of poles and zeros; of a distributed system where these show."""
-    if bound.ratio.is_zero:
+    if _vanishes(bound):
         return []
     enclosed = bound.enclosed(FIRST_BITS)
     if not isinstance(enclosed, EnclosedTransferFunction):
@@ -416,9 +437,10 @@ def _centers(bound: BoundTransferFunction, low: float, high: float) -> list[floa
     return [*(np.abs(roots.imag) / tau), *(np.abs(roots) / tau)]
 
 
-def _extremes(bound: BoundTransferFunction, low: float, high: float) -> list[float]:
+def _extremes(bound: BoundTransferFunction | BoundNested, low: float, high: float) -> list[float]:
     """Return resonances and antiresonances [Hz]: where the magnitude on the axis is largest and smallest."""
-    program = build_piecewise(bound.source)
+    source = bound.source
+    program = build_nested(source) if isinstance(source, NestedTransferFunction) else build_piecewise(source)
     part = _part(bound)
     most = 2 * max(1, int(MOST_EXTREMES * part) // 2)
     values = doubles(bound)
@@ -445,8 +467,14 @@ def _extremes(bound: BoundTransferFunction, low: float, high: float) -> list[flo
     return found
 
 
-def _part(bound: BoundTransferFunction) -> float:
+def _vanishes(bound: BoundTransferFunction | BoundNested) -> bool:
+    return bound.is_zero if isinstance(bound, BoundNested) else bound.ratio.is_zero
+
+
+def _part(bound: BoundTransferFunction | BoundNested) -> float:
     """Return which part of the usual number of frequencies is looked at."""
+    if isinstance(bound, BoundNested):
+        return max(LEAST, min(1.0, LIGHT_NESTED / max(bound.source.size, 1)))
     if not bound.source.is_nameless:
         return 1.0
     return min(1.0, LIGHT / sum(len(f) for f, _ in bound.ratio.factors))
@@ -467,7 +495,7 @@ class References:
 
     Parameters
     ----------
-    bound : BoundTransferFunction
+    bound : BoundTransferFunction or BoundNested
         With the declared values.
     band_hz : tuple of Fraction
         [Hz].
@@ -479,14 +507,15 @@ class References:
 
     def __init__(
         self,
-        bound: BoundTransferFunction,
+        bound: BoundTransferFunction | BoundNested,
         band_hz: tuple[Fraction, Fraction],
         samples: int = SAMPLES,
         *,
         is_plain: bool = False,
     ) -> None:
         self.bound = bound
-        self._known: dict[int, Enclosed] = {}
+        self._first_bits = FIRST_BITS
+        self._known: dict[int, Enclosed | EnclosedNested] = {}
         low, high = (float(f) for f in band_hz)
         count = max(1, int(samples * _part(bound)))
         hertz = np.geomspace(low, high, count) if is_plain else sample_frequencies(bound, band_hz, count)
@@ -535,19 +564,24 @@ class References:
     def _reference(self, s: complex) -> _Reference | None:
         """Return the value at ``s``, or ``None`` at a pole or zero."""
         point = acb(s.real, s.imag)
-        if self.bound.ratio.is_zero:
+        if _vanishes(self.bound):
             return _Reference(acb(0), FIRST_BITS, acb(1).abs_lower())
-        bits = FIRST_BITS
+        bits = self._first_bits
         while bits <= LAST_BITS:
             function = self._at(bits)
-            value, slope = function(point), function.logarithmic_derivative(point)
+            if isinstance(function, EnclosedNested):
+                value, slope = function.value_and_slope(point)
+            else:
+                value, slope = function(point), function.logarithmic_derivative(point)
             if value.is_finite() and slope.is_finite() and value.rel_accuracy_bits() >= ENOUGH_BITS:
+                if isinstance(function, EnclosedNested):
+                    self._first_bits = bits  # the next point most likely needs as many
                 with ctx.workprec(bits):
                     return _Reference(value, bits, value.abs_lower() * (1 + (point * slope).abs_lower()))
             bits *= 2
         return None
 
-    def _at(self, bits: int) -> Enclosed:
+    def _at(self, bits: int) -> Enclosed | EnclosedNested:
         if bits not in self._known:
             self._known[bits] = self.bound.enclosed(bits)
         return self._known[bits]
@@ -558,13 +592,15 @@ class _Aside:
 
     Parameters
     ----------
-    bound : BoundTransferFunction
+    bound : BoundTransferFunction or BoundNested
         With the declared values.
     band_hz : tuple of Fraction
         [Hz].
     """
 
-    def __init__(self, bound: BoundTransferFunction, band_hz: tuple[Fraction, Fraction]) -> None:
+    def __init__(
+        self, bound: BoundTransferFunction | BoundNested, band_hz: tuple[Fraction, Fraction]
+    ) -> None:
         low, high = band_hz
         self._below = References(bound, (LOWEST, low), ASIDE_SAMPLES, is_plain=True) if low > LOWEST else None
         self._above = (
@@ -607,16 +643,16 @@ def _arguments(program: Program | Piecewise, s: NDArray[Any]) -> NDArray[Any]:
     return s.imag if program.is_real else s
 
 
-def keeps_its_value(program: Program | Piecewise, bound: BoundTransferFunction) -> bool:
+def keeps_its_value(program: Program | Piecewise, bound: BoundTransferFunction | BoundNested) -> bool:
     """Tell whether a program is finite, and not spuriously zero, from 1e-9 to 1e12 rad/s."""
     values = evaluate(program, _arguments(program, 1j * REACH), doubles(bound))
     keeps = np.isfinite(values) & (values != 0)
-    if bound.ratio.is_zero or keeps.all():
+    if _vanishes(bound) or keeps.all():
         return True
     expected = np.array([bound(complex(s)) for s in 1j * REACH[~keeps]])
     return bool((~np.isfinite(expected) | (np.abs(expected) < TINY)).all())
 
 
-def doubles(bound: BoundTransferFunction) -> dict[str, float]:
+def doubles(bound: BoundTransferFunction | BoundNested) -> dict[str, float]:
     """Return the double nearest to every parameter's value."""
     return {name: nearest_double(value.rational, value.pi_power) for name, value in bound.values}

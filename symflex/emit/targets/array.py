@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.model import Model
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class ArrayExporter:
     suffix: str = ".py"
 
     def export(
-        self, model: Model, tfs: Sequence[TransferFunction], stem: str = "", *, is_alone: bool = True
+        self, model: Model, tfs: Sequence[AnyTransferFunction], stem: str = "", *, is_alone: bool = True
     ) -> Export:
         """Return the module; accuracy that was not reached is a warning."""
         made = array_module(tfs, model, self.dialect, model.analysis.band)

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.model import Model
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 
 class CExporter:
@@ -21,7 +21,7 @@ class CExporter:
     summary = "C99 source and header, values at s and arrays of frequencies, verified likewise"
 
     def export(
-        self, model: Model, tfs: Sequence[TransferFunction], stem: str = "", *, is_alone: bool = True
+        self, model: Model, tfs: Sequence[AnyTransferFunction], stem: str = "", *, is_alone: bool = True
     ) -> Export:
         """Return the source, with the header as its companion; accuracy that was not reached is a warning."""
         made = c_files(tfs, model, model.analysis.band, name=None if is_alone else stem)

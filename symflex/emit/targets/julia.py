@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.model import Model
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 
 class JuliaExporter:
@@ -21,7 +21,7 @@ class JuliaExporter:
     summary = "Julia module, one function per transfer function, verified likewise"
 
     def export(
-        self, model: Model, tfs: Sequence[TransferFunction], stem: str = "", *, is_alone: bool = True
+        self, model: Model, tfs: Sequence[AnyTransferFunction], stem: str = "", *, is_alone: bool = True
     ) -> Export:
         """Return the module; accuracy that was not reached is a warning."""
         made = julia_module(tfs, model, stem, model.analysis.band)

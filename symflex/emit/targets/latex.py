@@ -10,7 +10,7 @@ from symflex.emit.forms import print_forms
 from symflex.emit.latex import TEXT_WIDTH_MM, Picture, latex_document, latex_files
 from symflex.errors import ModelError, SymflexError
 from symflex.roots.locate import locate
-from symflex.transfer import bind
+from symflex.transfer import NestedTransferFunction, bind
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from symflex.emit.forms import PrintedForm
     from symflex.model import Model
     from symflex.roots import PoleZeroMap
-    from symflex.transfer import BoundTransferFunction, TransferFunction
+    from symflex.transfer import AnyTransferFunction, BoundTransferFunction
 
 
 ROOT_DIGITS = 15
@@ -60,7 +60,7 @@ class LatexExporter:
     summary = "standalone LaTeX document: parameters, transfer functions, poles, zeros, modes"
 
     def export(
-        self, model: Model, tfs: Sequence[TransferFunction], stem: str = "", *, is_alone: bool = True
+        self, model: Model, tfs: Sequence[AnyTransferFunction], stem: str = "", *, is_alone: bool = True
     ) -> Export:
         """Return the document."""
         forms, maps, warnings = self._parts(tfs)
@@ -68,7 +68,7 @@ class LatexExporter:
         return Export(text, warnings)
 
     def export_files(
-        self, model: Model, tfs: Sequence[TransferFunction]
+        self, model: Model, tfs: Sequence[AnyTransferFunction]
     ) -> tuple[dict[str, str], tuple[str, ...]]:
         """Return the files by name, to be written into one folder, and the warnings."""
         forms, maps, warnings = self._parts(tfs)
@@ -76,10 +76,12 @@ class LatexExporter:
         files = latex_files(model, tfs, forms, pole_zero_maps=maps, pictures=pictures, width_mm=self.width_mm)
         return files, (*warnings, *more)
 
-    def _pictures(self, model: Model, tfs: Sequence[TransferFunction]) -> tuple[list[Picture], list[str]]:
+    def _pictures(self, model: Model, tfs: Sequence[AnyTransferFunction]) -> tuple[list[Picture], list[str]]:
         """Return the model's figures, one of each kind besides, and why others are left out."""
         bounds: list[BoundTransferFunction] = []
         for tf in tfs:
+            if isinstance(tf, NestedTransferFunction):
+                continue
             try:
                 bound = bind(tf)
             except ModelError:
@@ -144,12 +146,15 @@ class LatexExporter:
         return draw(kind, [bound.source for bound in of], of, width_mm=self.width_mm, font="latex")
 
     def _parts(
-        self, tfs: Sequence[TransferFunction]
+        self, tfs: Sequence[AnyTransferFunction]
     ) -> tuple[tuple[PrintedForm, ...], list[PoleZeroMap], tuple[str, ...]]:
         """Return forms, poles and zeros of functions whose parameters all have values, and warnings."""
         forms, sentences = print_forms(tfs, self.form)
         maps, warnings = [], list(sentences)
         for tf in tfs:
+            if isinstance(tf, NestedTransferFunction):
+                warnings.append(f"poles and zeros of {tf.name} are left out: it is in nested form")
+                continue
             try:
                 bound = bind(tf)
             except ModelError:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.model import Model
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 
 LONGEST_STEM = 64
@@ -26,7 +26,7 @@ class MatlabExporter:
     summary = "MATLAB and Octave function file, a handle per transfer function, verified likewise"
 
     def export(
-        self, model: Model, tfs: Sequence[TransferFunction], stem: str = "", *, is_alone: bool = True
+        self, model: Model, tfs: Sequence[AnyTransferFunction], stem: str = "", *, is_alone: bool = True
     ) -> Export:
         """Return the file; a warning says so when MATLAB cannot call a file of this name."""
         made = matlab_function_file(tfs, model, stem, model.analysis.band)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.model import Model
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class StateSpaceExporter:
     summary = "numpy module with A, B, C, D as a function of the parameters, states named"
 
     def export(
-        self, model: Model, tfs: Sequence[TransferFunction], stem: str = "", *, is_alone: bool = True
+        self, model: Model, tfs: Sequence[AnyTransferFunction], stem: str = "", *, is_alone: bool = True
     ) -> Export:
         """Return the module; accuracy that was not reached is a warning."""
         system = realise(model, [(tf.output.name, tf.input.name) for tf in tfs])

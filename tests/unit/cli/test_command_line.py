@@ -60,8 +60,18 @@ def test_an_exceeded_budget_ends_with_code_5(shell, monkeypatch):
         raise BudgetError(Diagnostic("SF501", "too large, for this test"))
 
     monkeypatch.setattr(pipeline, "derive_all", too_large)
-    done = shell("derive", "x.toml")
+    done = shell("derive", "x.toml", "--representation", "expanded")
     assert (done.code, done.err) == (5, "error[SF501]: too large, for this test\n")
+
+
+def test_what_is_too_large_expanded_is_printed_in_nested_form(shell, monkeypatch):
+    def too_large(*_):
+        raise BudgetError(Diagnostic("SF501", "too large, for this test"))
+
+    monkeypatch.setattr(pipeline, "derive_all", too_large)
+    done = shell("derive", "x.toml")
+    assert (done.code, done.err) == (0, "in nested form: too large, for this test\n")
+    assert "nested form" in done.out
 
 
 def test_exhausted_memory_ends_with_code_5(shell, monkeypatch):

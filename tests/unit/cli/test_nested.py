@@ -1,0 +1,94 @@
+"""The nested representation on the command line."""
+
+import json
+
+import pytest
+
+NAMES = """
+symflex = 1
+parameters = { w_1 = "2 kg", "Z_1" = "3 kg", T_1 = "4 N/m", P_1 = "5 N*s/m" }
+inputs = { F = { force = "x" } }
+outputs = { X = "x", Y = "y" }
+[elements]
+first = { type = "mass", at = "x", m = "w_1" }
+second = { type = "mass", at = "y", m = "Z_1" }
+spring = { type = "spring", between = ["x", "y"], k = "T_1" }
+loss = { type = "damper", between = ["x", "y"], b = "P_1" }
+"""
+
+BEAM = """
+symflex = 1
+parameters = { EI = {}, m = {}, l = {} }
+inputs = { F = { force = "a.y" } }
+outputs = { Y = "a.y" }
+[elements]
+bar = { type = "beam", between = ["a", "ground"], E = "EI", I = "1", rho = "m", A = "1", l = "l" }
+"""
+
+
+@pytest.fixture
+def spec(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "names.toml").write_text(NAMES, "utf-8")
+    (tmp_path / "beam.toml").write_text(BEAM, "utf-8")
+    return "names.toml"
+
+
+@pytest.mark.parametrize("option", [("--form", "nested"), ("--representation", "nested")])
+def test_the_nested_form_names_sub_impedances_apart_from_parameters(shell, spec, option):
+    done = shell("derive", spec, "--tf", "X/F", *option)
+    assert done.code == 0
+    assert "w_2 = P_1*s + T_1" in done.out
+    assert "Z_2 = Z_1*s^2" in done.out
+    assert "w_1*s^2 + w_2*Z_2/(Z_2 + w_2)" in done.out
+    assert "hidden modes: not examined" in done.out
+
+
+def test_json_has_the_schema_of_other_forms(shell, spec):
+    (entry,) = json.loads(shell("derive", spec, "--tf", "Y/F", "--form", "nested", "--json").out)[
+        "transfer_functions"
+    ]
+    assert (entry["form"], entry["hidden"], entry["quantity"]) == ("nested", None, "receptance")
+    assert [name for name, _ in entry["where"]] == ["w_2", "Z_2", "T_2"]
+    assert (entry["num"], entry["den"]) == ("T_2", "w_1*s^2 + T_2*Z_2")
+
+
+def test_latex_prints_a_sequence_of_named_sub_impedances(shell, spec):
+    done = shell("derive", spec, "--tf", "X/F", "--form", "nested", "--format", "latex", "--width", "ieee")
+    assert r"\text{where}\quad w_{2} &= P_{1} s + T_{1}" in done.out
+    assert r"Z_{2} &= Z_{1} s^{2}" in done.out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"),
+    [
+        (("--form", "nested", "--representation", "expanded"), 2),
+        (("--form", "polynomial", "--representation", "nested"), 2),
+        (("--representation", "dense"), 2),
+        (("--form", "polynomial"), 0),
+        (("--representation", "auto"), 0),
+    ],
+)
+def test_form_and_representation_must_agree(shell, spec, arguments, code):
+    assert shell("derive", spec, *arguments).code == code
+
+
+def test_a_beam_has_no_nested_form(shell, spec):
+    done = shell("derive", "beam.toml", "--form", "nested")
+    assert (done.code, done.out) == (3, "")
+    assert "SF910" in done.err
+
+
+@pytest.mark.parametrize("target", ["numpy", "c", "matlab", "julia", "array-api", "jax"])
+def test_exported_code_is_of_the_nested_form_and_verified(shell, spec, target):
+    done = shell("export", spec, "--to", target, "--representation", "nested")
+    assert done.code == 0
+    assert "verified: worst relative error" in done.out
+    assert "Z_2 = " in done.out
+
+
+def test_a_latex_document_says_that_roots_are_left_out(shell, spec):
+    done = shell("export", spec, "--to", "latex", "--form", "nested")
+    assert done.code == 0
+    assert "in nested form; hidden modes were not looked for" in done.out
+    assert "poles and zeros of X/F are left out" in done.err

@@ -1,0 +1,256 @@
+"""Nested transfer functions: values, binding, and what they are made of."""
+
+import numpy as np
+import pytest
+from flint import acb
+from hypothesis import given
+
+from symflex import pipeline
+from symflex.emit.forms import nested_form
+from symflex.emit.json_format import derive_json
+from symflex.errors import ModelError, Source, Span, Text, UsageError
+from symflex.expressions import (
+    Call,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+    parse,
+)
+from symflex.transfer import bind, bind_nested
+from tests.property.networks import networks, reciprocal_networks, to_toml
+from tests.property.test_random_networks import POINTS, assert_close, pairs, quiet, reference
+
+CHAIN = """
+symflex = 1
+parameters = { m_1 = "1 kg", m_2 = "2 kg", m_3 = "3 kg", k = "400 N/m", b = "5 N*s/m" }
+inputs = { F = { force = "x_1" }, G = { force = "x_3" } }
+outputs = { X_1 = "x_1", V_3 = "s*x_3", X_3 = "x_3" }
+[elements]
+first = { type = "mass", at = "x_1", m = "m_1" }
+second = { type = "mass", at = "x_2", m = "m_2" }
+third = { type = "mass", at = "x_3", m = "m_3" }
+spring_1 = { type = "spring", between = ["x_1", "x_2"], k = "k" }
+loss_1 = { type = "damper", between = ["x_1", "x_2"], b = "b" }
+spring_2 = { type = "spring", between = ["x_2", "x_3"], k = "2*k" }
+"""
+
+DEFINITIONS = """
+symflex = 1
+parameters = { w_1 = "2 kg", Z_1 = "3 N*s/m", k = "50 N/m" }
+definitions = { Y = "w_1*s + Z_1", root = "sqrt(k*w_1)" }
+inputs = { F = { force = "x" } }
+outputs = { X = "x", R = "root*x" }
+[elements]
+body = { type = "mass", at = "x", m = "w_1" }
+loss = { type = "damper", between = ["x", "ground"], b = "Z_1" }
+spring = { type = "spring", between = ["x", "y"], k = "k" }
+other = { type = "mass", at = "y", m = "Y/s" }
+"""
+
+
+def nested(text):
+    return {tf.name: tf for tf in pipeline.derive_nested(pipeline.loads(text))}
+
+
+def dense(s, source):
+    """Return the displacements of the chain from its matrix."""
+    w, v = 400 + 5 * s, 800
+    a = np.array(
+        [[s**2 + w, -w, 0], [-w, 2 * s**2 + w + v, -v], [0, -v, 3 * s**2 + v]],
+    )
+    return np.linalg.solve(a, np.eye(3)[{"F": 0, "G": 2}[source]])
+
+
+@pytest.mark.parametrize("name", ["X_1/F", "V_3/F", "X_3/F", "X_1/G", "X_3/G"])
+def test_the_values_are_those_of_the_matrix(name):
+    H = bind_nested(nested(CHAIN)[name])
+    points = np.array([0.3j, 12j, 40j, 2 - 3j, 1.5, 500j])
+    at = [dense(s, name[-1])[int(name[2]) - 1] * (s if name[0] == "V" else 1) for s in points]
+    assert np.allclose([H(complex(s)) for s in points], at, rtol=1e-9)
+    assert np.allclose(H.at(points), at, rtol=1e-9)
+    assert H.at(points.reshape(2, 3)).shape == (2, 3)
+
+
+def test_slopes_are_those_of_a_central_difference():
+    H = bind_nested(nested(CHAIN)["X_3/F"])
+    s, step = 3 + 7j, 1e-6
+    value, slope = H.enclosed(200).value_and_slope(acb(s.real, s.imag))
+    difference = (H(s + step) - H(s - step)) / (2 * step) / H(s)
+    assert complex(value) == pytest.approx(H(s), rel=1e-12)
+    assert complex(slope) == pytest.approx(difference, rel=1e-7)
+
+
+def test_a_pole_at_the_origin_is_not_finite():
+    H = bind_nested(nested(CHAIN)["X_1/F"])
+    assert not np.isfinite(H(0j))
+    assert not np.isfinite(H.at(0j))
+    assert np.isnan(H(complex("inf")))
+
+
+def test_the_value_at_the_origin_is_the_limit():
+    text = """
+symflex = 1
+parameters = { m = "2 kg", b = "4 N*s/m", c = "8 N*s/m" }
+inputs = { F = { force = "y" } }
+outputs = { V = "s*y", A = "s^2*y" }
+[elements]
+body = { type = "mass", at = "x", m = "m" }
+loss = { type = "damper", between = ["x", "y"], b = "b" }
+slip = { type = "damper", between = ["x", "ground"], b = "c" }
+"""
+    # Two dampers in series carry a constant force: v = F (1/b + 1/c).
+    assert bind_nested(nested(text)["V/F"])(0j) == pytest.approx(3 / 8, rel=1e-15)
+    assert bind_nested(nested(text)["A/F"])(0j) == 0
+
+
+def test_values_stay_finite_at_extreme_frequencies():
+    H = bind_nested(nested(CHAIN)["X_1/F"])
+    omega = np.logspace(-9, 12, 22)
+    found = H.at(1j * omega)
+    # Far below the resonances all masses move as one, far above the first moves alone.
+    assert found[0] == pytest.approx(-1 / (6 * omega[0] ** 2), rel=1e-9)
+    assert found[-1] == pytest.approx(-1 / omega[-1] ** 2, rel=1e-9)
+
+
+def test_values_are_given_with_units_and_checked():
+    tf = nested(CHAIN)["X_1/F"]
+    assert bind_nested(tf, {"m_1": "1000 g"})(3j) == bind_nested(tf)(3j)
+    assert bind_nested(tf, {"m_1": 2})(3j) != bind_nested(tf)(3j)
+    with pytest.raises(UsageError):
+        bind_nested(tf, {"m_9": 2})
+    with pytest.raises(ModelError) as caught:
+        bind_nested(nested(CHAIN.replace('"2 kg"', "{}"))["X_1/F"])
+    assert [d.code for d in caught.value.diagnostics] == ["SF229"]
+
+
+def test_an_output_that_does_not_depend_on_an_input_is_zero():
+    text = CHAIN.replace('X_1 = "x_1"', 'X_1 = "x_1 - x_1"')
+    tf = nested(text)["X_1/F"]
+    assert tf.is_zero
+    assert bind_nested(tf)(2j) == 0
+    assert not bind_nested(tf).at(np.array([2j])).any()
+
+
+def test_definitions_and_functions_of_constants_are_taken_along():
+    found = nested(DEFINITIONS)
+    s = 0.7 + 2j
+    top, impedance = 50.0, 2 * s**2 + 3 * s
+    expected = 1 / (impedance + top * impedance / (top + impedance))
+    assert bind_nested(found["X/F"])(s) == pytest.approx(expected, rel=1e-12)
+    assert bind_nested(found["R/F"])(s) == pytest.approx(10 * expected, rel=1e-12)
+
+
+def evaluated(expression, known):
+    """Return the value of a parsed expression."""
+    match expression:
+        case Number(value):
+            return complex(value)
+        case Name(name):
+            return known[name]
+        case Negative(operand):
+            return -evaluated(operand, known)
+        case Sum(terms):
+            return sum(evaluated(t, known) for t in terms)
+        case Product(factors):
+            return np.prod([evaluated(f, known) for f in factors])
+        case Quotient(above, below):
+            return evaluated(above, known) / evaluated(below, known)
+        case Power(base, exponent):
+            return evaluated(base, known) ** int(evaluated(exponent, known).real)
+        case Call("sqrt", argument):
+            return np.sqrt(evaluated(argument, known))
+    raise TypeError(expression)
+
+
+def expression(text):
+    return parse(Text(text, Span(Source("<json>", text), 0, len(text))))
+
+
+def read_back(tf, s):
+    """Return the value that the JSON document's strings lead to, line by line."""
+    document = derive_json(tf, nested_form(tf))
+    known = {"s": s, "pi": np.pi} | {
+        p.name: complex(p.value.rational) * np.pi**p.value.pi_power for p in tf.parameters
+    }
+    for name, text in document["where"]:
+        assert name not in known, "a line hides a parameter"
+        known[name] = evaluated(expression(text), known)
+    num, den = (evaluated(expression(document[part]), known) for part in ("num", "den"))
+    return num / den, document
+
+
+@pytest.mark.parametrize("text", [CHAIN, DEFINITIONS])
+def test_the_strings_of_the_document_lead_to_the_function(text):
+    for tf in nested(text).values():
+        found, document = read_back(tf, 0.4 + 3j)
+        assert found == pytest.approx(bind_nested(tf)(0.4 + 3j), rel=1e-11)
+        assert document["form"] == "nested"
+        assert document["hidden"] is None
+
+
+@given(network=networks())
+@quiet(40)
+def test_random_networks_agree_with_the_dense_tableau(network):
+    model = pipeline.loads(to_toml(network))
+    found = {tf.name: tf for tf in pipeline.derive_nested(model)}
+    for output, source in pairs(network):
+        H = bind_nested(found[f"{output}/{source}"])
+        for at in POINTS[:3]:
+            assert_close(H(at), reference(network, output, source, at))
+
+
+@given(network=networks())
+@quiet(15)
+def test_the_strings_of_random_networks_lead_to_the_function(network):
+    for tf in pipeline.derive_nested(pipeline.loads(to_toml(network))):
+        value = bind_nested(tf)(POINTS[0])
+        assert abs(read_back(tf, POINTS[0])[0] - value) <= 1e-6 * max(abs(value), 1e-4)
+
+
+@given(network=reciprocal_networks())
+@quiet(10)
+def test_a_passive_network_is_reciprocal(network):
+    found = {tf.name: tf for tf in pipeline.derive_nested(pipeline.loads(to_toml(network)))}
+    there, back = (bind_nested(found[name]) for name in ("Y_2/U_1", "Y_1/U_2"))
+    for at in POINTS[:2]:
+        assert abs(there(at) - back(at)) <= 1e-9 * reference(network, "Y_2", "U_1", at).scale
+
+
+def test_both_representations_are_the_same_function():
+    model = pipeline.load("derivations/eppinger1988/six_mass.toml")
+    values = {p.name: 1 + i for i, p in enumerate(model.parameters)}
+    for one, other in zip(pipeline.derive_all(model), pipeline.derive_nested(model), strict=True):
+        assert bind_nested(other, values)(0.3 + 2j) == pytest.approx(bind(one, values)(0.3 + 2j), rel=1e-13)
+
+
+DELAYED = """
+symflex = 1
+parameters = { T = "1 s" }
+inputs.u = {}
+blocks.D = { type = "delay", T = "T" }
+outputs.y = "D*u"
+"""
+
+
+def test_a_distributed_model_is_refused_by_name():
+    with pytest.raises(ModelError) as caught:
+        pipeline.derive_nested(pipeline.loads(DELAYED))
+    assert caught.value.diagnostics[0].code == "SF910"
+
+
+def test_the_representation_is_chosen_by_the_number_of_terms():
+    from benchmarks.networks import chain, network
+
+    small, large = network(chain(8)), network(chain(40))
+    (tf,), reason = pipeline.derive_as(small, [("X_first", "F")])
+    assert (type(tf).__name__, reason) == ("TransferFunction", "")
+    (tf,), reason = pipeline.derive_as(large, [("X_first", "F")])
+    assert type(tf).__name__ == "NestedTransferFunction"
+    # The determinant of a chain in w and m has as many terms as Fibonacci counts: F(80) for 40 masses.
+    assert "some 2e16 terms" in reason
+    (tf,), reason = pipeline.derive_as(small, [("X_first", "F")], "nested")
+    assert (type(tf).__name__, reason) == ("NestedTransferFunction", "")
