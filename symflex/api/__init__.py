@@ -6,6 +6,7 @@ from symflex.api.form import Form
 from symflex.api.mode import Mode
 from symflex.api.mode_shape import ModeShape
 from symflex.api.model import Model, Table, load, loads
+from symflex.api.nested import NestedTransferFunction
 from symflex.api.report import WrittenReport, write_report
 from symflex.api.residue import Residue
 from symflex.api.root import Root
@@ -21,6 +22,7 @@ __all__ = [
     "Mode",
     "ModeShape",
     "Model",
+    "NestedTransferFunction",
     "Number",
     "Residue",
     "Root",

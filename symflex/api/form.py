@@ -23,13 +23,13 @@ class Form:
 
     Parameters
     ----------
-    source : TransferFunction
+    source : TransferFunction or NestedTransferFunction
         The transfer function.
     printed : PrintedForm
         Its arrangement.
     """
 
-    source: transfer_room.TransferFunction
+    source: transfer_room.AnyTransferFunction
     printed: PrintedForm
 
     @property

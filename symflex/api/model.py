@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from symflex import pipeline
 from symflex.api.budget import budget_of
+from symflex.api.nested import NestedTransferFunction
 from symflex.api.stability import Stability
 from symflex.api.state_space import StateSpace
 from symflex.api.transfer_function import Number, TransferFunction
@@ -143,6 +144,37 @@ class Model:
         """
         (pair,) = pipeline.pick_pairs(self.resolved, [f"{output}/{input}"])
         return TransferFunction(pipeline.derive_all(self.resolved, [pair])[0])
+
+    def nested(self, output: str, input: str) -> NestedTransferFunction:
+        """Derive output over input as a straight-line program, for models too large to expand.
+
+        Raises
+        ------
+        UsageError
+            SF902 when there is no such output or input.
+        ModelError
+            SF30x when the equations are singular; SF910 for beams, rods and delays.
+
+        Examples
+        --------
+        >>> model = Model(
+        ...     parameters={"m_1": {}, "m_2": {}, "k": {}},
+        ...     elements={
+        ...         "motor": {"type": "mass", "at": "x", "m": "m_1"},
+        ...         "tip": {"type": "mass", "at": "y", "m": "m_2"},
+        ...         "link": {"type": "spring", "between": ["x", "y"], "k": "k"},
+        ...     },
+        ...     inputs={"F": {"force": "x"}},
+        ...     outputs={"X": "x"},
+        ... )
+        >>> G = model.nested("X", "F")
+        >>> G.num, G.den, G.where
+        (1, Z_1*k/(Z_1 + k) + m_1*s**2, ((Z_1, m_2*s**2),))
+        >>> G.bind(m_1=1, m_2=2, k=3)(1j) == 1 / (-2 * 3 / (-2 + 3) - 1)
+        True
+        """
+        (pair,) = pipeline.pick_pairs(self.resolved, [f"{output}/{input}"])
+        return NestedTransferFunction(pipeline.derive_nested(self.resolved, [pair])[0])
 
     def transfer_functions(self) -> tuple[TransferFunction, ...]:
         """Derive every output over every input, sharing one elimination."""

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from symflex.roots import PoleZeroMap, Region, Root
-    from symflex.transfer import AnyTransferFunction, TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 Row = tuple[str, ...]
 
@@ -38,7 +38,7 @@ SHALLOW = 8
 """Columns up to which a broken sum stands to the right of its parenthesis."""
 
 
-def form_text(tf: TransferFunction, form: PrintedForm) -> str:
+def form_text(tf: AnyTransferFunction, form: PrintedForm) -> str:
     """Return ``OUT/IN = num/den`` on one line, and a line per definition or law used."""
     whole = form.num if _is_one(form.den) else Quotient(form.num, form.den)
     lines = [f"{tf.name} = {format_expression(whole)}"]
