@@ -158,8 +158,31 @@ def time_commands(
             subprocess.run(command, capture_output=True, check=True, env=environment)
             times[way].append(_spent() - begin)
     return [
-        Measurement(task, way, statistics.median(taken[1:]), float("inf")) for way, taken in times.items()
+        Measurement(task, way, statistics.median(taken[1:]), float("inf"), _peak(commands[way], environment))
+        for way, taken in times.items()
     ]
+
+
+def _peak(command: Sequence[str], environment: Mapping[str, str]) -> float | None:
+    """Return the most memory a command of Python held [MB], run once more as it would print that."""
+    interpreter, switch, *rest = command
+    if switch == "-c":
+        code = rest[0] + PEAK
+    else:
+        code = f"import runpy, sys\nsys.argv = {['symflex', *rest[1:]]!r}\n" + COMMAND + PEAK
+    done = subprocess.run(
+        [interpreter, "-c", code], capture_output=True, text=True, check=True, env=environment
+    )
+    last = done.stdout.split()[-1:]
+    return float(last[0]) / 1e3 if last and last[0].isdigit() else None
+
+
+COMMAND = """
+try:
+    runpy.run_module("symflex", run_name="__main__")
+except SystemExit:
+    pass
+"""
 
 
 def _spent() -> float:

@@ -11,10 +11,11 @@ from __future__ import annotations
 import subprocess
 import sys
 from dataclasses import dataclass
+from math import nan
 
 import numpy as np
 
-from benchmarks.measure import Claim, Measurement, fastest
+from benchmarks.measure import PEAK, Claim, Measurement, fastest
 from benchmarks.networks import chain, network
 from symflex import pipeline
 from symflex.transfer import bind_nested
@@ -30,12 +31,13 @@ CEILINGS = {1_000: 0.1, 50_000: 2.0}
 """Per length of a chain, seconds the elimination may take."""
 EVEN = 1.02
 """How far the operations per mass may differ between 1000 masses and the largest number."""
+LONGEST = 60.0
+"""Seconds the largest networks may take, model and equations included."""
 MASSES, POINTS, ROUNDS = 200, 1_000, 5
 TIMES_FASTER = 30.0
 AGREEMENT = 1e-11
 
 SNIPPET = """
-import resource
 import time
 from benchmarks.networks import NETWORKS, network
 from symflex import pipeline
@@ -48,8 +50,7 @@ middle = time.process_time()
 found = eliminate(equations, [("X_first", "F"), ("X_last", "F")])
 end = time.process_time()
 sizes = [found.program.size(*quotient) for quotient in found.quotients]
-memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-print(end - middle, middle - begin, *sizes, memory)
+print(end - middle, middle - begin, *sizes)
 """
 
 
@@ -68,7 +69,7 @@ class Growth:
     first, last : int
         Operations of X_first/F and of X_last/F.
     memory : float
-        Most memory the process had, model and equations included [MB].
+        Most memory the process had, model and equations included [MB]; nan where it is not known.
     """
 
     kind: str
@@ -82,16 +83,17 @@ class Growth:
 
 def grow(kind: str, n: int, limit: float) -> Growth | None:
     """Measure one size in a process of its own, ``None`` when it takes longer than ``limit``."""
-    code = SNIPPET.format(kind=kind, n=n)
+    code = SNIPPET.format(kind=kind, n=n) + PEAK
     try:
         done = subprocess.run(
             [sys.executable, "-c", code], capture_output=True, text=True, timeout=limit, check=True
         )
     except subprocess.TimeoutExpired:
         return None
-    seconds, assembly, first, last, memory = done.stdout.split()
+    seconds, assembly, first, last, *memory = done.stdout.split()
     masses = round(n**0.5) ** 2 if kind == "grid" else n
-    return Growth(kind, masses, float(seconds), float(assembly), int(first), int(last), int(memory) / 1024)
+    peak = float(memory[0]) / 1e3 if memory else nan
+    return Growth(kind, masses, float(seconds), float(assembly), int(first), int(last), peak)
 
 
 def growth_table(curve: list[Growth]) -> str:
@@ -117,9 +119,11 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
     curve: list[Growth] = []
     for kind, sizes in SIZES.items():
         for n in sizes:
-            grown = grow(kind, n, limit)
+            grown = grow(kind, n, max(limit, LONGEST))
             seconds = None if grown is None else grown.seconds
-            found.append(Measurement(f"nested form: elimination of a {kind}", f"{n} masses", seconds, limit))
+            peak = None if grown is None else grown.memory
+            task = f"nested form: elimination of a {kind}"
+            found.append(Measurement(task, f"{n} masses", seconds, limit, peak))
             if grown is not None:
                 curve.append(grown)
             if kind == "chain" and n in CEILINGS:
