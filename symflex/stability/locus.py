@@ -155,10 +155,7 @@ def trace_locus(
     """
     budget = budget or Budget()
     above, below = _parts(loop)
-    low, high = limits or (Fraction(0), None if loop.nominal is None else 10 * loop.nominal)
-    if low is None or high is None or not low < high:
-        message = f"a locus needs a first and a last value of '{loop.gain.name}'"
-        raise UsageError(Diagnostic("SF804", message, None, "say --range LO HI, or give it a value"))
+    low, high = _range(loop, limits)
     wanted = modes or loop.bound.source.model.analysis.modes or DEFAULT_MODES
     region: Region | None = Modes(wanted) if loop.bound.kernels else None
     wider: Region | None = Modes(wanted + 2) if loop.bound.kernels else None
@@ -168,8 +165,10 @@ def trace_locus(
     poles, final = _points(start.poles), _points(end.poles)
     bottom, top = float(low), float(high)
     goals = _goals(bottom, top)
-    forward = _trace(function, poles, bottom, goals)
-    first = [branch[1] for branch in forward]
+    early = _trace(function, poles, bottom, goals[:1])
+    first = [branch[-1] for branch in early]
+    later = _trace(function, first, goals[0], goals[1:])
+    forward = [one + other[1:] for one, other in zip(early, later, strict=True)]
     # Of a loop with kernels, poles beyond those proved at the last gain are not compared, nor those where
     # poles accumulate, which no search exhausts.
     reach = max((abs(s) for s in final), default=0.0) if loop.bound.kernels else inf
@@ -206,6 +205,8 @@ def trace_locus(
             else:
                 tail = _outwards(function, branch[-1], bottom, goals[0], OUT_OF_SIGHT * size)
                 entering.append((*reversed(tail), *reversed(branch)))
+        entering, parted = _until_parting(entering)
+        branches += parted
     return RootLocus(
         loop.gain.name,
         (low, high),
@@ -217,6 +218,46 @@ def trace_locus(
         tuple(entering),
         tuple(joining),
     )
+
+
+def _until_parting(
+    entering: Sequence[tuple[complex, ...]],
+) -> tuple[list[tuple[complex, ...]], list[tuple[complex, ...]]]:
+    """Cut curves from infinity where they meet one from a marked pole on the axis and leave it as a pair.
+
+    Which of the two leaves which way has no meaning, and both are drawn alike from there on.
+    """
+    kept, parted = [], []
+    ends = {branch[-1] for branch in entering}
+    for branch in entering:
+        last = max((i for i, s in enumerate(branch) if not s.imag), default=None)
+        if last is None or not branch[-1].imag or branch[-1].conjugate() in ends:
+            kept.append(branch)
+        else:
+            kept.append(branch[: last + 1])
+            parted.append(branch[last:])
+    return kept, parted
+
+
+def _range(loop: Loop, limits: tuple[Fraction | None, Fraction | None] | None) -> tuple[Fraction, Fraction]:
+    """Return the first and the last gain."""
+    name = loop.gain.name
+    if limits is None:
+        if loop.nominal is None or not loop.nominal > 0:
+            value = "no value" if loop.nominal is None else f"the value {float(loop.nominal):.6g}"
+            message = f"'{name}' has {value} from which a locus could take its range"
+            raise UsageError(Diagnostic("SF804", message, None, "say --range LO HI"))
+        return Fraction(0), 10 * loop.nominal
+    low, high = limits
+    if low is None or high is None:
+        message = f"a locus ends at a finite value of '{name}'"
+        raise UsageError(Diagnostic("SF804", message, None, "say --range LO HI with two numbers"))
+    if low >= high:
+        how = "is empty" if low == high else "is reversed"
+        message = f"the range of '{name}' {how}: {float(low):.6g} to {float(high):.6g}"
+        hint = "give two different values" if low == high else f"say --range {float(high):.6g} {float(low):.6g}"
+        raise UsageError(Diagnostic("SF804", message, None, hint))
+    return low, high
 
 
 def _points(roots: Sequence[Root]) -> list[complex]:
@@ -285,11 +326,11 @@ def _nearest(points: Sequence[complex], s: complex) -> int | None:
 def _trace(
     function: LoopFunction, poles: Sequence[complex], gain: float, goals: Sequence[float]
 ) -> list[list[complex]]:
-    """Return the curves of poles from one gain through others; the second point is at the first of these."""
+    """Return the curves of poles from one gain through others."""
     size = max((abs(s) for s in poles), default=1.0) or 1.0
     branches = [[s] for s in poles]
     current, reached = list(poles), gain
-    for number, goal in enumerate(goals):
+    for goal in goals:
         pending = [goal]
         while pending:
             aim = pending[-1]
@@ -302,9 +343,8 @@ def _trace(
                 continue
             current, reached = found, aim
             pending.pop()
-            if number or not pending:
-                for branch, s in zip(branches, current, strict=True):
-                    branch.append(s)
+            for branch, s in zip(branches, current, strict=True):
+                branch.append(s)
     return branches
 
 

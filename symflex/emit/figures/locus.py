@@ -42,9 +42,9 @@ def draw_locus(locus: RootLocus, title: str | None = None, width: float | None =
     """Draw a root locus.
 
     Crosses are the poles at the first gain, squares those at the last, circles the zeros; all three are
-    proved. The lines between are traced numerically: solid from poles at the first gain, dashed from infinity,
-    dotted from where none is marked. The legend says how many of each lie outside. Grey circles surround
-    points at which poles accumulate. Right of the imaginary axis the ground is tinted.
+    proved. The lines between are traced numerically: solid from poles at the first gain, dashed from
+    infinity, dotted from where none is marked. The legend says how many of each lie outside. Grey circles
+    surround points at which poles accumulate. Right of the imaginary axis the ground is tinted.
     """
     width = width or COLUMN_INCHES
     lines = title_lines(title, width)
@@ -68,7 +68,7 @@ def draw_locus(locus: RootLocus, title: str | None = None, width: float | None =
     for points, shape, colour, label in marks:
         inside = [s for s in points if _is_seen(axes, s)]
         outside = len(points) - len(inside)
-        if inside:
+        if inside or (points and points is not zeros):
             axes.plot(
                 [s.real for s in inside],
                 [s.imag for s in inside],
@@ -78,7 +78,7 @@ def draw_locus(locus: RootLocus, title: str | None = None, width: float | None =
                 markeredgewidth=0.9,
                 markerfacecolor="none",
                 zorder=3,
-                label=f"{label} ({outside} outside)" if outside else label,
+                label=f"{label} ({outside if inside else 'all'} outside)" if outside else label,
             )
     kinds = (
         (locus.branches, "-", None),
@@ -89,8 +89,15 @@ def draw_locus(locus: RootLocus, title: str | None = None, width: float | None =
         shown = [b for b in branches if any(_is_seen(axes, s) for s in b)]
         for i, branch in enumerate(shown):
             s = drawable(np.array(branch), seen)
-            label = None if i else legend
-            axes.plot(s.real, s.imag, line, color=COLOURS[0], linewidth=1.0, zorder=2, label=label)
+            axes.plot(
+                s.real,
+                s.imag,
+                line,
+                color=COLOURS[0],
+                linewidth=1.0,
+                zorder=2,
+                label=None if i else legend,
+            )
     _draw_holes(axes, locus)
     axes.set_xlabel(r"$\mathrm{Re}(s)$ [rad/s]")
     axes.set_ylabel(r"$\mathrm{Im}(s)$ [rad/s]")
