@@ -64,6 +64,8 @@ def added_cell(facts: ModelFacts) -> Cell:
     """Return the poles and zeros that each flexible mode adds to the rigid system."""
     runs: list[Run] = []
     for function in representatives(facts):
+        if function.modes and function.is_still_when_rigid:
+            runs += [NONE, "\n", Aside(f"{function.tf}, no response when rigid"), "\n"]
         if function.added is None or not function.modes:
             continue
         zeros, poles = function.added
@@ -193,7 +195,9 @@ def comparison_section(models: Sequence[ModelFacts]) -> Section | None:
             "springs and "
             "massless beams made rigid (exact limits). For beams and other distributed parts those "
             "through the "
-            "highest pole listed are counted. Of functions that agree in all of this one is shown."
+            "highest pole listed are counted. Of functions that agree in all of this one is shown. "
+            "A dash stands where the rigid model has no response to compare with, as where only springs hold "
+            "it to ground."
         ),
         text(
             "Minimum phase means: no zero in the open right half plane. “For all values” is proved for all "

@@ -255,7 +255,9 @@ def _range(loop: Loop, limits: tuple[Fraction | None, Fraction | None] | None) -
     if low >= high:
         how = "is empty" if low == high else "is reversed"
         message = f"the range of '{name}' {how}: {float(low):.6g} to {float(high):.6g}"
-        hint = "give two different values" if low == high else f"say --range {float(high):.6g} {float(low):.6g}"
+        hint = (
+            "give two different values" if low == high else f"say --range {float(high):.6g} {float(low):.6g}"
+        )
         raise UsageError(Diagnostic("SF804", message, None, hint))
     return low, high
 
