@@ -64,13 +64,13 @@ def added_cell(facts: ModelFacts) -> Cell:
     """Return the poles and zeros that each flexible mode adds to the rigid system."""
     runs: list[Run] = []
     for function in representatives(facts):
-        if function.modes and function.is_still_when_rigid:
-            runs += [NONE, "\n", Aside(f"{function.tf}, no response when rigid"), "\n"]
         if function.added is None or not function.modes:
             continue
         zeros, poles = function.added
         where = {True: ", colocated", False: ", noncolocated", None: ""}[function.colocated]
         runs += [_per_mode(poles, zeros, function), "\n", Aside(function.tf + where), "\n"]
+    if not runs and any(f.modes and f.is_still_when_rigid for f in facts.functions):
+        runs = [NONE, "\n", Aside("no response when rigid"), "\n"]
     return tuple(runs[:-1]) if runs else (NONE,)
 
 

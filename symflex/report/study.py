@@ -167,7 +167,7 @@ class Study:
         return pipeline.audit(self.model)
 
     @cached_property
-    def rigid_counts(self) -> Mapping[tuple[str, str], RigidRigidCounts]:
+    def rigid_counts(self) -> Mapping[tuple[str, str], RigidCounts]:
         """Zeros and poles with rigid compliances; see :func:`symflex.report.limits.rigid_counts`."""
         found = attempt(lambda: rigid_counts(self.model))
         return {} if isinstance(found, SymflexError) else found
