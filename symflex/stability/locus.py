@@ -425,6 +425,9 @@ def require_arrival(locus: RootLocus) -> None:
             f"the poles traced do not end in those proved at {locus.gain} = {float(locus.limits[1]):.6g}"
         )
         hint = "narrow the range of the gain"
-        if locus.end.is_infinite:
+        low, high = locus.limits
+        if low < 0 < high:
+            hint = f"draw each side of zero alone: --range 0 {float(high):.6g}"
+        elif locus.end.is_infinite:
             hint += ", or trace fewer modes: --modes N"
         raise UncertifiedError(Diagnostic("SF807", message, None, hint))

@@ -67,7 +67,8 @@ def draw_locus(locus: RootLocus, title: str | None = None, width: float | None =
     )
     for points, shape, colour, label in marks:
         inside = [s for s in points if _is_seen(axes, s)]
-        outside = len(points) - len(inside)
+        # Of infinitely many zeros those listed are no number to tell.
+        outside = 0 if points is zeros and locus.start.is_infinite else len(points) - len(inside)
         if inside or (points and points is not zeros):
             axes.plot(
                 [s.real for s in inside],
