@@ -69,6 +69,8 @@ def added_cell(facts: ModelFacts) -> Cell:
         zeros, poles = function.added
         where = {True: ", colocated", False: ", noncolocated", None: ""}[function.colocated]
         runs += [_per_mode(poles, zeros, function), "\n", Aside(function.tf + where), "\n"]
+    if not runs and any(f.modes and f.is_still_when_rigid for f in facts.functions):
+        runs = [NONE, "\n", Aside("no response when rigid"), "\n"]
     return tuple(runs[:-1]) if runs else (NONE,)
 
 
@@ -193,7 +195,9 @@ def comparison_section(models: Sequence[ModelFacts]) -> Section | None:
             "springs and "
             "massless beams made rigid (exact limits). For beams and other distributed parts those "
             "through the "
-            "highest pole listed are counted. Of functions that agree in all of this one is shown."
+            "highest pole listed are counted. Of functions that agree in all of this one is shown. "
+            "A dash stands where the rigid model has no response to compare with, as where only springs hold "
+            "it to ground."
         ),
         text(
             "Minimum phase means: no zero in the open right half plane. “For all values” is proved for all "

@@ -107,6 +107,7 @@ class TransferFacts:
         Zeros and poles of a rational function, with multiplicity.
     rigid, undamped : (int, int) or None
         The same with all compliances rigid, and with all dampers taken away; None where there is no limit.
+        Zeros are None where the rigid model has no response, as nothing moves.
     colocated : bool or None
         The output is taken where the input acts; None where one of them has no place.
     explained : str
@@ -128,7 +129,7 @@ class TransferFacts:
     certified: bool
     is_infinite: bool
     counts: tuple[int, int] | None
-    rigid: tuple[int, int] | None
+    rigid: tuple[int | None, int] | None
     undamped: tuple[int, int] | None
     colocated: bool | None
     explained: str
@@ -164,10 +165,16 @@ class TransferFacts:
         return sum(p.multiplicity for p in self.poles if p.is_oscillatory) if self.is_infinite else 0
 
     @property
+    def is_still_when_rigid(self) -> bool:
+        """Whether rigid compliances leave nothing that each mode could add to."""
+        return self.rigid is not None and self.rigid[0] is None
+
+    @property
     def added(self) -> tuple[int, int] | None:
         """Zeros and poles that flexibility adds, the listed ones of a distributed system; None without it."""
         if self.rigid is not None and self.counts is not None:
-            return self.counts[0] - self.rigid[0], self.counts[1] - self.rigid[1]
+            zeros, poles = self.rigid
+            return None if zeros is None else (self.counts[0] - zeros, self.counts[1] - poles)
         if not self.is_infinite or not self.modes:
             return None
         last = max(p.frequency_hz for p in self.poles if p.is_oscillatory)

@@ -29,12 +29,14 @@ if TYPE_CHECKING:
 Values = tuple[tuple[str, "Expression"], ...]
 Counts = tuple[int, int]
 """Zeros and poles."""
+RigidCounts = tuple[int | None, int]
+"""The same; no zeros are counted where the function itself vanishes, or grows without bound."""
 
 RESONANCES: Final = frozenset(("omega_p", "omega_z"))
 DAMPERS: Final = frozenset(("damper", "rotary_damper"))
 
 
-def rigid_counts(model: Model) -> Mapping[tuple[str, str], Counts]:
+def rigid_counts(model: Model) -> Mapping[tuple[str, str], RigidCounts]:
     """Return the zeros and poles of every transfer function as all compliances become rigid.
 
     Springs, torsion springs, massless beams and resonance blocks are stiffened; blocks that hold another
@@ -43,7 +45,8 @@ def rigid_counts(model: Model) -> Mapping[tuple[str, str], Counts]:
     Returns
     -------
     mapping of (str, str) to (int, int)
-        Empty for distributed models, and for models without any compliance.
+        Empty for distributed models, and for models without any compliance. Zeros are None where nothing
+        moves, as of a structure that only springs hold to ground.
 
     Examples
     --------
@@ -57,6 +60,15 @@ def rigid_counts(model: Model) -> Mapping[tuple[str, str], Counts]:
     ... ''')
     >>> rigid_counts(model)
     {('X', 'F'): (0, 2)}
+    >>> held = pipeline.loads('''
+    ... symflex = 1
+    ... elements.body = { type = "mass", at = "x", m = 2 }
+    ... elements.link = { type = "spring", between = ["x", "ground"], k = 12 }
+    ... inputs.F = { force = "x" }
+    ... outputs.X = "x"
+    ... ''')
+    >>> rigid_counts(held)
+    {('X', 'F'): (None, 0)}
     """
 
     def stiffened(use: PlacedElement) -> frozenset[str]:
@@ -82,7 +94,8 @@ def undamped_counts(model: Model) -> Mapping[tuple[str, str], Counts]:
     def lossy(use: PlacedElement) -> frozenset[str]:
         return frozenset("b") if use.element.type_name in DAMPERS else frozenset()
 
-    return _limits(model, lossy, lambda _: frozenset(), min)
+    found = _limits(model, lossy, lambda _: frozenset(), min)
+    return {pair: (zeros, poles) for pair, (zeros, poles) in found.items() if zeros is not None}
 
 
 def _limits(
@@ -90,7 +103,7 @@ def _limits(
     of_element: Callable[[PlacedElement], frozenset[str]],
     of_block: Callable[[PlacedBlock], frozenset[str]],
     choose: Callable[[list[int]], int],
-) -> dict[tuple[str, str], Counts]:
+) -> dict[tuple[str, str], RigidCounts]:
     if model.is_distributed:
         return {}
     taken = (
@@ -119,10 +132,9 @@ def _limits(
             continue
         above, power = _limit(ring, tf.ratio.numerator(), symbol, choose)
         below, other_power = _limit(ring, tf.ratio.denominator(), symbol, choose)
-        if power != other_power:
-            continue  # the function itself vanishes, or grows without bound
         common = _degree(ring, above.gcd(below))
-        found[tf.output.name, tf.input.name] = (_degree(ring, above) - common, _degree(ring, below) - common)
+        zeros = _degree(ring, above) - common if power == other_power else None
+        found[tf.output.name, tf.input.name] = (zeros, _degree(ring, below) - common)
     return found
 
 

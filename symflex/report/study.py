@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from symflex.rational import RationalApproximation
     from symflex.report.data_comparison import DataComparison
     from symflex.report.facts import ModelFacts
-    from symflex.report.limits import Counts
+    from symflex.report.limits import Counts, RigidCounts
     from symflex.response import FrequencyResponse
     from symflex.roots import PoleZeroMap
     from symflex.stability import DynamicColocation, Loop, StabilityMap
@@ -167,7 +167,7 @@ class Study:
         return pipeline.audit(self.model)
 
     @cached_property
-    def rigid_counts(self) -> Mapping[tuple[str, str], Counts]:
+    def rigid_counts(self) -> Mapping[tuple[str, str], RigidCounts]:
         """Zeros and poles with rigid compliances; see :func:`symflex.report.limits.rigid_counts`."""
         found = attempt(lambda: rigid_counts(self.model))
         return {} if isinstance(found, SymflexError) else found

@@ -6,7 +6,7 @@ they go to, as certified maps, and curves between them by Newton's method from g
 
 from __future__ import annotations
 
-from cmath import isfinite, rect
+from cmath import isfinite, phase, rect
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import inf
@@ -14,14 +14,15 @@ from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, UncertifiedError, UsageError
 from symflex.kernels import Factored
-from symflex.roots import Budget, Modes
+from symflex.roots import Budget, Modes, Position
 from symflex.roots.locate import locate
 from symflex.stability.loop_function import LoopFunction
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.roots import PoleZeroMap, Region
+    from symflex.roots import PoleZeroMap, Region, Root
+    from symflex.roots.pole_zero_map import Exclusion
     from symflex.stability.loop import Loop
     from symflex.transfer import BoundTransferFunction
 
@@ -33,10 +34,18 @@ NEWTON_STEPS = 25
 CONVERGED = 1e-12
 FAREST = 0.05
 """How far a pole may move in a step, relative to its size or that of the largest at the first gain."""
+BEND = 0.2
+"""How far a curve may turn from step to step [rad]."""
+SHORTEST = 0.004
+"""Steps shorter than this, relative to the same, may turn as they will."""
 HALVINGS = 9
 TURNS = (0.3, 1.9, 3.4, 5.0)
 TOUCHING = 1e-7
 ENDS_AGREE = 1e-6
+OUT_OF_SIGHT = 2.5
+"""How far a curve from infinity is followed, relative to the largest pole at the first or last gain."""
+THINNINGS = 150
+"""How often the gain is halved at most to follow it there."""
 
 
 @dataclass(frozen=True)
@@ -52,9 +61,17 @@ class RootLocus:
     start, end : PoleZeroMap
         Poles at these, and the zeros the poles go to, proved.
     branches : tuple of tuple of complex
-        Curves [rad/s] from each pole at the first gain, not proved.
+        Curves [rad/s] from poles at the first gain, not proved. They stop where poles accumulate.
     arrived : bool
         Every curve ends next to a proved pole at the last gain, and no two at the same.
+    ends : tuple of complex
+        The proved poles at the last gain [rad/s] to which a curve of any kind goes.
+    entering : tuple of tuple of complex
+        Curves of poles that come from infinity as the gain leaves its first value, as those of a delay do
+        from no gain on.
+    joining : tuple of tuple of complex
+        Curves to poles at the last gain from where none is marked: from higher modes at the first gain, or
+        from where poles accumulate.
     """
 
     gain: str
@@ -63,6 +80,9 @@ class RootLocus:
     end: PoleZeroMap
     branches: tuple[tuple[complex, ...], ...]
     arrived: bool
+    ends: tuple[complex, ...] = ()
+    entering: tuple[tuple[complex, ...], ...] = ()
+    joining: tuple[tuple[complex, ...], ...] = ()
 
 
 def loop_gain(loop: Loop, gain: Fraction | None = None) -> BoundTransferFunction:
@@ -135,30 +155,129 @@ def trace_locus(
     """
     budget = budget or Budget()
     above, below = _parts(loop)
-    low, high = limits or (Fraction(0), None if loop.nominal is None else 10 * loop.nominal)
-    if low is None or high is None or not low < high:
-        message = f"a locus needs a first and a last value of '{loop.gain.name}'"
-        raise UsageError(Diagnostic("SF804", message, None, "say --range LO HI, or give it a value"))
+    low, high = _range(loop, limits)
     wanted = modes or loop.bound.source.model.analysis.modes or DEFAULT_MODES
     region: Region | None = Modes(wanted) if loop.bound.kernels else None
     wider: Region | None = Modes(wanted + 2) if loop.bound.kernels else None
     start = locate(_with(loop.bound, above, below + above * low), region, 15, budget)
     end = locate(_with(loop.bound, above, below + above * high), wider, 15, budget)
     function = LoopFunction.of(loop.bound, below, above)
-    poles = [
-        complex(float(r.re.mid()), float(r.im.mid())) for r in start.poles for _ in range(r.multiplicity)
-    ]
-    traced = _trace(function, poles, float(low), float(high))
-    final = [complex(float(r.re.mid()), float(r.im.mid())) for r in end.poles for _ in range(r.multiplicity)]
-    # Of a loop with kernels, poles beyond those proved at the last gain are not compared.
+    poles, final = _points(start.poles), _points(end.poles)
+    bottom, top = float(low), float(high)
+    goals = _goals(bottom, top)
+    early = _trace(function, poles, bottom, goals[:1])
+    first = [branch[-1] for branch in early]
+    later = _trace(function, first, goals[0], goals[1:])
+    forward = [one + other[1:] for one, other in zip(early, later, strict=True)]
+    # Of a loop with kernels, poles beyond those proved at the last gain are not compared, nor those where
+    # poles accumulate, which no search exhausts.
     reach = max((abs(s) for s in final), default=0.0) if loop.bound.kernels else inf
-    arrived = _arrived([branch[-1] for branch in traced if abs(branch[-1]) < reach], final)
-    return RootLocus(loop.gain.name, (low, high), start, end, tuple(map(tuple, traced)), arrived)
+    known = [_nearest(final, b[-1]) is not None for b in forward]
+    lost = [not k and _is_among(end.excluded, b[-1]) for b, k in zip(forward, known, strict=True)]
+    ends = [
+        b[-1]
+        for b, is_known, is_lost in zip(forward, known, lost, strict=True)
+        if is_known or (not is_lost and abs(b[-1]) < reach)
+    ]
+    matched = _matched(ends, final)
+    branches = [
+        tuple(_before(end.excluded, branch) if is_lost else branch)
+        for branch, is_lost in zip(forward, lost, strict=True)
+    ]
+    lowest = [True] * len(final) if region is None else _lowest(end, wanted)
+    kept = [s for i, s in enumerate(final) if lowest[i] or (matched is not None and i in matched)]
+    entering: list[tuple[complex, ...]] = []
+    joining: list[tuple[complex, ...]] = []
+    if matched is not None and len(kept) > len(matched):
+        # Both members of a pair are followed, as where they part one of them may come from a marked pole.
+        back = _trace(function, kept, top, [*reversed(goals[:-1])])
+        size = max(abs(s) for s in (*kept, *poles))
+        ended = {final[i] for i in matched}
+        for s, branch in zip(kept, back, strict=True):
+            near = _nearest(first, branch[-1])
+            if near is not None:
+                if s not in ended:
+                    branches.append((poles[near], *reversed(branch)))
+            elif _is_among(end.excluded, branch[-1]):
+                joining.append(tuple(reversed(_before(end.excluded, branch))))
+            elif (landed := _landed(function, branch[-1], bottom, size)) is not None:
+                joining.append((landed, *reversed(branch)))
+            else:
+                tail = _outwards(function, branch[-1], bottom, goals[0], OUT_OF_SIGHT * size)
+                entering.append((*reversed(tail), *reversed(branch)))
+        entering, parted = _until_parting(entering)
+        branches += parted
+    return RootLocus(
+        loop.gain.name,
+        (low, high),
+        start,
+        end,
+        tuple(branches),
+        matched is not None,
+        tuple(kept),
+        tuple(entering),
+        tuple(joining),
+    )
 
 
-def _trace(function: LoopFunction, poles: Sequence[complex], low: float, high: float) -> list[list[complex]]:
-    size = max((abs(s) for s in poles), default=1.0) or 1.0
-    branches = [[s] for s in poles]
+def _until_parting(
+    entering: Sequence[tuple[complex, ...]],
+) -> tuple[list[tuple[complex, ...]], list[tuple[complex, ...]]]:
+    """Cut curves from infinity where they meet one from a marked pole on the axis and leave it as a pair.
+
+    Which of the two leaves which way has no meaning, and both are drawn alike from there on.
+    """
+    kept, parted = [], []
+    ends = {branch[-1] for branch in entering}
+    for branch in entering:
+        last = max((i for i, s in enumerate(branch) if not s.imag), default=None)
+        if last is None or not branch[-1].imag or branch[-1].conjugate() in ends:
+            kept.append(branch)
+        else:
+            kept.append(branch[: last + 1])
+            parted.append(branch[last:])
+    return kept, parted
+
+
+def _range(loop: Loop, limits: tuple[Fraction | None, Fraction | None] | None) -> tuple[Fraction, Fraction]:
+    """Return the first and the last gain."""
+    name = loop.gain.name
+    if limits is None:
+        if loop.nominal is None or not loop.nominal > 0:
+            value = "no value" if loop.nominal is None else f"the value {float(loop.nominal):.6g}"
+            message = f"'{name}' has {value} from which a locus could take its range"
+            raise UsageError(Diagnostic("SF804", message, None, "say --range LO HI"))
+        return Fraction(0), 10 * loop.nominal
+    low, high = limits
+    if low is None or high is None:
+        message = f"a locus ends at a finite value of '{name}'"
+        raise UsageError(Diagnostic("SF804", message, None, "say --range LO HI with two numbers"))
+    if low >= high:
+        how = "is empty" if low == high else "is reversed"
+        message = f"the range of '{name}' {how}: {float(low):.6g} to {float(high):.6g}"
+        hint = (
+            "give two different values" if low == high else f"say --range {float(high):.6g} {float(low):.6g}"
+        )
+        raise UsageError(Diagnostic("SF804", message, None, hint))
+    return low, high
+
+
+def _points(roots: Sequence[Root]) -> list[complex]:
+    return [complex(float(r.re.mid()), float(r.im.mid())) for r in roots for _ in range(r.multiplicity)]
+
+
+def _lowest(found: PoleZeroMap, wanted: int) -> list[bool]:
+    """Tell which poles of a map, with multiplicity, are of the lowest modes."""
+    positions = Modes(wanted).classify(found.poles)
+    return [
+        position is not Position.OUTSIDE
+        for root, position in zip(found.poles, positions, strict=True)
+        for _ in range(root.multiplicity)
+    ]
+
+
+def _goals(low: float, high: float) -> list[float]:
+    """Return gains above the first, close at the beginning; the last is the last of the range."""
     growth = (1 / FIRST_SHARE) ** (1 / STEPS)
     gain, shift = low, (high - low) * FIRST_SHARE
     goals = []
@@ -166,7 +285,53 @@ def _trace(function: LoopFunction, poles: Sequence[complex], low: float, high: f
         gain = min(low + shift, high)
         goals.append(gain)
         shift *= growth
-    current, reached = list(poles), low
+    return goals
+
+
+def _is_among(holes: Sequence[Exclusion], s: complex) -> bool:
+    """Tell whether a point is in a part of the plane in which poles accumulate."""
+    return any(abs(complex(s.real - hole.re, abs(s.imag) - hole.im)) <= hole.radius for hole in holes)
+
+
+def _before(holes: Sequence[Exclusion], branch: list[complex]) -> list[complex]:
+    """Return a curve up to where it enters such a part; its first point, which is proved, in any case."""
+    inside = (i for i, s in enumerate(branch) if i and _is_among(holes, s))
+    return branch[: next(inside, len(branch))]
+
+
+def _landed(function: LoopFunction, s: complex, gain: float, size: float) -> complex | None:
+    """Return the pole at the first gain next to one a little later, ``None`` where none is near."""
+    found = _newton(function, s, gain, ())
+    is_near = found is not None and abs(found - s) <= 2 * FAREST * max(size, abs(s))
+    return found if is_near else None
+
+
+def _outwards(function: LoopFunction, s: complex, low: float, gain: float, reach: float) -> list[complex]:
+    """Follow a pole out of sight as the gain falls to the first one."""
+    tail: list[complex] = []
+    shift = gain - low
+    for _ in range(THINNINGS):
+        shift /= 2
+        found = _newton(function, s, low + shift, ())
+        if found is None or abs(found) < abs(s) or abs(s) > reach:
+            break
+        tail.append(found)
+        s = found
+    return tail
+
+
+def _nearest(points: Sequence[complex], s: complex) -> int | None:
+    """Return the position of the point that a pole agrees with."""
+    return next((i for i, p in enumerate(points) if abs(p - s) <= ENDS_AGREE * (1 + abs(s))), None)
+
+
+def _trace(
+    function: LoopFunction, poles: Sequence[complex], gain: float, goals: Sequence[float]
+) -> list[list[complex]]:
+    """Return the curves of poles from one gain through others."""
+    size = max((abs(s) for s in poles), default=1.0) or 1.0
+    branches = [[s] for s in poles]
+    current, reached = list(poles), gain
     for goal in goals:
         pending = [goal]
         while pending:
@@ -175,7 +340,7 @@ def _trace(function: LoopFunction, poles: Sequence[complex], low: float, high: f
             far = max(
                 (abs(a - b) / max(size, abs(b)) for a, b in zip(found, current, strict=True)), default=0.0
             )
-            if far > FAREST and len(pending) < HALVINGS:
+            if (far > FAREST or _bends(branches, found, size)) and len(pending) < HALVINGS:
                 pending.append((reached + aim) / 2)
                 continue
             current, reached = found, aim
@@ -183,6 +348,17 @@ def _trace(function: LoopFunction, poles: Sequence[complex], low: float, high: f
             for branch, s in zip(branches, current, strict=True):
                 branch.append(s)
     return branches
+
+
+def _bends(branches: Sequence[Sequence[complex]], found: Sequence[complex], size: float) -> bool:
+    """Tell whether a curve would turn visibly in one step."""
+    for branch, s in zip(branches, found, strict=True):
+        if len(branch) > 1:
+            before, after = branch[-1] - branch[-2], s - branch[-1]
+            shortest = SHORTEST * max(size, abs(s))
+            if abs(after) > shortest and abs(before) > 0 and abs(phase(after / before)) > BEND:
+                return True
+    return False
 
 
 def _moved(function: LoopFunction, poles: Sequence[complex], gain: float, size: float) -> list[complex]:
@@ -225,15 +401,15 @@ def _newton(function: LoopFunction, start: complex, gain: float, known: Sequence
     return None
 
 
-def _arrived(ends: Sequence[complex], proved: Sequence[complex]) -> bool:
-    """Tell whether every end is close to a pole of its own."""
-    free = list(proved)
+def _matched(ends: Sequence[complex], proved: Sequence[complex]) -> set[int] | None:
+    """Return the positions of the poles that ends are close to, ``None`` unless each has one of its own."""
+    free = dict(enumerate(proved))
     for end in ends:
-        near = min(free, key=lambda s: abs(s - end), default=None)
-        if near is None or abs(near - end) > ENDS_AGREE * (1 + abs(end)):
-            return False
-        free.remove(near)
-    return True
+        near = min(free, key=lambda i: abs(free[i] - end), default=None)
+        if near is None or abs(free[near] - end) > ENDS_AGREE * (1 + abs(end)):
+            return None
+        del free[near]
+    return set(range(len(proved))) - set(free)
 
 
 def require_arrival(locus: RootLocus) -> None:
@@ -248,4 +424,10 @@ def require_arrival(locus: RootLocus) -> None:
         message = (
             f"the poles traced do not end in those proved at {locus.gain} = {float(locus.limits[1]):.6g}"
         )
-        raise UncertifiedError(Diagnostic("SF807", message, None, "narrow the range of the gain"))
+        hint = "narrow the range of the gain"
+        low, high = locus.limits
+        if low < 0 < high:
+            hint = f"draw each side of zero alone: --range 0 {float(high):.6g}"
+        elif locus.end.is_infinite:
+            hint += ", or trace fewer modes: --modes N"
+        raise UncertifiedError(Diagnostic("SF807", message, None, hint))

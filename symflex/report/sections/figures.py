@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from symflex.emit.figures import FIGURES, LOOP_FIGURES, draw, draw_loop, draw_measured
-from symflex.errors import SymflexError
+from symflex.errors import Diagnostic, SymflexError
 from symflex.model import Figure
 from symflex.report.document import Notice
 from symflex.report.part import Part, picture
@@ -31,26 +31,28 @@ def figure_section(study: Study) -> Part | None:
     known = {(b.source.output.name, b.source.input.name): b for b in study.bounds}
     drawable = {pair: b for pair, b in known.items() if not b.ratio.is_zero}
     blocks: list[Block] = []
+    warnings: list[str] = []
     files: dict[str, bytes] = {}
     for figure in study.model.figures or _defaults(study, drawable):
         chosen = [drawable[pair] for pair in figure.of or tuple(drawable) if pair in drawable]
         drawn: Picture | SymflexError
         if figure.gain and figure.kind in LOOP_FIGURES:
             drawn = attempt(lambda f=figure: _loop_picture(study, f, files))  # type: ignore[misc]
-            blocks.append(_block(figure, drawn))
         elif figure.kind not in FIGURES:
-            blocks.append(Notice(f"{figure.name}: figures of kind '{figure.kind}' are not available yet"))
+            drawn = SymflexError(
+                Diagnostic("SF911", f"figures of kind '{figure.kind}' are not available yet")
+            )
         elif chosen:
             drawn = attempt(lambda f=figure, c=chosen: _picture(study, f, c, files))  # type: ignore[misc]
-            blocks.append(_block(figure, drawn))
-    return Part("Figures", tuple(blocks), files) if blocks else None
-
-
-def _block(figure: Figure, drawn: Picture | SymflexError) -> Block:
-    """Return a picture, or why there is none."""
-    if isinstance(drawn, SymflexError):
-        return Notice(f"{figure.name}: {drawn.diagnostics[0].message}")
-    return drawn
+        else:
+            continue
+        if isinstance(drawn, SymflexError):
+            why = f"{figure.name}: {drawn.diagnostics[0].message}"
+            blocks.append(Notice(why))
+            warnings.append(f"{study.stem}, figure {why}")
+        else:
+            blocks.append(drawn)
+    return Part("Figures", tuple(blocks), files, tuple(warnings)) if blocks else None
 
 
 def _defaults(study: Study, drawable: dict[tuple[str, str], BoundTransferFunction]) -> tuple[Figure, ...]:

@@ -33,6 +33,7 @@ def loop_section(study: Study) -> Part | None:
     for i, found in enumerate(study.loops):
         if isinstance(found, SymflexError):
             blocks.append(Notice(found.diagnostics[0].message))
+            warnings.append(f"{study.stem}, loops: {found.diagnostics[0].message}")
             continue
         blocks.append(Section(f"Gain {found.gain}", _of(found), f"{study.stem}-loop-{i + 1}"))
         documents.append(found.to_json_dict())

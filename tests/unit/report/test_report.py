@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import html
 import io
 import json
 import math
@@ -186,6 +187,31 @@ def test_the_stable_gains_of_a_loop_are_in_its_chapter_and_in_a_table_of_loops(t
     assert report.files["figures/loop_locus.pdf"].startswith(b"%PDF")
     # No number that a reader of figures could not hold.
     assert not re.search(rb"[0-9]{12}", report.files["figures/loop_locus.svg"])
+
+
+def test_a_figure_that_cannot_be_drawn_is_told_in_its_place_and_on_the_terminal(tmp_path):
+    text = LOOP.replace("[outputs]", '[figures.square]\nkind = "locus"\ngain = "R"\n[outputs]')
+    text = text.replace("K = ", "R = 2\nK = ").replace('"K*i"', '"K*R^2*i"')
+    report = report_on(tmp_path, square=text)
+    assert "square: the characteristic function is no straight line in" in html.unescape(report_page(report))
+    assert any("square, figure square: the characteristic function is no" in w for w in report.warnings)
+
+
+HELD = SMALL.replace("loss = {", 'wall = { type = "spring", between = ["x", "ground"], k = "k" }\nloss = {')
+
+
+def test_modes_of_a_structure_that_a_spring_holds_to_ground_are_counted(tmp_path):
+    # Two masses have four poles; rigid springs leave none of them, and nothing that moves.
+    report = report_on(tmp_path, free=SMALL, held=HELD)
+    free, held = (
+        json.loads(report.files[f"data/{stem}_facts.json"])["transfer_functions"] for stem in ("free", "held")
+    )
+    assert [(f["modes"], f["poles_added"]) for f in free] == [(1, 2), (1, 2)]
+    assert [(f["modes"], f["poles"], f["poles_added"], f["zeros_added"]) for f in held] == [
+        (2, 4, None, None),
+        (2, 4, None, None),
+    ]
+    assert "no response when rigid" in report_page(report)
 
 
 def test_measured_responses_in_a_folder_are_drawn_with_the_models_over_them(tmp_path):

@@ -7,7 +7,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+import symflex
 from symflex import pipeline
+from symflex.emit.figures import draw_loop
 from symflex.errors import UsageError
 from symflex.stability import loop_gain, trace_locus
 
@@ -60,3 +62,147 @@ def test_errors(loop):
         trace_locus(characteristic(loop("K/(s + 1)", K={})))
     with pytest.raises(UsageError, match="SF806"):
         loop_gain(characteristic(loop("K/(s + 1)", K={})))
+
+
+def newton(function, slope, s):
+    for _ in range(50):
+        s -= function(s) / slope(s)
+    return s
+
+
+def test_poles_that_come_from_infinity_are_traced(loop):
+    # s + 1 + K (s + 3) exp(-s/10): one pole at K = 0, infinitely many for any K > 0.
+    locus = trace_locus(
+        characteristic(loop("K*D*(s + 3)/(s + 1)", T="0.1 s")), (Fraction(0), Fraction(9, 10))
+    )
+    assert locus.arrived
+    assert [branch[0] for branch in locus.branches] == [-1]
+    assert len(locus.entering) == 8  # five modes, one of them real and from -1
+    for branch in locus.entering:
+        assert branch[0].real < -500
+        for s in branch[::9]:
+            gain = -(s + 1) / (s + 3) * np.exp(s / 10)
+            assert abs(gain.imag) < 1e-9 * abs(gain)
+            assert 0 < gain.real < 0.9000001
+    for guess in (-2, -1 + 31j, -1 - 31j, -1 + 94j, -1 + 157j, -1 + 220j):
+        root = newton(
+            lambda s: s + 1 + 0.9 * (s + 3) * np.exp(-s / 10),
+            lambda s: 1 + 0.9 * np.exp(-s / 10) * (1 - (s + 3) / 10),
+            guess,
+        )
+        assert min(abs(end - root) for end in locus.ends) < 1e-9
+        drawn = [branch[-1] for branch in (*locus.branches, *locus.entering)]
+        assert min(abs(end - root) for end in drawn) < 1e-9
+
+
+def test_a_pole_from_infinity_meets_one_of_the_plant(loop):
+    # (s + 1) exp(s/2) has its least value on the axis at -3: there the two meet, and leave as a pair.
+    locus = trace_locus(characteristic(loop("K*D/(s + 1)")), (Fraction(0), Fraction(4)), modes=3)
+    (real,) = (branch for branch in locus.entering if not branch[-1].imag)
+    assert abs(real[-1] + 3) < 0.1
+    pair = sorted((branch[-1] for branch in locus.branches), key=lambda s: s.imag)
+    assert len(pair) == 2
+    assert pair[0] == pytest.approx(pair[1].conjugate(), rel=1e-9)
+    assert abs(pair[1] + 1 + 4 * np.exp(-pair[1] / 2)) < 1e-8
+
+
+def test_a_pole_from_infinity_of_a_loop_that_differentiates(loop):
+    locus = trace_locus(characteristic(loop("K*(s + 2)^2/(s + 1)")), (Fraction(0), Fraction(10)))
+    (entering,) = locus.entering
+    wanted = sorted(np.roots([10, 41, 41]))
+    assert entering[-1] == pytest.approx(wanted[0])
+    assert entering[0].real < -5
+    assert locus.branches[0][-1] == pytest.approx(wanted[1])
+
+
+def test_curves_turn_little_from_step_to_step(loop):
+    # Poles leave each other at once where those of two modes come close.
+    expression = "K/((s^2 + 0.04*s + 4)*(s^2 + 0.05*s + 5))"
+    locus = trace_locus(characteristic(loop(expression)), (Fraction(0), Fraction(10**6)))
+    for branch in locus.branches:
+        steps = np.diff(np.array(branch))
+        visible = steps[np.abs(steps) > 0.05]
+        assert np.max(np.abs(np.angle(visible[1:] / visible[:-1]))) < 0.3
+
+
+FORCE_LOOP = """
+symflex = 1
+[parameters]
+E = "210 GPa"
+I = "4e-10 m^4"
+r = "7800 kg/m^3"
+l = "0.5 m"
+A = "6e-5 m^2"
+eta = "2e-4 s"
+k = "5 kN/m"
+K = 0.5
+[blocks]
+D = { type = "delay", T = "3 ms" }
+[elements]
+motor = { type = "mass", at = "root", m = "2 kg" }
+friction = { type = "damper", between = ["root", "ground"], b = "60 N*s/m" }
+guide = { type = "slider", at = "root" }
+beam = { type = "beam", between = ["root","tip"], E = "E", I = "I", rho = "r", A = "A", l = 0.5, eta = "eta" }
+head = { type = "mass", at = "tip", m = "0.3 kg" }
+contact = { type = "spring", between = ["tip", "ground"], k = "k" }
+losses = { type = "damper", between = ["tip", "ground"], b = "6 N*s/m" }
+drive = { type = "force_source", at = "root", f = "u" }
+[signals]
+u = "K*(F_cmd - D*(k*tip))"
+[inputs]
+F_cmd = {}
+[outputs]
+F_tip = "k*tip"
+"""
+
+
+def test_poles_that_go_where_poles_accumulate_stop_there():
+    # Of a Kelvin-Voigt beam poles accumulate at -1/eta = -5000; which are there, no search can tell.
+    locus = trace_locus(characteristic(symflex.loads(FORCE_LOOP)))
+    assert locus.arrived
+    assert len(locus.entering) == 2
+    (hole,) = locus.end.excluded
+    assert hole.re == pytest.approx(-5000)
+    for branch in (*locus.branches, *locus.entering):
+        assert len(branch) == 1 or abs(branch[-1] + 5000) > hole.radius
+
+
+@pytest.mark.parametrize(
+    ("limits", "message", "hint"),
+    [
+        ((5, 1), "reversed: 5 to 1", "--range 1 5"),
+        ((2, 2), "empty", "different"),
+        ((0, None), "finite", "two numbers"),
+        ((None, 1), "finite", "two numbers"),
+    ],
+    ids=str,
+)
+def test_a_range_that_is_none_is_told_in_its_own_words(loop, limits, message, hint):
+    given = tuple(None if x is None else Fraction(x) for x in limits)
+    with pytest.raises(UsageError, match="SF804") as caught:
+        trace_locus(characteristic(loop("K/(s + 1)")), given)
+    (told,) = caught.value.diagnostics
+    assert message in told.message
+    assert hint in told.hint
+
+
+def texts_and_frame(loop, expression, limits, **more):
+    figure = draw_loop("locus", characteristic(loop(expression, **more)), limits=tuple(map(Fraction, limits)))
+    (axes,) = figure.axes
+    return [text.get_text() for text in figure.legends[0].get_texts()], axes
+
+
+def test_the_frame_holds_the_poles_at_the_last_gain(loop):
+    labels, axes = texts_and_frame(loop, "K*D*(s + 3)/(s + 1)", (0, Fraction(9, 10)), T="0.1 s")
+    assert labels == ["poles, $K = 0$", "poles, $K = 0.9$", "zeros", "poles from infinity"]
+    # The fifth mode is near (2 n + 1) pi / T for n = 3.
+    assert axes.get_ylim()[1] > 7 * np.pi / 0.1
+    assert axes.get_xlim()[0] < -3
+
+
+def test_the_legend_names_what_is_seen(loop):
+    labels, axes = texts_and_frame(loop, "K*(s + 300)/((s + 1)*(s + 2))", (0, 1))
+    assert not any("zeros" in label for label in labels)
+    assert axes.get_xlim()[0] > -300
+    labels, _ = texts_and_frame(loop, "K/(s*(s + 1)*(s + 2))", (0, 10**9))
+    assert labels[1].endswith("(all outside)")
