@@ -264,7 +264,8 @@ def _fit(
     criterion: str,
     free: Free,
 ) -> Fit:
-    problem = fit_problem(measured, [base.function for base in bases], free)
+    has_base = any(base.tf for base in bases)
+    problem = fit_problem(measured, [base.function for base in bases], free, has_base=has_base)
     for line, base in zip(problem.lines, bases, strict=True):
         wrong = ~np.isfinite(line.base) | (line.base == 0)
         if wrong.any():
