@@ -112,6 +112,14 @@ def judge_phase(problem: FitProblem, response: int, fitted: Resonances) -> Phase
     line = search.line
     alone, _ = search.found(search.mirrored, "magnitude")
     model = search.single.values(alone, 0)
+    mirrored = search.mirrored
+    if problem.free.gain and np.mean(np.cos(np.angle(line.measured.values / model))) < 0:
+        # A magnitude does not tell the sign of a gain, and zeros moved to the other side may have turned it.
+        alone, mirrored, model = (
+            replace(alone, gain=-alone.gain),
+            replace(mirrored, gain=-mirrored.gain),
+            -model,
+        )
     difference = np.angle(line.measured.values / model)
     bands = _parted(line.measured.frequency_hz, difference, search.noise)
     magnitude_db = float(20 / np.log(10) * np.sqrt(np.mean(search.level(model) ** 2)))
@@ -119,7 +127,7 @@ def judge_phase(problem: FitProblem, response: int, fitted: Resonances) -> Phase
         return PhaseTest(alone, difference, bands, magnitude_db, "minimum")
     misfit = search.misfit(model)
     for kind in KINDS[1:]:
-        for start in (search.mirrored, alone):
+        for start in (mirrored, alone):
             other, lag = search.found(start, kind)
             turned = search.single.values(other, 0) * np.exp(-1j * line.omega * lag)
             if search.is_as_measured(turned, misfit):

@@ -136,6 +136,17 @@ def test_the_tip_of_a_bending_beam_is_not_minimum_phase():
     assert test.verdict == "nonminimum"
 
 
+def test_zeros_that_stand_for_a_power_of_s_are_said_and_turn_no_verdict():
+    # Two poles, one pair of zeros and s^2, fitted as s and two pairs of zeros: the second has to be a real
+    # zero near 0 and one far above, whose product is s in the band, with either sign of the gain.
+    two = System(np.array([20.0, 60.0]), np.full(2, 0.02), np.array([25.0, 1e5]), np.array([0.03, 0.0]))
+    data = noisy(lambda f: -(f**2) * two(f), noise=0.003)
+    fit = fit_resonances([data], modes=2, slope=1, start="vector")
+    assert np.abs(fit.resonances.zeta_z).max() > 2
+    assert any("two real zeros" in warning or "not determined" in warning for warning in fit.warnings)
+    assert fit.phase_tests[0].verdict != "nonminimum"
+
+
 def test_where_no_resonances_describe_the_magnitude_its_phase_says_nothing():
     # One resonance for data with a real zero in the right half plane at 30 Hz: 4 dB are left.
     data = noisy(lambda f: ONE(f) * (1 - 1j * f / 30))
