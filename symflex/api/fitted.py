@@ -54,7 +54,10 @@ class Fit:
 
     @property
     def is_minimum_phase(self) -> tuple[bool, ...]:
-        """Of each response, whether its phase is that of a minimum-phase fit to the magnitude alone."""
+        """Of each response, whether a minimum-phase function has its magnitude and phase.
+
+        False too where the data do not tell; ``found.phase_tests`` has the three verdicts.
+        """
         return tuple(test.is_minimum_phase for test in self.found.phase_tests)
 
     @property

@@ -173,7 +173,9 @@ def _response_json(fit: Fit, r: int) -> dict[str, object]:
         "residual_db": fit.misfit_db(r),
         "residual_degrees": fit.misfit_degrees(r),
         "phase_test": {
-            "minimum_phase": test.is_minimum_phase,
+            "minimum_phase": None if test.verdict == "undetermined" else test.is_minimum_phase,
+            "verdict": test.verdict,
+            "lag_s": test.lag_s,
             "magnitude_residual_db": test.magnitude_db,
             "parted": [
                 {
@@ -287,7 +289,7 @@ def _phase_words(test: PhaseTest, fit: Fit, r: int) -> str:
     fitted = "a minimum-phase fit to the magnitude alone"
     if fit.bases[r].path:
         fitted += " (the base with its own phase)"
-    if test.is_minimum_phase:
+    if not test.bands:
         return (
             f"the measured phase is that of {fitted}, within 10 degrees or the noise, "
             f"from {low:.4g} to {high:.4g} Hz: minimum phase"
@@ -296,4 +298,22 @@ def _phase_words(test: PhaseTest, fit: Fit, r: int) -> str:
         f"from {b.low_hz:.4g} to {b.high_hz:.4g} Hz, by {b.worst_degrees:+.0f} degrees at {b.worst_hz:.4g} Hz"
         for b in test.bands
     )
-    return f"the measured phase parts from that of {fitted} {bands}: not minimum phase there"
+    parts = f"the measured phase parts from that of {fitted} {bands}"
+    if test.verdict == "nonminimum":
+        return f"{parts}: not minimum phase there"
+    if test.is_minimum_phase:
+        return (
+            f"minimum phase: a function with all zeros in the left half plane has the measured magnitude and "
+            f"phase, within 10 degrees or the noise, from {low:.4g} to {high:.4g} Hz. The magnitude alone "
+            f"leaves the phase open ({bands})"
+        )
+    if test.with_phase is not None:
+        return (
+            f"undetermined: {parts}; with a lag of {1e3 * test.lag_s:.3g} ms a minimum-phase function has "
+            "both. A sensor, poles or zeros above the band, or a delay may be the cause, and the data do not "
+            "tell which"
+        )
+    return (
+        f"undetermined: {parts}, and that fit leaves {test.magnitude_db:.2g} dB rms of the magnitude: its "
+        "phase says nothing"
+    )

@@ -41,6 +41,8 @@ SLOPES = range(-6, 7)
 FEWEST_LINES = 8
 WEAK = 0.5
 LARGE = 2.0
+OVERDAMPED = 2.0
+LEAST_DAMPING = 0.05
 SMOOTH = 3.0
 """A Hann window makes this 2, see :attr:`symflex.fitting.least_squares.Refined.correlation`."""
 
@@ -264,7 +266,8 @@ def _fit(
     criterion: str,
     free: Free,
 ) -> Fit:
-    problem = fit_problem(measured, [base.function for base in bases], free)
+    has_base = any(base.tf for base in bases)
+    problem = fit_problem(measured, [base.function for base in bases], free, has_base=has_base)
     for line, base in zip(problem.lines, bases, strict=True):
         wrong = ~np.isfinite(line.base) | (line.base == 0)
         if wrong.any():
@@ -298,6 +301,18 @@ def _warnings(fit: Fit) -> tuple[str, ...]:
             warnings.append(f"the damping of pole pair {i + 1} is hardly determined by the data")
         for r, line in enumerate(fit.problem.lines):
             where = f" of {line.measured.name}" if found.responses > 1 else ""
+            if errors.zeta_z[r, i] > max(abs(found.zeta_z[r, i]), LEAST_DAMPING) or (
+                errors.omega_z[r, i] > WEAK * found.omega_z[r, i]
+            ):
+                warnings.append(
+                    f"zero pair {i + 1}{where} is not determined by the data: its error is as large as itself"
+                )
+                continue
+            if abs(found.zeta_z[r, i]) > OVERDAMPED:
+                warnings.append(
+                    f"zero pair {i + 1}{where} has the damping ratio {found.zeta_z[r, i]:.2g}: two "
+                    "real zeros, that stand for what a gain, a power of s and resonances cannot have"
+                )
             if not low <= found.omega_z[r, i] <= high:
                 place = found.omega_z[r, i] / (2 * np.pi)
                 warnings.append(
@@ -318,10 +333,15 @@ def _warnings(fit: Fit) -> tuple[str, ...]:
                 "used a Hann window, say --window hann, or damping comes out too large"
             )
             break
+    advice = ""
+    if not fit.problem.has_base:
+        advice = "; try --slope N" + (
+            ", the responses one by one, or --driving OUT/IN" if found.responses > 1 else " or more --modes"
+        )
     if fit.problem.has_deviations and all(m.averages for m in fit.measured) and fit.refined.reduced > LARGE:
         warnings.append(
             f"the residual is {np.sqrt(fit.refined.reduced):.2g} times what coherence explains: "
-            "the model lacks something that the data show"
+            "the model lacks something that the data show" + advice
         )
     if fit.refined.correlation > SMOOTH:
         lacking = "" if fit.problem.free.lag else ", as the lag of a sensor would: try --lag"

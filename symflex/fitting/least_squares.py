@@ -211,6 +211,8 @@ def _covariance(
     is_explained = len(scores) == len(residuals)
     middle = np.sum(scores, axis=0) / np.outer(size, size) if is_explained else np.array(normal)
     factor = 1.0
+    if power == 0:
+        return np.zeros_like(normal), factor
     for lag in range(1, LARGEST_LAG + 1):
         pairs = sum(max(r.size - lag, 0) for r in residuals)
         shared = sum(float(np.sum((np.conj(r[:-lag]) * r[lag:]).real)) for r in residuals)

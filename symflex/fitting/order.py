@@ -161,7 +161,7 @@ def chosen_order(
             return weak[1], tuple(scores)
         for better, failure in failed:
             if FAR_BETTER * better.reduced < score.reduced:
-                raise FitError(_preferred(better, failure))
+                raise FitError(_preferred(better, failure, problem_has_base=problem.has_base))
         if score.count == 0:
             break
         best = _continued(problem, tried[score.count])
@@ -184,10 +184,11 @@ def _marked(scores: Sequence[Score], count: int, status: str) -> list[Score]:
     return [replace(score, status=status) if score.count == count else score for score in scores]
 
 
-def _preferred(score: Score, failure: Diagnostic) -> Diagnostic:
+def _preferred(score: Score, failure: Diagnostic, *, problem_has_base: bool) -> Diagnostic:
     """Return the failure of the number that the criterion prefers by far."""
     message = f"{score.count} resonances describe the data far better than fewer do, but {failure.message}"
-    hint = "give what is known of the system with --base, or a number with --modes"
+    known = "check --base" if problem_has_base else "give what is known of the system with --base"
+    hint = f"{known}, or a number with --modes"
     return Diagnostic(failure.code, message, None, hint)
 
 
@@ -213,17 +214,19 @@ def _value(score: Score, criterion: str) -> float:
 def no_resonance(problem: FitProblem) -> Diagnostic:
     """Return the message that there is nothing to fit."""
     low, high = (value / (2 * np.pi) for value in problem.band)
-    message = f"the data show no resonance between {low:.4g} and {high:.4g} Hz that the base does not have"
-    return Diagnostic(
-        "SF611", message, None, "check the base and the band; --modes N asks for N all the same"
-    )
+    message = f"the data show no resonance between {low:.4g} and {high:.4g} Hz"
+    if problem.has_base:
+        message += " that the base does not have"
+    what = "the base and the band" if problem.has_base else "the data and the band"
+    return Diagnostic("SF611", message, None, f"check {what}; --modes N asks for N all the same")
 
 
 def too_few(problem: FitProblem, count: int, kind: str) -> Diagnostic:
     """Return the message that no start has as many resonances as asked for."""
     if kind in ("auto", "peaks"):
         seen = len(find_modes(problem))
-        message = f"{count} resonances are asked for, and the magnitude shows {seen} peaks over the base"
+        message = f"{count} resonances are asked for, and the magnitude shows {seen} peaks"
+        message += " over the base" if problem.has_base else ""
     else:
         message = f"{count} resonances are asked for, and '{kind}' finds fewer"
     return Diagnostic("SF611", message, None, "ask for fewer with --modes, or try --start vector")

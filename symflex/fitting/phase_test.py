@@ -4,12 +4,18 @@ The resonances are fitted to the magnitude alone, with all zeros in the left hal
 should match also, if the data to be matched actually represent a minimum-phase system" (Eppinger & Seering
 1988, section "Polynomial Resonance Model"): where the measured phase leaves the fitted one, they do not. The
 base keeps its own phase.
+
+Magnitude in a band does not determine phase there: a pair of zeros at twice the highest frequency changes the
+level by tenths of a decibel and the phase by tens of degrees (Bode 1945, chapter 14: phase depends on the
+slope of the level at all frequencies). Where the phases part, a second fit therefore looks for any product of
+the same resonances, zeros in the left half plane, that has both: magnitude and phase as measured. Only where
+there is none, not even with a lag linear in frequency, is the function called nonminimum phase.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -17,10 +23,12 @@ from scipy.optimize import least_squares
 from scipy.signal import medfilt
 
 if TYPE_CHECKING:
-    from symflex.fitting.problem import FitProblem
+    from symflex.fitting.problem import FitProblem, FittedLines
     from symflex.fitting.resonances import Resonances
 
 Real = npt.NDArray[np.float64]
+Complex = npt.NDArray[np.complex128]
+Verdict = Literal["minimum", "undetermined", "nonminimum"]
 
 LIMIT_DEGREES = 10.0
 SIGNIFICANT = 4.0
@@ -30,6 +38,12 @@ STEPS = 100
 CAP = 0.05
 LOWEST_DAMPING = 1e-4
 EDGE = 12.0
+MOST_LAG: Final = np.pi / 2
+"""The phase of a lag at the highest line up to which poles above the band, or a sensor, may be its cause."""
+WORSE: Final = 1.25
+"""How much larger a magnitude misfit may be than that of the magnitude alone to count as a fit as well."""
+POOR: Final = 2.0
+"""Magnitude misfit, over the noise and :data:`CAP`, beyond which resonances describe no magnitude at all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,69 +75,150 @@ class PhaseTest:
     difference : array of float, shape (n,)
         Measured less fitted phase on the lines [rad], in (-pi, pi].
     bands : tuple of PartedBand
-        Where they part; empty for a minimum-phase function.
+        Where they part, beyond :data:`LIMIT_DEGREES` and the noise.
     magnitude_db : float
         Root mean square of the magnitude's own misfit [dB].
+    verdict : str
+        ``minimum``: a minimum-phase function has magnitude and phase as measured. ``nonminimum``: none of
+        this order has. ``undetermined``: only one with a lag linear in frequency has, or none describes the
+        magnitude, so that its phase says nothing.
+    with_phase : Resonances or None
+        The minimum-phase function found by fitting magnitude and phase, where the magnitude alone left the
+        phase open and there is one.
+    lag_s : float
+        The lag [s] it needs besides; 0 for none.
     """
 
     resonances: Resonances
     difference: Real
     bands: tuple[PartedBand, ...]
     magnitude_db: float
+    verdict: Verdict
+    with_phase: Resonances | None = None
+    lag_s: float = 0.0
 
     @property
     def is_minimum_phase(self) -> bool:
-        """Whether the phases agree in the whole band, within :data:`LIMIT_DEGREES` or the noise."""
-        return not self.bands
+        """Whether a minimum-phase function has the measured magnitude and phase in the whole band."""
+        return self.verdict == "minimum"
 
 
 def judge_phase(problem: FitProblem, response: int, fitted: Resonances) -> PhaseTest:
-    """Fit the magnitude alone, from the mirror image of a fit in the left half plane, and compare phases."""
-    single = replace(problem, lines=problem.lines[response : response + 1]).without_window()
-    (line,) = single.lines
-    deviation = np.full(line.omega.size, CAP) if line.deviation is None else np.hypot(line.deviation, CAP)
-    wanted = np.log(np.abs(line.measured.values))
-    start = type(fitted)(
-        fitted.omega_p,
-        fitted.zeta_p,
-        fitted.omega_z[response : response + 1],
-        np.maximum(np.abs(fitted.zeta_z[response : response + 1]), LOWEST_DAMPING),
-        fitted.gain[response : response + 1],
-        fitted.lag[response : response + 1],
-    )
-    n = start.count
-    damping = slice(3 * n, 4 * n)
+    """Fit the magnitude alone, from the mirror image of a fit in the left half plane, and compare phases.
 
-    def resonances(vector: Real) -> Resonances:
-        plain = np.clip(vector, packed - EDGE, packed + EDGE)
-        plain[damping] = np.exp(plain[damping])
-        return start.unpack(plain, problem.free)
-
-    def residual(vector: Real) -> Real:
-        model = single.values(resonances(vector), 0)
-        return (np.log(np.abs(model)) - wanted) / deviation
-
-    def slopes(vector: Real) -> Real:
-        now = resonances(vector)
-        model, by = single.linearised(now, 0)
-        found = (by / model[:, None]).real / deviation[:, None]
-        found[:, damping] *= now.zeta_z[0]
-        return found
-
-    packed = start.pack(problem.free)
-    packed[damping] = np.log(packed[damping])
-    best = packed
-    if packed.size:
-        with np.errstate(all="ignore"):  # a trial step may be wild
-            done = least_squares(residual, packed, slopes, method="lm", x_scale="jac", max_nfev=STEPS)
-        best = done.x
-    found = resonances(best).ordered()
-    model = single.values(found, 0)
+    Where they part, functions with zeros in the left half plane are fitted to magnitude and phase together.
+    """
+    search = _Search(problem, response, fitted)
+    line = search.line
+    alone, _ = search.found(search.mirrored, "magnitude")
+    model = search.single.values(alone, 0)
+    mirrored = search.mirrored
+    if problem.free.gain and np.mean(np.cos(np.angle(line.measured.values / model))) < 0:
+        # A magnitude does not tell the sign of a gain, and zeros moved to the other side may have turned it.
+        alone, mirrored, model = (
+            replace(alone, gain=-alone.gain),
+            replace(mirrored, gain=-mirrored.gain),
+            -model,
+        )
     difference = np.angle(line.measured.values / model)
-    misfit = 20 / np.log(10) * (np.log(np.abs(model)) - wanted)
-    noise = np.zeros(line.omega.size) if line.deviation is None else line.deviation
-    bands = _parted(line.measured.frequency_hz, difference, noise)
-    return PhaseTest(found, difference, bands, float(np.sqrt(np.mean(misfit**2))))
+    bands = _parted(line.measured.frequency_hz, difference, search.noise)
+    magnitude_db = float(20 / np.log(10) * np.sqrt(np.mean(search.level(model) ** 2)))
+    if not bands:
+        return PhaseTest(alone, difference, bands, magnitude_db, "minimum")
+    misfit = search.misfit(model)
+    for kind in KINDS[1:]:
+        for start in (mirrored, alone):
+            other, lag = search.found(start, kind)
+            turned = search.single.values(other, 0) * np.exp(-1j * line.omega * lag)
+            if search.is_as_measured(turned, misfit):
+                verdict: Verdict = "undetermined" if kind == "lag" else "minimum"
+                return PhaseTest(alone, difference, bands, magnitude_db, verdict, other, lag)
+    return PhaseTest(
+        alone, difference, bands, magnitude_db, "undetermined" if misfit > POOR else "nonminimum"
+    )
+
+
+KINDS: Final = ("magnitude", "both", "lag")
+"""What a search fits: the magnitude; magnitude and phase; these with a lag linear in frequency."""
+
+
+class _Search:
+    """Fits of one response by resonances whose zeros lie in the left half plane."""
+
+    def __init__(self, problem: FitProblem, response: int, fitted: Resonances) -> None:
+        self.single = replace(problem, lines=problem.lines[response : response + 1]).without_window()
+        self.line: FittedLines = self.single.lines[0]
+        size = self.line.omega.size
+        self.noise: Real = np.zeros(size) if self.line.deviation is None else self.line.deviation
+        self.weight: Real = 1 / np.hypot(self.noise, CAP)
+        self.wanted: Real = np.log(np.abs(self.line.measured.values))
+        self.mirrored = type(fitted)(
+            fitted.omega_p,
+            fitted.zeta_p,
+            fitted.omega_z[response : response + 1],
+            np.maximum(np.abs(fitted.zeta_z[response : response + 1]), LOWEST_DAMPING),
+            fitted.gain[response : response + 1],
+            fitted.lag[response : response + 1],
+        )
+
+    def level(self, model: Complex) -> Real:
+        """Return the logarithm of the model's magnitude over the measured one."""
+        return np.asarray(np.log(np.abs(model)) - self.wanted, np.float64)
+
+    def misfit(self, model: Complex) -> float:
+        """Return the root mean square of that in units of the noise, or of :data:`CAP` where that is more."""
+        return float(np.sqrt(np.mean((self.level(model) * self.weight) ** 2)))
+
+    def is_as_measured(self, model: Complex, misfit: float) -> bool:
+        """Return whether a model has the measured magnitude, as well as any, and phase within the limits."""
+        if not self.misfit(model) <= max(1.0, WORSE * misfit):
+            return False
+        difference = np.angle(self.line.measured.values / model)
+        return not _parted(self.line.measured.frequency_hz, difference, self.noise)
+
+    def found(self, start: Resonances, kind: str) -> tuple[Resonances, float]:
+        """Return where a start leads, and the lag [s]; ``kind`` is one of :data:`KINDS`."""
+        n = start.count
+        damping = slice(3 * n, 4 * n)
+        free, omega = self.single.free, self.line.omega
+        packed = start.pack(free)
+        packed[damping] = np.log(packed[damping])
+        turn = omega / omega[-1]
+        if kind == "lag":
+            packed = np.append(packed, 0.0)
+
+        def resonances(vector: Real) -> Resonances:
+            plain = np.clip(vector, packed - EDGE, packed + EDGE)
+            plain[damping] = np.exp(plain[damping])
+            return start.unpack(plain[:-1] if kind == "lag" else plain, free)
+
+        def residual(vector: Real) -> Real:
+            model = self.single.values(resonances(vector), 0)
+            level = self.level(model) * self.weight
+            if kind == "magnitude":
+                return level
+            if kind == "lag":
+                model = model * np.exp(-1j * turn * vector[-1])
+            return np.concatenate((level, np.angle(model / self.line.measured.values) * self.weight))
+
+        def slopes(vector: Real) -> Real:
+            now = resonances(vector)
+            model, by = self.single.linearised(now, 0)
+            by = by / model[:, None]
+            by[:, damping] *= now.zeta_z[0]
+            if kind == "magnitude":
+                return np.asarray(by.real * self.weight[:, None], np.float64)
+            if kind == "lag":
+                by = np.column_stack((by, -1j * turn))
+            return np.concatenate((by.real, by.imag)) * np.tile(self.weight, 2)[:, None]
+
+        best = packed
+        if packed.size:
+            with np.errstate(all="ignore"):  # a trial step may be wild
+                done = least_squares(residual, packed, slopes, method="lm", x_scale="jac", max_nfev=STEPS)
+            best = done.x
+        lag = float(np.clip(best[-1], -MOST_LAG, MOST_LAG) / omega[-1]) if kind == "lag" else 0.0
+        return resonances(best).ordered(), lag
 
 
 def _parted(frequency_hz: Real, difference: Real, noise: Real) -> tuple[PartedBand, ...]:

@@ -63,10 +63,13 @@ class FitProblem:
         One per response; they share their poles.
     free : Free
         What is found of each response besides its resonances.
+    has_base : bool
+        Whether the known factor is a model rather than a power of s; messages speak of it then.
     """
 
     lines: tuple[FittedLines, ...]
     free: Free
+    has_base: bool = True
     count: int = field(init=False)
 
     def __post_init__(self) -> None:
@@ -107,6 +110,8 @@ def fit_problem(
     measured: Sequence[MeasuredResponse],
     bases: Sequence[Callable[[Real], Complex]],
     free: Free,
+    *,
+    has_base: bool = True,
 ) -> FitProblem:
     """Return the problem of fitting resonances to responses, given the known factor of each.
 
@@ -118,6 +123,8 @@ def fit_problem(
         Of angular frequencies [rad/s], one per response.
     free : Free
         What is found of each response besides its resonances.
+    has_base : bool
+        Whether the known factor is a model rather than a power of s.
     """
     lines = []
     for response, base in zip(measured, bases, strict=True):
@@ -125,4 +132,4 @@ def fit_problem(
         at_lines = base(response.omega)
         everywhere = at_lines if observation.matrix is None else base(observation.omega)
         lines.append(FittedLines(response, observation, everywhere, at_lines, response.relative_deviation()))
-    return FitProblem(tuple(lines), free)
+    return FitProblem(tuple(lines), free, has_base)

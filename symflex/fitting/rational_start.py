@@ -237,6 +237,9 @@ def _aaa_poles(omega: Real, values: Complex, degree: int) -> list[tuple[float, c
         if not np.isfinite(pole) or pole.imag <= 0:
             continue
         away = pole - support
-        residue = np.sum(weights * at / away) / np.sum(-weights / away**2)
+        with np.errstate(all="ignore"):  # data that an approximant meets exactly leave poles on its points
+            residue = np.sum(weights * at / away) / np.sum(-weights / away**2)
+        if not np.isfinite(residue):
+            continue
         found.append((float(abs(residue) / max(abs(pole.real), 1e-9 * abs(pole))), complex(pole)))
     return found

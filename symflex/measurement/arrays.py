@@ -10,7 +10,14 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from symflex.errors import DataError, Diagnostic
-from symflex.measurement.checks import averages_of, checked_response, listed_names, nowhere, window_of
+from symflex.measurement.checks import (
+    averages_of,
+    checked_response,
+    listed_names,
+    nowhere,
+    unit_of,
+    window_of,
+)
 from symflex.measurement.limits import MAX_BYTES, MAX_RESPONSES
 from symflex.measurement.measured_response import MeasuredResponse
 
@@ -159,7 +166,7 @@ def responses_of(arrays: Mapping[str, np.ndarray], name: str, stem: str) -> tupl
             None if weights is None else weights[i].real,
             None if averages is None else averages_of(_word(averages), name),
             window_of(_word(known["window"])) if "window" in known else "",
-            _word(known["unit"]) if "unit" in known else "",
+            unit_of(_word(known["unit"]), name) if "unit" in known else "",
             "synthetic" in known and _word(known["synthetic"]).lower() in ("yes", "true", "1", "1.0"),
             (_word(known["note"]),) if "note" in known else (),
         )

@@ -6,20 +6,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from symflex.errors import DataError, Diagnostic
+from symflex.errors import DataError, Diagnostic, Source, Span, SpecError, Text
 from symflex.measurement.limits import MAX_ERRORS, MAX_LINES
 from symflex.measurement.measured_response import MeasuredResponse
+from symflex.quantities import parse_unit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     import numpy.typing as npt
 
-    from symflex.errors import Span
-
 FEWEST_LINES = 3
 MOST_AVERAGES = 1e9
 SHOWN_NAMES = 8
+SMALLEST, LARGEST = 1e-100, 1e100
+"""Of a magnitude: its square, and the square of that over another, have to be numbers too."""
 
 
 def checked_response(
@@ -75,6 +76,15 @@ def checked_response(
         "value",
         lambda i: "the value is zero, which no measurement is",
         "leave the line out",
+    )
+    with np.errstate(over="ignore"):
+        size = np.abs(values)
+    note(
+        "SF603",
+        np.isfinite(values) & (values != 0) & ~((size >= SMALLEST) & (size <= LARGEST)),
+        "value",
+        lambda i: f"the value {values[i]:.3g} has a magnitude beyond {SMALLEST:g} to {LARGEST:g}",
+        "check the unit of the values",
     )
     if coherence is not None:
         note(
@@ -138,6 +148,35 @@ def averages_of(text: str, file: str, span: Span | None = None) -> float:
         message = f"{place}the number of averages is '{text[:40]}'"
         raise DataError(Diagnostic("SF603", message, span, "a number from 1 on"))
     return number
+
+
+def unit_of(text: str, file: str, span: Span | None = None) -> str:
+    """Return the unit of the values, checked; empty when there is none.
+
+    Raises
+    ------
+    DataError
+        SF602 when it is no unit.
+
+    Examples
+    --------
+    >>> unit_of(" m/N", "a.csv")
+    'm/N'
+    """
+    unit = text.strip()
+    if not unit:
+        return ""
+    try:
+        parse_unit(Text(unit, Span(Source(file, unit), 0, len(unit))))
+    except SpecError as error:
+        (reason, *_) = error.diagnostics
+        place = "" if span else f"'{file}': "
+        message = f"{place}the unit of the values: {reason.message}"
+        hint = (
+            reason.hint or "such as m/N, m/(N*s^2), rad/V; 1 for a pure number; without a unit leave it out"
+        )
+        raise DataError(Diagnostic("SF602", message, span, hint)) from None
+    return unit
 
 
 def window_of(text: str) -> str:

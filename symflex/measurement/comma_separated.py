@@ -15,7 +15,7 @@ import numpy as np
 
 from symflex.errors import DataError, Diagnostic, Source, Span
 from symflex.errors.diagnostic import nearest
-from symflex.measurement.checks import averages_of, checked_response, window_of
+from symflex.measurement.checks import averages_of, checked_response, unit_of, window_of
 from symflex.measurement.limits import MAX_ERRORS, MAX_LINES
 from symflex.measurement.measured_response import MeasuredResponse
 
@@ -108,7 +108,7 @@ def read_columns(name: str, data: bytes, stem: str) -> tuple[MeasuredResponse, .
         table[:, by_kind["coherence"]] if "coherence" in by_kind else None,
         averages,
         window_of(told("window")),
-        told("unit"),
+        unit_of(told("unit"), name, fields.get("unit")),
         told("synthetic").lower() in ("yes", "true", "1")
         or "synthetic" in " ".join(_comments(source)).lower(),
         tuple(_comments(source)),

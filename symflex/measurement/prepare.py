@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from symflex.errors import DataError, Diagnostic, UsageError
+from symflex.measurement.checks import MOST_AVERAGES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -35,7 +36,7 @@ def prepared(
     Raises
     ------
     UsageError
-        SF902 a band whose ends are not in order, or an unknown window.
+        SF902 a band whose ends are not in order, an unknown window, or no number of averages.
     DataError
         SF605 when a response has no lines in the band.
 
@@ -48,6 +49,9 @@ def prepared(
     """
     if window not in (None, "hann", "none"):
         raise UsageError(Diagnostic("SF902", f"the window '{window[:40]}' is neither hann nor none"))
+    if averages is not None and not 1 <= averages <= MOST_AVERAGES:
+        message = f"the number of averages is {averages:g}; it lies between 1 and {MOST_AVERAGES:g}"
+        raise UsageError(Diagnostic("SF902", message))
     if band is not None and not 0 <= band[0] < band[1]:
         raise UsageError(Diagnostic("SF902", "a band is two frequencies in Hz, the lower one first"))
     found = []

@@ -79,9 +79,11 @@ class MeasurementPlan:
 
     def check(self) -> None:
         """Raise SF902 for a plan that cannot be meant, SF607 for one that is too large."""
-        values = (self.low_hz, self.high_hz, self.spacing_hz, self.noise, self.rolloff_hz or 1.0)
+        for what, value in (("noise", self.noise), ("roll-off", self.rolloff_hz)):
+            if value is not None and not np.isfinite(value):
+                raise UsageError(Diagnostic("SF902", f"the {what} is {value:g}: not a finite number"))
         if (
-            not np.isfinite(values).all()
+            not np.isfinite((self.low_hz, self.high_hz, self.spacing_hz)).all()
             or not 0 < self.spacing_hz < self.high_hz
             or not 0 < self.low_hz < self.high_hz
         ):

@@ -114,6 +114,9 @@ def test_json_has_the_documented_keys(oscillator):
         ("fit x.toml", 3),
         ("fit wrong.csv", 3),
         ("fit one.csv --modes 9 --start peaks", 4),
+        ("fit one.csv --averages nan", 2),
+        ("fit one.csv --averages inf", 2),
+        ("fit one.csv --averages 1e400", 2),
         ("measure x.toml -o a.csv", 2),
         ("measure x.toml -o a.xlsx --band 1 10", 2),
         ("measure x.toml -o a.csv --band 10 1", 2),
@@ -130,6 +133,27 @@ def test_what_cannot_be_meant_has_its_exit_code_and_writes_nothing(oscillator, a
     assert (done.code, done.out) == (code, "")
     assert "Traceback" not in done.err
     assert sorted(p.name for p in oscillator.folder.iterdir()) == before
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "named"),
+    [("--noise", "nan", "noise"), ("--noise", "inf", "noise"), ("--rolloff", "nan", "roll-off")],
+)
+def test_measure_names_the_option_that_is_no_number(oscillator, option, value, named):
+    done = oscillator("measure", "x.toml", "-o", "a.csv", "--band", "1", "10", option, value)
+    assert done.code == 2
+    assert f"the {named} is {value}" in done.err
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("power", [0, 2])
+def test_data_without_any_resonance_are_refused_without_speaking_of_a_base(shell, power):
+    rows = "".join(f"{i},{float(i) ** power},0\n" for i in range(1, 61))
+    (shell.folder / "flat.csv").write_text("frequency_hz,re,im\n" + rows)
+    done = shell("fit", "flat.csv")
+    assert (done.code, done.out) == (4, "")
+    assert "SF611" in done.err
+    assert "base" not in done.err
 
 
 def test_measure_writes_what_fit_reads(shell):

@@ -85,6 +85,76 @@ def test_zeros_in_the_right_half_plane_are_found_and_fail_the_phase_test():
     assert abs(worst.worst_degrees) == pytest.approx(180, abs=5)
 
 
+def driving_point(frequency, lag_hz=5000.0):
+    """A passive driving point: masses 3, 1, 0.6 kg in a chain to ground, an accelerometer at the first."""
+    s = 2j * np.pi * np.asarray(frequency)
+    end = 0.6 * s**2 + 9 * s + 50e3
+    middle = 1.0 * s**2 + 21 * s + 110e3 - (9 * s + 50e3) ** 2 / end
+    first = 3.0 * s**2 + 32 * s + 100e3 - (12 * s + 60e3) ** 2 / middle
+    return (
+        s**2 / first / (1 + 1.4j * (np.asarray(frequency) / lag_hz) - (np.asarray(frequency) / lag_hz) ** 2)
+    )
+
+
+def driven(seed, noise, **more):
+    return measured(driving_point, np.random.default_rng(seed), record=4.0, noise=noise, **more)
+
+
+@pytest.mark.parametrize(("seed", "noise"), [(1, 0.0), (2, 0.003)])
+def test_a_passive_driving_point_is_minimum_phase(seed, noise):
+    # Every driving point of a passive structure is positive real, and has no zeros in the right half plane.
+    (test,) = fit_resonances([driven(seed, noise)], slope=2, modes=3).phase_tests
+    assert test.verdict == "minimum"
+
+
+@pytest.mark.parametrize("damping", [-0.01, -0.1, -0.5, -1.5])
+def test_damped_zeros_in_the_right_half_plane_are_not_explained_away(damping):
+    data = noisy(replace(ONE, zeta_z=np.array([damping])))
+    assert fit_resonances([data], UNIT, modes=1).phase_tests[0].verdict == "nonminimum"
+
+
+def test_a_delay_that_could_be_a_sensor_s_is_undetermined_and_a_long_one_is_not():
+    def verdict(delay):
+        data = noisy(lambda f: ONE(f) * np.exp(-2j * np.pi * f * delay))
+        return fit_resonances([data], UNIT, modes=1).phase_tests[0]
+
+    assert verdict(5e-4).verdict == "undetermined"
+    assert verdict(5e-4).lag_s == pytest.approx(5e-4, rel=0.1)
+    assert not verdict(5e-4).is_minimum_phase
+    assert verdict(0.02).verdict == "nonminimum"
+
+
+def test_the_tip_of_a_bending_beam_is_not_minimum_phase():
+    # Poles and zeros of derivations/eppinger1988/lumped_bending_beam.toml, X_tip/F, with 1 % of damping:
+    # a zero at 28 Hz in either half plane, none others.
+    f = np.arange(2.0, 600.0, 0.5)
+    modes = [1 + 0.02j * f / centre - (f / centre) ** 2 for centre in (12.876, 241.365)]
+    data = MeasuredResponse("X_tip/F", f, (1 + (f / 28.072) ** 2) / (modes[0] * modes[1] * -(f**2)))
+    rough = 0.003 * np.random.default_rng(1).standard_normal((2, f.size))
+    data = replace(data, values=data.values * (1 + rough[0] + 1j * rough[1]))
+    (test,) = fit_resonances([data], modes=2, slope=-2).phase_tests
+    assert test.verdict == "nonminimum"
+
+
+def test_zeros_that_stand_for_a_power_of_s_are_said_and_turn_no_verdict():
+    # Two poles, one pair of zeros and s^2, fitted as s and two pairs of zeros: the second has to be a real
+    # zero near 0 and one far above, whose product is s in the band, with either sign of the gain.
+    two = System(np.array([20.0, 60.0]), np.full(2, 0.02), np.array([25.0, 1e5]), np.array([0.03, 0.0]))
+    data = noisy(lambda f: -(f**2) * two(f), noise=0.003)
+    fit = fit_resonances([data], modes=2, slope=1, start="vector")
+    assert np.abs(fit.resonances.zeta_z).max() > 2
+    assert any("two real zeros" in warning or "not determined" in warning for warning in fit.warnings)
+    assert fit.phase_tests[0].verdict != "nonminimum"
+
+
+def test_where_no_resonances_describe_the_magnitude_its_phase_says_nothing():
+    # One resonance for data with a real zero in the right half plane at 30 Hz: 4 dB are left.
+    data = noisy(lambda f: ONE(f) * (1 - 1j * f / 30))
+    (test,) = fit_resonances([data], UNIT, modes=1).phase_tests
+    assert test.verdict == "undetermined"
+    assert test.magnitude_db > 2
+
+
 def code_of(caught):
     return [d.code for d in caught.value.diagnostics]
 
