@@ -81,7 +81,7 @@ def find_specifications(paths: Sequence[Path], output: Path | None = None) -> tu
     Raises
     ------
     UsageError
-        SF902 for a folder without any, and for more than :data:`MOST_MODELS`.
+        SF902 for a folder without any, a file of measured data, and for more than :data:`MOST_MODELS`.
     """
     found: list[Path] = []
     for path in paths:
@@ -97,6 +97,10 @@ def find_specifications(paths: Sequence[Path], output: Path | None = None) -> tu
                     )
                 )
             found += inside
+        elif path.suffix.lower() in DATA_SUFFIXES:
+            message = f"'{path}' is a file of measured data, not a specification"
+            hint = "put it into a folder with the specification, and give the folder"
+            raise UsageError(Diagnostic("SF902", message, None, hint))
         else:
             found.append(path)
     distinct = tuple(dict.fromkeys(found))

@@ -86,7 +86,7 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
         distributed: Any = import_module("distributed")  # an extra; it has no types
     except ImportError:
         raise missing_library("distributed", "a cluster") from None
-    # 'with' closes the client; its finalizer would wait in vain to close one that a bad address left half made.
+    # 'with' closes the client; its finalizer would wait in vain for one that a bad address left half made.
     client_class = type("Client", (distributed.Client,), {"__del__": lambda _: None})
     try:
         client = client_class(address, timeout=CONNECT_SECONDS, set_as_default=False)
