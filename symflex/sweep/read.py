@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, Source, Span, SpecError, Text, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.model import ExactValue
+from symflex.model import ExactValue, check_value
 from symflex.quantities import parse_quantity
-from symflex.sweep.design import POINTS_LIMIT, Axis, Design, Range, between, too_many_points
+from symflex.sweep.design import POINTS_LIMIT, Axis, Design, Range, between, number, too_many_points
 from symflex.transfer.bind import read_values
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symflex.model import Parameter
+    from symflex.model import Model, Parameter
     from symflex.sweep.design import Scale
     from symflex.transfer import Given
 
@@ -92,6 +92,24 @@ def design_of(
     if not read:
         raise UsageError(Diagnostic("SF902", "nothing is swept"))
     return _design(read, draws, seed)
+
+
+def check_design(model: Model, design: Design) -> None:
+    """Refuse values with which a part that extends along x, or a delay, is what none can be.
+
+    The smallest and the largest value of each swept parameter are looked at, with the declared values of
+    those that are not swept.
+
+    Raises
+    ------
+    UsageError
+        SF209 a length that is not positive, a negative delay, and the like.
+    """
+    ends = [(axis.name, axis.values) for axis in design.axes]
+    ends += [(each.name, (each.low, each.high)) for each in design.ranges]
+    for name, values in ends:
+        for value in {min(values, key=number), max(values, key=number)}:
+            check_value(model, name, value, design.names)
 
 
 def _design(found: Sequence[Axis | Range], draws: int, seed: int) -> Design:
