@@ -22,6 +22,7 @@ from symflex.report.comparison import comparison_section
 from symflex.report.document import Code, Link, Mark, Section, Table, columns, text
 from symflex.report.numerals import counted
 from symflex.report.study import attempt
+from symflex.sweep.executors import end_with_parent
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -194,7 +195,9 @@ def write_chapters(
         return tuple(done.values())
     # A new interpreter in each process: what this one has open or threaded is not copied.
     store = entered_cache()
-    with ProcessPoolExecutor(min(processes, len(named)), mp_context=get_context("spawn")) as pool:
+    spawning = get_context("spawn")
+    count = min(processes, len(named))
+    with ProcessPoolExecutor(count, mp_context=spawning, initializer=end_with_parent) as pool:
         waiting = {
             pool.submit(_chapter_in, store, path, stem, measured): stem for stem, path in named.items()
         }
