@@ -566,13 +566,15 @@ def sweep_task(
     Raises
     ------
     UsageError
-        SF902 when margins are wanted and there is no such gain.
+        SF902 when margins are wanted and there is no such gain; SF209 a value with which a length, stiffness
+        or delay has a sign it cannot have.
     """
     from symflex import sweep as sweep_room  # most commands need none of it
     from symflex.stability import pick_gain
 
     if of == "margins":
         pick_gain(model.parameters, gain)
+    sweep_room.check_design(model, design)
     return sweep_room.Task(
         model, pair, of, design.names, derive_all, region, tuple(map(float, frequencies)), gain
     )

@@ -6,6 +6,7 @@ import hashlib
 import os
 import re
 import stat
+import tempfile
 import time
 import zlib
 from contextlib import suppress
@@ -112,6 +113,20 @@ class Store:
                 temporary.unlink()
             return
         self._make_room()
+
+    def is_writable(self) -> bool:
+        """Tell whether something can be kept, by trying: permissions alone do not say it.
+
+        A folder is made and removed at once, where the entries stand or would.
+        """
+        try:
+            place = Path(os.path.abspath(self.folder))
+            while not os.path.lexists(place):
+                place = place.parent
+            os.rmdir(tempfile.mkdtemp(prefix=".symflex-", dir=place))
+        except (OSError, ValueError):
+            return False
+        return True
 
     def usage(self) -> Usage:
         """Return how many entries there are and what they take."""

@@ -31,11 +31,13 @@ def command(*, clear: bool, as_json: bool) -> None:
     store = None if folder is None else Store(folder)
     removed = store.clear() if store is not None and clear else Usage(0, 0)
     kept = store.usage() if store is not None else Usage(0, 0)
+    is_writable = store is not None and store.is_writable()
     if as_json:
         emit_json(
             {
                 "schema": "symflex.cache/1",
                 "folder": None if folder is None else str(folder),
+                "writable": is_writable,
                 "entries": kept.entries,
                 "bytes": kept.size,
                 "maximum_bytes": MAXIMUM_BYTES,
@@ -46,6 +48,8 @@ def command(*, clear: bool, as_json: bool) -> None:
         click.echo(f"no cache: {OFF_VARIABLE} is set, or there is no home folder")
     else:
         click.echo(f"folder: {printable(str(folder))}")
+        if not is_writable:
+            click.echo("nothing can be kept there: the folder cannot be written")
         if clear:
             click.echo(f"removed: {_amount(removed)}")
         click.echo(f"entries: {_amount(kept)}, of at most {MAXIMUM_BYTES / 2**20:.0f} MiB")

@@ -8,6 +8,9 @@ from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, note, reporting, terminal_width
 from symflex.errors import Diagnostic, UsageError
 
+LONG = 5_000
+"""Terms beyond which a print is announced: it takes seconds, or minutes."""
+
 
 def chosen_representation(representation: str, form: str | None) -> str:
     """Return the representation to derive in: a form belongs to one of them.
@@ -71,7 +74,7 @@ def command(
     All of them by default. JSON strings are in the specification's own expression grammar.
     """
     from symflex import pipeline
-    from symflex.emit.forms import print_forms
+    from symflex.emit.forms import print_forms, terms_to_print
 
     if width is not None and (as_json or format_ != "latex"):
         raise UsageError(Diagnostic("SF902", "--width is for --format latex"))
@@ -86,6 +89,9 @@ def command(
     )
     if reason:
         note(reason)
+    for tf in derived:
+        if (terms := terms_to_print(tf, form)) > LONG:
+            note(f"printing {tf.name}: about {terms} terms; --representation nested is shorter")
     forms, sentences = print_forms(derived, form, digits)
     for sentence in sentences:
         note(sentence)

@@ -98,7 +98,7 @@ def command(
         raise UsageError(Diagnostic("SF902", "--fresh is for a file: give -o FILE"))
     model = pipeline.load(spec)
     pairs = pipeline.pick_pairs(model, [tf] if tf else [])
-    _check_options(of, modes, count, gain)
+    _check_options(of, modes, band, count, gain)
     design = read_design(model.parameters, over, draws or 0, seed)
     task = pipeline.sweep_task(
         model,
@@ -125,12 +125,16 @@ def command(
     return 5 if any(code.startswith(BUDGET_CODE) for code in found["code"].reshape(-1).tolist()) else 4
 
 
-def _check_options(of: str, modes: int | None, count: int | None, gain: str | None) -> None:
-    """Refuse options that say nothing for what is computed."""
+def _check_options(
+    of: str, modes: int | None, band: tuple[str, str] | None, count: int | None, gain: str | None
+) -> None:
+    """Refuse options that say nothing for what is computed, or contradict each other."""
     if of != "response" and count is not None:
         raise UsageError(Diagnostic("SF902", "--count is for --of response"))
     if of not in ("poles", "zeros") and modes is not None:
         raise UsageError(Diagnostic("SF902", "--modes is for --of poles and --of zeros"))
+    if modes is not None and band is not None:
+        raise UsageError(Diagnostic("SF902", "give only one of --modes and --band"))
     if of == "margins" and not gain:
         raise UsageError(Diagnostic("SF902", "margins are those of a loop", None, "name its gain: --gain K"))
     if of != "margins" and gain:

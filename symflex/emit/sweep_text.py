@@ -28,13 +28,13 @@ def sweep_text(sweep: Sweep, width: int = 80) -> str:
     """Return what was swept, how much of it is proved, and between which values each mode moves."""
     status = sweep["point_status"]
     shape = " x ".join(map(str, status.shape))
-    points = f"{status.size} points" + (f" ({shape})" if status.ndim > 1 else "")
+    points = counted(status.size, "point") + (f" ({shape})" if status.ndim > 1 else "")
     lines = [f"{sweep.attribute('tf')}: {sweep.of} at {points}"]
     for each in sweep.parameters:
         unit = f" {each.unit}" if each.unit else ""
-        low, high = float(np.min(each.values)), float(np.max(each.values))
-        how = "drawn" if each.dims == ("draw",) else f"{each.values.size} values"
-        lines.append(f"{INDENT}{each.name} = {low:.6g} to {high:.6g}{unit}, {how}")
+        drawn = each.dims == ("draw",)
+        how = ", drawn" if drawn else f", {counted(each.values.size, 'value')}"
+        lines.append(f"{INDENT}{each.name} = {_span(each.values)}{unit}{how}")
     lines += ["", *(f"{INDENT}{count} {STATES[name]}" for name, count in sweep.counts.items() if count)]
     codes = sorted({code for code in sweep["code"].reshape(-1).tolist() if code})
     if codes:
@@ -46,6 +46,17 @@ def sweep_text(sweep: Sweep, width: int = 80) -> str:
     return "\n".join(piece for line in lines for piece in _fitted(line, width))
 
 
+def counted(count: int, what: str) -> str:
+    """Return how many there are of what, in words.
+
+    Examples
+    --------
+    >>> counted(1, "point"), counted(2, "point")
+    ('1 point', '2 points')
+    """
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"
+
+
 def _fitted(line: str, width: int) -> list[str]:
     if len(line) <= width:
         return [line]
@@ -54,7 +65,8 @@ def _fitted(line: str, width: int) -> list[str]:
 
 def _roots(sweep: Sweep) -> list[str]:
     together = int(np.sum(sweep["status"] == RootStatus.TOGETHER))
-    lines = [f"{INDENT}{together} enclosures hold roots that cannot be told apart"] if together else []
+    holding = f"{counted(together, 'enclosure')} {'holds' if together == 1 else 'hold'}"
+    lines = [f"{INDENT}{holding} roots that cannot be told apart"] if together else []
     lines += [f"{INDENT}{text}" for text in _links(sweep)]
     rows = [("mode", "frequency [Hz]", "damping ratio", "points")]
     every = range(sweep["status"].shape[-1])
@@ -81,11 +93,16 @@ def _roots(sweep: Sweep) -> list[str]:
 def _links(sweep: Sweep) -> list[str]:
     counts = _link_counts(sweep)
     said = (
-        ("doubtful", "names in doubt: modes come close, cross, or the steps are long"),
-        ("real_axis", "names by choice: a pair met the real axis"),
-        ("appears", "roots enter the region or leave it, and have names of their own"),
+        ("doubtful", "name", "in doubt: modes come close, cross, or the steps are long"),
+        ("real_axis", "name", "by choice: a pair met the real axis"),
     )
-    return [f"{counts[name]} {text}" for name, text in said if counts[name]]
+    lines = [f"{counted(counts[name], what)} {text}" for name, what, text in said if counts[name]]
+    if counts["appears"] == 1:
+        return [*lines, "1 root enters the region or leaves it, and has a name of its own"]
+    if counts["appears"]:
+        text = "enter the region or leave it, and have names of their own"
+        return [*lines, f"{counts['appears']} roots {text}"]
+    return lines
 
 
 def _link_counts(sweep: Sweep) -> dict[str, int]:
@@ -95,7 +112,7 @@ def _link_counts(sweep: Sweep) -> dict[str, int]:
 
 def _margins(sweep: Sweep) -> list[str]:
     stable = sweep["stable"]
-    lines = ["", f"{INDENT}stable at {int(np.sum(stable == 1))} of {stable.size} points"]
+    lines = ["", f"{INDENT}stable at {int(np.sum(stable == 1))} of {counted(stable.size, 'point')}"]
     for name, unit in (
         ("gain_margin_up", ""),
         ("gain_margin_down", ""),

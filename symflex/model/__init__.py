@@ -18,6 +18,7 @@ from symflex.model.model import (
     Signal,
 )
 from symflex.model.numbers import with_numbers
+from symflex.model.ranges import check_value
 from symflex.model.resolve import load_model, resolve
 from symflex.model.scope import Scope, scope_of
 
@@ -38,6 +39,7 @@ __all__ = [
     "Published",
     "Scope",
     "Signal",
+    "check_value",
     "load_model",
     "resolve",
     "scope_of",

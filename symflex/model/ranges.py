@@ -6,16 +6,20 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symflex.elements import LineElement
+from symflex.errors import Diagnostic, UsageError
+from symflex.model.analysis import PI_NEARLY
+from symflex.model.points import Line
 from symflex.model.reading import literal_value
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Collection, Iterator
+    from fractions import Fraction
 
     from symflex.elements import Sign
     from symflex.errors import Span
     from symflex.expressions import Expression
     from symflex.model.draft import Draft
-    from symflex.model.points import Line
+    from symflex.model.model import ExactValue, Model
     from symflex.model.reading import Reader
 
 
@@ -29,7 +33,7 @@ class RangedValue:
     reason: str
 
 
-def ranged_values(draft: Draft) -> Iterator[RangedValue]:
+def ranged_values(draft: Draft | Model) -> Iterator[RangedValue]:
     """Yield the values of distributed elements and delays that cannot have any sign."""
     for use in draft.elements:
         element = use.element
@@ -72,7 +76,45 @@ def check_ranges(reader: Reader, draft: Draft, line: Line, unsound: set[Span | N
         if sign is None or sign >= least:
             continue
         value = None if literal_value(expression) is not None else line.value(expression)
-        shown = f" ({float(value):.6g})" if value else ""
-        word = "negative" if sign < 0 else "0"
-        reader.note("SF209", f"{ranged.what} is {word}{shown}; {ranged.reason}", expression.span)
+        reader.note("SF209", _message(ranged, sign, value), expression.span)
         unsound.add(expression.span)
+
+
+def check_value(model: Model, name: str, value: ExactValue, varied: Collection[str]) -> None:
+    """Refuse a value of a parameter with which a distributed part is what none can be.
+
+    Parameters
+    ----------
+    model : Model
+        Resolved; all other parameters keep their declared values.
+    name : str
+        The parameter.
+    value : ExactValue
+        Instead of the declared one.
+    varied : collection of str
+        Parameters whose declared values do not count, since they vary too.
+
+    Raises
+    ------
+    UsageError
+        SF209 a length, stiffness or dead time of a sign it cannot have.
+    """
+    known = {p.name: p.value for p in model.parameters if p.value and p.name not in varied} | {name: value}
+    line = Line(
+        {d.name: d.expression for d in model.definitions},
+        frozenset(p.name for p in model.parameters if p.assume == "positive"),
+        # The value itself tells the sign of what it stands for alone.
+        frozenset(p.name for p in model.parameters if p.assume == "nonnegative" and p.name != name),
+        {each: v.rational * PI_NEARLY**v.pi_power for each, v in known.items()},
+    )
+    for ranged in ranged_values(model):
+        sign = line.sign(ranged.expression)
+        if sign is not None and sign < (1 if ranged.sign == "positive" else 0):
+            message = _message(ranged, sign, line.value(ranged.expression))
+            shown = float(value.rational * PI_NEARLY**value.pi_power)
+            raise UsageError(Diagnostic("SF209", f"with {name} = {shown:.6g}, {message}"))
+
+
+def _message(ranged: RangedValue, sign: int, value: Fraction | None) -> str:
+    shown = f" ({float(value):.6g})" if value else ""
+    return f"{ranged.what} is {'negative' if sign < 0 else '0'}{shown}; {ranged.reason}"

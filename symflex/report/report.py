@@ -22,6 +22,7 @@ from symflex.report.comparison import comparison_section
 from symflex.report.document import Code, Link, Mark, Section, Table, columns, text
 from symflex.report.numerals import counted
 from symflex.report.study import attempt
+from symflex.sweep.executors import end_with_parent
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -81,7 +82,7 @@ def find_specifications(paths: Sequence[Path], output: Path | None = None) -> tu
     Raises
     ------
     UsageError
-        SF902 for a folder without any, and for more than :data:`MOST_MODELS`.
+        SF902 for a folder without any, a file of measured data, and for more than :data:`MOST_MODELS`.
     """
     found: list[Path] = []
     for path in paths:
@@ -97,6 +98,10 @@ def find_specifications(paths: Sequence[Path], output: Path | None = None) -> tu
                     )
                 )
             found += inside
+        elif path.suffix.lower() in DATA_SUFFIXES:
+            message = f"'{path}' is a file of measured data, not a specification"
+            hint = "put it into a folder with the specification, and give the folder"
+            raise UsageError(Diagnostic("SF902", message, None, hint))
         else:
             found.append(path)
     distinct = tuple(dict.fromkeys(found))
@@ -190,7 +195,9 @@ def write_chapters(
         return tuple(done.values())
     # A new interpreter in each process: what this one has open or threaded is not copied.
     store = entered_cache()
-    with ProcessPoolExecutor(min(processes, len(named)), mp_context=get_context("spawn")) as pool:
+    spawning = get_context("spawn")
+    count = min(processes, len(named))
+    with ProcessPoolExecutor(count, mp_context=spawning, initializer=end_with_parent) as pool:
         waiting = {
             pool.submit(_chapter_in, store, path, stem, measured): stem for stem, path in named.items()
         }

@@ -113,8 +113,7 @@ class Design:
 
     def __post_init__(self) -> None:
         if self.count > POINTS_LIMIT:
-            message = f"a sweep has at most {POINTS_LIMIT} points, not {self.count}"
-            raise BudgetError(Diagnostic("SF507", message, None, "sweep fewer parameters at a time"))
+            raise too_many_points(self.count)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -155,6 +154,12 @@ class Design:
     def _column(self, limits: Range) -> tuple[ExactValue, ...]:
         shares = self.shares[self.ranges.index(limits)]
         return tuple(limits.at(Fraction(share)) for share in shares)
+
+
+def too_many_points(count: int | str) -> BudgetError:
+    """Return the error that says how many points a sweep may have; a count of many digits comes as text."""
+    message = f"a sweep has at most {POINTS_LIMIT} points, not {count}"
+    return BudgetError(Diagnostic("SF507", message, None, "sweep fewer parameters, or fewer values of each"))
 
 
 def between(limits: Range, count: int) -> tuple[ExactValue, ...]:

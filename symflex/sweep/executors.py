@@ -6,7 +6,9 @@ import os
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from importlib import import_module
-from multiprocessing import get_context
+from multiprocessing import get_context, parent_process
+from multiprocessing.connection import wait
+from threading import Thread
 from typing import TYPE_CHECKING, Any
 
 from symflex.errors import BudgetError, Diagnostic, UsageError
@@ -55,11 +57,27 @@ def open_executor(
     if count == 1:
         yield None, 1
         return
-    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"))
+    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"), initializer=end_with_parent)
     try:
         yield pool, count
     finally:
         pool.shutdown(cancel_futures=True)
+
+
+def end_with_parent() -> None:
+    """Let this worker end when the process that started it does, however that ended.
+
+    A process that is killed closes no pool, and its workers would wait for work for ever.
+    """
+    parent = parent_process()
+    if parent is not None:
+        Thread(target=_exit_after, args=(parent.sentinel,), name="parent", daemon=True).start()
+
+
+def _exit_after(sentinel: int) -> None:
+    wait([sentinel])
+    # Not sys.exit: it would end this thread alone, and handlers at exit may wait for the parent.
+    os._exit(1)
 
 
 @contextmanager
@@ -68,8 +86,10 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
         distributed: Any = import_module("distributed")  # an extra; it has no types
     except ImportError:
         raise missing_library("distributed", "a cluster") from None
+    # 'with' closes the client; its finalizer would wait in vain for one that a bad address left half made.
+    client_class = type("Client", (distributed.Client,), {"__del__": lambda _: None})
     try:
-        client = distributed.Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
+        client = client_class(address, timeout=CONNECT_SECONDS, set_as_default=False)
     except (OSError, ValueError, TypeError, ImportError) as error:
         hint = "start one with: dask scheduler; and workers with: dask worker tcp://HOST:8786"
         said = "".join(c for c in str(error) if c.isprintable())[:100]

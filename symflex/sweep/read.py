@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
+import re
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, Source, Span, SpecError, Text, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.model import ExactValue
+from symflex.model import ExactValue, check_value
 from symflex.quantities import parse_quantity
-from symflex.sweep.design import POINTS_LIMIT, Axis, Design, Range, between
+from symflex.sweep.design import POINTS_LIMIT, Axis, Design, Range, between, number, too_many_points
 from symflex.transfer.bind import read_values
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symflex.model import Parameter
+    from symflex.model import Model, Parameter
     from symflex.sweep.design import Scale
     from symflex.transfer import Given
 
 FORMS = "NAME=LO:HI:lin|log:COUNT or NAME=V1,V2,..., or NAME=LO:HI[:log] or NAME=+-5% with draws"
 LIMITS = 2
+COUNT = re.compile(r"([0-9]+)(?:[eE]\+?([0-9]+))?")
 COUNT_DIGITS = 9
+COUNT_SHOWN = 20
 
 
 def read_design(
@@ -46,7 +49,8 @@ def read_design(
     ------
     UsageError
         SF902 what cannot be read, an unknown parameter, one that is swept twice, ranges without draws or
-        draws without ranges; SF203 another unit, SF209 another sign than assumed of the parameter.
+        draws without ranges; SF203 another unit, SF209 another sign than assumed of the parameter, or 0 for
+        one that is assumed positive, also as the limit of a range.
     BudgetError
         SF507 too many points.
 
@@ -81,13 +85,31 @@ def design_of(
             read.append(_read(known, f"{name}={said}"))
             continue
         parameter = _known(known, name)
-        exact = tuple(read_values((parameter,), {name: value})[0][1] for value in said)
+        exact = tuple(_assumed(parameter, value) for value in said)
         if not exact:
             raise UsageError(Diagnostic("SF902", f"'{name}' has no values"))
         read.append(Axis(name, exact))
     if not read:
         raise UsageError(Diagnostic("SF902", "nothing is swept"))
     return _design(read, draws, seed)
+
+
+def check_design(model: Model, design: Design) -> None:
+    """Refuse values with which a part that extends along x, or a delay, is what none can be.
+
+    The smallest and the largest value of each swept parameter are looked at, with the declared values of
+    those that are not swept.
+
+    Raises
+    ------
+    UsageError
+        SF209 a length that is not positive, a negative delay, and the like.
+    """
+    ends = [(axis.name, axis.values) for axis in design.axes]
+    ends += [(each.name, (each.low, each.high)) for each in design.ranges]
+    for name, values in ends:
+        for value in {min(values, key=number), max(values, key=number)}:
+            check_value(model, name, value, design.names)
 
 
 def _design(found: Sequence[Axis | Range], draws: int, seed: int) -> Design:
@@ -123,7 +145,7 @@ def _read(known: dict[str, Parameter], text: str) -> Axis | Range:
     if len(parts) == 1:
         items = said.split(",")
         if len(items) > POINTS_LIMIT:
-            raise _unreadable(text)
+            raise too_many_points(len(items))
         return Axis(name, tuple(_value(parameter, item.strip(), text) for item in items))
     low, high = (_value(parameter, part, text) for part in parts[:LIMITS])
     scale, count = _scale_and_count(parts[LIMITS:], text)
@@ -147,13 +169,24 @@ def _scale_and_count(parts: list[str], text: str) -> tuple[Scale, int | None]:
     for i, part in enumerate(parts):
         if i == 0 and part in ("lin", "log"):
             scale = "log" if part == "log" else "lin"
-        elif i == len(parts) - 1 and part.isascii() and part.isdigit() and len(part) <= COUNT_DIGITS:
-            count = int(part)
+        elif i == len(parts) - 1 and (digits := COUNT.fullmatch(part)):
+            count = _count(*digits.groups())
         else:
             raise _unreadable(text)
     if count == 0:
         raise _unreadable(text)
     return scale, count
+
+
+def _count(whole: str, exponent: str | None) -> int:
+    """Return the count that digits and a power of ten say, which nobody has to write out to refuse."""
+    whole, zeros = whole.lstrip("0"), (exponent or "").lstrip("0")
+    if not whole:
+        return 0
+    if len(zeros) > COUNT_DIGITS or len(whole) + int(zeros or 0) > COUNT_DIGITS:
+        said = f"{whole}e{zeros}" if zeros else whole
+        raise too_many_points(said if len(said) <= COUNT_SHOWN else f"{said[:COUNT_SHOWN]}...")
+    return int(whole + int(zeros or 0) * "0")
 
 
 def _about(parameter: Parameter, said: str, text: str) -> Range:
@@ -180,7 +213,7 @@ def _about(parameter: Parameter, said: str, text: str) -> Range:
         raise _unreadable(text)
     low, high = (ExactValue(value.rational + side * amount, value.pi_power) for side in (-1, 1))
     for limit in (low, high):
-        read_values((parameter,), {parameter.name: limit})
+        _assumed(parameter, limit)
     return _range(parameter, low, high, "lin", text)
 
 
@@ -202,11 +235,23 @@ def _value(parameter: Parameter, item: str, text: str) -> ExactValue:
     if not item:
         raise _unreadable(text)
     try:
-        return read_values((parameter,), {parameter.name: item})[0][1]
+        return _assumed(parameter, item)
     except SpecError as error:
         reason = error.diagnostics[0].message
         message = f"--over '{text[:60]}': {reason}"
         raise UsageError(Diagnostic("SF902", message, None, error.diagnostics[0].hint)) from None
+
+
+def _assumed(parameter: Parameter, given: Given) -> ExactValue:
+    """Return a value that a specification could declare too.
+
+    To leave an effect out, binding takes a zero anywhere; a point of a sweep is a model of its own.
+    """
+    value = read_values((parameter,), {parameter.name: given})[0][1]
+    if not value.rational and parameter.assume == "positive":
+        message = f"parameter '{parameter.name}' is 0, but is assumed positive"
+        raise UsageError(Diagnostic("SF209", message, None, 'say assume = "nonnegative" in the model'))
+    return value
 
 
 def _unreadable(text: str) -> UsageError:

@@ -52,6 +52,7 @@ Given = int | float | Fraction | Decimal | str | ExactValue
 
 FIRST_BITS = 96
 LAST_BITS = 6144
+NAMES_SHOWN = 40
 DOUBLE_BITS = 54
 NEAR = (200, 220)
 """Negative powers of two between which the behaviour at a point is read off, where kernels are no numbers."""
@@ -356,11 +357,19 @@ def read_values(
         _check_sign(parameter, value)
     missing = [p for p, (_, value) in zip(parameters, values, strict=True) if value is None]
     if missing:
-        hint = "give it a value here, or to bind() in Python"
-        raise ModelError(
-            *(Diagnostic("SF229", f"parameter '{p.name}' has no value", p.span, hint) for p in missing)
-        )
+        raise ModelError(_without_value(missing))
     return tuple((name, value) for name, value in values if value is not None)
+
+
+def _without_value(missing: Sequence[Parameter]) -> Diagnostic:
+    """Return one diagnostic for all parameters without a value: a symbolic model may have hundreds."""
+    if len(missing) == 1:
+        hint = "give it a value here, or to bind() in Python"
+        return Diagnostic("SF229", f"parameter '{missing[0].name}' has no value", missing[0].span, hint)
+    shown = ", ".join(p.name for p in missing[:NAMES_SHOWN])
+    more = f" and {len(missing) - NAMES_SHOWN} more" if len(missing) > NAMES_SHOWN else ""
+    hint = "give them values in [parameters], or to bind() in Python"
+    return Diagnostic("SF229", f"{len(missing)} parameters have no value: {shown}{more}", None, hint)
 
 
 def _check_sign(parameter: Parameter, value: ExactValue | None) -> None:

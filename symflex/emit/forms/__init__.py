@@ -116,6 +116,32 @@ def print_forms(
     return tuple(found), tuple(sentences)
 
 
+def terms_to_print(tf: AnyTransferFunction, form: str | None = None) -> int:
+    """Return about how many terms a symbolic form prints; 0 where that is not known, or few in any case.
+
+    Parameters
+    ----------
+    tf, form
+        See :func:`print_form`.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... parameters = { a = {}, b = {} }
+    ... inputs.u = {}
+    ... outputs.y = "u/(s^2 + a*s + b)"
+    ... ''')
+    >>> terms_to_print(pipeline.derive_all(model)[0], "polynomial")
+    3
+    """
+    if isinstance(tf, NestedTransferFunction) or tf.is_distributed or form == "zpk":
+        return 0
+    closed = tf.closed if form in (None, "definitions") and tf.length > LARGE else None
+    return tf.length if closed is None else len(closed.num) + len(closed.den)
+
+
 def _candidates(tf: TransferFunction) -> tuple[str, ...]:
     found: tuple[str, ...] = CANDIDATES
     if tf.is_distributed:
@@ -141,4 +167,5 @@ __all__ = [
     "print_form",
     "print_forms",
     "step_names",
+    "terms_to_print",
 ]

@@ -53,6 +53,7 @@ def test_the_cache_is_shown_and_cleared(folder, shell):
     assert shown == {
         "schema": "symflex.cache/1",
         "folder": str(folder),
+        "writable": True,
         "entries": 1,
         "bytes": size,
         "maximum_bytes": 256 * 2**20,
@@ -74,4 +75,22 @@ def test_a_folder_that_cannot_be_written_changes_nothing(monkeypatch, tmp_path, 
     monkeypatch.setenv("SYMFLEX_CACHE_DIR", str(tmp_path / "file" / "below"))
     result = shell("derive", "x.toml")
     assert (result.code, result.out, result.err) == (0, expected, "")
-    assert shell("cache").code == 0
+    shown = shell("cache")
+    assert shown.code == 0
+    assert "nothing can be kept there" in shown.out
+    assert shell("cache", "--json").json["writable"] is False
+
+
+def test_looking_whether_the_cache_can_be_written_leaves_nothing(folder, shell):
+    assert shell("cache", "--json").json["writable"] is True
+    assert not folder.exists() and not any(p.name.startswith(".symflex") for p in folder.parent.iterdir())
+    folder.mkdir()
+    assert shell("cache", "--json").json["writable"] is True
+    assert not any(folder.iterdir())
+
+
+@pytest.mark.parametrize("path", ["/dev/null", "/dev/null/below", "/proc/nope"])
+def test_a_place_that_holds_no_folder_is_said_to_keep_nothing(monkeypatch, shell, path):
+    monkeypatch.delenv("SYMFLEX_NO_CACHE")
+    monkeypatch.setenv("SYMFLEX_CACHE_DIR", path)
+    assert "nothing can be kept there" in shell("cache").out

@@ -131,3 +131,32 @@ def test_a_form_that_no_function_has_is_a_usage_error(shell, tmp_path):
     done = shell("derive", str(tmp_path / "mixed.toml"), "--form", "krylov", "--tf", "X/G")
     assert done.code == 2
     assert "SF902" in done.err
+
+
+def chain(count):
+    """A chain from ground to x1, ..., xN, all symbols."""
+    names = range(1, count + 1)
+    lines = [
+        "symflex = 1",
+        "[parameters]",
+        *(f"m{i} = {{}}\nk{i} = {{}}\nb{i} = {{}}" for i in names),
+        "[elements]",
+    ]
+    for i in names:
+        ends = f'between = ["{f"x{i - 1}" if i > 1 else "ground"}", "x{i}"]'
+        lines.append(f'M{i} = {{ type = "mass", at = "x{i}", m = "m{i}" }}')
+        lines.append(f'K{i} = {{ type = "spring", {ends}, k = "k{i}" }}')
+        lines.append(f'B{i} = {{ type = "damper", {ends}, b = "b{i}" }}')
+    return "\n".join([*lines, "[inputs]", 'F = { force = "x1" }', "[outputs]", f'X = "x{count}"'])
+
+
+def test_a_long_print_is_announced_and_a_short_one_is_not(shell):
+    (shell.folder / "long.toml").write_text(chain(10))
+    done = shell("derive", "long.toml", "--representation", "expanded")
+    # The terms of a chain's determinant are the matchings of a path of 20 nodes, a Fibonacci number: 6765.
+    # The numerator is one product.
+    assert done.err == "printing X/F: about 6766 terms; --representation nested is shorter\n"
+    assert "printing" not in done.out
+    (shell.folder / "short.toml").write_text(chain(3))
+    assert shell("derive", "short.toml", "--representation", "expanded").err == ""
+    assert shell("derive", "long.toml").err.startswith("in nested form")

@@ -67,3 +67,12 @@ def test_the_date_may_come_from_the_environment(monkeypatch):
 def test_a_wrong_epoch_is_an_error(shell, monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "soon")
     assert shell("report", "x.toml").code == 2
+
+
+@pytest.mark.parametrize("name", ["d1.csv", "D1.UFF"])
+def test_measured_data_given_as_a_specification_are_told_where_to_go(shell, name):
+    (shell.folder / name).write_text("frequency,re,im\n1,2,3\n")
+    done = shell("report", "x.toml", name, "-j", "1")
+    assert done.code == 2
+    assert "error[SF902]" in done.err and name in done.err
+    assert "measured data" in done.err and "folder" in done.err and "TOML" not in done.err

@@ -155,3 +155,12 @@ def test_a_million_modes_exceed_a_budget(beam):
 def beam(shell):
     (shell.folder / "beam.toml").write_text(SLIDING_FREE)
     return shell
+
+
+def test_parameters_without_a_value_are_named_in_one_message(shell):
+    text = (shell.folder / "symbolic.toml").read_text().replace('"18 N/m"', "{}")
+    (shell.folder / "both.toml").write_text(text)
+    done = shell("roots", "both.toml")
+    assert done.code == 3
+    assert done.err.count("error[SF229]") == 1
+    assert "2 parameters have no value: m, k" in done.err or "2 parameters have no value: k, m" in done.err

@@ -73,5 +73,19 @@ Y = "y"
 """
 
 
+# Y/u is 1/((s + 1)(1 - c)): there is none at c = 1.
+ALGEBRAIC = """
+symflex = 1
+[parameters]
+c = { value = 0.5, assume = "real" }
+[signals]
+y = "u/(s + 1) + c*y"
+[inputs]
+u = {}
+[outputs]
+Y = "y"
+"""
+
+
 def oscillator():
     return symflex.loads(OSCILLATOR)

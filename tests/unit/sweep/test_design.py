@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 from symflex.errors import BudgetError, UsageError
-from symflex.model import ExactValue
+from symflex.model import ExactValue, Parameter
 from symflex.sweep import Design, Range, design_of, read_design
 from symflex.sweep.design import number
 from tests.unit.sweep.models import oscillator
@@ -100,7 +100,7 @@ def test_draws_are_repeated_at_every_point_of_a_grid():
         ("k=1:2:log:-3", "SF902"),
         ("k=1:2:log:3:4", "SF902"),
         ("k=1:2:lin:٣", "SF902"),
-        ("k=0:2:log:3", "SF902"),
+        ("b=0:2:log:3", "SF902"),
         ("k=1:1:lin:3", "SF902"),
         ("k=1,,2", "SF902"),
         ("k=1,two", "SF902"),
@@ -109,6 +109,20 @@ def test_draws_are_repeated_at_every_point_of_a_grid():
         ("k=-1,2", "SF209"),
         ("k=+-5%", "SF902"),
         ("k=1:2:lin:99999999", "SF507"),
+        ("k=1:2:lin:1000000000", "SF507"),
+        ("k=1:2:lin:1e9", "SF507"),
+        ("k=1:2:1e+9", "SF507"),
+        pytest.param("k=1:2:lin:1" + 5000 * "0", "SF507", id="many digits"),
+        pytest.param("k=1:2:lin:1e" + 5000 * "9", "SF507", id="a large exponent"),
+        pytest.param("k=1" + 1_000_000 * ",1", "SF507", id="many values"),
+        ("k=1:2:lin:0e3", "SF902"),
+        ("k=1:2:lin:1e-1", "SF902"),
+        ("k=1:2:lin:1.5", "SF902"),
+        ("k=0,1", "SF209"),
+        ("k=0 N/mm", "SF209"),
+        ("k=0:2:lin:3", "SF209"),
+        ("k=2:0:lin:3", "SF209"),
+        ("f=0 Hz,1 Hz", "SF209"),
         ("k=1e999999999:2:lin:3", "SF902"),
     ],
 )
@@ -121,6 +135,32 @@ def test_what_cannot_be_swept_is_refused(text, code):
 def test_a_range_that_reaches_below_zero_is_refused():
     with pytest.raises(UsageError, match="SF209"):
         read_design(PARAMETERS, ["k=+-150%"], 10)
+
+
+@pytest.mark.parametrize("text", ["k=0:2", "k=+-100%"])
+def test_a_range_that_begins_at_zero_is_refused(text):
+    with pytest.raises(UsageError, match=r"SF209.*'k' is 0"):
+        read_design(PARAMETERS, [text], 10)
+
+
+def test_values_in_python_are_refused_at_zero_as_those_of_a_specification_are():
+    for zero in (0, 0.0, -0.0, "0 N/m", Fraction(0)):
+        with pytest.raises(UsageError, match="SF209"):
+            design_of(PARAMETERS, {"k": [1, zero]})
+
+
+def test_zero_is_a_value_of_what_may_vanish():
+    assert rationals("b=0,1") == [0, 1]
+    assert rationals("b=0:1:lin:3") == [0, Fraction(1, 2), 1]
+    (limits,) = read_design(PARAMETERS, ["b=+-100%"], 5).ranges
+    assert (limits.low.rational, limits.high.rational) == (0, 1)
+    signed = [Parameter("c", None, assume="real")]
+    assert [p[0].rational for p in read_design(signed, ["c=-1:1:lin:3"]).points] == [-1, 0, 1]
+
+
+def test_a_count_may_be_written_as_a_power_of_ten():
+    assert rationals("k=1:2:lin:1e1") == rationals("k=1:2:lin:10")
+    assert len(rationals("k=1:2:lin:02E+1")) == 20
 
 
 def test_a_parameter_is_swept_once():

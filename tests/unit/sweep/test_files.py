@@ -3,6 +3,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from symflex.cli import run
 from symflex.emit.figures import draw_sweep, render
 from symflex.emit.sweep_files import WRITERS, netcdf_bytes, npz_bytes, read_sweep, sweep_bytes
 from symflex.errors import DataError, UsageError
-from tests.unit.sweep.models import LOOP, OSCILLATOR, SLIDING_FREE, oscillator
+from tests.unit.sweep.models import ALGEBRAIC, LOOP, OSCILLATOR, SLIDING_FREE, oscillator
 
 
 @pytest.fixture(scope="module")
@@ -166,7 +167,8 @@ def test_a_link_is_refused_before_anything_is_computed(spec, tmp_path, capsys):
 
 
 def test_a_point_that_fails_is_no_success(spec, capsys):
-    assert run(["sweep", "beam.toml", "--over", "E=0,1", "--modes", "1", "--workers", "1"]) == 4
+    Path("loop.toml").write_text(ALGEBRAIC)
+    assert run(["sweep", "loop.toml", "--over", "c=0,1", "--workers", "1"]) == 4
     assert "1 failed" in capsys.readouterr().out
 
 

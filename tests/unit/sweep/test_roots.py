@@ -7,11 +7,12 @@ from mpmath import mp, mpf
 
 import symflex
 from symflex import pipeline
+from symflex.errors import UsageError
 from symflex.roots import Modes
 from symflex.sweep.follow import Link
 from symflex.sweep.point_roots import PointStatus, RootSolver, RootStatus
 from symflex.transfer.bind import read_values
-from tests.unit.sweep.models import BEAM, SLIDING_FREE, TWO_RESONANCES, oscillator
+from tests.unit.sweep.models import ALGEBRAIC, BEAM, SLIDING_FREE, TWO_RESONANCES, oscillator
 
 
 def test_poles_of_an_oscillator_lie_in_their_discs():
@@ -120,10 +121,11 @@ def test_a_rigid_body_is_counted_at_zero():
 
 
 def test_a_point_without_a_solution_is_said_to_fail():
-    sweep = symflex.loads(SLIDING_FREE).sweep({"E": [0, "200 GPa"]}, modes=2)
+    sweep = symflex.loads(ALGEBRAIC).sweep({"c": [1, 0]})
     assert sweep["point_status"].tolist() == [PointStatus.FAILED, PointStatus.CERTIFIED]
     assert sweep["code"][0].startswith("SF")
-    assert sweep["status"][0].tolist() == [RootStatus.ABSENT] * 2
+    assert sweep["status"][:, 0].tolist() == [RootStatus.ABSENT, RootStatus.CERTIFIED]
+    assert sweep["re"][1, 0] == -1
     assert not sweep.is_certified
 
 
@@ -161,3 +163,52 @@ def test_how_a_point_is_solved_does_not_show(text):
 def test_functions_of_other_ratios_are_not_similar():
     sweep = symflex.loads(BEAM).sweep({"m": [1, 2]}, modes=3)
     assert Link.SIMILAR not in set(sweep["link"].ravel())
+
+
+def with_length(assumed):
+    declared = f'l = {{ value = "1.086 m", assume = "{assumed}" }}'
+    return symflex.loads(SLIDING_FREE.replace('l = "1.086 m"', declared))
+
+
+@pytest.mark.parametrize(
+    ("assumed", "values"),
+    [("nonnegative", [0, 1]), ("real", [0, 1]), ("real", [1, -1, 2]), ("real", "-1:1:lin:5")],
+)
+def test_a_length_that_no_beam_has_is_refused(assumed, values):
+    with pytest.raises(UsageError, match=r"SF209.* l of beam 'arm' is"):
+        with_length(assumed).sweep({"l": values}, modes=1)
+
+
+def test_a_range_of_lengths_that_no_beam_has_is_refused():
+    with pytest.raises(UsageError, match="SF209"):
+        with_length("nonnegative").sweep({"l": "0:1"}, modes=1, draws=3)
+
+
+def test_a_length_is_refused_by_itself_and_not_for_what_it_was_declared():
+    assert with_length("real").sweep({"l": [1, 2]}, modes=1).is_certified
+    model = symflex.loads(SLIDING_FREE.replace('l = "l" }', 'l = "l - c" }').replace("[elements]", CUT))
+    assert model.sweep({"c": [0, 1]}, modes=1).is_certified
+    with pytest.raises(UsageError, match=r"with c = 2, l of beam 'arm' is negative"):
+        model.sweep({"c": [0, 2]}, modes=1)
+    assert model.sweep({"l": [3], "c": [2]}, modes=1).is_certified  # either alone says nothing
+
+
+CUT = 'c = { value = "0.1 m", assume = "real" }\n[elements]'
+
+
+def test_a_dead_time_may_vanish_and_not_be_negative():
+    text = """
+symflex = 1
+[parameters]
+T = { value = "1 s", assume = "real" }
+[blocks]
+D = { type = "delay", T = "T" }
+[inputs]
+u = {}
+[outputs]
+y = "D*u/(s + 1)"
+"""
+    model = symflex.loads(text)
+    assert model.sweep({"T": [0, 1]}, modes=1).is_certified
+    with pytest.raises(UsageError, match=r"SF209.*delay cannot look ahead"):
+        model.sweep({"T": [-1, 1]}, modes=1)

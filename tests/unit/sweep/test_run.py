@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -202,6 +203,66 @@ def test_a_sweep_that_is_killed_goes_on_to_the_same_bytes(tmp_path):
     assert not (tmp_path / "killed.nc").exists()
     assert run(tmp_path, "killed.nc", "--workers", "2") == expected
     assert not journal.exists()
+
+
+def is_alive(process):
+    # An orphan of a container without a reaper stays as a zombie, which is gone all the same.
+    listed = subprocess.run(["ps", "-o", "stat=", "-p", str(process)], check=False, capture_output=True)
+    return bool(listed.stdout.strip()) and not listed.stdout.strip().startswith(b"Z")
+
+
+def children_of(process):
+    listed = subprocess.run(["ps", "-A", "-o", "pid=,ppid="], capture_output=True, text=True, check=True)
+    pairs = (map(int, line.split()) for line in listed.stdout.splitlines())
+    return [child for child, parent in pairs if parent == process]
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("ps") is None, reason="needs ps")
+def test_the_workers_of_a_sweep_that_is_killed_end(tmp_path):
+    command, environment = symflex_sweep(tmp_path, "killed.nc", "--workers", "2")
+    journal = tmp_path / "killed.nc.part"
+    with subprocess.Popen(
+        command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    ) as p:
+        for _ in range(6000):
+            if len(list(journal.glob("chunk-*.npz"))) >= 4 or p.poll() is not None:
+                break
+            time.sleep(0.01)
+        workers = children_of(p.pid)
+        assert len(workers) >= 2
+        p.send_signal(signal.SIGKILL)
+    for _ in range(3000):
+        if not any(map(is_alive, workers)):
+            break
+        time.sleep(0.01)
+    left = [worker for worker in workers if is_alive(worker)]
+    for worker in left:
+        os.kill(worker, signal.SIGKILL)
+    assert not left
+
+
+@pytest.mark.needs_module("distributed")
+def test_an_address_that_is_none_is_refused_and_leaves_nothing_to_close():
+    # Finalizers complain when the interpreter ends, and not before.
+    script = (
+        "from symflex.errors import UsageError\n"
+        "from symflex.sweep.executors import open_executor\n"
+        "for address in ('garbage', 'xyz://a:1'):\n"
+        "    try:\n"
+        "        with open_executor(scheduler=address):\n"
+        "            pass\n"
+        "    except UsageError as error:\n"
+        "        print(error.diagnostics[0].code)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    assert (done.stdout.split(), done.stderr) == (["SF917", "SF917"], "")
 
 
 @pytest.mark.slow

@@ -1,0 +1,48 @@
+from __future__ import annotations
+
+import pytest
+
+BEAM = """
+symflex = 1
+[parameters]
+E = 1
+I = 1
+rho = 1
+A = 1
+l = "1 m"
+[elements]
+base = { type = "fixed", at = "p" }
+arm  = { type = "beam", between = ["p", "q"], E = "E", I = "I", rho = "rho", A = "A", l = "l" }
+[inputs]
+F = { force = "q" }
+[outputs]
+X = "q"
+"""
+
+
+@pytest.mark.parametrize("over", ["l=0,1", "l=0:1:lin:3"])
+def test_a_length_of_zero_is_refused_before_anything_is_solved(shell, over):
+    (shell.folder / "beam.toml").write_text(BEAM)
+    done = shell("sweep", "beam.toml", "--over", over, "--modes", "2", "-o", "out.nc")
+    assert (done.code, done.out) == (2, "")
+    assert "error[SF209]: parameter 'l' is 0" in done.err
+    assert not list(shell.folder.glob("out.nc*"))
+
+
+def test_too_many_points_exceed_a_budget(shell):
+    done = shell("sweep", "x.toml", "--over", "k=1:2:lin:1000000000")
+    assert done.code == 5
+    assert "error[SF507]" in done.err and "1000000000" in done.err
+
+
+def test_only_options_that_a_sweep_has_are_named(shell):
+    done = shell("sweep", "x.toml", "--over", "k=1,2", "--modes", "2", "--band", "1", "50")
+    assert done.code == 2
+    assert "--modes" in done.err and "--band" in done.err
+    assert "--mode," not in done.err and "--region" not in done.err
+
+
+def test_one_point_is_not_several(shell):
+    done = shell("sweep", "x.toml", "--over", "k=18", "--workers", "1")
+    assert "V/F: poles at 1 point\n" in done.out or "X/F: poles at 1 point\n" in done.out
+    assert "  k = 18 N/m, 1 value\n" in done.out
