@@ -305,7 +305,7 @@ def _warnings(fit: Fit) -> tuple[str, ...]:
                 errors.omega_z[r, i] > WEAK * found.omega_z[r, i]
             ):
                 warnings.append(
-                    f"zero pair {i + 1}{where} is not determined by the data: its error is as large as itself"
+                    f"zero pair {i + 1}{where} is not determined by the data: its error is of its own size"
                 )
                 continue
             if abs(found.zeta_z[r, i]) > OVERDAMPED:

@@ -156,7 +156,10 @@ def chosen_order(
             break
     weak: tuple[Score, Candidate] | None = None
     failed: list[tuple[Score, Diagnostic]] = []
-    for score in sorted((s for s in scores if s.is_usable), key=lambda s: _value(s, criterion)):
+    least = min(s.reduced for s in scores if s.is_usable)
+    # A quick fit may have failed for want of steps: where it is far better than the others, it gets them.
+    worth = [s for s in scores if s.is_usable or FAR_BETTER * s.reduced < least]
+    for score in sorted(worth, key=lambda s: _value(s, criterion)):
         if weak is not None and FAR_BETTER * weak[0].reduced < score.reduced:
             return weak[1], tuple(scores)
         for better, failure in failed:
@@ -176,7 +179,7 @@ def chosen_order(
             weak = weak or (score, best)
             scores = _marked(scores, score.count, "weak")
         else:
-            return best, tuple(scores)
+            return best, tuple(_marked(scores, score.count, "usable"))
     raise FitError(no_resonance(problem))
 
 

@@ -40,7 +40,7 @@ def draw_fit(fit: Fit, response: int = 0) -> Figure:
     with paper_style():
         figure, top, bottom = panels()
         for axes in (top, bottom):
-            for band in test.bands:
+            for band in () if test.is_minimum_phase else test.bands:
                 axes.axvspan(band.low_hz, band.high_hz, color=PARTED_COLOUR, linewidth=0, zorder=0)
         fitted = np.degrees(np.unwrap(np.angle(model)))
         fitted = fitted - 360 * np.round(fitted[0] / 360)
@@ -53,7 +53,7 @@ def draw_fit(fit: Fit, response: int = 0) -> Figure:
             frequency, fitted + np.degrees(np.angle(start / model)), color=COLOURS[4], linestyle=DASHES[3]
         )
         bottom.plot(frequency, fitted, color=COLOURS[0])
-        if test.bands:
+        if test.bands and not test.is_minimum_phase:
             alone = fit.values(response, None) * test.resonances.factor(0, line.omega)
             alone = alone / fit.resonances.factor(response, line.omega)
             phase = np.degrees(np.unwrap(np.angle(alone)))
@@ -62,5 +62,5 @@ def draw_fit(fit: Fit, response: int = 0) -> Figure:
             top.plot([], [], color=COLOURS[1], linestyle=DASHES[1], label="phase from magnitude")
         for omega in fit.resonances.omega_p.tolist():
             bottom.axvline(omega / (2 * np.pi), color=QUIET, linewidth=0.4, zorder=0)
-        finish(figure, top, bottom, measured, fit.bases[response].unit, 2 if test.bands else 3)
+        finish(figure, top, bottom, measured, fit.bases[response].unit, 3 if test.is_minimum_phase else 2)
     return figure
