@@ -207,7 +207,7 @@ def test_the_bandwidth_of_a_loop_with_a_delay(loop):
 def test_there_may_be_no_bandwidth_or_no_limit_to_it(loop):
     assert loop("K/(s + 1)").stability("K").bandwidth_hz == float("inf")
     # Half of the limit is a loop gain of 1/2 where it is largest.
-    assert np.isnan(loop("K*D/(s + 1)", T="1000 s").stability("K", (0, 20)).bandwidth_hz)
+    assert np.isnan(loop("K*D/(s + 1)", T="10 s").stability("K", (0, 2)).bandwidth_hz)
     assert np.isnan(loop("K/(s - 1)").stability("K").bandwidth_hz)
 
 
