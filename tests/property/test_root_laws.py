@@ -33,8 +33,13 @@ def quiet(examples):
     )
 
 
+def whole(low, high):
+    """Draw an integer; ``st.integers`` would prefer constants of whatever modules are imported by then."""
+    return st.sampled_from(range(low, high + 1))
+
+
 def tenths(low=1, high=40):
-    return st.integers(min_value=low, max_value=high)
+    return whole(low, high)
 
 
 # ----------------------------------------------------------------------------------- models without losses
@@ -132,7 +137,7 @@ def driven_point(elements: str, node: str) -> str:
 
 @st.composite
 def beams(draw, most=2):
-    number = draw(st.integers(min_value=1, max_value=most))
+    number = draw(whole(1, most))
     joints = number + 1
 
     def sometimes():
@@ -232,11 +237,11 @@ def test_driving_points_of_many_beams_have_as_many_poles_and_zeros_as_are_counte
 @st.composite
 def chains(draw, most=8):
     """Draw masses and springs in tenths: spring k before mass k, the last after all masses or missing."""
-    count = draw(st.integers(min_value=1, max_value=most))
+    count = draw(whole(1, most))
     masses = [draw(tenths()) for _ in range(count)]
     springs = [draw(tenths()) for _ in range(count)]
     ends = draw(st.tuples(st.booleans(), st.booleans()))
-    return masses, springs, ends, draw(st.integers(min_value=0, max_value=count - 1))
+    return masses, springs, ends, draw(whole(0, count - 1))
 
 
 def check_chain(drawn):
@@ -291,9 +296,9 @@ def damped(draw):
     """Draw a Kelvin-Voigt cantilever with mass and dashpot at its tip, and a rectangle, in tenths."""
     values = {name: draw(tenths(2, 30)) for name in ("m", "b")}
     values["eta"] = draw(tenths(1, 9))  # thousandths of a second, tenfold
-    low = draw(st.integers(min_value=-1200, max_value=-10)) / 7
-    floor = draw(st.integers(min_value=-300, max_value=800)) / 7
-    height = draw(st.integers(min_value=70, max_value=2000)) / 7
+    low = draw(whole(-1200, -10)) / 7
+    floor = draw(whole(-300, 800)) / 7
+    height = draw(whole(70, 2000)) / 7
     return values, complex(low, floor), complex(draw(st.sampled_from([-0.003, 1.0])), floor + height)
 
 
