@@ -177,23 +177,18 @@ def derive_as(
     if representation == "expanded":
         return derive_all(model, pairs), ""
     if len(model.elements) > NEVER_LARGE and not model.is_distributed:
-        terms = _expanded_terms(model, pairs[:1])
+        equations = assemble_sparse(model)
+        terms = expanded_terms(equations, eliminate(equations, pairs[:1]))
         if terms > EXPANDED_TERMS:
             count = f"some {terms:.0e}".replace("e+", "e") if terms < inf else "more than 1e300"
             reason = f"in nested form: the expanded determinant would have {count} terms"
-            return derive_nested(model, pairs), reason
+            return transfer_room.derive_nested(equations, pairs), reason
     try:
         return derive_all(model, pairs), ""
     except BudgetError as error:
         if model.is_distributed:
             raise
         return derive_nested(model, pairs), f"in nested form: {error.diagnostics[0].message}"
-
-
-def _expanded_terms(model: Model, pairs: Sequence[tuple[str, str]]) -> float:
-    """Return about how many terms the closed determinant has."""
-    equations = assemble_sparse(model)
-    return expanded_terms(equations, eliminate(equations, pairs))
 
 
 def derive_bound(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[BoundTransferFunction, ...]:

@@ -345,7 +345,7 @@ class _Run:
     def _substitute(
         self, row: _Row, pivot: int, below: int, values: dict[int, int], ground: int, load: int
     ) -> list[int]:
-        bench, rows, users = self.bench, self.rows, self.users
+        bench, users = self.bench, self.users
         classes = self.network.classes
         kind = classes[row.implicit] if row.implicit >= 0 else -2
         sums: dict[int, int] = {kind: ground}
@@ -355,9 +355,7 @@ class _Run:
         quotients: dict[int, int] = {}
         mine: dict[int, int] = {}
         for j in changed:
-            other = rows[j]
-            if other is None:
-                raise AssertionError
+            other = self._row(j)
             if other.implicit == pivot:
                 value = self._unfold(j, other, pivot, values)
             else:
@@ -369,9 +367,7 @@ class _Run:
         for j, quotient in quotients.items():
             if not quotient:
                 continue
-            other = rows[j]
-            if other is None:
-                raise AssertionError
+            other = self._row(j)
             if load:
                 other.load.append(bench.multiply(quotient, load))
             if other.implicit >= 0:
@@ -398,43 +394,36 @@ class _Run:
         return True
 
     def _join(self, j: int, row: _Row, quotient: int, values: dict[int, int]) -> None:
-        multiply, entries, implicit, users = self.bench.multiply, row.entries, row.implicit, self.users
+        multiply = self.bench.multiply
         for column, value in values.items():
-            if column == implicit:
-                continue
-            product = multiply(quotient, value)
-            known = entries.get(column)
-            if known is None:
-                entries[column] = [product]
-                users[column][j] = None
-            else:
-                known.append(product)
+            if column != row.implicit:
+                self._enter(j, row, column, multiply(quotient, value))
 
     def _join_all(self, quotients: dict[int, int], values: dict[int, int]) -> None:
         """Join all neighbours of a node by branches, the same in both directions."""
-        multiply, rows, users = self.bench.multiply, self.rows, self.users
-        items = [(j, q, rows[j]) for j, q in quotients.items()]
+        multiply, enter = self.bench.multiply, self._enter
+        items = [(j, q, self._row(j)) for j, q in quotients.items()]
         for a, (j, quotient, row) in enumerate(items):
-            if row is None:
-                raise AssertionError
-            entries, own = row.entries, row.own
             for k, _, other in items[a + 1 :]:
-                if other is None:
-                    raise AssertionError
-                column = other.own
-                product = multiply(quotient, values[column])
-                known = entries.get(column)
-                if known is None:
-                    entries[column] = [product]
-                    users[column][j] = None
-                else:
-                    known.append(product)
-                mirrored = other.entries.get(own)
-                if mirrored is None:
-                    other.entries[own] = [product]
-                    users[own][k] = None
-                else:
-                    mirrored.append(product)
+                product = multiply(quotient, values[other.own])
+                enter(j, row, other.own, product)
+                enter(k, other, row.own, product)
+
+    def _enter(self, j: int, row: _Row, column: int, product: int) -> None:
+        """Add a term to an entry."""
+        known = row.entries.get(column)
+        if known is None:
+            row.entries[column] = [product]
+            self.users[column][j] = None
+        else:
+            known.append(product)
+
+    def _row(self, j: int) -> _Row:
+        """Return a row that is not eliminated yet."""
+        row = self.rows[j]
+        if row is None:
+            raise AssertionError
+        return row
 
     def _holders(self, column: int) -> list[int]:
         """Return the rows that hold a column implicitly: its own, or one it was handed to."""

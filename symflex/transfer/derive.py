@@ -128,11 +128,11 @@ class _Workshop:
         if common != 1:
             num, den = num / common, den / common
         closed = ClosedForm(self._opening, num, den)
-        leading = den.leading_coefficient() if closed.is_large else self._opening(den).unit
-        if leading < 0:
-            num, den = -num, -den
-        order = self._line_in_s.order(output, source) if closed.is_large else None
-        return ClosedForm(self._opening, num, den, order)
+        if not closed.is_large:
+            return closed if self._opening(den).unit > 0 else ClosedForm(self._opening, -num, -den)
+        order = self._line_in_s.order(output, source)
+        sign = 1 if den.leading_coefficient() > 0 else -1
+        return ClosedForm(self._opening, sign * num, sign * den, order)
 
     def _lumped(
         self,

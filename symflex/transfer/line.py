@@ -13,7 +13,8 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from symflex.elimination.minors import DegreeBounds, Minors
-from symflex.kernels import LAPLACE, Factored, Ring
+from symflex.kernels import LAPLACE
+from symflex.transfer.coprimality import LINE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -21,8 +22,8 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.elimination import Determinants
+    from symflex.kernels import Factored, Ring
 
-LINE = Ring((LAPLACE,))
 Image = tuple["fmpz_mpoly", int]
 """A polynomial in the parameter of the line, and the degree it can have at most."""
 
@@ -67,16 +68,15 @@ class DeterminantsOnLine:
         self._images = [known.get(name) for name in closure.ring.names]
         reduced, rows = determinants.reduced, determinants.minors.rows
         entries = [self._row(row) for row in (*rows, *reduced.outputs)]
-        self._is_there = all(row is not None for row in entries)
         whole = [row or {} for row in entries]
         values = [{c: image for c, (image, _) in row.items()} for row in whole]
         degrees = [{c: degree for c, (_, degree) in row.items()} for row in whole]
         self._values = Minors(tuple(values[: len(rows)]), ring=LINE)
         self._degrees = DegreeBounds(tuple(degrees[: len(rows)]))
         self._outputs = list(zip(values[len(rows) :], degrees[len(rows) :], strict=True))
-        columns = sum(1 << c for c in reduced.columns)
         self._den = None
-        if self._is_there:
+        if all(row is not None for row in entries):
+            columns = sum(1 << c for c in reduced.columns)
             self._den = _kept(self._values.determinant(columns), self._degrees.determinant(columns))
 
     def prove_coprime(self, output: str, source: str) -> bool:

@@ -158,27 +158,28 @@ class TransferFunction:
     @property
     def ring(self) -> Ring:
         """Where :attr:`ratio` lives."""
-        if self.reduced is None and self.closed is not None:
-            return self.closed.opening.expansion.ring
-        return self.ratio.ring
+        return self.ratio.ring if self._large is None else self._large.opening.expansion.ring
 
     @property
     def is_zero(self) -> bool:
         """True when the output does not depend on the input."""
-        if self.reduced is None and self.closed is not None:
-            return bool(self.closed.num.is_zero())
-        return self.ratio.is_zero
+        return self._large is None and self.ratio.is_zero
+
+    @cached_property
+    def _large(self) -> ClosedForm | None:
+        """The closed form where that stands for all, as opening it may cost more than all else."""
+        return self.closed if self.reduced is None and self.closed and self.closed.is_large else None
 
     @property
     def is_large(self) -> bool:
-        """True when it is expanded only if asked, as that may cost more than all else; see :attr:`closed`."""
-        return self.reduced is None and self.closed is not None and self.closed.is_large
+        """True when it is expanded only if asked: see :attr:`closed`."""
+        return self._large is not None
 
     @property
     def length(self) -> int:
         """The number of terms of all factors when expanded; of a large function a bound."""
-        if self.is_large and self.closed is not None:
-            return self.closed.length or len(self.closed.num) + len(self.closed.den)
+        if self._large is not None:
+            return self._large.length or len(self._large.num) + len(self._large.den)
         return sum(len(f) for f, _ in self.ratio.factors)
 
     @property
@@ -221,8 +222,8 @@ class TransferFunction:
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
         """The parameters that occur, in declared order."""
-        if self.is_large and self.closed is not None:
-            return self._parameters_named(self._opened_names(self.closed.generators))
+        if self._large is not None:
+            return self._parameters_named(self._opened_names(self._large.generators))
         return self._parameters_in([f for f, _ in self.all_factors])
 
     @property
@@ -266,8 +267,8 @@ class TransferFunction:
 
         Those of a large function are told from random numbers in place of all else.
         """
-        if self.is_large and self.closed is not None and self.closed.order is not None:
-            return self.closed.order
+        if self._large is not None and self._large.order is not None:
+            return self._large.order
         return degree(self.ratio.numerator()), degree(self.ratio.denominator())
 
 
