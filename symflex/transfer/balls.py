@@ -68,6 +68,16 @@ def rational_value(expression: Expression, values: Mapping[str, ExactValue]) -> 
     return None
 
 
+def enclosure(value: ExactValue) -> Callable[[], arb]:
+    """Return what encloses an exact value at the precision of the time it is called."""
+    return lambda: ball(value.rational) * arb.pi() ** value.pi_power
+
+
+def later(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> Callable[[], arb]:
+    """Return what encloses an expression at the precision of the time it is called; see :func:`enclose`."""
+    return lambda: enclose(expression, values)
+
+
 def enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> arb:
     """Return a ball that contains the value of an expression at the current precision.
 

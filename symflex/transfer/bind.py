@@ -30,10 +30,11 @@ from symflex.kernels import (
 )
 from symflex.model import ExactValue, with_numbers
 from symflex.quantities import parse_quantity, unit_of
-from symflex.transfer.balls import ball, enclose, rational_value
+from symflex.transfer.balls import ball, enclosure, later, rational_value
 from symflex.transfer.cancel import cancel
 from symflex.transfer.derive import derive
 from symflex.transfer.distributed import embedded_table
+from symflex.transfer.double_value import FIRST_BITS, double_value, order_near
 from symflex.transfer.enclose_kernels import KernelValues, expansion
 from symflex.transfer.monomials import Plan, plan
 from symflex.transfer.nested import nested_transfer
@@ -44,18 +45,13 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
-    from symflex.expressions import Expression
     from symflex.model import Parameter
 
 Given = int | float | Fraction | Decimal | str | ExactValue
 """A value as a user gives it; one that was read before stays exact."""
 
-FIRST_BITS = 96
-LAST_BITS = 6144
 NAMES_SHOWN = 40
-DOUBLE_BITS = 54
-NEAR = (200, 220)
-"""Negative powers of two between which the behaviour at a point is read off, where kernels are no numbers."""
+"""Names of parameters without value that one message lists."""
 
 
 @dataclass(frozen=True)
@@ -183,10 +179,10 @@ class BoundTransferFunction:
     @cached_property
     def constants(self) -> tuple[tuple[str, Callable[[], arb]], ...]:
         """Per generator after s, how to enclose it at the current precision."""
-        values: dict[str, Callable[[], arb]] = {name: _enclosure(value) for name, value in self.values}
+        values: dict[str, Callable[[], arb]] = {name: enclosure(value) for name, value in self.values}
         known: dict[str, Callable[[], arb]] = {"pi": arb.pi}
         for constant in self.source.constants:
-            known[constant.generator] = _later(constant.expression, values)
+            known[constant.generator] = later(constant.expression, values)
         return tuple((name, known[name]) for name in self.ratio.ring.names[1:] if name in known)
 
     def enclosed(self, bits: int) -> Enclosed:
@@ -236,19 +232,7 @@ class BoundTransferFunction:
         """
         if self.ratio.is_zero:
             return 0j
-        if not (isfinite(s.real) and isfinite(s.imag)):
-            return complex(nan, nan)
-        point, function = acb(s.real, s.imag), self._first
-        while True:
-            value = function(point)
-            if value.is_finite() and value.rel_accuracy_bits() >= DOUBLE_BITS:
-                return complex(float(value.real.mid()), float(value.imag.mid()))
-            if self.kernels and not value.is_finite():
-                return self._limit_at(s)
-            if function.bits >= LAST_BITS:
-                break
-            function = self.enclosed(2 * function.bits)
-        return 0j if value.is_finite() else complex(inf, nan)
+        return double_value(self.enclosed, self._first, s, 0 if self.kernels else None)
 
     def limit_at_zero(self) -> float:
         """Return the limit for s -> 0 from the right: 0, a finite gain, or a signed infinity."""
@@ -269,48 +253,12 @@ class BoundTransferFunction:
 
     def _limit_at_zero_of_kernels(self) -> float:
         """Return the limit from two values close to zero, where it goes like an integer power of s."""
-        order, value = self._order_near(0j)
+        order, value = order_near(self.enclosed, 0j)
         if value is None:
             return nan
         if order < 0:
             return inf if value.real > 0 else -inf
         return float(value.real.mid()) if order == 0 else 0.0
-
-    def _limit_at(self, s: complex) -> complex:
-        """Return the value where wavenumbers vanish or meet, and kernels are no numbers, by continuity."""
-        order, value = self._order_near(s)
-        if value is None or order < 0:
-            return complex(inf, nan)
-        return 0j if order > 0 else complex(float(value.real.mid()), float(value.imag.mid()))
-
-    def _order_near(self, s: complex) -> tuple[int, acb | None]:
-        """Return the order of the zero (negative: of the pole) at ``s``, and a value close by."""
-        near, nearer = (self._beside(s, -e) for e in NEAR)
-        if near is None or nearer is None:
-            return 0, None
-        with ctx.workprec(LAST_BITS):
-            ratio = abs(nearer / near).log() / arb(2).log() / (NEAR[0] - NEAR[1])
-            return round(float(ratio.mid())), nearer
-
-    def _beside(self, s: complex, exponent: int) -> acb | None:
-        """Return a ball around the value at ``s + 2^exponent``, ``None`` when it is not found."""
-        bits = FIRST_BITS * 8
-        while bits <= LAST_BITS:
-            with ctx.workprec(bits):
-                point = acb(s.real, s.imag) + (arb(2) ** exponent) * max(abs(s), 1.0)
-                value = self.enclosed(bits)(point)
-                if value.is_finite() and value.rel_accuracy_bits() >= DOUBLE_BITS:
-                    return value
-            bits *= 2
-        return None
-
-
-def _enclosure(value: ExactValue) -> Callable[[], arb]:
-    return lambda: ball(value.rational) * arb.pi() ** value.pi_power
-
-
-def _later(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> Callable[[], arb]:
-    return lambda: enclose(expression, values)
 
 
 def _value(coefficient: fmpz_mpoly, values: list[arb]) -> arb:

@@ -10,17 +10,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf, isfinite, nan
 from typing import TYPE_CHECKING, Any
 
-from flint import acb, arb, ctx, fmpq
+from flint import acb, arb, ctx
 
 from symflex.elimination import Step, StraightLine, eliminate
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import Name, names
 from symflex.kernels import LAPLACE
-from symflex.transfer.balls import enclose
+from symflex.transfer.balls import ball, enclosure, later
 from symflex.transfer.bind import read_values
+from symflex.transfer.double_value import FIRST_BITS, double_value
 from symflex.transfer.quantity import name_quantity, unit_of_quotient
 from symflex.transfer.transfer_function import TransferFunction
 
@@ -35,12 +35,7 @@ if TYPE_CHECKING:
     from symflex.equations import ConstantFunction, Equations
     from symflex.model import ExactValue, Input, Model, Output, Parameter
 
-FIRST_BITS = 96
-LAST_BITS = 6144
-DOUBLE_BITS = 54
 CONSTANT_BITS = 256
-NEAR = (200, 220)
-"""Negative powers of two at which the behaviour near a point is read off."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,11 +218,11 @@ class BoundNested:
     @cached_property
     def _enclosures(self) -> dict[str, Callable[[], arb]]:
         """Per generator other than s, how to enclose it at the current precision."""
-        values = {name: _enclosure(value) for name, value in self.values}
+        values = {name: enclosure(value) for name, value in self.values}
         found = {**values, "pi": arb.pi}
         for constant in self.source.constants:
             if constant.generator in self.source.generators:
-                found[constant.generator] = _later(constant, values)
+                found[constant.generator] = later(constant.expression, values)
         return found
 
     def enclosed(self, bits: int) -> EnclosedNested:
@@ -249,30 +244,8 @@ class BoundNested:
         """
         if self.is_zero:
             return 0j
-        if not (isfinite(s.real) and isfinite(s.imag)):
-            return complex(nan, nan)
-        point, function = acb(s.real, s.imag), self._first
-        while True:
-            value = function(point)
-            if value.is_finite() and value.rel_accuracy_bits() >= DOUBLE_BITS:
-                return complex(float(value.real.mid()), float(value.imag.mid()))
-            if not value.is_finite() and function.bits > FIRST_BITS:
-                return self._limit_at(s)
-            if function.bits >= LAST_BITS:
-                return 0j
-            function = self.enclosed(2 * function.bits)
-
-    def _limit_at(self, s: complex) -> complex:
-        """Return the limit at a point where parts of the expression have none, by the order it goes with."""
-        with ctx.workprec(LAST_BITS):
-            function, scale = self.enclosed(LAST_BITS), max(abs(s), 1.0)
-            near, nearer = (function(acb(s.real, s.imag) + arb(2) ** -e * scale) for e in NEAR)
-            if not nearer.is_finite() or not near.is_finite() or nearer.contains(0):
-                return complex(inf, nan)
-            order = round(float((abs(nearer / near).log() / arb(2).log()).mid()) / (NEAR[0] - NEAR[1]))
-        if order:
-            return 0j if order > 0 else complex(inf, nan)
-        return complex(float(nearer.real.mid()), float(nearer.imag.mid()))
+        # A wide ball may hold a zero divisor where the function has none: once more before a limit is sought.
+        return double_value(self.enclosed, self._first, s, 1)
 
     def at(self, s: npt.ArrayLike) -> npt.NDArray[np.complex128]:
         """Return the values in double precision at many complex frequencies at once.
@@ -322,7 +295,7 @@ class EnclosedNested:
     def __call__(self, s: acb) -> acb:
         """Return a ball that contains the values on the ball ``s`` [rad/s]; not finite near a pole."""
         with ctx.workprec(self.bits):
-            num, den = _values(self.source, {**self.constants, LAPLACE: s}, _ball)
+            num, den = _values(self.source, {**self.constants, LAPLACE: s}, ball)
             return acb(num) / acb(den)
 
     def value_and_slope(self, s: acb) -> tuple[acb, acb]:
@@ -413,7 +386,7 @@ def _values_and_slopes(  # noqa: PLR0912  (one branch per kind of step, in one l
             if slope is not None:
                 slope = exponent * values[base] ** (exponent - 1) * slope
         else:
-            value, slope = acb(_ball(program.fraction(i))), None
+            value, slope = acb(ball(program.fraction(i))), None
         values[i] = value
         if slope is not None:
             slopes[i] = slope
@@ -422,18 +395,6 @@ def _values_and_slopes(  # noqa: PLR0912  (one branch per kind of step, in one l
             slopes.pop(x, None)
     zero = acb(0)
     return values[tf.num], values[tf.den], slopes.get(tf.num, zero), slopes.get(tf.den, zero)
-
-
-def _ball(value: Fraction) -> arb:
-    return arb(fmpq(value.numerator, value.denominator))
-
-
-def _enclosure(value: ExactValue) -> Callable[[], arb]:
-    return lambda: _ball(value.rational) * arb.pi() ** value.pi_power
-
-
-def _later(constant: ConstantFunction, values: Mapping[str, Callable[[], arb]]) -> Callable[[], arb]:
-    return lambda: enclose(constant.expression, values)
 
 
 def bind_nested(
