@@ -8,6 +8,7 @@ from symflex.elements.damper import Damper
 from symflex.elements.dc_motor import DcMotor
 from symflex.elements.element import (
     ACROSS_UNIT,
+    COMPONENT_UNIT,
     THROUGH_NAME,
     THROUGH_UNIT,
     Branch,
@@ -74,6 +75,7 @@ ELEMENTS: dict[str, Element] = {
 
 __all__ = [
     "ACROSS_UNIT",
+    "COMPONENT_UNIT",
     "ELEMENTS",
     "THROUGH_NAME",
     "THROUGH_UNIT",

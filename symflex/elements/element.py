@@ -25,6 +25,15 @@ Placing = Literal["translation", "rotation", "electrical", "planar"]
 ACROSS_UNIT: dict[str, str] = {"translation": "m", "rotation": "rad", "electrical": "V"}
 THROUGH_UNIT: dict[str, str] = {"translation": "N", "rotation": "N*m", "electrical": "A"}
 THROUGH_NAME: dict[str, str] = {"translation": "f", "rotation": "tau", "electrical": "i"}
+COMPONENT_UNIT: dict[str, str] = {
+    "f": "N",
+    "tau": "N*m",
+    "i": "A",
+    "supplied": "A",
+    "supplied_f": "N",
+    "supplied_tau": "N*m",
+}
+"""Of through variables, by component; what inputs supply is named so that no element's quantity is meant."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,6 +29,7 @@ from symflex.kernels import (
     residue,
 )
 from symflex.model import scope_of
+from symflex.model.input_kinds import INPUT_KINDS
 from symflex.model.nodes import variable_of
 
 if TYPE_CHECKING:
@@ -431,25 +432,22 @@ class _Assembly:
 
     def _take_inputs(self, nodes: Mapping[str, Node]) -> None:
         one = Factored.number(self.ring, 1)
-        domains: dict[str, Placing] = {
-            "force": "translation",
-            "torque": "rotation",
-            "voltage": "electrical",
-            "current": "electrical",
-        }
         for source in self.model.inputs:
             if source.kind == "signal":
                 continue
-            variable = Variable("input", source.name)
-            ends = [self._terminal(r, domains[source.kind], nodes).across for r in source.nodes]
+            kind, variable = INPUT_KINDS[source.kind], Variable("input", source.name)
+            ends = [self._terminal(r, kind.domain, nodes).across for r in source.nodes]
             signs = [one, -one]
-            if source.kind == "voltage":
-                # An element may bear the input's name: its own quantities are called otherwise.
-                current = Variable("through", source.name, "supplied")
-                difference = LinearForm.of(*zip(ends, signs, strict=False), (variable, -one))
-                self.unknowns.append(current)
-                self.rows.append(EquationRow(current, "constraint", difference))
-                variable = current
+            if kind.order is not None:
+                delivered = kind.delivered(source.name)
+                rate = Factored.generator(self.ring, LAPLACE) ** kind.order
+                moved = LinearForm.of(*zip(ends, signs, strict=False)) * rate
+                self.unknowns.append(delivered)
+                self.rows.append(
+                    EquationRow(delivered, "constraint", moved + LinearForm.of((variable, -one)))
+                )
+                self.through[delivered] = LinearForm.of((delivered, one))
+                variable = delivered
             for end, sign in zip(ends, signs, strict=False):
                 if end is not None:
                     form = LinearForm.of((variable, -sign))

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 
 from symflex.elements import ELEMENTS
 from symflex.explanation.coordinates import driven_source
-from symflex.expressions import Call, Derivative, Equation, Name, Number, format_expression, names
+from symflex.expressions import Attribute, Call, Derivative, Equation, Name, Number, format_expression, names
 from symflex.model import NodeReference, PlacedElement
+from symflex.model.input_kinds import INPUT_KINDS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -111,26 +112,42 @@ def _domain(model: Model, variable: Variable) -> Placing:
 
 
 def open_circuit(model: Model, source: Input) -> Constraint | None:
-    """Return a model in which a voltage input delivers no current, ``None`` when it is no voltage source."""
+    """Return a model in which a voltage or a motion is not imposed, ``None`` when the input imposes none."""
     words = f"the terminals of {source.name} open"
-    if source.kind == "voltage":
+    kind = INPUT_KINDS.get(source.kind)
+    if kind is not None and kind.is_imposed:
+        if _is_read(model, source.name):
+            return None
         inputs = tuple(
-            replace(i, kind="current") if i.name == source.name else i  # an ideal current source is open
+            replace(i, kind=kind.effort) if i.name == source.name else i  # of an effort, none is delivered
             for i in model.inputs
         )
-        return Constraint(replace(model, inputs=inputs), f"the current of {source.name} = 0", words, "")
+        # What is left out is named by outputs only, and those do not make the determinant.
+        free = replace(model, inputs=inputs, outputs=())
+        if kind.domain == "electrical":
+            return Constraint(free, f"the current of {source.name} = 0", words, "")
+        return Constraint(
+            free, f"{source.name}.{kind.quantity} = 0", f"what {source.name} moves left free", ""
+        )
     use = driven_source(model, source)
     if use is None or use.element.type_name != "voltage_source":
         return None
-    mentions = any(
-        getattr(n, "owner", "") == use.name for signal in model.signals for n in names(signal.expression)
-    )
-    if mentions:
+    if _is_read(model, use.name):
         return None
     # What is left out is named by outputs only, and those do not make the determinant.
     elements = tuple(e for e in model.elements if e is not use)
     without = replace(model, elements=elements, outputs=())
     return Constraint(without, f"{use.name}.i = 0", words, "")
+
+
+def _is_read(model: Model, owner: str) -> bool:
+    """Tell whether a quantity of an element or input is read by anything but an output."""
+    found = [
+        *(signal.expression for signal in model.signals),
+        *(e for use in model.elements for _, e in use.values),
+        *(c for field in model.fields for c in field.conditions),
+    ]
+    return any(isinstance(n, Attribute) and n.owner == owner for e in found for n in names(e))
 
 
 @dataclass(frozen=True, slots=True)

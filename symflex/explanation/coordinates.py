@@ -13,6 +13,7 @@ from symflex.elements import Variable
 from symflex.elements.source import CurrentSource, ForceSource, TorqueSource, VoltageSource
 from symflex.expressions import names
 from symflex.kernels import Factored
+from symflex.model.input_kinds import INPUT_KINDS
 from symflex.model.nodes import variable_of
 
 if TYPE_CHECKING:
@@ -26,12 +27,6 @@ if TYPE_CHECKING:
 Coordinates = tuple[tuple[Variable, int], ...]
 """One coordinate, or two with opposite signs; the first counts once."""
 
-DOMAINS: dict[str, Domain] = {
-    "force": "translation",
-    "torque": "rotation",
-    "current": "electrical",
-    "voltage": "electrical",
-}
 PAIR = 2
 
 
@@ -69,8 +64,9 @@ def acting(model: Model, source: Input) -> Coordinates:
     >>> [(str(v), sign) for v, sign in acting(model, model.inputs[0])]
     [('x', 1)]
     """
-    if source.kind in ("force", "torque", "current"):
-        return _at(model, source.nodes, DOMAINS[source.kind])
+    kind = INPUT_KINDS.get(source.kind)
+    if kind is not None and not kind.is_imposed:
+        return _at(model, source.nodes, kind.domain)
     element = driven_source(model, source)
     if element is None or isinstance(element.element, VoltageSource):
         return ()

@@ -23,6 +23,7 @@ CONTEXT = {
     "partly": "partly poles of what lies beyond the output",
     "noncolocated": "noncolocated",
     "open circuit": "poles of the open circuit",
+    "free": "poles of the system whose motion is not imposed",
     "zero": "identically zero",
 }
 
@@ -126,6 +127,8 @@ def _statement(explained: ZeroExplanation) -> str:
         return f"{source} does not act where {output} measures. {among} are the poles of {undriven}."
     if explained.kind == "open circuit":
         where = f"{output} goes with the current that {source} delivers."
+    elif explained.kind == "free":
+        where = f"{output} goes with what it takes to impose {source}."
     elif explained.is_direct:
         where = f"{source} acts where {output} measures."
     else:

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
     Nested = Callable[[PlacedBlock, Ring], Factored]
 
-Kind = Literal["colocated", "beyond", "partly", "noncolocated", "open circuit", "zero"]
+Kind = Literal["colocated", "beyond", "partly", "noncolocated", "open circuit", "free", "zero"]
 Status = Literal["proved", "compared", "not shown"]
 
 SYMBOLIC_ELEMENTS = 12
@@ -84,7 +84,8 @@ class ZeroExplanation:
         acts, or acts in effect. ``beyond``: the input acts elsewhere; the zeros are the poles of those
         parts of the held system that it does not drive. ``partly``: such poles, and others.
         ``noncolocated``: the poles of no held system. ``open circuit``: of the system with the terminals
-        open. ``zero``: the function is identically zero.
+        open. ``free``: of the system in which nothing imposes the motion. ``zero``: the function is
+        identically zero.
     status : str
         ``proved`` in the exact ring of the equations; ``compared``: certified or located roots agree in the
         region shown; ``not shown``.
@@ -353,7 +354,7 @@ def _coefficient(equations: Equations, source: str) -> Factored:
 
 
 def _by_terminals(case: _Case) -> ZeroExplanation | None:
-    """Open the terminals of a voltage input whose current the output shows."""
+    """Open the terminals of a voltage input whose current the output shows; free what an input moves."""
     constraint = open_circuit(case.model, case.input)
     held = None if constraint is None else case.constrained(constraint)
     if constraint is None or held is None:
@@ -368,7 +369,7 @@ def _by_terminals(case: _Case) -> ZeroExplanation | None:
     name = "/".join(case.pair)
     return ZeroExplanation(
         name,
-        "open circuit",
+        "free" if case.input.kind not in ("voltage", "signal") else "open circuit",
         "proved",
         *case.pair,
         True,

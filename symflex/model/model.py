@@ -163,13 +163,14 @@ class PlacedBlock:
 
 @dataclass(frozen=True, slots=True)
 class Input:
-    """A force, torque, voltage or current at a node, or a free signal.
+    """What acts on a node, or a free signal.
 
-    A force, torque or current given at two nodes acts on the first and reacts on the second.
+    ``kind`` is ``signal`` or one of :data:`symflex.model.input_kinds.INPUT_KINDS`. What is given at two nodes
+    acts on the first and reacts on the second; a motion is then that of the first relative to the second.
     """
 
     name: str
-    kind: Literal["force", "torque", "voltage", "current", "signal"]
+    kind: str
     nodes: tuple[NodeReference, ...] = ()
     dimension: Dimension | None = None
     unit: str = ""

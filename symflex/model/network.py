@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import TYPE_CHECKING, Literal, cast
+from typing import TYPE_CHECKING
 
 from symflex.elements import ELEMENTS, Element, Port
 from symflex.errors import SpecError
 from symflex.errors.diagnostic import nearest
 from symflex.model.declarations import read_label
+from symflex.model.input_kinds import INPUT_KINDS
 from symflex.model.model import Input, NodeReference
 from symflex.model.nodes import Attachment, Coupling
 from symflex.model.reading import NAME, Reader, signed_number
@@ -25,15 +26,7 @@ if TYPE_CHECKING:
     from symflex.quantities import Dimension
     from symflex.spec import Entry, TableValue
 
-InputKind = Literal["force", "torque", "voltage", "current", "signal"]
-INPUT_DOMAINS: dict[str, PortDomain] = {
-    "force": "translation",
-    "torque": "rotation",
-    "voltage": "electrical",
-    "current": "electrical",
-}
 TYPES_HINT = "'symflex elements' lists the types"
-INPUT_UNITS = {"force": "N", "torque": "N*m", "voltage": "V", "current": "A"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +69,7 @@ class DraftInput:
         """Return what this input says about its nodes."""
         if self.input.kind == "signal":
             return []
-        domain = INPUT_DOMAINS[self.input.kind]
+        domain = INPUT_KINDS[self.input.kind].domain
         return [Attachment(r, domain, f"input '{self.input.name}'") for r in self.input.nodes]
 
 
@@ -281,9 +274,9 @@ class NetworkReader:
         table = reader.table(entry, what, 'for instance { force = "x_act" }, or {} for a free signal')
         if table is None:
             return None
-        reader.keys(table, (*INPUT_DOMAINS, "unit", "latex", "doc"), what)
+        reader.keys(table, (*INPUT_KINDS, "unit", "latex", "doc"), what)
         label = read_label(reader, table, what)
-        kinds = [e for e in table.entries if e.key in INPUT_DOMAINS]
+        kinds = [e for e in table.entries if e.key in INPUT_KINDS]
         if len(kinds) > 1:
             keys = " and ".join(e.key for e in kinds)
             reader.note("SF217", f"{what} is given as {keys}; it can be only one", kinds[1].key_span)
@@ -292,7 +285,7 @@ class NetworkReader:
             free = Input(entry.key, "signal", (), None, "", label, entry.key_span)
             return DraftInput(free, self._unit(table, what, None))
         (place,) = kinds
-        kind = cast("InputKind", place.key)
+        kind, law = place.key, INPUT_KINDS[place.key]
         self._unit(table, what, kind)
         texts = reader.strings(place, f"{kind} of {what}", "the name of a node, or two")
         if texts is None:
@@ -302,21 +295,26 @@ class NetworkReader:
                 "SF217",
                 f"{what} acts on one node, or on one with its reaction on a second, found {len(texts)}",
                 place.value.span,
+                "an input of its own for each node" if len(texts) else None,
             )
             return None
-        references = [self._reference(t, INPUT_DOMAINS[kind], what) for t in texts]
+        references = [self._reference(t, law.domain, what) for t in texts]
         kept = tuple(r for r in references if r is not None)
         if len(kept) != len(texts):
             return None
         if all(r.is_ground for r in kept):
-            reader.note("SF218", f"{what} acts on ground only", place.value.span)
+            verb = (
+                "moves the ground" if law.is_imposed and law.domain != "electrical" else "acts on ground only"
+            )
+            hint = "the ground does not move; name a node of its own, to which the elements are attached"
+            reader.note("SF218", f"{what} {verb}", place.value.span, hint if law.is_imposed else None)
             return None
         if len({(r.node, r.component) for r in kept}) != len(kept):
             reader.note("SF218", f"{what} acts and reacts on the same node", place.value.span)
             return None
-        return DraftInput(Input(entry.key, kind, kept, None, INPUT_UNITS[kind], label, entry.key_span))
+        return DraftInput(Input(entry.key, kind, kept, None, law.unit, label, entry.key_span))
 
-    def _unit(self, table: TableValue, what: str, kind: InputKind | None) -> str:
+    def _unit(self, table: TableValue, what: str, kind: str | None) -> str:
         """Return the unit an input declares; transfer functions are per SI unit, so it must be one."""
         entry = table.get("unit")
         text = self.reader.string(entry, f"unit of {what}") if entry else None
@@ -327,8 +325,9 @@ class NetworkReader:
         except SpecError as error:
             self.reader.take(error.diagnostics)
             return ""
-        if kind is not None and unit.dimension != unit_of(INPUT_UNITS[kind]).dimension:
-            message = f"unit of {what} is '{text.value}'; a {kind} is in '{INPUT_UNITS[kind]}'"
+        if kind is not None and unit.dimension != unit_of(INPUT_KINDS[kind].unit).dimension:
+            a_kind = f"{'an' if kind.startswith('a') else 'a'} {kind.replace('_', ' ')}"
+            message = f"unit of {what} is '{text.value}'; {a_kind} is in '{INPUT_KINDS[kind].unit}'"
             self.reader.note("SF203", message, text.span)
         elif unit.scale != 1 or unit.pi_power or unit.cycles:
             message = f"unit of {what} is '{text.value}'; transfer functions are per SI unit"

@@ -10,6 +10,7 @@ from symflex.errors import Diagnostic, SpecError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import Attribute, Name
 from symflex.kernels import LAPLACE
+from symflex.model.input_kinds import INPUT_KINDS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -50,8 +51,8 @@ class Scope:
     ----------
     meanings : mapping of str to tuple of Meaning
         What a bare name can be read as.
-    attributes : mapping of (str, str) to Meaning
-        What ``owner.name`` means.
+    attributes : mapping of (str, str) to tuple of Meaning
+        What ``owner.name`` can be read as.
     owners : mapping of str to tuple of str
         Names that may stand after ``owner.``.
     broken : frozenset of str
@@ -63,7 +64,7 @@ class Scope:
     """
 
     meanings: Mapping[str, tuple[Meaning, ...]]
-    attributes: Mapping[tuple[str, str], Meaning]
+    attributes: Mapping[tuple[str, str], tuple[Meaning, ...]]
     owners: Mapping[str, tuple[str, ...]]
     broken: frozenset[str] = frozenset()
     unknowns: Mapping[str, str] = field(default_factory=dict)
@@ -76,7 +77,8 @@ class Scope:
     def find(self, expression: Name | Attribute) -> Meaning | None:
         """Return the only meaning of a name, among constants when it has others too, or ``None``."""
         if isinstance(expression, Attribute):
-            return self.attributes.get((expression.owner, expression.name))
+            found = self.attributes.get((expression.owner, expression.name), ())
+            return found[0] if len(found) == 1 else None
         found = self.meanings.get(expression.name, ())
         constants = [m for m in found if m.kind in CONSTANT_KINDS]
         return found[0] if len(found) == 1 else constants[0] if len(constants) == 1 else None
@@ -111,15 +113,7 @@ class Scope:
         if len(readable) == 1:
             return readable[0]
         if len(readable) > 1:
-            readings = " or ".join(m.described for m in readable)
-            raise SpecError(
-                Diagnostic(
-                    "SF211",
-                    f"'{expression.name}' can be read two ways: {readings}",
-                    expression.span,
-                    "rename one of them",
-                )
-            )
+            raise SpecError(_ambiguous(expression.name, readable, expression.span))
         if found:
             raise SpecError(
                 Diagnostic(
@@ -163,20 +157,23 @@ class Scope:
 
     def _lookup_attribute(self, expression: Attribute, *, constant: bool) -> Meaning:
         text = f"{expression.owner}.{expression.name}"
-        meaning = self.attributes.get((expression.owner, expression.name))
-        if meaning is None:
+        found = self.attributes.get((expression.owner, expression.name), ())
+        if len(found) > 1:
+            raise SpecError(_ambiguous(text, found, expression.span))
+        if not found:
             offered = self.owners.get(expression.owner)
             if expression.owner in self.broken:
                 return Meaning("broken", text, "a name with a mistake")
             if offered is None:
                 hint = nearest_name(expression.owner, list(self.owners))
-                message = f"'{text}': no element or planar node is called '{expression.owner}'"
+                message = f"'{text}': no element, planar node or imposed input is called '{expression.owner}'"
             else:
                 hint = (
                     "it offers " + ", ".join(f"{expression.owner}.{a}" for a in offered) if offered else None
                 )
                 message = f"'{expression.owner}' has no quantity '{expression.name}'"
             raise SpecError(Diagnostic("SF210", message, expression.span, hint))
+        (meaning,) = found
         if self.inside:
             raise SpecError(outside(text, meaning.described, expression.span))
         if constant:
@@ -189,6 +186,13 @@ class Scope:
                 )
             )
         return meaning
+
+
+def _ambiguous(name: str, readable: Sequence[Meaning], span: Span | None) -> Diagnostic:
+    """Return the diagnostic of a name that can be read in more than one way."""
+    readings = " or ".join(m.described for m in readable)
+    message = f"'{name}' can be read two ways: {readings}"
+    return Diagnostic("SF211", message, span, "rename one of them")
 
 
 def without_point(name: str, written: str, span: Span | None) -> Diagnostic:
@@ -246,11 +250,15 @@ def build_scope(
         "s": [Meaning("laplace", "s", "the Laplace variable")],
         "pi": [Meaning("pi", "pi", "the number pi")],
     }
-    attributes: dict[tuple[str, str], Meaning] = {}
+    attributes: dict[tuple[str, str], list[Meaning]] = {}
     owners: dict[str, list[str]] = {}
 
     def add(name: str, meaning: Meaning) -> None:
         meanings.setdefault(name, []).append(meaning)
+
+    def offer(owner: str, name: str, meaning: Meaning) -> None:
+        attributes.setdefault((owner, name), []).append(meaning)
+        owners.setdefault(owner, []).append(name)
 
     for name in parameters:
         add(name, Meaning("parameter", name, f"the parameter '{name}'"))
@@ -262,27 +270,33 @@ def build_scope(
         for component in node.components:
             variable = Variable("node", node.name, component)
             if component:
-                attributes[node.name, component] = Meaning(
-                    "variable", node.name, f"node '{variable}'", variable
-                )
-                owners.setdefault(node.name, []).append(component)
+                offer(node.name, component, Meaning("variable", node.name, f"node '{variable}'", variable))
         first = Variable("node", node.name, node.components[0])
         add(node.name, Meaning("variable", node.name, f"the node '{node.name}'", first))
     for signal in signals:
         variable = Variable("signal", signal.name)
         add(signal.name, Meaning("variable", signal.name, f"the signal '{signal.name}'", variable))
-    for source in inputs:
-        variable = Variable("input", source.name)
-        add(source.name, Meaning("variable", source.name, f"the input '{source.name}'", variable))
     for use in elements:
         for quantity in use.element.quantities(dict(use.domains)):
             variable = Variable("through", use.name, quantity)
             described = f"a quantity of {use.element.type_name} '{use.name}'"
-            attributes[use.name, quantity] = Meaning("through", use.name, described, variable)
-            owners.setdefault(use.name, []).append(quantity)
+            offer(use.name, quantity, Meaning("through", use.name, described, variable))
+    for source in inputs:
+        variable = Variable("input", source.name)
+        add(source.name, Meaning("variable", source.name, f"the input '{source.name}'", variable))
+        kind = INPUT_KINDS.get(source.kind)
+        # A voltage input has always been allowed to bear the name of an element, whose current is then read.
+        if kind is None or not kind.is_imposed or (source.name, "i") in attributes:
+            continue
+        described = f"what the input '{source.name}' takes"
+        offer(
+            source.name,
+            kind.quantity,
+            Meaning("through", source.name, described, kind.delivered(source.name)),
+        )
     return Scope(
         {name: tuple(found) for name, found in meanings.items()},
-        attributes,
+        {name: tuple(found) for name, found in attributes.items()},
         {name: tuple(found) for name, found in owners.items()},
         broken,
         {unknown: f.name for f in fields for unknown in f.unknowns},

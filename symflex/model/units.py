@@ -6,7 +6,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symflex.elements import ACROSS_UNIT, Variable
+from symflex.elements import ACROSS_UNIT, THROUGH_UNIT, Variable
 from symflex.errors import Span
 from symflex.expressions import Expression, Name, names, power, product_of
 from symflex.model.declarations import (
@@ -14,6 +14,7 @@ from symflex.model.declarations import (
     one_of,
 )
 from symflex.model.dimensions import DimensionSystem, Measure
+from symflex.model.input_kinds import INPUT_KINDS
 from symflex.model.model import (
     Definition,
     ExactValue,
@@ -161,6 +162,9 @@ def _known_dimensions(draft: Draft, placed: Sequence[PlacedElement]) -> dict[Var
         unit = source.input.unit or source.unit_text
         if unit:
             known[Variable("input", source.input.name)] = unit_of(unit).dimension
+        kind = INPUT_KINDS.get(source.input.kind)
+        if kind is not None and kind.is_imposed:
+            known[kind.delivered(source.input.name)] = unit_of(THROUGH_UNIT[kind.domain]).dimension
     return known
 
 

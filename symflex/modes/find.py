@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat
 
-from symflex.elements.element import ACROSS_UNIT
+from symflex.elements.element import ACROSS_UNIT, COMPONENT_UNIT
 from symflex.equations import assemble
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError, UsageError
 from symflex.modes.bound_equations import BoundEquations
@@ -47,7 +47,6 @@ NEAR = 1e-8
 NEIGHBOURHOOD = Fraction(1, 4)
 WIDER = 2**8
 """Times the radius within which an estimated pole is taken to lie."""
-THROUGH_UNITS = {"f": "N", "tau": "N*m", "i": "A", "supplied": "A"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -298,7 +297,7 @@ def _unit(variable: Variable, domain: str) -> str:
             return "m" if variable.component == "y" else "rad"
         return ACROSS_UNIT.get(domain, "")
     if variable.kind == "through":
-        return THROUGH_UNITS.get(variable.component.removesuffix("_a"), "")
+        return COMPONENT_UNIT.get(variable.component.removesuffix("_a"), "")
     return ""
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from symflex.elements import Variable
-from symflex.elements.element import ACROSS_UNIT
+from symflex.elements.element import ACROSS_UNIT, COMPONENT_UNIT
 from symflex.elimination import explain_singular
 from symflex.equations import assemble
 from symflex.errors import Diagnostic, ModelError
@@ -48,7 +48,7 @@ PARTIAL = "partial"
 REST = "_rest"
 """What is added to the name of a state from which a part that follows inputs directly is taken away."""
 
-THROUGH_UNITS = {"f": "N", "tau": "N*m", "i": "A", "supplied": "A", "v": "V"}
+THROUGH_UNITS = {**COMPONENT_UNIT, "v": "V"}
 RATES = {"m": ("m", "m/s", "m/s^2"), "rad": ("rad", "rad/s", "rad/s^2")}
 NAMES_OF_RATES = ("", "_dot", "_ddot")
 

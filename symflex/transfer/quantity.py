@@ -18,6 +18,15 @@ _EFFORTS = tuple(unit_of(unit).dimension for unit in ("N", "N*m"))
 """What a free signal may be that loads a field: a force or a torque."""
 _FLEXIBILITIES = (("m/N", "receptance"), ("m/(N*s)", "mobility"), ("m/(N*s^2)", "accelerance"))
 NAMELESS = "transfer function"
+_PER_MOTION = {
+    "displacement": ("N", "dynamic stiffness"),
+    "velocity": ("N", "mechanical impedance"),
+    "acceleration": ("N", "apparent mass"),
+    "angle": ("N*m", "dynamic stiffness"),
+    "angular_velocity": ("N*m", "mechanical impedance"),
+    "angular_acceleration": ("N*m", "apparent inertia"),
+}
+"""What an effort per imposed motion is called; the same motion elsewhere is a transmissibility (ISO 2041)."""
 _RATIOS = {
     ("V", "V"): "voltage gain",
     ("A", "A"): "current gain",
@@ -32,7 +41,8 @@ def name_quantity(output: Output, source: Input, known: Dimension | None = None)
     """Return the field's name for output over input, ``transfer function`` when there is none.
 
     Receptance, mobility and accelerance are displacement, velocity and acceleration per force or torque
-    (Ewins 2000, table 1.1). ``known`` is the quotient's dimension: a field's equations are homogeneous, and
+    (Ewins 2000, table 1.1), and their inverses are of an
+    effort per imposed motion. ``known`` is the quotient's dimension: a field's equations are homogeneous, and
     tell no more.
     """
     if output.dimension is None or source.dimension is None:
@@ -42,6 +52,12 @@ def name_quantity(output: Output, source: Input, known: Dimension | None = None)
         for unit, name in motions.items():
             if output.dimension == unit_of(unit).dimension:
                 return name
+    if source.kind in _PER_MOTION:
+        effort, name = _PER_MOTION[source.kind]
+        if output.dimension == source.dimension:
+            return "transmissibility"
+        if output.dimension == unit_of(effort).dimension:
+            return name
     for (above, below), name in _RATIOS.items():
         if output.dimension == unit_of(above).dimension and source.dimension == unit_of(below).dimension:
             return name
@@ -65,22 +81,34 @@ def quotient_of_units(above: str, below: str) -> str:
     --------
     >>> quotient_of_units("m/s^2", "N"), quotient_of_units("V", "V"), quotient_of_units("A", "V/m")
     ('m/(N*s^2)', '1', 'A*m/V')
+    >>> quotient_of_units("m/s^2", "m/s"), quotient_of_units("m", "m/s^2")
+    ('1/s', 's^2')
     """
-    above_up, above_down = _parts(above)
-    below_up, below_down = _parts(below)
-    up, down = [*above_up, *below_down], [*below_up, *above_down]
-    for symbol in list(up):
-        if symbol in down:
-            up.remove(symbol)
-            down.remove(symbol)
+    exponents: dict[str, int] = {}
+    sides = [(_parts(above), 1), (_parts(below), -1)]
+    # In this order the symbols above the line come first as they are written, then those that get there.
+    for side in (0, 1):
+        for parts, sign in sides if side == 0 else reversed(sides):
+            for symbol, power in parts[side]:
+                exponents[symbol] = exponents.get(symbol, 0) + (power if side == 0 else -power) * sign
+    up = [_raised(symbol, e) for symbol, e in exponents.items() if e > 0]
+    down = [_raised(symbol, -e) for symbol, e in exponents.items() if e < 0]
     numerator = "*".join(up) or "1"
     if not down:
         return numerator
     return f"{numerator}/{down[0]}" if len(down) == 1 else f"{numerator}/({'*'.join(down)})"
 
 
-def _parts(unit: str) -> tuple[list[str], list[str]]:
-    """Return the symbols above and below the slash of a preferred unit."""
+def _raised(symbol: str, exponent: int) -> str:
+    return symbol if exponent == 1 else f"{symbol}^{exponent}"
+
+
+def _parts(unit: str) -> tuple[list[tuple[str, int]], list[tuple[str, int]]]:
+    """Return the symbols above and below the slash of a preferred unit, with their powers."""
     above, _, below = unit.partition("/")
-    up = [symbol for symbol in above.split("*") if symbol != "1"]
-    return up, [symbol for symbol in below.strip("()").split("*") if symbol]
+    sides = []
+    for part in (above, below.strip("()")):
+        pairs = [(f, *f.partition("^")) for f in part.split("*") if f not in ("", "1")]
+        # A root's exponent is a fraction in brackets, and stays as it is written.
+        sides.append([(s, int(p or 1)) if (p or "1").isdigit() else (f, 1) for f, s, _, p in pairs])
+    return sides[0], sides[1]
