@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from symflex.errors import DataError, Diagnostic, FitError, UsageError
 from symflex.errors.diagnostic import nearest
+from symflex.fitting.least_squares import refine
 from symflex.fitting.order import (
     CRITERIA,
     LOWER,
@@ -19,6 +20,7 @@ from symflex.fitting.order import (
     Score,
     best_of_starts,
     chosen_order,
+    no_resonances,
     too_few,
     undetermined,
 )
@@ -38,6 +40,8 @@ Real = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
 SLOPES = range(-6, 7)
+EXACT = 1e-6
+"""Relative misfit below which a power of s alone is all there is; what resonances add to it is rounding."""
 FEWEST_LINES = 8
 WEAK = 0.5
 LARGE = 2.0
@@ -243,6 +247,8 @@ def _best_slope(measured: Sequence[MeasuredResponse], modes: int | None, free: F
             continue
         function = Base.power(power).function
         problem = fit_problem(measured, [function] * len(measured), free).without_window()
+        if refine(problem, no_resonances(problem)).cost < problem.count * EXACT**2:
+            return power
         count = modes or min(max(len(find_modes(problem)), 1), MOST_MODES)
         found = best_of_starts(problem, count, is_quick=True)
         if found is not None and found.refined.cost < LOWER * least:

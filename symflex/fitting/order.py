@@ -139,7 +139,7 @@ def chosen_order(
     """
     # Numbers are compared without the window, a sixth of the work; the best one is then fitted with it.
     plain = problem.without_window()
-    nothing = _nothing(problem)
+    nothing = no_resonances(problem)
     tried = [Candidate(0, "none", nothing, refine(plain, nothing), None)]
     scores = [_score(plain, tried[0], 1.0)]
     worse = 0
@@ -245,7 +245,8 @@ def undetermined() -> Diagnostic:
     )
 
 
-def _nothing(problem: FitProblem) -> Resonances:
+def no_resonances(problem: FitProblem) -> Resonances:
+    """Return a gain near the median of each response, and nothing else."""
     gains = []
     for line in problem.lines:
         middle = complex(np.median(line.ratio.real), 0)
