@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symflex.audit.field import UNIT
-from symflex.kernels import LAPLACE, Factored, Ring
+from symflex.kernels import LAPLACE, Factored, Ring, irreducible_factors
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly
@@ -45,7 +45,7 @@ def lowest_terms(field: Field, value: Factored) -> LowestTerms | None:
         polynomial = _half_angles(field, ring, field.reduce(factor))
         if len(polynomial) > MOST_TERMS:
             return None
-        for part, times in polynomial.factor()[1]:
+        for part, times in irreducible_factors(polynomial)[1]:
             if len(part) > 1 and _has_roots(field, part):
                 return None
             _count(counted, part, int(times) * exponent)

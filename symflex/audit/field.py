@@ -20,7 +20,7 @@ from math import gcd
 from typing import TYPE_CHECKING, NoReturn
 
 from symflex.errors import BudgetError, Diagnostic
-from symflex.kernels import LAPLACE, Factored, Ring
+from symflex.kernels import LAPLACE, Factored, Ring, irreducible_factors
 from symflex.kernels.normal_form import split
 
 if TYPE_CHECKING:
@@ -282,8 +282,8 @@ class Field:
         """
         plain = self._plain(factor)
         if plain is not None:
-            content, parts = plain.factor()
-            return int(content), [(_recipe_of_plain(self.ground.names, part), int(e)) for part, e in parts]
+            content, parts = irreducible_factors(plain)
+            return content, [(_recipe_of_plain(self.ground.names, part), e) for part, e in parts]
         terms = []
         for monomial, coefficient in factor.terms():
             key = []

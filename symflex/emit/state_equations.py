@@ -19,6 +19,7 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
+from symflex.kernels import irreducible_factors
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly
@@ -113,6 +114,6 @@ class StateEquations:
             for row in rows:
                 for value in row.values():
                     if not value.den.is_constant():
-                        for factor, _ in value.den.factor()[1]:
+                        for factor, _ in irreducible_factors(value.den)[1]:
                             found.setdefault(str(factor), factor)
         return tuple(self._arranger.coefficient(factor) for factor in found.values())

@@ -3,6 +3,7 @@
 from symflex.kernels.collection import uncollected
 from symflex.kernels.dispersion import NO_KERNELS, Dispersion, Kernel, KernelTable
 from symflex.kernels.factored import Factored, common_denominator, least_common_multiple
+from symflex.kernels.factorisation import irreducible_factors, square_free_factors
 from symflex.kernels.functions import FUNCTIONS, ElementaryFunction
 from symflex.kernels.memo import PolynomialMemo
 from symflex.kernels.modal_sum import ModalSums, modal_amplitudes, mode_values
@@ -29,12 +30,14 @@ __all__ = [
     "common_denominator",
     "degree_in",
     "expanded_length",
+    "irreducible_factors",
     "least_common_multiple",
     "modal_amplitudes",
     "mode_values",
     "propagate",
     "random_point",
     "residue",
+    "square_free_factors",
     "terms_of",
     "uncollected",
 ]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final, Literal
 
 from symflex.emit.forms import Arranger
 from symflex.emit.forms.arrange import coefficients
-from symflex.kernels import LAPLACE
+from symflex.kernels import LAPLACE, irreducible_factors
 from symflex.model import Model
 
 if TYPE_CHECKING:
@@ -131,7 +131,7 @@ def _of_factor(factor: fmpz_mpoly, ring: Ring, tf: TransferFunction) -> PhaseCon
 
 def _without_powers(polynomial: fmpz_mpoly, ring: Ring) -> fmpz_mpoly:
     """Return a polynomial of the same sign, without the numbers and powers that are its factors."""
-    content, factors = polynomial.factor()
+    content, factors = irreducible_factors(polynomial)
     found = ring.constant(1 if content > 0 else -1)
     for factor, exponent in factors:
         if len(factor) > 1 or exponent % 2:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from symflex.kernels import Factored
+from symflex.kernels import Factored, square_free_factors
 from symflex.kernels.exponentials import Exponentials
 from symflex.kernels.normal_form import NormalForm
 
@@ -85,6 +85,6 @@ def _pieces(coordinates: Exponentials, factor: fmpz_mpoly) -> list[tuple[fmpz_mp
             # A coordinate.
             found.append((polynomial, times))
             continue
-        _, pieces = polynomial.factor_squarefree()
-        found += [(piece, int(e) * times) for piece, e in pieces]
+        _, pieces = square_free_factors(polynomial)
+        found += [(piece, e * times) for piece, e in pieces]
     return found

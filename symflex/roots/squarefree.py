@@ -14,6 +14,7 @@ from functools import reduce
 
 from flint import fmpz_mpoly, fmpz_mpoly_ctx
 
+from symflex.kernels import square_free_factors
 from symflex.roots.budget import Budget
 from symflex.roots.problem import Constant, PolynomialInS, RootProblem
 
@@ -87,9 +88,9 @@ def split(problem: RootProblem, budget: Budget | None = None) -> Splitting:
         time.spend()
         low = next(i for i, c in enumerate(polynomial.coefficients) if not c.is_zero())
         zeros += low * exponent
-        for factor, power in ring.lift(polynomial, low).factor_squarefree()[1]:
+        for factor, power in square_free_factors(ring.lift(polynomial, low))[1]:
             if _degree(factor) > 0:
-                base = _insert(base, factor, int(power) * exponent)
+                base = _insert(base, factor, power * exponent)
     parts: list[Part] = []
     for element, multiplicity in base:
         time.spend()

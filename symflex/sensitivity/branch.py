@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal
 
 from flint import acb
 
+from symflex.kernels import square_free_factors
 from symflex.roots.precision import precision
 
 if TYPE_CHECKING:
@@ -102,7 +103,7 @@ def find_branch(tangents: Tangents, part: Factored, root: Root) -> Branch | Obst
         found = _meeting(tangents, [f for f, _ in part.factors], place, bits)
         if found is not None and len(found) == 1 and root.multiplicity > 1:
             # Twice the same factor, multiplied out: such a root stays double, and moves.
-            _, square_free = found[0].factor_squarefree()
+            _, square_free = square_free_factors(found[0])
             found = _meeting(tangents, [f for f, _ in square_free], place, bits)
         if found is not None and len(found) == 1 and _is_simple(tangents, found[0], place, bits):
             return Branch(tangents, found[0], place)

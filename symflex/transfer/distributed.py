@@ -12,7 +12,16 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symflex.errors import BudgetError, Diagnostic
-from symflex.kernels import LAPLACE, MEMORY_LIMIT, Dispersion, Factored, KernelTable, Ring, degree_in
+from symflex.kernels import (
+    LAPLACE,
+    MEMORY_LIMIT,
+    Dispersion,
+    Factored,
+    KernelTable,
+    Ring,
+    degree_in,
+    irreducible_factors,
+)
 from symflex.kernels.exponentials import Exponentials, split_content
 from symflex.kernels.multiple_angles import lift
 from symflex.kernels.normal_form import NormalForm, split
@@ -366,10 +375,10 @@ def _split_contents(value: Factored, split: Split) -> Factored:
     result = Factored.number(value.ring, value.unit)
     for factor, exponent in value.factors:
         content, rest = split(factor)
-        number, pieces = content.factor()
-        result = result * Fraction(int(number)) ** exponent
+        number, pieces = irreducible_factors(content)
+        result = result * Fraction(number) ** exponent
         for piece, power in (*pieces, (rest, 1)):
-            result = result * Factored.polynomial(value.ring, piece) ** (exponent * int(power))
+            result = result * Factored.polynomial(value.ring, piece) ** (exponent * power)
     return result
 
 
@@ -377,7 +386,7 @@ def _merge_splits(value: Factored, splits: Iterable[Factored]) -> Factored:
     """Return a product with ``(lambda_1 - lambda_2) (lambda_1 + lambda_2)`` as one factor."""
     for pair in splits:
         ((polynomial, _),) = pair.factors
-        _, pieces = polynomial.factor()
+        _, pieces = irreducible_factors(polynomial)
         halves = [Factored.polynomial(value.ring, p) for p, _ in pieces]
         exponents = [value.exponent_of(h.factors[0][0]) for h in halves if len(h.factors) == 1]
         if len(exponents) == 2 and exponents[0] == exponents[1] != 0:  # noqa: PLR2004

@@ -57,6 +57,13 @@ def test_the_package_never_turns_text_into_code():
     assert occurrences(FROM_TEXT_TO_CODE, package) == []
 
 
+def test_polynomials_are_factored_in_one_place_that_survives_large_coefficients():
+    library = re.compile(r"\.(?:factor|factor_squarefree)\(\)")
+    package = ((path, text) for path, text in text_files() if path.is_relative_to(ROOT / "symflex"))
+    found = occurrences(library, package)
+    assert {place.split(":")[0] for place in found} == {"symflex/kernels/factorisation.py"}, found
+
+
 def test_no_module_bears_a_vague_name():
     named = {
         p

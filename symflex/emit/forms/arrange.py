@@ -21,7 +21,7 @@ from symflex.expressions import (
     product_of,
     sum_of,
 )
-from symflex.kernels import LAPLACE, Ring, degree_in
+from symflex.kernels import LAPLACE, Ring, degree_in, irreducible_factors
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -99,15 +99,15 @@ class Arranger:
         """Return a polynomial free of s as a product of factors, or as a sum when it has none."""
         if len(polynomial) == 1 or not factored or len(polynomial) > FACTOR_LIMIT:
             return self._with_content(polynomial)
-        constant, factors = polynomial.factor()
+        constant, factors = irreducible_factors(polynomial)
         sign = 1
         pieces: list[Expression] = []
         for factor, exponent in sorted(factors, key=lambda fe: (len(fe[0]) > 1, _order_key(fe[0]))):
             positive = factor
             if int(factor.leading_coefficient()) < 0:
-                positive, sign = -factor, sign * (-1) ** int(exponent)
-            pieces.append(power(self._flat(positive), int(exponent)))
-        return product_of([number(int(constant) * sign), *pieces])
+                positive, sign = -factor, sign * (-1) ** exponent
+            pieces.append(power(self._flat(positive), exponent))
+        return product_of([number(constant * sign), *pieces])
 
     def _with_content(self, polynomial: fmpz_mpoly) -> Expression:
         content = polynomial.term_content()
@@ -193,12 +193,10 @@ class Arranger:
     def _pieces(self, terms: dict[tuple[int, ...], int]) -> list[Expression]:
         """Return the factors of a sum, each nested."""
         if 3 < len(terms) <= FACTOR_LIMIT:  # noqa: PLR2004
-            _, factors = self.ring.context.from_dict(terms).factor()
-            if len(factors) > 1 or int(factors[0][1]) > 1:
+            _, factors = irreducible_factors(self.ring.context.from_dict(terms))
+            if len(factors) > 1 or factors[0][1] > 1:
                 ordered = sorted(factors, key=lambda fe: _order_key(fe[0]))
-                positive = [
-                    (_terms(f if int(f.leading_coefficient()) > 0 else -f), int(e)) for f, e in ordered
-                ]
+                positive = [(_terms(f if int(f.leading_coefficient()) > 0 else -f), e) for f, e in ordered]
                 # With every factor's leading coefficient positive, the product's sign is the sum's own.
                 sign = 1 if terms[max(terms)] > 0 else -1
                 return [number(sign), *(power(self._split(f), e) for f, e in positive)]

@@ -9,7 +9,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symflex.kernels import Factored
+from symflex.kernels import Factored, irreducible_factors
 from symflex.kernels.exponentials import Exponentials
 from symflex.kernels.normal_form import NormalForm
 
@@ -36,10 +36,10 @@ def irreducible_kernels(value: Factored, table: KernelTable) -> Factored:
 
 
 def _plain(value: Factored, factor: fmpz_mpoly) -> Factored:
-    constant, parts = factor.factor()
-    found = Factored.number(value.ring, int(constant))
+    constant, parts = irreducible_factors(factor)
+    found = Factored.number(value.ring, constant)
     for part, times in parts:
-        found = found * Factored.polynomial(value.ring, part) ** int(times)
+        found = found * Factored.polynomial(value.ring, part) ** times
     return found
 
 
@@ -57,13 +57,13 @@ def _split(factor: fmpz_mpoly, coordinates: Exponentials, normal: NormalForm) ->
     for polynomial, exponent in image.factors:
         if any(polynomial == e for e in exponentials):
             continue
-        _, parts = polynomial.factor()
+        _, parts = irreducible_factors(polynomial)
         for part, times in parts:
             parity = coordinates.parity(part)
             if any(parity):
-                odd.setdefault(parity, []).extend([part] * (int(times) * exponent))
+                odd.setdefault(parity, []).extend([part] * (times * exponent))
             else:
-                found = found * _restored(part, coordinates, normal) ** (int(times) * exponent)
+                found = found * _restored(part, coordinates, normal) ** (times * exponent)
     rest = coordinates.coordinates.constant(1)
     for parts_of_parity in odd.values():
         first, *pairs = _paired(parts_of_parity)

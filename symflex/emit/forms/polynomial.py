@@ -12,7 +12,7 @@ from symflex.emit.forms.irreducible import irreducible_kernels
 from symflex.emit.forms.printed import PrintedForm
 from symflex.emit.forms.usage import require_rational
 from symflex.expressions import Expression, Name, number, power, product_of, quotient, sum_of
-from symflex.kernels import LAPLACE, Factored, Ring, degree_in
+from symflex.kernels import LAPLACE, Factored, Ring, degree_in, irreducible_factors
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -114,13 +114,13 @@ def _irreducible(arranger: Arranger, value: Factored) -> Expression:
     unit = Fraction(value.unit)
     pieces: list[tuple[tuple[object, ...], Expression]] = []
     for factor, exponent in value.factors:
-        constant, parts = factor.factor()
-        unit *= Fraction(int(constant)) ** exponent
+        constant, parts = irreducible_factors(factor)
+        unit *= Fraction(constant) ** exponent
         for part, times in parts:
             positive, sign = (part, 1) if int(part.leading_coefficient()) > 0 else (-part, -1)
-            unit *= Fraction(sign) ** (exponent * int(times))
+            unit *= Fraction(sign) ** (exponent * times)
             degree = degree_in(positive, 0)
-            printed = power(arranger.collected(positive), exponent * int(times))
+            printed = power(arranger.collected(positive), exponent * times)
             key = (len(positive) > 1, degree, tuple(tuple(-int(e) for e in m[1:]) for m in positive.monoms()))
             pieces.append((key, printed))
     return product_of([number(unit), *(p for _, p in sorted(pieces, key=lambda item: item[0]))])

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from symflex.errors import BudgetError, Diagnostic
+from symflex.kernels import irreducible_factors
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -217,11 +218,11 @@ class _Planner:
             return None
         rows = map(tuple, terms.exponents.tolist())
         polynomial = self.ring.context.from_dict(dict(zip(rows, terms.coefficients, strict=True)))
-        constant, factors = polynomial.factor()
+        constant, factors = irreducible_factors(polynomial)
         if len(factors) == 1 and factors[0][1] == 1:
             return None
-        parts = [(self.plan(_Terms.of(factor)), int(exponent)) for factor, exponent in factors]
-        return ProductStep(int(constant), tuple(parts))
+        parts = [(self.plan(_Terms.of(factor)), exponent) for factor, exponent in factors]
+        return ProductStep(constant, tuple(parts))
 
     def _split(self, terms: _Terms) -> SumStep:
         every = terms.variables()

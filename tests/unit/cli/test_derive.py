@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from math import gcd
+
 import pytest
 
 from symflex import pipeline
@@ -160,3 +162,41 @@ def test_a_long_print_is_announced_and_a_short_one_is_not(shell):
     (shell.folder / "short.toml").write_text(chain(3))
     assert shell("derive", "short.toml", "--representation", "expanded").err == ""
     assert shell("derive", "long.toml").err.startswith("in nested form")
+
+
+FINE = '''
+symflex = 1
+inputs  = { r = {} }
+outputs = { y = "P*r" }
+[blocks.P]
+type = "tf"
+num = "1"
+den = """(s^2 + 0.0123456789012345*s + 4567.89012345678)
+       * (s^2 + 0.0223456789012345*s + 8567.89012345678)"""
+'''
+"""Two factors that differ in coefficients beyond a machine word only."""
+
+
+@pytest.mark.parametrize("form", [None, *RATIONAL])
+def test_factors_whose_coefficients_exceed_a_machine_word_are_printed_in_every_form(shell, form):
+    (shell.folder / "fine.toml").write_text(FINE, encoding="utf-8")
+    assert shell("derive", "fine.toml", *(("--form", form) if form else ())).code == 0
+
+
+def test_factors_whose_coefficients_exceed_a_machine_word_are_printed_exactly(shell):
+    (shell.folder / "fine.toml").write_text(FINE, encoding="utf-8")
+    (entry,) = shell("derive", "fine.toml", "--form", "factored", "--json").json["transfer_functions"]
+    # Each coefficient in the units of the last decimal, without what all three share.
+    scaled = [
+        (10**16, 123456789012345, 45678901234567800000),
+        (10**16, 223456789012345, 85678901234567800000),
+    ]
+    lowest = [[c // gcd(*cs) for c in cs] for cs in scaled]
+    assert entry["den"] == "*".join(f"({a}*s^2 + {b}*s + {c})" for a, b, c in lowest)
+
+
+@pytest.mark.parametrize("target", ["numpy", "c", "matlab", "julia", "state-space", "latex"])
+def test_factors_whose_coefficients_exceed_a_machine_word_are_exported(shell, target):
+    (shell.folder / "fine.toml").write_text(FINE, encoding="utf-8")
+    options = ("--no-figures", "-o", "fine.tex") if target == "latex" else ()
+    assert shell("export", "fine.toml", "--to", target, *options).code == 0
