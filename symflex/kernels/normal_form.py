@@ -71,7 +71,7 @@ class NormalForm:
 
         Without ``pairs``, the relations between two wavenumbers of one dispersion are left unused.
         """
-        polynomial = self._without_squares(polynomial)
+        polynomial = self.without_odd_squares(polynomial)
         result = Factored.number(self.ring, 1)
         for dispersion in self.table.dispersions:
             if dispersion.kind == "pair" and not pairs:
@@ -117,7 +117,7 @@ class NormalForm:
         ]
         return context, tuple(relations)
 
-    def _without_squares(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
+    def without_odd_squares(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
         """Return the polynomial without squares of sinh and sin, by division with these leading."""
         degrees = polynomial.degrees()
         context, relations = self._odd_first

@@ -101,7 +101,11 @@ class Invariants:
                 else:
                     rest = rest * one
             if not rest.is_one:
-                found = self._invariant(rest.expand())
+                whole = rest.expand()
+                found = self._invariant(whole)
+                if found is None:
+                    # Factors in normal form have a product that need not be: sin(q)*sin(q) is one.
+                    found = self._invariant(NormalForm(self.source, self.table).without_odd_squares(whole))
                 if found is None:
                     return None
                 result = result * found**side

@@ -18,7 +18,14 @@ from typing import TYPE_CHECKING
 from symflex.emit.program.build import TERM_LIMIT
 from symflex.emit.program.exponents import ExponentialSum, derivative_at_zero, expand, families_of
 from symflex.emit.program.forge import Forge
-from symflex.emit.program.local_basis import LocalBasis, bending_basis, pair_basis, wave_basis
+from symflex.emit.program.local_basis import (
+    SERIES_ERROR,
+    LocalBasis,
+    bending_basis,
+    pair_basis,
+    taylor_term,
+    wave_basis,
+)
 from symflex.emit.program.modal import CIRCLE, MODAL_REACHES, build_modal, declared_length
 from symflex.emit.program.nodes import Condition, Piece, Piecewise
 from symflex.emit.program.real_axis import RealAxis
@@ -501,6 +508,8 @@ class _Workshop:
         """Return, per order of the derivatives in the small lengths, the coefficients of what remains."""
         found: dict[tuple[int, ...], dict[Key, Factored]] = {}
         for orders in product(*(range(g.basis.order) for g in near)):
+            if len(near) == 1 and self._is_negligible(orders[0], found):
+                break
             terms: dict[Key, fmpz_mpoly] = dict(half.terms)
             for group, order in zip(near, orders, strict=True):
                 terms = self._derivative(terms, group, order)
@@ -513,6 +522,13 @@ class _Workshop:
             if values := {k: v for k, v in values.items() if not v.is_zero}:
                 found[orders] = values
         return found
+
+    def _is_negligible(self, order: int, found: Iterable[tuple[int, ...]]) -> bool:
+        """Tell whether a derivative in a small length, and all that follow, add nothing to those found."""
+        if not (lower := [k for (k,) in found]) or order <= self.reach:
+            return False
+        largest = max(taylor_term(self.reach, m) for m in range(lower[0], order))
+        return taylor_term(self.reach, order) < SERIES_ERROR + largest
 
     def _derivative(
         self, terms: Mapping[Key, fmpz_mpoly], group: _Group | _Lone, order: int

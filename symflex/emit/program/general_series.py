@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from flint import Ordering, fmpz_mpoly_ctx
 
-from symflex.emit.program.local_basis import SERIES_ERROR
+from symflex.emit.program.local_basis import SERIES_ERROR, taylor_term
 from symflex.errors import BudgetError, Diagnostic
 from symflex.kernels import Factored, common_denominator
 
@@ -67,7 +67,7 @@ class GeneralSeries:
             SF503 when it has too many terms.
         """
         count = LEADING
-        while size**count / factorial(count) > SERIES_ERROR:
+        while taylor_term(size, count) > SERIES_ERROR:
             count += 1
         while True:
             # Only over the common denominator is it seen which ones vanish.
@@ -75,12 +75,12 @@ class GeneralSeries:
             first = next((m for m, c in enumerate(total) if not c.is_zero), None)
             if first is None:
                 return ()
-            largest = max(size**m / factorial(m) for m in range(first, count))
-            if count > size and size**count / factorial(count) < SERIES_ERROR * largest:
+            largest = max(taylor_term(size, m) for m in range(first, count))
+            if count > size and taylor_term(size, count) < SERIES_ERROR + largest:
                 break
             count += FURTHER
         far = (m for m in range(first + 1, count) if m > size)
-        last = next((m for m in far if size**m / factorial(m) < SERIES_ERROR * largest), count)
+        last = next((m for m in far if taylor_term(size, m) < SERIES_ERROR + largest), count)
         return tuple(c for c in total[first:last] if not c.is_zero)
 
     def _total(self, polynomial: fmpz_mpoly, count: int) -> list[fmpz_mpoly]:

@@ -10,14 +10,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from math import factorial
+from math import factorial, inf, lgamma, log
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-SERIES_ERROR = 1e-19
-"""Size of the first term left out, over the largest."""
+SERIES_ERROR = log(1e-19)
+"""Logarithm of the first term left out, over the largest."""
 
 Polynomial = tuple[int, ...]
 """Ascending integer coefficients."""
@@ -59,7 +59,7 @@ class LocalBasis:
         derivatives = [int(i == solution) for i in range(self.order)]
         found: list[Fraction] = []
         m = 0
-        while m <= solution + self.step or size**m / factorial(m) > SERIES_ERROR:
+        while m <= solution + self.step or taylor_term(size, m) > SERIES_ERROR:
             if m >= self.order:
                 derivatives.append(-sum(c * derivatives[m - self.order + i] for i, c in enumerate(whole)))
             if m >= solution and (m - solution) % self.step == 0:
@@ -70,10 +70,15 @@ class LocalBasis:
         return tuple(found)
 
 
+def taylor_term(size: float, order: int) -> float:
+    """Return the logarithm of ``size^order/order!``, whose parts may each exceed a double."""
+    return order * (log(size) if size else -inf) - lgamma(order + 1) if order else 0.0
+
+
 def series_length(size: float) -> int:
     """Return how many derivatives a Taylor series needs up to an exponent of the given size."""
     m = 1
-    while size**m / factorial(m) > SERIES_ERROR:
+    while taylor_term(size, m) > SERIES_ERROR:
         m += 1
     return m + 1
 

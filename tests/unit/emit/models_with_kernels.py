@@ -17,6 +17,23 @@ def spec(parameters, body):
 
 
 MODELS = {
+    "propped beam of two fields": spec(
+        "E mu l",
+        """[fields.v]
+domain = ["0", "l"]
+equation = "E*v'''' + mu*s^2*v = 0"
+conditions = ["v(0) = 0", "v'(0) = 0"]
+[fields.w]
+domain = ["l", "2*l"]
+equation = "E*w'''' + mu*s^2*w = 0"
+conditions = ["w(l) = v(l)", "w'(l) = v'(l)", "w''(l) = v''(l)", "w'''(l) = v'''(l)",
+  "w(2*l) = 0", "E*w''(2*l) = f"]
+[inputs]
+f = {}
+[outputs]
+Y = "v(l/2)"
+""",
+    ),
     "thermoelastic rod": spec(
         "a b e l",
         """[fields.rod]
