@@ -26,7 +26,7 @@ from symflex.kernels import uncollected
 from symflex.model import Model, load_model, with_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from concurrent.futures import Executor
     from decimal import Decimal
 
@@ -67,20 +67,22 @@ def parse(text: str, name: str = "<string>") -> Spec:
     return spec_room.parse(Source(name, text))
 
 
-def load(path: str | Path) -> Model:
+def load(path: str | Path, allow_outside: Iterable[str | Path] = ()) -> Model:
     """Read a specification file and resolve it.
+
+    Its ``model`` blocks read files at and below its folder, and at and below those of ``allow_outside``.
 
     Raises
     ------
     SpecError
         With every problem of the file, each at its place.
     """
-    return load_model(spec_room.read(Path(path)))
+    return load_model(spec_room.read(Path(path)), allow_outside=allow_outside)
 
 
-def loads(text: str, name: str = "<string>") -> Model:
-    """Resolve a specification given as text."""
-    return load_model(Source(name, text))
+def loads(text: str, name: str = "<string>", allow_outside: Iterable[str | Path] = ()) -> Model:
+    """Resolve a specification given as text; its ``model`` blocks read files as if it stood at ``name``."""
+    return load_model(Source(name, text), allow_outside=allow_outside)
 
 
 def assemble(model: Model) -> Equations:
@@ -452,6 +454,7 @@ def fit(
     is_gain_free: bool = False,
     is_lag_free: bool = False,
     slope: int | None = None,
+    allow_outside: Sequence[str | Path] = (),
 ) -> Fit:
     """Fit resonances to measured responses; see :func:`symflex.fitting.fit_resonances`.
 
@@ -465,6 +468,8 @@ def fit(
         Its transfer functions, one per response or one for all.
     modes, start, criterion, is_gain_free, is_lag_free, slope
         As there; a gain is fitted in any case without a base.
+    allow_outside : sequence of str or Path
+        See :func:`load`, of the base.
 
     Raises
     ------
@@ -484,7 +489,8 @@ def fit(
             is_lag_free=is_lag_free,
             slope=slope,
         )
-    model = load(base)
+    model = load(base, allow_outside)
+    taken, folders = tuple(p.name for p in model.parameters), (Path(base).parent, *allow_outside)
     pairs = pick_pairs(model, names)[: None if names else 1]
     if len(pairs) == 1:
         pairs = pairs * len(measured)
@@ -499,7 +505,8 @@ def fit(
         def function(omega: Array, bound: BoundTransferFunction = bound) -> ComplexArray:
             return respond(bound, omega).values
 
-        bases.append(fitting.Base(function, "/".join(pair), str(base), bound.source.unit))
+        unit = bound.source.unit
+        bases.append(fitting.Base(function, "/".join(pair), str(base), unit, taken=taken, folders=folders))
     return fitting.fit_resonances(
         measured,
         bases,
@@ -509,17 +516,6 @@ def fit(
         is_gain_free=is_gain_free,
         is_lag_free=is_lag_free,
     )
-
-
-def fit_specification(found: Fit, folder: str | Path) -> str:
-    """Return the specification of a fit that will stand in a folder.
-
-    See :func:`symflex.fitting.specification.fit_specification`.
-    """
-    from symflex.fitting.specification import fit_specification as written
-
-    taken = {p.name for path in {b.path for b in found.bases if b.path} for p in load(path).parameters}
-    return written(found, folder, taken)
 
 
 def measure(model: Model, pair: tuple[str, str], plan: MeasurementPlan) -> MeasuredResponse:

@@ -71,12 +71,15 @@ class Fit:
 
     def specification(self, folder: str | Path = ".") -> str:
         """Return the text of a specification that will stand in a folder, from where it names the base."""
-        return pipeline.fit_specification(self.found, folder)
+        from symflex.fitting.specification import fit_specification
+
+        return fit_specification(self.found, folder)
 
     def model(self) -> Model:
         """Return the fitted model, which derives, prints and exports like any other."""
         # Specifications given as text refer to files from the current folder.
-        return loads(self.specification(Path()), "<fit>")
+        allowed = {folder for base in self.found.bases for folder in base.folders}
+        return loads(self.specification(Path()), "<fit>", allow_outside=allowed)
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the result in the schema ``symflex.fit/1``."""
@@ -109,6 +112,7 @@ def fit(
     gain: bool = False,
     lag: bool = False,
     slope: int | None = None,
+    allow_outside: Sequence[str | Path] = (),
 ) -> Fit:
     """Fit resonances to measured frequency responses.
 
@@ -137,6 +141,8 @@ def fit(
         Fit a gain besides the base, a lag of the sensor 1/(1 + T s).
     slope : int, optional
         Without a base: the power of s; by default the best.
+    allow_outside : sequence of str or Path
+        Folders that ``model`` blocks of the base may read besides its own.
 
     Raises
     ------
@@ -179,5 +185,6 @@ def fit(
             is_gain_free=gain,
             is_lag_free=lag,
             slope=slope,
+            allow_outside=allow_outside,
         )
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
@@ -508,17 +508,27 @@ def _limit(number: float) -> Fraction:
     return Fraction(Decimal(repr(float(number))))
 
 
-def load(path: str | Path) -> Model:
+def load(path: str | Path, *, allow_outside: Iterable[str | Path] = ()) -> Model:
     """Read a specification file.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    allow_outside : iterable of str or Path
+        Folders that its ``model`` blocks may read besides the folder of ``path`` and those below.
 
     Raises
     ------
     SpecError
         With every problem of the file as ``file:line:col``.
     """
-    return Model.of(pipeline.load(path))
+    return Model.of(pipeline.load(path, allow_outside))
 
 
-def loads(text: str, name: str = "<string>") -> Model:
-    """Read a specification given as text; ``name`` is what messages call it."""
-    return Model.of(pipeline.loads(text, name))
+def loads(text: str, name: str = "<string>", *, allow_outside: Iterable[str | Path] = ()) -> Model:
+    """Read a specification given as text; ``name`` is what messages call it.
+
+    ``model`` blocks read files at and below the folder of ``name``, and those of ``allow_outside``.
+    """
+    return Model.of(pipeline.loads(text, name, allow_outside))

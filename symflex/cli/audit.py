@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, note, reporting, terminal_width
+from symflex.cli.reporting import emit_json, note, outside, reporting, terminal_width
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,12 +17,15 @@ if TYPE_CHECKING:
 
 @click.command("audit")
 @click.argument("spec", type=click.Path())
+@outside
 @click.option("--tf", "tfs", multiple=True, metavar="OUT/IN", help="Only this formula; repeatable.")
 @click.option("--strict", is_flag=True, help="Exit with code 4 unless every formula is proved equal.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @caching
 @reporting
-def command(spec: str, *, tfs: tuple[str, ...], strict: bool, as_json: bool) -> int:
+def command(
+    spec: str, *, allow_outside: tuple[str, ...], tfs: tuple[str, ...], strict: bool, as_json: bool
+) -> int:
     """Compare what SPEC says was printed with what is derived.
 
     Every formula of [published] is proved equal, or what is different is shown, with the structural laws it
@@ -32,7 +35,7 @@ def command(spec: str, *, tfs: tuple[str, ...], strict: bool, as_json: bool) -> 
     from symflex.audit.json_format import audit_document
     from symflex.audit.text import audit_text
 
-    model = pipeline.load(spec)
+    model = pipeline.load(spec, allow_outside)
     audits = pipeline.audit(model, tfs)
     if not model.published:
         note('nothing is published in this specification: [published."OUT/IN"] holds a printed formula')

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import click
 
-from symflex.cli.reporting import diagnostic_json, emit_json, listed, reporting
+from symflex.cli.reporting import diagnostic_json, emit_json, listed, outside, reporting
 from symflex.errors import SymflexError
 from symflex.errors.diagnostic import printable
 
 
 @click.command("check")
 @click.argument("spec", type=click.Path())
+@outside
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @reporting
-def command(spec: str, *, as_json: bool) -> int:
+def command(spec: str, *, allow_outside: tuple[str, ...], as_json: bool) -> int:
     """Parse and resolve SPEC; report every problem at once.
 
     Names, units, ports, linearity and solvability are checked; nothing is derived.
@@ -21,7 +22,7 @@ def command(spec: str, *, as_json: bool) -> int:
     from symflex import pipeline
 
     try:
-        model = pipeline.load(spec)
+        model = pipeline.load(spec, allow_outside)
         pipeline.check_solvable(pipeline.assemble(model))
     except SymflexError as error:
         if not as_json:

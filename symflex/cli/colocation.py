@@ -5,12 +5,13 @@ from __future__ import annotations
 import click
 
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, reporting
+from symflex.cli.reporting import emit_json, outside, reporting
 from symflex.errors import Diagnostic, UsageError
 
 
 @click.command("colocation")
 @click.argument("spec", type=click.Path())
+@outside
 @click.option("--tf", required=True, metavar="OUT/IN", help="The output that is away from the actuator.")
 @click.option("--with", "reference", required=True, metavar="OUT2/IN", help="The colocated output.")
 @click.option("--phase", default="10 deg", show_default=True, help="Largest difference of phase.")
@@ -27,6 +28,7 @@ from symflex.errors import Diagnostic, UsageError
 def command(
     spec: str,
     *,
+    allow_outside: tuple[str, ...],
     tf: str,
     reference: str,
     phase: str,
@@ -54,7 +56,7 @@ def command(
             )
         limits = (low, high)
     found = pipeline.colocation(
-        pipeline.load(spec),
+        pipeline.load(spec, allow_outside),
         tf,
         reference,
         _tolerance(phase, "--phase", ("deg", "°"), "10 deg"),

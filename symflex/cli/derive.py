@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, note, reporting, terminal_width
+from symflex.cli.reporting import emit_json, note, outside, reporting, terminal_width
 from symflex.errors import Diagnostic, UsageError
 
 LONG = 5_000
@@ -31,6 +31,7 @@ def chosen_representation(representation: str, form: str | None) -> str:
 
 @click.command("derive")
 @click.argument("spec", type=click.Path())
+@outside
 @click.option("--tf", "tfs", multiple=True, metavar="OUT/IN", help="Only this transfer function; repeatable.")
 @click.option(
     "--form",
@@ -61,6 +62,7 @@ def chosen_representation(representation: str, form: str | None) -> str:
 def command(
     spec: str,
     *,
+    allow_outside: tuple[str, ...],
     tfs: tuple[str, ...],
     form: str | None,
     format_: str,
@@ -83,7 +85,7 @@ def command(
         from symflex.emit.latex import column_width
 
         column = column_width(width)
-    model = pipeline.load(spec)
+    model = pipeline.load(spec, allow_outside)
     derived, reason = pipeline.derive_as(
         model, pipeline.pick_pairs(model, tfs), chosen_representation(representation, form)
     )

@@ -11,7 +11,7 @@ import click
 
 from symflex.cli.caching import caching
 from symflex.cli.derive import chosen_representation
-from symflex.cli.reporting import note, reporting
+from symflex.cli.reporting import note, outside, reporting
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 
@@ -37,6 +37,7 @@ class ExportCommand(click.Command):
 
 @click.command("export", cls=ExportCommand)
 @click.argument("spec", type=click.Path())
+@outside
 @click.option("--to", "target", required=True, metavar="TARGET", help="One of the targets below.")
 @click.option("--tf", "tfs", multiple=True, metavar="OUT/IN", help="Only this transfer function; repeatable.")
 @click.option("--form", metavar="FORM", help="latex: form of the functions, as for derive.")
@@ -57,6 +58,7 @@ class ExportCommand(click.Command):
 def command(
     spec: str,
     *,
+    allow_outside: tuple[str, ...],
     target: str,
     tfs: tuple[str, ...],
     form: str | None,
@@ -90,7 +92,7 @@ def command(
         hint = nearest(target, EXPORTERS) or "targets: " + ", ".join(EXPORTERS)
         raise UsageError(Diagnostic("SF902", f"there is no export target '{target[:64]}'", None, hint))
     exporter = _chosen(EXPORTERS[target], form, width, no_figures=no_figures, is_minimal=is_minimal)
-    model = pipeline.load(spec)
+    model = pipeline.load(spec, allow_outside)
     derived, reason = pipeline.derive_as(
         model, pipeline.pick_pairs(model, tfs), chosen_representation(representation, form)
     )

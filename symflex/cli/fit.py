@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, note, reporting, terminal_width
+from symflex.cli.reporting import emit_json, note, outside, reporting, terminal_width
 from symflex.errors import Diagnostic, UsageError
 
 SUFFIXES = (".pdf", ".png", ".svg")
@@ -16,6 +16,7 @@ SUFFIXES = (".pdf", ".png", ".svg")
 @click.command("fit")
 @click.argument("data", type=click.Path(), nargs=-1, required=True)
 @click.option("--base", type=click.Path(), help="Specification whose function the resonances multiply.")
+@outside
 @click.option(
     "--tf", "tfs", multiple=True, metavar="OUT/IN", help="That function; repeat it, one per response."
 )
@@ -64,6 +65,7 @@ def command(
     data: tuple[str, ...],
     *,
     base: str | None,
+    allow_outside: tuple[str, ...],
     tfs: tuple[str, ...],
     modes: int | None,
     start: str,
@@ -92,6 +94,7 @@ def command(
     from symflex.emit.fit_report import fit_json, fit_text
     from symflex.emit.write import write_atomically
     from symflex.fitting import mode_shapes
+    from symflex.fitting.specification import fit_specification
     from symflex.measurement import prepared, read_measurement
 
     if tfs and base is None:
@@ -122,12 +125,15 @@ def command(
         is_gain_free=is_gain_free,
         is_lag_free=is_lag_free,
         slope=slope,
+        allow_outside=allow_outside,
     )
     shapes = mode_shapes(found, every) if driving else None
     if output:
-        text = pipeline.fit_specification(found, Path(output).parent)
-        write_atomically(Path(output), text.encode())
+        folder = Path(output).parent
+        write_atomically(Path(output), fit_specification(found, folder).encode())
         note(f"wrote {output}")
+        if base is not None and not Path(base).resolve().is_relative_to(folder.resolve()):
+            note(f"its base is not below it: give --allow-outside {Path(base).parent} where it is read")
     if figure:
         from symflex.emit.figures import draw_fit, save
 

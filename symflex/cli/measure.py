@@ -7,12 +7,13 @@ from pathlib import Path
 import click
 
 from symflex.cli.caching import caching
-from symflex.cli.reporting import note, reporting
+from symflex.cli.reporting import note, outside, reporting
 from symflex.errors import Diagnostic, UsageError
 
 
 @click.command("measure")
 @click.argument("spec", type=click.Path())
+@outside
 @click.option("--tf", metavar="OUT/IN", help="The transfer function; the first one by default.")
 @click.option("-o", "--output", type=click.Path(), required=True, help="File to write: .csv, .npz or .uff.")
 @click.option(
@@ -40,6 +41,7 @@ from symflex.errors import Diagnostic, UsageError
 def command(
     spec: str,
     *,
+    allow_outside: tuple[str, ...],
     tf: str | None,
     output: str,
     band: tuple[float, float] | None,
@@ -62,7 +64,7 @@ def command(
     if Path(output).suffix.lower() not in WRITERS:
         message = f"'{Path(output).name}' must end in {' or '.join(WRITERS)}"
         raise UsageError(Diagnostic("SF902", message))
-    model = pipeline.load(spec)
+    model = pipeline.load(spec, allow_outside)
     pairs = pipeline.pick_pairs(model, [tf] if tf else [])
     if tf is None and len(pairs) > 1:
         others = ", ".join("/".join(pair) for pair in pairs[1:])

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from symflex.cli.caching import caching
-from symflex.cli.reporting import note, reporting
+from symflex.cli.reporting import note, outside, reporting
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 
@@ -18,6 +18,7 @@ SWEEP = "sweep"
 
 @click.command("plot")
 @click.argument("spec", type=click.Path())
+@outside
 @click.argument("kind")
 @click.option("--tf", "tfs", multiple=True, metavar="OUT/IN", help="Draw this transfer function; repeatable.")
 @click.option("--gain", metavar="K", help="Draw a locus, or a Nyquist plot, of the loop with this gain.")
@@ -32,6 +33,7 @@ def command(
     spec: str,
     kind: str,
     *,
+    allow_outside: tuple[str, ...],
     tfs: tuple[str, ...],
     gain: str | None,
     limits: tuple[str, str] | None,
@@ -66,7 +68,7 @@ def command(
     if SWEEP in (spec, kind):
         options = bool(tfs or gain or limits)
         return _plot_sweep(spec if kind == SWEEP else kind, modes, output, width, font, is_more=options)
-    model = pipeline.load(spec)
+    model = pipeline.load(spec, allow_outside)
     if modes is not None:
         model = replace(model, analysis=replace(model.analysis, modes=modes))
     figure = next((f for f in model.figures if f.name == kind), None)

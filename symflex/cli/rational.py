@@ -5,11 +5,12 @@ from __future__ import annotations
 import click
 
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, note, reporting
+from symflex.cli.reporting import emit_json, note, outside, reporting
 
 
 @click.command("rational")
 @click.argument("spec", type=click.Path())
+@outside
 @click.option("--tf", metavar="OUT/IN", help="The transfer function; the first one by default.")
 @click.option(
     "--modes", type=click.IntRange(0), help="How many modes are kept.  [default: those of [analysis], or 5]"
@@ -24,7 +25,9 @@ from symflex.cli.reporting import emit_json, note, reporting
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @caching
 @reporting
-def command(spec: str, *, tf: str | None, modes: int | None, form: str, as_json: bool) -> None:
+def command(
+    spec: str, *, allow_outside: tuple[str, ...], tf: str | None, modes: int | None, form: str, as_json: bool
+) -> None:
     """Print a rational approximation of one transfer function of SPEC.
 
     Of a beam, rod or delay, a number of modes is kept: in product form their poles and zeros, in modal form
@@ -35,7 +38,7 @@ def command(spec: str, *, tf: str | None, modes: int | None, form: str, as_json:
     from symflex import pipeline
     from symflex.emit.rational_format import rational_json, rational_text
 
-    model = pipeline.load(spec)
+    model = pipeline.load(spec, allow_outside)
     pairs = pipeline.pick_pairs(model, [tf] if tf else [])
     if tf is None and len(pairs) > 1:
         others = ", ".join("/".join(pair) for pair in pairs[1:])

@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 
 from symflex.cli.caching import caching
-from symflex.cli.reporting import note, reporting
+from symflex.cli.reporting import note, outside, reporting
 from symflex.errors import Diagnostic, UsageError
 
 EPOCH_VARIABLE = "SOURCE_DATE_EPOCH"
@@ -18,6 +18,7 @@ EPOCH_VARIABLE = "SOURCE_DATE_EPOCH"
 
 @click.command("report")
 @click.argument("specs", nargs=-1, required=True, type=click.Path(), metavar="SPEC...")
+@outside
 @click.option("-o", "--output", default="report", show_default=True, type=click.Path(), metavar="DIR",
               help="Folder to write; what is in it stays, but for files of the same name.")  # fmt: skip
 @click.option(
@@ -35,7 +36,13 @@ EPOCH_VARIABLE = "SOURCE_DATE_EPOCH"
 @caching
 @reporting
 def command(
-    specs: tuple[str, ...], *, output: str, pdf: bool | None, day: str | None, jobs: int | None
+    specs: tuple[str, ...],
+    *,
+    allow_outside: tuple[str, ...],
+    output: str,
+    pdf: bool | None,
+    day: str | None,
+    jobs: int | None,
 ) -> int:
     """Write a report on models: equations, poles and zeros, figures, comparison, code.
 
@@ -63,12 +70,13 @@ def command(
     if folder.exists() and not folder.is_dir():
         raise UsageError(Diagnostic("SF903", f"cannot write into '{output}': it is not a folder"))
     paths = [Path(spec) for spec in specs]
-    named = name_specifications(find_specifications(paths, folder))
-    measured, left_out = find_measurements(paths, folder)
+    folders = (*map(Path, allow_outside), *(path for path in paths if path.is_dir()))
+    named = name_specifications(find_specifications(paths, folder, folders))
+    measured, left_out = find_measurements(paths, folder, folders)
     data = f", {len(measured)} measured response{'s' if len(measured) > 1 else ''}" if measured else ""
     note(f"{len(named)} model{'s' if len(named) > 1 else ''}{data}")
     with ProgressBar() as bar:
-        chapters = write_chapters(named, jobs or os.cpu_count() or 1, bar, measured)
+        chapters = write_chapters(named, jobs or os.cpu_count() or 1, bar, measured, folders)
         report = compose(chapters, shown)
         published = publish(report, folder, bar, pdf=pdf)
     if published.problem:

@@ -18,6 +18,15 @@ if TYPE_CHECKING:
 P = ParamSpec("P")
 
 
+outside = click.option(
+    "--allow-outside",
+    multiple=True,
+    type=click.Path(exists=True, file_okay=False),
+    metavar="FOLDER",
+    help="Let model blocks read this folder too, besides that of SPEC; repeatable.",
+)
+
+
 def reporting(command: Callable[P, int | None]) -> Callable[P, int]:
     """Turn a :class:`SymflexError` into its message on stderr and its exit code; a closed pipe is none."""
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, note, reporting, terminal_width
+from symflex.cli.reporting import emit_json, note, outside, reporting, terminal_width
 from symflex.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:
@@ -19,6 +19,7 @@ DIGITS_LIMIT = 10_000
 
 @click.command("roots")
 @click.argument("spec", type=click.Path())
+@outside
 @click.option("--tf", metavar="OUT/IN", help="The transfer function; the first one by default.")
 @click.option("--modes", type=click.IntRange(1), help="Only the N lowest modes, with roots at the origin.")
 @click.option("--mode", type=click.IntRange(1), help="Only mode number N, by natural frequency.")
@@ -52,6 +53,7 @@ DIGITS_LIMIT = 10_000
 def command(
     spec: str,
     *,
+    allow_outside: tuple[str, ...],
     tf: str | None,
     modes: int | None,
     mode: int | None,
@@ -80,7 +82,7 @@ def command(
     from symflex.roots import Budget
 
     chosen = region_of(modes, mode, band, region)
-    model = pipeline.load(spec)
+    model = pipeline.load(spec, allow_outside)
     pairs = pipeline.pick_pairs(model, [tf] if tf else [])
     if tf is None and len(pairs) > 1:
         others = ", ".join("/".join(pair) for pair in pairs[1:])

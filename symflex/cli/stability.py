@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, reporting
+from symflex.cli.reporting import emit_json, outside, reporting
 from symflex.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:
@@ -22,6 +22,7 @@ UNBOUNDED = ("inf", "-inf", "+inf")
 
 @click.command("stability")
 @click.argument("spec", type=click.Path())
+@outside
 @click.option("--gain", required=True, metavar="K", help="The parameter that is the loop's gain.")
 @click.option(
     "--range",
@@ -48,6 +49,7 @@ UNBOUNDED = ("inf", "-inf", "+inf")
 def command(
     spec: str,
     *,
+    allow_outside: tuple[str, ...],
     gain: str,
     limits: tuple[str, str] | None,
     up_to: str | None,
@@ -70,7 +72,7 @@ def command(
     from symflex.roots import Budget
     from symflex.stability import pick_gain
 
-    model = pipeline.load(spec)
+    model = pipeline.load(spec, allow_outside)
     parameter = pick_gain(model.parameters, gain)
     chosen = None if limits is None else (gain_limit(limits[0], parameter), gain_limit(limits[1], parameter))
     highest = None if up_to is None else _radians(up_to)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, note, reporting, terminal_width
+from symflex.cli.reporting import emit_json, note, outside, reporting, terminal_width
 from symflex.cli.roots import region_of
 from symflex.errors import Diagnostic, UsageError
 
@@ -24,6 +24,7 @@ BUDGET_CODE = "SF5"
 
 @click.command("sweep")
 @click.argument("spec", type=click.Path())
+@outside
 @click.option(
     "--over",
     "over",
@@ -60,6 +61,7 @@ BUDGET_CODE = "SF5"
 def command(
     spec: str,
     *,
+    allow_outside: tuple[str, ...],
     over: tuple[str, ...],
     draws: int | None,
     seed: int,
@@ -96,7 +98,7 @@ def command(
         raise UsageError(Diagnostic("SF902", "give only one of --workers and --scheduler"))
     if fresh and not output:
         raise UsageError(Diagnostic("SF902", "--fresh is for a file: give -o FILE"))
-    model = pipeline.load(spec)
+    model = pipeline.load(spec, allow_outside)
     pairs = pipeline.pick_pairs(model, [tf] if tf else [])
     _check_options(of, modes, band, count, gain)
     design = read_design(model.parameters, over, draws or 0, seed)

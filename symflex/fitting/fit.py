@@ -31,6 +31,7 @@ from symflex.fitting.resonances import MILLISECOND, Free
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from pathlib import Path
 
     from symflex.fitting.least_squares import Refined
     from symflex.fitting.resonances import Resonances
@@ -67,6 +68,10 @@ class Base:
         Of its values, empty when unknown.
     slope : int
         The power of s, where that is all the base is.
+    taken : tuple of str
+        Names of the specification's parameters.
+    folders : tuple of str or Path
+        That it was allowed to read: its own, and others.
     """
 
     function: Callable[[Real], Complex] = field(repr=False)
@@ -74,6 +79,8 @@ class Base:
     path: str = ""
     unit: str = ""
     slope: int = 0
+    taken: tuple[str, ...] = ()
+    folders: tuple[str | Path, ...] = ()
 
     @staticmethod
     def power(slope: int) -> Base:

@@ -20,7 +20,7 @@ DIGITS = 9
 FREE_NAMES = ("U", "Y")
 
 
-def fit_specification(fit: Fit, folder: str | Path, taken: Collection[str] = ()) -> str:
+def fit_specification(fit: Fit, folder: str | Path) -> str:
     """Return the text of a specification with the fitted functions.
 
     Parameters
@@ -29,8 +29,6 @@ def fit_specification(fit: Fit, folder: str | Path, taken: Collection[str] = ())
         The result.
     folder : str or Path
         Where the file will stand: the base is referred to from there.
-    taken : collection of str
-        Names of the base's parameters, which mean something else.
 
     Notes
     -----
@@ -39,6 +37,7 @@ def fit_specification(fit: Fit, folder: str | Path, taken: Collection[str] = ())
     """
     found, errors = fit.resonances, fit.standard_errors()
     prefix = ""
+    taken = {name for base in fit.bases for name in base.taken}  # which mean something else
     while any(
         name.startswith(f"{prefix}{stem}")
         for name in taken

@@ -18,10 +18,10 @@ from symflex.model.model import PlacedBlock
 from symflex.model.reading import signed_number
 from symflex.model.scope import RESERVED
 from symflex.model.units import lower
-from symflex.spec import ArrayValue, read
+from symflex.spec import ArrayValue, parse_with_recovery, read
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from symflex.blocks import Block
     from symflex.errors import Source, Text
@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from symflex.spec import Entry, TableValue, Value
 
 NESTING_LIMIT = 8
+DECLARATION = "symflex"
+ALLOW_HINT = "--allow-outside FOLDER, in Python allow_outside, lets model blocks read another folder"
 BLOCK_LIMIT = 100
 
 
@@ -45,11 +47,24 @@ class Loads:
         Files with mistakes, which are reported where they are first read.
     blocks : dict of Path to int
         By file, how many ``model`` blocks it holds, counted with those inside them.
+    folders : tuple of Path
+        Resolved folders at and below which files may be read; the first is that of the outermost file.
     """
 
     models: dict[Path, Model] = field(default_factory=dict)
     failed: set[Path] = field(default_factory=set)
     blocks: dict[Path, int] = field(default_factory=dict)
+    folders: tuple[Path, ...] = ()
+
+    @staticmethod
+    def of(source: Source, allow_outside: Iterable[str | Path]) -> Loads:
+        """Return what a specification may read besides itself: what stands in its folder, or is allowed."""
+        own = Path(source.name).parent.resolve()
+        return Loads(folders=(own, *(Path(folder).resolve() for folder in allow_outside)))
+
+    def may_read(self, path: Path) -> bool:
+        """Tell whether a resolved path lies in one of the folders."""
+        return any(path.is_relative_to(folder) for folder in self.folders)
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,6 +198,10 @@ def _load(reader: Reader, path_text: Text, origin: Origin) -> Model | None:
     except (OSError, RuntimeError):  # a circle of symbolic links
         reader.note("SF901", f"cannot read '{path_text.value}': the path leads in a circle", path_text.span)
         return None
+    if not origin.loads.may_read(path):
+        message = f"'{path_text.value}' is not at or below the folder of the specification"
+        reader.note("SF258", message, path_text.span, ALLOW_HINT)
+        return None
     if path in origin.ancestors:
         circle = " -> ".join(p.name for p in (*origin.ancestors, path))
         reader.note("SF215", f"specifications refer to each other in a circle: {circle}", path_text.span)
@@ -193,13 +212,35 @@ def _load(reader: Reader, path_text: Text, origin: Origin) -> Model | None:
     loads, own = origin.loads, origin.ancestors[-1]
     if path not in loads.models and path not in loads.failed:
         try:
-            loads.models[path] = origin.resolve(read(shown), (*origin.ancestors, path), loads)
+            source = _read(reader, shown, path_text)
+            if source is not None:
+                loads.models[path] = origin.resolve(source, (*origin.ancestors, path), loads)
         except SymflexError as error:
+            if path.is_relative_to(loads.folders[0]):
+                reader.take(d if d.span else replace(d, span=path_text.span) for d in error.diagnostics)
+            else:
+                count = len(error.diagnostics)
+                message = f"'{path_text.value}' is invalid: {count} problem{'s' if count > 1 else ''}"
+                reader.note("SF258", message, path_text.span, "'symflex check' on that file says which")
+        if path not in loads.models:
             loads.failed.add(path)
-            reader.take(d if d.span else replace(d, span=path_text.span) for d in error.diagnostics)
     loads.blocks[own] = loads.blocks.get(own, 0) + 1 + loads.blocks.get(path, 0)
     if loads.blocks[own] > BLOCK_LIMIT:
         message = f"more than {BLOCK_LIMIT} model blocks, counted with those inside model blocks"
         reader.note("SF103", message, path_text.span)
         return None
     return loads.models.get(path)
+
+
+def _read(reader: Reader, path: Path, said: Text) -> Source | None:
+    """Return the text of a file that says it is a specification; of any other, messages show nothing."""
+    try:
+        source = read(path)
+    except SymflexError as error:
+        reader.take(replace(d, span=said.span) for d in error.diagnostics)
+        return None
+    if parse_with_recovery(source)[0].root.get(DECLARATION) is None:
+        message = f"'{said.value}' is no specification: it does not declare {DECLARATION}"
+        reader.note("SF258", message, said.span, f"a specification says {DECLARATION} = 1 at its top")
+        return None
+    return source

@@ -62,7 +62,7 @@ from symflex.model.units import (
 from symflex.spec import ArrayValue, TableValue, parse_with_recovery
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from symflex.errors import Source
     from symflex.spec import Spec
@@ -87,7 +87,13 @@ CONSEQUENCES = ("SF210", "SF218")
 TOP_KEYS = ("symflex", "title", "source", "doc", *SECTIONS)
 
 
-def load_model(source: Source, ancestors: tuple[Path, ...] = (), loads: Loads | None = None) -> Model:
+def load_model(
+    source: Source,
+    ancestors: tuple[Path, ...] = (),
+    loads: Loads | None = None,
+    *,
+    allow_outside: Iterable[str | Path] = (),
+) -> Model:
     """Parse and resolve a text, reporting syntax and meaning errors together.
 
     Parameters
@@ -98,6 +104,8 @@ def load_model(source: Source, ancestors: tuple[Path, ...] = (), loads: Loads | 
         The files whose ``model`` blocks led here.
     loads : Loads, optional
         What was read for ``model`` blocks so far.
+    allow_outside : iterable of str or Path, optional
+        Folders that ``model`` blocks may read besides that of the source.
 
     Raises
     ------
@@ -107,7 +115,7 @@ def load_model(source: Source, ancestors: tuple[Path, ...] = (), loads: Loads | 
     spec, syntax = parse_with_recovery(source)
     own = ancestors or (Path(source.name).resolve(),)
     try:
-        model = resolve(spec, Origin(source, own, loads or Loads(), load_model))
+        model = resolve(spec, Origin(source, own, loads or Loads.of(source, allow_outside), load_model))
     except SpecError as error:
         # A name lost with an unreadable line would be reported as unknown: that is not a second mistake.
         later = [d for d in error.diagnostics if not syntax or d.code not in (*CONSEQUENCES, "SF214")]

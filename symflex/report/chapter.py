@@ -47,7 +47,12 @@ class Chapter:
     code: int
 
 
-def chapter_of(path: Path, stem: str, measured: tuple[MeasuredResponse, ...] = ()) -> Chapter:
+def chapter_of(
+    path: Path,
+    stem: str,
+    measured: tuple[MeasuredResponse, ...] = (),
+    allow_outside: tuple[Path, ...] = (),
+) -> Chapter:
     """Read a specification and return its chapter, with measured responses where they fit.
 
     A section that cannot be computed, for want of a value or because it would be too large, says why in its
@@ -58,7 +63,7 @@ def chapter_of(path: Path, stem: str, measured: tuple[MeasuredResponse, ...] = (
     SpecError, ModelError
         When the file is no solvable model.
     """
-    study = Study.of(path, stem, measured)
+    study = Study.of(path, stem, measured, allow_outside)
     model = study.model
     blocks: list[Block] = []
     if model.source:

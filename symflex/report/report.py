@@ -73,7 +73,9 @@ class Report:
     code: int
 
 
-def find_specifications(paths: Sequence[Path], output: Path | None = None) -> tuple[Path, ...]:
+def find_specifications(
+    paths: Sequence[Path], output: Path | None = None, allow_outside: Sequence[Path] = ()
+) -> tuple[Path, ...]:
     """Return the specifications that arguments name; a folder stands for the ``.toml`` files in it and below.
 
     Those of a folder come by name, before those of folders in it. What stands in ``output``, the folder that
@@ -82,12 +84,18 @@ def find_specifications(paths: Sequence[Path], output: Path | None = None) -> tu
     Raises
     ------
     UsageError
-        SF902 for a folder without any, a file of measured data, and for more than :data:`MOST_MODELS`.
+        SF902 for a folder without any, for a link that leads out of a folder and not to one of
+        ``allow_outside``, a file of measured data, and for more than :data:`MOST_MODELS`.
     """
     found: list[Path] = []
     for path in paths:
         if path.is_dir():
             inside = _inside(path, frozenset((".toml",)), output)
+            for file in inside:
+                if _leads_out(file, (path, *allow_outside)):
+                    message = f"'{file}' is a link that leads out of the folder"
+                    hint = "--allow-outside FOLDER lets a report read another folder"
+                    raise UsageError(Diagnostic("SF902", message, None, hint))
             if not inside:
                 raise UsageError(
                     Diagnostic(
@@ -135,11 +143,12 @@ def name_specifications(paths: Sequence[Path]) -> dict[str, Path]:
 
 
 def find_measurements(
-    paths: Sequence[Path], output: Path | None = None
+    paths: Sequence[Path], output: Path | None = None, allow_outside: Sequence[Path] = ()
 ) -> tuple[tuple[MeasuredResponse, ...], tuple[str, ...]]:
     """Return the measured responses in the data files of folders and below, and why others were left out.
 
-    What stands in ``output``, the folder that reports are written into, is no measurement.
+    What stands in ``output``, the folder that reports are written into, is no measurement. A link that leads
+    out of its folder, and not to one of ``allow_outside``, is not followed.
     """
     from symflex.measurement import read_measurement
 
@@ -147,6 +156,9 @@ def find_measurements(
     warnings: list[str] = []
     for path in paths:
         for file in _inside(path, DATA_SUFFIXES, output) if path.is_dir() else ():
+            if _leads_out(file, (path, *allow_outside)):
+                warnings.append(f"{file} is left out: the link leads out of the folder (--allow-outside)")
+                continue
             read = attempt(partial(read_measurement, file))
             if isinstance(read, SymflexError):
                 warnings.append(f"{file} is left out: {read.diagnostics[0].message}")
@@ -163,11 +175,16 @@ def _inside(folder: Path, suffixes: frozenset[str], output: Path | None) -> list
     return sorted(kept, key=lambda p: (len(p.parts), p))
 
 
+def _leads_out(file: Path, folders: Sequence[Path]) -> bool:
+    return not any(file.resolve().is_relative_to(folder.resolve()) for folder in folders)
+
+
 def write_chapters(
     named: Mapping[str, Path],
     processes: int,
     progress: Progress,
     measured: tuple[MeasuredResponse, ...] = (),
+    allow_outside: tuple[Path, ...] = (),
 ) -> tuple[Chapter, ...]:
     """Return the chapters, in order, computed side by side.
 
@@ -181,6 +198,8 @@ def write_chapters(
         Told after each chapter.
     measured : tuple of MeasuredResponse
         Drawn with the transfer functions of the same names.
+    allow_outside : tuple of Path
+        Folders that ``model`` blocks may read besides those of the specifications.
 
     Raises
     ------
@@ -191,7 +210,7 @@ def write_chapters(
     if processes <= 1 or len(named) == 1:
         for stem, path in named.items():
             progress.report(len(done) / len(named), f"model {len(done) + 1} of {len(named)}: {stem}")
-            done[stem] = chapter_of(path, stem, measured)
+            done[stem] = chapter_of(path, stem, measured, allow_outside)
         return tuple(done.values())
     # A new interpreter in each process: what this one has open or threaded is not copied.
     store = entered_cache()
@@ -199,7 +218,8 @@ def write_chapters(
     count = min(processes, len(named))
     with ProcessPoolExecutor(count, mp_context=spawning, initializer=end_with_parent) as pool:
         waiting = {
-            pool.submit(_chapter_in, store, path, stem, measured): stem for stem, path in named.items()
+            pool.submit(_chapter_in, store, path, stem, measured, allow_outside): stem
+            for stem, path in named.items()
         }
         progress.report(0.0, f"{counted(len(named), 'model')}")
         try:
@@ -215,13 +235,17 @@ def write_chapters(
 
 
 def _chapter_in(
-    store: Store | None, path: Path, stem: str, measured: tuple[MeasuredResponse, ...]
+    store: Store | None,
+    path: Path,
+    stem: str,
+    measured: tuple[MeasuredResponse, ...],
+    allow_outside: tuple[Path, ...],
 ) -> Chapter:
     """Return a chapter, with the cache of the process that asks for it."""
     if store is None:
-        return chapter_of(path, stem, measured)
+        return chapter_of(path, stem, measured, allow_outside)
     with derivation_cache(store.folder, store.seconds):
-        return chapter_of(path, stem, measured)
+        return chapter_of(path, stem, measured, allow_outside)
 
 
 def compose(chapters: Sequence[Chapter], date: str) -> Report:

@@ -68,8 +68,13 @@ class Study:
     measured: tuple[MeasuredResponse, ...] = ()
 
     @staticmethod
-    def of(path: Path, stem: str, measured: tuple[MeasuredResponse, ...] = ()) -> Study:
-        """Read a specification.
+    def of(
+        path: Path,
+        stem: str,
+        measured: tuple[MeasuredResponse, ...] = (),
+        allow_outside: tuple[Path, ...] = (),
+    ) -> Study:
+        """Read a specification; its ``model`` blocks may read the folders of ``allow_outside`` too.
 
         Raises
         ------
@@ -78,7 +83,7 @@ class Study:
         ModelError
             When the equations have no unique solution.
         """
-        model = pipeline.load(path)
+        model = pipeline.load(path, allow_outside)
         pipeline.check_solvable(pipeline.assemble(with_numbers(model)))
         return Study(path, stem, path.read_text(encoding="utf-8"), model, measured)
 

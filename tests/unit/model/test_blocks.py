@@ -1,0 +1,143 @@
+"""Which files a ``model`` block reads, and what messages show of them."""
+
+from __future__ import annotations
+
+import pytest
+
+import symflex
+from symflex import pipeline
+from symflex.cli import run
+from symflex.errors import SpecError
+
+INNER = 'symflex = 1\n[inputs]\nF = {}\n[outputs]\nX = "F/(s + 2)"\n'
+SECRET = "tresor"
+COMMANDS = {
+    "check": (),
+    "derive": (),
+    "roots": (),
+    "rational": (),
+    "sweep": ("--over", "k=1,2"),
+    "stability": ("--gain", "k"),
+    "colocation": ("--tf", "X/F", "--with", "X/F"),
+    "plot": ("bode", "-o", "figure.svg"),
+    "export": ("--to", "numpy"),
+    "audit": (),
+    "measure": ("--tf", "X/F", "-o", "measured.csv"),
+    "report": ("--no-pdf", "-o", "report"),
+}
+
+
+def outer(path):
+    return (
+        'symflex = 1\n[parameters]\nk = "1"\n[blocks]\n'
+        f'G = {{ type = "model", spec = "{path}", tf = "X/F" }}\n'
+        '[inputs]\nF = {}\n[outputs]\nX = "k*G*F"\n[analysis]\nband = ["0.01 Hz", "1 Hz"]\n'
+    )
+
+
+@pytest.fixture
+def place(tmp_path, monkeypatch):
+    """A folder to work in, with a folder beside it."""
+    for name in ("work", "beside"):
+        (tmp_path / name).mkdir()
+    monkeypatch.chdir(tmp_path / "work")
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    "path", ["../beside/inner.toml", "below/../../beside/inner.toml", "link.toml", "away/inner.toml"]
+)
+def test_a_block_does_not_read_a_file_outside_the_folder_of_the_specification(place, path):
+    (place / "beside" / "inner.toml").write_text(INNER)
+    (place / "work" / "below").mkdir()
+    (place / "work" / "link.toml").symlink_to(place / "beside" / "inner.toml")
+    (place / "work" / "away").symlink_to(place / "beside")
+    (place / "work" / "outer.toml").write_text(outer(path))
+    with pytest.raises(SpecError) as raised:
+        pipeline.load("outer.toml")
+    assert [d.code for d in raised.value.diagnostics] == ["SF258"]
+
+
+@pytest.mark.parametrize(
+    "text", [INNER, f"{SECRET}:x:0", f"symflex = {SECRET}\n", f'symflex = 1\nk = "{SECRET}"\n']
+)
+def test_a_file_outside_is_the_same_to_messages_as_one_that_is_not_there(place, text, capsys):
+    (place / "work" / "outer.toml").write_text(outer("../beside/inner.toml"))
+    (place / "beside" / "inner.toml").unlink(missing_ok=True)
+    run(["check", "outer.toml"])
+    without = capsys.readouterr()
+    (place / "beside" / "inner.toml").write_text(text)
+    run(["check", "outer.toml"])
+    assert capsys.readouterr() == without
+
+
+@pytest.mark.parametrize(
+    "content",
+    [b"tresor:x:0\n", b"[symflex]\ntresor = 1\n", b"\xff\xfetresor", b"a = 1\n[x]\nsymflex = 1 # tresor\n"],
+)
+def test_nothing_is_shown_of_a_file_that_does_not_declare_the_format(place, content, capsys):
+    (place / "work" / "inner.txt").write_bytes(content)
+    (place / "work" / "outer.toml").write_text(outer("inner.txt"))
+    assert run(["check", "outer.toml"]) == 3
+    printed = capsys.readouterr()
+    assert SECRET not in printed.out + printed.err
+
+
+@pytest.mark.parametrize(
+    "text", [f'symflex = 1\n[outputs]\nX = "{SECRET}*"\n', f"symflex = 1\n{SECRET} = 3 4\n"]
+)
+def test_nothing_is_shown_of_an_invalid_file_outside_that_may_be_read(place, text, capsys):
+    (place / "beside" / "inner.toml").write_text(text)
+    (place / "work" / "outer.toml").write_text(outer("../beside/inner.toml"))
+    assert run(["check", "outer.toml", "--allow-outside", "../beside"]) == 3
+    printed = capsys.readouterr()
+    assert "SF258" in printed.err
+    assert SECRET not in printed.out + printed.err
+
+
+def test_a_block_inside_a_block_is_held_to_the_folder_of_the_outermost_file(place):
+    (place / "work" / "below").mkdir()
+    (place / "work" / "below" / "middle.toml").write_text(outer("../inner.toml"))
+    (place / "work" / "inner.toml").write_text(INNER)
+    (place / "work" / "outer.toml").write_text(outer("below/middle.toml"))
+    assert pipeline.load("outer.toml").transfer_functions == (("X", "F"),)
+    with pytest.raises(SpecError, match="SF258"):
+        pipeline.load("below/middle.toml")
+
+
+@pytest.mark.parametrize(("command", "options"), COMMANDS.items(), ids=COMMANDS)
+def test_every_command_that_reads_a_specification_refuses_a_file_outside(place, command, options, capsys):
+    (place / "beside" / "inner.toml").write_text(INNER)
+    (place / "work" / "outer.toml").write_text(outer("../beside/inner.toml"))
+    assert run([command, "outer.toml", *options]) == 3
+    assert "SF258" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("command", "options"), COMMANDS.items(), ids=COMMANDS)
+def test_every_command_that_reads_a_specification_takes_a_folder_outside(place, command, options, capsys):
+    (place / "beside" / "inner.toml").write_text(INNER)
+    (place / "work" / "outer.toml").write_text(outer("../beside/inner.toml"))
+    run([command, "outer.toml", "--allow-outside", "../beside", *options])
+    assert "SF258" not in capsys.readouterr().err
+
+
+def test_python_is_allowed_a_folder_outside_by_name(place):
+    (place / "beside" / "inner.toml").write_text(INNER)
+    (place / "work" / "outer.toml").write_text(outer("../beside/inner.toml"))
+    assert symflex.load("outer.toml", allow_outside=["../beside"]).outputs == ("X",)
+
+
+def test_a_report_of_a_folder_lets_its_specifications_read_all_of_it(place, capsys):
+    for name in ("one", "two"):
+        (place / "work" / name).mkdir()
+    (place / "work" / "one" / "inner.toml").write_text(INNER)
+    (place / "work" / "two" / "outer.toml").write_text(outer("../one/inner.toml"))
+    run(["report", ".", "-o", "../report", "--no-pdf", "-j", "1"])
+    assert "SF258" not in capsys.readouterr().err
+
+
+def test_a_report_of_a_folder_follows_no_link_out_of_it(place, capsys):
+    (place / "beside" / "inner.toml").write_text(INNER)
+    (place / "work" / "link.toml").symlink_to(place / "beside" / "inner.toml")
+    assert run(["report", ".", "-o", "../report", "--no-pdf", "-j", "1"]) == 2
+    assert "leads out of the folder" in capsys.readouterr().err
