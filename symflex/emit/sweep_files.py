@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import os
 import zipfile
 from io import BytesIO, StringIO
 from pathlib import Path
@@ -12,6 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from symflex.errors import DataError, Diagnostic, UsageError
+from symflex.measurement.archive import read_archive
+from symflex.measurement.netcdf import read_netcdf
+from symflex.spec.read import read_bytes
 from symflex.sweep.sweep import SCHEMA, Labelled, Sweep, missing_library
 
 if TYPE_CHECKING:
@@ -21,7 +25,9 @@ if TYPE_CHECKING:
 
 NEW_YEAR = (1980, 1, 1, 0, 0, 0)
 """The date of every file in an archive."""
-SIZE_LIMIT = 2**31
+SIZE_LIMIT = 2**30
+"""Bytes of a file that is read, and of what it holds."""
+ARRAYS_LIMIT = 10_000
 HEADER = "header"
 CHARACTERS = "characters"
 
@@ -211,17 +217,18 @@ def read_sweep(path: str | Path) -> Sweep:
     """
     file = Path(path)
     try:
-        size = file.stat().st_size
-        data = file.read_bytes() if size <= SIZE_LIMIT else b""
+        data = read_bytes(os.fspath(file), SIZE_LIMIT)
     except OSError as error:
         raise UsageError(Diagnostic("SF901", f"cannot read '{path}': {error.strerror}")) from None
     except ValueError:
         raise UsageError(Diagnostic("SF901", f"cannot read '{str(path)!r}'")) from None
     try:
+        if len(data) > SIZE_LIMIT:
+            raise OverflowError
         sweep = _from_npz(data) if data[:2] == b"PK" else _from_netcdf(data)
-    except (ValueError, KeyError, TypeError, IndexError, AttributeError, OverflowError, OSError) as error:
-        raise _no_sweep(path, str(error)) from None
-    except (zipfile.BadZipFile, NotImplementedError, EOFError, MemoryError) as error:
+    except OverflowError:
+        raise _no_sweep(path, f"it is larger than {SIZE_LIMIT} bytes, or holds too many arrays") from None
+    except (ValueError, KeyError, TypeError, IndexError, AttributeError, RecursionError) as error:
         raise _no_sweep(path, str(error)) from None
     if sweep.attribute("schema") != SCHEMA:
         raise _no_sweep(path, "it does not say that it holds one")
@@ -235,47 +242,32 @@ def _no_sweep(path: str | Path, reason: str) -> DataError:
 
 
 def _from_npz(data: bytes) -> Sweep:
-    with np.load(BytesIO(data), allow_pickle=False) as file:
-        header = json.loads(str(file[HEADER]))
-        arrays = [
-            Labelled(name, tuple(about["dims"]), file[name], about["unit"], about["doc"])
-            for name, about in header["arrays"].items()
-        ]
+    found = read_archive(data, SIZE_LIMIT, ARRAYS_LIMIT)
+    header = json.loads(str(found[HEADER]))
+    arrays = [
+        Labelled(str(name), tuple(map(str, of["dims"])), found[name], str(of["unit"]), str(of["doc"]))
+        for name, of in header["arrays"].items()
+    ]
     return _sweep(header["attributes"], arrays, set(header["coordinates"]))
 
 
 def _from_netcdf(data: bytes) -> Sweep:
-    from scipy.io import netcdf_file  # most commands read none
-
-    if data[:3] != b"CDF":
-        message = "it is neither netCDF 3 nor .npz"
-        raise ValueError(message)
-    with netcdf_file(BytesIO(data), "r", mmap=False) as file:
-        attributes = {name: _text(value) for name, value in vars(file)["_attributes"].items()}
-        arrays = []
-        for name, variable in file.variables.items():
-            dims, values = tuple(variable.dimensions), np.array(variable[...])
-            if dims and dims[-1] == CHARACTERS:
-                width = values.shape[-1]
-                joined = np.ascontiguousarray(values).view(f"S{width}").reshape(values.shape[:-1])
-                dims, values = dims[:-1], joined.astype(f"<U{width}")
-            if values.dtype.kind in "fi":
-                values = values.astype(values.dtype.newbyteorder("="))
-            arrays.append(
-                Labelled(
-                    name,
-                    dims,
-                    values,
-                    _text(getattr(variable, "units", b"")),
-                    _text(getattr(variable, "long_name", b"")),
-                )
-            )
+    attributes, variables = read_netcdf(data, ARRAYS_LIMIT)
+    arrays = [
+        Labelled(name, *_texts_joined(dims, values), about.get("units", ""), about.get("long_name", ""))
+        for name, (dims, values, about) in variables.items()
+    ]
     known = {*attributes.get("parameters", "").split(), "mode", "frequency", "draw"}
     return _sweep(attributes, arrays, known)
 
 
-def _text(value: bytes | str) -> str:
-    return value.decode() if isinstance(value, bytes) else str(value)
+def _texts_joined(dims: tuple[str, ...], values: Array) -> tuple[tuple[str, ...], Array]:
+    """Return an array with characters put together to texts, in this computer's byte order."""
+    if dims and dims[-1] == CHARACTERS and values.shape[-1]:
+        width = values.shape[-1]
+        joined = np.ascontiguousarray(values).view(f"S{width}").reshape(values.shape[:-1])
+        return dims[:-1], joined.astype(f"<U{width}")
+    return dims, values.astype(values.dtype.newbyteorder("="))
 
 
 def _sweep(attributes: Mapping[str, str], arrays: list[Labelled], coordinates: set[str]) -> Sweep:

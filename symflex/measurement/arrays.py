@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import zipfile
 import zlib
-from io import BytesIO
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from symflex.errors import DataError, Diagnostic
+from symflex.measurement.archive import read_archive
 from symflex.measurement.checks import (
     averages_of,
     checked_response,
@@ -19,6 +18,7 @@ from symflex.measurement.checks import (
     window_of,
 )
 from symflex.measurement.limits import MAX_BYTES, MAX_RESPONSES
+from symflex.measurement.matlab_file import NewerFileError, read_variables
 from symflex.measurement.measured_response import MeasuredResponse
 
 if TYPE_CHECKING:
@@ -31,8 +31,6 @@ COHERENCE: Final = ("coherence", "coh", "gamma2")
 PARTS: Final = (("re", "im"), ("real", "imag"))
 _HINT: Final = "arrays: frequency_hz (n), values (n or m x n, complex), coherence, averages, window, tf"
 
-_MAT_HEADER, _MAT_COMPRESSED = 128, 15
-
 
 def read_npz(name: str, data: bytes, stem: str) -> tuple[MeasuredResponse, ...]:
     """Read responses from a numpy archive; nothing in it is unpickled.
@@ -43,14 +41,11 @@ def read_npz(name: str, data: bytes, stem: str) -> tuple[MeasuredResponse, ...]:
         SF601 no such archive; SF602 arrays missing; SF603, SF604, SF605 values; SF607 too large.
     """
     try:
-        with zipfile.ZipFile(BytesIO(data)) as archive:
-            if sum(info.file_size for info in archive.infolist()) > MAX_BYTES:
-                raise _too_large(name)
-        with np.load(BytesIO(data), allow_pickle=False) as loaded:
-            arrays = {key: np.asarray(loaded[key]) for key in loaded.files[:MAX_RESPONSES]}
-    except (zipfile.BadZipFile, zlib.error, ValueError, OSError, EOFError, KeyError, TypeError, SyntaxError,
-            NotImplementedError, RuntimeError, OverflowError) as error:  # fmt: skip
+        arrays = read_archive(data, MAX_BYTES, MAX_RESPONSES)
+    except ValueError as error:
         raise _unreadable(name, "a numpy archive (.npz)", error) from None
+    except OverflowError:
+        raise _too_large(name) from None
     return responses_of(arrays, name, stem)
 
 
@@ -63,36 +58,16 @@ def read_mat(name: str, data: bytes, stem: str) -> tuple[MeasuredResponse, ...]:
         SF601 no such file, or version 7.3; SF602 variables missing; SF603, SF604, SF605 values; SF607 too
         large.
     """
-    from scipy.io import loadmat
-    from scipy.io.matlab import MatReadError
-
-    _check_inflated(name, data)
     try:
-        loaded = loadmat(BytesIO(data), squeeze_me=True)
-    except NotImplementedError:
+        arrays = read_variables(data, MAX_BYTES)
+    except NewerFileError:
         message = f"'{name}' is a MATLAB file of version 7.3"
         raise DataError(Diagnostic("SF601", message, None, "save it with -v7")) from None
-    except (MatReadError, zlib.error, ValueError, TypeError, KeyError, IndexError, OverflowError, OSError,
-            EOFError, AttributeError, UnboundLocalError) as error:  # fmt: skip
+    except (ValueError, zlib.error) as error:
         raise _unreadable(name, "a MATLAB file (.mat)", error) from None
-    arrays = {key: np.asarray(value) for key, value in loaded.items() if not key.startswith("__")}
+    except OverflowError:
+        raise _too_large(name) from None
     return responses_of(arrays, name, stem)
-
-
-def _check_inflated(name: str, data: bytes) -> None:
-    """Refuse a MATLAB file of version 5 whose compressed variables grow beyond the limit."""
-    place, total = _MAT_HEADER, 0
-    while place + 8 <= len(data):
-        kind, size = (int.from_bytes(data[place + k : place + k + 4], "little") for k in (0, 4))
-        if kind != _MAT_COMPRESSED:
-            return
-        try:
-            total += len(zlib.decompressobj().decompress(data[place + 8 : place + 8 + size], MAX_BYTES + 1))
-        except zlib.error:
-            return
-        if total > MAX_BYTES:
-            raise _too_large(name)
-        place += 8 + size
 
 
 def responses_of(arrays: Mapping[str, np.ndarray], name: str, stem: str) -> tuple[MeasuredResponse, ...]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import stat
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +11,7 @@ from symflex.measurement.arrays import read_mat, read_npz
 from symflex.measurement.comma_separated import read_columns
 from symflex.measurement.limits import MAX_BYTES
 from symflex.measurement.universal_file import read_universal_file
+from symflex.spec.read import read_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -59,7 +59,7 @@ def read_measurement(path: str | Path) -> tuple[MeasuredResponse, ...]:
         message = f"'{name}': data files end in {', '.join(READERS)}"
         raise DataError(Diagnostic("SF606", message))
     try:
-        data = _read_bytes(name)
+        data = read_bytes(name, MAX_BYTES)
     except OSError as error:
         raise _unreadable(name, error.strerror or "input/output error") from None
     except ValueError:
@@ -69,19 +69,6 @@ def read_measurement(path: str | Path) -> tuple[MeasuredResponse, ...]:
     if not data.strip():
         raise DataError(Diagnostic("SF605", f"'{name}' is empty"))
     return READERS[suffix](name, data, Path(name).stem)
-
-
-def _read_bytes(name: str) -> bytes:
-    # As for specifications: a FIFO in the file's place must not hang the open.
-    if not stat.S_ISREG(os.stat(name).st_mode):
-        raise _unreadable(name, "not a regular file")
-    flags = os.O_RDONLY
-    for name_of_flag in ("O_NONBLOCK", "O_CLOEXEC", "O_BINARY"):
-        flags |= getattr(os, name_of_flag, 0)
-    with open(os.open(name, flags), "rb") as file:
-        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-            raise _unreadable(name, "not a regular file")
-        return file.read(MAX_BYTES + 1)
 
 
 def _unreadable(name: str, reason: str) -> UsageError:

@@ -43,7 +43,7 @@ def read(path: str | Path) -> Source:
     """
     name = os.fspath(path)
     try:
-        data = _read_bytes(name)
+        data = read_bytes(name, MAX_BYTES)
     except OSError as error:
         raise _unreadable(name, error.strerror or "input/output error") from None
     except ValueError:
@@ -57,7 +57,16 @@ def read(path: str | Path) -> Source:
         raise SpecError(_not_utf8(name, data, error.start)) from None
 
 
-def _read_bytes(name: str) -> bytes:
+def read_bytes(name: str, limit: int) -> bytes:
+    """Return the bytes of a regular file, and of a larger one a byte more than the limit.
+
+    Raises
+    ------
+    UsageError
+        SF901 when it is no regular file.
+    OSError, ValueError
+        When it cannot be opened.
+    """
     # O_NONBLOCK: a FIFO that takes the file's place after the first look must not hang the open.
     if not stat.S_ISREG(os.stat(name).st_mode):
         raise _unreadable(name, "not a regular file")
@@ -67,7 +76,7 @@ def _read_bytes(name: str) -> bytes:
     with open(os.open(name, flags), "rb") as file:
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
             raise _unreadable(name, "not a regular file")
-        return file.read(MAX_BYTES + 1)
+        return file.read(limit + 1)
 
 
 def _unreadable(name: str, reason: str) -> UsageError:

@@ -1,0 +1,95 @@
+"""A place in bytes of hostile kind, which never passes their end."""
+
+from __future__ import annotations
+
+from math import prod
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy.typing as npt
+
+CUT = "it is cut short"
+SHOWN = 80
+LAST_CHARACTER: Final = 0x10FFFF
+SURROGATES: Final = (0xD800, 0xDFFF)
+DIMENSIONS_LIMIT = 32
+"""Of numpy 1; version 2 takes 64."""
+
+
+class ByteReader:
+    """Bytes that are taken one after the other.
+
+    Parameters
+    ----------
+    data : bytes or memoryview
+        All of them.
+    order : str
+        ``<`` or ``>``: which end of a number comes first.
+
+    Examples
+    --------
+    >>> reader = ByteReader(bytes([0, 0, 0, 2, 1]), ">")
+    >>> reader.integer("i4"), reader.left
+    (2, 1)
+    >>> reader.take(2)
+    Traceback (most recent call last):
+    ValueError: it is cut short
+    """
+
+    def __init__(self, data: bytes | memoryview, order: str = "<") -> None:
+        self.data = memoryview(data)
+        self.order = order
+        self.place = 0
+
+    @property
+    def left(self) -> int:
+        """How many bytes were not taken."""
+        return len(self.data) - self.place
+
+    def take(self, count: int) -> memoryview:
+        """Return the next bytes.
+
+        Raises
+        ------
+        ValueError
+            When there are fewer.
+        """
+        if not 0 <= count <= self.left:
+            raise ValueError(CUT)
+        self.place += count
+        return self.data[self.place - count : self.place]
+
+    def align(self, size: int) -> None:
+        """Go to the next multiple of a size, or to the end."""
+        self.place = min(-(-self.place // size) * size, len(self.data))
+
+    def numbers(self, kind: str, shape: Sequence[int], order: Literal["C", "F"] = "C") -> npt.NDArray[Any]:
+        """Return an array of numbers of one kind, such as ``f8``, in the bytes' own order.
+
+        Raises
+        ------
+        ValueError
+            When there are fewer bytes, or the shape is none; nothing is allocated for what is not there.
+        """
+        if len(shape) > DIMENSIONS_LIMIT or any(size < 0 for size in shape):
+            message = f"an array has the shape {' x '.join(map(str, shape))}"[:SHOWN]
+            raise ValueError(message)
+        dtype = np.dtype(self.order + kind)
+        count = prod(shape)
+        if not count:
+            return np.empty(tuple(shape), dtype)
+        taken = self.take(count * dtype.itemsize)
+        if dtype.kind == "U":
+            codes = np.frombuffer(taken, np.dtype(self.order + "u4"))
+            if np.any((codes > LAST_CHARACTER) | ((codes >= SURROGATES[0]) & (codes <= SURROGATES[1]))):
+                message = "a text holds what is no character"
+                raise ValueError(message)
+        return np.frombuffer(taken, dtype).reshape(tuple(shape), order=order)
+
+    def integer(self, kind: str) -> int:
+        """Return one integer."""
+        return int(self.numbers(kind, (1,))[0])
