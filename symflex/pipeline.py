@@ -596,6 +596,7 @@ def sweep(
     """
     from symflex import sweep as sweep_room  # most commands need none of it
     from symflex.emit import sweep_files, sweep_journal
+    from symflex.emit.lock import held
     from symflex.emit.write import write_atomically
 
     # The package imports api, which stands above: its version is read without importing it.
@@ -608,10 +609,11 @@ def sweep(
         )
     path = Path(output)
     sweep_files.check_writable(path)
-    journal = sweep_journal.open_journal(path, key, is_fresh=is_fresh)
-    found = sweep_room.run_sweep(
-        task, design, executor, workers=workers, journal=journal, progress=progress, attributes=said
-    )
-    write_atomically(path, sweep_files.sweep_bytes(found, path.suffix))
-    journal.remove()
+    with held(path):
+        journal = sweep_journal.open_journal(path, key, is_fresh=is_fresh)
+        found = sweep_room.run_sweep(
+            task, design, executor, workers=workers, journal=journal, progress=progress, attributes=said
+        )
+        write_atomically(path, sweep_files.sweep_bytes(found, path.suffix))
+        journal.remove()
     return found

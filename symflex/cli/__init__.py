@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from importlib import import_module
-from io import TextIOWrapper
+from io import StringIO, TextIOWrapper
 
 import click
 
@@ -101,6 +101,10 @@ def run(arguments: list[str] | None = None) -> int:
         click.echo("stopped", err=True)
         return 130
     except click.ClickException as problem:
-        problem.show()
+        from symflex.cli.reporting import say  # most commands go well
+
+        shown = StringIO()
+        problem.show(shown)
+        say(shown.getvalue(), nl=False, err=True)
         return problem.exit_code
     return result if isinstance(result, int) else 0

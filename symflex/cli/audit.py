@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, note, outside, reporting, terminal_width
+from symflex.cli.reporting import emit_json, note, outside, reporting, say, terminal_width
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -43,7 +43,7 @@ def command(
         emit_json(audit_document(audits))
     elif audits:
         width = terminal_width()
-        click.echo("\n\n".join(audit_text(audit, width) for audit in audits))
+        say("\n\n".join(audit_text(audit, width) for audit in audits))
     return _code(audits) if strict else 0
 
 

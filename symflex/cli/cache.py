@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.cache.folder import OFF_VARIABLE, cache_folder
-from symflex.cli.reporting import emit_json, reporting
+from symflex.cli.reporting import emit_json, reporting, say
 from symflex.errors.diagnostic import printable
 
 if TYPE_CHECKING:
@@ -45,14 +45,14 @@ def command(*, clear: bool, as_json: bool) -> None:
             }
         )
     elif folder is None:
-        click.echo(f"no cache: {OFF_VARIABLE} is set, or there is no home folder")
+        say(f"no cache: {OFF_VARIABLE} is set, or there is no home folder")
     else:
-        click.echo(f"folder: {printable(str(folder))}")
+        say(f"folder: {printable(str(folder))}")
         if not is_writable:
-            click.echo("nothing can be kept there: the folder cannot be written")
+            say("nothing can be kept there: the folder cannot be written")
         if clear:
-            click.echo(f"removed: {_amount(removed)}")
-        click.echo(f"entries: {_amount(kept)}, of at most {MAXIMUM_BYTES / 2**20:.0f} MiB")
+            say(f"removed: {_amount(removed)}")
+        say(f"entries: {_amount(kept)}, of at most {MAXIMUM_BYTES / 2**20:.0f} MiB")
 
 
 def _amount(usage: Usage) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from symflex.cli.reporting import diagnostic_json, emit_json, listed, outside, reporting
+from symflex.cli.reporting import diagnostic_json, emit_json, listed, outside, reporting, say
 from symflex.errors import SymflexError
 from symflex.errors.diagnostic import printable
 
@@ -47,11 +47,11 @@ def command(spec: str, *, allow_outside: tuple[str, ...], as_json: bool) -> int:
         )
         if group
     )
-    click.echo(f"{printable(spec)}: ok")
+    say(f"{printable(spec)}: ok")
     if model.title:
-        click.echo(listed("", printable(model.title).split(), " "))
-    click.echo(listed("", counts.split(), " "))
-    click.echo(listed("transfer functions: ", names))
+        say(listed("", printable(model.title).split(), " "))
+    say(listed("", counts.split(), " "))
+    say(listed("transfer functions: ", names))
     if symbolic:
-        click.echo(listed("symbolic (no value): ", symbolic))
+        say(listed("symbolic (no value): ", symbolic))
     return 0

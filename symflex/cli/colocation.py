@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, outside, reporting
+from symflex.cli.reporting import emit_json, outside, reporting, say
 from symflex.errors import Diagnostic, UsageError
 
 
@@ -67,7 +67,7 @@ def command(
     if as_json:
         emit_json(found.to_json_dict())
     else:
-        click.echo(str(found))
+        say(str(found))
     return 0 if found.is_decided else 4
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, note, outside, reporting, terminal_width
+from symflex.cli.reporting import emit_json, note, outside, reporting, say, terminal_width
 from symflex.errors import Diagnostic, UsageError
 
 LONG = 5_000
@@ -106,12 +106,10 @@ def command(
     elif format_ == "latex":
         from symflex.emit.latex import transfer_function_latex
 
-        click.echo(
-            "\n\n".join(transfer_function_latex(tf, printed, width_mm=column) for tf, printed in entries)
-        )
+        say("\n\n".join(transfer_function_latex(tf, printed, width_mm=column) for tf, printed in entries))
     else:
         from symflex.emit.text import derive_text
 
         room = terminal_width()
-        click.echo("\n".join(derive_text(tf, printed, room) for tf, printed in entries).rstrip("\n"))
+        say("\n".join(derive_text(tf, printed, room) for tf, printed in entries).rstrip("\n"))
     return 0

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from symflex.cli.reporting import emit_json, reporting, terminal_width
+from symflex.cli.reporting import emit_json, reporting, say, terminal_width
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 
@@ -51,13 +51,13 @@ def command(name: str | None, *, as_json: bool) -> int:
             }
         )
     elif name is None:
-        click.echo("elements")
+        say("elements")
         for element in elements:
-            click.echo(_entry(_signature(element.type_name, _element_keys(element)), element.summary))
-        click.echo("blocks")
+            say(_entry(_signature(element.type_name, _element_keys(element)), element.summary))
+        say("blocks")
         for block in blocks:
-            click.echo(_entry(_signature(block.type_name, _block_keys(block)), block.summary))
-        click.echo(_entry(MODEL_SIGNATURE, MODEL_SUMMARY))
+            say(_entry(_signature(block.type_name, _block_keys(block)), block.summary))
+        say(_entry(MODEL_SIGNATURE, MODEL_SUMMARY))
     elif elements:
         _describe(elements[0])
     elif blocks:
@@ -92,35 +92,33 @@ def _entry(signature: str, summary: str) -> str:
 
 
 def _describe(element: Element) -> None:
-    click.echo(_signature(element.type_name, _element_keys(element)))
-    click.echo(_paragraph(_plain(element.__doc__), "  ", "  "))
+    say(_signature(element.type_name, _element_keys(element)))
+    say(_paragraph(_plain(element.__doc__), "  ", "  "))
     for port in element.ports:
         nodes = "node" if port.terminals == 1 else f"{port.terminals} nodes"
         default = f", default {', '.join(port.default)}" if port.default is not None else ""
-        click.echo(
-            _key(port.name, f"{nodes}, {DOMAIN_WORDS.get(port.domain, port.domain)}: {port.doc}{default}")
-        )
+        say(_key(port.name, f"{nodes}, {DOMAIN_WORDS.get(port.domain, port.domain)}: {port.doc}{default}"))
     for parameter in element.parameters:
-        click.echo(_parameter(parameter, _only(parameter)))
+        say(_parameter(parameter, _only(parameter)))
     for choice in element.choices:
         words = ", ".join(f'"{v}"' + " (default)" * (v == choice.default) for v in choice.values)
-        click.echo(_key(choice.name, f"{choice.doc}: {words}"))
+        say(_key(choice.name, f"{choice.doc}: {words}"))
     if element.through:
-        click.echo(_key("offers", ", ".join(f"name.{q}" for q in element.through)))
+        say(_key("offers", ", ".join(f"name.{q}" for q in element.through)))
 
 
 def _describe_block(block: Block) -> None:
-    click.echo(_signature(block.type_name, _block_keys(block)))
-    click.echo(_paragraph(block.summary, "  ", "    "))
+    say(_signature(block.type_name, _block_keys(block)))
+    say(_paragraph(block.summary, "  ", "    "))
     for parameter in block.parameters:
-        click.echo(_parameter(parameter))
+        say(_parameter(parameter))
 
 
 def _describe_model_block() -> None:
-    click.echo(MODEL_SIGNATURE)
-    click.echo(_paragraph(MODEL_DOC, "  ", "  "))
-    click.echo(_key("spec", "path of the other specification, relative to the one that names it"))
-    click.echo(_key("tf", "OUT/IN of that specification"))
+    say(MODEL_SIGNATURE)
+    say(_paragraph(MODEL_DOC, "  ", "  "))
+    say(_key("spec", "path of the other specification, relative to the one that names it"))
+    say(_key("tf", "OUT/IN of that specification"))
 
 
 def _parameter(parameter: ParameterPort | BlockParameter, only: str = "") -> str:

@@ -11,7 +11,7 @@ import click
 
 from symflex.cli.caching import caching
 from symflex.cli.derive import chosen_representation
-from symflex.cli.reporting import note, outside, reporting
+from symflex.cli.reporting import note, outside, reporting, say
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 
@@ -115,7 +115,7 @@ def command(
             write_atomically(file, text.encode())
             note(f"wrote {file}")
     else:
-        click.echo(made.text, nl=False)
+        say(made.text, nl=False)
     return 4 if strict and made.warnings else 0
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, note, outside, reporting, terminal_width
+from symflex.cli.reporting import emit_json, note, outside, reporting, say, terminal_width
 from symflex.errors import Diagnostic, UsageError
 
 SUFFIXES = (".pdf", ".png", ".svg")
@@ -145,5 +145,5 @@ def command(
     if as_json:
         emit_json(fit_json(found, shapes))
     else:
-        click.echo(fit_text(found, terminal_width(), shapes))
+        say(fit_text(found, terminal_width(), shapes))
     return 0

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from symflex.cli.reporting import note, reporting
+from symflex.cli.reporting import note, reporting, say
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 
@@ -30,14 +30,14 @@ def command(template: str | None, *, output: str | None) -> int:
     if template is None:
         width = max(len(name) for name in TEMPLATES)
         for name, summary in TEMPLATES.items():
-            click.echo(f"{name.ljust(width)}  {summary}")
+            say(f"{name.ljust(width)}  {summary}")
         return 0
     if template not in TEMPLATES:
         hint = nearest(template, TEMPLATES) or "templates: " + ", ".join(TEMPLATES)
         raise UsageError(Diagnostic("SF902", f"there is no template '{template[:64]}'", None, hint))
     text = (files("symflex") / "templates" / f"{template}.toml").read_text(encoding="utf-8")
     if output is None:
-        click.echo(text, nl=False)
+        say(text, nl=False)
         return 0
     if Path(output).exists():
         raise UsageError(

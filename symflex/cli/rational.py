@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, note, outside, reporting
+from symflex.cli.reporting import emit_json, note, outside, reporting, say
 
 
 @click.command("rational")
@@ -48,4 +48,4 @@ def command(
     if as_json:
         emit_json(rational_json(found))
     else:
-        click.echo(rational_text(found))
+        say(rational_text(found))

@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 
 from symflex.cli.caching import caching
-from symflex.cli.reporting import note, outside, reporting
+from symflex.cli.reporting import note, outside, reporting, say
 from symflex.errors import Diagnostic, UsageError
 
 EPOCH_VARIABLE = "SOURCE_DATE_EPOCH"
@@ -83,7 +83,7 @@ def command(
         note(published.problem)
     for warning in (*left_out, *report.warnings):
         note(f"warning: {warning}")
-    click.echo(f"open {published.page}")
+    say(f"open {published.page}")
     return max(published.code, report.code)
 
 

@@ -11,11 +11,14 @@ from typing import TYPE_CHECKING, ParamSpec
 import click
 
 from symflex.errors import Diagnostic, SymflexError
+from symflex.errors.diagnostic import printable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
 P = ParamSpec("P")
+LAYOUT = "\n\t" + "".join(map(chr, (0xA0, 0x1680, *range(0x2000, 0x200B), 0x202F, 0x205F, 0x3000)))
+"""Ends of lines and blanks, which Python does not count as printable and terminals show."""
 
 
 outside = click.option(
@@ -63,9 +66,14 @@ def show_error(error: SymflexError) -> None:
         click.echo(text, err=True)
 
 
+def say(text: str, *, nl: bool = True, err: bool = False) -> None:
+    """Print a text; what could drive a terminal is escaped, wherever it came from."""
+    click.echo(printable(text, LAYOUT), nl=nl, err=err)
+
+
 def note(message: str) -> None:
     """Print a line to stderr."""
-    click.echo(message, err=True)
+    say(message, err=True)
 
 
 def emit_json(document: Mapping[str, object]) -> None:

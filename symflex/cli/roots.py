@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, note, outside, reporting, terminal_width
+from symflex.cli.reporting import emit_json, note, outside, reporting, say, terminal_width
 from symflex.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:
@@ -104,15 +104,15 @@ def command(
             more["explanation"] = explanation_json(explained)
         emit_json({**found.to_json_dict(), **more})
     else:
-        click.echo(roots_text(found, shown, terminal_width()))
+        say(roots_text(found, shown, terminal_width()))
         if wanted:
             from symflex.emit.sensitivity import sensitivity_text  # most calls need none of it
 
-            click.echo(sensitivity_text(moved, terminal_width()))
+            say(sensitivity_text(moved, terminal_width()))
         if explained is not None:
             from symflex.explanation import explanation_text
 
-            click.echo("\n" + explanation_text(explained, terminal_width()))
+            say("\n" + explanation_text(explained, terminal_width()))
     certificate = found.certificate
     if certificate.is_exceeded:
         return 5

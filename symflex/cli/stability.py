@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, outside, reporting
+from symflex.cli.reporting import emit_json, outside, reporting, say
 from symflex.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ def command(
     if as_json:
         emit_json(found.to_json_dict())
     else:
-        click.echo(stability_text(found))
+        say(stability_text(found))
     return 0 if found.certified else 4
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, note, outside, reporting, terminal_width
+from symflex.cli.reporting import emit_json, note, outside, reporting, say, terminal_width
 from symflex.cli.roots import region_of
 from symflex.errors import Diagnostic, UsageError
 
@@ -121,7 +121,7 @@ def command(
     if as_json:
         emit_json(sweep_json(found))
     else:
-        click.echo(sweep_text(found, terminal_width()))
+        say(sweep_text(found, terminal_width()))
     if found.is_certified:
         return 0
     return 5 if any(code.startswith(BUDGET_CODE) for code in found["code"].reshape(-1).tolist()) else 4

@@ -67,9 +67,15 @@ def _excerpt(span: Span) -> list[str]:
     return [f"  {number} | {shown}", f"  {gutter} | {' ' * (first - offset)}{'^' * width}"]
 
 
-def printable(text: str) -> str:
-    """Return ``text`` with control characters escaped, so that a file cannot drive a terminal."""
-    return "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in text)
+def printable(text: str, kept: str = "") -> str:
+    r"""Return ``text`` with control characters escaped but those kept: a file cannot drive a terminal.
+
+    Examples
+    --------
+    >>> print(printable("\x1b[2J\n", kept="\n"), end="")
+    \x1b[2J
+    """
+    return "".join(c if c.isprintable() or c in kept else f"\\x{ord(c):02x}" for c in text)
 
 
 def nearest(name: str, known: Iterable[str]) -> str | None:

@@ -127,7 +127,7 @@ def _matrix(reader: ByteReader, *, are_cells_read: bool) -> tuple[str, npt.NDArr
         return name, _OTHER
     values = _shaped(_numbers(*_element(reader), reader.order), shape)
     if flags & _COMPLEX_FLAG:
-        values = values + 1j * _shaped(_numbers(*_element(reader), reader.order), shape)
+        values = _complex(values, _shaped(_numbers(*_element(reader), reader.order), shape))
     return name, values
 
 
@@ -144,6 +144,12 @@ def _shaped(values: npt.NDArray[Any], shape: list[int]) -> npt.NDArray[Any]:
         message = f"{values.size} numbers for {' x '.join(map(str, shape))}"[:SHOWN]
         raise ValueError(message)
     return np.squeeze(values.reshape(shape, order="F")) if values.size else values
+
+
+def _complex(real: npt.NDArray[Any], imaginary: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    values = np.empty(real.shape, np.complex128)
+    values.real, values.imag = real, imaginary  # a product with j would turn infinities into no numbers
+    return values
 
 
 def _lines(kind: int, content: memoryview, order: str, shape: list[int]) -> npt.NDArray[Any]:
@@ -176,7 +182,7 @@ def _version_4(data: bytes) -> Arrays:
         shape = (rows, columns)
         values = reader.numbers(_STORED_4[kind], shape, "F")
         if is_complex == 1:
-            values = values + 1j * reader.numbers(_STORED_4[kind], shape, "F")
+            values = _complex(values, reader.numbers(_STORED_4[kind], shape, "F"))
         if len(found) >= VARIABLES_LIMIT:
             raise OverflowError
         if text == _TEXT_4:
