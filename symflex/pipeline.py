@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from symflex.explanation import ZeroExplanation
     from symflex.fitting import Fit
     from symflex.measurement import MeasuredResponse, MeasurementPlan
+    from symflex.model.model import Published
     from symflex.rational import RationalApproximation, Residue
     from symflex.roots import Budget, PoleZeroMap, Progress, Region
     from symflex.sensitivity import Sensitivity
@@ -431,16 +432,23 @@ def audit(model: Model, names: Sequence[str] = ()) -> tuple[Audit, ...]:
             hint = nearest(name, printed) or "published: " + ", ".join(list(printed)[:8])
             raise UsageError(Diagnostic("SF902", f"nothing is published for '{name[:100]}'", None, hint))
     chosen = tuple(printed[name] for name in names) if names else model.published
+    check_published(model, chosen)
+    derived = derive_all(model, tuple(p.tf for p in chosen)) if chosen else ()
+    return tuple(audit_room.judge(tf, p) for tf, p in zip(derived, chosen, strict=True))
+
+
+def check_published(model: Model, formulas: Sequence[Published]) -> None:
+    """Raise what is wrong with printed formulas of a model, each problem at its place."""
+    from symflex.audit import formula_of  # most commands need none of it
+
     problems: list[Diagnostic] = []
-    for published in chosen:
+    for published in formulas:
         try:
-            audit_room.formula_of(published, model)
+            formula_of(published, model)
         except SpecError as error:
             problems += error.diagnostics
     if problems:
         raise SpecError(*problems)
-    derived = derive_all(model, tuple(p.tf for p in chosen)) if chosen else ()
-    return tuple(audit_room.judge(tf, p) for tf, p in zip(derived, chosen, strict=True))
 
 
 def fit(

@@ -56,13 +56,13 @@ def write_report(
     day : date, optional
         Printed; without it equal specifications give equal files.
     jobs : int
-        How many models are computed at once, each in a process of its own. More than one needs a program that
-        may be imported anew (``if __name__ == "__main__":``).
+        How many models are computed at once, each in a process of its own; 1 for all in this one. More than
+        one needs a program that may be imported anew (``if __name__ == "__main__":``).
 
     Raises
     ------
     SpecError, ModelError
-        Of the first file that is no solvable model.
+        With every problem of all files that are no solvable models, before anything is computed.
     UsageError
         SF902 no specification; SF903 a file cannot be written.
 
@@ -80,7 +80,8 @@ def write_report(
     target = Path(folder)
     named = report.name_specifications(report.find_specifications(paths, target))
     measured, left_out = report.find_measurements(paths, target)
-    chapters = report.write_chapters(named, jobs, Silent(), measured)
+    report.check_folder(target)
+    chapters = report.write_chapters(named, jobs if jobs > 1 else 0, Silent(), measured)
     composed = report.compose(chapters, "" if day is None else day.isoformat())
     published = report.publish(composed, target, Silent(), pdf=pdf)
     problems = (published.problem,) if published.problem else ()

@@ -86,19 +86,22 @@ def command(
     from symflex.emit.exporters import EXPORTERS
     from symflex.emit.program import identifiers
     from symflex.emit.targets.latex import LatexExporter
-    from symflex.emit.write import write_atomically
+    from symflex.emit.write import check_folder, check_writable, write_atomically
 
     if target not in EXPORTERS:
         hint = nearest(target, EXPORTERS) or "targets: " + ", ".join(EXPORTERS)
         raise UsageError(Diagnostic("SF902", f"there is no export target '{target[:64]}'", None, hint))
     exporter = _chosen(EXPORTERS[target], form, width, no_figures=no_figures, is_minimal=is_minimal)
+    is_folder = isinstance(exporter, LatexExporter) and bool(output) and _is_folder(output or "")
+    if output:
+        (check_folder if is_folder else check_writable)(Path(output))
     model = pipeline.load(spec, allow_outside)
     derived, reason = pipeline.derive_as(
         model, pipeline.pick_pairs(model, tfs), chosen_representation(representation, form)
     )
     if reason:
         note(reason)
-    if isinstance(exporter, LatexExporter) and output and _is_folder(output):
+    if isinstance(exporter, LatexExporter) and output and is_folder:
         return _write_fragments(exporter, model, derived, output, strict=strict)
     stem = Path(output).stem if output else identifiers({"": Path(spec).stem}, ())[""]
     made = exporter.export(model, derived, stem, is_alone=not output)

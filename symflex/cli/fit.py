@@ -92,7 +92,7 @@ def command(
     """
     from symflex import pipeline
     from symflex.emit.fit_report import fit_json, fit_text
-    from symflex.emit.write import write_atomically
+    from symflex.emit.write import check_writable, write_atomically
     from symflex.fitting import mode_shapes
     from symflex.fitting.specification import fit_specification
     from symflex.measurement import prepared, read_measurement
@@ -104,6 +104,8 @@ def command(
     for path, endings in ((output, (".toml",)), (figure, SUFFIXES)):
         if path and Path(path).suffix.lower() not in endings:
             raise UsageError(Diagnostic("SF902", f"'{Path(path).name}' must end in {' or '.join(endings)}"))
+        if path:
+            check_writable(Path(path))
     every = prepared([one for path in data for one in read_measurement(path)], band, averages, window)
     measured = every
     if driving:
@@ -134,6 +136,10 @@ def command(
         note(f"wrote {output}")
         if base is not None and not Path(base).resolve().is_relative_to(folder.resolve()):
             note(f"its base is not below it: give --allow-outside {Path(base).parent} where it is read")
+    if as_json:
+        emit_json(fit_json(found, shapes))
+    else:
+        say(fit_text(found, terminal_width(), shapes))
     if figure:
         from symflex.emit.figures import draw_fit, save
 
@@ -142,8 +148,4 @@ def command(
             one = place if r == 0 else place.with_stem(f"{place.stem}_{r + 1}")
             save(draw_fit(found, r), one)
             note(f"wrote {one}")
-    if as_json:
-        emit_json(fit_json(found, shapes))
-    else:
-        say(fit_text(found, terminal_width(), shapes))
     return 0

@@ -58,12 +58,13 @@ def command(
     the same file.
     """
     from symflex import pipeline
-    from symflex.emit.write import write_atomically
+    from symflex.emit.write import check_writable, write_atomically
     from symflex.measurement import WRITERS, MeasurementPlan, measurement_bytes
 
     if Path(output).suffix.lower() not in WRITERS:
         message = f"'{Path(output).name}' must end in {' or '.join(WRITERS)}"
         raise UsageError(Diagnostic("SF902", message))
+    check_writable(Path(output))
     model = pipeline.load(spec, allow_outside)
     pairs = pipeline.pick_pairs(model, [tf] if tf else [])
     if tf is None and len(pairs) > 1:

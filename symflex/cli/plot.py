@@ -148,11 +148,14 @@ def _checked_path(name: str) -> Path:
     Raises
     ------
     UsageError
-        SF902 when it ends in nothing a figure is written as.
+        SF902 when it ends in nothing a figure is written as; SF903 when it could not be written.
     """
+    from symflex.emit.write import check_writable
+
     path = Path(name)
     if path.suffix not in SUFFIXES:
         raise UsageError(Diagnostic("SF902", f"'{path.name}' must end in .pdf, .pgf, .svg or .png"))
+    check_writable(path)
     return path
 
 

@@ -52,11 +52,16 @@ def command(
     folders figures, code and data. What a specification publishes is audited, models are compared, and the
     claims of a publication that is known are judged.
 
-    Equal specifications give equal files when the date is fixed. Exit code 4 says that poles or zeros of some
-    model could not be certified, 5 that a budget was exceeded: the report is written, and says where.
+    All specifications are checked before anything is computed: where one is invalid the exit code is 3, and
+    nothing is written. A model that cannot be computed afterwards costs its own chapter only, which says why.
+
+    Equal specifications give equal files when the date is fixed. Exit code 4 says that something could not be
+    certified, or a figure of [figures] not be drawn, 5 that a budget of time or memory was exceeded: the
+    report is written then, and says where.
     """
     from symflex.cli.progress import ProgressBar
     from symflex.report import (
+        check_folder,
         compose,
         find_measurements,
         find_specifications,
@@ -67,8 +72,7 @@ def command(
 
     shown = _date(day)
     folder = Path(output)
-    if folder.exists() and not folder.is_dir():
-        raise UsageError(Diagnostic("SF903", f"cannot write into '{output}': it is not a folder"))
+    check_folder(folder)
     paths = [Path(spec) for spec in specs]
     folders = (*map(Path, allow_outside), *(path for path in paths if path.is_dir()))
     named = name_specifications(find_specifications(paths, folder, folders))

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from symflex.emit import write
 from symflex.errors import DataError, Diagnostic, UsageError
 from symflex.measurement.archive import read_archive
 from symflex.measurement.netcdf import read_netcdf
@@ -185,13 +186,7 @@ def check_writable(path: Path) -> None:
             import pyarrow  # noqa: F401 (an extra)
         except ImportError:
             raise missing_library("pyarrow", "Parquet") from None
-    reason = ""
-    if not path.parent.is_dir():
-        reason = f"there is no folder '{path.parent}'"
-    elif path.is_symlink() or (path.exists() and not path.is_file()):
-        reason = "it is a symbolic link, or no regular file"
-    if reason:
-        raise UsageError(Diagnostic("SF903", f"cannot write '{path}': {reason}"))
+    write.check_writable(path)
 
 
 def sweep_bytes(sweep: Sweep, suffix: str) -> bytes:

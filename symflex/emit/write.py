@@ -51,6 +51,54 @@ def write_atomically(path: Path, data: bytes) -> None:
         raise _unwritable(name, "the name holds a character no file name can have") from None
 
 
+def check_writable(path: Path) -> None:
+    """Refuse, before anything is computed for it, a file that could not be written afterwards.
+
+    Raises
+    ------
+    UsageError
+        SF903 as :func:`write_atomically`, as far as it can be told beforehand.
+
+    Examples
+    --------
+    >>> check_writable(Path("no/such/folder/a.svg"))
+    Traceback (most recent call last):
+    symflex.errors.exceptions.UsageError: error[SF903]: cannot write 'no/such/folder/a.svg': ...
+    """
+    name = os.fspath(path)
+    try:
+        _mode_of_regular_file(path)
+    except OSError as error:
+        raise _unwritable(name, error.strerror or "input/output error") from None
+    except ValueError:
+        raise _unwritable(name, "the name holds a character no file name can have") from None
+    if not path.parent.is_dir():
+        raise _unwritable(name, f"there is no folder '{os.path.dirname(name) or '.'}'")
+    _check_entry(path.parent, name)
+
+
+def check_folder(folder: Path) -> None:
+    """Refuse, before anything is computed for it, a folder that could not be made or written into afterwards.
+
+    Raises
+    ------
+    UsageError
+        SF903.
+    """
+    name = os.fspath(folder)
+    if folder.exists() and not folder.is_dir():
+        raise _unwritable(name, "it is not a folder")
+    nearest = next((parent for parent in (folder, *folder.parents) if parent.exists()), Path())
+    if not nearest.is_dir():
+        raise _unwritable(name, f"'{nearest}' is not a folder")
+    _check_entry(nearest, name)
+
+
+def _check_entry(folder: Path, name: str) -> None:
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise _unwritable(name, f"nothing can be written into '{folder}'")
+
+
 def write_folder(folder: Path, files: Mapping[str, str]) -> None:
     """Write text files into a folder, which is made when it is missing, each as a whole or not at all.
 

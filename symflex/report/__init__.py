@@ -8,6 +8,7 @@ What a report says about each model is in :data:`symflex.report.sections.SECTION
 :data:`symflex.report.claims.PUBLICATIONS`.
 """
 
+from symflex.emit.write import check_folder
 from symflex.report.article import report_article
 from symflex.report.folder import write_tree
 from symflex.report.page import report_page
@@ -25,6 +26,7 @@ from symflex.report.report import (
 __all__ = [
     "PublishedReport",
     "Report",
+    "check_folder",
     "compile_pdf",
     "compose",
     "find_measurements",

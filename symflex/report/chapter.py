@@ -8,15 +8,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from symflex.errors import SymflexError
+from symflex import pipeline
+from symflex.errors import SpecError, SymflexError
 from symflex.report.document import Notice, Section, text
-from symflex.report.facts import ModelFacts
+from symflex.report.facts import ModelFacts, bare_facts
+from symflex.report.part import code_of
 from symflex.report.sections import SECTIONS
-from symflex.report.study import Study, attempt
+from symflex.report.study import Study, attempt, said
 
 if TYPE_CHECKING:
     from symflex.measurement import MeasuredResponse
     from symflex.report.document import Block
+    from symflex.roots import Progress
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +39,10 @@ class Chapter:
     warnings : tuple of str
         What the user should be told.
     code : int
-        Exit code: 0, 4 when something is not certified, 5 when a budget was exceeded.
+        Exit code: 0, 4 when something is not certified or a figure that was asked for cannot be drawn, 5 when
+        a budget was exceeded.
+    failure : str
+        Why the chapter says nothing else; empty for all others.
     """
 
     stem: str
@@ -45,6 +51,17 @@ class Chapter:
     files: Mapping[str, bytes]
     warnings: tuple[str, ...]
     code: int
+    failure: str = ""
+
+
+def failed_chapter(
+    path: Path, stem: str, reason: str, code: int, allow_outside: tuple[Path, ...] = ()
+) -> Chapter:
+    """Return the chapter of a model that nothing else can be said of."""
+    model = attempt(lambda: pipeline.load(path, allow_outside))
+    facts = ModelFacts(stem) if isinstance(model, SymflexError) else bare_facts(stem, model)
+    section = Section(facts.title or stem, (Notice(f"Not computed: {reason}."),), stem)
+    return Chapter(stem, section, facts, {}, (f"{stem} is not computed: {reason}",), code, reason)
 
 
 def chapter_of(
@@ -52,6 +69,7 @@ def chapter_of(
     stem: str,
     measured: tuple[MeasuredResponse, ...] = (),
     allow_outside: tuple[Path, ...] = (),
+    progress: Progress | None = None,
 ) -> Chapter:
     """Read a specification and return its chapter, with measured responses where they fit.
 
@@ -63,7 +81,12 @@ def chapter_of(
     SpecError, ModelError
         When the file is no solvable model.
     """
-    study = Study.of(path, stem, measured, allow_outside)
+    opened = attempt(lambda: Study.of(path, stem, measured, allow_outside))
+    if isinstance(opened, SymflexError):
+        if opened.exit_code <= SpecError.exit_code:
+            raise opened
+        return failed_chapter(path, stem, said(opened), opened.exit_code, allow_outside)
+    study = opened
     model = study.model
     blocks: list[Block] = []
     if model.source:
@@ -71,18 +94,26 @@ def chapter_of(
     files: dict[str, bytes] = {}
     warnings: list[str] = []
     code = 0
-    for key, make in SECTIONS.items():
+    for i, (key, make) in enumerate(SECTIONS.items()):
+        if progress is not None:
+            progress.report(i / len(SECTIONS), f"{stem}: {key}")
         part = attempt(lambda m=make: m(study))  # type: ignore[misc]
         if isinstance(part, SymflexError):
-            reason = "; ".join(d.message for d in part.diagnostics)
+            reason = said(part)
             blocks.append(Section(key.capitalize(), (Notice(reason),), f"{stem}-{key}"))
             warnings.append(f"{stem}, {key}: {reason}")
-            code = max(code, part.exit_code if part.exit_code > 3 else 0)  # noqa: PLR2004 - 4 and 5
+            code = max(code, code_of(part))
         elif part is not None:
             blocks.append(Section(part.title, part.blocks, f"{stem}-{key}"))
             files.update(part.files)
             warnings += part.warnings
-    facts = study.facts
+            code = max(code, part.code)
+    gathered = attempt(lambda: study.facts)
+    if isinstance(gathered, SymflexError):
+        warnings.append(f"{stem} is not compared: {said(gathered)}")
+        code, facts = max(code, code_of(gathered)), bare_facts(stem, model)
+    else:
+        facts = gathered
     if not all(f.certified for f in facts.functions):
         code = max(code, 4)
     files[f"data/{stem}_facts.json"] = json.dumps(facts.to_json_dict(), indent=1).encode()

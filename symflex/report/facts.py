@@ -7,7 +7,7 @@ Output: a :class:`ModelFacts`. Everything in it can be sent to another process a
 from __future__ import annotations
 
 import itertools
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from math import inf, tau
 from typing import TYPE_CHECKING, Final, Literal
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from flint import arb
 
     from symflex.audit import Audit
+    from symflex.model import Model
     from symflex.report.structure import Compliance
     from symflex.report.study import Study
     from symflex.roots import PoleZeroMap, Root
@@ -346,13 +347,13 @@ class ModelFacts:
     """
 
     stem: str
-    title: str
-    source: str
-    compliances: tuple[Compliance, ...]
-    is_distributed: bool
-    has_signals: bool
-    functions: tuple[TransferFacts, ...]
-    audits: tuple[tuple[str, str, str], ...]
+    title: str = ""
+    source: str = ""
+    compliances: tuple[Compliance, ...] = ()
+    is_distributed: bool = False
+    has_signals: bool = False
+    functions: tuple[TransferFacts, ...] = ()
+    audits: tuple[tuple[str, str, str], ...] = ()
     loops: tuple[LoopFacts, ...] = ()
     colocations: tuple[ColocationFact, ...] = ()
     data: tuple[DataFact, ...] = ()
@@ -397,6 +398,18 @@ def _loop_json(loop: LoopFacts) -> dict[str, object]:
     }
 
 
+def bare_facts(stem: str, model: Model) -> ModelFacts:
+    """Return what a model says of itself, without anything computed."""
+    return ModelFacts(
+        stem,
+        model.title,
+        model.source,
+        compliances(model),
+        is_distributed=model.is_distributed,
+        has_signals=bool(model.signals or model.blocks),
+    )
+
+
 def facts_of(study: Study) -> ModelFacts:
     """Return the facts about a model.
 
@@ -432,13 +445,8 @@ def facts_of(study: Study) -> ModelFacts:
                 bracket_mathematics=_bracket(condition, tf),
             )
         )
-    return ModelFacts(
-        stem=study.stem,
-        title=model.title,
-        source=model.source,
-        compliances=compliances(model),
-        is_distributed=model.is_distributed,
-        has_signals=bool(model.signals or model.blocks),
+    return replace(
+        bare_facts(study.stem, model),
         functions=tuple(functions),
         audits=tuple((audit.tf.name, audit.verdict, _changes(audit)) for audit in study.audits),
         loops=tuple(_loop(found) for found in study.loops if not isinstance(found, SymflexError)),

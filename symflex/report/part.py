@@ -7,11 +7,13 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
 from symflex.emit.figures import render
+from symflex.errors import UncertifiedError
 from symflex.report.document import Picture
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from symflex.errors import SymflexError
     from symflex.report.document import Block
     from symflex.report.study import Study
 
@@ -30,12 +32,27 @@ class Part:
         Content by path inside the report's folder.
     warnings : tuple of str
         What the user should be told on the terminal as well.
+    code : int
+        Exit code: not 0 when something is missing that the specification asks for.
     """
 
     title: str
     blocks: tuple[Block, ...]
     files: Mapping[str, bytes] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
+    code: int = 0
+
+
+def code_of(error: SymflexError) -> int:
+    """Return the exit code for what a report lacks: 4 not certified, 5 a budget; 0 where it is not to be had.
+
+    Examples
+    --------
+    >>> from symflex.errors import BudgetError, ModelError
+    >>> code_of(BudgetError()), code_of(ModelError())
+    (5, 0)
+    """
+    return error.exit_code if error.exit_code >= UncertifiedError.exit_code else 0
 
 
 def picture(stem: str, drawn: Figure, caption: str, files: dict[str, bytes]) -> Picture:

@@ -6,7 +6,7 @@ import json
 import platform
 import re
 from collections.abc import Mapping
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, ProcessPoolExecutor, wait
 from dataclasses import dataclass
 from functools import partial
 from importlib import metadata
@@ -14,18 +14,27 @@ from multiprocessing import get_context
 from typing import TYPE_CHECKING, Final
 
 from symflex.cache import derivation_cache, entered_cache
-from symflex.errors import Diagnostic, SymflexError, UsageError
-from symflex.report.chapter import Chapter, chapter_of
+from symflex.errors import (
+    BudgetError,
+    Diagnostic,
+    SpecError,
+    SymflexError,
+    UncertifiedError,
+    UsageError,
+)
+from symflex.errors.diagnostic import printable
+from symflex.report.chapter import Chapter, chapter_of, failed_chapter
 from symflex.report.claims import PUBLICATIONS, claim_section, publication_of
 from symflex.report.claims.section import claims_json, judge_all
 from symflex.report.comparison import comparison_section
 from symflex.report.document import Code, Link, Mark, Section, Table, columns, text
 from symflex.report.numerals import counted
-from symflex.report.study import attempt
+from symflex.report.study import Study, attempt
 from symflex.sweep.executors import end_with_parent
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from concurrent.futures import Future
     from pathlib import Path
 
     from symflex.cache.store import Store
@@ -35,6 +44,8 @@ if TYPE_CHECKING:
     from symflex.roots import Progress
 
 MOST_MODELS: Final = 200
+TICK: Final = 0.5
+"""Seconds between two reports of progress while nothing ends."""
 DATA_SUFFIXES: Final = frozenset((".csv", ".tsv", ".npz", ".mat", ".uff", ".unv"))
 """Of data files that are looked for in folders."""
 
@@ -179,6 +190,27 @@ def _leads_out(file: Path, folders: Sequence[Path]) -> bool:
     return not any(file.resolve().is_relative_to(folder.resolve()) for folder in folders)
 
 
+def check_specifications(named: Mapping[str, Path], allow_outside: tuple[Path, ...] = ()) -> None:
+    """Refuse, before anything is computed, specifications that are no solvable models.
+
+    Raises
+    ------
+    SpecError, ModelError, UsageError
+        With every problem of all files.
+    """
+    failed: list[SymflexError] = []
+    for stem, path in named.items():
+        checked = attempt(partial(Study.of, path, stem, allow_outside=allow_outside))
+        # What exceeds a budget already here is for its own chapter to say.
+        if isinstance(checked, SymflexError) and checked.exit_code <= SpecError.exit_code:
+            failed.append(checked)
+    if len(failed) == 1:
+        raise failed[0]
+    if failed:
+        worst = SpecError if any(e.exit_code == SpecError.exit_code for e in failed) else UsageError
+        raise worst(*(d for error in failed for d in error.diagnostics))
+
+
 def write_chapters(
     named: Mapping[str, Path],
     processes: int,
@@ -186,16 +218,17 @@ def write_chapters(
     measured: tuple[MeasuredResponse, ...] = (),
     allow_outside: tuple[Path, ...] = (),
 ) -> tuple[Chapter, ...]:
-    """Return the chapters, in order, computed side by side.
+    """Return the chapters, in order, computed side by side, once all specifications are checked.
 
     Parameters
     ----------
     named : mapping of str to Path
         Specifications by name.
     processes : int
-        How many compute at once; 1 for none besides this one.
+        How many compute several models at once, each on its own; 0 for none besides this one. In a process of
+        its own a model that ends it, or makes the program fail, costs its own chapter only.
     progress : Progress
-        Told after each chapter.
+        Told what is being computed.
     measured : tuple of MeasuredResponse
         Drawn with the transfer functions of the same names.
     allow_outside : tuple of Path
@@ -203,35 +236,81 @@ def write_chapters(
 
     Raises
     ------
-    SpecError, ModelError
-        Of the first file that is no solvable model.
+    SpecError, ModelError, UsageError
+        With every problem of all files that are no solvable models, before anything is computed.
     """
+    check_specifications(named, allow_outside)
     done: dict[str, Chapter] = {}
-    if processes <= 1 or len(named) == 1:
+    if processes < 1 or len(named) == 1:
         for stem, path in named.items():
             progress.report(len(done) / len(named), f"model {len(done) + 1} of {len(named)}: {stem}")
-            done[stem] = chapter_of(path, stem, measured, allow_outside)
+            done[stem] = chapter_of(
+                path, stem, measured, allow_outside, progress if len(named) == 1 else None
+            )
         return tuple(done.values())
+    done = _in_processes(named, processes, progress, measured, allow_outside)
+    # A process that ends takes with it what others have begun: alone, the models show which one it is.
+    for stem, path in named.items():
+        if stem not in done:
+            done |= _in_processes({stem: path}, 1, progress, measured, allow_outside)
+        if stem not in done:
+            reason = "its process ended, perhaps for want of memory"
+            done[stem] = failed_chapter(path, stem, reason, BudgetError.exit_code, allow_outside)
+    return tuple(done[stem] for stem in named)
+
+
+def _in_processes(
+    named: Mapping[str, Path],
+    processes: int,
+    progress: Progress,
+    measured: tuple[MeasuredResponse, ...],
+    allow_outside: tuple[Path, ...],
+) -> dict[str, Chapter]:
+    """Return the chapters of models whose processes came to an end of their own."""
     # A new interpreter in each process: what this one has open or threaded is not copied.
     store = entered_cache()
     spawning = get_context("spawn")
     count = min(processes, len(named))
+    done: dict[str, Chapter] = {}
     with ProcessPoolExecutor(count, mp_context=spawning, initializer=end_with_parent) as pool:
         waiting = {
             pool.submit(_chapter_in, store, path, stem, measured, allow_outside): stem
             for stem, path in named.items()
         }
-        progress.report(0.0, f"{counted(len(named), 'model')}")
+        total = len(waiting)
         try:
-            for finished in as_completed(waiting):
-                done[waiting[finished]] = finished.result()
-                progress.report(
-                    len(done) / (len(named) + 1), f"{len(done)} of {counted(len(named), 'model')}"
-                )
+            while waiting:
+                at_work = ", ".join(list(waiting.values())[:count])
+                ended = total - len(waiting)
+                progress.report(ended / (total + 1), f"{ended} of {counted(total, 'model')}; {at_work}")
+                for future in wait(waiting, TICK, FIRST_COMPLETED).done:
+                    stem = waiting.pop(future)
+                    chapter = _outcome(future, named[stem], stem, allow_outside)
+                    if chapter is not None:
+                        done[stem] = chapter
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
-    return tuple(done[stem] for stem in named)
+    return done
+
+
+def _outcome(
+    future: Future[Chapter], path: Path, stem: str, allow_outside: tuple[Path, ...] = ()
+) -> Chapter | None:
+    """Return the chapter, one that says how the program failed in it, or None where its process was ended."""
+    error = future.exception()
+    match error:
+        case None:
+            return future.result()
+        case BrokenExecutor():
+            return None
+        case MemoryError():
+            return failed_chapter(path, stem, "out of memory", BudgetError.exit_code, allow_outside)
+        case Exception() if not isinstance(error, SymflexError):
+            reason = f"the program fails here ({type(error).__name__}: {error}), please report it"
+            return failed_chapter(path, stem, printable(reason), UncertifiedError.exit_code, allow_outside)
+        case _:
+            raise error
 
 
 def _chapter_in(
@@ -312,9 +391,12 @@ def _overview(
     rows: list[tuple[Cell, ...]] = []
     for c in chapters:
         functions = c.facts.functions
+        mark: Mark
         certified = bool(functions) and all(f.certified for f in functions)
-        if certified:
-            mark: Mark = Mark("certified", "good")
+        if c.failure:
+            mark = Mark("not computed", "bad")
+        elif certified:
+            mark = Mark("certified", "good")
         else:
             mark = Mark("not certified", "bad") if functions else Mark("no numbers", "quiet")
         rows.append(

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Final, TypeVar
 
 from symflex import pipeline
 from symflex.emit.forms import print_forms
-from symflex.errors import SymflexError
+from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.model import with_numbers
 from symflex.report.data_comparison import compared
 from symflex.report.facts import facts_of
@@ -79,11 +79,12 @@ class Study:
         Raises
         ------
         SpecError
-            With every problem of the file.
+            With every problem of the file, printed formulas included.
         ModelError
             When the equations have no unique solution.
         """
         model = pipeline.load(path, allow_outside)
+        pipeline.check_published(model, model.published)
         pipeline.check_solvable(pipeline.assemble(with_numbers(model)))
         return Study(path, stem, path.read_text(encoding="utf-8"), model, measured)
 
@@ -133,18 +134,23 @@ class Study:
     def _bound(self) -> tuple[BoundTransferFunction, ...] | SymflexError:
         return attempt(lambda: pipeline.derive_bound(self.model, self.pairs))
 
-    @property
+    @cached_property
     def maps(self) -> tuple[PoleZeroMap, ...]:
         """Poles and zeros, the lowest modes of distributed systems; none of functions that are zero."""
-        return _result(self._maps)
+        return tuple(found for _, found in self._maps if not isinstance(found, SymflexError))
 
     @cached_property
-    def _maps(self) -> tuple[PoleZeroMap, ...] | SymflexError:
+    def without_map(self) -> tuple[tuple[str, SymflexError], ...]:
+        """Functions whose search failed as a whole, and why."""
+        return tuple((tf, found) for tf, found in self._maps if isinstance(found, SymflexError))
+
+    @cached_property
+    def _maps(self) -> tuple[tuple[str, PoleZeroMap | SymflexError], ...]:
         digits = max(self.model.analysis.digits or DIGITS, DIGITS)
-        return attempt(
-            lambda: tuple(
-                pipeline.roots(b, None, digits, Budget()) for b in self.bounds if not b.ratio.is_zero
-            )
+        return tuple(
+            (b.name, attempt(partial(pipeline.roots, b, None, digits, Budget())))
+            for b in self.bounds
+            if not b.ratio.is_zero
         )
 
     @cached_property
@@ -154,7 +160,7 @@ class Study:
         The function is the one in symbols where :attr:`has_symbols` says that there is one. Empty where the
         model has no numbers.
         """
-        if isinstance(self._maps, SymflexError):
+        if isinstance(self._bound, SymflexError):
             return ()
         by_name = {each.tf: each for each in self.maps}
         symbolic = {tf.name: tf for tf in self.tfs} if self.has_symbols else {}
@@ -282,3 +288,10 @@ def attempt(compute: Callable[[], T]) -> T | SymflexError:
         return compute()
     except SymflexError as error:
         return error
+    except MemoryError:
+        return BudgetError(Diagnostic("SF504", "out of memory"))
+
+
+def said(error: SymflexError) -> str:
+    """Return the messages of an error in one line."""
+    return "; ".join(d.message for d in error.diagnostics)

@@ -12,8 +12,8 @@ import numpy as np
 from symflex.emit.exporters import EXPORTERS
 from symflex.errors import SymflexError
 from symflex.report.document import Code, Link, Notice, Table, columns, text
-from symflex.report.part import Part
-from symflex.report.study import attempt
+from symflex.report.part import Part, code_of
+from symflex.report.study import attempt, said
 
 if TYPE_CHECKING:
     from symflex.report.document import Block, Cell
@@ -32,11 +32,13 @@ def export_section(study: Study) -> Part:
     rows: list[tuple[Cell, ...]] = []
     blocks: list[Block] = []
     warnings: list[str] = []
+    code = 0
     for target in TARGETS:
         exporter = EXPORTERS[target]
         made = attempt(lambda e=exporter: e.export(study.model, study.tfs, study.stem, is_alone=False))  # type: ignore[misc]
         if isinstance(made, SymflexError):
             blocks.append(Notice(f"No {target} code: {made.diagnostics[0].message}"))
+            code = max(code, code_of(made))
             continue
         name = f"code/{study.stem}{exporter.suffix}"
         files[name] = made.text.encode()
@@ -48,7 +50,10 @@ def export_section(study: Study) -> Part:
         warnings += [f"{study.stem}, {target}: {warning}" for warning in made.warnings]
         blocks += [Notice(warning) for warning in made.warnings]
     responses = attempt(lambda: study.responses)
-    if not isinstance(responses, SymflexError):
+    if isinstance(responses, SymflexError):
+        blocks.append(Notice(f"No frequency responses: {said(responses)}"))
+        code = max(code, code_of(responses))
+    else:
         for response, name in zip(responses, _names(study, responses), strict=True):
             files[name] = _csv(response)
             rows.append(
@@ -68,7 +73,7 @@ def export_section(study: Study) -> Part:
         " shows the other targets.",
     )
     table = Table(columns(("File", "plain"), "Content"), tuple(rows))
-    return Part("Code and data", (head, *blocks, table), files, tuple(warnings))
+    return Part("Code and data", (head, *blocks, table), files, tuple(warnings), code)
 
 
 def _names(study: Study, responses: tuple[FrequencyResponse, ...]) -> list[str]:

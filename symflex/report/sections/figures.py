@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from symflex.emit.figures import FIGURES, LOOP_FIGURES, draw, draw_loop, draw_measured
-from symflex.errors import Diagnostic, SymflexError
+from symflex.errors import Diagnostic, SymflexError, UncertifiedError
 from symflex.model import Figure
 from symflex.report.document import Notice
-from symflex.report.part import Part, picture
+from symflex.report.part import Part, code_of, picture
 from symflex.report.study import attempt
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ def figure_section(study: Study) -> Part | None:
     blocks: list[Block] = []
     warnings: list[str] = []
     files: dict[str, bytes] = {}
+    code = 0
     for figure in study.model.figures or _defaults(study, drawable):
         chosen = [drawable[pair] for pair in figure.of or tuple(drawable) if pair in drawable]
         drawn: Picture | SymflexError
@@ -45,14 +46,18 @@ def figure_section(study: Study) -> Part | None:
         elif chosen:
             drawn = attempt(lambda f=figure, c=chosen: _picture(study, f, c, files))  # type: ignore[misc]
         else:
-            continue
+            drawn = SymflexError(Diagnostic("SF402", "all its functions are zero: there is nothing to draw"))
         if isinstance(drawn, SymflexError):
             why = f"{figure.name}: {drawn.diagnostics[0].message}"
             blocks.append(Notice(why))
             warnings.append(f"{study.stem}, figure {why}")
+            # What the specification asks for is missing. Nobody asked for the figures by default, and kinds
+            # that are announced are none that failed.
+            is_asked = bool(study.model.figures) and figure.kind in (*FIGURES, *LOOP_FIGURES)
+            code = max(code, code_of(drawn), UncertifiedError.exit_code if is_asked else 0)
         else:
             blocks.append(drawn)
-    return Part("Figures", tuple(blocks), files, tuple(warnings)) if blocks else None
+    return Part("Figures", tuple(blocks), files, tuple(warnings), code) if blocks else None
 
 
 def _defaults(study: Study, drawable: dict[tuple[str, str], BoundTransferFunction]) -> tuple[Figure, ...]:

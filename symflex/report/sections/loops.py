@@ -7,9 +7,9 @@ from math import tau
 from typing import TYPE_CHECKING, Final
 
 from symflex.emit.stability import bandwidth_text
-from symflex.errors import SymflexError
+from symflex.errors import SymflexError, UncertifiedError
 from symflex.report.document import Code, Mark, Notice, Section, Table, columns, text
-from symflex.report.part import Part
+from symflex.report.part import Part, code_of
 from symflex.stability import degrees
 
 if TYPE_CHECKING:
@@ -30,22 +30,26 @@ def loop_section(study: Study) -> Part | None:
     blocks: list[Block] = []
     documents = []
     warnings = []
+    code = 0
     for i, found in enumerate(study.loops):
         if isinstance(found, SymflexError):
             blocks.append(Notice(found.diagnostics[0].message))
             warnings.append(f"{study.stem}, loops: {found.diagnostics[0].message}")
+            code = max(code, code_of(found))
             continue
         blocks.append(Section(f"Gain {found.gain}", _of(found), f"{study.stem}-loop-{i + 1}"))
         documents.append(found.to_json_dict())
         if not found.certified:
             warnings.append(f"{study.stem}: the loop with the gain {found.gain} is not certified")
+            code = max(code, UncertifiedError.exit_code)
     blocks += [_together(found) for found in study.colocations]
     if not blocks:
         return None
     documents += [found.to_json_dict() for found in study.colocations]
     content = {"schema": "symflex.report-loops/1", "loops": documents}
     data = {f"data/{study.stem}_loops.json": json.dumps(content, indent=1).encode()}
-    return Part("Loops" if study.loops else "Dynamic colocation", tuple(blocks), data, tuple(warnings))
+    title = "Loops" if study.loops else "Dynamic colocation"
+    return Part(title, tuple(blocks), data, tuple(warnings), code)
 
 
 def _of(found: StabilityMap) -> tuple[Block, ...]:

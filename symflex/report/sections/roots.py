@@ -10,11 +10,11 @@ from symflex.emit.latex.table import KINDS, damping_text, frequency_text, one_of
 from symflex.emit.text import region_text
 from symflex.errors import SymflexError
 from symflex.explanation import explanation_paragraphs
-from symflex.report.document import Mark, Mathematics, Section, Table, columns, text
+from symflex.report.document import Mark, Mathematics, Notice, Section, Table, columns, text
 from symflex.report.numerals import exponents
-from symflex.report.part import Part
+from symflex.report.part import Part, code_of
 from symflex.report.sections.equations import ratio_line
-from symflex.report.study import attempt
+from symflex.report.study import attempt, said
 
 if TYPE_CHECKING:
     from symflex.emit.latex.table import Entry
@@ -49,9 +49,14 @@ def root_section(study: Study) -> Part:
         blocks.append(Section(found.tf, content, f"{study.stem}-roots-{i + 1}", title))
         if not found.certificate.certified:
             warnings.append(f"{study.stem}: poles and zeros of {found.tf} are not certified")
+    code = 0
+    for name, error in study.without_map:
+        blocks.append(Section(name, (Notice(said(error)),), f"{study.stem}-roots-{len(blocks) + 1}"))
+        warnings.append(f"{study.stem}: no poles and zeros of {name}: {said(error)}")
+        code = max(code, code_of(error))
     document = {"schema": "symflex.report-roots/1", "roots": [found.to_json_dict() for found in study.maps]}
     data = {f"data/{study.stem}_roots.json": json.dumps(document, indent=1).encode()}
-    return Part("Poles and zeros", tuple(blocks), data, tuple(warnings))
+    return Part("Poles and zeros", tuple(blocks), data, tuple(warnings), code)
 
 
 def _of(found: PoleZeroMap, told: ZeroExplanation | None) -> tuple[Block, ...]:

@@ -5,7 +5,7 @@ import stat
 
 import pytest
 
-from symflex.emit.write import write_atomically, write_folder
+from symflex.emit.write import check_folder, check_writable, write_atomically, write_folder
 from symflex.errors import UsageError
 
 
@@ -149,3 +149,27 @@ def test_nothing_is_written_through_a_link_in_a_folder(tmp_path):
     with pytest.raises(UsageError, match="symbolic link"):
         write_folder(tmp_path / "new", {"a.tex": "new"})
     assert (tmp_path / "elsewhere").read_text() == "old"
+
+
+@pytest.mark.parametrize("name", ["no/such/folder/a.svg", "folder", "link", "a\0b", "x" * 300])
+def test_what_could_not_be_written_is_refused_beforehand(tmp_path, name):
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(UsageError, match="SF903"):
+        check_writable(tmp_path / name)
+
+
+def test_what_can_be_written_is_not_touched_beforehand(tmp_path):
+    check_writable(tmp_path / "a.svg")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_below_a_file_is_refused_beforehand(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(UsageError, match="SF903"):
+        check_folder(tmp_path / "file" / "below")
+
+
+def test_folders_that_can_be_made_are_not_made_beforehand(tmp_path):
+    check_folder(tmp_path / "a" / "b")
+    assert list(tmp_path.iterdir()) == []
