@@ -11,6 +11,7 @@ from symflex.emit.forms.economical import economical
 from symflex.emit.forms.frequency import frequency_form
 from symflex.emit.forms.hidden import hidden_expressions
 from symflex.emit.forms.hyperbolic import hyperbolic_form
+from symflex.emit.forms.kept import with_definitions
 from symflex.emit.forms.krylov import krylov_form
 from symflex.emit.forms.nested import nested_form, step_names
 from symflex.emit.forms.polynomial import constant_form, factored_form, monic_form, polynomial_form
@@ -79,11 +80,15 @@ def print_form(tf: AnyTransferFunction, form: str | None = None, digits: int = 6
     if tf.is_distributed:
         tf = economical(tf)
     if form is None:
-        return min((FORMS[name](tf, digits) for name in _candidates(tf)), key=_length)
+        return min((_made(tf, name, digits) for name in _candidates(tf)), key=_length)
     if form not in FORMS:
         hint = nearest(form, FORMS) or "forms: " + ", ".join(FORMS)
         raise UsageError(Diagnostic("SF902", f"there is no form '{form[:64]}'", None, hint))
-    return FORMS[form](tf, digits)
+    return _made(tf, form, digits)
+
+
+def _made(tf: TransferFunction, form: str, digits: int) -> PrintedForm:
+    return with_definitions(tf, FORMS[form](tf, digits))
 
 
 def print_forms(

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
+    from symflex.emit.forms.kept import KeptDefinitions
+
 GROUP_LIMIT = 5_000
 """Number of terms up to which a polynomial is nested for print."""
 FACTOR_LIMIT = 400
@@ -49,19 +51,31 @@ class Arranger:
     apart : frozenset of str
         Functions of s: they stand after what multiplies them, and a sum that begins with one begins with a
         plus.
+    kept : KeptDefinitions or None
+        Polynomials may be of its source; they are arranged over its ring, which is ``ring``.
     """
 
     ring: Ring
     names: Mapping[str, Expression]
     degrees: Mapping[str, int]
     apart: frozenset[str] = frozenset()
+    kept: KeptDefinitions | None = None
 
     @staticmethod
     def plain(
-        ring: Ring, names: Mapping[str, Expression] | None = None, apart: Iterable[str] = ()
+        ring: Ring,
+        names: Mapping[str, Expression] | None = None,
+        apart: Iterable[str] = (),
+        kept: KeptDefinitions | None = None,
     ) -> Arranger:
         """Return an arranger for a ring whose generators print as themselves."""
-        return Arranger(ring, names or {}, {}, frozenset(apart))
+        return Arranger(kept.ring if kept else ring, names or {}, {}, frozenset(apart), kept)
+
+    def closed(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
+        """Return a polynomial in the definitions that are kept."""
+        if self.kept is None or polynomial.context() is self.ring.context:
+            return polynomial
+        return self.kept.rewrite(polynomial)
 
     @cached_property
     def _symbols(self) -> tuple[Expression, ...]:
@@ -87,7 +101,8 @@ class Arranger:
 
     def collected(self, polynomial: fmpz_mpoly, *, factored: bool = True) -> Expression:
         """Return a polynomial by descending powers of s, each coefficient factored."""
-        parts = coefficients(self.ring, polynomial)
+        is_opened = self.kept is not None and polynomial.context() is self.kept.source.context
+        parts = coefficients(self.kept.source if self.kept and is_opened else self.ring, polynomial)
         s = self._symbols[0]
         terms = []
         for exponent in sorted(parts, reverse=True):
@@ -97,6 +112,7 @@ class Arranger:
 
     def coefficient(self, polynomial: fmpz_mpoly, *, factored: bool = True) -> Expression:
         """Return a polynomial free of s as a product of factors, or as a sum when it has none."""
+        polynomial = self.closed(polynomial)
         if len(polynomial) == 1 or not factored or len(polynomial) > FACTOR_LIMIT:
             return self._with_content(polynomial)
         constant, factors = irreducible_factors(polynomial)
@@ -123,6 +139,7 @@ class Arranger:
 
     def grouped(self, polynomial: fmpz_mpoly) -> Expression:
         """Return a polynomial nested by its most shared generators."""
+        polynomial = self.closed(polynomial)
         if polynomial.is_zero():
             return number(0)
         if len(polynomial) > GROUP_LIMIT:
@@ -150,7 +167,7 @@ class Arranger:
             multiplies.
         """
         parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
-        for monomial, coefficient in _terms(polynomial).items():
+        for monomial, coefficient in _terms(self.closed(polynomial)).items():
             key = tuple(e if f == by_functions else 0 for f, e in zip(self._is_apart, monomial, strict=True))
             rest = tuple(e - k for e, k in zip(monomial, key, strict=True))
             parts.setdefault(key, {})[rest] = coefficient
@@ -175,8 +192,13 @@ class Arranger:
         return min(terms, key=self._monomial_key)
 
     def monomial(self, exponents: Sequence[int]) -> Expression:
-        """Return a product of powers of the generators."""
-        return self._monomial(tuple(exponents), 1)
+        """Return a product of powers of the generators, those of ``ring`` or of what is kept closed."""
+        if self.kept is None or len(exponents) == len(self.ring.names):
+            return self._monomial(tuple(exponents), 1)
+        ((monomial, _),) = _terms(
+            self.kept.rewrite(self.kept.source.context.from_dict({tuple(exponents): 1}))
+        ).items()
+        return self._monomial(monomial, 1)
 
     def _group(self, terms: dict[tuple[int, ...], int]) -> Expression:
         content, rest = _pull_content(terms)

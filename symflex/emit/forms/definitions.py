@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING
 from symflex.emit.forms.arrange import Arranger
 from symflex.emit.forms.constants import constant_symbols
 from symflex.emit.forms.hyperbolic import in_kernels
+from symflex.emit.forms.kept import REWRITE_LIMIT, in_definitions, is_divisor
 from symflex.emit.forms.printed import PrintedForm
-from symflex.expressions import Expression, Name, format_expression, names
+from symflex.expressions import Expression, Name, format_expression
 from symflex.kernels import Factored, Ring, degree_in
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from flint import fmpz_mpoly
 
     from symflex.elimination import Closure
@@ -21,8 +20,6 @@ if TYPE_CHECKING:
 
 SMALL = 200
 """Number of terms up to which every arrangement is tried."""
-REWRITE_LIMIT = 5_000
-"""Number of terms up to which an expanded polynomial is rewritten in definitions."""
 
 
 def definitions_form(tf: TransferFunction, digits: int) -> PrintedForm:
@@ -36,7 +33,7 @@ def definitions_form(tf: TransferFunction, digits: int) -> PrintedForm:
     if tf.is_distributed:
         return in_kernels(tf, "definitions", tf.ratio)
     if tf.closed is not None and _is_large(tf):
-        return _with_where(tf, *_from_closure(tf, tf.closed))
+        return PrintedForm("definitions", *_from_closure(tf, tf.closed))
     num, den = _rewritten(tf)
     if tf.closed is not None:
         closed_num, closed_den = _from_closure(tf, tf.closed)
@@ -45,7 +42,7 @@ def definitions_form(tf: TransferFunction, digits: int) -> PrintedForm:
             num, den = min(closed_num, num, key=_length), min(closed_den, den, key=_length)
         elif _length(closed_num) + _length(closed_den) <= _length(num) + _length(den):
             num, den = closed_num, closed_den
-    return _with_where(tf, num, den)
+    return PrintedForm("definitions", num, den)
 
 
 def _is_large(tf: TransferFunction) -> bool:
@@ -93,48 +90,11 @@ def _rewritten(tf: TransferFunction) -> tuple[Expression, Expression]:
     below = _embed(tf.ratio.denominator(), ring)
     arranger = Arranger.plain(ring, constant_symbols(tf))
     if max(len(above), len(below)) <= REWRITE_LIMIT:
-        above, below = (_rewrite(p, tf.definitions, ring) for p in (above, below))
+        divisors = [(name, value.expand()) for name, value in tf.definitions if is_divisor(value)]
+        above, below = (in_definitions(p, divisors, ring) for p in (above, below))
     return arranger.grouped_by_s(above), arranger.grouped_by_s(below)
 
 
 def _embed(value: Factored, ring: Ring) -> fmpz_mpoly:
     expanded = value.expand()
     return expanded.compose(*(ring.generator(n) for n in value.ring.names), ctx=ring.context)
-
-
-def _rewrite(polynomial: fmpz_mpoly, definitions: Sequence[tuple[str, Factored]], ring: Ring) -> fmpz_mpoly:
-    """Return the polynomial in terms of the definitions, each used when it saves terms."""
-    for name, value in definitions:
-        if value.is_constant or value.denominator().factors or value.unit.denominator != 1:
-            continue
-        divisor = value.expand()
-        rewritten = _in_powers_of(polynomial, divisor, ring.generator(name), ring)
-        shorter = len(rewritten) < len(polynomial)
-        if shorter or (len(divisor) == 1 and rewritten != polynomial):
-            polynomial = rewritten
-    return polynomial
-
-
-def _in_powers_of(polynomial: fmpz_mpoly, divisor: fmpz_mpoly, symbol: fmpz_mpoly, ring: Ring) -> fmpz_mpoly:
-    """Return ``sum(r_i * symbol**i)`` where ``polynomial = sum(r_i * divisor**i)``."""
-    result = ring.constant(0)
-    place = ring.constant(1)
-    while not polynomial.is_zero():
-        polynomial, remainder = divmod(polynomial, divisor)
-        result = result + remainder * place
-        place = place * symbol
-    return result
-
-
-def _with_where(tf: TransferFunction, num: Expression, den: Expression) -> PrintedForm:
-    """Return the form with the definitions it uses, also those used by definitions."""
-    definitions = {d.name: d.expression for d in tf.model.definitions}
-    pending, used = [num, den], set()
-    while pending:
-        for found in names(pending.pop()):
-            name = found.name
-            if isinstance(found, Name) and name in definitions and name not in used:
-                used.add(name)
-                pending.append(definitions[name])
-    where = tuple((d.name, d.expression) for d in tf.model.definitions if d.name in used)
-    return PrintedForm("definitions", num, den, where)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from symflex.emit.forms.arrange import Arranger
 from symflex.emit.forms.constants import constant_symbols
 from symflex.emit.forms.invariants import in_krylov_functions, krylov_name
+from symflex.emit.forms.kept import KeptDefinitions
 from symflex.emit.forms.notation import (
     Line,
     Naming,
@@ -113,7 +114,8 @@ class _Page:
         return PrintedForm("frequency", *sides, reachable(sides, lines))
 
     def _printer(self, symbols: dict[str, Expression]) -> ProductPrinter:
-        return ProductPrinter(Arranger.plain(self.ring, symbols, self._functions), IMAGINARY)
+        kept = KeptDefinitions.of(self._tf, self.ring)
+        return ProductPrinter(Arranger.plain(self.ring, symbols, self._functions, kept), IMAGINARY)
 
     def _turned(self, value: Factored, times: int) -> Factored:
         """Return a value times a power of the imaginary unit."""

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from symflex.emit.forms.arrange import Arranger
 from symflex.emit.forms.constants import constant_symbols
+from symflex.emit.forms.kept import KeptDefinitions
 from symflex.emit.forms.notation import Naming, Notation, notation_of, used_generators, wavenumber_laws
 from symflex.emit.forms.printed import PrintedForm
 from symflex.emit.forms.products import ProductPrinter, shortest_sides
@@ -42,7 +43,8 @@ def kernel_printer(tf: TransferFunction, notation: Notation) -> ProductPrinter:
     """Return a printer for values over the transfer function's ring."""
     symbols = {**constant_symbols(tf), **notation.symbols}
     apart = (k.generator for k in tf.kernels.kernels)
-    return ProductPrinter(Arranger.plain(tf.ratio.ring, symbols, apart))
+    ring = tf.ratio.ring
+    return ProductPrinter(Arranger.plain(ring, symbols, apart, KeptDefinitions.of(tf, ring)))
 
 
 def collected_form(tf: TransferFunction) -> PrintedForm:

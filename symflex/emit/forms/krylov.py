@@ -8,6 +8,7 @@ from symflex.emit.forms.arrange import Arranger
 from symflex.emit.forms.constants import constant_symbols
 from symflex.emit.forms.hyperbolic import in_kernels
 from symflex.emit.forms.invariants import Invariants, in_krylov_functions, krylov_name
+from symflex.emit.forms.kept import KeptDefinitions
 from symflex.emit.forms.names import free_family
 from symflex.emit.forms.notation import (
     Line,
@@ -65,7 +66,9 @@ def krylov_form(tf: TransferFunction, digits: int) -> PrintedForm:
     lines += notation.lines
     functions = (g for g in ring.names if g.startswith("K") and g in symbols and g not in tf.ratio.ring.index)
     decays = (k.generator for k in tf.kernels.kernels if not k.wavenumber)
-    printer = ProductPrinter(Arranger.plain(ring, symbols, (*functions, *decays)))
+    printer = ProductPrinter(
+        Arranger.plain(ring, symbols, (*functions, *decays), KeptDefinitions.of(tf, ring))
+    )
     sides = shortest_sides(printer, value, embedded_laws(tf, change))
     return PrintedForm("krylov", *sides, reachable(sides, lines))
 

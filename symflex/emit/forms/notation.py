@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from symflex.emit.forms.arrange import Arranger
 from symflex.emit.forms.constants import constant_symbols
+from symflex.emit.forms.kept import KeptDefinitions
 from symflex.emit.forms.names import free_family, free_names, names_of
 from symflex.emit.forms.products import ProductPrinter
 from symflex.expressions import (
@@ -111,7 +112,8 @@ def angles_of(table: KernelTable, used: Collection[str] | None = None) -> tuple[
 
 def plain_printer(tf: TransferFunction, ring: Ring | None = None) -> ProductPrinter:
     """Return a printer for values of s and parameters alone."""
-    return ProductPrinter(Arranger.plain(ring or tf.ring, constant_symbols(tf)))
+    own = ring or tf.ring
+    return ProductPrinter(Arranger.plain(own, constant_symbols(tf), (), KeptDefinitions.of(tf, own)))
 
 
 def notation_of(

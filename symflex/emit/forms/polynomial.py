@@ -9,6 +9,7 @@ from symflex.emit.forms.arrange import Arranger, coefficients
 from symflex.emit.forms.constants import constant_symbols
 from symflex.emit.forms.hyperbolic import collected_form, in_kernels
 from symflex.emit.forms.irreducible import irreducible_kernels
+from symflex.emit.forms.kept import KeptDefinitions
 from symflex.emit.forms.printed import PrintedForm
 from symflex.emit.forms.usage import require_rational
 from symflex.expressions import Expression, Name, number, power, product_of, quotient, sum_of
@@ -30,12 +31,17 @@ def polynomial_form(tf: TransferFunction, digits: int) -> PrintedForm:
     if tf.is_distributed:
         return collected_form(tf)
     del digits
-    arranger = Arranger.plain(tf.ratio.ring, constant_symbols(tf))
+    arranger = _arranger(tf)
     return PrintedForm(
         "polynomial",
         arranger.collected(tf.ratio.numerator().expand()),
         arranger.collected(tf.ratio.denominator().expand()),
     )
+
+
+def _arranger(tf: TransferFunction) -> Arranger:
+    ring = tf.ratio.ring
+    return Arranger.plain(ring, constant_symbols(tf), (), KeptDefinitions.of(tf, ring))
 
 
 def monic_form(tf: TransferFunction, digits: int) -> PrintedForm:
@@ -68,7 +74,7 @@ def _normalised(tf: TransferFunction, name: str, choose: Callable[[Iterable[int]
     """Return the polynomial form divided by the coefficient of one of the denominator's powers of s."""
     require_rational(tf, name)
     ring = tf.ratio.ring
-    arranger = Arranger.plain(ring, constant_symbols(tf))
+    arranger = _arranger(tf)
     den = tf.ratio.denominator().expand()
     parts = coefficients(ring, den)
     divisor = parts[choose(parts)]
@@ -101,7 +107,7 @@ def factored_form(tf: TransferFunction, digits: int) -> PrintedForm:
     del digits
     if tf.is_distributed:
         return in_kernels(tf, "factored", irreducible_kernels(tf.ratio, tf.kernels))
-    arranger = Arranger.plain(tf.ratio.ring, constant_symbols(tf))
+    arranger = _arranger(tf)
     return PrintedForm(
         "factored",
         _irreducible(arranger, tf.ratio.numerator()),
@@ -120,7 +126,8 @@ def _irreducible(arranger: Arranger, value: Factored) -> Expression:
             positive, sign = (part, 1) if int(part.leading_coefficient()) > 0 else (-part, -1)
             unit *= Fraction(sign) ** (exponent * times)
             degree = degree_in(positive, 0)
-            printed = power(arranger.collected(positive), exponent * times)
+            own = arranger.kept.name_of(positive) if arranger.kept and len(positive) > 1 else None
+            printed = power(own or arranger.collected(positive), exponent * times)
             key = (len(positive) > 1, degree, tuple(tuple(-int(e) for e in m[1:]) for m in positive.monoms()))
             pieces.append((key, printed))
     return product_of([number(unit), *(p for _, p in sorted(pieces, key=lambda item: item[0]))])

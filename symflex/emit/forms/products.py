@@ -57,9 +57,8 @@ class ProductPrinter:
 
     def sides(self, value: Factored) -> Sides:
         """Return numerator and denominator, the sign in the numerator."""
-        ring = self.arranger.ring
         unit = value.unit
-        powers = [0] * len(ring.names)
+        powers = [0] * len(value.ring.names)
         sums: list[tuple[Expression, int]] = []
         for factor, exponent in value.factors:
             if len(factor) == 1:
@@ -67,7 +66,7 @@ class ProductPrinter:
                 continue
             printed = self.sum(factor)
             if isinstance(printed, Negative):
-                printed, unit = printed.operand, unit * (-1) ** exponent
+                printed, unit = printed.operand, unit * (-1) ** abs(exponent)
             sums.append((printed, exponent))
         above = self.arranger.monomial([max(e, 0) for e in powers])
         below = self.arranger.monomial([max(-e, 0) for e in powers])
@@ -102,6 +101,7 @@ class ProductPrinter:
 
     def sum(self, polynomial: fmpz_mpoly) -> Expression:
         """Return a sum in its shortest arrangement; a minus sign that all of it bears stands in front."""
+        polynomial = self.arranger.closed(polynomial)
         key = str(polynomial)
         if key not in self._sums:
             self._sums[key] = self._arranged(polynomial)

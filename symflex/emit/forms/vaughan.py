@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from symflex.emit.forms.arrange import Arranger
 from symflex.emit.forms.constants import constant_symbols
+from symflex.emit.forms.kept import KeptDefinitions
 from symflex.emit.forms.notation import (
     Line,
     Naming,
@@ -105,8 +106,11 @@ class _Page:
         self.lines, symbols = self._explained(used)
         kernels = [k.generator for k in tf.kernels.kernels if k.generator not in replaced]
         closed = {_of("w", i): 0 for i, a in enumerate(self._angles) if a.dispersion.kind == "bending"}
-        arranger = Arranger(self.ring, symbols, closed, frozenset((*kernels, *functions)))
-        self._printer = ProductPrinter(arranger)
+        kept = KeptDefinitions.of(tf, self.ring)
+        ring = kept.ring if kept else self.ring
+        self._printer = ProductPrinter(
+            Arranger(ring, symbols, closed, frozenset((*kernels, *functions)), kept)
+        )
 
     def _explained(self, used: frozenset[str]) -> tuple[tuple[Line, ...], dict[str, Expression]]:
         """Return the lines in the paper's order, and the symbols of the generators."""

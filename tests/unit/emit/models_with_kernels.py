@@ -73,6 +73,21 @@ F = {{ force = "p" }}
 X = "r"
 """,
     ),
+    "beam with definitions": spec(
+        "E I rho A l m J",
+        f"""[definitions]
+EI = "E*I"
+M = "m + J/l^2"
+load = "rho*A"
+[elements]
+one = {{ type = "beam", between = ["ground", "r"], {BEAM}, l = "l" }}
+tip = {{ type = "mass", at = "r", m = "m" }}
+[inputs]
+F = {{ force = "r" }}
+[outputs]
+X = "r"
+""",
+    ),
     "beam under tension": spec(
         "E I rho A l N",
         f"""[elements]

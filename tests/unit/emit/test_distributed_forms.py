@@ -78,6 +78,14 @@ def test_a_form_is_the_function_in_exact_arithmetic(name, form):
             assert point.form(*reread(printed(name, number, form))) == point.truth
 
 
+@pytest.mark.parametrize("form", ["hyperbolic", "factored", "krylov", "vaughan", "frequency", "polynomial"])
+def test_definitions_stay_closed_in_every_form_of_a_beam(form):
+    shown = print_form(case("beam with definitions", "X/F"), form)
+    text = " ".join(format_expression(e) for e in (shown.num, shown.den, *(e for _, e in shown.where)))
+    assert "sqrt(EI/load)" in text
+    assert text.count("E*I") == text.count("rho*A") == 1  # in their own lines
+
+
 def test_a_form_with_a_wrong_sign_is_told_apart():
     tf = case("sliding_free_beam", "V_act/F")
     num, den, where = reread(print_form(tf, "vaughan"))

@@ -114,6 +114,40 @@ X = "x"
     assert [n for n, _ in form.where] == ["Y", "Z"]
 
 
+MASSES = TWO_MASS.replace("[elements]", '[definitions]\nM = "m_1 + m_2"\nmu = "m_1*m_2"\n[elements]')
+CLOSED = {
+    "polynomial": "mu*s^4 + M*b*s^3 + M*k*s^2",
+    "monic": "s^4 + M*b/mu*s^3 + M*k/mu*s^2",
+    "constant": "mu/(M*k)*s^4 + b/k*s^3 + s^2",
+    "factored": "s^2*(mu*s^2 + M*b*s + M*k)",
+    "frequency": "omega^2*(mu*omega^2 - M*k - j*M*b*omega)",
+}
+
+
+@pytest.mark.parametrize("name", CLOSED)
+def test_definitions_stay_closed_in_every_form_of_two_masses(name):
+    # s^2 (m_1 m_2 s^2 + (m_1 + m_2)(b s + k)), by hand; factors of a product may stand in any order.
+    form = print_form(tf_of(MASSES, "Y", "F"), name)
+    shown = format_expression(form.den)
+    for above, below in (("k*M", "M*k"), ("b*M", "M*b")):
+        shown = shown.replace(above, below)
+    assert shown == CLOSED[name]
+    assert {"M", "mu"} <= {n for n, _ in form.where}
+
+
+def test_a_factor_that_is_a_definition_with_s_bears_its_name():
+    text = TWO_MASS.replace("[elements]", '[definitions]\nZ = "b*s + k"\n[elements]')
+    form = print_form(tf_of(text, "Y", "F"), "factored")
+    assert format_expression(form.num) == "Z"
+
+
+def test_a_definition_that_shortens_one_coefficient_only_is_used_there():
+    text = TWO_MASS.replace("[elements]", '[definitions]\nM = "m_1 + m_2"\n[elements]')
+    form = print_form(tf_of(text, "Y", "F"), "definitions")
+    assert format_expression(form.den).replace("*M", "").count("M") == 0
+    assert "m_1*m_2*s^4" in format_expression(form.den)
+
+
 def test_a_reciprocal_definition_is_not_lost():
     """k_2 + k/q: a definition 1/q once counted as zero there."""
     text = """symflex = 1
