@@ -23,7 +23,7 @@ from symflex.elimination import eliminate, expanded_terms, explain_singular, is_
 from symflex.errors import BudgetError, Diagnostic, Source, SpecError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.kernels import uncollected
-from symflex.model import Model, load_model, with_numbers
+from symflex.model import Model, load_with, with_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from symflex.explanation import ZeroExplanation
     from symflex.fitting import Fit
     from symflex.measurement import MeasuredResponse, MeasurementPlan
+    from symflex.model import Setting
     from symflex.model.model import Published
     from symflex.rational import RationalApproximation, Residue
     from symflex.roots import Budget, PoleZeroMap, Progress, Region
@@ -68,8 +69,12 @@ def parse(text: str, name: str = "<string>") -> Spec:
     return spec_room.parse(Source(name, text))
 
 
-def load(path: str | Path, allow_outside: Iterable[str | Path] = ()) -> Model:
-    """Read a specification file and resolve it.
+def load(
+    path: str | Path,
+    allow_outside: Iterable[str | Path] = (),
+    settings: Mapping[str, Setting] | None = None,
+) -> Model:
+    """Read a specification file and resolve it, with the given values in place of declared ones.
 
     Its ``model`` blocks read files at and below its folder, and at and below those of ``allow_outside``.
 
@@ -77,13 +82,20 @@ def load(path: str | Path, allow_outside: Iterable[str | Path] = ()) -> Model:
     ------
     SpecError
         With every problem of the file, each at its place.
+    UsageError
+        What is wrong with a given value, as :func:`symflex.model.load_with` says.
     """
-    return load_model(spec_room.read(Path(path)), allow_outside=allow_outside)
+    return load_with(spec_room.read(Path(path)), settings or {}, allow_outside=allow_outside)
 
 
-def loads(text: str, name: str = "<string>", allow_outside: Iterable[str | Path] = ()) -> Model:
+def loads(
+    text: str,
+    name: str = "<string>",
+    allow_outside: Iterable[str | Path] = (),
+    settings: Mapping[str, Setting] | None = None,
+) -> Model:
     """Resolve a specification given as text; its ``model`` blocks read files as if it stood at ``name``."""
-    return load_model(Source(name, text), allow_outside=allow_outside)
+    return load_with(Source(name, text), settings or {}, allow_outside=allow_outside)
 
 
 def assemble(model: Model) -> Equations:

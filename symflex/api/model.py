@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from symflex import model as model_room
     from symflex.measurement import MeasuredResponse
+    from symflex.model import Setting
     from symflex.stability import DynamicColocation
     from symflex.sweep import Sweep
 
@@ -508,13 +509,21 @@ def _limit(number: float) -> Fraction:
     return Fraction(Decimal(repr(float(number))))
 
 
-def load(path: str | Path, *, allow_outside: Iterable[str | Path] = ()) -> Model:
+def load(
+    path: str | Path,
+    values: Mapping[str, Setting] | None = None,
+    *,
+    allow_outside: Iterable[str | Path] = (),
+) -> Model:
     """Read a specification file.
 
     Parameters
     ----------
     path : str or Path
         The file.
+    values : mapping of str to str or number, optional
+        What parameters are instead of what the file declares: quantities (``"80 kN/m"``), or numbers in SI
+        units. They are checked as the file's own are.
     allow_outside : iterable of str or Path
         Folders that its ``model`` blocks may read besides the folder of ``path`` and those below.
 
@@ -522,13 +531,35 @@ def load(path: str | Path, *, allow_outside: Iterable[str | Path] = ()) -> Model
     ------
     SpecError
         With every problem of the file as ``file:line:col``.
+    UsageError
+        SF902 an unknown parameter; SF203, SF209 and others that the same value in the file would cause.
     """
-    return Model.of(pipeline.load(path, allow_outside))
+    return Model.of(pipeline.load(path, allow_outside, values))
 
 
-def loads(text: str, name: str = "<string>", *, allow_outside: Iterable[str | Path] = ()) -> Model:
-    """Read a specification given as text; ``name`` is what messages call it.
+def loads(
+    text: str,
+    name: str = "<string>",
+    values: Mapping[str, Setting] | None = None,
+    *,
+    allow_outside: Iterable[str | Path] = (),
+) -> Model:
+    """Read a specification given as text; ``name`` is what messages call it, ``values`` as in :func:`load`.
 
     ``model`` blocks read files at and below the folder of ``name``, and those of ``allow_outside``.
+
+    Examples
+    --------
+    >>> text = '''
+    ... symflex = 1
+    ... parameters = { m = "2 kg", k = "8 N/m" }
+    ... elements.body = { type = "mass", at = "x", m = "m" }
+    ... elements.wall = { type = "spring", between = ["x", "ground"], k = "k" }
+    ... inputs.F = { force = "x" }
+    ... outputs.X = "x"
+    ... '''
+    >>> model = loads(text, values={"k": "0.018 kN/m"})
+    >>> [complex(p) for p in model.transfer_function("X", "F").bind().poles()]
+    [3j, -3j]
     """
-    return Model.of(pipeline.loads(text, name, allow_outside))
+    return Model.of(pipeline.loads(text, name, allow_outside, values))

@@ -8,6 +8,7 @@ import click
 
 from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, note, outside, reporting, say, terminal_width
+from symflex.cli.setting import setting
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,8 +24,15 @@ if TYPE_CHECKING:
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @caching
 @reporting
+@setting
 def command(
-    spec: str, *, allow_outside: tuple[str, ...], tfs: tuple[str, ...], strict: bool, as_json: bool
+    spec: str,
+    *,
+    allow_outside: tuple[str, ...],
+    settings: dict[str, str],
+    tfs: tuple[str, ...],
+    strict: bool,
+    as_json: bool,
 ) -> int:
     """Compare what SPEC says was printed with what is derived.
 
@@ -35,7 +43,7 @@ def command(
     from symflex.audit.json_format import audit_document
     from symflex.audit.text import audit_text
 
-    model = pipeline.load(spec, allow_outside)
+    model = pipeline.load(spec, allow_outside, settings)
     audits = pipeline.audit(model, tfs)
     if not model.published:
         note('nothing is published in this specification: [published."OUT/IN"] holds a printed formula')

@@ -5,6 +5,7 @@ from __future__ import annotations
 import click
 
 from symflex.cli.reporting import diagnostic_json, emit_json, listed, outside, reporting, say
+from symflex.cli.setting import setting
 from symflex.errors import SymflexError
 from symflex.errors.diagnostic import printable
 
@@ -14,7 +15,8 @@ from symflex.errors.diagnostic import printable
 @outside
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @reporting
-def command(spec: str, *, allow_outside: tuple[str, ...], as_json: bool) -> int:
+@setting
+def command(spec: str, *, allow_outside: tuple[str, ...], settings: dict[str, str], as_json: bool) -> int:
     """Parse and resolve SPEC; report every problem at once.
 
     Names, units, ports, linearity and solvability are checked; nothing is derived.
@@ -22,7 +24,7 @@ def command(spec: str, *, allow_outside: tuple[str, ...], as_json: bool) -> int:
     from symflex import pipeline
 
     try:
-        model = pipeline.load(spec, allow_outside)
+        model = pipeline.load(spec, allow_outside, settings)
         pipeline.check_solvable(pipeline.assemble(model))
     except SymflexError as error:
         if not as_json:

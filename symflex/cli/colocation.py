@@ -6,6 +6,7 @@ import click
 
 from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, outside, reporting, say
+from symflex.cli.setting import setting
 from symflex.errors import Diagnostic, UsageError
 
 
@@ -25,10 +26,12 @@ from symflex.errors import Diagnostic, UsageError
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @caching
 @reporting
+@setting
 def command(
     spec: str,
     *,
     allow_outside: tuple[str, ...],
+    settings: dict[str, str],
     tf: str,
     reference: str,
     phase: str,
@@ -56,7 +59,7 @@ def command(
             )
         limits = (low, high)
     found = pipeline.colocation(
-        pipeline.load(spec, allow_outside),
+        pipeline.load(spec, allow_outside, settings),
         tf,
         reference,
         _tolerance(phase, "--phase", ("deg", "°"), "10 deg"),

@@ -6,6 +6,7 @@ import click
 
 from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, note, outside, reporting, say, terminal_width
+from symflex.cli.setting import setting
 from symflex.errors import Diagnostic, UsageError
 
 LONG = 5_000
@@ -59,10 +60,12 @@ def chosen_representation(representation: str, form: str | None) -> str:
 @click.option("--digits", type=click.IntRange(1, 1000), default=6, show_default=True, help="Digits of zpk.")
 @caching
 @reporting
+@setting
 def command(
     spec: str,
     *,
     allow_outside: tuple[str, ...],
+    settings: dict[str, str],
     tfs: tuple[str, ...],
     form: str | None,
     format_: str,
@@ -85,7 +88,7 @@ def command(
         from symflex.emit.latex import column_width
 
         column = column_width(width)
-    model = pipeline.load(spec, allow_outside)
+    model = pipeline.load(spec, allow_outside, settings)
     derived, reason = pipeline.derive_as(
         model, pipeline.pick_pairs(model, tfs), chosen_representation(representation, form)
     )

@@ -12,6 +12,7 @@ import click
 from symflex.cli.caching import caching
 from symflex.cli.derive import chosen_representation
 from symflex.cli.reporting import note, outside, reporting, say
+from symflex.cli.setting import setting
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 
@@ -55,10 +56,12 @@ class ExportCommand(click.Command):
 @click.option("--strict", is_flag=True, help="Exit with 4 when the verified accuracy falls short.")
 @caching
 @reporting
+@setting
 def command(
     spec: str,
     *,
     allow_outside: tuple[str, ...],
+    settings: dict[str, str],
     target: str,
     tfs: tuple[str, ...],
     form: str | None,
@@ -95,7 +98,7 @@ def command(
     is_folder = isinstance(exporter, LatexExporter) and bool(output) and _is_folder(output or "")
     if output:
         (check_folder if is_folder else check_writable)(Path(output))
-    model = pipeline.load(spec, allow_outside)
+    model = pipeline.load(spec, allow_outside, settings)
     derived, reason = pipeline.derive_as(
         model, pipeline.pick_pairs(model, tfs), chosen_representation(representation, form)
     )

@@ -8,6 +8,7 @@ import click
 
 from symflex.cli.caching import caching
 from symflex.cli.reporting import note, outside, reporting
+from symflex.cli.setting import setting
 from symflex.errors import Diagnostic, UsageError
 
 
@@ -38,10 +39,12 @@ from symflex.errors import Diagnostic, UsageError
 @click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the random numbers.")
 @caching
 @reporting
+@setting
 def command(
     spec: str,
     *,
     allow_outside: tuple[str, ...],
+    settings: dict[str, str],
     tf: str | None,
     output: str,
     band: tuple[float, float] | None,
@@ -65,7 +68,7 @@ def command(
         message = f"'{Path(output).name}' must end in {' or '.join(WRITERS)}"
         raise UsageError(Diagnostic("SF902", message))
     check_writable(Path(output))
-    model = pipeline.load(spec, allow_outside)
+    model = pipeline.load(spec, allow_outside, settings)
     pairs = pipeline.pick_pairs(model, [tf] if tf else [])
     if tf is None and len(pairs) > 1:
         others = ", ".join("/".join(pair) for pair in pairs[1:])

@@ -9,6 +9,7 @@ import click
 
 from symflex.cli.caching import caching
 from symflex.cli.reporting import note, outside, reporting
+from symflex.cli.setting import setting
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 
@@ -29,11 +30,13 @@ SWEEP = "sweep"
 @click.option("--font", metavar="FONT", help="times (the default), latex or sans.")
 @caching
 @reporting
+@setting
 def command(
     spec: str,
     kind: str,
     *,
     allow_outside: tuple[str, ...],
+    settings: dict[str, str],
     tfs: tuple[str, ...],
     gain: str | None,
     limits: tuple[str, str] | None,
@@ -68,7 +71,7 @@ def command(
     if SWEEP in (spec, kind):
         options = bool(tfs or gain or limits)
         return _plot_sweep(spec if kind == SWEEP else kind, modes, output, width, font, is_more=options)
-    model = pipeline.load(spec, allow_outside)
+    model = pipeline.load(spec, allow_outside, settings)
     if modes is not None:
         model = replace(model, analysis=replace(model.analysis, modes=modes))
     figure = next((f for f in model.figures if f.name == kind), None)

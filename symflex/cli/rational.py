@@ -6,6 +6,7 @@ import click
 
 from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, note, outside, reporting, say
+from symflex.cli.setting import setting
 
 
 @click.command("rational")
@@ -25,8 +26,16 @@ from symflex.cli.reporting import emit_json, note, outside, reporting, say
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @caching
 @reporting
+@setting
 def command(
-    spec: str, *, allow_outside: tuple[str, ...], tf: str | None, modes: int | None, form: str, as_json: bool
+    spec: str,
+    *,
+    allow_outside: tuple[str, ...],
+    settings: dict[str, str],
+    tf: str | None,
+    modes: int | None,
+    form: str,
+    as_json: bool,
 ) -> None:
     """Print a rational approximation of one transfer function of SPEC.
 
@@ -38,7 +47,7 @@ def command(
     from symflex import pipeline
     from symflex.emit.rational_format import rational_json, rational_text
 
-    model = pipeline.load(spec, allow_outside)
+    model = pipeline.load(spec, allow_outside, settings)
     pairs = pipeline.pick_pairs(model, [tf] if tf else [])
     if tf is None and len(pairs) > 1:
         others = ", ".join("/".join(pair) for pair in pairs[1:])

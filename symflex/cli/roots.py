@@ -9,6 +9,7 @@ import click
 
 from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, note, outside, reporting, say, terminal_width
+from symflex.cli.setting import setting
 from symflex.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:
@@ -50,10 +51,12 @@ DIGITS_LIMIT = 10_000
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @caching
 @reporting
+@setting
 def command(
     spec: str,
     *,
     allow_outside: tuple[str, ...],
+    settings: dict[str, str],
     tf: str | None,
     modes: int | None,
     mode: int | None,
@@ -82,7 +85,7 @@ def command(
     from symflex.roots import Budget
 
     chosen = region_of(modes, mode, band, region)
-    model = pipeline.load(spec, allow_outside)
+    model = pipeline.load(spec, allow_outside, settings)
     pairs = pipeline.pick_pairs(model, [tf] if tf else [])
     if tf is None and len(pairs) > 1:
         others = ", ".join("/".join(pair) for pair in pairs[1:])

@@ -9,6 +9,7 @@ import click
 
 from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, outside, reporting, say
+from symflex.cli.setting import setting
 from symflex.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:
@@ -46,10 +47,12 @@ UNBOUNDED = ("inf", "-inf", "+inf")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @caching
 @reporting
+@setting
 def command(
     spec: str,
     *,
     allow_outside: tuple[str, ...],
+    settings: dict[str, str],
     gain: str,
     limits: tuple[str, str] | None,
     up_to: str | None,
@@ -72,7 +75,7 @@ def command(
     from symflex.roots import Budget
     from symflex.stability import pick_gain
 
-    model = pipeline.load(spec, allow_outside)
+    model = pipeline.load(spec, allow_outside, settings)
     parameter = pick_gain(model.parameters, gain)
     chosen = None if limits is None else (gain_limit(limits[0], parameter), gain_limit(limits[1], parameter))
     highest = None if up_to is None else _radians(up_to)

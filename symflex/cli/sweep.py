@@ -10,6 +10,7 @@ import click
 from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, note, outside, reporting, say, terminal_width
 from symflex.cli.roots import region_of
+from symflex.cli.setting import setting
 from symflex.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:
@@ -58,10 +59,12 @@ BUDGET_CODE = "SF5"
 @click.option("--json", "as_json", is_flag=True, help="Print a summary as JSON.")
 @caching
 @reporting
+@setting
 def command(
     spec: str,
     *,
     allow_outside: tuple[str, ...],
+    settings: dict[str, str],
     over: tuple[str, ...],
     draws: int | None,
     seed: int,
@@ -98,10 +101,12 @@ def command(
         raise UsageError(Diagnostic("SF902", "give only one of --workers and --scheduler"))
     if fresh and not output:
         raise UsageError(Diagnostic("SF902", "--fresh is for a file: give -o FILE"))
-    model = pipeline.load(spec, allow_outside)
+    model = pipeline.load(spec, allow_outside, settings)
     pairs = pipeline.pick_pairs(model, [tf] if tf else [])
     _check_options(of, modes, band, count, gain)
     design = read_design(model.parameters, over, draws or 0, seed)
+    if doubled := [name for name in design.names if name in settings]:
+        raise UsageError(Diagnostic("SF902", f"'{doubled[0]}' is swept and set"))
     task = pipeline.sweep_task(
         model,
         pairs[0],

@@ -19,8 +19,9 @@ from symflex.model.model import (
 )
 from symflex.model.numbers import with_numbers
 from symflex.model.ranges import check_value
-from symflex.model.resolve import load_model, resolve
+from symflex.model.resolve import load_model, load_with, resolve
 from symflex.model.scope import Scope, scope_of
+from symflex.model.settings import Setting, read_settings
 
 __all__ = [
     "Analysis",
@@ -38,9 +39,12 @@ __all__ = [
     "PlacedElement",
     "Published",
     "Scope",
+    "Setting",
     "Signal",
     "check_value",
     "load_model",
+    "load_with",
+    "read_settings",
     "resolve",
     "scope_of",
     "with_numbers",

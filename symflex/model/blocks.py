@@ -21,12 +21,13 @@ from symflex.model.units import lower
 from symflex.spec import ArrayValue, parse_with_recovery, read
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Mapping
 
     from symflex.blocks import Block
     from symflex.errors import Source, Text
     from symflex.model.model import Model
     from symflex.model.reading import Reader
+    from symflex.model.settings import Setting
     from symflex.spec import Entry, TableValue, Value
 
 NESTING_LIMIT = 8
@@ -49,18 +50,24 @@ class Loads:
         By file, how many ``model`` blocks it holds, counted with those inside them.
     folders : tuple of Path
         Resolved folders at and below which files may be read; the first is that of the outermost file.
+    settings : mapping of str to value
+        What parameters are, in whichever file they are declared, instead of what is declared.
     """
 
     models: dict[Path, Model] = field(default_factory=dict)
     failed: set[Path] = field(default_factory=set)
     blocks: dict[Path, int] = field(default_factory=dict)
     folders: tuple[Path, ...] = ()
+    settings: Mapping[str, Setting] = field(default_factory=dict)
 
     @staticmethod
-    def of(source: Source, allow_outside: Iterable[str | Path]) -> Loads:
+    def of(
+        source: Source, allow_outside: Iterable[str | Path], settings: Mapping[str, Setting] | None = None
+    ) -> Loads:
         """Return what a specification may read besides itself: what stands in its folder, or is allowed."""
         own = Path(source.name).parent.resolve()
-        return Loads(folders=(own, *(Path(folder).resolve() for folder in allow_outside)))
+        folders = (own, *(Path(folder).resolve() for folder in allow_outside))
+        return Loads(folders=folders, settings=settings or {})
 
     def may_read(self, path: Path) -> bool:
         """Tell whether a resolved path lies in one of the folders."""

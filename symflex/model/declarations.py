@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, cast
 
-from symflex.errors import SpecError, Text
+from symflex.errors import Diagnostic, SpecError, Text
 from symflex.expressions import Expression, Name, names
 from symflex.model.labels import check_label
 from symflex.model.model import Assumption, Definition, ExactValue, Parameter
@@ -184,20 +184,26 @@ def _assumption(reader: Reader, table: TableValue | None, what: str) -> Assumpti
 
 
 def _check_sign(reader: Reader, quantity: Quantity | None, assume: Assumption, entry: Entry) -> None:
+    span = entry.value.span
+    if isinstance(entry.value, TableValue) and (inner := entry.value.get("value")):
+        span = inner.value.span
+    if problem := without_sign(entry.key, quantity, assume, span):
+        reader.take((problem,))
+
+
+def without_sign(
+    name: str, quantity: Quantity | None, assume: Assumption, span: Span | None
+) -> Diagnostic | None:
+    """Return what is wrong with the sign of a parameter's value."""
     if quantity is None or assume == "real":
-        return
+        return None
     magnitude = quantity.magnitude
-    if magnitude < 0 or (magnitude == 0 and assume == "positive"):
-        shown = "0" if magnitude == 0 else "negative"
-        span = entry.value.span
-        if isinstance(entry.value, TableValue) and (inner := entry.value.get("value")):
-            span = inner.value.span
-        reader.note(
-            "SF209",
-            f"parameter '{entry.key}' is {shown}, but a parameter is assumed {assume}",
-            span,
-            'say assume = "nonnegative"' if magnitude == 0 else 'say assume = "real"',
-        )
+    if magnitude > 0 or (magnitude == 0 and assume == "nonnegative"):
+        return None
+    shown = "0" if magnitude == 0 else "negative"
+    message = f"parameter '{name}' is {shown}, but a parameter is assumed {assume}"
+    hint = 'say assume = "nonnegative"' if magnitude == 0 else 'say assume = "real"'
+    return Diagnostic("SF209", message, span, hint)
 
 
 def read_definitions(reader: Reader, section: TableValue | None) -> tuple[Definition, ...]:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symflex.elements import LineElement, Placing
-from symflex.errors import Diagnostic, Span, SpecError
+from symflex.errors import Diagnostic, Span, SpecError, UsageError
 from symflex.expressions import Expression
 from symflex.model.analysis import PI_NEARLY, read_analysis, read_figures, read_published
 from symflex.model.blocks import Loads, Origin, read_blocks
@@ -46,6 +46,7 @@ from symflex.model.printed import check_printed, readable_names
 from symflex.model.ranges import check_ranges, ranged_values
 from symflex.model.reading import QuantityLiteral, Reader, describe
 from symflex.model.scope import Scope, build_scope
+from symflex.model.settings import check_names, settled
 from symflex.model.signals import read_outputs, read_signals
 from symflex.model.units import (
     block_unit,
@@ -65,6 +66,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from symflex.errors import Source
+    from symflex.model.settings import Setting
     from symflex.spec import Spec
 
 FORMAT_VERSION = 1
@@ -125,6 +127,38 @@ def load_model(
     return model
 
 
+def load_with(
+    source: Source, settings: Mapping[str, Setting], *, allow_outside: Iterable[str | Path] = ()
+) -> Model:
+    """Parse and resolve a text with values in place of declared ones, checked as those in the text are.
+
+    Parameters
+    ----------
+    source : Source
+        The text.
+    settings : mapping of str to str or number
+        By parameter, also of nested models: a quantity, or a number in SI units.
+    allow_outside : iterable of str or Path, optional
+        Folders that ``model`` blocks may read besides that of the source.
+
+    Raises
+    ------
+    SpecError
+        What is wrong with the text itself.
+    UsageError
+        SF902 an unknown name; SF203, SF209 and others that the same value in the text would cause.
+    """
+    folders = tuple(allow_outside)
+    model = load_model(source, allow_outside=folders)
+    if not settings:
+        return model
+    check_names(model, settings)
+    try:
+        return load_model(source, loads=Loads.of(source, folders, settings))
+    except SpecError as error:
+        raise UsageError(*error.diagnostics) from None
+
+
 def resolve(spec: Spec, origin: Origin) -> Model:
     """Give every name, node, unit and value of a specification its meaning.
 
@@ -137,6 +171,7 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     _check_header(reader, spec)
     sections = {name: _section(reader, spec, name) for name in SECTIONS}
     declared = read_parameters(reader, sections["parameters"])
+    declared = settled(reader, declared, origin.loads.settings)
     definitions = read_definitions(reader, sections["definitions"])
     network = NetworkReader(reader)
     network.read_elements(sections["elements"])

@@ -1,0 +1,118 @@
+"""Values given from outside in place of those a specification declares: ``k=80 kN/m``."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from decimal import Decimal
+from fractions import Fraction
+from math import isfinite
+from typing import TYPE_CHECKING
+
+from symflex.errors import Diagnostic, Source, Span, SpecError, Text, UsageError
+from symflex.errors.diagnostic import nearest
+from symflex.model.declarations import one_of, without_sign
+from symflex.quantities import DIMENSIONLESS, Quantity, parse_quantity
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from symflex.model.declarations import DeclaredParameter
+    from symflex.model.model import Model
+    from symflex.model.reading import Reader
+
+Setting = str | int | float | Fraction | Decimal
+"""A quantity with its unit, or a number in SI units."""
+OPTION = "--set"
+
+
+def read_settings(texts: Sequence[str]) -> dict[str, str]:
+    """Return what ``NAME=VALUE`` texts say.
+
+    Raises
+    ------
+    UsageError
+        SF902 for a text that is none, or a name that is given twice.
+
+    Examples
+    --------
+    >>> read_settings(["k=80 kN/m", "m = 2"])
+    {'k': '80 kN/m', 'm': '2'}
+    """
+    found: dict[str, str] = {}
+    for text in texts:
+        name, sign, value = (part.strip() for part in text.partition("="))
+        if not (sign and name and value):
+            message = f"{OPTION} takes NAME=VALUE, found '{text[:60]}'"
+            raise UsageError(Diagnostic("SF902", message, None, f"for instance {OPTION} k='80 kN/m'"))
+        if len(value) > 1 and value[0] == value[-1] and value[0] in "'\"":
+            value = value[1:-1]  # as a specification writes it
+        if name in found:
+            raise UsageError(Diagnostic("SF902", f"'{name[:64]}' is set twice"))
+        found[name] = value
+    return found
+
+
+def check_names(model: Model, settings: Mapping[str, Setting]) -> None:
+    """Refuse names that are no parameter of a model.
+
+    Raises
+    ------
+    UsageError
+        SF902 with the nearest name.
+    """
+    known = [p.name for p in model.parameters]
+    others = {d.name: "a definition, and follows from parameters" for d in model.definitions}
+    others |= {b.name: "a block" for b in model.blocks} | {u.name: "an element" for u in model.elements}
+    for name in settings:
+        if name not in known:
+            hint = nearest(name, known) or "parameters: " + (", ".join(known[:8]) or "none")
+            kind = f"'{name}' is {others[name]}: " if name in others else ""
+            message = f"{kind}there is no parameter '{name[:64]}'"
+            raise UsageError(Diagnostic("SF902", message, None, hint))
+
+
+def settled(
+    reader: Reader, declared: Sequence[DeclaredParameter], settings: Mapping[str, Setting]
+) -> tuple[DeclaredParameter, ...]:
+    """Return the parameters with the given values in place of declared ones; what does not fit is noted."""
+    return tuple(
+        _settled(reader, parameter, settings[parameter.name]) if parameter.name in settings else parameter
+        for parameter in declared
+    )
+
+
+def _settled(reader: Reader, parameter: DeclaredParameter, given: Setting) -> DeclaredParameter:
+    name = parameter.name
+    text = Text(str(given), Span(Source(OPTION, f"{name}={given}"), len(name) + 1, len(f"{name}={given}")))
+    try:
+        quantity = parse_quantity(text) if isinstance(given, str) else _number(name, given)
+    except SpecError as error:
+        reader.take(error.diagnostics)
+        return parameter
+    own = one_of(parameter.unit_text) if parameter.unit_text else parameter.quantity
+    if own is not None and (parameter.has_unit or parameter.unit_text):
+        declared = f"'{name}' is declared in '{own.unit}'"
+        if quantity.unit and quantity.dimension != own.dimension:
+            reader.note("SF203", f"{declared}, the value given is in '{quantity.unit}'", text.span)
+            return parameter
+        turns = [q.cycles + q.radians for q in (own, quantity)]
+        if (own.cycles or quantity.cycles) and turns[0] != turns[1]:
+            # Whether 60 is 60 Hz or 60 rad/s, and 1 mm one per turn or per radian, nobody can tell.
+            what = f"is in '{quantity.unit}'" if quantity.unit else "has no unit"
+            hint = f"give it with one that turns, such as '{own.unit or quantity.unit}'"
+            reader.note("SF203", f"{declared}, the value given {what}", text.span, hint)
+            return parameter
+        if not quantity.unit:
+            quantity = replace(own, magnitude=quantity.magnitude, pi_power=quantity.pi_power)
+    if problem := without_sign(name, quantity, parameter.assume, text.span):
+        reader.take((problem,))
+        return parameter
+    return replace(parameter, quantity=quantity, has_unit=bool(quantity.unit) or parameter.has_unit)
+
+
+def _number(name: str, given: float | Fraction | Decimal) -> Quantity:
+    """Return a number in SI units; a double is the shortest decimal that prints it."""
+    if isinstance(given, float | Decimal) and not isfinite(given):
+        raise UsageError(Diagnostic("SF902", f"the value of '{name}' must be a finite number"))
+    value = Fraction(Decimal(repr(float(given)))) if isinstance(given, float) else Fraction(given)
+    return Quantity(value, 0, 0, DIMENSIONLESS, 0, "")
