@@ -297,7 +297,7 @@ def _hull(balls: Sequence[arb]) -> arb:
         low = ball.lower() if ball.lower() < low else low
         high = ball.upper() if ball.upper() > high else high
     middle = ((low + high) / 2).mid()
-    return arb(middle, (high - middle).upper() + (middle - low).upper()) if high > low else low
+    return arb(middle, (high - middle).upper().max((middle - low).upper())) if high > low else low
 
 
 def in_order(roots: Sequence[Root]) -> tuple[Root, ...]:

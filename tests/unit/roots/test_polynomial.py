@@ -1,0 +1,234 @@
+"""From discs of s or of s^2 to roots, and what may be said of roots that could not be told apart."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import permutations
+
+import pytest
+from flint import acb, arb, fmpq
+
+from symflex.roots import PolynomialInS, Root, precision
+from symflex.roots.discs import Disc
+from symflex.roots.polynomial import (
+    _conjugates,
+    _hull,
+    _is_apart,
+    _merge,
+    _roots_of,
+    _square_roots,
+    _touching,
+    in_order,
+)
+from symflex.roots.squarefree import Part
+
+CORNERS = [(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]
+
+
+def exact(value):
+    with precision(2000):
+        fraction = Fraction(value)
+        return arb(fmpq(fraction.numerator, fraction.denominator)).mid()
+
+
+def root(re, im, wide=0, **known):
+    with precision(2000):
+        box = arb(0, exact(wide))
+        marks = {"multiplicity": 1, "on_imaginary_axis": False, "is_real": False, **known}
+        return Root(exact(re) + box, exact(im) + box, **marks)
+
+
+def part(*roots, in_square=False, multiplicity=1):
+    coefficients = [Fraction(1)]
+    for value in roots:
+        longer = [Fraction(0), *coefficients]
+        coefficients = [
+            x - Fraction(value) * y for x, y in zip(longer, [*coefficients, Fraction(0)], strict=True)
+        ]
+    return Part(PolynomialInS.from_rationals(coefficients), multiplicity, in_square)
+
+
+def encloses(roots, point):
+    with precision(2000):
+        return any(each.enclosure().contains(point) for each in roots)
+
+
+def points_of(disc):
+    """Return points of a disc and of its mirror image: the centre, and eight next to the circle."""
+    with precision(400):
+        found = []
+        for x, y in CORNERS:
+            size = arb(x * x + y * y).sqrt() if x or y else arb(1)
+            point = disc.centre + acb(x, y) / size * disc.radius * arb("0.999999")
+            found += [point.mid(), point.mid().conjugate()]
+        return found
+
+
+@pytest.mark.parametrize("others", [[9], [9, -25], [-9, 0.75]])
+def test_a_root_is_apart_from_a_polynomial_that_has_no_root_in_its_box(others):
+    assert _is_apart(root(2, 0, 1e-9), [part(*others)], 10)
+
+
+@pytest.mark.parametrize("off", [0, 0.5e-9, -0.5e-9])
+def test_a_root_is_not_apart_from_a_polynomial_with_a_root_in_its_box(off):
+    assert not _is_apart(root(2, 0, 1e-9), [part(9), part(2 + Fraction(off), 7)], 10)
+
+
+@pytest.mark.parametrize("off", [5e-9, -5e-9])
+def test_a_root_some_radii_outside_the_box_leaves_it_apart(off):
+    assert _is_apart(root(2, 0, 1e-9), [part(2 + Fraction(off), 7)], 10)
+
+
+@pytest.mark.parametrize(("square", "apart"), [(9, False), (6, True), (3, True), (9.00001, True)])
+def test_a_polynomial_in_s_squared_is_asked_at_the_square_of_the_box(square, apart):
+    # A root s = 3 is one of p(s^2) where p(9) = 0; p(6), its double, has nothing to do with it.
+    assert _is_apart(root(3, 0, 1e-9), [part(square, in_square=True)], 10) is apart
+
+
+def test_an_imaginary_root_belongs_to_a_negative_square():
+    assert not _is_apart(root(0, 3, 1e-9), [part(-9, in_square=True)], 10)
+    assert _is_apart(root(0, 3, 1e-9), [part(9, in_square=True)], 10)
+
+
+@pytest.mark.parametrize("order", list(permutations(range(3))))
+@pytest.mark.parametrize(
+    "balls",
+    [
+        [(0, 1), (5, 2), (-4, Fraction(1, 8))],
+        [(1, 10), (2, 1), (3, 1)],
+        [(1, Fraction(1, 10**30)), (1 + Fraction(1, 10**29), Fraction(1, 10**40)), (1, 0)],
+        [(-7, 0), (-7, 0), (-7, 0)],
+        [(Fraction(1, 3), 0), (Fraction(-1, 3), 0), (0, Fraction(1, 10))],
+    ],
+)
+def test_a_hull_holds_every_ball_and_little_else(balls, order):
+    with precision(400):
+        each = [arb(exact(balls[i][0]), exact(balls[i][1])) for i in order]
+        hull = _hull(each)
+        low, high = min(Fraction(c) - r for c, r in balls), max(Fraction(c) + r for c, r in balls)
+        assert all(hull.contains(ball) for ball in each)
+        width = exact(high - low)
+        assert hull.upper() - hull.lower() <= width * exact("1.00001") + exact(Fraction(1, 10**100))
+
+
+def test_a_cluster_becomes_one_box_with_all_its_roots():
+    cluster = [root(1, 1, 0.25, multiplicity=2), root(1.125, 1, 0.25), root(1, 0.75, 0.25, multiplicity=3)]
+    merged = _merge(cluster)
+    assert (merged.multiplicity, merged.certified) == (6, False)
+    for each in cluster:
+        assert merged.re.contains(each.re)
+        assert merged.im.contains(each.im)
+    assert not merged.re.contains(exact(1.5))
+    assert not merged.im.contains(exact(0.25))
+
+
+@pytest.mark.parametrize("name", ["is_real", "on_imaginary_axis"])
+def test_a_merged_root_lies_where_all_of_its_roots_do(name):
+    both = [replace(root(0, 0, 0.25), **{name: True}), replace(root(0, 0, 0.5), **{name: True})]
+    assert getattr(_merge(both), name)
+    assert not getattr(_merge([both[0], root(0, 0, 0.5)]), name)
+
+
+def test_one_root_alone_stays_as_it_is():
+    alone = root(1, 2)
+    assert _merge([alone]) is alone
+
+
+@pytest.mark.parametrize(("distance", "groups"), [(1.9, 1), (2.9, 2)])
+def test_boxes_are_grouped_as_long_as_their_discs_are_not_proved_disjoint(distance, groups):
+    # Boxes of half side 1 lie in discs of radius sqrt(2).
+    assert len(_touching([root(0, 1, 1), root(distance, 1, 1)])) == groups
+    assert len(_touching([root(0, 1, 1), root(0, 1 + distance, 1)])) == groups
+
+
+def test_groups_are_chains_of_touching_boxes():
+    chain = [root(2 * i, 0, 0.75) for i in range(4)] + [root(40, 0, 0.75), root(-40, 0, 0.75)]
+    assert sorted(len(group) for group in _touching(chain)) == [1, 1, 4]
+
+
+def disc(re, im, radius, count=1):
+    return Disc(acb(exact(re), exact(im)), exact(radius), count)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_a_disc_off_the_real_axis_stands_for_a_root_and_its_conjugate(count):
+    found = _conjugates(disc(-3, 4, 0.5, count))
+    assert [(r.multiplicity, r.certified, r.is_real) for r in found] == [(count, count == 1, False)] * 2
+    assert all(encloses(found[:1], p) or encloses(found[1:], p) for p in points_of(disc(-3, 4, 0.5)))
+    assert bool(found[0].im > 0)
+    assert bool(found[1].im < 0)
+
+
+def test_a_disc_with_one_root_about_a_real_centre_holds_a_real_root():
+    (found,) = _conjugates(disc(-3, 0, 0.5))
+    assert (found.is_real, found.certified, bool(found.im == 0), found.re.contains(exact(-3.5))) == (
+        True,
+        True,
+        True,
+        True,
+    )
+
+
+def test_a_disc_with_two_roots_about_a_real_centre_may_hold_a_pair():
+    (found,) = _conjugates(disc(-3, 0, 0.5, 2))
+    assert (found.is_real, found.certified, found.multiplicity) == (False, False, 2)
+    assert found.im.contains(exact(0.5))
+
+
+@pytest.mark.parametrize("count", [1, 2])
+@pytest.mark.parametrize("place", [(4, 0), (-4, 0), (0, 4), (3, 5), (-3, 5), (1e-3, 4), (-1e-3, 4)], ids=str)
+def test_square_roots_of_every_point_of_a_disc_are_enclosed(place, count):
+    z = disc(*place, 0.5, count)
+    found = _square_roots(z)
+    is_real = place[1] == 0
+    assert sum(r.multiplicity for r in found) == (2 if is_real else 4) * count
+    assert all(r.certified is (count == 1) for r in found)
+    points = [p for p in points_of(z) if not (is_real and count == 1) or p.imag == 0]
+    for point in points:
+        with precision(400):
+            s = point.sqrt()
+            assert encloses(found, s)
+            assert encloses(found, -s)
+
+
+@pytest.mark.parametrize(("z", "real"), [(4, True), (-4, False)])
+def test_one_root_on_the_real_axis_of_s_squared_gives_an_exact_zero(z, real):
+    found = _square_roots(disc(z, 0, 0.5))
+    assert [r.is_real for r in found] == [real, real]
+    assert [r.on_imaginary_axis for r in found] == [not real, not real]
+    assert all(bool((r.im if real else r.re) == 0) for r in found)
+    assert not any(encloses(found, acb(0)) for _ in found)
+
+
+@pytest.mark.parametrize("count", [1, 2])
+@pytest.mark.parametrize("place", [(0, 0, 1), (0.5, 0, 0.5), (0.3, 0.4, 0.5), (-0.25, 0, 0.5)], ids=str)
+def test_a_disc_about_s_squared_that_may_hold_0_is_one_uncertified_box(place, count):
+    z = disc(*place, count)
+    (found,) = _square_roots(z)
+    assert (found.certified, found.is_real, found.on_imaginary_axis) == (False, False, False)
+    assert found.multiplicity == (2 if place[1] == 0 else 4) * count
+    for point in points_of(z):
+        with precision(400):
+            assert encloses([found], point.sqrt())
+            assert encloses([found], -point.sqrt())
+
+
+@pytest.mark.parametrize("in_square", [False, True])
+def test_roots_of_a_part_have_its_multiplicity(in_square):
+    found = _roots_of(part(4, in_square=in_square, multiplicity=3), [disc(4, 0, 1e-20)], 10)
+    assert [r.multiplicity for r in found] == ([3, 3] if in_square else [3])
+
+
+def test_the_square_root_of_an_exact_centre_has_all_digits():
+    found = _roots_of(part(2, in_square=True), [disc(2, 0, 0)], 300)
+    assert all(r.re.rad() < exact(Fraction(1, 10**300)) for r in found)
+
+
+def test_roots_stand_by_natural_frequency_then_real_part_then_positive_imaginary_part_first():
+    placed = [(0, 0), (-1, 0), (0, 2), (0, -2), (-3, 4), (-3, -4), (3, 4), (3, -4), (0, 5), (0, -5), (5, 0)]
+    wanted = [(0, 0), (-1, 0), (0, 2), (0, -2), (-3, 4), (-3, -4), (0, 5), (0, -5), (3, 4), (3, -4), (5, 0)]
+    for start in range(len(placed)):
+        shuffled = placed[start:] + placed[:start]
+        found = in_order([root(*place) for place in shuffled])
+        assert [(int(float(r.re.mid())), int(float(r.im.mid()))) for r in found] == wanted
