@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 from math import gcd
+from operator import mul
 from typing import TYPE_CHECKING
 
 from symflex.emit.program.build import TERM_LIMIT
@@ -51,6 +52,9 @@ REACHES = (3.0, 2.0, 4.5)
 
 CHOOSING = 3
 """Base lengths up to which every one has series or exponentials by itself; more have series together only."""
+
+CUTS = 12
+"""How often one base length is cut by another; two spans and a sensor need one or two."""
 
 LOCAL_TERMS = 30_000
 """Terms looked at while series for small arguments are made free of wavenumbers: some ten seconds."""
@@ -247,7 +251,8 @@ class _Workshop:
     def _in_segments(self, sums: list[ExponentialSum]) -> list[ExponentialSum]:
         """Return the sums in base lengths in each of which the denominator's largest term is largest.
 
-        Then nothing else can overflow. Differences of successive lengths, by their declared values, are such.
+        Then nothing else can overflow. Differences of successive lengths, by their declared values, mostly
+        are such; where they are not, a few of them are cut as Euclid does.
         """
         changes = []
         families = list(self.families)
@@ -268,9 +273,20 @@ class _Workshop:
             for rank, j in enumerate(order):
                 for k in range(rank + 1):
                     matrix[j][k] = 1
-            changes.append(matrix)
             sorted_lengths = [family.lengths[j] for j in order]
             new = [x if not k else x - sorted_lengths[k - 1] for k, x in enumerate(sorted_lengths)]
+            found = [declared_length(self.tf, x) for x in new]
+            for _ in range(CUTS):
+                pair = _longer_and_shorter(sums, same, matrix, found)
+                if pair is None:
+                    break
+                # exp(a x + b y) = exp(a (x - y)) exp((a + b) y): the shorter one bears both.
+                longer, shorter = pair
+                for row in matrix:
+                    row[shorter] += row[longer]
+                new[longer] = new[longer] - new[shorter]
+                found[longer] = found[longer] - found[shorter]
+            changes.append(matrix)
             families[i] = replace(family, lengths=tuple(new))
         self.families = tuple(families)
         return [s.in_lengths(changes) for s in sums]
@@ -700,6 +716,50 @@ class _Workshop:
             summand = forge.multiply([site.value(real), *self._solutions(site, self.groups, orders)])
             summands.append(forge.negate(summand) if (turn - first) % 4 else summand)
         return forge.add(summands), first or 0, taken
+
+
+def _longer_and_shorter(
+    sums: Sequence[ExponentialSum],
+    families: Sequence[int],
+    matrix: Sequence[Sequence[int]],
+    values: Sequence[float],
+) -> tuple[int, int] | None:
+    """Return which length is to be cut by which, ``None`` where the denominator's largest term is largest.
+
+    Parameters
+    ----------
+    sums : sequence of ExponentialSum
+        Numerator and denominator.
+    families : sequence of int
+        Those that share the lengths.
+    matrix : sequence of sequence of int
+        The sums' lengths in multiples of these.
+    values : sequence of float
+        The declared values of these.
+    """
+    count = range(len(values))
+    for i in families:
+        terms = [[_in_lengths(key[i][0], matrix) for key in s.terms] for s in sums]
+        highest = [max(a[k] + abs(b[k]) for side in terms for a, b in side) for k in count]
+        largest = max(
+            ([x + sign * y for x, y in zip(a, b, strict=True)] for a, b in terms[1] for sign in (1, -1)),
+            key=lambda growth: sum(map(mul, growth, values)),
+        )
+        for short in (k for k in count if largest[k] < highest[k]):
+            others = sorted((k for k in count if k != short and largest[k]), key=lambda k: -largest[k])
+            longer = [k for k in others if values[k] > values[short]]
+            if others:
+                return (longer[0], short) if longer else (short, others[0])
+    return None
+
+
+def _in_lengths(
+    pairs: Sequence[tuple[int, int]], matrix: Sequence[Sequence[int]]
+) -> tuple[list[int], list[int]]:
+    """Return what a term's ``a`` and ``b`` are in other lengths."""
+    a, b = zip(*pairs, strict=True)
+    columns = list(zip(*matrix, strict=True))
+    return [sum(map(mul, a, column)) for column in columns], [sum(map(mul, b, column)) for column in columns]
 
 
 def _has_corner(sums: Sequence[ExponentialSum], i: int) -> bool:
