@@ -6,7 +6,7 @@ from itertools import chain, repeat
 from re import compile as compile_pattern
 from typing import TYPE_CHECKING
 
-from symflex.emit.forms import PrintedForm, hidden_expressions
+from symflex.emit.forms import PrintedForm, with_hidden
 from symflex.expressions import (
     Derivative,
     Equation,
@@ -41,7 +41,7 @@ SHALLOW = 8
 def form_text(tf: AnyTransferFunction, form: PrintedForm) -> str:
     """Return ``OUT/IN = num/den`` on one line, and a line per definition or law used."""
     whole = form.num if _is_one(form.den) else Quotient(form.num, form.den)
-    lines = [f"{tf.name} = {format_expression(whole)}"]
+    lines = [f"{_left_side(tf, form)} = {format_expression(whole)}"]
     lines += [f"  where {name} = {format_expression(e)}" for name, e in form.where]
     lines += [f"  where {line}" for law in form.laws for line in law_lines(*law)]
     return "\n".join(lines)
@@ -60,7 +60,7 @@ def derive_text(tf: AnyTransferFunction, form: PrintedForm, width: int = WIDTH) 
         Columns available; longer sums are broken before plus and minus.
     """
     quantity = tf.quantity + (f" [{tf.unit}]" if tf.unit else "")
-    lines = [f"{tf.name}   {quantity}, {form.name} form", ""]
+    lines = [f"{_left_side(tf, form)}   {quantity}, {form.name} form", ""]
     num, den = wrapped(form.num, width - 2), wrapped(form.den, width - 2)
     if _is_one(form.den):
         lines += [INDENT + line for line in num]
@@ -70,6 +70,7 @@ def derive_text(tf: AnyTransferFunction, form: PrintedForm, width: int = WIDTH) 
         lines.append(INDENT + "-" * bar)
         lines += [INDENT + _placed(line, bar, alone=len(den) == 1) for line in den]
     lines.append("")
+    form, hidden = with_hidden(tf, form)
     for word, (name, expression) in zip(_where_words(), form.where, strict=False):
         first, *more = wrapped(expression, width - len(word) - len(name) - 6)
         lines.append(f"{INDENT}{word} {name} = {first}")
@@ -80,15 +81,29 @@ def derive_text(tf: AnyTransferFunction, form: PrintedForm, width: int = WIDTH) 
         lines += [f"{INDENT}{word} {first}", *(" " * (len(word) + 3) + text for text in more)]
     if form.where or form.laws:
         lines.append("")
-    for factor, multiplicity in hidden_expressions(tf):
+    for factor, multiplicity in hidden:
         times = f", {multiplicity} times" if multiplicity > 1 else ""
-        first, *more = wrapped(factor, width - 30)
-        lines.append(f"{INDENT}hidden: {first}{' ...' if more else ''} cancelled{times}")
+        lines += _labelled(f"{INDENT}hidden: ", factor, f" cancelled{times}", width)
     if isinstance(tf, NestedTransferFunction):
         lines += [f"{INDENT}hidden modes: not examined in this representation", ""]
     elif tf.hidden:
         lines.append("")
     return "\n".join(lines)
+
+
+def _left_side(tf: AnyTransferFunction, form: PrintedForm) -> str:
+    return f"{form.at(tf.output.name)}/{form.at(tf.input.name)}"
+
+
+def _labelled(head: str, expression: Expression, tail: str, width: int) -> list[str]:
+    """Return an expression after some words and before others, on lines of its own where it is long."""
+    room = width - len(head)
+    rows = wrapped(expression, room)
+    if len(rows[-1]) + len(tail) > room:
+        rows.append("")
+        tail = tail.lstrip()
+    rows[-1] += tail
+    return [head + rows[0], *(" " * len(head) + row for row in rows[1:])]
 
 
 def law_lines(name: str, law: Equation) -> list[str]:

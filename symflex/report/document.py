@@ -13,6 +13,8 @@ from symflex.emit.latex import latex_expression, model_labels
 from symflex.emit.mathml import mathml_expression
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from symflex.emit.mathml import Row
     from symflex.expressions import Expression
     from symflex.model import Model
@@ -214,5 +216,9 @@ def columns(*heads: str | tuple[str, Side]) -> tuple[Column, ...]:
 
 def mathematics(expression: Expression, model: Model) -> Mathematics:
     """Return an expression with a model's labels."""
-    labels = model_labels(model)
+    return labelled(expression, model_labels(model))
+
+
+def labelled(expression: Expression, labels: Mapping[str, str]) -> Mathematics:
+    """Return an expression with given labels."""
     return Mathematics(mathml_expression(expression, labels), latex_expression(expression, labels))

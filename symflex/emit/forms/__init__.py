@@ -9,7 +9,7 @@ from symflex.emit.forms.counts import counts_of
 from symflex.emit.forms.definitions import definitions_form
 from symflex.emit.forms.economical import economical
 from symflex.emit.forms.frequency import frequency_form
-from symflex.emit.forms.hidden import hidden_expressions
+from symflex.emit.forms.hidden import hidden_expressions, with_hidden
 from symflex.emit.forms.hyperbolic import hyperbolic_form
 from symflex.emit.forms.kept import with_definitions
 from symflex.emit.forms.krylov import krylov_form
@@ -173,4 +173,5 @@ __all__ = [
     "print_forms",
     "step_names",
     "terms_to_print",
+    "with_hidden",
 ]

@@ -37,7 +37,7 @@ def economical(tf: TransferFunction) -> TransferFunction:
     if any(len(factor) > LARGE for factor, _ in tf.ratio.factors):
         return tf
     for _ in range(DOUBLINGS):
-        lengths = {id(a.length): a.length for a in angles_of(tf.kernels) if _is_half(a.length)}
+        lengths = {id(a.length): a.length for a in angles_of(tf.kernels) if is_half(a.length)}
         found = next((d for length in lengths.values() if (d := _doubled(tf, length)) is not None), None)
         if found is None:
             return tf
@@ -45,7 +45,7 @@ def economical(tf: TransferFunction) -> TransferFunction:
     return tf
 
 
-def _is_half(length: Factored) -> bool:
+def is_half(length: Factored) -> bool:
     """Tell whether a length is a half of what stands in the model."""
     return not length.is_constant and length.unit.denominator % 2 == 0
 
@@ -95,7 +95,7 @@ def _in_doubles(tf: TransferFunction, factor: fmpz_mpoly, angles: Sequence[Angle
     work = factor.compose(*(ring.generator(n) for n in source.names), ctx=ring.context)
     halves = 0
     for angle in angles:
-        found = _angle_doubled(ring, work, angle)
+        found = angle_doubled(ring, work, angle)
         if found is None:
             return None
         work, times = found
@@ -106,7 +106,7 @@ def _in_doubles(tf: TransferFunction, factor: fmpz_mpoly, angles: Sequence[Angle
     return NormalForm(source, tf.kernels).reduce(plain) / scale
 
 
-def _angle_doubled(ring: Ring, work: fmpz_mpoly, angle: Angle) -> tuple[fmpz_mpoly, int] | None:
+def angle_doubled(ring: Ring, work: fmpz_mpoly, angle: Angle) -> tuple[fmpz_mpoly, int] | None:
     """Return 2^n times a polynomial in kernels of twice one angle, and n."""
     functions = ("cosh", "sinh", "cos", "sin")
     places = [ring.index[angle.kernels[f]] if f in angle.kernels else None for f in functions]

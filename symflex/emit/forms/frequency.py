@@ -6,12 +6,14 @@ functions are ``(cosh(q) + cos(q))/2``, ``(sinh(q) + sin(q))/(2*beta)``, ... of 
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symflex.emit.forms.arrange import Arranger
 from symflex.emit.forms.constants import constant_symbols
-from symflex.emit.forms.invariants import in_krylov_functions, krylov_name
+from symflex.emit.forms.economical import LARGE, angle_doubled, is_half
+from symflex.emit.forms.invariants import IMAGINARY, in_krylov_functions, krylov_name
 from symflex.emit.forms.kept import KeptDefinitions
 from symflex.emit.forms.notation import (
     Line,
@@ -22,12 +24,23 @@ from symflex.emit.forms.notation import (
     plain_printer,
     reachable,
     speed_squared,
+    used_generators,
     wave_times_length,
 )
 from symflex.emit.forms.printed import PrintedForm
 from symflex.emit.forms.products import ProductPrinter, shortest_sides
 from symflex.emit.forms.usage import require_formula
-from symflex.expressions import Call, Expression, Name, negative, number, quotient, sum_of
+from symflex.expressions import (
+    Call,
+    Expression,
+    Name,
+    format_expression,
+    negative,
+    number,
+    product_of,
+    quotient,
+    sum_of,
+)
 from symflex.kernels import LAPLACE, Factored, KernelTable, Ring
 from symflex.kernels.normal_form import split
 
@@ -38,7 +51,8 @@ if TYPE_CHECKING:
     from symflex.kernels import Dispersion, Kernel
     from symflex.transfer import TransferFunction
 
-IMAGINARY = "j[]"
+LONGEST_ARGUMENT = 10
+"""Characters of what is printed within cosh, sinh, cos and sin: ``beta_2*l_2``, ``beta*l/2``."""
 
 
 def frequency_form(tf: TransferFunction, digits: int) -> PrintedForm:
@@ -75,7 +89,8 @@ class _Page:
         self._straight = angles_of(others)
         self._turning = [k for k in others.kernels if k.function == "exp" and self._turns(k)]
         removed = {k.generator for k in (*table.kernels, *self._turning)}
-        functions = [f"{f}[{i}]" for i in range(len(self._bent)) for f in ("cosh", "sinh", "cos", "sin")]
+        self._arguments = [(i, k) for i, angle in enumerate(self._bent) for k in range(1 + _halvings(angle))]
+        functions = [g for i, k in self._arguments for g in _functions(i, k).values()]
         delays = [f"{f}[{k.generator}]" for k in self._turning for f in ("cos", "sin")]
         plain = [n for n in tf.ratio.ring.names if n not in removed]
         self.ring = Ring((*plain, *functions, *delays, IMAGINARY))
@@ -108,10 +123,12 @@ class _Page:
             image, times = self._real(factor)
             value, turns = value * image**exponent, turns + times * exponent
         value = self._turned(value, turns)
-        lines, symbols = self._explained()
+        lines, symbols = self._explained(used_generators(self.ring, (f for f, _ in value.factors)))
         printer = self._printer(symbols)
         sides = shortest_sides(printer, value, self._laws())
-        return PrintedForm("frequency", *sides, reachable(sides, lines))
+        argument = product_of([symbols[IMAGINARY], symbols[LAPLACE]])
+        # What the left side says is explained also where the right one does not need it.
+        return PrintedForm("frequency", *sides, reachable((*sides, argument), lines), argument=argument)
 
     def _printer(self, symbols: dict[str, Expression]) -> ProductPrinter:
         kept = KeptDefinitions.of(self._tf, self.ring)
@@ -143,7 +160,7 @@ class _Page:
             c, s = (ring.generator(f"{f}[{kernel.generator}]") for f in ("cos", "sin"))
             images[kernel.generator] = c - j * s
         for i in range(len(self._bent)):
-            ch, sh, co, si = (ring.generator(f"{f}[{i}]") for f in ("cosh", "sinh", "cos", "sin"))
+            ch, sh, co, si = (ring.generator(g) for g in _functions(i).values())
             for order, image in enumerate((ch + co, sh + si, ch - co, sh - si)):
                 images[krylov_name(i, order)] = image
         zero = ring.constant(0)
@@ -151,8 +168,30 @@ class _Page:
         work = self._reduced(work)
         parts = split(ring, work, ring.index[IMAGINARY])
         if set(parts) == {1}:
-            return Factored.polynomial(ring, parts[1]) * scale, 1
-        return Factored.polynomial(ring, work) * scale, 0
+            return self._in_whole_lengths(parts[1]) * scale, 1
+        return self._in_whole_lengths(work) * scale, 0
+
+    def _in_whole_lengths(self, work: fmpz_mpoly) -> Factored:
+        """Return a polynomial in functions of twice a half length, where all of it can be so written.
+
+        ``cosh(q)^2*(2*cos(q)^2 - 1) - cos(q)^2 + 1`` of ``q = beta*l/2`` is half of
+        ``cosh(beta*l)*cos(beta*l) + 1``.
+        """
+        ring, halvings = self.ring, 0
+        for i, k in self._arguments:
+            half, whole = _functions(i, k), _functions(i, k + 1)
+            is_used = any(int(work.degrees()[ring.index[g]]) for g in half.values())
+            if not is_used or (i, k + 1) not in self._arguments or len(work) > LARGE:
+                continue
+            doubled = angle_doubled(ring, work, replace(self._bent[i], kernels=half))
+            if doubled is None:
+                continue
+            images = {g: ring.generator(whole[f]) for f, g in half.items()}
+            moved = doubled[0].compose(
+                *(images.get(n, ring.generator(n)) for n in ring.names), ctx=ring.context
+            )
+            work, halvings = self._reduced(moved), halvings + doubled[1]
+        return Factored.polynomial(ring, work) / Factored.number(ring, 2) ** halvings
 
     def _lowered(self, factor: fmpz_mpoly) -> tuple[fmpz_mpoly, Factored]:
         """Return a polynomial in ``2*beta^m*K_m`` and ``beta^4``, and what it is multiplied by."""
@@ -191,9 +230,10 @@ class _Page:
         """Use ``j^2 = -1``, ``sin^2 = 1 - cos^2`` and ``sinh^2 = cosh^2 - 1``."""
         ring = self.ring
         squares = {IMAGINARY: ring.constant(-1)}
-        for i in range(len(self._bent)):
-            squares[f"sinh[{i}]"] = ring.generator(f"cosh[{i}]") ** 2 - 1
-            squares[f"sin[{i}]"] = 1 - ring.generator(f"cos[{i}]") ** 2
+        for i, k in self._arguments:
+            own = _functions(i, k)
+            squares[own["sinh"]] = ring.generator(own["cosh"]) ** 2 - 1
+            squares[own["sin"]] = 1 - ring.generator(own["cos"]) ** 2
         for angle in self._straight:
             c = ring.generator(angle.kernels["cosh"])
             squares[angle.kernels["sinh"]] = c * c - 1 if self._grows(angle) else 1 - c * c
@@ -242,8 +282,8 @@ class _Page:
                     found[w] = one
         return found
 
-    def _explained(self) -> tuple[tuple[Line, ...], dict[str, Expression]]:
-        """Return the lines and the symbols of the generators."""
+    def _explained(self, used: frozenset[str]) -> tuple[tuple[Line, ...], dict[str, Expression]]:
+        """Return the lines and the symbols of the generators used."""
         tf, naming = self._tf, Naming.of(self._tf)
         (omega,), (j,) = naming.take("omega"), naming.take("j")
         symbols = {**constant_symbols(tf), LAPLACE: Name(omega), IMAGINARY: Name(j)}
@@ -251,24 +291,23 @@ class _Page:
         lengths = plain_printer(tf)
         waves = [w for d in tf.kernels.dispersions for w in d.wavenumbers]
         symbols |= {w: Name(n) for w, n in zip(waves, naming.take("beta", len(waves)), strict=True)}
-        angles = (*self._bent, *self._straight)
-        delays = naming.take("theta", len(self._turning))
-        arguments = naming.take("q", len(angles))
-        lines: list[Line] = []
-        for i, (q, angle) in enumerate(zip(arguments, angles, strict=True)):
-            lines.append((q, wave_times_length(lengths, symbols[angle.wavenumber], angle.length)))
-            if i < len(self._bent):
-                symbols |= {f"{f}[{i}]": Call(f, Name(q)) for f in ("cosh", "sinh", "cos", "sin")}
-            else:
-                even, odd = ("cosh", "sinh") if self._grows(angle) else ("cos", "sin")
-                symbols |= {
-                    angle.kernels["cosh"]: Call(even, Name(q)),
-                    angle.kernels["sinh"]: Call(odd, Name(q)),
-                }
+        functions = [(self._bent[i], 2**k, _functions(i, k)) for i, k in self._arguments]
+        for angle in self._straight:
+            even, odd = ("cosh", "sinh") if self._grows(angle) else ("cos", "sin")
+            functions.append((angle, 1, {even: angle.kernels["cosh"], odd: angle.kernels["sinh"]}))
+        functions = [f for f in functions if used.intersection(f[2].values())]
+        products = [wave_times_length(lengths, symbols[a.wavenumber], a.length * n) for a, n, _ in functions]
+        arguments, lines = _short_or_named(products, "q", naming)
+        for q, (_, _, own) in zip(arguments, functions, strict=True):
+            symbols |= {g: Call(f, q) for f, g in own.items()}
+        rates = [
+            k.dispersion.shift * k.length / Factored.generator(k.length.ring, LAPLACE) for k in self._turning
+        ]
+        phases = [wave_times_length(lengths, Name(omega), rate) for rate in rates]
+        delays, more = _short_or_named(phases, "theta", naming)
+        lines += more
         for theta, kernel in zip(delays, self._turning, strict=True):
-            rate = kernel.dispersion.shift / Factored.generator(kernel.length.ring, LAPLACE) * kernel.length
-            lines.append((theta, wave_times_length(lengths, Name(omega), rate)))
-            symbols |= {f"{f}[{kernel.generator}]": Call(f, Name(theta)) for f in ("cos", "sin")}
+            symbols |= {f"{f}[{kernel.generator}]": Call(f, theta) for f in ("cos", "sin")}
         for kernel in tf.kernels.kernels:
             if kernel.function == "exp" and kernel not in self._turning:
                 exponent = self._on_axis(kernel.dispersion.shift * kernel.length)
@@ -306,3 +345,32 @@ class _Page:
                     (c0.name, axis.quotient(self._on_axis(c[0]))),
                 ]
         return []
+
+
+def _functions(angle: int, doublings: int = 0) -> dict[str, str]:
+    """Return the generators of the functions of an angle, doubled some times."""
+    times = f"*{2**doublings}" if doublings else ""
+    return {f: f"{f}[{angle}{times}]" for f in ("cosh", "sinh", "cos", "sin")}
+
+
+def _halvings(angle: Angle) -> int:
+    """Return how often the length is halved in what stands in the model."""
+    length, times = angle.length, 0
+    while is_half(length):
+        length, times = length * 2, times + 1
+    return times
+
+
+def _short_or_named(
+    products: list[Expression], stem: str, naming: Naming
+) -> tuple[list[Expression], list[Line]]:
+    """Return what functions are printed of: ``beta*l`` as it is, and a name with its line for longer ones."""
+    is_long = [len(format_expression(product)) > LONGEST_ARGUMENT for product in products]
+    fresh = iter(naming.take(stem, sum(is_long)))
+    arguments: list[Expression] = []
+    lines: list[Line] = []
+    for product, wants_name in zip(products, is_long, strict=True):
+        if wants_name:
+            lines.append((next(fresh), product))
+        arguments.append(Name(lines[-1][0]) if wants_name else product)
+    return arguments, lines

@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Final, Protocol
+
+from symflex.expressions import Expression, Name, format_expression
+from symflex.kernels import LAPLACE
 
 if TYPE_CHECKING:
-    from symflex.expressions import Equation, Expression
+    from symflex.expressions import Equation
     from symflex.transfer import TransferFunction
+
+
+S: Final = Name(LAPLACE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +32,8 @@ class PrintedForm:
         Functions of x that occur, with the differential equation each solves: at x = 0 the highest but one of
         its derivatives is one and those before it are zero. Only for field equations whose exponents have no
         formula.
+    argument : Expression
+        Of the transfer function: s, or the imaginary unit times the angular frequency.
     """
 
     name: str
@@ -33,6 +41,19 @@ class PrintedForm:
     den: Expression
     where: tuple[tuple[str, Expression], ...] = ()
     laws: tuple[tuple[str, Equation], ...] = ()
+    argument: Expression = S
+
+    def at(self, name: str) -> str:
+        """Return what a signal is called where it is a function of another argument than s.
+
+        Examples
+        --------
+        >>> PrintedForm("polynomial", Name("a"), Name("b")).at("X")
+        'X'
+        >>> PrintedForm("frequency", Name("a"), Name("b"), argument=Name("omega")).at("X")
+        'X(omega)'
+        """
+        return name if self.argument == S else f"{name}({format_expression(self.argument)})"
 
 
 class Form(Protocol):

@@ -11,6 +11,7 @@ from symflex.emit.latex.document import (
 )
 from symflex.emit.latex.equation import (
     equation_label,
+    form_labels,
     formula_latex,
     inline_latex,
     model_labels,
@@ -31,6 +32,7 @@ __all__ = [
     "column_width",
     "equation_label",
     "escape_text",
+    "form_labels",
     "formula_latex",
     "inline_latex",
     "label_of",

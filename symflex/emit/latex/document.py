@@ -10,9 +10,9 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from symflex.emit.forms import counts_of, hidden_expressions
+from symflex.emit.forms import counts_of, with_hidden
 from symflex.emit.latex.column import COLUMNS_MM
-from symflex.emit.latex.equation import equation_label, model_labels, ratio_latex, transfer_function_latex
+from symflex.emit.latex.equation import equation_label, form_labels, ratio_latex, transfer_function_latex
 from symflex.emit.latex.expression import Writer
 from symflex.emit.latex.preamble import preamble
 from symflex.emit.latex.table import KINDS, VALUE_DIGITS, mode_table, parameter_table, root_table
@@ -213,9 +213,10 @@ def _blocks(
         yield _Block("\\section{Transfer functions}\n\n")
     for tf, form in zip(tfs, forms, strict=True):
         yield _Block(_introduction(tf))
+        named, factors = with_hidden(tf, form)
         # Without a blank line: a display belongs to the paragraph before it.
-        yield _equation(tf, form, width_mm, "\n\n")
-        hidden = _hidden_modes(tf, width_mm)
+        yield _equation(tf, named, width_mm, "\n\n")
+        hidden = _hidden_modes(tf, named, [e for e, _ in factors], width_mm)
         of_tf = [found for found in maps if found.tf == tf.name]
         if hidden and not of_tf:
             yield _Block("\n".join((r"\noindent", *hidden)) + "\n\n")
@@ -292,13 +293,14 @@ def _counted(count: int | None, noun: str) -> str:
     return f"{number} {noun}{'' if count == 1 else 's'}"
 
 
-def _hidden_modes(tf: AnyTransferFunction, width_mm: float) -> list[str]:
+def _hidden_modes(
+    tf: AnyTransferFunction, form: PrintedForm, printed: Sequence[Expression], width_mm: float
+) -> list[str]:
     """Return a sentence for every factor in s that cancelled."""
     if isinstance(tf, NestedTransferFunction):
         return []
-    writer = Writer(model_labels(tf.model))
-    printed = hidden_expressions(tf)
-    return [_hidden_mode(h, e, tf, writer, width_mm) for h, (e, _) in zip(tf.hidden, printed, strict=True)]
+    writer = Writer(form_labels(tf, form))
+    return [_hidden_mode(h, e, tf, writer, width_mm) for h, e in zip(tf.hidden, printed, strict=True)]
 
 
 def _hidden_mode(

@@ -39,7 +39,7 @@ _LINES_PER_DISPLAY: Final = 300
 _TAG: Final = 2.9
 """A number of three digits and the least room before it."""
 
-_ARGUMENT: Final = 1.25
+_PARENTHESES: Final = 0.781
 _WHERE: Final = r"\text{where}\quad "
 _WHERE_WIDTH: Final = 3.57
 _LEAST_ROOM: Final = 17.5
@@ -80,7 +80,8 @@ def equation_label(name: str) -> str:
 
 def ratio_latex(tf: AnyTransferFunction) -> str:
     r"""Return output over input on one line, such as ``V_{\mathrm{tip}}(s)/F(s)``."""
-    (above, _), (below, _) = _end(tf.output), _end(tf.input)
+    s = Writer({}).piece(Name(LAPLACE))
+    (above, _), (below, _) = _end(tf.output, s), _end(tf.input, s)
     return f"{above}/{below}"
 
 
@@ -163,7 +164,7 @@ def formula_latex(
 def inline_latex(tf: AnyTransferFunction, form: PrintedForm) -> str:
     r"""Return a transfer function as one line of mathematics without delimiters, for notebooks and HTML."""
     writer = Writer(form_labels(tf, form))
-    formula = f"{_left_side(tf)[0]} = {_right_side(form, writer)[0]}"
+    formula = f"{_left_side(tf, form, writer)[0]} = {_right_side(form, writer)[0]}"
     if not (form.where or form.laws):
         return formula
     where = [f"{writer.label(n).latex} = {writer.piece(e).latex}" for n, e in form.where]
@@ -187,7 +188,7 @@ def notebook_latex(tf: AnyTransferFunction, form: PrintedForm) -> str | None:
     right, right_width = _right_side(form, writer)
     if len(right) > LONGEST_IN_NOTEBOOK:
         return None
-    one_line = _left_side(tf)[1] + RELATION + right_width
+    one_line = _left_side(tf, form, writer)[1] + RELATION + right_width
     if not (form.where or form.laws) and one_line <= width:
         return inline_latex(tf, form)
     rows = [*_rows(tf, form, writer, width), *_where_rows(form, writer, width)]
@@ -207,13 +208,14 @@ def form_labels(tf: AnyTransferFunction, form: PrintedForm) -> dict[str, str]:
     return labels_of(own, labels)
 
 
-def _end(end: Input | Output) -> tuple[str, float]:
+def _end(end: Input | Output, argument: Piece) -> tuple[str, float]:
     label = symbol(end.name, {end.name: end.latex})
-    return f"{label.latex}(s)", label.width + _ARGUMENT
+    return f"{label.latex}({argument.latex})", label.width + argument.width + _PARENTHESES
 
 
-def _left_side(tf: AnyTransferFunction) -> tuple[str, float]:
-    (above, above_width), (below, below_width) = _end(tf.output), _end(tf.input)
+def _left_side(tf: AnyTransferFunction, form: PrintedForm, writer: Writer) -> tuple[str, float]:
+    argument = writer.piece(form.argument)
+    (above, above_width), (below, below_width) = _end(tf.output, argument), _end(tf.input, argument)
     return rf"\frac{{{above}}}{{{below}}}", max(above_width, below_width) + FRACTION_EDGES.text
 
 
@@ -245,7 +247,7 @@ def _formula(
     width: float | None,
     name: str,
 ) -> str:
-    left, left_width = _left_side(tf)
+    left, left_width = _left_side(tf, form, writer)
     right, right_width = _right_side(form, writer)
     label = rf"\label{{{name}}}"
     # Where only the number lacks room, it stands below the formula by itself.
@@ -256,7 +258,7 @@ def _formula(
 
 def _rows(tf: AnyTransferFunction, form: PrintedForm, writer: Writer, width: float) -> list[_Row]:
     """Return the equations that a formula too wide for one line is made of."""
-    left, left_width = _left_side(tf)
+    left, left_width = _left_side(tf, form, writer)
     if is_one(form.den):
         return [_row(left, left_width, form.num, writer, width, left_width, _TAG)]
     return _named_parts(form, writer, width, left, left_width)
@@ -265,17 +267,17 @@ def _rows(tf: AnyTransferFunction, form: PrintedForm, writer: Writer, width: flo
 def _named_parts(form: PrintedForm, writer: Writer, width: float, left: str, left_width: float) -> list[_Row]:
     """Return the quotient of what is short and of names for what is not, and what the names stand for."""
     sign, num = split_sign(form)
-    varying = varying_names(form)
+    varying, argument = varying_names(form), writer.piece(form.argument)
     parts = []
     for name, expression in zip(free_names(form, writer), (num, form.den), strict=True):
         piece = writer.piece(expression, Style.TEXT)
         is_long = left_width + RELATION + MINUS + FRACTION_EDGES.text + piece.width + _TAG > width
         depends = any(n.name in varying for n in names(expression))
-        head = f"{name}(s)" if depends else name
+        head = f"{name}({argument.latex})" if depends else name
         parts.append((head if is_long else piece.latex, expression, is_long))
     rows = [_Row(left, left_width, (rf"{sign}\frac{{{parts[0][0]}}}{{{parts[1][0]}}}",))]
     rows += [
-        _row(head, MINUS + _ARGUMENT, expression, writer, width, left_width)
+        _row(head, MINUS + argument.width + _PARENTHESES, expression, writer, width, left_width)
         for head, expression, is_long in parts
         if is_long
     ]

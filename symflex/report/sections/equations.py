@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Final
 
-from symflex.emit.forms import counts_of, hidden_expressions
+from symflex.emit.forms import counts_of, with_hidden
 from symflex.emit.json_format import derive_document
-from symflex.emit.latex import TEXT_WIDTH_MM, ratio_latex, transfer_function_latex
+from symflex.emit.latex import TEXT_WIDTH_MM, form_labels, ratio_latex, transfer_function_latex
 from symflex.emit.mathml import ratio_mathml, transfer_function_mathml
-from symflex.report.document import Code, Formula, Mathematics, Notice, Section, mathematics, text
+from symflex.report.document import Code, Formula, Mathematics, Notice, Section, labelled, text
 from symflex.report.numerals import counted, unit_text
 from symflex.report.part import Part
 from symflex.report.study import MOST_FUNCTIONS
@@ -51,6 +51,7 @@ def ratio_line(tf: TransferFunction) -> str:
 
 
 def _of(tf: TransferFunction, form: PrintedForm, label: str) -> tuple[Block, ...]:
+    form, hidden = with_hidden(tf, form)
     rows = transfer_function_mathml(tf, form)
     latex = transfer_function_latex(tf, form, width_mm=TEXT_WIDTH_MM, label=label)
     blocks: list[Block] = [text(_introduction(tf), " Form: ", Code(form.name), ".")]
@@ -60,9 +61,10 @@ def _of(tf: TransferFunction, form: PrintedForm, label: str) -> tuple[Block, ...
         blocks.append(Notice("The closed form is too long for a page; the folder's data hold it."))
     else:
         blocks.append(Formula(rows, latex, f"{tf.name} in closed form"))
-    for expression, multiplicity in hidden_expressions(tf):
+    labels = form_labels(tf, form)
+    for expression, multiplicity in hidden:
         times = "" if multiplicity == 1 else f" ({multiplicity} times)"
-        runs: list[Run] = ["Hidden: the factor ", mathematics(expression, tf.model)]
+        runs: list[Run] = ["Hidden: the factor ", labelled(expression, labels)]
         runs.append(
             f" cancels{times}; its modes are uncontrollable from this input or unobservable at this output."
         )

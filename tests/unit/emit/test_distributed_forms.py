@@ -8,9 +8,10 @@ import mpmath
 import pytest
 
 from symflex import pipeline
-from symflex.emit.forms import FORMS, hidden_expressions, print_form
+from symflex.emit.forms import FORMS, hidden_expressions, print_form, with_hidden
 from symflex.emit.forms.usage import forms_of
 from symflex.emit.json_format import derive_json
+from symflex.emit.latex import transfer_function_latex
 from symflex.emit.sympy_expression import to_sympy
 from symflex.emit.text import derive_text, form_text
 from symflex.errors import UsageError
@@ -175,17 +176,98 @@ def test_vaughans_form_of_the_tip_mobility_is_the_papers():
 def test_the_frequency_form_of_the_sliding_free_beam_is_real_but_for_one_factor():
     # Krylov-Duncan theory: free poles at tan + tanh = 0, colocated zeros at cos cosh = -1.
     assert shown(case("sliding_free_beam", "V_act/F"), "frequency") == (
-        "-beta*j*(cosh(q)*cos(q) + 1)",
-        "rho*A*omega*(cosh(q)*sin(q) + sinh(q)*cos(q))",
+        "-beta*j*(cosh(beta*l)*cos(beta*l) + 1)",
+        "rho*A*omega*(cosh(beta*l)*sin(beta*l) + sinh(beta*l)*cos(beta*l))",
     )
 
 
 def test_the_tip_receptance_of_a_cantilever_has_the_textbook_denominator():
     # 1 + cos cosh, Rao 2007, table 11.1
     assert shown(case("clamped_free", "W_tip/F"), "frequency") == (
-        "cosh(q)*sin(q) - sinh(q)*cos(q)",
-        "E*I*beta^3*(cosh(q)*cos(q) + 1)",
+        "cosh(beta*l)*sin(beta*l) - sinh(beta*l)*cos(beta*l)",
+        "E*I*beta^3*(cosh(beta*l)*cos(beta*l) + 1)",
     )
+
+
+def test_the_textbook_denominator_stays_whole_where_the_numerator_needs_half_the_length():
+    _, den = shown(case("clamped_free", "W_mid/F"), "frequency")
+    assert den == "E*I*beta^3*(cosh(beta*l)*cos(beta*l) + 1)"
+
+
+def test_the_left_side_of_the_frequency_form_is_a_function_of_the_frequency():
+    tf = case("pinned_pinned", "theta_near/tau")
+    form = print_form(tf, "frequency")
+    assert derive_text(tf, form).startswith("theta_near(j*omega)/tau(j*omega)   ")
+    assert form_text(tf, form).startswith("theta_near(j*omega)/tau(j*omega) = ")
+    latex = transfer_function_latex(tf, form, width_mm=None)
+    assert r"\frac{\theta_{\mathrm{near}}(j \omega)}{\tau(j \omega)}" in latex
+
+
+def test_other_forms_are_functions_of_s_on_their_left_side():
+    tf = case("pinned_pinned", "theta_near/tau")
+    assert r"\frac{\theta_{\mathrm{near}}(s)}{\tau(s)}" in transfer_function_latex(
+        tf, print_form(tf), width_mm=None
+    )
+
+
+def hidden_lines(tf, form):
+    return [line for line in derive_text(tf, print_form(tf, form)).splitlines() if "hidden: " in line]
+
+
+def test_hidden_factors_bear_the_arguments_of_the_form():
+    # Antisymmetric modes of a beam clamped at both ends, which a uniform load does not drive.
+    assert hidden_lines(case("clamped_clamped", "M_end/p"), "hyperbolic") == [
+        "  hidden: sinh(q) - sin(q) cancelled"
+    ]
+
+
+def test_hidden_factors_of_twice_the_length_of_a_form_bear_twice_its_argument():
+    tf = case("clamped_clamped", "M_end/p")
+    assert ("q", "mu*l/2") in [(n, format_expression(e)) for n, e in print_form(tf, "krylov").where]
+    assert hidden_lines(tf, "krylov") == ["  hidden: sinh(2*q) - sin(2*q) cancelled"]
+
+
+def test_hidden_factors_bring_the_lines_of_names_that_a_form_lacks():
+    tf = case("clamped_clamped", "M_end/p")
+    form, ((factor, _),) = with_hidden(tf, print_form(tf, "vaughan"))
+    assert format_expression(factor) == "sinh(q) - sin(q)"
+    assert "q" in [name for name, _ in form.where]
+
+
+@pytest.mark.parametrize("form", [f for f in EVERY_FORM if f])
+@pytest.mark.parametrize("pair", ["W_mid/p", "W_quarter/p", "M_end/p"])
+def test_hidden_factors_in_a_form_s_names_are_those_spelled_out(pair, form):
+    tf = case("clamped_clamped", pair)
+    if form != "definitions" and form not in forms_of(tf):
+        return
+    named, factors = with_hidden(tf, print_form(tf, form))
+    known = {
+        "E": mpmath.mpf(3),
+        "I": 2,
+        "rho": mpmath.mpf(5) / 3,
+        "A": mpmath.mpf(7) / 4,
+        "l": mpmath.mpf(9) / 8,
+    }
+    known |= {"s": mpmath.mpc(1, 2) / 3, "pi": mpmath.pi}
+    where = dict(named.where)
+
+    def values(name):
+        return value_of(where[name], values) if name in where else known[name]
+
+    for (factor, times), (spelled, again) in zip(factors, hidden_expressions(tf), strict=True):
+        assert times == again
+        assert mpmath.almosteq(value_of(factor, values), value_of(spelled, known.__getitem__), 1e-12)
+
+
+def test_long_hidden_factors_are_printed_to_their_end_within_80_columns():
+    text = derive_text(
+        case("clamped_clamped", "W_quarter/p"), print_form(case("clamped_clamped", "W_quarter/p"))
+    )
+    (start,) = [i for i, line in enumerate(text.splitlines()) if "hidden: " in line]
+    shown_ = " ".join(line.strip() for line in text.splitlines()[start:]).strip()
+    assert shown_.endswith("cancelled")
+    assert "..." not in shown_
+    assert max(map(len, text.splitlines())) <= 80
 
 
 def test_the_imaginary_unit_of_the_frequency_form_is_a_line():
