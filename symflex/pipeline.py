@@ -9,7 +9,10 @@ text --parse--> Spec --resolve--> Model --assemble--> Equations --derive--> Tran
 
 from __future__ import annotations
 
+import re
 import sys
+import tomllib
+from decimal import Decimal
 from fractions import Fraction
 from math import inf
 from pathlib import Path
@@ -20,7 +23,7 @@ from symflex import spec as spec_room
 from symflex import transfer as transfer_room
 from symflex.cache import entered_cache
 from symflex.elimination import eliminate, expanded_terms, explain_singular, is_singular
-from symflex.errors import BudgetError, Diagnostic, Source, SpecError, UsageError
+from symflex.errors import BudgetError, Diagnostic, FitError, Source, SpecError, SymflexError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.kernels import uncollected
 from symflex.model import Model, load_with, with_numbers
@@ -28,7 +31,6 @@ from symflex.model import Model, load_with, with_numbers
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
     from concurrent.futures import Executor
-    from decimal import Decimal
 
     import numpy as np
     import numpy.typing as npt
@@ -473,6 +475,8 @@ def fit(
     criterion: str = "bic",
     is_gain_free: bool = False,
     is_lag_free: bool = False,
+    is_lag_signed: bool = False,
+    is_delay_free: bool = False,
     slope: int | None = None,
     allow_outside: Sequence[str | Path] = (),
 ) -> Fit:
@@ -486,7 +490,7 @@ def fit(
         The specification whose transfer functions the resonances are multiplied by.
     names : sequence of str
         Its transfer functions, one per response or one for all.
-    modes, start, criterion, is_gain_free, is_lag_free, slope
+    modes, start, criterion, is_gain_free, is_lag_free, is_lag_signed, is_delay_free, slope
         As there; a gain is fitted in any case without a base.
     allow_outside : sequence of str or Path
         See :func:`load`, of the base.
@@ -507,6 +511,8 @@ def fit(
             start=start,
             criterion=criterion,
             is_lag_free=is_lag_free,
+            is_lag_signed=is_lag_signed,
+            is_delay_free=is_delay_free,
             slope=slope,
         )
     model = load(base, allow_outside)
@@ -535,7 +541,48 @@ def fit(
         criterion=criterion,
         is_gain_free=is_gain_free,
         is_lag_free=is_lag_free,
+        is_lag_signed=is_lag_signed,
+        is_delay_free=is_delay_free,
     )
+
+
+def fit_specification(found: Fit, folder: str | Path) -> str:
+    """Return the specification of a fit that will stand in a folder.
+
+    It has been read, resolved and assembled as ``symflex check`` does. A base that a ``model`` block can
+    stand for is referred to; any other, and one that does not stand at or below the folder, is copied. See
+    :func:`symflex.fitting.specification.fit_specification`.
+
+    Raises
+    ------
+    FitError
+        SF617 where neither way gives a specification that is accepted.
+    """
+    from symflex.fitting.specification import fit_specification as written
+
+    bases = tuple(dict.fromkeys(Path(base.path) for base in found.bases if base.path))
+    allowed = tuple(place for base in found.bases for place in base.folders)
+    taken = {name for base in found.bases for name in base.taken}
+    ways: list[Mapping[str, object] | None] = [None]
+    if len(bases) == 1:
+        source = spec_room.read(bases[0])
+        whole = tomllib.loads(source.text, parse_float=Decimal)
+        own = found.bases[0].tf.split("/")[1]
+        # Other inputs of the base are left out, unless something there needs them.
+        ways += [whole | {"inputs": {own: whole["inputs"][own]}}, whole]
+        words = taken | set(re.findall(r"\w+", source.text))
+    # A file that needs --allow-outside is the last resort: where the base itself needs it.
+    for outside in ((), allowed):
+        for copied in ways:
+            text = written(found, folder, taken if copied is None else words, copied)
+            try:
+                check_solvable(assemble(loads(text, str(Path(folder) / "fitted.toml"), outside)))
+            except SymflexError as error:
+                refused = error.diagnostics[0]
+            else:
+                return text
+    message = f"the fit cannot be written as a specification: {refused.message}"
+    raise FitError(Diagnostic("SF617", message, None, refused.hint))
 
 
 def measure(model: Model, pair: tuple[str, str], plan: MeasurementPlan) -> MeasuredResponse:

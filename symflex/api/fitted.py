@@ -65,15 +65,18 @@ class Fit:
         """What to be careful about."""
         return self.found.warnings
 
+    @property
+    def poor(self) -> tuple[str, ...]:
+        """Why the fit is poor, so that its numbers are not to be trusted within their errors; else empty."""
+        return self.found.poor
+
     def values(self, response: int = 0) -> Complex:
         """Return the fitted function on the lines of one response, shape (k,)."""
         return self.found.values(response)
 
     def specification(self, folder: str | Path = ".") -> str:
-        """Return the text of a specification that will stand in a folder, from where it names the base."""
-        from symflex.fitting.specification import fit_specification
-
-        return fit_specification(self.found, folder)
+        """Return the text of a specification that will stand in a folder; it names the base, or copies it."""
+        return pipeline.fit_specification(self.found, folder)
 
     def model(self) -> Model:
         """Return the fitted model, which derives, prints and exports like any other."""
@@ -110,7 +113,8 @@ def fit(
     averages: float | None = None,
     window: Literal["hann", "none"] | None = None,
     gain: bool = False,
-    lag: bool = False,
+    lag: bool | Literal["signed"] = False,
+    delay: bool = False,
     slope: int | None = None,
     allow_outside: Sequence[str | Path] = (),
 ) -> Fit:
@@ -137,8 +141,12 @@ def fit(
         Independent averages, where the data do not say.
     window : str, optional
         ``hann`` or ``none``, where the data do not say.
-    gain, lag : bool
-        Fit a gain besides the base, a lag of the sensor 1/(1 + T s).
+    gain : bool
+        Fit a gain besides the base.
+    lag : bool or "signed"
+        Fit a lag of the sensor, 1/(1 + T s); it is not negative unless it is ``"signed"``.
+    delay : bool
+        Fit a dead time, exp(-T s), which is not negative.
     slope : int, optional
         Without a base: the power of s; by default the best.
     allow_outside : sequence of str or Path
@@ -183,7 +191,9 @@ def fit(
             start=start,
             criterion=criterion,
             is_gain_free=gain,
-            is_lag_free=lag,
+            is_lag_free=bool(lag),
+            is_lag_signed=lag == "signed",
+            is_delay_free=delay,
             slope=slope,
             allow_outside=allow_outside,
         )

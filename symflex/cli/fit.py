@@ -8,7 +8,7 @@ import click
 
 from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, note, outside, reporting, say, terminal_width
-from symflex.errors import Diagnostic, UsageError
+from symflex.errors import Diagnostic, FitError, SymflexError, UsageError
 
 SUFFIXES = (".pdf", ".png", ".svg")
 
@@ -42,6 +42,8 @@ SUFFIXES = (".pdf", ".png", ".svg")
 )
 @click.option("--gain", "is_gain_free", is_flag=True, help="Fit a gain besides the base too.")
 @click.option("--lag", "is_lag_free", is_flag=True, help="Fit a lag of the sensor, 1/(1 + T s).")
+@click.option("--signed-lag", "is_lag_signed", is_flag=True, help="The same, and it may be negative, a lead.")
+@click.option("--delay", "is_delay_free", is_flag=True, help="Fit a dead time, exp(-T s), T not negative.")
 @click.option("--slope", type=click.IntRange(-6, 6), help="Without --base: the power of s; chosen if absent.")
 @click.option(
     "--averages", type=click.FloatRange(1), help="Independent averages, where the file does not say."
@@ -58,6 +60,7 @@ SUFFIXES = (".pdf", ".png", ".svg")
 )
 @click.option("-o", "--output", type=click.Path(), help="Specification to write.")
 @click.option("--plot", "figure", type=click.Path(), help="Figure to write: .pdf, .svg or .png.")
+@click.option("--strict", is_flag=True, help="A fit that is poor is exit code 4, and nothing is written.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @caching
 @reporting
@@ -73,12 +76,15 @@ def command(
     band: tuple[float, float] | None,
     is_gain_free: bool,
     is_lag_free: bool,
+    is_lag_signed: bool,
+    is_delay_free: bool,
     slope: int | None,
     averages: float | None,
     window: str | None,
     driving: str | None,
     output: str | None,
     figure: str | None,
+    strict: bool,
     as_json: bool,
 ) -> int:
     """Fit resonances to the frequency responses in DATA: .csv, .uff, .mat or .npz.
@@ -88,13 +94,14 @@ def command(
     -o writes a specification with resonance blocks, which derive, roots, plot and export take like any other.
 
     The report has standard errors, and says where the measured phase parts from that of a minimum-phase
-    fit to the magnitude alone. Exit code 3 says that the data are invalid, 4 that no fit came of them.
+    fit to the magnitude alone. A fit that does not describe the data within their noise, or does not
+    determine a resonance, says at its head that it is poor. Exit code 3 says that the data are invalid, 4
+    that no fit came of them, or with --strict a poor one.
     """
     from symflex import pipeline
     from symflex.emit.fit_report import fit_json, fit_text
     from symflex.emit.write import check_writable, write_atomically
     from symflex.fitting import mode_shapes
-    from symflex.fitting.specification import fit_specification
     from symflex.measurement import prepared, read_measurement
 
     if tfs and base is None:
@@ -125,17 +132,25 @@ def command(
         start=start,
         criterion=criterion,
         is_gain_free=is_gain_free,
-        is_lag_free=is_lag_free,
+        is_lag_free=is_lag_free or is_lag_signed,
+        is_lag_signed=is_lag_signed,
+        is_delay_free=is_delay_free,
         slope=slope,
         allow_outside=allow_outside,
     )
     shapes = mode_shapes(found, every) if driving else None
+    if strict and found.poor:
+        hint = "without --strict it is printed all the same"
+        raise FitError(Diagnostic("SF618", f"the fit is poor: {found.poor[0]}", None, hint))
     if output:
-        folder = Path(output).parent
-        write_atomically(Path(output), fit_specification(found, folder).encode())
+        text = pipeline.fit_specification(found, Path(output).parent)
+        write_atomically(Path(output), text.encode())
         note(f"wrote {output}")
-        if base is not None and not Path(base).resolve().is_relative_to(folder.resolve()):
-            note(f"its base is not below it: give --allow-outside {Path(base).parent} where it is read")
+        try:
+            pipeline.loads(text, output)
+        except SymflexError:
+            folders = " ".join(f"--allow-outside {folder}" for folder in allow_outside)
+            note(f"its base reads other folders: give {folders} where it is read")
     if as_json:
         emit_json(fit_json(found, shapes))
     else:

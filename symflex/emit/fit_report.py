@@ -32,8 +32,8 @@ def fit_text(fit: Fit, width: int = 80, shapes: FittedModeShapes | None = None) 
     shapes : FittedModeShapes, optional
         Printed too.
     """
-    lines: list[str] = []
     found = fit.resonances
+    lines = [line for reason in fit.poor for line in _wrapped(f"POOR FIT: {reason}", width, "")]
     for r, measured in enumerate(fit.measured):
         lines += _wrapped(f"{measured.name}   {_what(fit, r)}", width, "")
         if measured.is_synthetic:
@@ -47,13 +47,17 @@ def fit_text(fit: Fit, width: int = 80, shapes: FittedModeShapes | None = None) 
     for r, measured in enumerate(fit.measured):
         name = f" of {measured.name}" if found.responses > 1 else ""
         lines += ["", *([f"  zeros{name}"] if name else []), ("       " if name else "  zeros") + _heads()]
-        for i in range(found.count):
+        for i in np.flatnonzero(found.has_zeros[r]).tolist():
             z, e = found, errors
             lines.append(_row(i, z.omega_z[r, i], e.omega_z[r, i], z.zeta_z[r, i], e.zeta_z[r, i]))
+        if not found.has_zeros[r].any():
+            lines.append("   none")
         if fit.problem.free.gain:
             lines.append(f"  gain {found.gain[r]:.6g}, standard error {errors.gain[r]:.2g}")
         if fit.problem.free.lag:
             lines.append(f"  lag of the sensor {found.lag[r]:.4g} s, standard error {errors.lag[r]:.2g} s")
+        if fit.problem.free.delay:
+            lines.append(f"  dead time {found.delay[r]:.4g} s, standard error {errors.delay[r]:.2g} s")
     if shapes is not None:
         lines += ["", *_shape_lines(shapes, width)]
     lines.append("")
@@ -121,6 +125,9 @@ def fit_json(fit: Fit, shapes: FittedModeShapes | None = None) -> dict[str, obje
         "start": fit.candidate.start_kind,
         "gain_fitted": fit.problem.free.gain,
         "lag_fitted": fit.problem.free.lag,
+        "delay_fitted": fit.problem.free.delay,
+        "poor": bool(fit.poor),
+        "poor_because": list(fit.poor),
         "poles": _pairs(found.omega_p, found.zeta_p, errors.omega_p, errors.zeta_p),
         "responses": [_response_json(fit, r) for r in range(found.responses)],
         "residual": {
@@ -148,6 +155,8 @@ def fit_json(fit: Fit, shapes: FittedModeShapes | None = None) -> dict[str, obje
 def _response_json(fit: Fit, r: int) -> dict[str, object]:
     measured, base, test = fit.measured[r], fit.bases[r], fit.phase_tests[r]
     found, errors, start = fit.resonances, fit.standard_errors(), fit.candidate.start
+    shown = found.has_zeros[r]
+    zeros = (found.omega_z[r], found.zeta_z[r], errors.omega_z[r], errors.zeta_z[r])
     return {
         "name": measured.name,
         "synthetic": measured.is_synthetic,
@@ -160,12 +169,20 @@ def _response_json(fit: Fit, r: int) -> dict[str, object]:
         "slope": None if base.path else base.slope,
         "gain": {"value": float(found.gain[r]), "standard_error": float(errors.gain[r])},
         "lag": {"value": float(found.lag[r]), "standard_error": float(errors.lag[r])},
-        "zeros": _pairs(found.omega_z[r], found.zeta_z[r], errors.omega_z[r], errors.zeta_z[r]),
+        "delay": {"value": float(found.delay[r]), "standard_error": float(errors.delay[r])},
+        "zeros": [
+            pair | {"real_of_opposite_sign": bool(omega < 0)}
+            for pair, omega in zip(
+                _pairs(*(np.abs(x[shown]) if k == 0 else x[shown] for k, x in enumerate(zeros))),
+                found.omega_z[r, shown],
+                strict=True,
+            )
+        ],
         "start": [
             {
                 "omega_p": float(start.omega_p[i]),
                 "zeta_p": float(start.zeta_p[i]),
-                "omega_z": float(start.omega_z[r, i]),
+                "omega_z": _finite(float(start.omega_z[r, i])),
                 "zeta_z": float(start.zeta_z[r, i]),
             }
             for i in range(start.count)
@@ -233,7 +250,7 @@ def _data_line(fit: Fit, r: int) -> str:
     low, high = measured.frequency_hz[0], measured.frequency_hz[-1]
     parts = [f"data: {measured.values.size} lines from {low:.4g} to {high:.4g} Hz"]
     if measured.coherence is None:
-        parts.append("no coherence: all lines weigh alike")
+        parts.append("no coherence: the noise is estimated")
     else:
         parts.append(
             f"coherence {measured.coherence.min():.3f} or more, median {np.median(measured.coherence):.3f}"
@@ -250,9 +267,10 @@ def _heads() -> str:
 
 
 def _row(i: int, omega: float, omega_error: float, zeta: float, zeta_error: float) -> str:
-    hertz, hertz_error = omega / (2 * pi), omega_error / (2 * pi)
+    hertz, hertz_error = abs(omega) / (2 * pi), omega_error / (2 * pi)
     left = f"{_shown(hertz, hertz_error):>18}{_error(hertz_error):>13}"
-    return f"  {i + 1:5d}{left}{_shown(zeta, zeta_error):>17}{_error(zeta_error):>13}"
+    mark = "" if omega > 0 else "  real, of opposite sign"
+    return f"  {i + 1:5d}{left}{_shown(zeta, zeta_error):>17}{_error(zeta_error):>13}{mark}"
 
 
 def _places(error: float) -> int:

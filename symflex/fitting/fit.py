@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,21 +10,22 @@ import numpy.typing as npt
 
 from symflex.errors import DataError, Diagnostic, FitError, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.fitting.least_squares import refine
+from symflex.fitting.dead_time import with_delays
+from symflex.fitting.noise import with_noise, with_rough_noise
 from symflex.fitting.order import (
     CRITERIA,
-    LOWER,
-    MOST_MODES,
     STARTS,
+    UNLIKELY,
     Candidate,
     Score,
     best_of_starts,
     chosen_order,
-    no_resonances,
+    is_rivalled,
+    lack_of_fit,
     too_few,
     undetermined,
+    with_own_noise,
 )
-from symflex.fitting.peaks import find_modes
 from symflex.fitting.phase_test import PhaseTest, judge_phase
 from symflex.fitting.problem import FitProblem, fit_problem
 from symflex.fitting.resonances import MILLISECOND, Free
@@ -40,9 +41,7 @@ if TYPE_CHECKING:
 Real = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
-SLOPES = range(-6, 7)
-EXACT = 1e-6
-"""Relative misfit below which a power of s alone is all there is; what resonances add to it is rounding."""
+SLOPES = tuple(range(-4, 5))
 FEWEST_LINES = 8
 WEAK = 0.5
 LARGE = 2.0
@@ -108,6 +107,9 @@ class Fit:
         One per response.
     warnings : tuple of str
         What to be careful about.
+    poor : tuple of str
+        Why the result is poor, so that standard errors do not tell how far off it may be; empty where it is
+        not.
     """
 
     problem: FitProblem
@@ -117,6 +119,7 @@ class Fit:
     criterion: str
     phase_tests: tuple[PhaseTest, ...]
     warnings: tuple[str, ...]
+    poor: tuple[str, ...] = ()
 
     @property
     def resonances(self) -> Resonances:
@@ -152,16 +155,25 @@ class Fit:
         deviation = np.sqrt(np.diag(covariance))
         found = self.resonances
         n, free = found.count, self.problem.free
-        rest = deviation[2 * n :].reshape(found.responses, 2 * n + free.count)
-        none = np.zeros(found.responses)
-        gain = np.abs(found.gain) * rest[:, 2 * n] if free.gain else none
+        omega_z, zeta_z = np.zeros_like(found.omega_z), np.zeros_like(found.zeta_z)
+        gain, lag, delay = (np.zeros(found.responses) for _ in range(3))
+        for r, shown in enumerate(found.has_zeros):
+            at = found.places(r, free)
+            omega_z[r, shown] = np.abs(found.omega_z[r, shown]) * deviation[at["omega_z"]]
+            zeta_z[r, shown] = deviation[at["zeta_z"]]
+            # Parameters that were not fitted have an empty place.
+            gain[r : r + 1][: free.gain] = np.abs(found.gain[r]) * deviation[at["gain"]]
+            lag[r : r + 1][: free.lag] = MILLISECOND * deviation[at["lag"]]
+            delay[r : r + 1][: free.delay] = MILLISECOND * deviation[at["delay"]]
         return type(found)(
             found.omega_p * deviation[:n],
             found.zeta_p * deviation[n : 2 * n],
-            found.omega_z * rest[:, :n],
-            rest[:, n : 2 * n],
+            omega_z,
+            zeta_z,
             gain,
-            MILLISECOND * rest[:, -1] if free.lag else none,
+            lag,
+            delay,
+            found.slope,
         )
 
     def misfit_db(self, response: int) -> float:
@@ -182,6 +194,8 @@ def fit_resonances(
     criterion: str = "bic",
     is_gain_free: bool | None = None,
     is_lag_free: bool = False,
+    is_lag_signed: bool = False,
+    is_delay_free: bool = False,
     slope: int | None = None,
 ) -> Fit:
     """Fit simple resonances, in cascade with a known base, to one or several measured responses.
@@ -202,6 +216,10 @@ def fit_resonances(
         Whether a gain is fitted too; by default only without a base.
     is_lag_free : bool
         Whether a lag of each sensor, 1/(1 + T s), is fitted too.
+    is_lag_signed : bool
+        Whether that lag may be negative, a lead.
+    is_delay_free : bool
+        Whether a dead time of each response, exp(-T s) with T >= 0, is fitted too.
     slope : int, optional
         The power of s of a fit without base; by default the one with the lowest criterion.
 
@@ -237,38 +255,11 @@ def fit_resonances(
         if response.values.size < needed:
             message = f"'{response.name}' has {response.values.size} lines; such a fit needs {needed} or more"
             raise DataError(Diagnostic("SF605", message))
+    free = Free(bases is None or bool(is_gain_free), is_lag_free, is_delay_free, is_lag_signed)
     if bases is not None:
-        return _fit(measured, tuple(bases), modes, start, criterion, Free(bool(is_gain_free), is_lag_free))
-    free = Free(True, is_lag_free)
-    power = _best_slope(measured, modes, free) if slope is None else slope
-    same = tuple(Base.power(power) for _ in measured)
-    return _fit(measured, same, modes, start, criterion, free)
-
-
-def _best_slope(measured: Sequence[MeasuredResponse], modes: int | None, free: Free) -> int:
-    """Return the power of s near that of the lowest lines with which a quick fit comes closest."""
-    guess = _slope_of(measured[0])
-    best, least = guess, np.inf
-    for power in (guess, guess - 1, guess + 1, guess - 2, guess + 2):
-        if power not in SLOPES:
-            continue
-        function = Base.power(power).function
-        problem = fit_problem(measured, [function] * len(measured), free).without_window()
-        if refine(problem, no_resonances(problem)).cost < problem.count * EXACT**2:
-            return power
-        count = modes or min(max(len(find_modes(problem)), 1), MOST_MODES)
-        found = best_of_starts(problem, count, is_quick=True)
-        if found is not None and found.refined.cost < LOWER * least:
-            best, least = power, found.refined.cost
-    return best
-
-
-def _slope_of(measured: MeasuredResponse) -> int:
-    """Return the power of s that the lowest tenth of the lines suggests."""
-    size = max(5, measured.values.size // 10)
-    x = np.log(measured.frequency_hz[:size])
-    y = np.log(np.abs(measured.values[:size]))
-    return int(np.clip(round(float(np.polyfit(x, y, 1)[0])), SLOPES.start, SLOPES.stop - 1))
+        return _fit(measured, tuple(bases), modes, start, criterion, free, (0,))
+    same = tuple(Base.power(0) for _ in measured)
+    return _fit(measured, same, modes, start, criterion, free, SLOPES if slope is None else (slope,))
 
 
 def _fit(
@@ -278,9 +269,10 @@ def _fit(
     start: str,
     criterion: str,
     free: Free,
+    slopes: tuple[int, ...],
 ) -> Fit:
     has_base = any(base.tf for base in bases)
-    problem = fit_problem(measured, [base.function for base in bases], free, has_base=has_base)
+    problem = fit_problem(measured, [base.function for base in bases], free, has_base=has_base, slopes=slopes)
     for line, base in zip(problem.lines, bases, strict=True):
         wrong = ~np.isfinite(line.base) | (line.base == 0)
         if wrong.any():
@@ -289,6 +281,7 @@ def _fit(
             raise FitError(
                 Diagnostic("SF615", message, None, "a base needs damping, or --band a smaller band")
             )
+    problem = with_noise(with_delays(with_rough_noise(problem), modes), modes)
     scores: tuple[Score, ...] = ()
     if modes is None:
         candidate, scores = chosen_order(problem, start, criterion)
@@ -299,9 +292,34 @@ def _fit(
         candidate = found
     if candidate.failure is not None:
         raise FitError(candidate.failure)
+    is_ambiguous = is_rivalled(problem, candidate)
+    candidate, problem = with_own_noise(candidate, problem)
+    if not has_base:
+        bases = tuple(Base.power(int(power)) for power in candidate.refined.resonances.slope)
     tests = tuple(judge_phase(problem, r, candidate.refined.resonances) for r in range(len(measured)))
     fit = Fit(problem, bases, candidate, scores, criterion, tests, ())
-    return Fit(problem, bases, candidate, scores, criterion, tests, _warnings(fit))
+    return replace(fit, warnings=_warnings(fit), poor=_poor(fit, is_ambiguous=is_ambiguous))
+
+
+def _poor(fit: Fit, *, is_ambiguous: bool) -> tuple[str, ...]:
+    """Return why a fit is poor."""
+    found, errors = fit.resonances, fit.standard_errors()
+    reasons = []
+    if lack_of_fit(fit.problem, fit.refined) < UNLIKELY:
+        reasons.append("a function with more poles describes the data far better than noise explains")
+    if fit.problem.is_noise_known and fit.refined.reduced > LARGE:
+        reasons.append(f"the residual is {np.sqrt(fit.refined.reduced):.2g} times what coherence explains")
+    if is_ambiguous:
+        reasons.append("another power of s describes the data as well: gain and zeros may be others")
+    if fit.refined.correlation > SMOOTH:
+        reasons.append("neighbouring lines deviate together, as they do where the model lacks something")
+    for i in range(found.count):
+        where = f"pole pair {i + 1} at {found.omega_p[i] / (2 * np.pi):.4g} Hz"
+        if errors.zeta_p[i] > WEAK * found.zeta_p[i]:
+            reasons.append(f"the damping of {where} is lost in its error")
+        if found.zeta_p[i] >= 1:
+            reasons.append(f"{where} has the damping ratio {found.zeta_p[i]:.2g}: it is no resonance")
+    return tuple(reasons)
 
 
 def _warnings(fit: Fit) -> tuple[str, ...]:
@@ -312,10 +330,13 @@ def _warnings(fit: Fit) -> tuple[str, ...]:
     for i in range(found.count):
         if errors.zeta_p[i] > WEAK * found.zeta_p[i]:
             warnings.append(f"the damping of pole pair {i + 1} is hardly determined by the data")
-        for r, line in enumerate(fit.problem.lines):
+        for r in range(found.responses):
+            if not found.has_zeros[r, i]:
+                continue
+            line = fit.problem.lines[r]
             where = f" of {line.measured.name}" if found.responses > 1 else ""
             if errors.zeta_z[r, i] > max(abs(found.zeta_z[r, i]), LEAST_DAMPING) or (
-                errors.omega_z[r, i] > WEAK * found.omega_z[r, i]
+                errors.omega_z[r, i] > WEAK * abs(found.omega_z[r, i])
             ):
                 warnings.append(
                     f"zero pair {i + 1}{where} is not determined by the data: its error is of its own size"
@@ -326,8 +347,8 @@ def _warnings(fit: Fit) -> tuple[str, ...]:
                     f"zero pair {i + 1}{where} has the damping ratio {found.zeta_z[r, i]:.2g}: two "
                     "real zeros, that stand for what a gain, a power of s and resonances cannot have"
                 )
-            if not low <= found.omega_z[r, i] <= high:
-                place = found.omega_z[r, i] / (2 * np.pi)
+            if not low <= abs(found.omega_z[r, i]) <= high:
+                place = abs(found.omega_z[r, i]) / (2 * np.pi)
                 warnings.append(
                     f"zero pair {i + 1}{where} lies outside the band measured, at {place:.4g} Hz: "
                     "the data show its effect, not itself"
@@ -351,7 +372,7 @@ def _warnings(fit: Fit) -> tuple[str, ...]:
         advice = "; try --slope N" + (
             ", the responses one by one, or --driving OUT/IN" if found.responses > 1 else " or more --modes"
         )
-    if fit.problem.has_deviations and all(m.averages for m in fit.measured) and fit.refined.reduced > LARGE:
+    if fit.problem.is_noise_known and fit.refined.reduced > LARGE:
         warnings.append(
             f"the residual is {np.sqrt(fit.refined.reduced):.2g} times what coherence explains: "
             "the model lacks something that the data show" + advice

@@ -15,6 +15,7 @@ sigma is a share of the magnitude, resonances and antiresonances still count ali
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -123,18 +124,27 @@ def _descend(problem: FitProblem, start: Resonances, kind: str, steps: int) -> t
     def slopes(vector: Real) -> Real:
         return _parts(np.concatenate(_slopes(problem, resonances(vector), kind)))
 
+    limits = np.full(packed.size, -np.inf)
+    for r in range(start.responses):
+        at = start.places(r, problem.free)
+        limits[at["delay"]] = 0.0
+        if not problem.free.lag_sign:
+            limits[at["lag"]] = 0.0
+    search = partial(
+        least_squares,
+        residual,
+        jac=slopes,
+        x_scale="jac",
+        ftol=TOLERANCE,
+        xtol=TOLERANCE,
+        gtol=TOLERANCE,
+        max_nfev=steps,
+    )
     with np.errstate(all="ignore"):  # a trial step may be wild; what it leads to is looked at
-        done = least_squares(
-            residual,
-            packed,
-            slopes,
-            method="lm",
-            x_scale="jac",
-            ftol=TOLERANCE,
-            xtol=TOLERANCE,
-            gtol=TOLERANCE,
-            max_nfev=steps,
-        )
+        done = search(packed, method="lm")
+        if np.any(done.x < limits):
+            # The slower search, for a time that would have to be negative.
+            done = search(np.maximum(packed, limits), method="trf", bounds=(limits, np.inf))
     return resonances(done.x), done.status > 0
 
 

@@ -6,24 +6,24 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.stats import f
 
 from symflex.errors import Diagnostic, FitError
 from symflex.fitting.least_squares import STEPS, Refined, refine, refine_directly
+from symflex.fitting.noise import estimated
+from symflex.fitting.numerator import STRANGE, over_poles, strange
 from symflex.fitting.peaks import find_modes, start_from_peaks
-from symflex.fitting.rational_start import start_from_aaa, start_from_vector_fitting
+from symflex.fitting.rational_start import poles_from_aaa, poles_from_vector_fitting, relocated
 from symflex.fitting.resonances import Resonances
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    import numpy.typing as npt
+
     from symflex.fitting.problem import FitProblem
 
-STARTS: Mapping[str, Callable[[FitProblem, int], Resonances | None]] = {
-    "peaks": start_from_peaks,
-    "vector": start_from_vector_fitting,
-    "aaa": start_from_aaa,
-}
-"""Ways to begin; ``auto`` tries all and keeps the lowest residual."""
+    Complex = npt.NDArray[np.complex128]
 
 CRITERIA = ("bic", "aicc")
 MOST_MODES = 12
@@ -34,8 +34,16 @@ WEAK = 0.5
 """Standard error of ln zeta beyond which fewer resonances are preferred, unless that is far worse."""
 FAR_BETTER = 4.0
 """Ratio of sums of squares at which a failed fit is said rather than replaced, and a weak one kept."""
-LOWER = 0.999
-"""How far a residual has to fall for another start to count as better."""
+LOWER = 0.5
+"""How far the BIC has to fall for another start to count as better."""
+NEGLIGIBLE = 1e-6
+"""Mean square, in units of the noise, below which residuals are rounding and tell nothing apart."""
+MOST_NUMERATORS = 3
+SAME = 1e-3
+CLEAR = 6.0
+"""Difference of BIC that is strong evidence (Kass & Raftery, J. Am. Stat. Assoc. 90, 1995)."""
+UNLIKELY = 1e-5
+"""Share of right fits that may be called poor for what a function without structure describes better."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +62,8 @@ class Candidate:
         Where it ended.
     failure : Diagnostic or None
         Why it is no result.
+    rival : Refined or None
+        The best fit met with another power of s.
     """
 
     count: int
@@ -61,6 +71,7 @@ class Candidate:
     start: Resonances
     refined: Refined
     failure: Diagnostic | None
+    rival: Refined | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +103,44 @@ class Score:
         return self.status == "usable"
 
 
+def _from_peaks(problem: FitProblem, count: int) -> list[Resonances]:
+    """Return the start of the paper, and what linear least squares put over its poles."""
+    slopes = problem.slopes
+    if len(slopes) > 1:
+        slopes = tuple(slope for slope in (problem.guessed_slope(),) if slope in problem.slopes) or slopes[:1]
+    start = start_from_peaks(problem.with_slope(slopes[0]), count)
+    if start is None:
+        return []
+    start = replace(
+        start,
+        slope=np.full(start.responses, slopes[0]),
+        delay=np.array(problem.delays),
+    )
+    poles = start.omega_p * (-start.zeta_p + 1j * np.sqrt(1 - start.zeta_p**2))
+    return [start, *_over(problem, [poles, relocated(problem, poles)])]
+
+
+def _over(problem: FitProblem, choices: list[Complex]) -> list[Resonances]:
+    found: list[Resonances] = []
+    known: list[Complex] = []
+    for poles in choices:
+        if any(
+            other.size == poles.size and np.all(abs(other - poles) < SAME * abs(poles)) for other in known
+        ):
+            continue
+        known.append(poles)
+        found += over_poles(problem, poles, MOST_NUMERATORS)
+    return found
+
+
+STARTS: Mapping[str, Callable[[FitProblem, int], list[Resonances]]] = {
+    "peaks": _from_peaks,
+    "vector": lambda problem, count: _over(problem, poles_from_vector_fitting(problem, count)),
+    "aaa": lambda problem, count: _over(problem, poles_from_aaa(problem, count)),
+}
+"""Ways to begin, the most promising start first; ``auto`` tries all and keeps the best."""
+
+
 def best_of_starts(
     problem: FitProblem, count: int, kind: str = "auto", *, is_quick: bool = False
 ) -> Candidate | None:
@@ -108,22 +157,34 @@ def best_of_starts(
     is_quick : bool
         With few steps, for comparing numbers of resonances.
     """
-    kinds = list(STARTS) if kind == "auto" else [kind]
+    kinds = [kind]
+    if kind == "auto":
+        # On a known base the procedure of the paper is tried first; without, the powers of s are open.
+        kinds = list(STARTS) if len(problem.slopes) == 1 else ["vector", "peaks", "aaa"]
     best: Candidate | None = None
+    met: list[Refined] = []
     for name in kinds:
         if name == "aaa" and best is not None and best.failure is None and kind == "auto":
             break  # the slowest of the three, for where the others fail
-        start = STARTS[name](problem, count)
-        if start is None:
-            continue
-        refined = refine(problem, start, steps=QUICK_STEPS if is_quick else STEPS)
-        failure = _failure(problem, refined, is_quick=is_quick)
-        found = Candidate(count, name, start, refined, failure)
-        if best is None or _is_better(found, best):
-            best = found
-        if best.failure is None and _is_explained(problem, best.refined):
+        for start in STARTS[name](problem, count):
+            refined = refine(problem, start, steps=QUICK_STEPS if is_quick else STEPS)
+            if not (refined.has_converged or is_quick) and (
+                best is None or _merit(problem, refined) < _merit(problem, best.refined)
+            ):
+                refined = refine_directly(problem, refined.resonances, steps=2 * STEPS)
+            found = Candidate(count, name, start, refined, _failure(problem, refined, is_quick=is_quick))
+            met.append(refined)
+            if best is None or _is_better(problem, found, best):
+                best = found
+        if best is not None and best.failure is None and _is_explained(problem, best.refined):
             break
-    return best if best is None or is_quick else _signs_tried(problem, best)
+    if best is None:
+        return None
+    best = _simplified(problem, best, is_quick=is_quick)
+    if not is_quick:
+        best = _signs_tried(problem, best)
+    others = [one for one in met if np.any(one.resonances.slope != best.refined.resonances.slope)]
+    return replace(best, rival=min(others, key=lambda one: _merit(problem, one), default=None))
 
 
 def chosen_order(
@@ -139,7 +200,7 @@ def chosen_order(
     """
     # Numbers are compared without the window, a sixth of the work; the best one is then fitted with it.
     plain = problem.without_window()
-    nothing = no_resonances(problem)
+    nothing = _nothing(problem)
     tried = [Candidate(0, "none", nothing, refine(plain, nothing), None)]
     scores = [_score(plain, tried[0], 1.0)]
     worse = 0
@@ -158,19 +219,19 @@ def chosen_order(
     failed: list[tuple[Score, Diagnostic]] = []
     least = min(s.reduced for s in scores if s.is_usable)
     # A quick fit may have failed for want of steps: where it is far better than the others, it gets them.
-    worth = [s for s in scores if s.is_usable or FAR_BETTER * s.reduced < least]
+    worth = [s for s in scores if s.is_usable or FAR_BETTER * (s.reduced + NEGLIGIBLE) < least]
     for score in sorted(worth, key=lambda s: _value(s, criterion)):
-        if weak is not None and FAR_BETTER * weak[0].reduced < score.reduced:
+        if weak is not None and FAR_BETTER * (weak[0].reduced + NEGLIGIBLE) < score.reduced:
             return weak[1], tuple(scores)
         for better, failure in failed:
-            if FAR_BETTER * better.reduced < score.reduced:
+            if FAR_BETTER * (better.reduced + NEGLIGIBLE) < score.reduced:
                 raise FitError(_preferred(better, failure, problem_has_base=problem.has_base))
         if score.count == 0:
             break
         best = _continued(problem, tried[score.count])
         if best.failure is not None or not _is_explained(problem, best.refined):
             again = best_of_starts(problem, score.count, kind)
-            if again is not None and _is_better(again, best):
+            if again is not None and _is_better(problem, again, best):
                 best = again
         if best.failure is not None:
             failed.append((score, best.failure))
@@ -245,21 +306,56 @@ def undetermined() -> Diagnostic:
     )
 
 
-def no_resonances(problem: FitProblem) -> Resonances:
-    """Return a gain near the median of each response, and nothing else."""
-    gains = []
-    for line in problem.lines:
-        middle = complex(np.median(line.ratio.real), 0)
-        size = float(np.exp(np.median(np.log(np.abs(line.ratio)))))
-        gains.append((size if middle.real >= 0 else -size) if problem.free.gain else 1.0)
-    empty = np.zeros((len(gains), 0))
-    return Resonances(np.zeros(0), np.zeros(0), empty, empty, np.array(gains))
+def _nothing(problem: FitProblem) -> Resonances:
+    """Return the function without resonances: the base, or a gain and a power of s."""
+    none = np.zeros(0, np.complex128)
+    empty = np.zeros((len(problem.lines), 0))
+    plain = Resonances(none.real, none.real, empty, empty, np.ones(len(problem.lines)))
+    return next(iter(over_poles(problem, none, 1)), plain)
 
 
-def _is_better(found: Candidate, best: Candidate) -> bool:
+def _merit(problem: FitProblem, refined: Refined) -> float:
+    """Return the BIC of a minimum, for fits of the same lines with other zeros; strange ones cost."""
+    size = 2 * problem.count
+    merit = float(size * np.log(refined.cost / size + NEGLIGIBLE) + refined.parameters * np.log(size))
+    found = refined.resonances
+    return merit + STRANGE * int(strange(found.omega_z, found.zeta_z, *problem.band).sum())
+
+
+def _is_better(problem: FitProblem, found: Candidate, best: Candidate) -> bool:
     if (found.failure is None) != (best.failure is None):
-        return found.failure is None
-    return found.refined.cost < LOWER * best.refined.cost
+        failed, usable = (found, best) if best.failure is None else (best, found)
+        is_far_worse = usable.refined.cost > FAR_BETTER * failed.refined.cost + NEGLIGIBLE * problem.count
+        return (found is usable) != is_far_worse
+    return _merit(problem, found.refined) < _merit(problem, best.refined) - LOWER
+
+
+def _simplified(problem: FitProblem, best: Candidate, *, is_quick: bool) -> Candidate:
+    """Return the fit without the pairs of zeros that lie outside the band and explain nothing.
+
+    A pair far above the band is left out; one far below is a power of s, where that may be chosen.
+    """
+    low, high = problem.band
+    steps = QUICK_STEPS if is_quick else STEPS
+    for r in range(len(problem.lines)):
+        for i in reversed(range(best.count)):
+            now = best.refined.resonances
+            place = abs(now.omega_z[r, i])
+            if not np.isfinite(place) or low <= place <= high:
+                continue
+            omega_z, gain, slope = now.omega_z.copy(), now.gain.copy(), now.slope.copy()
+            if place < low:
+                slope[r] += 2
+                gain[r] *= np.sign(omega_z[r, i]) / place**2
+                if slope[r] not in problem.slopes:
+                    continue
+            omega_z[r, i] = np.inf
+            start = replace(now, omega_z=omega_z, gain=gain, slope=slope).ordered()
+            refined = refine_directly(problem, start, steps=steps)
+            found = replace(best, refined=refined, failure=_failure(problem, refined, is_quick=is_quick))
+            if _is_better(problem, found, best):
+                best = found
+    return best
 
 
 def _signs_tried(problem: FitProblem, best: Candidate) -> Candidate:
@@ -267,9 +363,11 @@ def _signs_tried(problem: FitProblem, best: Candidate) -> Candidate:
     for r in range(len(problem.lines)):
         for i in range(best.count):
             now = best.refined.resonances
+            if not 0 < now.omega_z[r, i] < np.inf:
+                continue
             flipped = now.zeta_z.copy()
             flipped[r, i] = -flipped[r, i]
-            start = Resonances(now.omega_p, now.zeta_p, now.omega_z, flipped, now.gain, now.lag)
+            start = replace(now, zeta_z=flipped)
             residual = sum(
                 float(np.sum(np.abs(np.log(problem.values(start, k) / line.measured.values)) ** 2))
                 for k, line in enumerate(problem.lines)
@@ -282,15 +380,14 @@ def _signs_tried(problem: FitProblem, best: Candidate) -> Candidate:
                 continue
             refined = refine_directly(problem, start)
             found = replace(best, refined=refined, failure=_failure(problem, refined))
-            if _is_better(found, best):
+            if _is_better(problem, found, best):
                 best = found
     return best
 
 
 def _is_explained(problem: FitProblem, refined: Refined) -> bool:
     """Return whether the residual is no larger than coherence says: no other start can do better."""
-    known = problem.has_deviations and all(line.measured.averages for line in problem.lines)
-    return known and refined.reduced < EXPLAINED
+    return (problem.is_noise_known or problem.is_noise_estimated) and refined.reduced < EXPLAINED
 
 
 def _failure(problem: FitProblem, refined: Refined, *, is_quick: bool = False) -> Diagnostic | None:
@@ -301,6 +398,11 @@ def _failure(problem: FitProblem, refined: Refined, *, is_quick: bool = False) -
     if refined.covariance is None:
         return undetermined()
     low, high = problem.band
+    if not problem.has_base and np.any(refined.resonances.zeta_p >= 1):
+        i = int(np.argmax(refined.resonances.zeta_p))
+        message = f"pole pair {i + 1} has the damping ratio {refined.resonances.zeta_p[i]:.3g}"
+        hint = "ask for fewer resonances, or give what is known of the system with --base"
+        return Diagnostic("SF614", f"{message}: two real poles, no resonance", None, hint)
     for i, omega in enumerate(refined.resonances.omega_p.tolist()):
         if not low <= omega <= high:
             message = (
@@ -311,12 +413,43 @@ def _failure(problem: FitProblem, refined: Refined, *, is_quick: bool = False) -
     return None
 
 
+def with_own_noise(candidate: Candidate, problem: FitProblem) -> tuple[Candidate, FitProblem]:
+    """Return the fit with the noise estimated from its own residuals, where they are the smaller ones."""
+    refined, reference = candidate.refined, problem.reference
+    if reference is None or lack_of_fit(problem, refined) < UNLIKELY:
+        return candidate, problem
+    values = [problem.values(refined.resonances, r) for r in range(len(problem.lines))]
+    own = estimated(problem, values, refined.parameters)
+    again = refine_directly(own, refined.resonances, steps=2 * STEPS)
+    if _failure(own, again) is not None:
+        return candidate, problem
+    return replace(candidate, refined=again), own
+
+
+def is_rivalled(problem: FitProblem, candidate: Candidate) -> bool:
+    """Return whether another power of s describes the lines as well."""
+    if candidate.rival is None:
+        return False
+    return _merit(problem, candidate.rival) < _merit(problem, candidate.refined) + CLEAR
+
+
+def lack_of_fit(problem: FitProblem, refined: Refined) -> float:
+    """Return how likely noise alone leaves so much more than a function without structure does."""
+    reference = problem.reference
+    if reference is None:
+        return 1.0
+    spare = max(reference.parameters - refined.parameters, 1)
+    freedom = max(2 * problem.count - reference.parameters, 1)
+    ratio = (refined.cost - reference.cost) / spare / (reference.cost / freedom)
+    return float(f.sf(ratio, spare, freedom)) if ratio > 0 else 1.0
+
+
 def _score(problem: FitProblem, candidate: Candidate, correlation: float) -> Score:
     """Return the criteria, with as many independent values as correlated lines are worth."""
     refined = candidate.refined
     size = 2 * problem.count / max(correlation, 1.0)
     parameters = refined.parameters
-    fit = size * float(np.log(max(refined.cost, np.finfo(float).tiny) / (2 * problem.count)))
+    fit = size * float(np.log(refined.cost / (2 * problem.count) + NEGLIGIBLE))
     spare = size - parameters - 1
     aicc = fit + 2 * parameters + (2 * parameters * (parameters + 1) / spare if spare > 0 else np.inf)
     return Score(

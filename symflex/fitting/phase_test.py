@@ -146,20 +146,17 @@ class _Search:
     """Fits of one response by resonances whose zeros lie in the left half plane."""
 
     def __init__(self, problem: FitProblem, response: int, fitted: Resonances) -> None:
-        self.single = replace(problem, lines=problem.lines[response : response + 1]).without_window()
+        # A dead time is no part of the question: it stays as it was fitted.
+        free = replace(problem.free, delay=False)
+        self.single = replace(
+            problem, lines=problem.lines[response : response + 1], delays=(), free=free
+        ).without_window()
         self.line: FittedLines = self.single.lines[0]
         size = self.line.omega.size
         self.noise: Real = np.zeros(size) if self.line.deviation is None else self.line.deviation
         self.weight: Real = 1 / np.hypot(self.noise, CAP)
         self.wanted: Real = np.log(np.abs(self.line.measured.values))
-        self.mirrored = type(fitted)(
-            fitted.omega_p,
-            fitted.zeta_p,
-            fitted.omega_z[response : response + 1],
-            np.maximum(np.abs(fitted.zeta_z[response : response + 1]), LOWEST_DAMPING),
-            fitted.gain[response : response + 1],
-            fitted.lag[response : response + 1],
-        )
+        self.mirrored = _mirrored(fitted.one(response))
 
     def level(self, model: Complex) -> Real:
         """Return the logarithm of the model's magnitude over the measured one."""
@@ -178,9 +175,8 @@ class _Search:
 
     def found(self, start: Resonances, kind: str) -> tuple[Resonances, float]:
         """Return where a start leads, and the lag [s]; ``kind`` is one of :data:`KINDS`."""
-        n = start.count
-        damping = slice(3 * n, 4 * n)
         free, omega = self.single.free, self.line.omega
+        damping = start.places(0, free)["zeta_z"]
         packed = start.pack(free)
         packed[damping] = np.log(packed[damping])
         turn = omega / omega[-1]
@@ -205,7 +201,7 @@ class _Search:
             now = resonances(vector)
             model, by = self.single.linearised(now, 0)
             by = by / model[:, None]
-            by[:, damping] *= now.zeta_z[0]
+            by[:, damping] *= now.zeta_z[0, now.has_zeros[0]]
             if kind == "magnitude":
                 return np.asarray(by.real * self.weight[:, None], np.float64)
             if kind == "lag":
@@ -219,6 +215,14 @@ class _Search:
             best = done.x
         lag = float(np.clip(best[-1], -MOST_LAG, MOST_LAG) / omega[-1]) if kind == "lag" else 0.0
         return resonances(best).ordered(), lag
+
+
+def _mirrored(fitted: Resonances) -> Resonances:
+    """Return the function with the same magnitude and all zeros in the left half plane."""
+    zeta = np.abs(fitted.zeta_z)
+    # Real zeros of opposite sign, mirrored, are an overdamped pair.
+    zeta = np.where(fitted.omega_z < 0, np.hypot(1, zeta), np.maximum(zeta, LOWEST_DAMPING))
+    return replace(fitted, omega_z=np.abs(fitted.omega_z), zeta_z=zeta)
 
 
 def _parted(frequency_hz: Real, difference: Real, noise: Real) -> tuple[PartedBand, ...]:

@@ -15,8 +15,6 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import eig
 
-from symflex.fitting.resonances import Resonances
-
 if TYPE_CHECKING:
     from symflex.fitting.problem import FitProblem
 
@@ -25,36 +23,101 @@ Complex = npt.NDArray[np.complex128]
 
 ITERATIONS = 25
 FIRST_DAMPING = 0.01
-SETTLED = 1e-8
+SETTLED = 1e-6
 LOWEST_DAMPING = 1e-4
-WIDER = 3.0
+SPARE = 2
+GENEROUS = 10
+"""Steps of a vector fit from which only a level of noise, or a first choice of poles, is taken."""
+LARGEST_START = 0.3
+FREE_POWERS = (-2, -1, 0, 1, 2)
+"""Beside the fractions where the power of s is not known: receptances to accelerances, free or held."""
 
 
-def start_from_vector_fitting(problem: FitProblem, count: int) -> Resonances | None:
-    """Return a start by relaxed vector fitting, None when it finds no such resonances."""
+def poles_from_vector_fitting(problem: FitProblem, count: int) -> list[Complex]:
+    """Return poles by relaxed vector fitting, begun in two ways.
+
+    From poles spread over the band; and from the most conspicuous poles of a function with two pairs more,
+    which noise, a close pair or a delay may take up on the way.
+    """
     low, high = problem.band
-    return _from_poles(problem, _relocated(problem, _spread(low, high, count)), count)
+    found = [relocated(problem, _spread(low, high, count))]
+    generous = relocated(problem, _spread(low, high, count + SPARE), GENEROUS)
+    found.append(relocated(problem, _conspicuous(problem, generous, count)))
+    return found
 
 
-def start_from_aaa(problem: FitProblem, count: int) -> Resonances | None:
-    """Return a start from the poles of an AAA approximant of the first response.
+def poles_from_aaa(problem: FitProblem, count: int) -> list[Complex]:
+    """Return the poles of an AAA approximant of the first response.
 
     Noise gives AAA spurious poles; of those in the band the ones with the largest residue over real part are
-    taken, and zeros and residues follow from linear least squares.
+    taken. Where noise has drowned some, approximants of a higher degree are tried.
     """
     line = problem.lines[0]
-    poles = _aaa_poles(line.omega, line.ratio, 2 * count)
     low, high = problem.band
-    wanted = [
-        (size, pole)
-        for size, pole in poles
-        if low <= abs(pole) <= high and abs(pole.real) < 0.5 * abs(pole) and pole.imag > 0
-    ]
-    chosen = sorted(wanted, key=lambda item: -item[0])[:count]
-    if len(chosen) < count:
-        return None
-    upper = np.array([complex(-max(abs(p.real), LOWEST_DAMPING * abs(p)), p.imag) for _, p in chosen])
-    return _from_poles(problem, upper[np.argsort(upper.imag)], count)
+    for degree in (2 * count, 2 * count + SPARE, 3 * count + SPARE):
+        poles = _aaa_poles(line.omega, problem.quotient(0), degree)
+        wanted = [
+            (size, pole)
+            for size, pole in poles
+            if low <= abs(pole) <= high and abs(pole.real) < 0.5 * abs(pole) and pole.imag > 0
+        ]
+        chosen = sorted(wanted, key=lambda item: -item[0])[:count]
+        if len(chosen) == count:
+            upper = np.array([complex(-max(abs(p.real), LOWEST_DAMPING * abs(p)), p.imag) for _, p in chosen])
+            upper = upper[np.argsort(upper.imag)]
+            return [upper, relocated(problem, upper)]
+    return []
+
+
+def generous_fit(problem: FitProblem, count: int) -> tuple[list[Complex], int]:
+    """Return what a rational function without structure makes of the lines, and its number of parameters.
+
+    Its poles are shared; each response has residues and powers of s of its own.
+    """
+    low, high = problem.band
+    poles = relocated(problem, _spread(low, high, count), GENEROUS)
+    values = []
+    for r, line in enumerate(problem.lines):
+        basis, weight = _local(problem, line.omega, poles), _weights(problem, r)
+        solved = _solved(weight[:, None] * basis, weight * problem.quotient(r))
+        values.append(basis @ solved * (line.measured.values / problem.quotient(r)))
+    return values, 2 * count + len(values) * (2 * count + len(_powers(problem)))
+
+
+def _conspicuous(problem: FitProblem, poles: Complex, count: int) -> Complex:
+    """Return the poles in the band whose peaks stand out most against the response there."""
+    low, high = problem.band
+    size = np.zeros(poles.size)
+    for r, line in enumerate(problem.lines):
+        quotient, weight = problem.quotient(r), _weights(problem, r)
+        basis = _local(problem, line.omega, poles)
+        solved = _solved(weight[:, None] * basis, weight * quotient)
+        for i in range(poles.size):
+            share = np.abs(basis[:, 2 * i : 2 * i + 2] @ solved[2 * i : 2 * i + 2]) * weight
+            size[i] += float(np.sum(share**2))
+    size = np.where((np.abs(poles) >= low) & (np.abs(poles) <= high), size, 0.0)
+    # A smooth rise is no resonance, however large it is.
+    size = size * np.minimum(1.0, LARGEST_START / (-poles.real / np.abs(poles)))
+    chosen = np.sort(np.argsort(-size, kind="stable")[:count])
+    return poles[chosen]
+
+
+def _powers(problem: FitProblem) -> tuple[int, ...]:
+    """Return the powers of s beside the partial fractions."""
+    return (0,) if len(problem.slopes) == 1 else FREE_POWERS
+
+
+def _local(problem: FitProblem, omega: Real, poles: Complex) -> Complex:
+    middle = np.exp(np.mean(np.log(problem.band)))
+    x = 1j * omega[:, None] / middle
+    return np.concatenate((_basis(omega, poles), *(x ** float(p) for p in _powers(problem))), axis=1)
+
+
+def _solved(matrix: Complex, target: Complex) -> Real:
+    """Return the real solution of a complex system in the sense of least squares."""
+    stacked, right = np.concatenate((matrix.real, matrix.imag)), np.concatenate((target.real, target.imag))
+    norms = np.maximum(np.linalg.norm(stacked, axis=0), np.finfo(float).tiny)
+    return np.asarray(np.linalg.lstsq(stacked / norms, right, rcond=None)[0] / norms, np.float64)
 
 
 def _spread(low: float, high: float, count: int) -> Complex:
@@ -67,8 +130,8 @@ def _spread(low: float, high: float, count: int) -> Complex:
 def _weights(problem: FitProblem, response: int) -> Real:
     """Return weights of the quotient's lines: over its standard deviation, or else over its magnitude."""
     line = problem.lines[response]
-    size = np.abs(line.ratio)
-    return 1 / (size if line.deviation is None else size * np.hypot(line.deviation, 0.01))
+    size = np.abs(problem.quotient(response))
+    return np.asarray(1 / (size if line.deviation is None else size * np.hypot(line.deviation, 0.01)))
 
 
 def _basis(omega: Real, poles: Complex) -> Complex:
@@ -95,24 +158,23 @@ def _eigenvalues(matrix: Real) -> Complex:
     return np.asarray(np.linalg.eigvals(matrix), np.complex128)
 
 
-def _relocated(problem: FitProblem, poles: Complex) -> Complex:
+def relocated(problem: FitProblem, poles: Complex, iterations: int = ITERATIONS) -> Complex:
     """Return the poles after relaxed vector fitting; pairs stay pairs, and stay stable."""
-    for _ in range(ITERATIONS):
-        columns = 2 * poles.size
+    quotients = [problem.quotient(r) for r in range(len(problem.lines))]
+    for _ in range(iterations):
         rows, right = [], []
         total = 0.0
         for r, line in enumerate(problem.lines):
-            basis, weight = _basis(line.omega, poles), _weights(problem, r)
-            ones = np.ones((line.omega.size, 1))
-            local = np.concatenate((basis, ones), axis=1)
-            scaled = -line.ratio[:, None] * np.concatenate((basis, ones), axis=1)
-            block = weight[:, None] * np.concatenate((local, scaled), axis=1)
+            weight = _weights(problem, r)
+            local = _local(problem, line.omega, poles)
+            shared = np.concatenate((_basis(line.omega, poles), np.ones((line.omega.size, 1))), axis=1)
+            block = weight[:, None] * np.concatenate((local, -quotients[r][:, None] * shared), axis=1)
             block = np.concatenate((block.real, block.imag))
             # Only what the shared part needs is kept of each response (Deschrijver et al. 2008).
             _, upper = np.linalg.qr(block)
-            rows.append(upper[columns + 1 :, columns + 1 :])
+            rows.append(upper[local.shape[1] :, local.shape[1] :])
             right.append(np.zeros(rows[-1].shape[0]))
-            total += float(np.linalg.norm(weight * np.abs(line.ratio))) ** 2
+            total += float(np.linalg.norm(weight * np.abs(quotients[r]))) ** 2
         size = sum(line.omega.size for line in problem.lines)
         mean = np.sqrt(total) / size
         summed = np.sum(
@@ -130,6 +192,8 @@ def _relocated(problem: FitProblem, poles: Complex) -> Complex:
         a, b = _state_matrix(poles)
         direct = solution[-1] if abs(solution[-1]) > SETTLED else SETTLED
         moved = _upper(_eigenvalues(a - np.outer(b, solution[:-1]) / direct), poles.size)
+        if moved.size < poles.size:
+            break
         change = np.max(np.abs(moved - poles) / np.abs(poles))
         poles = moved
         if change < SETTLED:
@@ -148,61 +212,6 @@ def _upper(roots: Complex, count: int) -> Complex:
     found = np.array(sorted(upper, key=lambda p: p.imag)[:count], dtype=np.complex128)
     least = LOWEST_DAMPING * np.abs(found)
     return np.where(-found.real < least, -least + 1j * found.imag, found)
-
-
-def _from_poles(problem: FitProblem, poles: Complex, count: int) -> Resonances | None:
-    """Return resonances with the given poles; zeros and gains by linear least squares."""
-    if poles.size != count:
-        return None
-    low, high = problem.band
-    omega_z, zeta_z, gains = [], [], []
-    for r, line in enumerate(problem.lines):
-        basis = np.concatenate((_basis(line.omega, poles), np.ones((line.omega.size, 1))), axis=1)
-        weight = _weights(problem, r)
-        matrix = weight[:, None] * basis
-        stacked = np.concatenate((matrix.real, matrix.imag))
-        target = weight * line.ratio
-        norms = np.maximum(np.linalg.norm(stacked, axis=0), np.finfo(float).tiny)
-        solved = np.linalg.lstsq(stacked / norms, np.concatenate((target.real, target.imag)), rcond=None)[0]
-        solved = solved / norms
-        a, b = _state_matrix(poles)
-        direct = solved[-1] if abs(solved[-1]) > SETTLED * np.abs(line.ratio).max() else SETTLED
-        zeros = _eigenvalues(a - np.outer(b, solved[:-1]) / direct)
-        pairs = _zero_pairs(zeros, low / WIDER, high * WIDER)
-        if len(pairs) != count:
-            return None
-        omega_z.append([p[0] for p in pairs])
-        zeta_z.append([p[1] for p in pairs])
-        sign = np.sign(solved[-1]) or 1.0
-        gains.append(_gain(problem, r, poles, pairs, float(sign)))
-    found = Resonances(
-        np.abs(poles), -poles.real / np.abs(poles), np.array(omega_z), np.array(zeta_z), np.array(gains)
-    )
-    return found.ordered()
-
-
-def _gain(
-    problem: FitProblem, response: int, poles: Complex, pairs: list[tuple[float, float]], sign: float
-) -> float:
-    if not problem.free.gain:
-        return 1.0
-    line = problem.lines[response]
-    table = np.array(pairs)
-    one = Resonances(
-        np.abs(poles), -poles.real / np.abs(poles), table[None, :, 0], table[None, :, 1], np.ones(1)
-    )
-    return sign * float(np.exp(np.median(np.log(np.abs(line.ratio / one.factor(0, line.omega))))))
-
-
-def _zero_pairs(zeros: Complex, low: float, high: float) -> list[tuple[float, float]]:
-    """Return natural frequency, within limits, and damping ratio of pairs of zeros."""
-    scale = np.abs(zeros).max()
-    pairs = [(abs(z), -z.real / abs(z)) for z in zeros if z.imag > 1e-9 * scale]
-    real = sorted(z.real for z in zeros if abs(z.imag) <= 1e-9 * scale)
-    for first, second in zip(real[0::2], real[1::2], strict=False):
-        centre = np.sqrt(max(abs(first * second), 1e-12 * scale**2))
-        pairs.append((centre, float(np.clip(-(first + second) / (2 * centre), -1, 1))))
-    return sorted((float(np.clip(w, low, high)), float(z)) for w, z in pairs)
 
 
 def _aaa_poles(omega: Real, values: Complex, degree: int) -> list[tuple[float, complex]]:

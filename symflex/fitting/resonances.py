@@ -1,36 +1,44 @@
-"""The fitted factor: a gain and a product of simple resonances, with its derivatives.
+"""The fitted factor: a gain, a power of s and a product of simple resonances, with its derivatives.
 
-    g prod_i (omega_pi/omega_zi)^2 (s^2 + 2 zeta_zi omega_zi s + omega_zi^2)/(s^2 + 2 zeta_pi omega_pi s +
-    omega_pi^2)
+    g s^k prod_i (omega_pi/omega_zi)^2 (s^2 + 2 zeta_zi omega_zi s + omega_zi^2)/(s^2 + 2 zeta_pi omega_pi s +
+    omega_pi^2) / (1 + lag s) exp(-delay s)
 
-(Eppinger & Seering 1988, section "Polynomial Resonance Model"). Several responses share the poles.
+(Eppinger & Seering 1988, section "Polynomial Resonance Model"). Several responses share the poles. A response
+may have fewer pairs of zeros than of poles, as transfer functions between two points have: a pair that is not
+there has its natural frequency at infinity, where its factor is 1.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
 
 Real = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
-
+Whole = npt.NDArray[np.int64]
+Mask = npt.NDArray[np.bool_]
 
 MILLISECOND = 1e-3
 
 
 @dataclass(frozen=True, slots=True)
 class Free:
-    """What is fitted of each response besides its resonances: a gain, a lag of the sensor."""
+    """What is fitted of each response besides its resonances: a gain, a lag of the sensor, a dead time.
+
+    A lag may be negative, a lead, where ``lag_sign`` says so.
+    """
 
     gain: bool = False
     lag: bool = False
+    delay: bool = False
+    lag_sign: bool = False
 
     @property
     def count(self) -> int:
         """How many parameters that are."""
-        return self.gain + self.lag
+        return self.gain + self.lag + self.delay
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,11 +51,17 @@ class Resonances:
         Natural frequencies [rad/s], ascending, and damping ratios of the poles.
     omega_z, zeta_z : array of float, shape (m, n)
         Those of the zeros, ascending in each response. A negative damping ratio is a pair of zeros in the
-        right half plane.
+        right half plane. Infinite where a response has fewer pairs of zeros. A negative frequency -w stands
+        for two real zeros of opposite sign, the factor 1 + 2 zeta s/w - (s/w)^2: transfer functions of
+        beams have them.
     gain : array of float, shape (m,)
         What stands in front of each response.
     lag : array of float, shape (m,)
         Time constant of the sensor of each response [s], a factor 1/(1 + lag s); by default 0.
+    delay : array of float, shape (m,)
+        Dead time of each response [s], a factor exp(-delay s); by default 0.
+    slope : array of int, shape (m,)
+        The power of s of each response; by default 0.
 
     Examples
     --------
@@ -62,10 +76,14 @@ class Resonances:
     zeta_z: Real
     gain: Real
     lag: Real = field(default_factory=lambda: np.zeros(0))
+    delay: Real = field(default_factory=lambda: np.zeros(0))
+    slope: Whole = field(default_factory=lambda: np.zeros(0, np.int64))
 
     def __post_init__(self) -> None:
-        if not self.lag.size:
-            object.__setattr__(self, "lag", np.zeros(self.gain.size))
+        for name in ("lag", "delay", "slope"):
+            if not getattr(self, name).size:
+                kind = np.int64 if name == "slope" else np.float64
+                object.__setattr__(self, name, np.zeros(self.gain.size, kind))
 
     @staticmethod
     def of(modes: list[tuple[float, float, float, float]], gain: float = 1.0) -> Resonances:
@@ -85,81 +103,133 @@ class Resonances:
         """How many responses share the poles."""
         return self.gain.size
 
+    @property
+    def has_zeros(self) -> Mask:
+        """Which pairs of zeros are there, shape (m, n)."""
+        return np.isfinite(self.omega_z)
+
     def ordered(self) -> Resonances:
         """Return the same product with poles, and zeros of each response, in ascending order.
 
         A product does not know which zero belongs to which pole; in this order it has one spelling.
         """
         poles = np.argsort(self.omega_p, kind="stable")
-        zeros = np.argsort(self.omega_z, axis=1, kind="stable")
-        return Resonances(
-            self.omega_p[poles],
-            self.zeta_p[poles],
-            np.take_along_axis(self.omega_z, zeros, 1),
-            np.take_along_axis(self.zeta_z, zeros, 1),
-            self.gain,
-            self.lag,
+        zeros = np.argsort(np.abs(self.omega_z), axis=1, kind="stable")
+        return replace(
+            self,
+            omega_p=self.omega_p[poles],
+            zeta_p=self.zeta_p[poles],
+            omega_z=np.take_along_axis(self.omega_z, zeros, 1),
+            zeta_z=np.take_along_axis(self.zeta_z, zeros, 1),
+        )
+
+    def one(self, response: int) -> Resonances:
+        """Return those of one response."""
+        r = slice(response, response + 1)
+        return replace(
+            self,
+            omega_z=self.omega_z[r],
+            zeta_z=self.zeta_z[r],
+            gain=self.gain[r],
+            lag=self.lag[r],
+            delay=self.delay[r],
+            slope=self.slope[r],
         )
 
     def factor(self, response: int, omega: Real) -> Complex:
         """Return the product with the response's gain at ``1j*omega``, shape (k,)."""
-        value: Complex = self.gain[response] / (1 + 1j * omega * self.lag[response])
+        s = 1j * omega
+        value: Complex = self.gain[response] / (1 + s * self.lag[response])
+        if self.slope[response]:
+            value = value * s ** float(self.slope[response])
+        if self.delay[response]:
+            value = value * np.exp(-s * self.delay[response])
         for i in range(self.count):
             above = _quadratic(omega, self.omega_z[response, i], self.zeta_z[response, i])
             value = value * above / _quadratic(omega, self.omega_p[i], self.zeta_p[i])
         return value
 
+    def places(self, response: int, free: Free) -> dict[str, slice]:
+        """Return where the parameters of a response stand in the packed vector, by their names."""
+        shown = self.has_zeros.sum(axis=1)
+        at = 2 * self.count + sum(2 * int(shown[r]) + free.count for r in range(response))
+        n = int(shown[response])
+        found = {"omega_z": slice(at, at + n), "zeta_z": slice(at + n, at + 2 * n)}
+        at += 2 * n
+        for name in ("gain", "lag", "delay"):
+            size = int(getattr(free, name))
+            found[name] = slice(at, at + size)
+            at += size
+        return found
+
+    def size(self, free: Free) -> int:
+        """Return how many parameters there are."""
+        return 2 * self.count + 2 * int(self.has_zeros.sum()) + self.responses * free.count
+
     def pack(self, free: Free) -> Real:
         """Return the parameters as one vector.
 
-        ln omega_p, ln zeta_p; then per response ln omega_z, zeta_z and, when they are free, ln abs(gain)
-        and the lag in milliseconds.
+        ln omega_p, ln zeta_p; then per response ln abs(omega_z), zeta_z of the zeros that are there and, when
+        they are free, ln abs(gain), the lag and the delay in milliseconds.
         """
         parts = [np.log(self.omega_p), np.log(self.zeta_p)]
         for r in range(self.responses):
-            parts += [np.log(self.omega_z[r]), self.zeta_z[r]]
+            shown = self.has_zeros[r]
+            parts += [np.log(np.abs(self.omega_z[r, shown])), self.zeta_z[r, shown]]
             if free.gain:
                 parts.append(np.log(np.abs(self.gain[r : r + 1])))
             if free.lag:
                 parts.append(self.lag[r : r + 1] / MILLISECOND)
+            if free.delay:
+                parts.append(self.delay[r : r + 1] / MILLISECOND)
         return np.concatenate(parts)
 
     def unpack(self, vector: Real, free: Free) -> Resonances:
         """Return the resonances of a vector as :meth:`pack` makes it; gains keep their sign."""
         n = self.count
+        omega_z, zeta_z = self.omega_z.copy(), self.zeta_z.copy()
+        gain, lag, delay = self.gain.copy(), self.lag.copy(), self.delay.copy()
+        for r in range(self.responses):
+            shown, at = self.has_zeros[r], self.places(r, free)
+            omega_z[r, shown] = np.sign(omega_z[r, shown]) * np.exp(vector[at["omega_z"]])
+            zeta_z[r, shown] = vector[at["zeta_z"]]
+            if free.gain:
+                gain[r : r + 1] = np.sign(gain[r]) * np.exp(vector[at["gain"]])
+            if free.lag:
+                lag[r : r + 1] = MILLISECOND * vector[at["lag"]]
+            if free.delay:
+                delay[r : r + 1] = MILLISECOND * vector[at["delay"]]
         omega_p, zeta_p = np.exp(vector[:n]), np.exp(vector[n : 2 * n])
-        rest = vector[2 * n :].reshape(self.responses, 2 * n + free.count)
-        gain = np.sign(self.gain) * np.exp(rest[:, 2 * n]) if free.gain else self.gain
-        lag = MILLISECOND * rest[:, -1] if free.lag else self.lag
-        return Resonances(omega_p, zeta_p, np.exp(rest[:, :n]), rest[:, n : 2 * n], gain, lag)
+        return Resonances(omega_p, zeta_p, omega_z, zeta_z, gain, lag, delay, self.slope)
 
     def log_derivatives(self, response: int, omega: Real, free: Free) -> Complex:
         """Return d ln(factor) by the packed parameters, shape (k, size of the vector)."""
-        n, m = self.count, self.responses
-        width = 2 * n + free.count
-        found = np.zeros((omega.size, 2 * n + m * width), dtype=np.complex128)
-        start = 2 * n + response * width
+        n = self.count
+        found = np.zeros((omega.size, self.size(free)), dtype=np.complex128)
+        at = self.places(response, free)
         for i in range(n):
             by_omega, by_zeta = _log_slopes(omega, self.omega_p[i], self.zeta_p[i])
             found[:, i], found[:, n + i] = -by_omega, -by_zeta * self.zeta_p[i]
+        for k, i in enumerate(np.flatnonzero(self.has_zeros[response]).tolist()):
             by_omega, by_zeta = _log_slopes(omega, self.omega_z[response, i], self.zeta_z[response, i])
-            found[:, start + i], found[:, start + n + i] = by_omega, by_zeta
-        if free.gain:
-            found[:, start + 2 * n] = 1
-        if free.lag:
-            s = 1j * omega
-            found[:, start + width - 1] = -MILLISECOND * s / (1 + s * self.lag[response])
+            found[:, at["omega_z"].start + k], found[:, at["zeta_z"].start + k] = by_omega, by_zeta
+        s = 1j * omega[:, None]
+        found[:, at["gain"]] = 1
+        found[:, at["lag"]] = -MILLISECOND * s / (1 + s * self.lag[response])
+        found[:, at["delay"]] = -MILLISECOND * s
         return found
 
 
 def _quadratic(omega: Real, centre: float, zeta: float) -> Complex:
-    """Return (s^2 + 2 zeta centre s + centre^2)/centre^2 at s = j omega."""
-    x = omega / centre
-    return 1 - x * x + 2j * zeta * x
+    """Return 1 + 2 zeta s/centre + (s/centre)^2 at s = j omega; a negative centre negates the square."""
+    x = omega / abs(centre)
+    value: Complex = 1 - np.sign(centre) * x * x + 2j * zeta * x
+    return value
 
 
 def _log_slopes(omega: Real, centre: float, zeta: float) -> tuple[Complex, Complex]:
     """Return the derivatives of ln of :func:`_quadratic` by ln(centre) and by zeta."""
-    x = omega / centre
-    value = 1 - x * x + 2j * zeta * x
-    return np.asarray((2 * x * x - 2j * zeta * x) / value, np.complex128), 2j * x / value
+    x = omega / abs(centre)
+    value = _quadratic(omega, centre, zeta)
+    curved = 2 * np.sign(centre) * x * x
+    return np.asarray((curved - 2j * zeta * x) / value, np.complex128), 2j * x / value
