@@ -57,7 +57,8 @@ class Resonances:
     gain : array of float, shape (m,)
         What stands in front of each response.
     lag : array of float, shape (m,)
-        Time constant of the sensor of each response [s], a factor 1/(1 + lag s); by default 0.
+        Time constant of the sensor of each response [s], a factor 1/(1 + lag s), or where it is negative, a
+        lead, 1 - lag s; by default 0.
     delay : array of float, shape (m,)
         Dead time of each response [s], a factor exp(-delay s); by default 0.
     slope : array of int, shape (m,)
@@ -139,7 +140,8 @@ class Resonances:
     def factor(self, response: int, omega: Real) -> Complex:
         """Return the product with the response's gain at ``1j*omega``, shape (k,)."""
         s = 1j * omega
-        value: Complex = self.gain[response] / (1 + s * self.lag[response])
+        lag = self.lag[response]
+        value: Complex = self.gain[response] * (1 + s * abs(lag)) ** (-1.0 if lag >= 0 else 1.0)
         if self.slope[response]:
             value = value * s ** float(self.slope[response])
         if self.delay[response]:
@@ -215,7 +217,7 @@ class Resonances:
             found[:, at["omega_z"].start + k], found[:, at["zeta_z"].start + k] = by_omega, by_zeta
         s = 1j * omega[:, None]
         found[:, at["gain"]] = 1
-        found[:, at["lag"]] = -MILLISECOND * s / (1 + s * self.lag[response])
+        found[:, at["lag"]] = -MILLISECOND * s / (1 + s * abs(self.lag[response]))
         found[:, at["delay"]] = -MILLISECOND * s
         return found
 

@@ -183,7 +183,8 @@ def deviations(case, poles, zeros, slope, gain, delay):
     for true, got in zip(case.poles, poles, strict=True):
         found += [(got[0] - true[0]) / got[1], (got[2] - true[1]) / got[3]]
     for omega, zeta in case.zeros:
-        near = min(zeros, key=lambda z, w=omega: abs(np.log(z[0] / w)), default=None)
+        # The nearest in the plane: two pairs may lie at the same frequency on either side of the axis.
+        near = min(zeros, key=lambda z, w=omega, d=zeta: np.hypot(z[0] / w - 1, z[2] - d), default=None)
         if near is None or not near[1] < near[0]:
             found += [np.inf]
             continue
@@ -210,9 +211,8 @@ def judged(case, fit):
     kept = np.isfinite(found.omega_z[0]) & (found.omega_z[0] > 0)
     zeros = np.column_stack((found.omega_z[0], errors.omega_z[0], found.zeta_z[0], errors.zeta_z[0]))[kept]
     gain = (found.gain[0], errors.gain[0])
-    delay = (getattr(found, "delay", [0])[0], getattr(errors, "delay", [1])[0])
-    slope = fit.bases[0].slope
-    return deviations(case, poles, zeros, slope, gain, delay), bool(getattr(fit, "poor", fit.warnings))
+    delay = (found.delay[0], errors.delay[0])
+    return deviations(case, poles, zeros, fit.bases[0].slope, gain, delay), bool(fit.poor)
 
 
 def study(count, seed=1, *, modes_given=True, show=None, first=0):
@@ -229,7 +229,7 @@ def study(count, seed=1, *, modes_given=True, show=None, first=0):
         try:
             fit = fit_resonances([data], modes=len(case.poles) if modes_given else None, **more)
             off, poor = judged(case, fit)
-            words = str(getattr(fit, "poor", ""))
+            words = "; ".join(fit.poor)
         except SymflexError as error:
             off, poor, words = np.array([np.inf]), True, error.diagnostics[0].code
         results.append((case.shape, off, poor))
@@ -268,15 +268,13 @@ def main(arguments):
 
     def show(number, case, off, poor, words):
         if off.max() > limit_for(off.size) or poor:
-            kind = f"{'log' if case.is_logarithmic else 'lin'}{'+' if case.is_additive else ''}"
+            kind = "logarithmic" if case.is_logarithmic else "linear"
             worst = " ".join(f"{x:.1f}" for x in off)
-            print(
-                f"{number:4d} {case.shape:20} {case.noise_percent} % {kind:4} {case.values.size:5d} lines",
-                f"n={len(case.poles)} poor={poor} {worst} {words}",
-                flush=True,
-            )
+            noise = f"{case.noise_percent} % {'of the mean' if case.is_additive else 'of each line'}"
+            print(f"{number:4d} {case.shape}, {case.values.size} {kind} lines, {noise}: {worst}", end=" ")
+            print(f"poor: {words}" if poor else "", flush=True)
 
-    for given in (True, False)[: int(arguments[2]) if len(arguments) > 2 else 2]:
+    for given in (True, False):
         print("number of resonances", "given" if given else "chosen")
         for name, value in summary(study(count, seed, modes_given=given, show=show)).items():
             print(f"  {name}: {value}")
