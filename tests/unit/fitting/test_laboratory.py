@@ -51,6 +51,7 @@ def test_responses_measured_as_different_quantities_have_powers_of_s_of_their_ow
     assert fit.resonances.gain == pytest.approx([2.5, 2.5], rel=0.01)
 
 
+@pytest.mark.slow
 def test_a_case_of_every_shape_is_right():
     results = study(len(SHAPES), seed=11)
     assert [shape for shape, *_ in results] == list(SHAPES)
