@@ -48,6 +48,7 @@ if TYPE_CHECKING:
         loads,
         write_report,
     )
+    from symflex.budget import Budget
     from symflex.cache import derivation_cache
     from symflex.errors import SymflexError
     from symflex.measurement import MeasuredResponse, read_measurement
@@ -56,6 +57,7 @@ __version__ = "0.1.0"
 
 _HOME = {
     "BoundTransferFunction": "symflex.api",
+    "Budget": "symflex.budget",
     "Fit": "symflex.api",
     "Form": "symflex.api",
     "MeasuredResponse": "symflex.measurement",
@@ -80,6 +82,7 @@ _HOME = {
 
 __all__ = [
     "BoundTransferFunction",
+    "Budget",
     "Fit",
     "Form",
     "MeasuredResponse",

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 from symflex import equations as equations_room
 from symflex import spec as spec_room
 from symflex import transfer as transfer_room
+from symflex.budget import spend
 from symflex.cache import entered_cache
 from symflex.elimination import eliminate, expanded_terms, explain_singular, is_singular
 from symflex.errors import BudgetError, Diagnostic, FitError, Source, SpecError, SymflexError, UsageError
@@ -203,6 +204,7 @@ def derive_as(
     try:
         return derive_all(model, pairs), ""
     except BudgetError as error:
+        spend()
         if model.is_distributed:
             raise
         return derive_nested(model, pairs), f"in nested form: {error.diagnostics[0].message}"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from symflex.roots.budget import Silent
+from symflex.budget import Silent
 
 if TYPE_CHECKING:
     from datetime import date

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from symflex.audit.field import GrowError, UnreadError
 from symflex.audit.notation import in_symbols, monomial_expression, solve_linear, symbols_of
 from symflex.audit.reading import Formula, Reading, read
+from symflex.budget import spend
 from symflex.errors import BudgetError, SpecError
 from symflex.expressions import (
     Call,
@@ -110,6 +111,7 @@ def _in_expression(reading: Reading) -> Iterator[Correction]:
         parts += [(p, "scale") for p, _ in _parts(formula.scale)]
     wanted, work = [], 0
     for part, place in parts[:MOST_PARTS]:
+        spend()
         if work > MOST_WORK:
             break
         try:
@@ -121,6 +123,7 @@ def _in_expression(reading: Reading) -> Iterator[Correction]:
             work += sum(len(f) for f, _ in value.factors)
     for rule in (_times_number, _other_exponent, _other_symbol, _times_monomial, _other_terms, _more_terms):
         for part, place, value in wanted:
+            spend()
             try:
                 yield from rule(reading, part, place, value)
             except (UnreadError, GrowError, BudgetError, ZeroDivisionError):

@@ -11,6 +11,7 @@ from symflex.audit.laws import LawCheck, check_laws
 from symflex.audit.notation import derived_in_symbols, monomial_expression
 from symflex.audit.numeric import Comparison, Deviation, Numbers, compare, largest_deviation, numbers_of
 from symflex.audit.reading import Formula, Reading, formula_of, read
+from symflex.budget import spend
 from symflex.errors import BudgetError
 
 if TYPE_CHECKING:
@@ -126,6 +127,7 @@ def judge(tf: TransferFunction, published: Published) -> Audit:
     except UnreadError as reason:
         unread = str(reason)
     except BudgetError:
+        spend()
         unread, reading = "it expands beyond the limits of size", None
     numbers = numbers_of(formula, tf, tf.model)
     found = compare(numbers)
@@ -149,6 +151,7 @@ def _difference(audit: Audit, reading: Reading | None, numbers: Numbers) -> Audi
             if ratio is None and correction is None:
                 derived = derived_in_symbols(reading)
         except BudgetError:  # what is not found within the limits is not reported
+            spend()
             reading = None
     return Audit(
         audit.tf,

@@ -9,6 +9,11 @@ from io import StringIO, TextIOWrapper
 
 import click
 
+BUDGET_EXCEEDED = 5
+"""An exit code."""
+WATCHED = "watched"
+"""What the context holds of a command line that was started as a program, not called from Python."""
+
 COMMANDS: dict[str, str] = {
     "check": "Parse and resolve a specification; report every problem at once.",
     "derive": "Print transfer functions in closed form.",
@@ -88,13 +93,29 @@ def main(arguments: list[str] | None = None) -> None:
         # A unit such as µm must not stop a command where the terminal's encoding lacks the character.
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
-    sys.exit(run(arguments))
+    code = run(arguments, is_program=True)
+    if code == BUDGET_EXCEEDED:
+        # Taking a large computation apart piece by piece would take time that is over.
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(code)
+    sys.exit(code)
 
 
-def run(arguments: list[str] | None = None) -> int:
-    """Run the command line and return the exit code."""
+def run(arguments: list[str] | None = None, *, is_program: bool = False) -> int:
+    """Run the command line and return the exit code.
+
+    Parameters
+    ----------
+    arguments : list of str, optional
+        Those of the process by default.
+    is_program : bool
+        This process does nothing else, so that a command may work in one of its own under watch.
+    """
     try:
-        result = group.main(args=arguments, prog_name="symflex", standalone_mode=False)
+        result = group.main(
+            args=arguments, prog_name="symflex", standalone_mode=False, obj=WATCHED if is_program else None
+        )
     except click.exceptions.Exit as stop:
         return stop.exit_code
     except click.exceptions.Abort:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, note, outside, reporting, say, terminal_width
 from symflex.cli.setting import setting
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 @click.option("--tf", "tfs", multiple=True, metavar="OUT/IN", help="Only this formula; repeatable.")
 @click.option("--strict", is_flag=True, help="Exit with code 4 unless every formula is proved equal.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@budgeted
 @caching
 @reporting
 @setting

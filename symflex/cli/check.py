@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from symflex.cli.budgeting import budgeted
 from symflex.cli.reporting import diagnostic_json, emit_json, listed, outside, reporting, say
 from symflex.cli.setting import setting
 from symflex.errors import SymflexError
@@ -14,6 +15,7 @@ from symflex.errors.diagnostic import printable
 @click.argument("spec", type=click.Path())
 @outside
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@budgeted
 @reporting
 @setting
 def command(spec: str, *, allow_outside: tuple[str, ...], settings: dict[str, str], as_json: bool) -> int:

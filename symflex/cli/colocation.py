@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, outside, reporting, say
 from symflex.cli.setting import setting
@@ -20,10 +21,8 @@ from symflex.errors import Diagnostic, UsageError
 @click.option(
     "--band", nargs=2, metavar="LO HI", help="Frequencies examined; by default those of [analysis]."
 )
-@click.option(
-    "--budget", type=click.FloatRange(min=0, min_open=True), metavar="SECONDS", help="Stop the search then."
-)
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@budgeted
 @caching
 @reporting
 @setting
@@ -37,7 +36,6 @@ def command(
     phase: str,
     magnitude: str,
     band: tuple[str, str] | None,
-    budget: float | None,
     as_json: bool,
 ) -> int:
     """Print up to which frequency an output of SPEC moves with a colocated one.
@@ -48,7 +46,6 @@ def command(
     """
     from symflex import pipeline
     from symflex.cli.roots import frequency_limit
-    from symflex.roots import Budget
 
     limits = None
     if band is not None:
@@ -65,7 +62,6 @@ def command(
         _tolerance(phase, "--phase", ("deg", "°"), "10 deg"),
         _tolerance(magnitude, "--magnitude", ("dB",), "1 dB"),
         limits,
-        Budget(budget),
     )
     if as_json:
         emit_json(found.to_json_dict())

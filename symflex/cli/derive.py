@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, note, outside, reporting, say, terminal_width
 from symflex.cli.setting import setting
@@ -58,6 +59,7 @@ def chosen_representation(representation: str, form: str | None) -> str:
 )
 @click.option("--json", "as_json", is_flag=True, help="The same as --format json.")
 @click.option("--digits", type=click.IntRange(1, 1000), default=6, show_default=True, help="Digits of zpk.")
+@budgeted
 @caching
 @reporting
 @setting

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
 from symflex.cli.derive import chosen_representation
 from symflex.cli.reporting import note, outside, reporting, say
@@ -54,6 +55,7 @@ class ExportCommand(click.Command):
 @click.option("-o", "--output", type=click.Path(), help="File to write; standard output by default.")
 @click.option("--minimal", "is_minimal", is_flag=True, help="state-space: without hidden states.")
 @click.option("--strict", is_flag=True, help="Exit with 4 when the verified accuracy falls short.")
+@budgeted
 @caching
 @reporting
 @setting

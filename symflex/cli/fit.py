@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, note, outside, reporting, say, terminal_width
 from symflex.errors import Diagnostic, FitError, SymflexError, UsageError
@@ -62,6 +63,7 @@ SUFFIXES = (".pdf", ".png", ".svg")
 @click.option("--plot", "figure", type=click.Path(), help="Figure to write: .pdf, .svg or .png.")
 @click.option("--strict", is_flag=True, help="A fit that is poor is exit code 4, and nothing is written.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@budgeted
 @caching
 @reporting
 def command(

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
 from symflex.cli.reporting import note, outside, reporting
 from symflex.cli.setting import setting
@@ -37,6 +38,7 @@ from symflex.errors import Diagnostic, UsageError
     help="Corner of the accelerometer [Hz]; 0 for none.",
 )
 @click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the random numbers.")
+@budgeted
 @caching
 @reporting
 @setting

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
 from symflex.cli.reporting import note, outside, reporting
 from symflex.cli.setting import setting
@@ -28,6 +29,7 @@ SWEEP = "sweep"
 @click.option("-o", "--output", type=click.Path(), help="File to write: .pdf, .pgf, .svg or .png.")
 @click.option("--width", metavar="ieee|a4|MM", help="Width of the figure: 88.5, 170 or so many mm.")
 @click.option("--font", metavar="FONT", help="times (the default), latex or sans.")
+@budgeted
 @caching
 @reporting
 @setting

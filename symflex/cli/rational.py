@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, note, outside, reporting, say
 from symflex.cli.setting import setting
@@ -24,6 +25,7 @@ from symflex.cli.setting import setting
     help="Poles and zeros, or residues.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@budgeted
 @caching
 @reporting
 @setting

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import click
 
+from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
 from symflex.cli.reporting import note, outside, reporting, say
 from symflex.errors import Diagnostic, UsageError
@@ -33,6 +34,7 @@ EPOCH_VARIABLE = "SOURCE_DATE_EPOCH"
     type=click.IntRange(1, 64),
     help="Models computed at once; as many as there are processors.",
 )
+@budgeted
 @caching
 @reporting
 def command(

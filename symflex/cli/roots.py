@@ -7,15 +7,21 @@ from typing import TYPE_CHECKING
 
 import click
 
+from symflex.budget import entered_budget
+from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, note, outside, reporting, say, terminal_width
+from symflex.cli.reporting import emit_json, note, outside, reporting, say, show_error, terminal_width
 from symflex.cli.setting import setting
-from symflex.errors import Diagnostic, UsageError
+from symflex.errors import BudgetError, Diagnostic, UsageError
 
 if TYPE_CHECKING:
+    from symflex.explanation import ZeroExplanation
     from symflex.roots import Region
+    from symflex.sensitivity import Sensitivity
 
 DIGITS_LIMIT = 10_000
+DERIVING = 0.5
+"""Seconds that deriving may take in any case, by which a command may exceed its time."""
 
 
 @click.command("roots")
@@ -33,12 +39,6 @@ DIGITS_LIMIT = 10_000
 )
 @click.option("--explain", is_flag=True, help="Say which constrained system's poles the zeros are.")
 @click.option(
-    "--budget",
-    type=click.FloatRange(min=0, min_open=True),
-    metavar="SECONDS",
-    help="Stop the search then; what was proved is shown.",
-)
-@click.option(
     "--sensitivity",
     "wanted",
     metavar="[PARAM]",
@@ -49,6 +49,7 @@ DIGITS_LIMIT = 10_000
 )
 @click.option("--strict", is_flag=True, help="Exit with code 4 also when a part of the region is left out.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@budgeted
 @caching
 @reporting
 @setting
@@ -63,7 +64,6 @@ def command(
     band: tuple[str, str] | None,
     region: tuple[str, str, str, str] | None,
     digits: int | None,
-    budget: float | None,
     wanted: tuple[str, ...],
     strict: bool,
     explain: bool,
@@ -82,21 +82,30 @@ def command(
     from symflex import pipeline
     from symflex.cli.progress import ProgressBar
     from symflex.emit.text import roots_text
-    from symflex.roots import Budget
 
     chosen = region_of(modes, mode, band, region)
-    model = pipeline.load(spec, allow_outside, settings)
-    pairs = pipeline.pick_pairs(model, [tf] if tf else [])
-    if tf is None and len(pairs) > 1:
-        others = ", ".join("/".join(pair) for pair in pairs[1:])
-        note(f"showing {'/'.join(pairs[0])}; choose with --tf: {others}")
-    shown = digits or model.analysis.digits or 15
-    (bound,) = pipeline.derive_bound(model, pairs[:1])
+    # However short the time is, what is sought is told, and how many roots there are.
+    with entered_budget().at_least(DERIVING).entered():
+        model = pipeline.load(spec, allow_outside, settings)
+        pairs = pipeline.pick_pairs(model, [tf] if tf else [])
+        if tf is None and len(pairs) > 1:
+            others = ", ".join("/".join(pair) for pair in pairs[1:])
+            note(f"showing {'/'.join(pairs[0])}; choose with --tf: {others}")
+        shown = digits or model.analysis.digits or 15
+        (bound,) = pipeline.derive_bound(model, pairs[:1])
     with ProgressBar() as bar:
-        found = pipeline.roots(bound, chosen, shown, Budget(budget, bar))
-    names = [] if "" in wanted else wanted
-    moved = pipeline.sensitivities(model, bound, found, names, shown) if wanted else ()
-    explained = pipeline.explain_zeros(model, bound, found) if explain else None
+        found = pipeline.roots(bound, chosen, shown, entered_budget().told(bar))
+    moved: tuple[Sensitivity, ...] = ()
+    explained: ZeroExplanation | None = None
+    is_over = found.certificate.is_exceeded
+    try:
+        if wanted:
+            names = [] if "" in wanted else wanted
+            moved = pipeline.sensitivities(model, bound, found, names, shown)
+        explained = pipeline.explain_zeros(model, bound, found) if explain else None
+    except BudgetError as error:
+        show_error(error)
+        wanted, is_over = (), True
     if as_json:
         more: dict[str, object] = {}
         if wanted:
@@ -116,12 +125,11 @@ def command(
             from symflex.explanation import explanation_text
 
             say("\n" + explanation_text(explained, terminal_width()))
-    certificate = found.certificate
-    if certificate.is_exceeded:
+    if is_over:
         return 5
     if any(m.status == "undecided" for m in moved):
         return 4
-    return 0 if certificate.certified and not (strict and found.excluded) else 4
+    return 0 if found.certificate.certified and not (strict and found.excluded) else 4
 
 
 def region_of(

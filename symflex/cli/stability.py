@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from symflex.budget import entered_budget
+from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, outside, reporting, say
 from symflex.cli.setting import setting
@@ -41,10 +43,8 @@ UNBOUNDED = ("inf", "-inf", "+inf")
 @click.option(
     "--digits", type=click.IntRange(1, DIGITS_LIMIT), help="Correct significant digits.  [default: 15]"
 )
-@click.option(
-    "--budget", type=click.FloatRange(min=0, min_open=True), metavar="SECONDS", help="Stop the search then."
-)
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@budgeted
 @caching
 @reporting
 @setting
@@ -57,7 +57,6 @@ def command(
     limits: tuple[str, str] | None,
     up_to: str | None,
     digits: int | None,
-    budget: float | None,
     as_json: bool,
 ) -> int:
     """Print for which values of K all poles of SPEC lie in the open left half plane.
@@ -72,7 +71,6 @@ def command(
     from symflex import pipeline
     from symflex.cli.progress import ProgressBar
     from symflex.emit.stability import stability_text
-    from symflex.roots import Budget
     from symflex.stability import pick_gain
 
     model = pipeline.load(spec, allow_outside, settings)
@@ -85,7 +83,7 @@ def command(
             gain,
             limits=chosen,
             digits=digits or model.analysis.digits or 15,
-            budget=Budget(budget, bar),
+            budget=entered_budget().told(bar),
             up_to=highest,
         )
     if as_json:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, note, outside, reporting, say, terminal_width
 from symflex.cli.roots import region_of
@@ -57,6 +58,7 @@ BUDGET_CODE = "SF5"
 )
 @click.option("--scheduler", metavar="tcp://HOST:PORT", help="Work on a dask.distributed cluster.")
 @click.option("--json", "as_json", is_flag=True, help="Print a summary as JSON.")
+@budgeted
 @caching
 @reporting
 @setting

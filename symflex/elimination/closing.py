@@ -11,6 +11,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from symflex.budget import spend
 from symflex.kernels import LAPLACE, Factored, Ring, expanded_length
 
 if TYPE_CHECKING:
@@ -125,6 +126,7 @@ def close(equations: Equations) -> ClosedSystem:
     forms = [r.form for r in equations.rows] + [o.form for o in equations.outputs]
     entries = [c for form in forms for _, c in form.terms] + [o.divisor for o in equations.outputs]
     for entry in entries:
+        spend()
         for factor, _ in entry.factors:
             if _is_symbolic(equations.ring, factor):
                 sums.setdefault(str(factor), factor)
@@ -142,6 +144,7 @@ def close(equations: Equations) -> ClosedSystem:
     def sparse(form: LinearForm) -> SparseRow:
         row: SparseRow = {}
         for variable, coefficient in form.terms:
+            spend()
             column, entry = columns[variable], closure.close(coefficient)
             row[column] = row[column] + entry if column in row else entry
         return {c: e for c, e in row.items() if not e.is_zero()}

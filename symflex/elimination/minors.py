@@ -11,6 +11,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Generic, TypeVar
 
+from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
 from symflex.kernels import Ring
 
@@ -23,8 +24,9 @@ if TYPE_CHECKING:
 
 MINOR_LIMIT = 200_000
 ROW_LIMIT = 700
-MEMORY_LIMIT = 400_000_000
-"""Bytes that all minors of a system may take together: a free chain of sixteen masses needs half of it."""
+MEMORY_LIMIT = 250_000_000
+"""Bytes that all minors of a system may take together: a free chain of sixteen masses needs 200 MB. The
+engine takes almost three times as much for a while."""
 
 Entry = TypeVar("Entry")
 Value = TypeVar("Value")
@@ -86,6 +88,7 @@ class LaplaceExpansion(ABC, Generic[Entry, Value]):
         wanted = [{columns} - self._known.keys()]
         count = len(self._known)
         for entries in self.rows:
+            spend()
             count += len(wanted[-1])
             if count > MINOR_LIMIT:
                 raise _too_large("the determinant has too many minors or terms")
@@ -93,6 +96,7 @@ class LaplaceExpansion(ABC, Generic[Entry, Value]):
             wanted.append(below - self._known.keys())
         for row in reversed(range(len(self.rows))):
             for each in wanted[row]:
+                spend()
                 known = self._expand(self.rows[row], row + 1, each)
                 self._known[each] = known
                 self._note(known)

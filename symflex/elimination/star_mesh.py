@@ -19,6 +19,7 @@ from dataclasses import dataclass, field
 from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
+from symflex.budget import spend
 from symflex.elimination.singular import explain_singular
 from symflex.elimination.straight_line import ONE, ZERO, Step, StraightLine, Workbench
 from symflex.errors import Diagnostic, ModelError
@@ -276,6 +277,7 @@ class _Run:
         ]
         heapify(heap)
         while heap:
+            spend()
             is_late, cost, is_balance, i = heappop(heap)
             row = rows[i]
             if row is None:

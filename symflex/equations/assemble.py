@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from graphlib import CycleError, TopologicalSorter
 from typing import TYPE_CHECKING
 
+from symflex.budget import spend
 from symflex.elements import ElementUse, LinearForm, Stamp, Terminal, Variable
 from symflex.elements.line import LineElement
 from symflex.equations.distributed import survey
@@ -191,6 +192,7 @@ class _Assembly:
             self._impose(solution, evaluator)
         outputs = [self._output(o.name, o.expression, evaluator) for o in self.model.outputs]
         if self.problems:
+            spend()
             too_large = all(d.code.startswith("SF5") for d in self.problems)
             raise (BudgetError if too_large else ModelError)(*self.problems)
         count = len(self.balance) + len(self.unknowns)

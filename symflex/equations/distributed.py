@@ -11,6 +11,7 @@ from fractions import Fraction
 from math import factorial
 from typing import TYPE_CHECKING
 
+from symflex.budget import spend
 from symflex.elements import LinearForm, Variable
 from symflex.elements.line import LineElement
 from symflex.equations.coefficients import read_equation
@@ -221,6 +222,7 @@ def survey(
     except SymflexError as error:
         problems.extend(error.diagnostics)
     if problems:
+        spend()
         raise (BudgetError if all(d.code.startswith("SF5") for d in problems) else ModelError)(*problems)
     if not (lines or delays or solutions):
         return None

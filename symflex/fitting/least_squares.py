@@ -22,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import least_squares
 
+from symflex.budget import spend
 from symflex.fitting.line_errors import score_covariance
 
 if TYPE_CHECKING:
@@ -119,9 +120,11 @@ def _descend(problem: FitProblem, start: Resonances, kind: str, steps: int) -> t
         return start.unpack(np.clip(vector, packed - EDGE, packed + EDGE), problem.free)
 
     def residual(vector: Real) -> Real:
+        spend()
         return _parts(np.concatenate(_residuals(problem, resonances(vector), kind)))
 
     def slopes(vector: Real) -> Real:
+        spend()
         return _parts(np.concatenate(_slopes(problem, resonances(vector), kind)))
 
     limits = np.full(packed.size, -np.inf)

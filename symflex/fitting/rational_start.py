@@ -15,6 +15,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import eig
 
+from symflex.budget import spend
+
 if TYPE_CHECKING:
     from symflex.fitting.problem import FitProblem
 
@@ -162,6 +164,7 @@ def relocated(problem: FitProblem, poles: Complex, iterations: int = ITERATIONS)
     """Return the poles after relaxed vector fitting; pairs stay pairs, and stay stable."""
     quotients = [problem.quotient(r) for r in range(len(problem.lines))]
     for _ in range(iterations):
+        spend()
         rows, right = [], []
         total = 0.0
         for r, line in enumerate(problem.lines):

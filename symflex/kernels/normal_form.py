@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from flint import Ordering, fmpz_mpoly_ctx
 
+from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
 from symflex.kernels.factored import Factored, common_denominator
 
@@ -126,6 +127,7 @@ class NormalForm:
             return polynomial
         moved = polynomial.project_to_context(context)
         for relation in needed:
+            spend()
             _, moved = divmod(moved, relation)
         return moved.project_to_context(self.ring.context)
 
@@ -173,6 +175,7 @@ class NormalForm:
                 total = total + part * x ** (power % 2) * image ** (power // 2) * d ** (highest - power // 2)
             polynomial, scale = total, scale * below**highest
         while (degree := int(polynomial.degrees()[second])) >= 4:  # noqa: PLR2004
+            spend()
             if len(polynomial) > PAIR_TERMS:
                 message = "the closed form is too large: two wavenumbers depend on too many symbols"
                 hint = "give some parameters numbers, or leave out losses, loads or lengths"

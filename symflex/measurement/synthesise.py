@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
+from symflex.budget import spend
 from symflex.errors import Diagnostic, UsageError
 from symflex.measurement.measured_response import MeasuredResponse
 
@@ -150,6 +151,7 @@ def synthesise(
     power_out = np.zeros(lines.size)
     cross = np.zeros(lines.size, np.complex128)
     for start in range(0, size - record + 1, record // 2):
+        spend()
         one = np.fft.rfft(window * drive[start : start + record])
         two = np.fft.rfft(window * signal[start : start + record])
         power_in += np.abs(one) ** 2

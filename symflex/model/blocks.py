@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symflex.blocks import BLOCKS, MODEL_BLOCK
+from symflex.budget import spend
 from symflex.errors import SymflexError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import Expression, Name, Number, power, product_of, sum_of
@@ -223,6 +224,7 @@ def _load(reader: Reader, path_text: Text, origin: Origin) -> Model | None:
             if source is not None:
                 loads.models[path] = origin.resolve(source, (*origin.ancestors, path), loads)
         except SymflexError as error:
+            spend()
             if path.is_relative_to(loads.folders[0]):
                 reader.take(d if d.span else replace(d, span=path_text.span) for d in error.diagnostics)
             else:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat
 
+from symflex.budget import spend
 from symflex.elements.element import ACROSS_UNIT, COMPONENT_UNIT
 from symflex.equations import assemble
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError, UsageError
@@ -142,6 +143,7 @@ def lowest_mode_shapes(
     chosen.sort(key=lambda pair: float(pair[0].natural_frequency().mid()))
     shapes: list[NumberedShape] = []
     for root, is_hidden in chosen:
+        spend()
         if len(shapes) >= count:
             break
         if any(_is_same(s.shape.pole, root) for s in shapes):
@@ -220,6 +222,7 @@ class _Search:
         try:
             found = self.map(region, digits)
         except (BudgetError, UncertifiedError):
+            spend()
             return root
         candidates = [*found.poles, *(h.root for h in found.hidden)]
         nearest = min(candidates, key=lambda r: _distance(r, root), default=root)

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from symflex.budget import spend
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.rational.laurent import expand_at_pole, expand_at_zero
 from symflex.roots import precision
@@ -107,6 +108,7 @@ def residues_at(bound: BoundTransferFunction, poles: Sequence[Root], digits: int
     """Return the principal parts at known poles; see :func:`find_residues`."""
     found: list[Residue] = []
     for root in poles:
+        spend()
         upper = next((r for r in found if _are_conjugate(r.root, root)), None)
         if upper is not None:
             found.append(upper.conjugate(root))

@@ -7,6 +7,7 @@ from functools import cached_property, partial
 from typing import TYPE_CHECKING, Final, TypeVar
 
 from symflex import pipeline
+from symflex.budget import entered_budget
 from symflex.emit.forms import print_forms
 from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.model import with_numbers
@@ -14,7 +15,6 @@ from symflex.report.data_comparison import compared
 from symflex.report.facts import facts_of
 from symflex.report.limits import rigid_counts, undamped_counts
 from symflex.response import adaptive_grid, default_band, respond
-from symflex.roots import Budget
 from symflex.stability import find_stable_gains
 
 if TYPE_CHECKING:
@@ -148,7 +148,7 @@ class Study:
     def _maps(self) -> tuple[tuple[str, PoleZeroMap | SymflexError], ...]:
         digits = max(self.model.analysis.digits or DIGITS, DIGITS)
         return tuple(
-            (b.name, attempt(partial(pipeline.roots, b, None, digits, Budget())))
+            (b.name, attempt(partial(pipeline.roots, b, None, digits, entered_budget())))
             for b in self.bounds
             if not b.ratio.is_zero
         )
@@ -221,7 +221,7 @@ class Study:
         return tuple(attempt(lambda gain=gain: self._stability(gain)) for gain in gains)  # type: ignore[misc]
 
     def _stability(self, gain: str) -> StabilityMap:
-        return find_stable_gains(self.loop(gain), budget=Budget())
+        return find_stable_gains(self.loop(gain), budget=entered_budget())
 
     def loop(self, gain: str) -> Loop:
         """Return the characteristic function as a polynomial in a gain.

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from flint import acb
 
+from symflex.budget import entered_budget, spend
 from symflex.errors import Diagnostic, UncertifiedError
-from symflex.roots.budget import Budget
 from symflex.roots.kernel_function import KernelFunction
 from symflex.roots.winding import Winding, continuous_step
 
@@ -81,9 +81,9 @@ class _Walk:
     def __init__(self, bound: BoundTransferFunction) -> None:
         self.function = KernelFunction(bound, bound.ratio)
         sides = [KernelFunction(bound, part) for part in (bound.num, bound.den)]
-        self.start = min(Winding(f, Budget()).smallest(pi / 2 if f.is_even else pi) for f in sides)
+        self.start = min(Winding(f, entered_budget()).smallest(pi / 2 if f.is_even else pi) for f in sides)
         """ln of a radius below the lowest pole and zero."""
-        self._winding = Winding(self.function, Budget())
+        self._winding = Winding(self.function, entered_budget())
 
     def reach_axis(self, start: float) -> tuple[Point, float]:
         """Return a point low on the axis, and the phase there."""
@@ -107,6 +107,7 @@ class _Walk:
         total = 0.0
         pending = [(here, there)]
         while pending:
+            spend()
             a, b = pending.pop()
             change = continuous_step(a[1], b[1], b[0] - a[0])
             if change is not None:
@@ -131,6 +132,7 @@ class _Walk:
         total = 0.0
         pending = list(pairwise(points))
         while pending:
+            spend()
             a, b = pending.pop()
             change = continuous_step(a[1], b[1], b[0] - a[0])
             if change is not None:

@@ -3,7 +3,7 @@
 A new engine is one file and one line in :data:`ROOT_FINDERS`.
 """
 
-from symflex.roots.budget import Budget, Progress
+from symflex.budget import Budget, Progress
 from symflex.roots.durand_kerner import propose_by_durand_kerner
 from symflex.roots.finder import RootFinder
 from symflex.roots.kernel_finder import KernelRootFinder

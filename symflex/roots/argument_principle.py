@@ -20,7 +20,7 @@ from symflex.roots.stepping import ROOM, SPREAD, WIDENED, angle, total_turn
 from symflex.roots.winding import Cell, RootOnPathError, Winding
 
 if TYPE_CHECKING:
-    from symflex.roots.budget import Budget
+    from symflex.budget import Budget
     from symflex.roots.kernel_function import KernelFunction
 
 BITS = 64

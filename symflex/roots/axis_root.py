@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from flint import arb
 
+from symflex.budget import spend
 from symflex.roots.axis_function import FLOAT_BITS
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.root import GUARD_BITS
@@ -51,6 +52,7 @@ class AxisRoots:
         """
         t, known = self._approached(source, guess)
         while known >= LEAST_BITS:
+            spend()
             frequency = self._enclosed(source, t, known)
             if frequency is not None:
                 return frequency
@@ -63,6 +65,7 @@ class AxisRoots:
         t, known = arb(guess), GUESS_BITS
         lost = int(guess * source.fastest(guess)).bit_length() + MARGIN_BITS
         while 2 * known - lost < self._goal_bits:
+            spend()
             bits = _level(2 * known + GUARD_BITS, self._half_bits)
             with precision(bits):
                 value, slope = source.values(bits).value_and_slope(t)

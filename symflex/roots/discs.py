@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from flint import acb, acb_poly, arb, ctx
 
-from symflex.roots.budget import Budget
+from symflex.budget import Budget, entered_budget
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -80,7 +80,7 @@ class LevelPolynomial:
     @classmethod
     def of(cls, polynomial: acb_poly, budget: Budget | None = None) -> LevelPolynomial:
         """Return the polynomial with its derivative."""
-        return cls(polynomial, polynomial.derivative(), int(polynomial.degree()), budget or Budget())
+        return cls(polynomial, polynomial.derivative(), int(polynomial.degree()), budget or entered_budget())
 
     def shifted(self, centre: acb) -> acb_poly:
         """Return p(centre + x) as a polynomial in x."""

@@ -11,6 +11,7 @@ from fractions import Fraction
 from math import exp, inf, isfinite, pi
 from typing import TYPE_CHECKING
 
+from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic
 from symflex.kernels import Factored
 from symflex.roots.pole_zero_map import Certificate, Exclusion, HiddenRoot, PoleZeroMap
@@ -29,7 +30,6 @@ from symflex.roots.side import (
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.roots.budget import Budget
     from symflex.roots.region import Region
     from symflex.roots.root import Root
     from symflex.roots.winding import Cell
@@ -85,7 +85,8 @@ def locate_distributed(
         code = error.diagnostics[0].code
         if all(root.is_zero for side in searched.sides for root in side.roots):
             raise
-        searched.settle()
+        with Budget().entered():  # what is known is told also when the time is over
+            searched.settle()
     chosen = searched.chosen()
     found = sum(root.multiplicity for roots in chosen for root in roots)
     every = [root for roots in chosen for root in roots]

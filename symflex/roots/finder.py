@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from symflex.roots.budget import Budget
+    from symflex.budget import Budget
     from symflex.roots.problem import Problem
     from symflex.roots.region import Region
     from symflex.roots.root import Root

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from flint import acb
 
-    from symflex.roots.budget import Budget
+    from symflex.budget import Budget
     from symflex.roots.discs import Proposer
     from symflex.roots.problem import PolynomialInS
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from symflex.roots.budget import Budget
+from symflex.budget import Budget, entered_budget
 from symflex.roots.problem import KernelProblem
 from symflex.roots.region import Everything, Mode, Position
 from symflex.roots.side import ENGINES, LOSSLESS, NoEngineError, Side
@@ -75,4 +75,4 @@ class KernelRootFinder:
         return tuple(r for r, p in zip(ordered, positions, strict=True) if p is not Position.OUTSIDE)
 
     def _side(self, problem: KernelProblem, digits: int, budget: Budget | None = None) -> Side:
-        return Side(problem.bound, problem.part, digits, budget or Budget(), engines=(self.name,))
+        return Side(problem.bound, problem.part, digits, budget or entered_budget(), engines=(self.name,))

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final
 
 from flint import acb, acb_series, arb
 
+from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.kernels import Factored, degree_in
 from symflex.roots.double_sums import DoubleSums
@@ -347,6 +348,7 @@ class KernelFunction:
         return None
 
     def _spend(self, bits: int) -> None:
+        spend()
         self.work += self._cost * max(1, bits // (2 * FIRST_BITS))
 
     def _factors(self, s: acb, bits: int) -> list[FactorBall]:

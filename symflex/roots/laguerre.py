@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from flint import acb, acb_poly, arb
 
-from symflex.roots.budget import Budget
+from symflex.budget import Budget, entered_budget
 from symflex.roots.precision import precision
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def propose_by_laguerre(polynomial: acb_poly) -> tuple[acb, ...] | None:
     >>> [f"{float(g.imag):.12f}" for g in propose_by_laguerre(acb_poly([-2, 1, -2, 1]))]
     ['1.000000000000', '0.000000000000']
     """
-    return within_budget(Budget())(polynomial)
+    return within_budget(entered_budget())(polynomial)
 
 
 def within_budget(budget: Budget) -> Proposer:

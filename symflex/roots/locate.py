@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from flint import fmpz_mpoly_ctx
 
-from symflex.roots.budget import Budget
+from symflex.budget import Budget, entered_budget
 from symflex.roots.distributed import locate_distributed
 from symflex.roots.pole_zero_map import PoleZeroMap, find_pole_zero_map
 from symflex.roots.problem import Constant, PolynomialInS, RootProblem
@@ -49,7 +49,7 @@ def locate(
     """
     bound = without_lengths_of_zero(bound)
     if bound.is_distributed:
-        return locate_distributed(bound, region, digits, budget or Budget())
+        return locate_distributed(bound, region, digits, budget or entered_budget())
     above = [(f, e) for f, e in bound.ratio.factors if e > 0]
     below = [(f, -e) for f, e in bound.ratio.factors if e < 0]
     hidden = [(f.polynomial, f.multiplicity) for f in bound.hidden]

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from flint import arb
 
+from symflex.budget import spend
 from symflex.roots.axis_function import IMAGINARY, REAL
 from symflex.roots.axis_root import AxisRoots, bits_of, bracketed, changes_sign
 from symflex.roots.harmonic_sum import lossless_function
@@ -229,6 +230,7 @@ class LosslessSearch:
         found: list[float] = []
         last: tuple[float, float] | None = None
         for first in range(0, count, BATCH):
+            spend()
             indices = np.arange(first, min(first + BATCH, count) + 1)
             t = start + (end - start) * indices / count
             values, _, sizes = source.sampled(t)

@@ -12,7 +12,7 @@ from symflex.roots.region import Everything, Mode, Modes, Position, Region
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.roots.budget import Budget
+    from symflex.budget import Budget
     from symflex.roots.finder import RootFinder
     from symflex.roots.problem import RootProblem
     from symflex.roots.root import Root

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
+from symflex.budget import Budget, entered_budget
 from symflex.errors import BudgetError
-from symflex.roots.budget import Budget
 from symflex.roots.discs import Disc, connected
 from symflex.roots.durand_kerner import propose_by_durand_kerner
 from symflex.roots.isolation import first_bits, isolations
@@ -120,7 +120,7 @@ def find_polynomial_roots(
         raise ValueError(message)
     for polynomial, _ in problem.factors:
         polynomial.require_leading_coefficient()
-    search = _Search(problem, digits, proposers, budget or Budget())
+    search = _Search(problem, digits, proposers, budget or entered_budget())
     return search.run()
 
 

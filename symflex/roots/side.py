@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
-    from symflex.roots.budget import Budget
+    from symflex.budget import Budget
     from symflex.roots.region import Region
     from symflex.transfer import BoundTransferFunction
 

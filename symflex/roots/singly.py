@@ -22,7 +22,7 @@ from symflex.roots.precision import precision
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from symflex.roots.budget import Budget
+    from symflex.budget import Budget
     from symflex.roots.problem import PolynomialInS
 
 STEPS = 4
@@ -53,7 +53,7 @@ def prove_singly(
 
     Examples
     --------
-    >>> from symflex.roots.budget import Budget
+    >>> from symflex.budget import Budget
     >>> from symflex.roots.problem import PolynomialInS
     >>> discs = prove_singly(PolynomialInS.from_integers([2, -3, 1]), 10, Budget(), in_square=False)
     >>> [round(float(disc.centre.real.mid()), 12) for disc in discs]

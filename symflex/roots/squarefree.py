@@ -14,8 +14,8 @@ from functools import reduce
 
 from flint import fmpz_mpoly, fmpz_mpoly_ctx
 
+from symflex.budget import Budget, entered_budget
 from symflex.kernels import square_free_factors
-from symflex.roots.budget import Budget
 from symflex.roots.problem import Constant, PolynomialInS, RootProblem
 
 
@@ -80,7 +80,7 @@ def split(problem: RootProblem, budget: Budget | None = None) -> Splitting:
     >>> splitting.zeros, [(part.polynomial.integers(), part.in_square) for part in splitting.parts]
     (2, [((4, 1), True), ((1, 1), False)])
     """
-    time = budget or Budget()
+    time = budget or entered_budget()
     ring = _Ring.of(problem)
     zeros = 0
     base: list[tuple[fmpz_mpoly, int]] = []

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from flint import arb
 
+from symflex.budget import spend
 from symflex.roots.winding import RootOnPathError
 
 if TYPE_CHECKING:
@@ -67,6 +68,7 @@ def total_turn(change: Callable[[float, float], tuple[float, arb]], first: float
     t, step = 0.0, min(1.0, first)
     longest = 1 / NEARER
     while t < 1:
+        spend()
         end = min(1.0, t + step)
         off, turn = change(t, end)
         if off > ROOM:

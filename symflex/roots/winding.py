@@ -17,7 +17,7 @@ from symflex.errors import BudgetError, Diagnostic
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.roots.budget import Budget
+    from symflex.budget import Budget
     from symflex.roots.kernel_function import KernelFunction, Sample
 
 RING = log(2)
@@ -130,7 +130,7 @@ class Winding:
             SF505 when the search has become too long and no time was given, SF506 when that is over.
         """
         self.budget.spend()
-        if self.budget.seconds is None and self.function.work > WORK_LIMIT:
+        if not self.budget.is_timed and self.function.work > WORK_LIMIT:
             raise BudgetError(Diagnostic("SF505", TOO_LONG, None, SHORTER))
 
     def sample(self, z: complex) -> Sample:
@@ -211,7 +211,10 @@ class Winding:
             return -self._edges[end, start]
         if (start, end) not in self._edges:
             longest = min(LONGEST_STEP, PHASE_STEP / max(1.0, self.reach(max(start.real, end.real))))
-            count = max(1, ceil(abs(end - start) / longest))
+            pieces = abs(end - start) / longest
+            if not pieces <= WORK_LIMIT:
+                raise BudgetError(Diagnostic("SF505", TOO_LONG, None, SHORTER))
+            count = max(1, ceil(pieces))
             points = [start + (end - start) * i / count for i in range(count)] + [end]
             total = 0.0
             pending = list(pairwise(points))

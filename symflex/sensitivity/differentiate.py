@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb
 
+from symflex.budget import spend
 from symflex.kernels.origin import Origin
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.root import exact_fraction
@@ -74,6 +75,7 @@ def differentiate(
         side = _Side(tangents, part, digits, {})
         for i, root in enumerate(roots):
             for parameter in used:
+                spend()
                 status, place, derivative = side.moved(root, parameter.name)
                 value = values[parameter.name]
                 moved.append(Sensitivity(kind, i, root, parameter, value, status, place, derivative))

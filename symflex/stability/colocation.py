@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
+from symflex.budget import Budget, entered_budget
 from symflex.errors import Diagnostic, ModelError, UsageError
-from symflex.roots import Budget, decimals, precision
+from symflex.roots import decimals, precision
 from symflex.stability.stability_map import hertz, real_json
 
 if TYPE_CHECKING:
@@ -141,7 +142,7 @@ def dynamic_colocation(
     for bound in (tip, joint):
         if bound.ratio.is_zero:
             raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero"))
-    search = _Search(tip, joint, phase, magnitude, budget or Budget())
+    search = _Search(tip, joint, phase, magnitude, budget or entered_budget())
     edge, is_decided, begins, cause = search.first_exit(low, high)
     return DynamicColocation(
         tip.name, joint.name, phase, magnitude, (low, high), edge, is_decided, cause, begins

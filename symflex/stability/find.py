@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
+from symflex.budget import Budget, entered_budget
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.kernels import degree_in
-from symflex.roots import Budget, precision
+from symflex.roots import precision
 from symflex.roots.root import exact_fraction
 from symflex.stability.bandwidth import allowed_bandwidth
 from symflex.stability.crossing import PoleCount
@@ -67,7 +68,7 @@ def find_stable_gains(
     BudgetError
         SF505, SF506.
     """
-    budget = budget or Budget()
+    budget = budget or entered_budget()
     plain, mixed = _split(loop)
     low, high = _limits(loop, limits, is_distributed=bool(mixed))
     lumped = [LumpedFactor.of(loop.bound, factor) for factor in plain]

@@ -12,9 +12,10 @@ from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING
 
+from symflex.budget import Budget, entered_budget, spend
 from symflex.errors import Diagnostic, UncertifiedError, UsageError
 from symflex.kernels import Factored
-from symflex.roots import Budget, Modes, Position
+from symflex.roots import Modes, Position
 from symflex.roots.locate import locate
 from symflex.stability.loop_function import LoopFunction
 
@@ -153,7 +154,7 @@ def trace_locus(
     UsageError
         SF804 no range, SF806 no straight line in the gain.
     """
-    budget = budget or Budget()
+    budget = budget or entered_budget()
     above, below = _parts(loop)
     low, high = _range(loop, limits)
     wanted = modes or loop.bound.source.model.analysis.modes or DEFAULT_MODES
@@ -282,6 +283,7 @@ def _goals(low: float, high: float) -> list[float]:
     gain, shift = low, (high - low) * FIRST_SHARE
     goals = []
     while gain < high:
+        spend()
         gain = min(low + shift, high)
         goals.append(gain)
         shift *= growth
@@ -335,6 +337,7 @@ def _trace(
     for goal in goals:
         pending = [goal]
         while pending:
+            spend()
             aim = pending[-1]
             found = _moved(function, current, aim, size)
             far = max(

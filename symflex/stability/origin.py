@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
+from symflex.budget import spend
 from symflex.errors import SymflexError
 from symflex.kernels import Factored
 from symflex.kernels.origin import Origin
@@ -140,6 +141,7 @@ def loop_at_origin(function: LoopFunction, budget: Budget) -> LoopAtOrigin | Non
                 return None
             lowest = Winding(part, budget).smallest(pi)
         except SymflexError:
+            spend()
             return None
         orders.append(order)
         found.append((part, lowest, whole.unit))

@@ -13,6 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
 
 if TYPE_CHECKING:
@@ -132,6 +133,7 @@ def solve(rows: Sequence[Row], weights: Sequence[tuple[int, int]]) -> SolvedRows
     while waiting:
         row = waiting.pop()
         while (top := leading(row)) is not None:
+            spend()
             column, power = top
             if column not in basis:
                 basis[column] = (power, _monic(row, top))

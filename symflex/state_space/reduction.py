@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from flint import nmod_mat
 
+from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
 from symflex.kernels import PRIME, Factored, random_point, residue
 from symflex.state_space.quotients import FieldElement, Vector, applied, combined, transposed
@@ -165,6 +166,7 @@ def _generated(start: Sequence[Vector], rows: Sequence[Vector], system: StateSpa
     basis: Basis = {}
     waiting = list(reversed(start))
     while waiting:
+        spend()
         vector = _rest(waiting.pop(), basis)
         if not vector:
             continue

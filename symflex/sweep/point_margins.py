@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from symflex.budget import spend
 from symflex.errors import SymflexError
 from symflex.stability import characteristic_loop, find_stable_gains, pick_gain
 from symflex.stability.stability_map import degrees, hertz
@@ -37,10 +38,12 @@ def solve_margins(task: Task) -> Solver:
         stable = np.full(len(points), -1, np.int8)
         status, codes = np.zeros(len(points), np.int8), [""] * len(points)
         for i, point in enumerate(points):
+            spend()
             try:
                 loop = characteristic_loop(tf, parameter, dict(zip(task.names, point, strict=True)))
                 found = find_stable_gains(loop)
             except SymflexError as error:
+                spend()
                 status[i], codes[i] = PointStatus.FAILED, error.diagnostics[0].code
                 continue
             status[i] = PointStatus.CERTIFIED if found.certified else PointStatus.NOT_CERTIFIED

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from symflex.budget import spend
 from symflex.errors import SymflexError
 from symflex.sweep.point_roots import PointStatus
 from symflex.sweep.task import codes_of, derived
@@ -28,10 +29,12 @@ def solve_response(task: Task) -> Solver:
         values = np.full((len(points), len(omega)), complex(nan, nan))
         status, codes = np.zeros(len(points), np.int8), [""] * len(points)
         for i, point in enumerate(points):
+            spend()
             try:
                 bound = bind(tf, dict(zip(task.names, point, strict=True)))
                 values[i] = [bound(complex(0, w)) for w in omega]
             except SymflexError as error:
+                spend()  # that the time is over says nothing of a point
                 status[i], codes[i] = PointStatus.FAILED, error.diagnostics[0].code
         return {
             "re": values.real.copy(),

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from flint import arb
 
+from symflex.budget import spend
 from symflex.errors import SymflexError
 from symflex.roots import Everything, Modes, precision
 from symflex.roots.locate import locate
@@ -144,6 +145,7 @@ class RootSolver:
         try:
             return self._solve(dict(zip(self._names, point, strict=True)))
         except SymflexError as error:
+            spend()  # that the time is over says nothing of a point
             return PointRoots((), 0, PointStatus.FAILED, error.diagnostics[0].code)
 
     def _bound(self, values: dict[str, ExactValue]) -> BoundTransferFunction:

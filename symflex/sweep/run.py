@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from symflex.budget import Silent
 from symflex.errors import BudgetError, Diagnostic
-from symflex.roots.budget import Silent
 from symflex.sweep.design import points_between, written
 from symflex.sweep.point_roots import PointStatus
 from symflex.sweep.solve import solve_chunk

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, acb_series, arb, ctx
 
+from symflex.budget import spend
 from symflex.equations import assemble
 from symflex.errors import Diagnostic, ModelError, Source, Span, Text, UsageError
 from symflex.errors.diagnostic import nearest
@@ -109,6 +110,7 @@ class EnclosedDistributed:
 
     def __call__(self, s: acb) -> acb:
         """Return a ball that contains the value at ``s``; not finite where a wavenumber is zero."""
+        spend()
         with ctx.workprec(self.bits):
             value = self.kernels.value(self.ratio, self.kernels.at(s))
             return value if isinstance(value, acb) else value[0]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from symflex.budget import spend
 from symflex.kernels import Factored
 from symflex.transfer.coprimality import Images
 
@@ -36,6 +37,7 @@ def cancel(
     while i < len(above):
         j = 0
         while j < len(below):
+            spend()
             f, m = above[i]
             g, n = below[j]
             if images.prove_coprime(f, g) or (common := f.gcd(g)).is_constant():

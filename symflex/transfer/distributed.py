@@ -11,6 +11,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
 from symflex.kernels import (
     LAPLACE,
@@ -398,6 +399,7 @@ def _without(polynomial: fmpz_mpoly, factors: Sequence[fmpz_mpoly]) -> fmpz_mpol
     """Return a polynomial divided by every power of the factors that divides it."""
     for factor in factors:
         while not (common := polynomial.gcd(factor)).is_constant():
+            spend()
             polynomial = polynomial / common
     return polynomial
 

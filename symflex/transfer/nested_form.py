@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from flint import acb, arb, ctx
 
+from symflex.budget import spend
 from symflex.elimination import Step, StraightLine, eliminate
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import Name, names
@@ -348,6 +349,7 @@ def _values_and_slopes(  # noqa: PLR0912  (one branch per kind of step, in one l
     """Return numerator and denominator, and their derivatives by s; what is free of s has none on the way."""
     program = tf.program
     values: dict[int, acb] = {}
+    spend()
     slopes: dict[int, acb] = {}
     for kind, i, args, gone in tf.operations:
         if kind == _MULTIPLY:

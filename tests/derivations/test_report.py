@@ -11,10 +11,10 @@ from pathlib import Path
 
 import pytest
 
+from symflex.budget import Silent
 from symflex.report import compose, find_specifications, name_specifications, report_page, write_chapters
 from symflex.report.claims.eppinger1988 import EPPINGER_1988
 from symflex.report.facts import DataFact, ModelFacts
-from symflex.roots.budget import Silent
 from tests.independent import eppinger1988
 from tests.unit.report.pages import Page
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from itertools import count
 from typing import TYPE_CHECKING
 
+from symflex.budget import spend
 from symflex.elimination import ONE, Step
 from symflex.emit.forms.names import names_of
 from symflex.emit.forms.printed import PrintedForm
@@ -141,6 +142,7 @@ class _Printer:
         self.order[LAPLACE] = len(self.order)
         self.sums = 0
         for i in tf.steps:
+            spend()
             expression = self._made(i)
             name = self.names.get(i)
             if name is not None:

@@ -14,6 +14,7 @@ from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING
 
+from symflex.budget import spend
 from symflex.emit.program.forge import Forge
 from symflex.emit.program.polynomials import Images, degree_of, evaluate_polynomial
 from symflex.emit.program.recurrence import express, plan_recurrences
@@ -118,6 +119,7 @@ def _used_definitions(tf: TransferFunction) -> Iterator[tuple[str, Factored]]:
 def _used(ring: Ring, polynomials: Iterable[fmpz_mpoly]) -> set[str]:
     found: set[str] = set()
     for polynomial in polynomials:
+        spend()
         if len(polynomial):
             found |= {name for name, d in zip(ring.names, polynomial.degrees(), strict=True) if int(d)}
     return found

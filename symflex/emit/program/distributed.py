@@ -16,6 +16,7 @@ from math import gcd
 from operator import mul
 from typing import TYPE_CHECKING
 
+from symflex.budget import spend
 from symflex.emit.program.build import TERM_LIMIT
 from symflex.emit.program.exponents import ExponentialSum, derivative_at_zero, expand, families_of
 from symflex.emit.program.forge import Forge
@@ -524,6 +525,7 @@ class _Workshop:
         """Return, per order of the derivatives in the small lengths, the coefficients of what remains."""
         found: dict[tuple[int, ...], dict[Key, Factored]] = {}
         for orders in product(*(range(g.basis.order) for g in near)):
+            spend()
             if len(near) == 1 and self._is_negligible(orders[0], found):
                 break
             terms: dict[Key, fmpz_mpoly] = dict(half.terms)

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from flint import Ordering, fmpz_mpoly_ctx
 
+from symflex.budget import spend
 from symflex.emit.program.local_basis import SERIES_ERROR, taylor_term
 from symflex.errors import BudgetError, Diagnostic
 from symflex.kernels import Factored, common_denominator
@@ -138,6 +139,7 @@ class GeneralSeries:
         n, whole = law.order, [self._over(c) for c in law.characteristic]
         found = [self._context.constant(int(i == n - 1)) for i in range(n)]
         while len(found) < count:
+            spend()
             last = len(found) - n
             found.append(-sum((c * found[last + i] for i, c in enumerate(whole)), self._context.constant(0)))
         return found[:count]

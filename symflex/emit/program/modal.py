@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 from flint import nmod_poly
 
+from symflex.budget import spend
 from symflex.emit.program.forge import Forge
 from symflex.emit.program.general_series import GeneralSeries
 from symflex.emit.program.nodes import Condition, Constant, Piece, Piecewise
@@ -273,6 +274,7 @@ class _ModalWorkshop:
         try:
             halves = [series.coefficients(half.expand(), self.reach) for half in self.halves]
         except BudgetError:
+            spend()
             return self._direct()
         count = sum(len(f) for half in halves for value in half for f, _ in value.factors)
         return self._series_piece(halves) if count <= SERIES_TERMS and all(halves) else self._direct()

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from flint import acb, arb, ctx
 
+from symflex.budget import spend
 from symflex.emit.program.build import available_forms, build_program
 from symflex.emit.program.distributed import build_piecewise, build_real, reaches_of
 from symflex.emit.program.evaluate import evaluate, nearest_double
@@ -400,6 +401,7 @@ def _program(tf: TransferFunction, form: str) -> Program | None:
     try:
         return build_program(tf, form)
     except BudgetError:
+        spend()
         return None
 
 
@@ -568,6 +570,7 @@ class References:
             return _Reference(acb(0), FIRST_BITS, acb(1).abs_lower())
         bits = self._first_bits
         while bits <= LAST_BITS:
+            spend()
             function = self._at(bits)
             if isinstance(function, EnclosedNested):
                 value, slope = function.value_and_slope(point)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from symflex.budget import spend
 from symflex.emit.export import Export
 from symflex.emit.forms import print_forms
 from symflex.emit.latex import TEXT_WIDTH_MM, Picture, latex_document, latex_files
@@ -122,6 +123,7 @@ class LatexExporter:
         try:
             figure = self._drawn(kind, of, gain)
         except SymflexError as error:
+            spend()
             is_without_modes = kind == "modes" and error.diagnostics[0].code == "SF402"
             if not is_without_modes:
                 warnings.append(f"the figure {name} is left out: {error.diagnostics[0].message}")
@@ -162,5 +164,6 @@ class LatexExporter:
             try:
                 maps.append(locate(bound, digits=ROOT_DIGITS))
             except SymflexError as error:
+                spend()
                 warnings.append(f"poles and zeros of {tf.name} are left out: {error.diagnostics[0].message}")
         return forms, maps, tuple(warnings)

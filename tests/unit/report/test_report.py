@@ -12,6 +12,7 @@ import re
 import numpy as np
 import pytest
 
+from symflex.budget import Silent
 from symflex.errors import SpecError, UsageError
 from symflex.report import (
     compose,
@@ -25,7 +26,6 @@ from symflex.report import (
 from symflex.report.comparison import COLUMNS, LOOP_COLUMNS
 from symflex.report.page import inline_svg
 from symflex.report.sections import SECTIONS
-from symflex.roots.budget import Silent
 from tests.unit.report.models import HOSTILE, SMALL, SYMBOLIC
 from tests.unit.report.pages import Page
 

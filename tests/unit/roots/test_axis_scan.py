@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from mpmath import cos, findroot, mp, mpf, sin, sinh, sqrt, tan, tanh
 
+from symflex.budget import Budget
 from symflex.roots import ROOT_FINDERS, KernelProblem, Modes
 from symflex.roots.axis_scan import sign_changes
-from symflex.roots.budget import Budget
 from symflex.roots.kernel_function import KernelFunction
 from symflex.roots.winding import Winding
 from tests.unit.roots.distributed import ROD, SLIDING_FREE, bound

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from flint import acb, arb
 
+from symflex.budget import Budget
 from symflex.roots import Modes
-from symflex.roots.budget import Budget
 from symflex.roots.local_series import local_series
 from symflex.roots.locate import locate
 from symflex.roots.precision import precision

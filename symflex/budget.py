@@ -1,0 +1,195 @@
+"""How much time and memory a computation may take, and whom it tells how far it is.
+
+Whatever can grow asks :func:`spend` in its loops. The command line enters one budget for all of a command,
+and so can Python: ``with Budget(seconds=10, memory=2 * GB).entered(): ...``. A search that shows what it
+proved until its time was over is given a budget besides.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass, field, replace
+from time import monotonic
+from typing import TYPE_CHECKING, Final, Protocol
+
+from symflex.errors import BudgetError, Diagnostic
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+GB: Final = 10**9
+TIME_OVER: Final = Diagnostic("SF506", "the time given is over", None, "allow more time, or ask for less")
+
+
+class Progress(Protocol):
+    """Shows how far a search is."""
+
+    def report(self, done: float, text: str) -> None:
+        """Show a fraction of the whole from 0 to 1, and what is being done."""
+        ...
+
+
+class Silent:
+    """Shows nothing."""
+
+    def report(self, done: float, text: str) -> None:
+        """Show nothing."""
+
+
+@dataclass(frozen=True)
+class Budget:
+    """A limit on time and memory.
+
+    Parameters
+    ----------
+    seconds : float, optional
+        From now on; no limit by default.
+    progress : Progress
+        Told how far the work is.
+    clock : callable
+        Returns the time [s].
+    memory : int, optional
+        Bytes that the process may hold; no limit by default.
+
+    Examples
+    --------
+    >>> Budget().spend()
+    >>> Budget(seconds=0, clock=iter([0, 1]).__next__).spend()
+    Traceback (most recent call last):
+    ...
+    symflex.errors.exceptions.BudgetError: error[SF506]: the time given is over
+      hint: allow more time, or ask for less
+
+    Numbers of bytes are those of the whole process, Python and its libraries included:
+
+    >>> with Budget(memory=1000).entered():
+    ...     spend()
+    Traceback (most recent call last):
+    ...
+    symflex.errors.exceptions.BudgetError: error[SF504]: the memory given is used up: 0.000001 GB
+      hint: allow more memory, or ask for less
+    """
+
+    seconds: float | None = None
+    progress: Progress = field(default_factory=Silent)
+    clock: Callable[[], float] = monotonic
+    memory: int | None = None
+    _start: float = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_start", self.clock())
+
+    def share(self, fraction: float) -> Budget:
+        """Return a budget that began when this one did and ends after a fraction of its time.
+
+        Examples
+        --------
+        >>> Budget(seconds=2).share(0.75).seconds
+        1.5
+        """
+        shorter = None if self.seconds is None else fraction * self.seconds
+        return self._changed(replace(self, seconds=shorter))
+
+    def at_least(self, seconds: float) -> Budget:
+        """Return a budget that began when this one did and lasts so long in any case."""
+        return self._changed(
+            replace(self, seconds=None if self.seconds is None else max(self.seconds, seconds))
+        )
+
+    def told(self, progress: Progress) -> Budget:
+        """Return this budget, with somebody to tell how far the work is."""
+        return self._changed(replace(self, progress=progress))
+
+    def _changed(self, part: Budget) -> Budget:
+        object.__setattr__(part, "_start", self._start)
+        return part
+
+    @property
+    def left(self) -> float | None:
+        """Seconds left, not below 0; ``None`` without a limit."""
+        return None if self.seconds is None else max(0.0, self._start + self.seconds - self.clock())
+
+    @property
+    def is_timed(self) -> bool:
+        """There is a limit on time, here or in the budget that is entered."""
+        return self.seconds is not None or entered_budget().seconds is not None
+
+    def spend(self) -> None:
+        """Go on if there is time and memory left, also in the budget that is entered.
+
+        Raises
+        ------
+        BudgetError
+            SF506 when the time is over, SF504 when the memory is used up.
+        """
+        self._check()
+        entered = _ENTERED.get()
+        if entered is not None and entered is not self:
+            entered._check()  # noqa: SLF001 - of the same class
+
+    def _check(self) -> None:
+        if self.seconds is not None and self.clock() - self._start > self.seconds:
+            raise BudgetError(TIME_OVER)
+        # The most it ever held is known at once; what it holds now has to be read from a file.
+        if self.memory is not None and peak_memory() > self.memory and memory_held() > self.memory:
+            raise BudgetError(memory_used_up(self.memory))
+
+    @contextmanager
+    def entered(self) -> Iterator[Budget]:
+        """Let :func:`spend` ask this budget while the context lasts, in this thread."""
+        token = _ENTERED.set(self)
+        try:
+            yield self
+        finally:
+            _ENTERED.reset(token)
+
+
+_ENTERED: ContextVar[Budget | None] = ContextVar("budget", default=None)
+_UNLIMITED: Final = Budget()
+
+
+def entered_budget() -> Budget:
+    """Return the budget that is entered, one without limits when none is."""
+    return _ENTERED.get() or _UNLIMITED
+
+
+def spend() -> None:
+    """Go on if the budget that is entered has time and memory left.
+
+    Raises
+    ------
+    BudgetError
+        SF506 when the time is over, SF504 when the memory is used up.
+    """
+    entered = _ENTERED.get()
+    if entered is not None:
+        entered._check()  # noqa: SLF001 - of the same module
+
+
+def memory_used_up(memory: int) -> Diagnostic:
+    """Return what is said when a process holds more than it may."""
+    amount = f"{memory / GB:.6f}".rstrip("0").rstrip(".")
+    message = f"the memory given is used up: {amount} GB"
+    return Diagnostic("SF504", message, None, "allow more memory, or ask for less")
+
+
+def peak_memory() -> int:
+    """Return the most bytes this process ever held at once; 0 where that cannot be told."""
+    try:
+        import resource  # not on every system, and not needed without a limit
+    except ImportError:
+        return 0
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak if sys.platform == "darwin" else peak * 1024
+
+
+def memory_held(process: int | None = None) -> int:
+    """Return the bytes a process holds now, this one by default; its peak where that cannot be told."""
+    try:
+        with open(f"/proc/{process or 'self'}/statm", "rb") as file:
+            return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except OSError:
+        return 0 if process else peak_memory()
