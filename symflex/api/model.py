@@ -465,6 +465,18 @@ class Model:
         """Return a numpy module with a function per transfer function."""
         return self._export("numpy")
 
+    def export_array_api(self) -> str:
+        """Return a module for numpy, torch, jax.numpy, cupy: whatever library its arguments are of."""
+        return self._export("array-api")
+
+    def export_jax(self) -> str:
+        """Return a module for jax; jit, grad and vmap work through its functions."""
+        return self._export("jax")
+
+    def export_c(self) -> str:
+        """Return a C99 source that needs no header beside it, with a function per transfer function."""
+        return self._export("c")
+
     def export_state_space(self) -> str:
         """Return a numpy module with the state equations as a function of the parameters."""
         return self._export("state-space")

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from symflex.emit.matlab.expression import WIDTH, continued
 from symflex.emit.matlab.pieces import LONGEST, LocalFunctions, roles_of, support_of
 from symflex.emit.matlab.support import NAMES
+from symflex.emit.matlab.systems import SYSTEM, RationalSystem, system_functions
 from symflex.emit.members import Member, members_of, verifications
 from symflex.emit.module_text import (
     COST,
@@ -57,6 +58,9 @@ FUNCTIONS = frozenset(
 
 WORDS = frozenset({"s", "G", "given", "value"})
 """Variables of the generated code; parameters leave them to it."""
+
+TOOLBOX = frozenset({"tf", "zpk", "ss", "frd", "roots"})
+"""What no function of the file may hide."""
 
 RESERVED = KEYWORDS | FUNCTIONS | NAMES | WORDS
 
@@ -152,24 +156,36 @@ def matlab_function_file(
     main = main_name(name or model.title)
     fields = identifiers({m.key: m.wanted for m in members}, RESERVED | _OTHER_FIELDS, LONGEST)
     taken = RESERVED | {main}
-    public = identifiers({m.key: fields[m.key] for m in members}, taken, LONGEST)
+    public = identifiers({m.key: fields[m.key] for m in members}, taken | TOOLBOX, LONGEST)
     taken |= set(public.values())
+    systems = {m.key: s for m in members if not m.program.is_real and (s := RationalSystem.of(m.tf))}
     roles = {f"{m.key} {role}": f"{public[m.key]}_{role}" for m in members for role in roles_of(m.program)}
+    roles |= {f"{key} {role}": f"{public[key]}_{role}" for key in systems for role in _SYSTEM_ROLES}
     private = identifiers(roles, taken, LONGEST)
     taken |= set(private.values())
     parameters = identifiers({p.name: p.name for p in model.parameters}, taken, LONGEST)
-    blocks = [_main(model, main, members, fields, public, parameters, digits), _defaults(model, parameters)]
+    makers = {fields[key]: [private[f"{key} {role}"] for role in _SYSTEM_ROLES] for key in systems}
+    blocks = [
+        _main(model, main, members, fields, public, parameters, makers, digits),
+        _defaults(model, parameters),
+    ]
     for m in members:
         own = {role: private[f"{m.key} {role}"] for role in roles_of(m.program)}
         functions = LocalFunctions(m.program, own, parameters, taken - WORDS)
         blocks += [_public(m, public[m.key], functions, digits), *functions.blocks()]
+        if m.key in systems:
+            made, read = makers[fields[m.key]]
+            blocks += system_functions(systems[m.key], (made, read), parameters, taken, _string)
     blocks += support_of([m.program for m in members])
+    if systems:
+        blocks.append(SYSTEM)
     return MatlabExport("\n".join(blocks), main, verifications(members))
 
 
 _OTHER_FIELDS = frozenset(
-    {"parameters", "units", "descriptions", "transfer_functions", "frequency_responses"}
+    "parameters units descriptions transfer_functions frequency_responses systems coefficients".split()
 )
+_SYSTEM_ROLES = ("system", "coefficients")
 
 
 def main_name(text: str) -> str:
@@ -214,13 +230,18 @@ def _main(
     fields: Mapping[str, str],
     public: Mapping[str, str],
     parameters: Mapping[str, str],
+    makers: Mapping[str, Sequence[str]],
     digits: int,
 ) -> str:
     title = _text(model.title).strip()
     first = f"%{main.upper()}  Transfer functions{f' of: {title}' if title else ' of a linear system.'}"
     lines = [f"function G = {main}()", *wrapped(first, WIDTH, "", "%   "), "%"]
-    lines += _comment(_usage(main, [(m, fields[m.key]) for m in members], model, parameters, digits))
+    named = [(m, fields[m.key]) for m in members]
+    lines += _comment(_usage(main, named, model, parameters, makers, digits))
     lines += ["", *(f"  G.{fields[m.key]} = @{public[m.key]};" for m in members)]
+    for i, group in enumerate(("systems", "coefficients") if makers else ()):
+        lines.append(f"  G.{group} = struct();")
+        lines += [f"  G.{group}.{field} = @{pair[i]};" for field, pair in makers.items()]
     lines.append("  G.parameters = default_parameters();")
     for field, texts in (
         ("units", {p.name: p.unit for p in model.parameters}),
@@ -241,6 +262,7 @@ def _usage(
     members: Sequence[tuple[Member, str]],
     model: Model,
     parameters: Mapping[str, str],
+    makers: Mapping[str, Sequence[str]],
     digits: int,
 ) -> list[str]:
     """Return the body of the help text."""
@@ -249,7 +271,7 @@ def _usage(
         lines += [
             f"G = {main.upper()}() is a struct of functions and of the model's parameters.",
             "",
-            *_examples(main, members, parameters),
+            *_examples(main, members, parameters, makers),
             "",
             *wrapped(EXPANSION, _ROOM),
             "",
@@ -274,7 +296,12 @@ def _usage(
 _ROOM = WIDTH - 4
 
 
-def _examples(main: str, members: Sequence[tuple[Member, str]], parameters: Mapping[str, str]) -> list[str]:
+def _examples(
+    main: str,
+    members: Sequence[tuple[Member, str]],
+    parameters: Mapping[str, str],
+    makers: Mapping[str, Sequence[str]],
+) -> list[str]:
     member, field = members[0]
     rows = [(f"G = {main}();", ""), (f"G.{field}(s)", "s: Laplace variable [rad/s], of any size")]
     if member.tf.parameters:
@@ -293,6 +320,17 @@ def _examples(main: str, members: Sequence[tuple[Member, str]], parameters: Mapp
         ("w = 2*pi*logspace(0, 3, 1000);", "[rad/s]"),
         (f"H = frd(G.{field}(1i*w), w);", "for the Control System Toolbox"),
     ]
+    rational = next(iter(makers), None)
+    more = [
+        (f"H = G.systems.{rational}();", "a tf; parameters may follow"),
+        (f"H = G.systems.{rational}('zpk');", "or 'ss'"),
+        (f"[num, den] = G.coefficients.{rational}();", "without any toolbox"),
+    ]
+    return [*_in_columns(rows), *(_in_columns(more) if rational is not None else ())]
+
+
+def _in_columns(rows: Sequence[tuple[str, str]]) -> list[str]:
+    """Return lines of code with what is said of each beside it."""
     width = min(max(len(code) for code, _ in rows), WIDTH // 2)
     return [f"  {code.ljust(width)}   {said}".rstrip() for code, said in rows]
 

@@ -344,6 +344,6 @@ end
 NAMES = frozenset({
     "numbers", "columns", "everywhere", "in_pieces", "in_real_pieces", "chosen", "mean_over_circle",
     "series_solutions", "rows_of", "propagated", "characteristic_roots", "mode_values", "modal_value",
-    "default_parameters",
+    "default_parameters", "system_of",
 })  # fmt: skip
 """Names of these functions, and of the one with the model's values."""

@@ -149,4 +149,8 @@ def test_a_model_of_the_python_interface_exports_both():
     model = symflex.loads(text)
     assert model.export_matlab("rod").startswith("function G = rod()\n")
     assert "\nmodule Rod\n" in model.export_julia("rod")
+    assert '#include "' not in model.export_c()  # it needs no header beside it
+    assert "double complex" in model.export_c()
+    assert "import jax" in model.export_jax()
+    assert "import jax" not in model.export_array_api()
     assert model.export_matlab().startswith("function G = Axial_rod_held_at_one_end")
