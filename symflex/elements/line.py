@@ -32,6 +32,16 @@ class LineElement(Element):
     length: ClassVar[str] = "l"
     ends: ClassVar[tuple[str, ...]]
 
+    @property
+    def along(self) -> tuple[tuple[str, ...], ...]:
+        """What its state is called at a point, ``arm.y(l/2)``: each quantity by all its names, in order.
+
+        ``f`` and ``tau`` at a point are what the part beyond it exerts on the part before it.
+        """
+        domain = self.ports[0].domain
+        across = {"planar": (("y",), ("theta",)), "rotation": (("theta",),)}.get(domain, (("u", "y"),))
+        return (*across, *((quantity,) for quantity in self.through))
+
     @abstractmethod
     def theory(self, choices: Mapping[str, str]) -> str:
         """Return the name of the field theory, a key of the registry of theories."""

@@ -147,6 +147,7 @@ class _Assembly:
     rows: list[EquationRow] = field(default_factory=list)
     through: dict[Variable, LinearForm] = field(default_factory=dict)
     continua: list[Continuum] = field(default_factory=list)
+    states: dict[str, tuple[Variable | None, ...]] = field(default_factory=dict)
 
     def survey(self, *, is_nameless: bool) -> Distributed | None:
         """Return the model's distributed parts; this assembly is over the ring without kernels."""
@@ -162,11 +163,18 @@ class _Assembly:
     def _evaluator(self, blocks: Mapping[str, Factored]) -> tuple[Evaluator, dict[str, int]]:
         known = {d.name for d in self.model.definitions}
         point = random_point([n for n in self.ring.names if n not in known])
-        fields = {u for f in self.model.fields for u in f.unknowns}
-        value = None if self.distributed is None else self.distributed.value
         scope = scope_of(self.model)
+        fields = {*scope.unknowns, *scope.along}
+        value = None if self.distributed is None else self._at_point
         definitions = self._definitions
         return Evaluator(self.ring, scope, blocks, self.through, definitions, point, fields, value), point
+
+    def _at_point(self, call: Call) -> LinearForm:
+        """Return the value at a point along x that a call names."""
+        if self.distributed is None:
+            message = "without kernels nothing has a value at a point"
+            raise TypeError(message)
+        return self.distributed.value(call, self.states)
 
     def run(self) -> Equations:
         """Return the finished equations."""
@@ -256,7 +264,7 @@ class _Assembly:
         """Note what the state of a line element follows along x."""
         if self.distributed is not None:
             medium, length = self.distributed.lines[use.name]
-            state = element.initial_state(use)
+            self.states[use.name] = state = element.initial_state(use)
             self.continua.append(
                 Continuum(use.name, element.type_name, medium.system, length * 0, length, state)
             )

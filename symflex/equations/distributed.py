@@ -69,26 +69,38 @@ class FieldSolution:
 
     def value(self, unknown: str, order: int, length: Factored, propagation: Propagation) -> LinearForm:
         """Return a derivative of an unknown at a distance from the start."""
-        states = self.medium.system.states
-        highest = max(k for k in range(order + 1) if unknown + "'" * k in states)
-        zero = Factored.number(propagation.ring, 0)
-        row = [zero + int(state == unknown + "'" * highest) for state in states]
-        matrix = [[propagation.embed(x) for x in line] for line in self.medium.system.matrix]
-        loads = [[propagation.embed(x) for x in column] for column in self.medium.system.loads]
-        direct = [zero for _ in self.inputs]
-        for _ in range(order - highest):
-            direct = [_dot(row, column, zero) for column in loads]
-            row = [_dot(row, [line[j] for line in matrix], zero) for j in range(len(states))]
-        transfer = transfer_matrix(self.medium, length, propagation)
-        terms = [
-            (variable, _dot(row, [line[j] for line in transfer], zero))
-            for j, variable in enumerate(self.initial)
-        ]
-        if self.inputs and not length.is_zero:
-            driven = _driven(self.medium, length, propagation)
-            direct = [d + _dot(row, column, zero) for d, column in zip(direct, driven, strict=True)]
-        terms += list(zip(self.inputs, direct, strict=True))
-        return LinearForm.total(LinearForm.of(term) for term in terms)
+        return _value(self.medium, self.initial, self.inputs, unknown, order, length, propagation)
+
+
+def _value(
+    medium: Medium,
+    initial: Sequence[Variable | None],
+    inputs: Sequence[Variable],
+    unknown: str,
+    order: int,
+    length: Factored,
+    propagation: Propagation,
+) -> LinearForm:
+    """Return a derivative of a state at a distance from the start, where the state is ``initial``."""
+    states = medium.system.states
+    highest = max(k for k in range(order + 1) if unknown + "'" * k in states)
+    zero = Factored.number(propagation.ring, 0)
+    row = [zero + int(state == unknown + "'" * highest) for state in states]
+    matrix = [[propagation.embed(x) for x in line] for line in medium.system.matrix]
+    loads = [[propagation.embed(x) for x in column] for column in medium.system.loads]
+    direct = [zero for _ in inputs]
+    for _ in range(order - highest):
+        direct = [_dot(row, column, zero) for column in loads]
+        row = [_dot(row, [line[j] for line in matrix], zero) for j in range(len(states))]
+    transfer = transfer_matrix(medium, length, propagation)
+    terms = [
+        (variable, _dot(row, [line[j] for line in transfer], zero)) for j, variable in enumerate(initial)
+    ]
+    if inputs and not length.is_zero:
+        driven = _driven(medium, length, propagation)
+        direct = [d + _dot(row, column, zero) for d, column in zip(direct, driven, strict=True)]
+    terms += list(zip(inputs, direct, strict=True))
+    return LinearForm.total(LinearForm.of(term) for term in terms)
 
 
 def _dot(left: Iterable[Factored], right: Iterable[Factored], zero: Factored) -> Factored:
@@ -117,6 +129,8 @@ class Distributed:
         Over the ring without kernels, for points.
     lines : mapping of str to (Medium, Factored)
         Per line element, its equations and its length.
+    along : mapping of str to str
+        Per quantity of a line element along x, the state of its field theory.
     """
 
     propagation: Propagation
@@ -125,9 +139,18 @@ class Distributed:
     solutions: Mapping[str, FieldSolution]
     evaluator: Evaluator
     lines: Mapping[str, tuple[Medium, Factored]]
+    along: Mapping[str, str]
 
-    def value(self, call: Call) -> LinearForm:
-        """Return a field's unknown, or a derivative of it, at the point a call names."""
+    def value(self, call: Call, states: Mapping[str, Sequence[Variable | None]]) -> LinearForm:
+        """Return a field's unknown, an element's quantity, or a derivative, at the point a call names.
+
+        ``states`` are those of line elements at their first ends.
+        """
+        owner, dot, _ = call.name.partition(".")
+        if dot:
+            medium, _ = self.lines[owner]
+            at, state = self.evaluator.constant(call.argument), self.along[call.name]
+            return _value(medium, states[owner], (), state, call.order, at, self.propagation)
         solution = self.solutions[call.name]
         length = self.evaluator.constant(call.argument) - solution.origin
         return solution.value(call.name, call.order, length, self.propagation)
@@ -201,6 +224,7 @@ def survey(
     lines: list[tuple[str, Medium, Factored]] = []
     delays: list[tuple[str, int, Factored]] = []
     solutions: dict[str, FieldSolution] = {}
+    along: dict[str, str] = {}
     s = Factored.generator(evaluator.ring, "s")
     try:
         for use in model.elements:
@@ -208,6 +232,8 @@ def survey(
                 medium, length = _line(use, evaluator, demands, s)
                 demands.need(medium, length)
                 lines.append((use.name, medium, length))
+                for state, quantity in zip(medium.system.states, use.element.along, strict=True):
+                    along.update((f"{use.name}.{name}", state) for name in quantity)
         for block in model.blocks:
             if block.block is not None and block.block.kernel_time:
                 time = evaluator.constant(dict(block.values)[block.block.kernel_time])
@@ -219,6 +245,10 @@ def survey(
             if call.name in solutions:
                 solution = solutions[call.name]
                 demands.need(solution.medium, evaluator.constant(call.argument) - solution.origin)
+            elif call.name in along:
+                owner = call.name.partition(".")[0]
+                medium = next(medium for name, medium, _ in lines if name == owner)
+                demands.need(medium, evaluator.constant(call.argument))
     except SymflexError as error:
         problems.extend(error.diagnostics)
     if problems:
@@ -238,6 +268,7 @@ def survey(
         solutions,
         evaluator,
         {name: (medium, length) for name, medium, length in lines},
+        along,
     )
 
 

@@ -9,6 +9,7 @@ from symflex.expressions.nodes import (
     Derivative,
     Equation,
     Expression,
+    Measured,
     Name,
     Negative,
     Number,
@@ -19,7 +20,7 @@ from symflex.expressions.nodes import (
 )
 from symflex.expressions.parse import parse, parse_equation
 from symflex.expressions.slips import FUNCTIONS
-from symflex.expressions.walk import names, substitute
+from symflex.expressions.walk import measured, names, substitute
 
 __all__ = [
     "FUNCTIONS",
@@ -31,6 +32,7 @@ __all__ = [
     "Equation",
     "Expression",
     "Limits",
+    "Measured",
     "Name",
     "Negative",
     "Number",
@@ -39,6 +41,7 @@ __all__ = [
     "Quotient",
     "Sum",
     "format_expression",
+    "measured",
     "names",
     "negative",
     "number",

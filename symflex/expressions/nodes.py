@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from symflex.errors import Span
+    from symflex.quantities import Quantity
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +31,13 @@ class Number(Expression):
 
 
 @dataclass(frozen=True, slots=True)
+class Measured(Number):
+    """A length with its unit, as points along x have them: ``0.3 m``; ``value`` is in SI units."""
+
+    quantity: Quantity = field(kw_only=True, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Name(Expression):
     """A parameter, node, signal, input, definition, block, ``s`` or ``pi``."""
 
@@ -46,7 +54,10 @@ class Attribute(Expression):
 
 @dataclass(frozen=True, slots=True)
 class Call(Expression):
-    """A function of one argument ``sqrt(x)``, or a field evaluated at a point ``w''(l)`` (order 2)."""
+    """A function of one argument ``sqrt(x)``, or a field evaluated at a point ``w''(l)`` (order 2).
+
+    A quantity of an element at a point, ``arm.y(l/2)``, bears both names: ``"arm.y"``.
+    """
 
     name: str
     argument: Expression

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, NamedTuple, NoReturn
 from lark import Lark, Token, Transformer, v_args
 from lark.exceptions import UnexpectedCharacters, UnexpectedToken
 
-from symflex.errors import Diagnostic, SpecError
+from symflex.errors import Diagnostic, SpecError, Text
 from symflex.expressions.limits import (
     SIZE_OF_NAME,
     USER_LIMITS,
@@ -41,6 +41,7 @@ from symflex.expressions.nodes import (
     Derivative,
     Equation,
     Expression,
+    Measured,
     Name,
     Negative,
     Number,
@@ -49,12 +50,12 @@ from symflex.expressions.nodes import (
     Quotient,
     Sum,
 )
-from symflex.expressions.slips import Slip, character_slip, end_slip, token_slip
+from symflex.expressions.slips import FUNCTIONS, Slip, character_slip, end_slip, token_slip
+from symflex.expressions.walk import measured
+from symflex.quantities import parse_quantity
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    from symflex.errors import Text
 
 NAME_LENGTH = 64
 BLANKS = " \t\r\n"
@@ -208,6 +209,16 @@ class _Builder(Transformer[Token, _Piece]):
         node = Number(value, span=reading.text.at(start, end))
         return _Piece(node, start, end, size_of_number(value), reading)
 
+    def measured(self, token: Token, unit: Token) -> _Piece:
+        reading = _reading(token)
+        start, end = _extent(token)[0], _extent(unit)[1]
+        span = reading.text.at(start, end)
+        quantity = parse_quantity(Text(f"{token} {unit}", span))
+        if quantity.pi_power or quantity.cycles:
+            reading.refuse(start, end, "SF203", f"a point along x is a length, not in '{unit}'")
+        node = Measured(quantity.magnitude, quantity=quantity, span=span)
+        return _Piece(node, start, end, size_of_number(quantity.magnitude), reading)
+
     def name(self, token: Token) -> _Piece:
         reading = _reading(token)
         start, end = _extent(token)
@@ -231,6 +242,23 @@ class _Builder(Transformer[Token, _Piece]):
     def evaluation(self, name: Token, primes: Token, _left: Token, argument: _Piece, right: Token) -> _Piece:
         return _called(name, len(primes), argument, right)
 
+    def point(
+        self, owner: Token, _dot: Token, name: Token, _left: Token, argument: _Piece, right: Token
+    ) -> _Piece:
+        return _called(owner, 0, argument, right, name)
+
+    def slope(
+        self,
+        owner: Token,
+        _dot: Token,
+        name: Token,
+        primes: Token,
+        _left: Token,
+        argument: _Piece,
+        right: Token,
+    ) -> _Piece:
+        return _called(owner, len(primes), argument, right, name)
+
     def group(self, left: Token, inner: _Piece, right: Token) -> _Piece:
         return inner._replace(start=_extent(left)[0], end=_extent(right)[1])
 
@@ -249,10 +277,15 @@ def _flat(pieces: Sequence[_Piece], kind: type[Expression]) -> tuple[tuple[Expre
     return tuple(nodes), sizes
 
 
-def _called(name: Token, order: int, argument: _Piece, right: Token) -> _Piece:
+def _called(name: Token, order: int, argument: _Piece, right: Token, quantity: Token | None = None) -> _Piece:
     reading = argument.reading
     start, end = _extent(name)[0], _extent(right)[1]
-    node = Call(str(name), argument.node, order, span=reading.text.at(start, end))
+    whole = str(name) if quantity is None else f"{name}.{quantity}"
+    if whole in FUNCTIONS and (lengths := measured(argument.node)):
+        message = f"a number with a unit in the argument of {whole}"
+        hint = "a number with a unit belongs in [parameters]; only a point along x may have one here"
+        raise SpecError(Diagnostic("SF111", message, lengths[0].span, hint))
+    node = Call(whole, argument.node, order, span=reading.text.at(start, end))
     return _checked(_Piece(node, start, end, size_of_call(argument.size), reading))
 
 

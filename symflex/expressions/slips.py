@@ -153,8 +153,8 @@ def _neighbour_hint(value: str, recent: Sequence[Token]) -> str | None:
         return f"write '{before}({_short(token)})'" if _short(token) else f"write '{before}(...)'"
     if types[-4:] == ["NAME", "POWER", "NUMBER", "LPAR"] and str(recent[-4]) in FUNCTIONS:
         return f"write '{recent[-4]}(...)^{_short(before)}'"
-    if types[-4:-1] == ["NAME", "DOT", "NAME"] and token.type == "LPAR":
-        return f"'{_short(recent[-4])}.{_short(before)}' is no function; write '*' to multiply"
+    if token.type == "SCALE":
+        return "a length with its unit stands alone, or in a sum"
     left, right = _short(_operand(recent[:-1], types)), _short(token)
     cure = f"write {_quoted(f'{left}*{right}')}" if left and right else "write '*' to multiply"
     spaced = (before.start_pos or 0) + len(before) < (token.start_pos or 0)

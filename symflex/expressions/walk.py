@@ -10,6 +10,7 @@ from symflex.expressions.nodes import (
     Derivative,
     Equation,
     Expression,
+    Measured,
     Name,
     Negative,
     Power,
@@ -47,6 +48,18 @@ def names(expression: Expression) -> tuple[Name | Attribute | Call | Derivative,
     while pending:
         node = pending.pop()
         if isinstance(node, Name | Attribute | Call | Derivative):
+            found.append(node)
+        pending.extend(reversed(node.children))
+    return tuple(found)
+
+
+def measured(expression: Expression) -> tuple[Measured, ...]:
+    """Return every number with a unit, in order of appearance."""
+    found: list[Measured] = []
+    pending = [expression]
+    while pending:
+        node = pending.pop()
+        if isinstance(node, Measured):
             found.append(node)
         pending.extend(reversed(node.children))
     return tuple(found)

@@ -8,9 +8,21 @@ name each other's unknowns are one problem, and their orders and conditions are 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symflex.expressions import Call, Derivative, Name, Negative, Sum, format_expression, names
+from symflex.elements import LineElement
+from symflex.expressions import (
+    Call,
+    Derivative,
+    Name,
+    Negative,
+    Number,
+    Sum,
+    format_expression,
+    measured,
+    names,
+)
 from symflex.kernels import LAPLACE
 from symflex.model.independence import RandomPoint, repetitions
 from symflex.model.linearity import check_equation, check_expression
@@ -22,7 +34,7 @@ if TYPE_CHECKING:
     from symflex.errors import Span
     from symflex.expressions import Equation, Expression
     from symflex.model.independence import Repetition
-    from symflex.model.model import Definition, Field, PlacedBlock
+    from symflex.model.model import Definition, Field, PlacedBlock, PlacedElement
     from symflex.model.points import Line
     from symflex.model.reading import Reader
     from symflex.model.scope import Scope
@@ -114,36 +126,69 @@ def check_fields(reader: Reader, fields: Sequence[Field], around: Surroundings) 
     return frozenset(placed)
 
 
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """Where the points of a field or of an element that extends along x may lie.
+
+    Parameters
+    ----------
+    what : str
+        In words, for messages.
+    names : tuple of str
+        What is evaluated at points of it.
+    start, end : Expression
+        Where x begins and ends.
+    """
+
+    what: str
+    names: tuple[str, ...]
+    start: Expression
+    end: Expression
+
+
+def stretches(fields: Sequence[Field], elements: Sequence[PlacedElement]) -> tuple[Stretch, ...]:
+    """Return the stretches of a model; of elements, x runs from 0 at the first end."""
+    found = [Stretch(f"the domain of field '{f.name}'", f.unknowns, f.start, f.end) for f in fields]
+    for use in elements:
+        element = use.element
+        if isinstance(element, LineElement) and element.length in dict(use.values):
+            names = tuple(f"{use.name}.{name}" for quantity in element.along for name in quantity)
+            length = dict(use.values)[element.length]
+            what = f"{element.type_name} '{use.name}'"
+            found.append(Stretch(what, names, Number(Fraction(0)), length))
+    return tuple(found)
+
+
 def check_points(
-    reader: Reader, expression: Expression, fields: Sequence[Field], around: Surroundings
+    reader: Reader, expression: Expression, along: Sequence[Stretch], around: Surroundings
 ) -> None:
-    """Note every point of an expression that depends on s or lies outside the domain of its field.
+    """Note every point of an expression that depends on s or lies outside what it is a point of.
 
     What is wrong with it otherwise was noted before, and it is passed over.
     """
-    owners = {unknown: field for field in fields for unknown in field.unknowns}
+    owners = {name: stretch for stretch in along for name in stretch.names}
     noted = {p.span for p in reader.problems}
     inside: set[tuple[str, Expression]] = set()
-    for call in _values_at_points(expression, around.scope):
-        field, place = owners.get(call.name), call.argument
-        if field is None or (field.name, place) in inside or place.span in noted:
+    for call in (n for n in names(expression) if isinstance(n, Call)):
+        stretch, place = owners.get(call.name), call.argument
+        if stretch is None or (stretch.what, place) in inside or place.span in noted:
             continue
         if depends_on_s(place, around.varying):
             reader.note("SF249", "a point along x cannot depend on s", place.span)
             continue
-        sides = ((field.start, "before the start", -1), (field.end, "beyond the end", 1))
+        sides = ((stretch.start, "before the start", -1), (stretch.end, "beyond the end", 1))
         wrong = [
             (end, word) for end, word, sign in sides if around.line.sign(_difference(place, end)) == sign
         ]
         for end, word in wrong:
             reader.note(
                 "SF240",
-                f"the point {_named(place, around.line)} lies {word} of the domain of field "
-                f"'{field.name}', {_named(end, around.line)}",
+                f"the point {_named(place, around.line)} lies {word} of {stretch.what}, "
+                f"{_named(end, around.line)}",
                 place.span,
             )
         if not wrong:
-            inside.add((field.name, place))
+            inside.add((stretch.what, place))
 
 
 def _values_at_points(expression: Expression, scope: Scope) -> Iterator[Call]:
@@ -155,8 +200,8 @@ def _difference(left: Expression, right: Expression) -> Expression:
 
 
 def _written(place: Expression) -> str:
-    if isinstance(place, QuantityLiteral):
-        return place.span.text if place.span else place.quantity.unit
+    if isinstance(place, QuantityLiteral) or measured(place):
+        return place.span.text if place.span else format_expression(place)
     return format_expression(place)
 
 

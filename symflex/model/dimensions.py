@@ -23,6 +23,7 @@ from symflex.expressions import (
     Derivative,
     Equation,
     Expression,
+    Measured,
     Name,
     Negative,
     Number,
@@ -30,10 +31,11 @@ from symflex.expressions import (
     Product,
     Quotient,
     Sum,
+    measured,
     names,
     substitute,
 )
-from symflex.kernels import FUNCTIONS
+from symflex.kernels import FUNCTIONS, LAPLACE
 from symflex.model.linearity import integer_exponent
 from symflex.model.reading import QuantityLiteral
 from symflex.quantities import DIMENSIONLESS, Dimension, unit_of
@@ -219,6 +221,10 @@ class DimensionSystem:
                 axis = Measure(open=True)
         self._axes.update(dict.fromkeys(unknowns, axis))
 
+    def place_lines(self) -> None:
+        """Take x along elements to be a length."""
+        self._axes.update(dict.fromkeys(self._scope.along, Measure(unit_of("m").dimension)))
+
     def balance(self, equation: Equation, unknowns: Sequence[str] = ()) -> None:
         """Demand that all terms of an equation are measured alike; bare ``unknowns`` are those of a field."""
         whole = substitute(equation, {name: Derivative(name, 0) for name in unknowns})
@@ -258,6 +264,8 @@ class DimensionSystem:
     def measure(self, expression: Expression) -> Measure:
         """Return what an expression is measured in; disagreeing sums become problems."""
         match expression:
+            case Measured(quantity=quantity):
+                return Measure(quantity.dimension)
             case Number():
                 return Measure(literal=True)
             case QuantityLiteral(quantity):
@@ -299,12 +307,18 @@ class DimensionSystem:
             return
         measure = self.measure(place)
         self._read_cycles(measure, None, place.span)
-        axis = self._axes[name]
-        if measure.open or axis.open or not names(place) or any(self._varies(n) for n in names(place)):
+        axis, written = self._axes[name], names(place)
+        if measure.open or axis.open or any(self._varies(n) for n in written):
             return
+        if not written and not measured(place):
+            return
+        if any(isinstance(n, Name) and n.name == LAPLACE for n in written):
+            return  # a point that depends on s is refused for that
         if not self._learn(self._reduce(measure.times(axis.power(-1)))):
             found, wanted = self._reduce(measure).dimension, self._reduce(axis).dimension
             message = f"the point is in '{found}'; the domain of '{name}' is in '{wanted}'"
+            if name in self._scope.along:
+                message = f"the point is in '{found}'; x along {self._scope.along[name]} is in '{wanted}'"
             self.problems.append(Diagnostic("SF203", message, place.span))
             return
         self._sound_points.add((name, place))

@@ -116,6 +116,8 @@ class RandomPoint:
                 at = self.constant(argument)
                 if name in self.scope.unknowns:
                     return {(name, at, order): 1}
+                if name in self.scope.along:
+                    return {Variable("through", name, f"{order} at {at}"): 1}
                 return {None: _random(f"{name}({at})")}
             case Derivative(name, order):
                 return {(name, 0, order): 1}

@@ -212,9 +212,13 @@ def _power_degree(power: Power, base: Degree, exponent: Expression, problems: li
 
 
 def _call_degree(call: Call, scope: Scope, constant: bool, problems: list[Diagnostic]) -> Degree:
-    if call.name in scope.broken and call.name not in FUNCTIONS:
+    owner, dot, _ = call.name.partition(".")
+    if owner in scope.broken and call.name not in (*FUNCTIONS, *scope.along):
         return "unknown"
-    if call.name in scope.unknowns and call.name not in FUNCTIONS:
+    if dot and call.name not in scope.along:
+        problems.append(_not_along(call, scope))
+        return "unknown"
+    if (call.name in scope.unknowns and call.name not in FUNCTIONS) or call.name in scope.along:
         return _value_degree(call, scope, constant, problems)
     if call.order:
         problems.append(_derivative(call.span))
@@ -281,6 +285,21 @@ def _derivative_degree(derivative: Derivative, scope: Scope, problems: list[Diag
 def _derivative(span: Span | None) -> Diagnostic:
     message = "a derivative along x may be taken only of an unknown of [fields]"
     return Diagnostic("SF223", message, span, "a derivative in time is written with s: s*x")
+
+
+def _not_along(call: Call, scope: Scope) -> Diagnostic:
+    """Return the diagnostic of ``owner.name(...)`` where that is no quantity along x."""
+    owner, _, name = call.name.partition(".")
+    offered = [each for each in scope.along if each.partition(".")[0] == owner]
+    if name in scope.owners.get(owner, ()) and not offered:
+        hint = f"write '{call.name}*(...)' to multiply"
+        return Diagnostic("SF210", f"'{call.name}' has no points along x", call.span, hint)
+    if offered:
+        hint = "it offers " + ", ".join(f"{each}(...)" for each in offered)
+        return Diagnostic("SF210", f"'{owner}' has no quantity '{name}' along x", call.span, hint)
+    hints = nearest(owner, {each.partition(".")[0] for each in scope.along})
+    hints = hints or "a beam, rod, shaft or string has points along x"
+    return Diagnostic("SF210", f"no element along x is called '{owner}'", call.span, hints)
 
 
 def _unknown_function(call: Call, scope: Scope) -> Diagnostic:

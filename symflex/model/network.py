@@ -295,7 +295,6 @@ class NetworkReader:
                 "SF217",
                 f"{what} acts on one node, or on one with its reaction on a second, found {len(texts)}",
                 place.value.span,
-                "an input of its own for each node" if len(texts) else None,
             )
             return None
         references = [self._reference(t, law.domain, what) for t in texts]

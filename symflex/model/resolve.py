@@ -20,6 +20,7 @@ from symflex.model.boundary import (
     check_fields,
     check_points,
     depends_on_s,
+    stretches,
     varying_constants,
 )
 from symflex.model.declarations import (
@@ -378,7 +379,7 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> Model:
     system = check_units(reader, draft, placed, scope, unsound, fields_placed)
     readings = system.finish()
     reader.take(system.problems)
-    _check_points(reader, draft, around, fields_placed)
+    _check_points(reader, draft, placed, around, fields_placed)
     implied = implied_units(placed, draft.blocks)
     parameters = [
         p.resolve(angular=readings.get(p.name, True), implied_unit=implied.get(p.name, ""))
@@ -464,12 +465,18 @@ def _unsound_equations(draft: Draft, problems: Sequence[Diagnostic]) -> set[Span
     return {e.span for e in equations if e.span and any(_covers(e.span, s) for s in wrong)}
 
 
-def _check_points(reader: Reader, draft: Draft, around: Surroundings, placed: Collection[str]) -> None:
-    fields = [f for f in draft.fields if f.name in placed]
+def _check_points(
+    reader: Reader,
+    draft: Draft,
+    elements: Sequence[PlacedElement],
+    around: Surroundings,
+    fields_placed: Collection[str],
+) -> None:
+    along = stretches([f for f in draft.fields if f.name in fields_placed], elements)
     expressions: list[Expression] = [c for f in draft.fields for c in f.conditions]
     expressions += [e for e, constant in _all_expressions(draft) if not constant]
-    for expression in expressions if fields else ():
-        check_points(reader, expression, fields, around)
+    for expression in expressions if along else ():
+        check_points(reader, expression, along, around)
 
 
 def _covers(outer: Span, inner: Span) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
-from symflex.elements import Variable
+from symflex.elements import LineElement, Variable
 from symflex.errors import Diagnostic, SpecError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import Attribute, Name
@@ -61,6 +61,8 @@ class Scope:
         The unknowns of all fields, each with its field; they are written with a point, ``w(l)``.
     inside : frozenset of str
         In the equations of a field its own unknowns, which stand there bare; empty elsewhere.
+    along : mapping of str to str
+        Quantities of elements that extend along x, ``arm.y``, each with its element in words.
     """
 
     meanings: Mapping[str, tuple[Meaning, ...]]
@@ -69,6 +71,7 @@ class Scope:
     broken: frozenset[str] = frozenset()
     unknowns: Mapping[str, str] = field(default_factory=dict)
     inside: frozenset[str] = frozenset()
+    along: Mapping[str, str] = field(default_factory=dict)
 
     def within(self, unknowns: Iterable[str]) -> Scope:
         """Return the scope of the equations of the field with these unknowns."""
@@ -160,13 +163,15 @@ class Scope:
         found = self.attributes.get((expression.owner, expression.name), ())
         if len(found) > 1:
             raise SpecError(_ambiguous(text, found, expression.span))
+        if not found and text in self.along:
+            raise SpecError(without_point(text, text, expression.span))
         if not found:
             offered = self.owners.get(expression.owner)
             if expression.owner in self.broken:
                 return Meaning("broken", text, "a name with a mistake")
             if offered is None:
                 hint = nearest_name(expression.owner, list(self.owners))
-                message = f"'{text}': no element, planar node or imposed input is called '{expression.owner}'"
+                message = f"'{text}': no element or planar node is called '{expression.owner}'"
             else:
                 hint = (
                     "it offers " + ", ".join(f"{expression.owner}.{a}" for a in offered) if offered else None
@@ -300,6 +305,13 @@ def build_scope(
         {name: tuple(found) for name, found in owners.items()},
         broken,
         {unknown: f.name for f in fields for unknown in f.unknowns},
+        along={
+            f"{use.name}.{name}": f"{use.element.type_name} '{use.name}'"
+            for use in elements
+            if isinstance(use.element, LineElement)
+            for quantity in use.element.along
+            for name in quantity
+        },
     )
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symflex.elements import ACROSS_UNIT, THROUGH_UNIT, Variable
+from symflex.elements import ACROSS_UNIT, THROUGH_UNIT, LineElement, Variable
 from symflex.errors import Span
 from symflex.expressions import Expression, Name, names, power, product_of
 from symflex.model.declarations import (
@@ -52,6 +52,7 @@ def check_units(
     system = DimensionSystem(
         scope, quantities, {d.name: d.expression for d in draft.definitions}, known, blocks
     )
+    system.place_lines()
     for definition in draft.definitions:
         # In this order each one finds those it uses already measured, however long the chain.
         system.definition(definition.name)
@@ -158,6 +159,11 @@ def _known_dimensions(draft: Draft, placed: Sequence[PlacedElement]) -> dict[Var
         for quantity in use.element.quantities(domains):
             unit = use.element.unit_of(quantity, domains)
             known[Variable("through", use.name, quantity)] = unit_of(unit).dimension
+        if isinstance(use.element, LineElement):
+            units = {"u": "m", "y": "m", "theta": "rad"}
+            for name in (name for quantity in use.element.along for name in quantity):
+                unit = units.get(name) or use.element.unit_of(name, domains)
+                known[Variable("field", f"{use.name}.{name}")] = unit_of(unit).dimension
     for source in draft.inputs:
         unit = source.input.unit or source.unit_text
         if unit:

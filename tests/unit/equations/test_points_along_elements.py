@@ -1,0 +1,239 @@
+"""Quantities of beams, rods, shafts and strings at points between their ends."""
+
+from __future__ import annotations
+
+from cmath import cosh, sinh
+
+import numpy as np
+import pytest
+
+import symflex
+from symflex.errors import SymflexError
+
+S = 2 + 40j
+E, I, RHO, A, LENGTH, X = 70e9, 1.2e-9, 2700.0, 1.5e-4, 0.8, 0.3  # noqa: E741
+
+LINES = """symflex = 1
+[parameters]
+E = "70 GPa"
+I = "1.2e-9 m^4"
+rho = "2700 kg/m^3"
+A = "1.5e-4 m^2"
+l = "0.8 m"
+x_s = "0.3 m"
+G = "26 GPa"
+J = "2e-9 m^4"
+N = "30 N"
+kappa = 0.85
+eta = "1e-5 s"
+k_f = "200 N/m^2"
+[elements]
+"""
+BEAM = 'E = "E", I = "I", rho = "rho", A = "A"'
+CANTILEVER = (
+    LINES
+    + f'arm = {{ type = "beam", between = ["ground", "tip"], l = "l", {BEAM} }}\n'
+    + '[inputs]\nF = { force = "tip" }\n[outputs]\n'
+)
+
+
+def value(text, name, s=S):
+    return complex(symflex.loads(text).transfer_function(*name.split("/")).bind()(s))
+
+
+def cantilever(x):
+    """y, theta, f and tau at x with a unit force at the tip, from E I w'''' = -rho A s^2 w."""
+    exponents = np.roots([1, 0, 0, 0, RHO * A * S**2 / (E * I)])
+
+    def row(order, at):
+        return exponents**order * np.exp(exponents * at)
+
+    rows = np.array([row(0, 0), row(1, 0), E * I * row(2, LENGTH), E * I * row(3, LENGTH)])
+    c = np.linalg.solve(rows, np.array([0, 0, 0, -1]))
+    y, theta, tau, f = (row(k, x) @ c * scale for k, scale in ((0, 1), (1, 1), (2, E * I), (3, -E * I)))
+    return {"y": y, "theta": theta, "f": f, "tau": tau}
+
+
+@pytest.mark.parametrize("quantity", ["y", "theta", "f", "tau"])
+@pytest.mark.parametrize(
+    ("place", "x"),
+    [
+        ("x_s", X),
+        ("0.3 m", X),
+        ("300mm", X),
+        ("0.3", X),
+        ("l/2", 0.4),
+        ("l - 5 mm", 0.795),
+        ("0.5*x_s + 1 cm", 0.16),
+    ],
+)
+def test_the_state_of_a_cantilever_at_a_point_solves_its_equation(quantity, place, x):
+    text = f'{CANTILEVER}Q = "arm.{quantity}({place})"\n'
+    assert value(text, "Q/F") == pytest.approx(cantilever(x)[quantity], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("quantity", "here"), [("y", "tip"), ("theta", "tip.theta"), ("f", "-arm.f"), ("tau", "-arm.tau")]
+)
+def test_at_its_end_the_state_of_a_beam_is_that_of_the_node(quantity, here):
+    text = f'{CANTILEVER}Q = "arm.{quantity}(l) - ({here})"\n'
+    assert symflex.loads(text).transfer_function("Q", "F").num == 0
+
+
+@pytest.mark.parametrize(
+    ("derivative", "quantity"), [("arm.y'(x_s)", "arm.theta(x_s)"), ("E*I*arm.y''(x_s)", "arm.tau(x_s)")]
+)
+def test_primes_are_derivatives_along_x(derivative, quantity):
+    text = f'{CANTILEVER}Q = "{derivative} - {quantity}"\n'
+    assert symflex.loads(text).transfer_function("Q", "F").num == 0
+
+
+ARM = (
+    LINES
+    + 'pivot = { type = "pin", at = "a" }\nload = { type = "mass", at = "b", m = "0.5 kg" }\n'
+    + 'hub = { type = "inertia", at = "a.theta", J = "0.02 kg*m^2" }\n'
+)
+DRIVE = '[inputs]\nT = { torque = "a.theta" }\n[outputs]\n'
+WHOLE = 'arm = {{ type = "beam", between = ["a", "b"], l = "l", {0} }}\n'
+SPLIT = (
+    'arm = {{ type = "beam", between = ["a", "c"], l = "x_s", {0} }}\n'
+    'rest = {{ type = "beam", between = ["c", "b"], l = "l - x_s", {0} }}\n'
+)
+THEORIES = {
+    "Euler-Bernoulli with loss": ', eta = "eta"',
+    "Euler-Bernoulli with axial force on a foundation": ', N = "N", k_f = "k_f"',
+    "Rayleigh": ', theory = "rayleigh"',
+    "Timoshenko": ', theory = "timoshenko", G = "G", kappa = "kappa"',
+}
+
+
+@pytest.mark.parametrize("theory", THEORIES.values(), ids=THEORIES)
+def test_at_a_point_a_beam_is_what_two_beams_are_where_they_meet(theory):
+    names = ("y", "theta", "f", "tau")
+    inside = "".join(f'{q} = "arm.{q}(x_s)"\n' for q in names)
+    joint = 'y = "c"\ntheta = "c.theta"\nf = "-arm.f"\ntau = "-arm.tau"\n'
+    whole = symflex.loads(ARM + WHOLE.format(BEAM + theory) + DRIVE + inside)
+    split = symflex.loads(ARM + SPLIT.format(BEAM + theory) + DRIVE + joint)
+    for name in names:
+        found, wanted = (complex(m.transfer_function(name, "T").bind()(S)) for m in (whole, split))
+        assert found == pytest.approx(wanted, rel=1e-12)
+
+
+def line(kind, stiffness, drive, quantity):
+    return (
+        f'{LINES}line = {{ type = "{kind}", between = ["ground", "b"], l = "l", {stiffness} }}\n'
+        f'[inputs]\nF = {{ {drive} = "b" }}\n[outputs]\nQ = "line.{quantity}(x_s)"\n'
+    )
+
+
+@pytest.mark.parametrize(
+    ("kind", "parameters", "drive", "across", "through", "stiffness", "speed"),
+    [
+        ("rod", 'E = "E", A = "A", rho = "rho"', "force", "u", "f", E * A, (E / RHO) ** 0.5),
+        ("rod", 'E = "E", A = "A", rho = "rho"', "force", "y", "f", E * A, (E / RHO) ** 0.5),
+        (
+            "shaft",
+            'G = "G", J = "J", rho = "rho"',
+            "torque",
+            "theta",
+            "tau",
+            26e9 * 2e-9,
+            (26e9 / RHO) ** 0.5,
+        ),
+        ("string", 'N = "N", A = "A", rho = "rho"', "force", "y", "f", 30.0, (30 / (RHO * A)) ** 0.5),
+        ("string", 'N = "N", A = "A", rho = "rho"', "force", "u", "f", 30.0, (30 / (RHO * A)) ** 0.5),
+    ],
+)
+def test_a_line_held_at_one_end_and_driven_at_the_other(
+    kind, parameters, drive, across, through, stiffness, speed
+):
+    g = S / speed
+    moved, carried = sinh(g * X) / (stiffness * g * cosh(g * LENGTH)), cosh(g * X) / cosh(g * LENGTH)
+    assert value(line(kind, parameters, drive, across), "Q/F") == pytest.approx(moved, rel=1e-11)
+    assert value(line(kind, parameters, drive, through), "Q/F") == pytest.approx(carried, rel=1e-11)
+
+
+def test_a_beam_clamped_at_its_first_end_needs_no_node_there():
+    text = CANTILEVER.replace('["ground", "tip"]', '["wall", "tip"]').replace(
+        "[inputs]", 'w = { type = "fixed", at = "wall" }\n[inputs]'
+    )
+    assert value(f'{text}Q = "arm.y(x_s)"\n', "Q/F") == pytest.approx(cantilever(X)["y"], rel=1e-9)
+
+
+def test_a_sensor_between_the_ends_closes_a_loop():
+    open_loop = f'{CANTILEVER}Q = "arm.y(x_s)"\nTip = "tip"\n'
+    closed = open_loop.replace('F = { force = "tip" }', "r = {}").replace(
+        "[inputs]", 'drive = { type = "force_source", at = "tip", f = "K*(r - arm.y(x_s))" }\n[inputs]'
+    ).replace("x_s = ", 'K = "200 N/m"\nx_s = ')  # fmt: skip
+    plant = cantilever(X)["y"]
+    assert value(closed, "Q/r") == pytest.approx(200 * plant / (1 + 200 * plant), rel=1e-9)
+
+
+def test_a_signal_reads_a_point():
+    text = CANTILEVER.replace("[outputs]", '[signals]\ne = "3*arm.theta(0.3 m)"\n[outputs]') + 'Q = "e"\n'
+    assert value(text, "Q/F") == pytest.approx(3 * cantilever(X)["theta"], rel=1e-9)
+
+
+def test_a_point_of_a_field_may_have_its_unit():
+    text = (
+        "symflex = 1\n[parameters]\nk = 2\n[fields.w]\n"
+        'domain = ["0", "0.8 m"]\nequation = "w\'\' = k^2*w"\nconditions = ["w(0 m) = 0", "w(800 mm) = u"]\n'
+        '[inputs]\nu = {}\n[outputs]\nQ = "w(0.3 m)"\n'
+    )
+    assert value(text.replace("k^2", "s^2*k^2"), "Q/u") == pytest.approx(
+        sinh(2 * S * X) / sinh(2 * S * LENGTH)
+    )
+
+
+def test_units_of_points_are_those_of_the_quantities():
+    names = ("y", "theta", "f", "tau")
+    model = symflex.loads(CANTILEVER + "".join(f'{q} = "arm.{q}(x_s)"\n' for q in names))
+    assert [model.transfer_function(q, "F").unit for q in names] == ["m/N", "1/N", "1", "m"]
+
+
+@pytest.mark.parametrize(
+    ("place", "code"),
+    [
+        ("0.9 m", "SF240"), ("-1 mm", "SF240"), ("l + 1 nm", "SF240"), ("2*l", "SF240"), ("-x_s", "SF240"),
+        ("s", "SF249"), ("0.3 kg", "SF203"), ("0.3 Hz", "SF203"), ("5 deg", "SF203"), ("E", "SF203"),
+        ("tip", "SF212"), ("F", "SF212"), ("arm.y(0)", "SF212"), ("1e999 m", "SF103"),
+        ("0.3 parsec", "SF201"),
+        ("", "SF111"), ("0.3 m, 0.1 m", "SF111"), ("0.3 m/2", "SF111"), ("nan", "SF210"), ("l/0", "SF224"),
+    ],
+)  # fmt: skip
+def test_a_point_that_is_none_is_refused(place, code):
+    with pytest.raises(SymflexError) as caught:
+        symflex.loads(f'{CANTILEVER}Q = "arm.y({place})"\n')
+    assert {d.code for d in caught.value.diagnostics} == {code}
+
+
+@pytest.mark.parametrize(
+    ("expression", "code", "hint"),
+    [
+        ("arm.y", "SF241", "evaluate it at a point: arm.y(0)"),
+        ("arm.w(0.3 m)", "SF210", "it offers arm.y(...), arm.theta(...), arm.f(...), arm.tau(...)"),
+        ("amr.y(0.3 m)", "SF210", "did you mean 'arm'?"),
+        ("tip.y(0.3 m)", "SF210", "write 'tip.y*(...)' to multiply"),
+    ],
+)  # fmt: skip
+def test_what_has_no_points_is_told_apart(expression, code, hint):
+    with pytest.raises(SymflexError) as caught:
+        symflex.loads(f'{CANTILEVER}Q = "{expression}"\n')
+    assert [(d.code, d.hint) for d in caught.value.diagnostics] == [(code, hint)]
+
+
+def test_a_function_takes_no_number_with_a_unit():
+    with pytest.raises(SymflexError, match="a number with a unit in the argument of sqrt") as caught:
+        symflex.loads(f'{CANTILEVER}Q = "sqrt(4 m)*tip"\n')
+    assert caught.value.diagnostics[0].code == "SF111"
+
+
+def test_a_point_may_not_stand_where_only_constants_may():
+    with pytest.raises(SymflexError, match="varies in time") as caught:
+        symflex.loads(CANTILEVER.replace('l = "l"', 'l = "arm.y(0)"') + 'Q = "tip"\n')
+    assert caught.value.diagnostics[0].code == "SF212"
+
+
+def test_wavenumbers_of_a_point_are_those_of_the_beam():
+    G = symflex.loads(f'{CANTILEVER}Q = "arm.y(x_s)"\n').transfer_function("Q", "F")
+    assert len(G.exact.kernels.dispersions) == 1
