@@ -23,12 +23,12 @@ from symflex.roots.kernel_function import KernelFunction
 from symflex.roots.root import exact_fraction
 from symflex.roots.side import Side
 from symflex.roots.square_free_kernels import without_squares
+from symflex.roots.tail import right_tail
 from symflex.roots.winding import Cell, RootOnPathError, Winding
 from symflex.stability.axis import find_on_axis
 from symflex.stability.crossing import Crossing, PoleCount
 from symflex.stability.loop_function import LoopFunction, LoopValue
 from symflex.stability.origin import LoopAtOrigin, loop_at_origin
-from symflex.stability.tail import radius_without_roots
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -88,7 +88,10 @@ class DistributedFactors:
 
     @cached_property
     def radius(self) -> tuple[float, bool]:
-        """How far poles are searched [rad/s], and whether it is proved that none lies beyond on the right."""
+        """How far poles are searched [rad/s], and whether it is proved that none lies beyond on the right.
+
+        Where it is not, ``reasons`` says why.
+        """
         low, high = (arb(x.numerator) / x.denominator for x in self.limits)
         proved: list[float] = []
         for factor in self.factors:
@@ -96,10 +99,13 @@ class DistributedFactors:
                 continue
             b = factor.coefficients[1] if factor.degree else Factored.number(self.bound.ratio.ring, 0)
             function = LoopFunction.of(self.bound, factor.coefficients[0], b)
-            radius = radius_without_roots(function, acb(low.union(high)), self._scale)
-            if radius is None:
+            tail = right_tail(
+                self.bound, (function.a, function.b), (acb(1), acb(low.union(high))), self._scale
+            )
+            if tail.radius is None:
+                self.reasons.append(tail.reason)
                 return self._without_end, False
-            proved.append(radius)
+            proved.append(tail.radius)
         return max(proved), True
 
     @cached_property

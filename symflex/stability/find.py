@@ -101,7 +101,7 @@ def find_stable_gains(
         (),
         radius,
         is_complete,
-        (),
+        tuple(reasons),
         digits,
         None,
     )

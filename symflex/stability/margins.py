@@ -10,7 +10,7 @@ from flint import acb, arb
 from symflex.kernels import Factored
 from symflex.roots import RootProblem, find_polynomial_roots, precision
 from symflex.roots.side import polynomial_in_s
-from symflex.stability.tail import radius_without_roots
+from symflex.roots.tail import right_tail
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -145,7 +145,8 @@ def distributed_crossovers(
     if distributed.radius[1]:
         most = abs(gain).upper()
         disc = acb(arb(0, most), arb(0, most))
-        if radius_without_roots(function, disc, distributed.radius[0]) != distributed.radius[0]:
+        tail = right_tail(function.bound, (function.a, function.b), (acb(1), disc), distributed.radius[0])
+        if tail.radius != distributed.radius[0]:
             distributed.reasons.append("whether the loop gain is one at high frequencies is not proved")
     found = []
     for omega in result.roots:

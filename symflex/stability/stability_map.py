@@ -144,6 +144,11 @@ class StabilityMap:
     digits: int
     bandwidth: AllowedBandwidth | None
 
+    def __post_init__(self) -> None:
+        if not self.is_complete and not self.reasons:
+            message = "what is not counted needs a reason"
+            raise ValueError(message)
+
     @property
     def certified(self) -> bool:
         """All of it is proved, for all poles."""

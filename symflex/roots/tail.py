@@ -1,0 +1,318 @@
+"""Beyond which frequency no root lies in the right half plane: one term outweighs all others.
+
+In a sector of the closed right half plane every wavenumber goes like a power of s, times a factor close to
+its limit. So do the amplitudes of a sum of exponentials, and the exponents. Where at ``abs(s) = R`` one term
+is larger than all others together, and every quotient of another term to it falls with growing ``abs(s)``,
+there is no root beyond R in this sector. For dead time in the lower powers of s alone this is Cauchy's bound.
+
+Example: ``s^2 + s + 3 exp(-s T)``, where the exponential is at most one: ``R^2 > R + 3`` from R = 2.31 on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import sqrt
+from typing import TYPE_CHECKING
+
+from flint import acb, arb
+
+from symflex.kernels import LAPLACE, Ring, degree_in
+from symflex.roots.exponential_sum import ExponentialValues, arguments_of, exponential_sum
+from symflex.roots.precision import precision
+from symflex.transfer import coefficients_in_s
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.kernels import Dispersion, Factored
+    from symflex.transfer import BoundTransferFunction
+    from symflex.transfer.enclose_kernels import KernelValues
+
+Powers = tuple[tuple[int, int, int], ...]
+"""Positions of arguments, and what each is multiplied with: a + j b."""
+
+BITS = 64
+SECTORS = 48
+ATTEMPTS = 60
+GROWTH = 4.0
+NARROWINGS = 5
+"""Halvings, in ln, of the radius found: the path about what lies within it is followed step by step."""
+ROOTS = {"wave": 2, "bending": 4}
+NO_FORMULA = "beyond some frequency poles are not known, as wavenumbers have no formula here"
+TWO_WAVENUMBERS = "beyond some frequency poles are not known where a part has two wavenumbers"
+ADVANCED = "a delayed term has a higher power of s than the others: poles right of the axis have no end"
+NEUTRAL = "delayed terms have the highest power of s too, and none outweighs the others: poles have no end"
+NO_LOSS = "no wave is damped enough as frequencies rise: poles lie along the imaginary axis without end"
+
+
+@dataclass(frozen=True, slots=True)
+class Tail:
+    """How far from 0 roots may lie in the closed right half plane.
+
+    Parameters
+    ----------
+    radius : float or None
+        Beyond which it is proved that there is none [rad/s].
+    reason : str
+        Why there is no such radius; empty where there is one.
+    """
+
+    radius: float | None
+    reason: str = ""
+
+    def __post_init__(self) -> None:
+        if (self.radius is None) != bool(self.reason):
+            message = "a tail has either a radius or a reason"
+            raise ValueError(message)
+
+
+@dataclass(frozen=True, slots=True)
+class _Power:
+    """``s^power`` times a number.
+
+    A delay's exponent never grows in the right half plane, which rounding at a right angle would hide.
+    """
+
+    power: Fraction
+    unit: acb
+    is_delay: bool = False
+
+
+def right_tail(
+    bound: BoundTransferFunction,
+    polynomials: Sequence[fmpz_mpoly],
+    scales: Sequence[acb],
+    start: float,
+) -> Tail:
+    """Return a radius beyond which a sum of polynomials in kernels has no root with ``Re(s) >= 0``.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        Whose ring and kernels they have.
+    polynomials : sequence of fmpz_mpoly
+        What is added.
+    scales : sequence of acb
+        What each is multiplied with: balls, complex ones too.
+    start : float
+        The smallest radius tried [rad/s].
+
+    Returns
+    -------
+    Tail
+        Without a radius where no one term outweighs the others, as in lossless structures, whose poles lie
+        along the axis without end, or where wavenumbers have no formula.
+    """
+    table = bound.kernels
+    arguments = arguments_of(table)
+    if arguments is None:
+        return Tail(None, NO_FORMULA)
+    if any(law.kind not in (*ROOTS, "exponential") for law in table.dispersions):
+        return Tail(None, TWO_WAVENUMBERS)
+    sums = [exponential_sum(bound.ratio.ring, table, arguments, f) for f in polynomials]
+    known = [terms for terms in sums if terms is not None]
+    if len(known) < len(sums):
+        return Tail(None, NO_FORMULA)
+    with precision(BITS):
+        kernels = bound.kernel_values({name: evaluate() for name, evaluate in bound.constants})
+        values = ExponentialValues(kernels, arguments, tuple((terms, 1) for terms in known))
+        function = _Function(kernels, values, tuple(scales), table.dispersions)
+        radius = start
+        for _ in range(ATTEMPTS):
+            if function.is_free_beyond(radius):
+                return Tail(_narrowed(function, radius) if radius > start else radius)
+            radius *= GROWTH
+        return Tail(None, function.obstacle(radius))
+
+
+def _narrowed(function: _Function, radius: float) -> float:
+    """Return a smaller radius of the same kind, above the last that was none."""
+    low, high = radius / GROWTH, radius
+    for _ in range(NARROWINGS):
+        middle = sqrt(low * high)
+        if function.is_free_beyond(middle):
+            high = middle
+        else:
+            low = middle
+    return high
+
+
+@dataclass(frozen=True, slots=True)
+class _Function:
+    """Polynomials in kernels, and what they are multiplied with, for large s."""
+
+    kernels: KernelValues
+    sums: ExponentialValues
+    scales: tuple[acb, ...]
+    laws: tuple[Dispersion, ...]
+
+    def is_free_beyond(self, radius: float) -> bool:
+        """Tell whether it is proved that no root lies beyond a radius in the first quadrant."""
+        powers = self._powers(radius)
+        if powers is None:
+            return False
+        terms, arguments = powers
+        # Next to the axes a sector is the most likely to fail.
+        return all(
+            _is_dominated(terms, _turned(arguments, i), arb(radius))
+            for i in (SECTORS - 1, 0, *range(1, SECTORS - 1))
+        )
+
+    def obstacle(self, radius: float) -> str:
+        """Say why no term outweighs the others for large s."""
+        powers = self._powers(radius)
+        if powers is None or any(not argument.is_delay for argument in powers[1]):
+            return NO_LOSS
+        highest = {
+            own: max((p for p, c in amplitude.items() if abs(c).upper() > 0), default=Fraction(-1))
+            for own, amplitude in powers[0].items()
+        }
+        delayed = max((p for own, p in highest.items() if own), default=Fraction(-1))
+        return ADVANCED if delayed > highest.get((), Fraction(-1)) else NEUTRAL
+
+    def _powers(self, radius: float) -> tuple[dict[Powers, dict[Fraction, acb]], list[_Power]] | None:
+        """Return amplitudes and arguments of the exponentials as powers of s, beyond a radius."""
+        named = {LAPLACE: _Power(Fraction(1), acb(1))}
+        for law in self.laws:
+            if not law.wavenumbers:
+                continue
+            order = ROOTS[law.kind]
+            found = _at_infinity(self.kernels, law.characteristic[0], radius)
+            if found is None:
+                return None
+            power, value = found
+            value = -value if law.kind == "wave" else value / 4
+            # Any branch serves, as long as it is the same everywhere.
+            start = acb(0)
+            if not value.real > 0:
+                value, start = -value, acb(0, arb.pi() / order)
+            if not value.real > 0:
+                return None
+            unit = (value.log() / order + start).exp()
+            named[law.wavenumbers[0]] = _Power(Fraction(power, order), unit)
+        arguments = []
+        for argument, length in zip(self.sums.arguments, self.sums.lengths, strict=True):
+            if argument.wavenumber:
+                known = named[argument.wavenumber]
+                arguments.append(_Power(known.power, known.unit * length))
+                continue
+            found = _at_infinity(self.kernels, argument.rate, radius)
+            if found is None:
+                return None
+            power, value = found
+            is_delay = power == 1 and bool(value.imag == 0) and bool(value.real * length.real > 0)
+            arguments.append(_Power(Fraction(power), -value * length, is_delay))
+        terms: dict[Powers, dict[Fraction, acb]] = {}
+        for (each, _), coefficients, scale in zip(
+            self.sums.sums, self.sums.coefficients, self.scales, strict=True
+        ):
+            for term, amplitude in zip(each.terms, coefficients, strict=True):
+                own = terms.setdefault(term.powers, {})
+                for number, factors in amplitude:
+                    exponent, unit = Fraction(0), number * scale
+                    for name, e in factors:
+                        exponent += named[name].power * e
+                        unit = unit * named[name].unit ** e
+                    own[exponent] = own.get(exponent, acb(0)) + unit
+        return terms, arguments
+
+
+def _turned(arguments: Sequence[_Power], sector: int) -> list[_Power]:
+    """Return powers of s as powers of abs(s), in one sector of the first quadrant.
+
+    Amplitudes need not be turned: what has the same power of s turns alike, and only sizes are compared.
+    """
+    step = arb.pi() / (2 * SECTORS)
+    turn = acb(0, (step * sector).union(step * (sector + 1)))
+    return [replace(a, unit=a.unit * (turn * _ratio(a.power)).exp()) for a in arguments]
+
+
+def _ratio(value: Fraction) -> arb:
+    return arb(value.numerator) / value.denominator
+
+
+def _at_infinity(kernels: KernelValues, value: Factored, radius: float) -> tuple[int, acb] | None:
+    """Return a power of s, and a ball around what a rational function of s is times it, beyond a radius."""
+    small = acb(arb(0, 1 / radius), arb(0, 1 / radius))
+    power = 0
+    total = acb(arb(value.unit.numerator) / value.unit.denominator)
+    names = kernels.names
+    constants = Ring(tuple(names[1:]))
+    for factor, exponent in value.factors:
+        if any(degree_in(factor, names.index(n)) for n in kernels.table.generators):
+            return None
+        found = acb(0)
+        for coefficient in coefficients_in_s(factor, constants):
+            found = found * small + _constant(coefficient, names[1:], kernels.constants)
+        if found.contains(0):
+            return None
+        power += degree_in(factor, 0) * exponent
+        total = total * found**exponent
+    return power, total
+
+
+def _constant(polynomial: fmpz_mpoly, names: Sequence[str], values: Mapping[str, arb]) -> acb:
+    total = acb(0)
+    for monomial, integer in polynomial.terms():
+        term = acb(int(integer))
+        for name, exponent in zip(names, monomial, strict=True):
+            if exponent:
+                term = term * acb(values[name]) ** int(exponent)
+        total = total + term
+    return total
+
+
+def _is_dominated(terms: dict[Powers, dict[Fraction, acb]], arguments: list[_Power], radius: arb) -> bool:
+    """Tell whether one term is larger than all others from a radius on."""
+
+    def growth(powers: Powers) -> arb:
+        total = arb(0)
+        for i, a, b in powers:
+            own = arguments[i]
+            total += (own.unit * acb(a, b)).real.mid() * radius ** _ratio(own.power)
+        return total.mid()
+
+    def size(powers: Powers) -> float:
+        weight = sum((abs(c).mid() * radius ** _ratio(p) for p, c in terms[powers].items()), arb(0)).mid()
+        return float((growth(powers) + weight.log()).mid()) if weight > 0 else float("-inf")
+
+    chosen = max(terms, key=size)
+    own = {p: c for p, c in terms[chosen].items() if abs(c).upper() > 0}
+    highest = max(own, default=None)
+    if highest is None:
+        return False
+    lead = abs(own[highest]).lower()
+    for power, coefficient in own.items():
+        if power != highest:
+            lead -= (abs(coefficient) * radius ** _ratio(power - highest)).upper()
+    if not lead > 0:
+        return False
+    total = arb(0)
+    base = {i: complex(a, b) for i, a, b in chosen}
+    for powers, amplitude in terms.items():
+        if powers == chosen:
+            continue
+        difference = {i: -c for i, c in base.items()}
+        for i, a, b in powers:
+            difference[i] = difference.get(i, 0) + complex(a, b)
+        decay: list[tuple[Fraction, arb]] = []
+        for i, c in difference.items():
+            if not c:
+                continue
+            rate = (arguments[i].unit * acb(c.real, c.imag)).real.upper()
+            if rate > 0:
+                if not (arguments[i].is_delay and c.imag == 0 and c.real > 0):
+                    return False
+                rate = arb(0)
+            decay.append((arguments[i].power, -rate))
+        for power, coefficient in amplitude.items():
+            over = power - highest
+            exponent = sum((rate * radius ** _ratio(e) for e, rate in decay), arb(0))
+            slope = sum((rate * _ratio(e) * radius ** _ratio(e) for e, rate in decay), arb(0))
+            if over > 0 and not slope > _ratio(over):
+                return False
+            total += abs(coefficient).upper() * radius ** _ratio(over) * (-exponent).exp()
+    return bool(total < lead)
