@@ -83,6 +83,9 @@ class BoundTransferFunction:
     ) -> tuple[Root, ...]:
         """Return the poles by natural frequency, both members of each conjugate pair.
 
+        Poles in the right half plane are always among them: those outside of what was asked for stand at the
+        end. :attr:`PoleZeroMap.verdict` of :meth:`pole_zero_map` says whether they are all.
+
         Parameters
         ----------
         modes : int, optional
@@ -130,7 +133,7 @@ class BoundTransferFunction:
         [1.570796, -1.570796, 4.712389, -4.712389]
         """
         found = self._found(digits, modes=modes, mode=mode, band=band, budget=budget)
-        return tuple(Root(r) for r in found.poles)
+        return tuple(Root(r) for r in found.all_poles)
 
     def zeros(
         self,

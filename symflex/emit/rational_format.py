@@ -32,7 +32,7 @@ def rational_text(found: RationalApproximation) -> str:
     >>> from symflex import pipeline
     >>> model = pipeline.loads('symflex = 1\ninputs.u = {}\noutputs.y = "3*u/(s + 2)"')
     >>> print(rational_text(pipeline.rational(pipeline.derive_bound(model, [("y", "u")])[0])))
-    y/u   transfer function [s], product form, 1 mode
+    y/u   transfer function [s], product form, 1 mode; stable
     <BLANKLINE>
       exact: nothing is left out of this rational function
       gain: 3
@@ -47,7 +47,7 @@ def rational_text(found: RationalApproximation) -> str:
     source = found.bound.source
     quantity = source.quantity + (f" [{source.unit}]" if source.unit else "")
     modes = "1 mode" if found.modes == 1 else f"{found.modes} modes"
-    lines = [f"{found.tf}   {quantity}, {found.form} form, {modes}", ""]
+    lines = [f"{found.tf}   {quantity}, {found.form} form, {modes}; {found.stability.headline}", ""]
     lines += [INDENT + line for line in _validity(found)]
     lines.append(f"{INDENT}gain: {_decimal(found.gain)}")
     leading = f"{found.leading_coefficient:.{DIGITS}g}"
@@ -161,6 +161,7 @@ def rational_json(found: RationalApproximation) -> dict[str, object]:
         "unit": found.bound.source.unit,
         "form": found.form,
         "modes": found.modes,
+        "stability": found.stability.to_json_dict(),
         "exact": found.is_exact,
         "certified": not found.is_estimate,
         "gain": _exact(found.gain),

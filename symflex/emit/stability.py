@@ -32,7 +32,7 @@ def stability_text(found: StabilityMap) -> str:
     lines = [f"{found.gain}{unit}   {_status(found)}", f"{INDENT}examined: {_examined(found)}"]
     lines += [f"{INDENT}not proved: {reason}" for reason in found.reasons]
     if found.nominal is not None:
-        lines.append(f"{INDENT}{found.gain} = {_number(found.nominal)}: {_nominal(found)}")
+        lines.append(f"{INDENT}{found.gain} = {_number(found.nominal)}: {nominal_text(found)}")
     scope = "" if found.is_complete else ", as far as poles were counted"
     stable = found.stable
     lines += ["", f"{INDENT}stable for{scope}" + (":" if stable else ": no gain")]
@@ -82,7 +82,8 @@ def _examined(found: StabilityMap) -> str:
     return f"{_number(low)} < {name} < {_number(high)}"
 
 
-def _nominal(found: StabilityMap) -> str:
+def nominal_text(found: StabilityMap) -> str:
+    """Say whether the loop is stable with the gain's declared value."""
     interval = found.nominal_interval
     if interval is None:
         return "at a boundary, or outside of what was examined"
@@ -90,7 +91,8 @@ def _nominal(found: StabilityMap) -> str:
         return "stable" if found.is_complete else "stable as far as poles were counted"
     right, axis = interval.poles.right, interval.poles.axis
     if right:
-        return f"unstable, {_poles(right)} in the right half plane"
+        least = "" if found.is_complete else "at least "
+        return f"unstable, {least}{_poles(right)} in the right half plane"
     return f"not asymptotically stable, {_poles(axis)} on the imaginary axis"
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from itertools import chain, repeat
 from re import compile as compile_pattern
+from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from symflex.emit.forms import PrintedForm, with_hidden
@@ -237,9 +238,14 @@ def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
     """
     certificate = found.certificate
     status = "certified" if certificate.certified else f"NOT CERTIFIED: {certificate.reason}"
-    lines = [f"{found.tf}   {status}: {certificate.found} of {certificate.counted} roots enclosed"]
+    word = found.verdict.brief
+    lines = [f"{found.tf}   {status}: {certificate.found} of {certificate.counted} roots enclosed; {word}"]
+    if found.verdict.sentence != word:
+        lines += wrap(found.verdict.sentence, width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
     if shown := region_text(found.region):
-        lines.append(f"{INDENT}shown: {shown}")
+        if found.verdict.word == "unstable" and not found.unstable:
+            shown += "; poles in the right half plane, all that are known"
+        lines += wrap(f"shown: {shown}", width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
     if found.is_default_region:
         lines.append(f"{INDENT}by default: a distributed system has infinitely many poles")
     for part in found.excluded:
@@ -248,12 +254,15 @@ def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
         lines.append(f"{INDENT}left out: {where}, where roots accumulate")
     for title, roots in (("poles", found.poles), ("zeros", found.zeros)):
         lines += ["", _counted(title, roots), *_root_table(roots, digits, width)]
+    if found.unstable:
+        title = f"{_counted('poles', found.unstable)}, in the right half plane, outside of what was asked for"
+        lines += ["", title, *_root_table(found.unstable, digits, width)]
     if found.hidden:
         for cause, meaning in CAUSES.items():
             hidden = [h.root for h in found.hidden if h.cause == cause]
             if hidden:
                 lines += ["", f"{_counted('hidden', hidden)}, {meaning}", *_root_table(hidden, digits, width)]
-    everything = [*found.poles, *found.zeros, *(h.root for h in found.hidden)]
+    everything = [*found.poles, *found.zeros, *found.unstable, *(h.root for h in found.hidden)]
     if everything:
         lines += ["", "  radius bounds the distance from the printed value to the root [rad/s]"]
     if any(root.on_boundary for root in everything):

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from symflex.elements import Variable
     from symflex.modes.bound_equations import SystemAt
     from symflex.roots import PoleZeroMap, Region, Root
+    from symflex.roots.right_half_plane import StabilityVerdict
     from symflex.transfer import BoundTransferFunction
 
 DIGITS = 15
@@ -135,17 +136,28 @@ def mode_shapes(
 def lowest_mode_shapes(
     bound: BoundTransferFunction, count: int, digits: int = DIGITS
 ) -> tuple[NumberedShape, ...]:
-    """Return the shapes of the lowest modes other than at 0, hidden ones among them."""
+    """Return the shapes that :func:`lowest_modes` finds."""
+    return lowest_modes(bound, count, digits)[0]
+
+
+def lowest_modes(
+    bound: BoundTransferFunction, count: int, digits: int = DIGITS
+) -> tuple[tuple[NumberedShape, ...], StabilityVerdict]:
+    """Return the shapes of the lowest modes other than at 0, hidden ones among them.
+
+    Those of poles in the right half plane follow, wherever they lie. Whether the model is stable comes with
+    them.
+    """
     search = _Search(bound)
     found = search.map(Modes(count), digits + SPARE_DIGITS)
-    candidates = [(root, False) for root in found.poles] + [(h.root, True) for h in found.hidden]
+    candidates = [(root, False) for root in found.all_poles] + [(h.root, True) for h in found.hidden]
     chosen = [(root, hidden) for root, hidden in candidates if not root.is_zero and not root.im < 0]
     chosen.sort(key=lambda pair: float(pair[0].natural_frequency().mid()))
     shapes: list[NumberedShape] = []
     for root, is_hidden in chosen:
         spend()
-        if len(shapes) >= count:
-            break
+        if len(shapes) >= count and not root.re > 0:
+            continue
         if any(_is_same(s.shape.pole, root) for s in shapes):
             continue
         try:
@@ -153,7 +165,8 @@ def lowest_mode_shapes(
         except UsageError:
             continue  # a common factor that is no mode of the model
         shapes += [NumberedShape(shape, is_hidden) for shape in found_here]
-    return tuple(shapes[:count])
+    kept = tuple(s for i, s in enumerate(shapes) if i < count or s.shape.pole.re > 0)
+    return kept, found.verdict
 
 
 def _shapes(
@@ -224,7 +237,7 @@ class _Search:
         except (BudgetError, UncertifiedError):
             spend()
             return root
-        candidates = [*found.poles, *(h.root for h in found.hidden)]
+        candidates = [*found.all_poles, *(h.root for h in found.hidden)]
         nearest = min(candidates, key=lambda r: _distance(r, root), default=root)
         return nearest if _is_same(nearest, root) else root
 

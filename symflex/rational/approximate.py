@@ -109,6 +109,7 @@ def approximate(
         kept.omitted_hz,
         scan_error(bound, value, kept.found, low, high),
         stated,
+        kept.found.verdict,
     )
 
 

@@ -10,6 +10,7 @@ import mpmath
 import numpy as np
 
 from symflex.rational.toolboxes import PERCENTS, ApproximateFunction, doubles
+from symflex.roots.right_half_plane import NOT_EXAMINED, StabilityVerdict
 from symflex.state_space.numeric import BoundStateSpace, not_installed
 
 if TYPE_CHECKING:
@@ -118,6 +119,8 @@ class RationalApproximation:
         Where the error was sampled.
     band : tuple of float
         The band of :attr:`error` [Hz].
+    stability : StabilityVerdict
+        Of G and its hidden modes; all poles of G in the right half plane that are known are poles of R.
     """
 
     bound: BoundTransferFunction
@@ -132,6 +135,7 @@ class RationalApproximation:
     omitted_hz: float | None
     scan: ErrorScan
     band: tuple[float, float]
+    stability: StabilityVerdict = NOT_EXAMINED
 
     @property
     def tf(self) -> str:

@@ -101,7 +101,7 @@ def find_residues(
     [2.0]
     """
     bound = without_lengths_of_zero(bound)
-    return residues_at(bound, locate(bound, region, digits, budget).complete().poles, digits)
+    return residues_at(bound, locate(bound, region, digits, budget).complete().all_poles, digits)
 
 
 def residues_at(bound: BoundTransferFunction, poles: Sequence[Root], digits: int) -> tuple[Residue, ...]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from symflex.errors import Diagnostic, UsageError
 from symflex.roots import Band, Everything, Modes, Position
 from symflex.roots.locate import locate
+from symflex.roots.right_half_plane import is_right
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -66,6 +67,7 @@ class Truncation:
 def truncate(bound: BoundTransferFunction, modes: int, digits: int) -> Truncation:
     """Return the poles of a number of modes, and the zeros below the first pole left out.
 
+    Poles in the right half plane are kept wherever they lie: without them the approximation would be stable.
     Zeros are left out from above until there are no more than poles, unless nothing is left out of a rational
     function: what grows with s is of no use to a simulation.
 
@@ -88,7 +90,7 @@ def truncate(bound: BoundTransferFunction, modes: int, digits: int) -> Truncatio
     for further in FURTHER:
         region = Modes(modes + further) if bound.is_distributed else Everything()
         found = locate(bound, region, digits)
-        poles, left_out = _lowest(found.poles, modes)
+        poles, left_out = _lowest(found, modes)
         if left_out or not bound.is_distributed:
             break
     omitted = min((root.frequency_hz() for root in left_out), default=None)
@@ -115,12 +117,13 @@ def _modes_of(roots: Sequence[Root]) -> list[Root]:
     return [root for root in roots if not root.is_zero and not root.im < 0 for _ in range(root.multiplicity)]
 
 
-def _lowest(poles: Sequence[Root], modes: int) -> tuple[tuple[Root, ...], tuple[Root, ...]]:
-    """Return the poles of the lowest modes with those at 0, and the others."""
-    positions = Modes(modes).classify(poles)
-    kept = tuple(r for r, p in zip(poles, positions, strict=True) if p is not Position.OUTSIDE)
-    left_out = tuple(r for r, p in zip(poles, positions, strict=True) if p is Position.OUTSIDE)
-    return kept, left_out
+def _lowest(found: PoleZeroMap, modes: int) -> tuple[tuple[Root, ...], tuple[Root, ...]]:
+    """Return the poles of the lowest modes with those at 0 and in the right half plane, and the others."""
+    positions = Modes(modes).classify(found.poles)
+    is_kept = [p is not Position.OUTSIDE or is_right(r) for r, p in zip(found.poles, positions, strict=True)]
+    kept = tuple(r for r, keep in zip(found.poles, is_kept, strict=True) if keep)
+    left_out = tuple(r for r, keep in zip(found.poles, is_kept, strict=True) if not keep)
+    return (*kept, *found.unstable), left_out
 
 
 def _zeros_below(

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from symflex.model import Model
 
 Verdict: TypeAlias = Literal["holds", "holds with a condition", "does not hold", "not examined"]
+Tone: TypeAlias = Literal["good", "fair", "bad", "quiet"]
 Side: TypeAlias = Literal["text", "plain", "number"]
 
 
@@ -51,7 +52,7 @@ class Mark:
     """A verdict, or another word that a reader looks for."""
 
     text: str
-    tone: Literal["good", "fair", "bad", "quiet"] = "quiet"
+    tone: Tone = "quiet"
 
 
 @dataclass(frozen=True, slots=True)

@@ -121,6 +121,8 @@ class TransferFacts:
         The same for print.
     truncation : Truncation or None
         Of distributed systems.
+    stability : str
+        ``stable``, ``marginal``, ``unstable`` or ``unknown``: of all poles, listed or not.
     """
 
     tf: str
@@ -139,6 +141,7 @@ class TransferFacts:
     bracket: str = ""
     bracket_mathematics: Mathematics | None = None
     truncation: Truncation | None = None
+    stability: str = "unknown"
 
     @property
     def right_half_plane_zeros(self) -> int:
@@ -155,7 +158,9 @@ class TransferFacts:
         """Natural frequency up to which both poles and zeros are listed [Hz]; infinite when all are."""
         if not self.is_infinite:
             return inf
-        ends = [max((r.frequency_hz for r in roots), default=0.0) for roots in (self.poles, self.zeros)]
+        # Poles in the right half plane are listed wherever they lie.
+        left = [p for p in self.poles if not p.is_in_right_half_plane] or self.poles
+        ends = [max((r.frequency_hz for r in roots), default=0.0) for roots in (left, self.zeros)]
         return min(ends) if self.zeros else ends[0]
 
     @property
@@ -213,6 +218,7 @@ class TransferFacts:
             "tf": self.tf,
             "quantity": self.quantity,
             "certified": self.certified,
+            "stability": self.stability,
             "is_infinite": self.is_infinite,
             "zeros": None if self.counts is None else self.counts[0],
             "poles": None if self.counts is None else self.counts[1],
@@ -441,6 +447,7 @@ def facts_of(study: Study) -> ModelFacts:
                 condition=condition.kind,
                 reason=condition.reason,
                 truncation=_truncation(study, tf, found),
+                stability=found.verdict.word,
                 bracket="" if condition.expression is None else format_expression(condition.expression),
                 bracket_mathematics=_bracket(condition, tf),
             )
@@ -510,7 +517,7 @@ def _bracket(condition: PhaseCondition, tf: TransferFunction) -> Mathematics | N
 
 
 def _root_facts(found: PoleZeroMap, kind: Literal["poles", "zeros"]) -> tuple[RootFact, ...]:
-    return tuple(_root_fact(root) for root in getattr(found, kind))
+    return tuple(_root_fact(root) for root in (found.all_poles if kind == "poles" else found.zeros))
 
 
 def _root_fact(root: Root) -> RootFact:

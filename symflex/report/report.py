@@ -29,6 +29,7 @@ from symflex.report.claims.section import claims_json, judge_all
 from symflex.report.comparison import comparison_section
 from symflex.report.document import Code, Link, Mark, Section, Table, columns, text
 from symflex.report.numerals import counted
+from symflex.report.sections.roots import stability_mark
 from symflex.report.study import Study, attempt
 from symflex.sweep.executors import end_with_parent
 
@@ -404,10 +405,19 @@ def _overview(
                 (Link(c.section.title, f"#{c.stem}"),),
                 (c.facts.source or "–",),
                 (mark,),
+                (_stability(c),),
             )
         )
-    blocks.append(Table(columns("Model", "Source", ("Poles and zeros", "plain")), tuple(rows)))
+    heads = columns("Model", "Source", ("Poles and zeros", "plain"), ("Stability", "plain"))
+    blocks.append(Table(heads, tuple(rows)))
     return Section("Overview", tuple(blocks), "models")
+
+
+def _stability(chapter: Chapter) -> Mark | str:
+    """Return the worst that was found of a model's transfer functions."""
+    found = {f.stability for f in chapter.facts.functions}
+    worst = next((word for word in ("unstable", "unknown", "marginal", "stable") if word in found), "")
+    return stability_mark(worst) if worst else "–"
 
 
 def _provenance(date: str) -> Section:

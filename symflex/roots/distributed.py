@@ -12,11 +12,13 @@ from math import exp, inf, isfinite, pi
 from typing import TYPE_CHECKING
 
 from symflex.budget import Budget
-from symflex.errors import BudgetError, Diagnostic
+from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.kernels import Factored
+from symflex.model.passive import is_passive
 from symflex.roots.pole_zero_map import Certificate, Exclusion, HiddenRoot, PoleZeroMap
 from symflex.roots.polynomial import POLYNOMIAL, in_order
 from symflex.roots.region import Band, Everything, Mode, Modes, Position
+from symflex.roots.right_half_plane import DEGENERATE, PASSIVE, is_right, judge, search_right
 from symflex.roots.root import overlap
 from symflex.roots.side import (
     ACCUMULATION_DIGITS,
@@ -26,11 +28,13 @@ from symflex.roots.side import (
     groups,
     polynomial_roots,
 )
+from symflex.roots.transcendental import HIGHEST
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.roots.region import Region
+    from symflex.roots.right_half_plane import StabilityVerdict
     from symflex.roots.root import Root
     from symflex.roots.winding import Cell
     from symflex.transfer import BoundTransferFunction
@@ -94,6 +98,13 @@ def locate_distributed(
         reason = "some roots could not be told apart"
     missing = sum(side.missing for side in searched.sides)
     engines = sorted({side.engine for side in searched.sides if not side.is_finite}) or [POLYNOMIAL.name]
+    excluded = {hole for side in searched.sides for hole in side.excluded()}
+    verdict, right, hidden = searched.judged(reason)
+    beyond = _not_among(right, [*chosen[0], *(h.root for h in searched.hidden)])
+    hidden = _not_among(hidden, [h.root for h in searched.hidden])
+    # Nobody asked for these modes and no others.
+    is_free = is_default and isinstance(where, Modes)
+    found += sum(root.multiplicity for root in (*beyond, *hidden))
     certificate = Certificate(
         ", ".join(engines),
         reason is None,
@@ -103,19 +114,25 @@ def locate_distributed(
         is_exceeded=code is not None,
         code=code,
     )
-    excluded = {hole for side in searched.sides for hole in side.excluded()}
     return PoleZeroMap(
         bound.name,
         where,
-        tuple(chosen[0]),
+        (*chosen[0], *(beyond if is_free else ())),
         tuple(chosen[1]),
-        tuple(searched.hidden),
+        (*searched.hidden, *map(HiddenRoot, hidden)),
         certificate,
         digits,
         tuple(_exclusion(hole) for hole in sorted(excluded, key=lambda hole: hole.low)),
         is_default,
         is_infinite=True,
+        verdict=verdict,
+        unstable=() if is_free else beyond,
     )
+
+
+def _not_among(roots: Sequence[Root], shown: Sequence[Root]) -> tuple[Root, ...]:
+    """Return the roots in the right half plane that are not shown, in order of natural frequency."""
+    return in_order([r for r in roots if is_right(r) and not any(overlap(r, other) for other in shown)])
 
 
 class _Searched:
@@ -227,6 +244,66 @@ class _Searched:
     def _pair(self) -> list[Side]:
         """Denominator and numerator; nothing when the function is zero."""
         return self.sides[:2] if len(self.sides) > 1 else []
+
+    def judged(self, unproved: str | None) -> tuple[StabilityVerdict, tuple[Root, ...], tuple[Root, ...]]:
+        """Return whether the model is stable, and its poles and hidden modes in the right half plane.
+
+        Parameters
+        ----------
+        unproved : str or None
+            What could not be proved of the region.
+        """
+        bound = self.bound
+        product = Factored(
+            bound.ratio.ring, Fraction(1), tuple((h.polynomial, h.multiplicity) for h in bound.hidden)
+        )
+        parts = [] if bound.ratio.is_zero else [bound.den]
+        coincident = [h.root for h in self.hidden if h.cause == "coincident"]
+        degenerate = _degenerate_points(bound)
+        proof = PASSIVE if bound.is_of_model and is_passive(bound.source.model, bound.values) else ""
+        found: list[tuple[Root, ...]] = []
+        reasons: list[str] = []
+        for i, part in enumerate((*parts, product)):
+            is_hidden = i == len(parts)
+            place = (2 if parts else 0) if is_hidden else 0
+            try:
+                side = (
+                    self.sides[place]
+                    if place < len(self.sides)
+                    else Side(bound, part, self.digits, self.budget, is_hidden=is_hidden)
+                )
+                known = [*side.roots, *(() if is_hidden else coincident)]
+                if proof:
+                    found.append(tuple(known))
+                    continue
+                reached = 0.0 if unproved else self._reached(side)
+                whole = search_right(bound, part, side, known, reached, self.digits, self.budget)
+            except SymflexError as error:
+                found.append(())
+                reasons.append(error.diagnostics[0].message)
+                continue
+            # Where wavenumbers meet or vanish, a function may have a root that is none of the system.
+            apart = tuple(
+                r for r in whole.roots if not any(overlap(r, p) for p in degenerate if not p.is_zero)
+            )
+            if any(is_right(r) for r in whole.roots if r not in apart):
+                reasons.append(DEGENERATE)
+            found.append(apart)
+            reasons += [whole.unproved] if whole.unproved else []
+        roots = [root for each in found for root in each]
+        if proof:
+            reasons = ["none of those found lies on the imaginary axis"]
+        verdict = judge(roots, "; ".join(dict.fromkeys(reasons)), proof)
+        return verdict, found[0] if parts else (), found[-1]
+
+    def _reached(self, side: Side) -> float:
+        """Return up to which abs(s) all roots of a side are known [rad/s]."""
+        match self.region:
+            case Modes():
+                return exp(min(side.reached, HIGHEST))
+            case Band(low, high) if not low:
+                return 2 * pi * float(high)
+        return 0.0
 
     def chosen(self) -> tuple[list[Root], list[Root], list[Root]]:
         """Return the poles, zeros and hidden modes of the region."""

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Self
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.polynomial import POLYNOMIAL
 from symflex.roots.region import Everything, Mode, Modes, Position, Region
+from symflex.roots.right_half_plane import NOT_EXAMINED, StabilityVerdict, is_right, judge
+from symflex.roots.root import Root, overlap
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -15,7 +17,6 @@ if TYPE_CHECKING:
     from symflex.budget import Budget
     from symflex.roots.finder import RootFinder
     from symflex.roots.problem import RootProblem
-    from symflex.roots.root import Root
 
 SCHEMA = "symflex.roots/1"
 REFINEMENTS = 4
@@ -116,6 +117,11 @@ class PoleZeroMap:
         A region was chosen because a function with infinitely many roots was to be searched for all.
     is_infinite : bool
         The function is transcendental: there are roots beyond any region.
+    verdict : StabilityVerdict
+        Whether the model is stable: about all poles, not only those in the region.
+    unstable : tuple of Root
+        Poles in the right half plane outside the region that was asked for. Where none was and a number of
+        modes was chosen, they are among ``poles``, wherever they lie.
     """
 
     tf: str
@@ -128,6 +134,13 @@ class PoleZeroMap:
     excluded: tuple[Exclusion, ...] = ()
     is_default_region: bool = False
     is_infinite: bool = False
+    verdict: StabilityVerdict = NOT_EXAMINED
+    unstable: tuple[Root, ...] = ()
+
+    @property
+    def all_poles(self) -> tuple[Root, ...]:
+        """The poles in the region, and those in the right half plane outside of it."""
+        return (*self.poles, *self.unstable)
 
     def complete(self) -> Self:
         """Return the map if the budget sufficed.
@@ -159,8 +172,10 @@ class PoleZeroMap:
             "tf": self.tf,
             "region": self.region.to_json_dict(),
             "certified": certificate.certified,
+            "stability": self.verdict.to_json_dict(),
             "poles": [_root_to_json(root, self.digits) for root in self.poles],
             "zeros": [_root_to_json(root, self.digits) for root in self.zeros],
+            "right_half_plane": [_root_to_json(root, self.digits) for root in self.unstable],
             "hidden": [{**_root_to_json(h.root, self.digits), "cause": h.cause} for h in self.hidden],
             "excluded": [exclusion.to_json_dict() for exclusion in self.excluded],
             "certificate": {
@@ -221,14 +236,17 @@ def find_pole_zero_map(
     sought = [(poles, where), (zeros, where), *((problem, whole) for problem, _ in hidden)]
     counted = sum(problem.degree for problem, _ in sought)
     located: list[tuple[Root, ...]] = []
+    every: list[tuple[Root, ...]] = []
     found, apart = 0, True
     exceeded: Diagnostic | None = None
     for i, (problem, within) in enumerate(sought):
         if budget is not None:
             budget.progress.report(i / len(sought), f"polynomial {i + 1} of {len(sought)}")
-        roots, number, all_apart, exceeded = _locate(problem, within, digits, finder, budget)
+        roots, everywhere, exceeded = _locate(problem, within, digits, finder, budget)
         located.append(roots)
-        found, apart = found + number, apart and all_apart
+        every.append(everywhere)
+        found += sum(root.multiplicity for root in everywhere)
+        apart = apart and all(root.certified for root in everywhere)
         if exceeded is not None:
             break
     located += [()] * (len(sought) - len(located))
@@ -250,13 +268,37 @@ def find_pole_zero_map(
         is_exceeded=exceeded is not None,
         code=None if exceeded is None else exceeded.code,
     )
-    return PoleZeroMap(tf, where, pole_roots, zero_roots, tuple(concealed), certificate, digits)
+    concealed += [
+        HiddenRoot(root, cause)
+        for (_, cause), known, whole_roots in zip(hidden, others, every[2:], strict=False)
+        for root in _right_beyond(whole_roots, known)
+    ]
+    missing = "" if counted == found else reason or "not all poles were found"
+    verdict = judge([root for i, roots in enumerate(every) if i != 1 for root in roots], missing)
+    return PoleZeroMap(
+        tf,
+        where,
+        pole_roots,
+        zero_roots,
+        tuple(concealed),
+        certificate,
+        digits,
+        verdict=verdict,
+        unstable=_right_beyond(every[0], pole_roots),
+    )
+
+
+def _right_beyond(roots: Sequence[Root], shown: Sequence[Root]) -> tuple[Root, ...]:
+    """Return the roots in the right half plane that are not shown; both are of one search."""
+    return tuple(
+        root for root in roots if is_right(root) and not any(overlap(root, other) for other in shown)
+    )
 
 
 def _locate(
     problem: RootProblem, region: Region, digits: int, finder: RootFinder, budget: Budget | None
-) -> tuple[tuple[Root, ...], int, bool, Diagnostic | None]:
-    """Return the roots in the region, the number enclosed in all, whether all are told apart, what failed."""
+) -> tuple[tuple[Root, ...], tuple[Root, ...], Diagnostic | None]:
+    """Return the roots in the region, all roots, and what failed."""
     roots: tuple[Root, ...] = ()
     positions: tuple[Position, ...] = ()
     exceeded = None
@@ -281,8 +323,7 @@ def _locate(
         for root, position in zip(roots, positions, strict=True)
         if position is not Position.OUTSIDE
     )
-    number = sum(root.multiplicity for root in roots)
-    return inside, number, all(root.certified for root in roots), exceeded
+    return inside, roots, exceeded
 
 
 def _root_to_json(root: Root, digits: int) -> dict[str, object]:

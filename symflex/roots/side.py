@@ -503,6 +503,25 @@ class Side:
             counted += sum(root.multiplicity for root in self._origin)
         return Proof(counted, found)
 
+    def count_right(self, high: float) -> int:
+        """Return how many roots lie right of the imaginary axis, with ln(abs(s)) below ``high``: proved.
+
+        Raises
+        ------
+        RootOnPathError
+            A root lies on the path, which follows the imaginary axis, or too close to it.
+        BudgetError
+            SF505, SF506.
+        """
+        winding = CertifiedWinding(self.function, self._budget, tries_series=True)
+        low = min(winding.smallest(pi, self.holes), high - 1.0)
+        if winding.count_within(low, pi) != self._order:
+            raise RootOnPathError
+        counted, rest = divmod(winding.count(Cell(low, high, -pi / 2, pi / 2)), self.function.power)
+        if rest:
+            raise RootOnPathError
+        return counted
+
     def _count_within(self, z: float, left: float) -> int:
         if self._lossless is not None:
             return self._lossless.count(z) + self._order

@@ -41,11 +41,11 @@ GROWTH = 4.0
 NARROWINGS = 5
 """Halvings, in ln, of the radius found: the path about what lies within it is followed step by step."""
 ROOTS = {"wave": 2, "bending": 4}
-NO_FORMULA = "beyond some frequency poles are not known, as wavenumbers have no formula here"
-TWO_WAVENUMBERS = "beyond some frequency poles are not known where a part has two wavenumbers"
-ADVANCED = "a delayed term has a higher power of s than the others: poles right of the axis have no end"
-NEUTRAL = "delayed terms have the highest power of s too, and none outweighs the others: poles have no end"
-NO_LOSS = "no wave is damped enough as frequencies rise: poles lie along the imaginary axis without end"
+NO_FORMULA = "without a formula for the wavenumbers no end of the poles is known"
+TWO_WAVENUMBERS = "where a part has two wavenumbers no end of the poles is known"
+ADVANCED = "a delayed term has the highest power of s, and poles right of the axis have no end"
+NEUTRAL = "delayed terms share the highest power of s, none outweighs the others, and poles have no end"
+NO_LOSS = "poles of waves without enough loss have no end along the axis"
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,6 +17,7 @@ from symflex.errors import Diagnostic, UncertifiedError, UsageError
 from symflex.kernels import Factored
 from symflex.roots import Modes, Position
 from symflex.roots.locate import locate
+from symflex.roots.right_half_plane import is_right
 from symflex.stability.loop_function import LoopFunction
 
 if TYPE_CHECKING:
@@ -127,7 +128,7 @@ def _parts(loop: Loop) -> tuple[Factored, Factored]:
 def _with(bound: BoundTransferFunction, num: Factored, den: Factored) -> BoundTransferFunction:
     """Return a transfer function of the given parts over the ring of another."""
     parts = (num, den) if bound.kernels else None
-    return replace(bound, ratio=num / den, hidden=(), parts=parts)
+    return replace(bound, ratio=num / den, hidden=(), parts=parts, is_of_model=False)
 
 
 def trace_locus(
@@ -163,7 +164,7 @@ def trace_locus(
     start = locate(_with(loop.bound, above, below + above * low), region, 15, budget)
     end = locate(_with(loop.bound, above, below + above * high), wider, 15, budget)
     function = LoopFunction.of(loop.bound, below, above)
-    poles, final = _points(start.poles), _points(end.poles)
+    poles, final = _points(start.all_poles), _points(end.all_poles)
     bottom, top = float(low), float(high)
     goals = _goals(bottom, top)
     early = _trace(function, poles, bottom, goals[:1])
@@ -172,7 +173,7 @@ def trace_locus(
     forward = [one + other[1:] for one, other in zip(early, later, strict=True)]
     # Of a loop with kernels, poles beyond those proved at the last gain are not compared, nor those where
     # poles accumulate, which no search exhausts.
-    reach = max((abs(s) for s in final), default=0.0) if loop.bound.kernels else inf
+    reach = max((abs(s) for s in _points(end.poles)), default=0.0) if loop.bound.kernels else inf
     known = [_nearest(final, b[-1]) is not None for b in forward]
     lost = [not k and _is_among(end.excluded, b[-1]) for b, k in zip(forward, known, strict=True)]
     ends = [
@@ -268,11 +269,11 @@ def _points(roots: Sequence[Root]) -> list[complex]:
 
 
 def _lowest(found: PoleZeroMap, wanted: int) -> list[bool]:
-    """Tell which poles of a map, with multiplicity, are of the lowest modes."""
-    positions = Modes(wanted).classify(found.poles)
+    """Tell which poles of a map, with multiplicity, are of the lowest modes, or in the right half plane."""
+    positions = [*Modes(wanted).classify(found.poles), *(Position.INSIDE for _ in found.unstable)]
     return [
-        position is not Position.OUTSIDE
-        for root, position in zip(found.poles, positions, strict=True)
+        position is not Position.OUTSIDE or is_right(root)
+        for root, position in zip(found.all_poles, positions, strict=True)
         for _ in range(root.multiplicity)
     ]
 

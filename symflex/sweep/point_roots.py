@@ -189,7 +189,7 @@ class RootSolver:
         return result
 
     def _all(self, found: PoleZeroMap) -> tuple[Root, ...]:
-        return found.poles if self._kind == "poles" else found.zeros
+        return found.all_poles if self._kind == "poles" else found.zeros
 
     def _chosen(self, found: PoleZeroMap, family: int) -> PointRoots:
         certificate = found.certificate

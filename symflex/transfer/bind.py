@@ -149,6 +149,8 @@ class BoundTransferFunction:
         constants.
     parts : tuple of Factored, optional
         Numerator and denominator of a distributed system, each entire in s; see :attr:`num`.
+    is_of_model : bool
+        Its poles are those of the source's model with these values; not so of a loop gain.
     """
 
     source: TransferFunction
@@ -157,6 +159,7 @@ class BoundTransferFunction:
     hidden: tuple[HiddenFactor, ...]
     kernels: KernelTable = NO_KERNELS
     parts: tuple[Factored, Factored] | None = None
+    is_of_model: bool = True
 
     @property
     def is_distributed(self) -> bool:

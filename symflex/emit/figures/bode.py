@@ -20,6 +20,7 @@ from symflex.emit.figures.style import (
     new_figure,
     paper_style,
     title_lines,
+    title_with_stability,
 )
 from symflex.response import adaptive_grid, default_band, respond
 from symflex.roots import Band
@@ -58,7 +59,8 @@ def draw_bode(
 ) -> Figure:
     """Draw magnitude and phase of transfer functions in one figure; see :func:`symflex.emit.figures.draw`.
 
-    Peaks and troughs without damping have no end; they run to the frame.
+    Peaks and troughs without damping have no end; they run to the frame. Where poles lie in the right half
+    plane, or may lie there, the title says so.
     """
     # The default roots of distributed systems serve for nothing but a band.
     given = band_hz or _band_of_model(tfs[0])
@@ -70,7 +72,8 @@ def draw_bode(
         for bound, found in zip(bounds, maps, strict=True)
     ]
     width = width or COLUMN_INCHES
-    lines = title_lines(title, width)
+    shaky = [found for found in maps if found.verdict.word in ("unstable", "unknown")]
+    lines = title_with_stability(title, shaky, width)
     units = {response.unit for response in responses}
     legend_columns = min(len(tfs), LEGEND_COLUMNS if len(units) == 1 else LEGEND_COLUMNS_WITH_UNITS)
     height = HEIGHT_INCHES + LINE_INCHES * (len(lines) + ceil(len(tfs) / legend_columns))

@@ -44,14 +44,15 @@ def draw_locus(locus: RootLocus, title: str | None = None, width: float | None =
     Crosses are the poles at the first gain, squares those at the last, circles the zeros; all three are
     proved. The lines between are traced numerically: solid from poles at the first gain, dashed from
     infinity, dotted from where none is marked. The legend says how many of each lie outside. Grey circles
-    surround points at which poles accumulate. Right of the imaginary axis the ground is tinted.
+    surround points at which poles accumulate. Right of the imaginary axis the ground is tinted. Poles there
+    are among those marked wherever they lie, and the title says how many there are at both gains.
     """
     width = width or COLUMN_INCHES
     lines = title_lines(title, width)
-    figure = new_figure(width, HEIGHT_INCHES + LINE_INCHES * (len(lines) + 1))
+    figure = new_figure(width, HEIGHT_INCHES + LINE_INCHES * (len(lines) + 3))
     figure.set_layout_engine("constrained", h_pad=0.03, w_pad=0.03)
     axes = figure.subplots()
-    starts, zeros = ([_point(root) for root in roots] for roots in (locus.start.poles, locus.start.zeros))
+    starts, zeros = ([_point(root) for root in roots] for roots in (locus.start.all_poles, locus.start.zeros))
     ends = list(locus.ends)
     _set_view(axes, locus, starts, zeros)
     right, seen = max(axes.get_xlim()[1], 0.0), float(np.max(np.abs([axes.get_xlim(), axes.get_ylim()])))
@@ -104,7 +105,16 @@ def draw_locus(locus: RootLocus, title: str | None = None, width: float | None =
     axes.set_ylabel(r"$\mathrm{Im}(s)$ [rad/s]")
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(MaxNLocator(nbins=6, steps=[1, 2, 2.5, 5, 10]))
-    figure.legend(loc="outside upper center", ncols=3, frameon=False, handletextpad=0.2, columnspacing=1.0)
+    verdicts = (locus.start.verdict.headline, locus.end.verdict.headline)
+    said = [f"${name} = {gain}$, {verdict}" for gain, verdict in zip((low, high), verdicts, strict=True)]
+    figure.legend(
+        title="\n".join(said),
+        loc="outside upper center",
+        ncols=3,
+        frameon=False,
+        handletextpad=0.2,
+        columnspacing=1.0,
+    )
     if lines:
         figure.suptitle("\n".join(lines), fontsize=TITLE_POINTS, linespacing=TITLE_SPACING, parse_math=False)
     return figure

@@ -25,7 +25,7 @@ from symflex.emit.figures.style import (
     title_lines,
 )
 from symflex.errors import Diagnostic, ModelError, UsageError
-from symflex.modes import lowest_mode_shapes
+from symflex.modes import lowest_modes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -69,7 +69,8 @@ def draw_modes(
 ) -> Figure:
     """Draw the shapes of the lowest modes of the first function's model, hidden ones among them.
 
-    As many as ``[analysis]`` says, else five; rigid-body motions at 0 are left out. The part in phase with
+    As many as ``[analysis]`` says, else five, and all of poles in the right half plane; rigid-body motions at
+    0 are left out. The title says whether the model is stable. The part in phase with
     the largest displacement is drawn in full, what moves in quadrature dashed. See
     :func:`symflex.emit.figures.draw`.
 
@@ -81,16 +82,18 @@ def draw_modes(
         SF902 when the panels have no room in the width asked for.
     """
     count = min(tfs[0].model.analysis.modes or DEFAULT_MODES, MODES_LIMIT)
-    shapes = [found.shape for found in lowest_mode_shapes(bounds[0], count)]
+    numbered, verdict = lowest_modes(bounds[0], count)
+    shapes = [found.shape for found in numbered]
     if band_hz is not None:
-        shapes = [shape for shape in shapes if band_hz[0] <= shape.pole.frequency_hz() <= band_hz[1]]
+        low, high = band_hz
+        shapes = [s for s in shapes if low <= s.pole.frequency_hz() <= high or s.pole.re > 0]
     panels = panels_of(tfs[0].model, shapes)
     if not panels:
         raise ModelError(
             Diagnostic("SF402", f"{bounds[0].name} has no mode other than at 0 that has a shape")
         )
     width = width or (COLUMN_INCHES if len(panels) <= PANELS_IN_COLUMN else PAGE_INCHES)
-    lines = title_lines(title, width)
+    lines = [*title_lines(title, width), *title_lines(verdict.headline, width)]
     per_metre = all(_unit_of_reference(shape) == "m" for shape in shapes)
     names = {**UNIT_NAMES, "rad": "angle [rad/m]"} if per_metre else UNIT_NAMES
     labels = [names[_unit_of(panel)] for panel in panels]
@@ -146,11 +149,12 @@ def heading(shape: ModeShape) -> str:
     '$0.7958$ Hz, $\\zeta = 0.600$'
     """
     pole = shape.pole
+    unstable = ", unstable" if pole.re > 0 else ""
     if pole.is_real:
-        return f"$s = {label_of_value(float(pole.re.mid()), 4)}$ rad/s"
+        return f"$s = {label_of_value(float(pole.re.mid()), 4)}$ rad/s{unstable}"
     frequency = f"${label_of_value(pole.frequency_hz(), 4)}$ Hz"
     damping = pole.damping_ratio()
-    return rf"{frequency}, $\zeta = {label_of_value(damping, 3)}$" if damping else frequency
+    return rf"{frequency}, $\zeta = {label_of_value(damping, 3)}${unstable}" if damping else frequency
 
 
 def label_of_value(value: float, digits: int) -> str:

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from symflex.roots.right_half_plane import StabilityVerdict
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
 HEIGHT_INCHES: Final = 3.3
@@ -56,7 +57,8 @@ def draw_nyquist(
     """Draw the values of transfer functions for positive frequencies and, dashed, for negative ones.
 
     Of a loop gain, which ``labels`` tell apart, the part of the plane about -1 is shown; where a curve leaves
-    it, it goes on outside. Arrows point to growing frequency.
+    it, it goes on outside. Arrows point to growing frequency. P is the number of poles of what is drawn in
+    the right half plane: a closed loop is stable if the curve winds P times counterclockwise about -1.
     """
     width = width or COLUMN_INCHES
     lines = title_lines(title, width)
@@ -67,11 +69,12 @@ def draw_nyquist(
         draw(value, color=QUIET, linewidth=0.5, zorder=1)
     circle = np.exp(1j * np.linspace(0, 2 * np.pi, 361))
     axes.plot(circle.real, circle.imag, ":", color=QUIET, linewidth=0.7, zorder=1)
-    curves = [_curve(bound, band_hz) for bound in bounds]
+    found = [_curve(bound, band_hz) for bound in bounds]
+    curves = [curve for curve, _ in found]
     reach = _reach(np.concatenate(curves), is_loop=bool(labels))
-    for i, (curve, colour) in enumerate(zip(curves, cycle(COLOURS), strict=False)):
+    for i, ((curve, poles), colour) in enumerate(zip(found, cycle(COLOURS), strict=False)):
         values = drawable(curve, reach)
-        label = labels[i] if labels else label_of_tf(tfs[i])
+        label = f"{labels[i] if labels else label_of_tf(tfs[i])}, {_open_poles(poles)}"
         axes.plot(values.real, values.imag, "-", color=colour, linewidth=1.0, zorder=2, label=label)
         axes.plot(values.real, -values.imag, "--", color=colour, linewidth=0.6, zorder=2)
     if reach > 1:
@@ -91,8 +94,24 @@ def draw_nyquist(
     return figure
 
 
-def _curve(bound: BoundTransferFunction, band_hz: tuple[float, float] | None) -> npt.NDArray[np.complex128]:
-    """Return values along the axis, dense where a resonance turns them."""
+def _open_poles(verdict: StabilityVerdict) -> str:
+    """Return P of Nyquist's criterion: how many poles of what is drawn lie in the right half plane.
+
+    Examples
+    --------
+    >>> from symflex.roots.right_half_plane import StabilityVerdict
+    >>> _open_poles(StabilityVerdict("unstable", 2, True, "", 2))
+    '$P = 2$'
+    """
+    if verdict.right is not None:
+        return f"$P = {verdict.right}$"
+    return rf"$P \geq {verdict.found}$" if verdict.found else "$P$ not known"
+
+
+def _curve(
+    bound: BoundTransferFunction, band_hz: tuple[float, float] | None
+) -> tuple[npt.NDArray[np.complex128], StabilityVerdict]:
+    """Return values along the axis, dense where a resonance turns them, and what is known of its poles."""
     band = bound.source.model.analysis.band
     given = band_hz or (None if band is None else (float(band[0]), float(band[1])))
     if given is None:
@@ -104,7 +123,7 @@ def _curve(bound: BoundTransferFunction, band_hz: tuple[float, float] | None) ->
     response = respond(bound, adaptive_grid(bound, low, high, roots=found), found)
     values: npt.NDArray[np.complex128] = np.array(response.values, dtype=np.complex128)
     finite: npt.NDArray[np.complex128] = values[np.isfinite(values)]
-    return finite
+    return finite, found.verdict
 
 
 def _reach(values: npt.NDArray[np.complex128], *, is_loop: bool) -> float:

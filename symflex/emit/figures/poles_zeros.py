@@ -19,7 +19,7 @@ from symflex.emit.figures.style import (
     TITLE_POINTS,
     TITLE_SPACING,
     new_figure,
-    title_lines,
+    title_with_stability,
 )
 from symflex.roots.locate import locate
 
@@ -56,7 +56,8 @@ def draw_poles_zeros(
 
     All panels show the same part of the s plane. A root outside it is named at the border where the ray from
     the origin to it leaves the panel. A multiple root carries its multiplicity. Of distributed systems the
-    default modes are shown, as far up as the highest pole.
+    default modes are shown, as far up as the highest pole, and all poles in the right half plane. What the
+    title says of stability holds for all poles, drawn or not.
     """
     maps = [locate(bound) for bound in bounds]
     panels = [marks_of(found) for found in maps]
@@ -73,7 +74,7 @@ def draw_poles_zeros(
     )
     panel_width = min(room, TALLEST_INCHES * view.ratio)
     panel_height = panel_width / view.ratio
-    lines = title_lines(title, width)
+    lines = title_with_stability(title, maps, width)
     above = LINE_INCHES * len(lines) + (0.04 if lines else 0)
     height = above + rows * (TOP + panel_height + BOTTOM)
     figure = new_figure(width, height)
@@ -109,6 +110,8 @@ def draw_poles_zeros(
 def _highest_pole(maps: Sequence[PoleZeroMap]) -> float | None:
     """Return up to which frequency [Hz] poles of distributed systems are known, ``None`` without any."""
     found = [root for each in maps if each.is_infinite for root in each.poles if not root.is_zero]
+    # Poles in the right half plane are known wherever they lie; zeros and others only as far as the rest.
+    found = [root for root in found if not root.re > 0] or found
     return max((root.frequency_hz() for root in found), default=None)
 
 

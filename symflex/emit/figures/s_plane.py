@@ -18,6 +18,8 @@ GAP_RATIO: Final = 5.0
 """Neighbouring natural frequencies further apart than this do not belong together."""
 REAL_REACH: Final = 2.5
 """Real roots are shown up to so many times the highest resonance shown."""
+UNSTABLE_REACH: Final = 10.0
+"""Poles in the right half plane are shown up to so many times what else is; the others at the border."""
 MARGIN: Final = 0.2
 MARGIN_FOR_NOTES: Final = 0.5
 LEFT_SHARE: Final = 0.65
@@ -100,7 +102,7 @@ class View:
 
 def marks_of(found: PoleZeroMap) -> tuple[Mark, ...]:
     """Return the poles and zeros of a transfer function in double precision."""
-    poles = tuple(Mark("pole", _point(root), root.multiplicity) for root in found.poles)
+    poles = tuple(Mark("pole", _point(root), root.multiplicity) for root in found.all_poles)
     return poles + tuple(Mark("zero", _point(root), root.multiplicity) for root in found.zeros)
 
 
@@ -127,6 +129,9 @@ def choose_view(marks: Sequence[Mark], high_hz: float | None, ratios: tuple[floa
     points = {mark.s for mark in marks}
     shown = _within(points, 2 * pi * high_hz) if high_hz is not None else _belonging_together(points)
     size = max((abs(s) for s in shown), default=0.0) or 1.0
+    unstable = {m.s for m in marks if m.kind == "pole" and m.s.real > 0 and abs(m.s) <= UNSTABLE_REACH * size}
+    shown |= unstable
+    size = max(size, *map(abs, unstable)) if unstable else size
     tallest = max((abs(s.imag) for s in shown), default=0.0)
     outside = points - shown
     has_notes_above = any(abs(s.imag) > abs(s.real) for s in outside)

@@ -13,7 +13,10 @@ from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from contextlib import AbstractContextManager
+
+    from symflex.roots import PoleZeroMap
 
 COLUMN_INCHES: Final = 3.5
 PAGE_INCHES: Final = 7.16
@@ -120,6 +123,14 @@ def new_figure(width: float, height: float) -> Figure:
     figure = Figure(figsize=(width, height))
     FigureCanvasAgg(figure)
     return figure
+
+
+def title_with_stability(title: str | None, maps: Sequence[PoleZeroMap], width: float) -> list[str]:
+    """Return the lines of a title, and one that says whether what is drawn is stable."""
+    said = list(dict.fromkeys(found.verdict.headline for found in maps))
+    if len(said) > 1:
+        said = [f"{found.tf}: {found.verdict.headline}" for found in maps]
+    return [*title_lines(title, width), *title_lines("; ".join(said), width)]
 
 
 def title_lines(title: str | None, width: float) -> list[str]:

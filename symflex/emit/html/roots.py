@@ -39,13 +39,14 @@ def roots_html(found: PoleZeroMap) -> str:
     status = "certified" if certificate.certified else f"NOT CERTIFIED: {certificate.reason}"
     count = f"{certificate.found} of {certificate.counted} roots enclosed"
     caption = f"<strong>{escape_html(found.tf)}</strong>, {escape_html(status)}: {count}"
+    caption += f"<br>{escape_html(found.verdict.sentence)}"
     if shown := region_text(found.region):
         caption += f"<br>shown: {escape_html(shown)}"
     if found.excluded:
         caption += f"<br>{len(found.excluded)} neighbourhoods where roots accumulate are left out"
     rows = []
     for word, roots in (
-        ("pole", found.poles),
+        ("pole", found.all_poles),
         ("zero", found.zeros),
         ("hidden", tuple(h.root for h in found.hidden)),
     ):

@@ -15,7 +15,14 @@ from symflex.emit.latex.column import COLUMNS_MM
 from symflex.emit.latex.equation import equation_label, form_labels, ratio_latex, transfer_function_latex
 from symflex.emit.latex.expression import Writer
 from symflex.emit.latex.preamble import preamble
-from symflex.emit.latex.table import KINDS, VALUE_DIGITS, mode_table, parameter_table, root_table
+from symflex.emit.latex.table import (
+    KINDS,
+    VALUE_DIGITS,
+    mode_table,
+    parameter_table,
+    root_table,
+    roots_of,
+)
 from symflex.emit.latex.text import escape_text
 from symflex.emit.latex.units import unit_latex
 from symflex.emit.latex.width import EM_MM
@@ -223,12 +230,12 @@ def _blocks(
         for found in of_tf:
             yield _Block("\n".join((r"\noindent", *hidden, *_about_roots(tf, found))) + "\n\n")
             for kind in KINDS:
-                if getattr(found, kind):
+                if roots_of(found, kind):
                     title = f"{kind.capitalize() if kind != 'hidden' else 'Hidden roots'}"
                     yield _Block(f"\\medskip\\noindent {title}:{_BEFORE_TABLE}")
                     table = root_table(found, kind, width_mm=width_mm)
                     yield _table(table, f"{_stem(tf)}_{kind}", f"{title} of {_comment(tf.name)}")
-    if any(found.poles for found in maps):
+    if any(found.all_poles for found in maps):
         yield _Block(f"\\section{{Modes}}\n\n{_about_modes(maps)}{_BEFORE_TABLE}")
         yield _table(mode_table(maps, width_mm=width_mm), "modes", "Modes")
 
@@ -329,11 +336,12 @@ def _hidden_mode(
 
 
 def _about_roots(tf: AnyTransferFunction, found: PoleZeroMap) -> list[str]:
-    if not (found.poles or found.zeros or found.hidden):
+    if not (found.all_poles or found.zeros or found.hidden):
         return [f"${ratio_latex(tf)}$ has neither poles nor zeros in the region searched."]
     sentences = []
     if shown := region_text(found.region):
         sentences.append(f"Listed are {escape_text(shown)}.")
+    sentences.append(f"{escape_text(found.verdict.sentence.capitalize())}.")
     if found.certificate.certified:
         sentences.append(
             "Every pole and zero listed is enclosed to the digits printed, and their count is proved."

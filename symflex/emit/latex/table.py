@@ -126,8 +126,7 @@ def root_table(
     width_mm : float, optional
         Width of the column.
     """
-    roots = tuple(h.root for h in found.hidden) if kind == "hidden" else getattr(found, kind)
-    entries = one_of_each_pair(roots)
+    entries = one_of_each_pair(roots_of(found, kind))
     heads = (
         (("Re $s$", r"(\unit{\radian\per\second})"), ("Re s", "(rad/s)"), _real_part),
         (("Im $s$", r"(\unit{\radian\per\second})"), ("Im s", "(rad/s)"), _imaginary_part),
@@ -135,6 +134,13 @@ def root_table(
         (("Damping", "ratio"), ("Damping", "ratio"), _damping),
     )
     return _table_of(entries, heads, digits, width_mm / EM_MM)
+
+
+def roots_of(found: PoleZeroMap, kind: str) -> tuple[Root, ...]:
+    """Return the roots that a table of one kind lists: poles in the right half plane wherever they lie."""
+    if kind == "hidden":
+        return tuple(h.root for h in found.hidden)
+    return found.all_poles if kind == "poles" else found.zeros
 
 
 def mode_table(
@@ -153,7 +159,7 @@ def mode_table(
 
     modes: list[Entry] = []
     for found in maps:
-        for entry in one_of_each_pair(found.poles):
+        for entry in one_of_each_pair(found.all_poles):
             same = [i for i, m in enumerate(modes) if overlap(m.root, entry.root)]
             if not same:
                 modes.append(entry)

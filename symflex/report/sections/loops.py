@@ -6,10 +6,11 @@ import json
 from math import tau
 from typing import TYPE_CHECKING, Final
 
-from symflex.emit.stability import bandwidth_text
+from symflex.emit.stability import bandwidth_text, nominal_text
 from symflex.errors import SymflexError, UncertifiedError
 from symflex.report.document import Code, Mark, Notice, Section, Table, columns, text
 from symflex.report.part import Part, code_of
+from symflex.report.sections.roots import stability_mark
 from symflex.stability import degrees
 
 if TYPE_CHECKING:
@@ -56,7 +57,13 @@ def _of(found: StabilityMap) -> tuple[Block, ...]:
     if found.certified:
         opening = text(Mark("certified", "good"), ": all poles right of the imaginary axis are counted.")
     else:
-        opening = text(Mark("not certified", "bad"), f": {'; '.join(found.reasons) or 'not all is proved'}.")
+        opening = text(Mark("not certified", "bad"), f": {'; '.join(found.reasons)}.")
+    blocks: list[Block] = []
+    if found.nominal is not None:
+        word = "unknown" if found.is_stable is None else "stable" if found.is_stable else "unstable"
+        said = nominal_text(found).removeprefix(word)
+        blocks.append(text(stability_mark(word), f"{said}, with {found.gain} = {float(found.nominal):g}."))
+    blocks.append(opening)
     rows: list[tuple[Cell, ...]] = []
     for interval in found.intervals:
         stable = Mark("stable", "good") if interval.poles.is_stable else Mark("unstable", "bad")
@@ -64,7 +71,7 @@ def _of(found: StabilityMap) -> tuple[Block, ...]:
         rows.append(((low,), (high,), (str(interval.poles.right),), (str(interval.poles.axis),), (stable,)))
     unit = f" [{found.unit}]" if found.unit else ""
     title = f"Closed-loop poles by the gain {found.gain}{unit}"
-    blocks: list[Block] = [opening, Table(HEADS, tuple(rows), title)]
+    blocks.append(Table(HEADS, tuple(rows), title))
     places = [
         f"{found.gain} = {decimal(b.gain)} at {', '.join(f'{decimal(w / tau)} Hz' for w in b.frequencies)}"
         for b in found.boundaries

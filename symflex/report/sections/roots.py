@@ -6,7 +6,7 @@ import json
 from typing import TYPE_CHECKING, Final
 
 from symflex.emit.latex import ratio_latex, root_table
-from symflex.emit.latex.table import KINDS, damping_text, frequency_text, one_of_each_pair
+from symflex.emit.latex.table import KINDS, damping_text, frequency_text, one_of_each_pair, roots_of
 from symflex.emit.text import region_text
 from symflex.errors import SymflexError
 from symflex.explanation import explanation_paragraphs
@@ -19,7 +19,7 @@ from symflex.report.study import attempt, said
 if TYPE_CHECKING:
     from symflex.emit.latex.table import Entry
     from symflex.explanation import ZeroExplanation
-    from symflex.report.document import Block, Cell
+    from symflex.report.document import Block, Cell, Tone
     from symflex.report.study import Study
     from symflex.roots import PoleZeroMap
 
@@ -70,6 +70,8 @@ def _of(found: PoleZeroMap, told: ZeroExplanation | None) -> tuple[Block, ...]:
     else:
         mark, said = Mark("not certified", "bad"), f": {certificate.reason or 'no reason given'}."
     shown = f" Listed: {region_text(found.region)}." if region_text(found.region) else ""
+    verdict = found.verdict
+    blocks.append(text(stability_mark(verdict.word), f"{verdict.sentence.removeprefix(verdict.brief)}."))
     blocks.append(text(mark, said + shown))
     for part in found.excluded:
         blocks.append(
@@ -79,7 +81,7 @@ def _of(found: PoleZeroMap, told: ZeroExplanation | None) -> tuple[Block, ...]:
             )
         )
     for kind, noun in KINDS.items():
-        roots = tuple(h.root for h in found.hidden) if kind == "hidden" else getattr(found, kind)
+        roots = roots_of(found, kind)
         entries = one_of_each_pair(roots)
         title = {"poles": "Poles", "zeros": "Zeros", "hidden": "Hidden roots"}[kind]
         if entries:
@@ -92,6 +94,18 @@ def _of(found: PoleZeroMap, told: ZeroExplanation | None) -> tuple[Block, ...]:
     if told is not None:
         blocks += [text(*lines) for lines in _told(told)]
     return tuple(blocks)
+
+
+def stability_mark(word: str) -> Mark:
+    """Return the badge of a verdict: green for what is proved to be stable alone.
+
+    Examples
+    --------
+    >>> [stability_mark(word).tone for word in ("stable", "marginal", "unstable", "unknown")]
+    ['good', 'fair', 'bad', 'fair']
+    """
+    tones: dict[str, Tone] = {"stable": "good", "unstable": "bad"}
+    return Mark("stability not known" if word == "unknown" else word, tones.get(word, "fair"))
 
 
 def _told(told: ZeroExplanation) -> list[tuple[str, ...]]:
