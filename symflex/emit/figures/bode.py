@@ -19,8 +19,8 @@ from symflex.emit.figures.style import (
     TITLE_SPACING,
     new_figure,
     paper_style,
+    stability_lines,
     title_lines,
-    title_with_stability,
 )
 from symflex.response import adaptive_grid, default_band, respond
 from symflex.roots import Band
@@ -60,7 +60,7 @@ def draw_bode(
     """Draw magnitude and phase of transfer functions in one figure; see :func:`symflex.emit.figures.draw`.
 
     Peaks and troughs without damping have no end; they run to the frame. Where poles lie in the right half
-    plane, or may lie there, the title says so.
+    plane, or may lie there, the legend says so.
     """
     # The default roots of distributed systems serve for nothing but a band.
     given = band_hz or _band_of_model(tfs[0])
@@ -73,10 +73,11 @@ def draw_bode(
     ]
     width = width or COLUMN_INCHES
     shaky = [found for found in maps if found.verdict.word in ("unstable", "unknown")]
-    lines = title_with_stability(title, shaky, width)
+    lines = title_lines(title, width)
+    said = stability_lines(shaky, width)
     units = {response.unit for response in responses}
     legend_columns = min(len(tfs), LEGEND_COLUMNS if len(units) == 1 else LEGEND_COLUMNS_WITH_UNITS)
-    height = HEIGHT_INCHES + LINE_INCHES * (len(lines) + ceil(len(tfs) / legend_columns))
+    height = HEIGHT_INCHES + LINE_INCHES * (len(lines) + len(said) + ceil(len(tfs) / legend_columns))
     figure = new_figure(width, height)
     figure.set_layout_engine("constrained", h_pad=0.02, w_pad=0.03, hspace=0.03)
     top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[1.25, 1])
@@ -98,6 +99,7 @@ def draw_bode(
         axes.grid(visible=True)
     figure.align_ylabels([top, bottom])
     top.legend(
+        title="\n".join(said) or None,
         loc="lower center",
         bbox_to_anchor=(0.5, 1.0),
         ncols=legend_columns,

@@ -17,12 +17,12 @@ from symflex.emit.figures.style import (
     COLOURS,
     COLUMN_INCHES,
     FAINT,
+    LINE_INCHES,
     PAGE_INCHES,
     QUIET,
-    TITLE_POINTS,
-    TITLE_SPACING,
     new_figure,
     title_lines,
+    write_titles,
 )
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.modes import lowest_modes
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 DEFAULT_MODES: Final = 5
 MODES_LIMIT: Final = 40
-ROW_INCHES, HEADING_INCHES, LINE_INCHES, AXIS_INCHES, LEGEND_INCHES = 0.56, 0.17, 0.13, 0.38, 0.06
+ROW_INCHES, HEADING_INCHES, AXIS_INCHES, LEGEND_INCHES = 0.56, 0.17, 0.38, 0.06
 LEFT, RIGHT = 0.46, 0.08
 GAP, LABELLED_GAP = 0.34, 0.54
 LABEL_OFFSET: Final = 0.35
@@ -93,7 +93,8 @@ def draw_modes(
             Diagnostic("SF402", f"{bounds[0].name} has no mode other than at 0 that has a shape")
         )
     width = width or (COLUMN_INCHES if len(panels) <= PANELS_IN_COLUMN else PAGE_INCHES)
-    lines = [*title_lines(title, width), *title_lines(verdict.headline, width)]
+    titles = (title_lines(title, width), title_lines(verdict.headline, width))
+    lines = [line for group in titles for line in group]
     per_metre = all(_unit_of_reference(shape) == "m" for shape in shapes)
     names = {**UNIT_NAMES, "rad": "angle [rad/m]"} if per_metre else UNIT_NAMES
     labels = [names[_unit_of(panel)] for panel in panels]
@@ -122,17 +123,7 @@ def draw_modes(
     _label_columns(figure, labels, columns, gaps, (below + (height - above - below) / 2) / height)
     if is_lagging:
         _add_legend(figure, panels, 1 - (LINE_INCHES * len(lines) + 0.03) / height)
-    if lines:
-        figure.text(
-            0.5,
-            1 - 0.02 / height,
-            "\n".join(lines),
-            ha="center",
-            va="top",
-            fontsize=TITLE_POINTS,
-            linespacing=TITLE_SPACING,
-            parse_math=False,
-        )
+    write_titles(figure, titles, 0.02, height)
     return figure
 
 

@@ -13,13 +13,14 @@ from symflex.emit.figures.s_plane import Mark, View, choose_view, leaving, marks
 from symflex.emit.figures.style import (
     COLOURS,
     COLUMN_INCHES,
+    LINE_INCHES,
     NOTE_POINTS,
     PAGE_INCHES,
     QUIET,
-    TITLE_POINTS,
-    TITLE_SPACING,
     new_figure,
-    title_with_stability,
+    stability_lines,
+    title_lines,
+    write_titles,
 )
 from symflex.roots.locate import locate
 
@@ -35,7 +36,6 @@ if TYPE_CHECKING:
 PANELS_IN_COLUMN: Final = 3
 PANELS_ON_PAGE: Final = 4
 LEFT, RIGHT, BOTTOM, TOP, GAP = 0.54, 0.15, 0.38, 0.20, 0.24
-LINE_INCHES: Final = 0.13
 NARROWEST, WIDEST = 0.6, 1.25
 TALLEST_INCHES: Final = 2.6
 LISTED: Final = 5
@@ -74,7 +74,8 @@ def draw_poles_zeros(
     )
     panel_width = min(room, TALLEST_INCHES * view.ratio)
     panel_height = panel_width / view.ratio
-    lines = title_with_stability(title, maps, width)
+    titles = (title_lines(title, width), stability_lines(maps, width))
+    lines = [line for group in titles for line in group]
     above = LINE_INCHES * len(lines) + (0.04 if lines else 0)
     height = above + rows * (TOP + panel_height + BOTTOM)
     figure = new_figure(width, height)
@@ -93,17 +94,7 @@ def draw_poles_zeros(
             axes.set_ylabel(r"$\mathrm{Im}(s)$ [rad/s]", labelpad=1)
         else:
             axes.tick_params(labelleft=False)
-    if lines:
-        figure.text(
-            0.5,
-            1 - 0.04 / height,
-            "\n".join(lines),
-            ha="center",
-            va="top",
-            fontsize=TITLE_POINTS,
-            linespacing=TITLE_SPACING,
-            parse_math=False,
-        )
+    write_titles(figure, titles, 0.04, height)
     return figure
 
 

@@ -22,6 +22,8 @@ COLUMN_INCHES: Final = 3.5
 PAGE_INCHES: Final = 7.16
 NOTE_POINTS: Final = 6.0
 TITLE_POINTS: Final = 8.0
+LINE_INCHES: Final = 0.13
+"""Height of a line of a title."""
 TITLE_SPACING: Final = 0.95
 LETTERS_PER_INCH: Final = 18
 
@@ -125,12 +127,29 @@ def new_figure(width: float, height: float) -> Figure:
     return figure
 
 
-def title_with_stability(title: str | None, maps: Sequence[PoleZeroMap], width: float) -> list[str]:
-    """Return the lines of a title, and one that says whether what is drawn is stable."""
+def stability_lines(maps: Sequence[PoleZeroMap], width: float) -> list[str]:
+    """Return what stands below a title: whether what is drawn is stable, broken to a width [inches]."""
     said = list(dict.fromkeys(found.verdict.headline for found in maps))
     if len(said) > 1:
         said = [f"{found.tf}: {found.verdict.headline}" for found in maps]
-    return [*title_lines(title, width), *title_lines("; ".join(said), width)]
+    return title_lines("; ".join(said), width)
+
+
+def write_titles(figure: Figure, titles: Sequence[Sequence[str]], above: float, height: float) -> None:
+    """Write groups of lines below each other at the top of a figure that leaves room for them [inches]."""
+    for group in titles:
+        if group:
+            figure.text(
+                0.5,
+                1 - above / height,
+                "\n".join(group),
+                ha="center",
+                va="top",
+                fontsize=TITLE_POINTS,
+                linespacing=TITLE_SPACING,
+                parse_math=False,
+            )
+        above += LINE_INCHES * len(group)
 
 
 def title_lines(title: str | None, width: float) -> list[str]:
