@@ -159,7 +159,7 @@ class DistributedFactors:
                 found.append(Crossing(gain, (arb(0),)))
         equation = LoopValue.meeting if is_mirrored else LoopValue.crossing
         order = 2 if is_mirrored else 1
-        result = self.on_axis(function, equation, self._is_far, first, digits, order)
+        result = self.on_axis(function, equation, self._is_far, (first, self.radius[0]), digits, order)
         for omega in result.roots:
             bits = max(BITS, 2 * omega.bits())
             around, _ = function.on(omega, bits)
@@ -180,14 +180,13 @@ class DistributedFactors:
         function: LoopFunction,
         equation: Callable[[LoopValue], tuple[arb, arb]],
         is_excluded: Callable[[LoopValue], bool],
-        first: float,
+        limits: tuple[float, float],
         digits: int,
         order: int = 1,
     ) -> AxisRoots:
-        """Return the roots of a real function along the axis, as far as poles are searched."""
-        result = find_on_axis(
-            function, equation, is_excluded, (first, self.radius[0] * 1.01), digits, self.budget, order
-        )
+        """Return the roots of a real function along the axis between two frequencies."""
+        low, high = limits
+        result = find_on_axis(function, equation, is_excluded, (low, high * 1.01), digits, self.budget, order)
         for gap in result.undecided:
             place = float((gap.mid() / (2 * arb.pi())).mid())
             self.reasons.append(f"whether poles cross the axis near {place:.6g} Hz is not decided")

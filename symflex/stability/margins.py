@@ -141,13 +141,15 @@ def distributed_crossovers(
             # As where it is one at s = 0 itself: nothing is gained by going closer.
             distributed.reasons.append("whether the loop gain is one next to s = 0 is not proved")
             first = start
-    result = distributed.on_axis(function, equation, lambda value: False, first, digits)
+    last = distributed.radius[0]
     if distributed.radius[1]:
         most = abs(gain).upper()
         disc = acb(arb(0, most), arb(0, most))
-        tail = right_tail(function.bound, (function.a, function.b), (acb(1), disc), distributed.radius[0])
-        if tail.radius != distributed.radius[0]:
+        tail = right_tail(function.bound, (function.a, function.b), (acb(1), disc), last)
+        if tail.radius is None:
             distributed.reasons.append("whether the loop gain is one at high frequencies is not proved")
+        last = tail.radius or last
+    result = distributed.on_axis(function, equation, lambda value: False, (first, last), digits)
     found = []
     for omega in result.roots:
         bits = max(BITS, 2 * omega.bits())

@@ -12,7 +12,7 @@ ROOT_KEYS = {
 
 def test_the_first_transfer_function_is_shown_and_the_others_named_on_stderr(shell):
     done = shell("roots", "x.toml")
-    assert done.out.startswith("X/F   certified: 2 of 2 roots enclosed\n")
+    assert done.out.startswith("X/F   certified: 2 of 2 roots enclosed; marginal\n")
     assert done.err == "showing X/F; choose with --tf: V/F\n"
 
 
@@ -31,7 +31,8 @@ def test_json_has_the_documented_keys(shell):
     assert (done.code, done.err) == (0, "")
     document = done.json
     assert set(document) == {
-        "schema", "tf", "region", "certified", "poles", "zeros", "hidden", "excluded", "certificate",
+        "schema", "tf", "region", "certified", "stability", "poles", "zeros", "right_half_plane", "hidden",
+        "excluded", "certificate",
     }  # fmt: skip
     assert document["schema"] == "symflex.roots/1"
     assert set(document["certificate"]) == {"engine", "counted", "found", "reason", "budget_exceeded"}
@@ -122,7 +123,7 @@ def test_a_transfer_function_that_is_zero_has_only_hidden_modes(shell):
 
 def test_roots_of_a_distributed_system_are_certified(beam):
     done = beam("roots", "beam.toml", "--modes", "2")
-    assert done.out.startswith("V_act/F   certified: 10 of 10 roots enclosed\n")
+    assert done.out.startswith("V_act/F   certified: 10 of 10 roots enclosed; marginal\n")
     assert done.code == 0
 
 
