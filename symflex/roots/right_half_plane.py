@@ -138,6 +138,7 @@ def judge(roots: Sequence[Root], unproved: str = "", proof: str = "") -> Stabili
     Examples
     --------
     >>> from flint import arb
+    >>> from symflex.roots.root import Root
     >>> pole = Root(arb(-1), arb(0), 1, on_imaginary_axis=False, is_real=True)
     >>> judge([pole]).sentence
     'stable'
