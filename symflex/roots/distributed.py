@@ -99,7 +99,13 @@ def locate_distributed(
     missing = sum(side.missing for side in searched.sides)
     engines = sorted({side.engine for side in searched.sides if not side.is_finite}) or [POLYNOMIAL.name]
     excluded = {hole for side in searched.sides for hole in side.excluded()}
-    verdict, right, hidden = searched.judged(reason)
+    try:
+        if code is not None:
+            raise BudgetError(Diagnostic(code, reason or ""))
+        verdict, right, hidden = searched.judged(reason)
+    except BudgetError as error:
+        with Budget().entered():
+            verdict, right, hidden = searched.judged(error.diagnostics[0].message, is_over=True)
     beyond = _not_among(right, [*chosen[0], *(h.root for h in searched.hidden)])
     hidden = _not_among(hidden, [h.root for h in searched.hidden])
     # Nobody asked for these modes and no others.
@@ -245,13 +251,17 @@ class _Searched:
         """Denominator and numerator; nothing when the function is zero."""
         return self.sides[:2] if len(self.sides) > 1 else []
 
-    def judged(self, unproved: str | None) -> tuple[StabilityVerdict, tuple[Root, ...], tuple[Root, ...]]:
+    def judged(
+        self, unproved: str | None, *, is_over: bool = False
+    ) -> tuple[StabilityVerdict, tuple[Root, ...], tuple[Root, ...]]:
         """Return whether the model is stable, and its poles and hidden modes in the right half plane.
 
         Parameters
         ----------
         unproved : str or None
             What could not be proved of the region.
+        is_over : bool
+            The budget was exceeded: nothing more is searched.
         """
         bound = self.bound
         product = Factored(
@@ -273,8 +283,9 @@ class _Searched:
                     else Side(bound, part, self.digits, self.budget, is_hidden=is_hidden)
                 )
                 known = [*side.roots, *(() if is_hidden else coincident)]
-                if proof:
+                if proof or is_over:
                     found.append(tuple(known))
+                    reasons += [unproved] if is_over and unproved else []
                     continue
                 reached = 0.0 if unproved else self._reached(side)
                 whole = search_right(bound, part, side, known, reached, self.digits, self.budget)

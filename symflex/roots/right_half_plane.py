@@ -27,8 +27,8 @@ from symflex.roots.winding import RootOnPathError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from symflex.budget import Budget
     from symflex.kernels import Factored
-    from symflex.roots.budget import Budget
     from symflex.roots.root import Root
     from symflex.transfer import BoundTransferFunction
 

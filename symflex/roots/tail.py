@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
+from symflex.budget import spend
 from symflex.kernels import LAPLACE, Ring, degree_in
 from symflex.roots.exponential_sum import ExponentialValues, arguments_of, exponential_sum
 from symflex.roots.precision import precision
@@ -36,10 +37,10 @@ Powers = tuple[tuple[int, int, int], ...]
 
 BITS = 64
 SECTORS = 48
-ATTEMPTS = 60
-GROWTH = 4.0
-NARROWINGS = 5
-"""Halvings, in ln, of the radius found: the path about what lies within it is followed step by step."""
+LARGEST = 1e36
+"""Of a radius, relative to the frequency of about one wave in the longest part."""
+NARROW = 1.05
+"""How far above one that is none a radius may be: the path about what lies within takes steps."""
 ROOTS = {"wave": 2, "bending": 4}
 NO_FORMULA = "without a formula for the wavenumbers no end of the poles is known"
 TWO_WAVENUMBERS = "where a part has two wavenumbers no end of the poles is known"
@@ -120,24 +121,20 @@ def right_tail(
         kernels = bound.kernel_values({name: evaluate() for name, evaluate in bound.constants})
         values = ExponentialValues(kernels, arguments, tuple((terms, 1) for terms in known))
         function = _Function(kernels, values, tuple(scales), table.dispersions)
-        radius = start
-        for _ in range(ATTEMPTS):
-            if function.is_free_beyond(radius):
-                return Tail(_narrowed(function, radius) if radius > start else radius)
-            radius *= GROWTH
-        return Tail(None, function.obstacle(radius))
-
-
-def _narrowed(function: _Function, radius: float) -> float:
-    """Return a smaller radius of the same kind, above the last that was none."""
-    low, high = radius / GROWTH, radius
-    for _ in range(NARROWINGS):
-        middle = sqrt(low * high)
-        if function.is_free_beyond(middle):
-            high = middle
-        else:
-            low = middle
-    return high
+        if function.is_free_beyond(start):
+            return Tail(start)
+        # Where the largest radius is none, there is none at all.
+        low, high = start, start * LARGEST
+        if not function.is_free_beyond(high):
+            return Tail(None, function.obstacle(high))
+        while high > NARROW * low:
+            spend()
+            middle = sqrt(low) * sqrt(high)
+            if function.is_free_beyond(middle):
+                high = middle
+            else:
+                low = middle
+        return Tail(high)
 
 
 @dataclass(frozen=True, slots=True)
