@@ -20,7 +20,7 @@ from symflex.expressions.nodes import (
 )
 from symflex.expressions.parse import parse, parse_equation
 from symflex.expressions.slips import FUNCTIONS
-from symflex.expressions.walk import measured, names, substitute
+from symflex.expressions.walk import measured, names, replace_values, substitute
 
 __all__ = [
     "FUNCTIONS",
@@ -50,6 +50,7 @@ __all__ = [
     "power",
     "product_of",
     "quotient",
+    "replace_values",
     "substitute",
     "sum_of",
 ]

@@ -105,6 +105,22 @@ def substitute(expression: Expression, mapping: Mapping[str, Expression]) -> Exp
     return done[0]
 
 
+def replace_values(expression: Expression, mapping: Mapping[Call, Expression]) -> Expression:
+    """Replace values of fields at points by expressions.
+
+    Examples
+    --------
+    >>> value = Call("w", Name("l"))
+    >>> replace_values(Sum((value, Name("x"))), {value: Name("tip")})
+    Sum(terms=(Name(name='tip'), Name(name='x')))
+    """
+    if isinstance(expression, Call) and expression in mapping:
+        return mapping[expression]
+    if not expression.children:
+        return expression
+    return _rebuilt(expression, [replace_values(child, mapping) for child in expression.children])
+
+
 def _replacement(leaf: Expression, mapping: Mapping[str, Expression]) -> Expression:
     match leaf:
         case Name(name=name):

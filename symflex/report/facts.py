@@ -295,6 +295,8 @@ class ColocationFact:
         Up to which frequency that was examined.
     is_together : bool
         At the lowest frequency they are.
+    certified : bool
+        It is proved that they part there, or do not.
     """
 
     tf: str
@@ -304,6 +306,7 @@ class ColocationFact:
     bandwidth_hz: float | None
     examined_hz: float
     is_together: bool
+    certified: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -500,6 +503,7 @@ def _colocation(found: DynamicColocation) -> ColocationFact:
         bandwidth_hz=None if found.edge is None else float(found.edge.mid()) / tau,
         examined_hz=found.limits[1],
         is_together=found.begins,
+        certified=found.is_decided,
     )
 
 

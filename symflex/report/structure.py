@@ -12,6 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
 
+from symflex.explanation.joints import joined_values
 from symflex.expressions import Attribute, Call, Derivative, Expression, Name, format_expression, names
 
 if TYPE_CHECKING:
@@ -99,6 +100,7 @@ def is_colocated(model: Model, output: Output, source: Input) -> bool | None:
         return None
     joined = set(starts)
     groups = [_places(use) for use in model.elements if use.element.type_name in _RIGID]
+    groups += [{_place_of(model, value) for value in group} for group in joined_values(model)]
     grown = True
     while grown:
         reached = [group for group in groups if group & joined and not group <= joined]
@@ -176,6 +178,16 @@ def _named(expression: Expression) -> set[str]:
         for n in names(expression)
         if isinstance(n, Name | Attribute)
     }
+
+
+def _place_of(model: Model, value: Expression) -> str:
+    """Return the node, or the point of a field, that a value belongs to."""
+    if isinstance(value, Attribute):
+        return value.owner
+    if isinstance(value, Name):
+        return value.name
+    (point,) = {p for field in model.fields for p in _points(value, field.unknowns)}
+    return point
 
 
 def _points(expression: Expression, unknowns: tuple[str, ...]) -> set[str]:

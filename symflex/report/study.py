@@ -246,11 +246,13 @@ class Study:
         What the zeros mean tells which that is: of it they are the poles of the system held there.
         """
         joints = {
-            (tf.input.name, tf.quantity): tf for tf, _, told in self.located if told.kind == "colocated"
+            (tf.input.name, tf.quantity, tf.unit): tf
+            for tf, _, told in self.located
+            if told.kind == "colocated"
         }
         found = []
         for tf, _, told in self.located:
-            joint = joints.get((tf.input.name, tf.quantity))
+            joint = joints.get((tf.input.name, tf.quantity, tf.unit))
             if told.kind != "colocated" and joint is not None:
                 one = attempt(self._colocation(tf.name, joint.name))
                 if not isinstance(one, SymflexError):

@@ -52,7 +52,7 @@ class DynamicColocation:
     is_decided : bool
         False when the end could not be enclosed narrowly.
     cause : str
-        ``phase`` or ``magnitude``, what is left first; empty when nothing is.
+        ``phase`` or ``magnitude``, what is left first; empty when nothing is, or when that is not decided.
     begins : bool
         The outputs are together at the lower limit.
     """
@@ -88,13 +88,20 @@ class DynamicColocation:
         within = f"within {self.phase:g} deg and {self.magnitude:g} dB"
         head = f"{self.tf} {within} of {self.reference}"
         low, high = self.limits
+        status = "" if self.is_decided else ", NOT CERTIFIED"
         if not self.begins:
-            return f"{head}: not at {low:.6g} Hz, where the search begins"
+            return f"{head}: not at {low:.6g} Hz, where the search begins{status}"
         if self.edge is None:
             return f"{head}: from {low:.6g} Hz to {high:.6g} Hz, all that was examined"
         printed = decimals(hertz(self.edge), arb(0), 12)
-        status = "" if self.is_decided else ", NOT CERTIFIED"
-        return f"{head}: up to {printed.re} Hz, where the {self.cause} differs by more{status}"
+        return f"{head}: up to {printed.re} Hz, where {self.parting}{status}"
+
+    @property
+    def parting(self) -> str:
+        """What happens at the end of the band, in words."""
+        if self.cause:
+            return f"the {self.cause} differs by more"
+        return "the phase or the magnitude may differ by more"
 
 
 def dynamic_colocation(
@@ -124,13 +131,18 @@ def dynamic_colocation(
     Raises
     ------
     UsageError
-        SF805 different inputs, or tolerances that are none; SF804 no band.
+        SF805 different inputs, outputs of different units, or tolerances that are none; SF804 no band.
     ModelError
         SF402 one of the functions is identically zero.
     """
     if tip.source.input.name != joint.source.input.name:
         message = f"{tip.name} and {joint.name} have different inputs"
         raise UsageError(Diagnostic("SF805", message, None, "compare two outputs of one input"))
+    units = [bound.source.unit for bound in (tip, joint)]
+    if units[0] != units[1]:
+        message = f"{tip.name} is in [{units[0]}] and {joint.name} in [{units[1]}]"
+        hint = 'compare outputs of one unit; an angle times its lever is a displacement: "h*phi"'
+        raise UsageError(Diagnostic("SF805", message, None, hint))
     if not 0 < phase < 90 or not magnitude > 0:  # noqa: PLR2004 (degrees)
         message = "tolerances are a phase between 0 and 90 degrees and a magnitude above 0 dB"
         raise UsageError(Diagnostic("SF805", message))

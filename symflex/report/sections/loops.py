@@ -43,7 +43,11 @@ def loop_section(study: Study) -> Part | None:
         if not found.certified:
             warnings.append(f"{study.stem}: the loop with the gain {found.gain} is not certified")
             code = max(code, UncertifiedError.exit_code)
-    blocks += [_together(found) for found in study.colocations]
+    for band in study.colocations:
+        blocks.append(_together(band))
+        if not band.is_decided:
+            warnings.append(f"{study.stem}: how far {band.tf} moves with {band.reference} is not certified")
+            code = max(code, UncertifiedError.exit_code)
     if not blocks:
         return None
     documents += [found.to_json_dict() for found in study.colocations]
@@ -93,12 +97,13 @@ def _of(found: StabilityMap) -> tuple[Block, ...]:
 def _together(found: DynamicColocation) -> Block:
     within = f" within {found.phase:g} degrees and {found.magnitude:g} dB"
     pair = (Code(found.tf), " and ", Code(found.reference))
+    status = () if found.is_decided else (" ", Mark("not certified", "bad"))
     if not found.begins:
-        return text(*pair, f" are not together{within} at {found.limits[0]:g} Hz.")
+        return text(*pair, f" are not together{within} at {found.limits[0]:g} Hz.", *status)
     if found.edge is None:
         return text(*pair, f" stay together{within} up to {found.limits[1]:g} Hz, the end of the band.")
     edge = decimal(found.edge / tau)
-    return text(*pair, f" stay together{within} up to {edge} Hz, where the {found.cause} parts.")
+    return text(*pair, f" stay together{within} up to {edge} Hz, where {found.parting}.", *status)
 
 
 def decimal(value: arb) -> str:

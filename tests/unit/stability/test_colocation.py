@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 
 import pytest
+from flint import arb
 
 import symflex
 from symflex.errors import ModelError, UsageError
+from symflex.stability import DynamicColocation
 
 MASSES = {
     "a": {"type": "mass", "at": "x", "m": "1 kg"},
@@ -82,3 +84,25 @@ def test_a_band_is_needed():
     bare = symflex.Model(elements=MASSES, inputs={"F": {"force": "x"}}, outputs={"X": "x", "Y": "y"})
     with pytest.raises(UsageError, match="SF804"):
         bare.colocation("Y", "X", "F")
+
+
+def test_metres_are_not_compared_with_radians():
+    beam = symflex.loads("""
+symflex = 1
+elements.body = { type = "rigid_body", at = "p", m = 1, J = 2 }
+elements.k = { type = "spring", between = ["p.y", "ground"], k = 3 }
+elements.t = { type = "torsion_spring", between = ["p.theta", "ground"], k = 3 }
+elements.link = { type = "rigid_body", at = "p", m = 1, cg = 1 }
+inputs.F = { force = "p.y" }
+outputs.X = "p.y"
+outputs.Phi = "p.theta"
+""")
+    with pytest.raises(UsageError, match="SF805"):
+        beam.colocation("Phi", "X", "F", band=(0.1, 1))
+
+
+@pytest.mark.parametrize(("begins", "is_decided"), [(True, False), (False, False), (True, True)])
+def test_a_sentence_never_lacks_what_differs_and_says_what_is_not_certified(begins, is_decided):
+    found = DynamicColocation("a/u", "b/u", 10, 1, (1, 2), arb(7), is_decided, "", begins)
+    assert "  " not in str(found)
+    assert ("NOT CERTIFIED" in str(found)) is not is_decided
