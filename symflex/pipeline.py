@@ -23,14 +23,16 @@ from symflex import spec as spec_room
 from symflex import transfer as transfer_room
 from symflex.budget import spend
 from symflex.cache import entered_cache
-from symflex.elimination import eliminate, expanded_terms, explain_singular, is_singular
+from symflex.elimination import eliminate, expanded_terms, explain_singular, is_singular, unreached
 from symflex.errors import BudgetError, Diagnostic, FitError, Source, SpecError, SymflexError, UsageError
 from symflex.errors.diagnostic import nearest
+from symflex.expressions import Sum
 from symflex.kernels import uncollected
 from symflex.model import Model, load_with, with_numbers
+from symflex.model.unused import unnamed_definitions, unused_name
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
     from concurrent.futures import Executor
 
     import numpy as np
@@ -63,6 +65,8 @@ if TYPE_CHECKING:
 
 EXPANDED_TERMS = 5_000
 """Terms of a closed determinant beyond which nobody reads it: more than fifty pages."""
+MOST_WARNINGS = 100
+"""As many as problems, of which a reader stops at as many too."""
 NEVER_LARGE = 20
 """Elements up to which it is not estimated either."""
 
@@ -110,6 +114,54 @@ def check_solvable(equations: Equations) -> None:
     """Raise the explanation when the equations have no unique solution."""
     if is_singular(equations):
         raise explain_singular(equations)
+
+
+def warnings(model: Model, equations: Equations | None = None) -> tuple[Diagnostic, ...]:
+    """Return what a specification says that may not be meant.
+
+    Parameters
+    ----------
+    model : Model
+        Resolved.
+    equations : Equations, optional
+        Of the model, where they are there already.
+
+    Returns
+    -------
+    tuple of Diagnostic
+        What nothing uses, how frequencies were read, and, where the equations have a unique solution, inputs,
+        outputs and elements without effect. Those of the model's own text come first.
+    """
+    try:
+        equations = equations or assemble(model)
+        is_solvable = not is_singular(equations)
+        found = (*unreached(equations), *_unused_definitions(model)) if is_solvable else ()
+    except SymflexError:
+        found = ()  # what is wrong with the equations is said by what derives
+    own = model.outputs[0].span.source if model.outputs[0].span else None
+
+    def place(warning: Diagnostic) -> tuple[bool, str, int]:
+        span = warning.span
+        return (True, "", 0) if span is None else (span.source is not own, span.source.name, span.start)
+
+    ordered = sorted((*model.warnings, *found), key=place)
+    if len(ordered) > MOST_WARNINGS:
+        more = f"{len(ordered) - MOST_WARNINGS} more warnings"
+        ordered[MOST_WARNINGS:] = [Diagnostic(ordered[MOST_WARNINGS].code, more, severity="warning")]
+    return tuple(ordered)
+
+
+def _unused_definitions(model: Model) -> Iterator[Diagnostic]:
+    """Yield the definitions that no expression names and no print shows."""
+    unnamed = unnamed_definitions(model)
+    sums = [d for d in unnamed if isinstance(d.expression, Sum)]
+    shown = {d.name for d in sums}
+    if sums and not model.is_distributed and len(model.elements) <= NEVER_LARGE:
+        from symflex.emit.forms import print_forms  # hardly ever needed
+
+        printed, _ = print_forms(derive_all(model), "definitions")
+        shown = {name for form in printed for name, _ in form.where}
+    yield from (unused_name("definition", d.name, d.span) for d in unnamed if d.name not in shown)
 
 
 def derive(equations: Equations, output: str, source: str) -> TransferFunction:

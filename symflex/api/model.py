@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     from symflex import model as model_room
+    from symflex.errors import Diagnostic
     from symflex.measurement import MeasuredResponse
     from symflex.model import Setting
     from symflex.stability import DynamicColocation
@@ -122,6 +123,26 @@ class Model:
     def parameters(self) -> tuple[model_room.Parameter, ...]:
         """The parameters in declared order, with exact values in SI units."""
         return self.resolved.parameters
+
+    @property
+    def warnings(self) -> tuple[Diagnostic, ...]:
+        """What the specification says that may not be meant, as ``symflex check`` prints it.
+
+        Examples
+        --------
+        >>> model = Model(
+        ...     parameters={"m": "2 kg", "k": "8 N/m"},
+        ...     elements={
+        ...         "body": {"type": "mass", "at": "x", "m": "m"},
+        ...         "wall": {"type": "spring", "between": ["x", "gruond"], "k": "k"},
+        ...     },
+        ...     inputs={"F": {"force": "x"}},
+        ...     outputs={"X": "x"},
+        ... )
+        >>> [(w.code, w.hint) for w in model.warnings]
+        [('SF650', "did you mean 'ground'?")]
+        """
+        return pipeline.warnings(self.resolved)
 
     @property
     def inputs(self) -> tuple[str, ...]:

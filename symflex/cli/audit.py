@@ -8,7 +8,7 @@ import click
 
 from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, note, outside, reporting, say, terminal_width
+from symflex.cli.reporting import emit_json, load, note, outside, reporting, say, terminal_width
 from symflex.cli.setting import setting
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def command(
     from symflex.audit.json_format import audit_document
     from symflex.audit.text import audit_text
 
-    model = pipeline.load(spec, allow_outside, settings)
+    model = load(spec, allow_outside, settings)
     audits = pipeline.audit(model, tfs)
     if not model.published:
         note('nothing is published in this specification: [published."OUT/IN"] holds a printed formula')

@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from symflex.cli.budgeting import budgeted
-from symflex.cli.reporting import diagnostic_json, emit_json, listed, outside, reporting, say
+from symflex.cli.reporting import diagnostic_json, emit_json, listed, outside, reporting, say, show
 from symflex.cli.setting import setting
 from symflex.errors import SymflexError
 from symflex.errors.diagnostic import printable
@@ -15,29 +15,45 @@ from symflex.errors.diagnostic import printable
 @click.argument("spec", type=click.Path())
 @outside
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@click.option("--strict", is_flag=True, help="Exit with code 3 where there is a warning.")
 @budgeted
 @reporting
 @setting
-def command(spec: str, *, allow_outside: tuple[str, ...], settings: dict[str, str], as_json: bool) -> int:
+def command(
+    spec: str, *, allow_outside: tuple[str, ...], settings: dict[str, str], as_json: bool, strict: bool
+) -> int:
     """Parse and resolve SPEC; report every problem at once.
 
     Names, units, ports, linearity and solvability are checked; nothing is derived.
+
+    Warnings tell what a typing error may have left behind: a node that one element touches, a name that
+    nothing uses, an input that reaches nothing, an element without effect. They also say how a frequency was
+    read, in cycles or in radians, where an expression could mean either. All other commands print them too.
     """
     from symflex import pipeline
 
     try:
         model = pipeline.load(spec, allow_outside, settings)
-        pipeline.check_solvable(pipeline.assemble(model))
+        equations = pipeline.assemble(model)
+        pipeline.check_solvable(equations)
     except SymflexError as error:
         if not as_json:
             raise
         problems = [diagnostic_json(d) for d in error.diagnostics]
-        emit_json({"schema": "symflex.check/1", "ok": False, "problems": problems})
+        emit_json({"schema": "symflex.check/1", "ok": False, "problems": problems, "warnings": []})
         return error.exit_code
+    warnings = pipeline.warnings(model, equations)
+    code = 3 if strict and warnings else 0
     names = ["/".join(pair) for pair in model.transfer_functions]
     if as_json:
-        emit_json({"schema": "symflex.check/1", "ok": True, "problems": [], "transfer_functions": names})
-        return 0
+        document = {
+            "problems": [],
+            "warnings": [diagnostic_json(w) for w in warnings],
+            "transfer_functions": names,
+        }
+        emit_json({"schema": "symflex.check/1", "ok": True, **document})
+        return code
+    show(warnings)
     symbolic = [p.name for p in model.parameters if p.value is None]
     counts = ", ".join(
         f"{len(group)} {word}{'' if len(group) == 1 else 's'}"
@@ -51,11 +67,12 @@ def command(spec: str, *, allow_outside: tuple[str, ...], settings: dict[str, st
         )
         if group
     )
-    say(f"{printable(spec)}: ok")
+    said = f", {len(warnings)} warning{'' if len(warnings) == 1 else 's'}" if warnings else ""
+    say(f"{printable(spec)}: ok{said}")
     if model.title:
         say(listed("", printable(model.title).split(), " "))
     say(listed("", counts.split(), " "))
     say(listed("transfer functions: ", names))
     if symbolic:
         say(listed("symbolic (no value): ", symbolic))
-    return 0
+    return code

@@ -6,7 +6,7 @@ import click
 
 from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, outside, reporting, say
+from symflex.cli.reporting import emit_json, load, outside, reporting, say
 from symflex.cli.setting import setting
 from symflex.errors import Diagnostic, UsageError
 
@@ -56,7 +56,7 @@ def command(
             )
         limits = (low, high)
     found = pipeline.colocation(
-        pipeline.load(spec, allow_outside, settings),
+        load(spec, allow_outside, settings),
         tf,
         reference,
         _tolerance(phase, "--phase", ("deg", "°"), "10 deg"),

@@ -6,7 +6,7 @@ import click
 
 from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, note, outside, reporting, say, terminal_width
+from symflex.cli.reporting import emit_json, load, note, outside, reporting, say, terminal_width
 from symflex.cli.setting import setting
 from symflex.errors import Diagnostic, UsageError
 
@@ -90,7 +90,7 @@ def command(
         from symflex.emit.latex import column_width
 
         column = column_width(width)
-    model = pipeline.load(spec, allow_outside, settings)
+    model = load(spec, allow_outside, settings)
     derived, reason = pipeline.derive_as(
         model, pipeline.pick_pairs(model, tfs), chosen_representation(representation, form)
     )

@@ -12,7 +12,7 @@ import click
 from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
 from symflex.cli.derive import chosen_representation
-from symflex.cli.reporting import note, outside, reporting, say
+from symflex.cli.reporting import load, note, outside, reporting, say
 from symflex.cli.setting import setting
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
@@ -100,7 +100,7 @@ def command(
     is_folder = isinstance(exporter, LatexExporter) and bool(output) and _is_folder(output or "")
     if output:
         (check_folder if is_folder else check_writable)(Path(output))
-    model = pipeline.load(spec, allow_outside, settings)
+    model = load(spec, allow_outside, settings)
     derived, reason = pipeline.derive_as(
         model, pipeline.pick_pairs(model, tfs), chosen_representation(representation, form)
     )

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, note, outside, reporting, say, terminal_width
+from symflex.cli.reporting import emit_json, load, note, outside, reporting, say, terminal_width
 from symflex.errors import Diagnostic, FitError, SymflexError, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 SUFFIXES = (".pdf", ".png", ".svg")
 
@@ -102,7 +106,7 @@ def command(
     """
     from symflex import pipeline
     from symflex.emit.fit_report import fit_json, fit_text
-    from symflex.emit.write import check_writable, write_atomically
+    from symflex.emit.write import write_atomically
     from symflex.fitting import mode_shapes
     from symflex.measurement import prepared, read_measurement
 
@@ -110,11 +114,9 @@ def command(
         raise UsageError(Diagnostic("SF902", "--tf names a transfer function of --base"))
     if base is not None and slope is not None:
         raise UsageError(Diagnostic("SF902", "--slope is for fits without --base"))
-    for path, endings in ((output, (".toml",)), (figure, SUFFIXES)):
-        if path and Path(path).suffix.lower() not in endings:
-            raise UsageError(Diagnostic("SF902", f"'{Path(path).name}' must end in {' or '.join(endings)}"))
-        if path:
-            check_writable(Path(path))
+    _check_places(((output, (".toml",)), (figure, SUFFIXES)))
+    if base is not None:
+        load(base, allow_outside)
     every = prepared([one for path in data for one in read_measurement(path)], band, averages, window)
     measured = every
     if driving:
@@ -166,3 +168,14 @@ def command(
             save(draw_fit(found, r), one)
             note(f"wrote {one}")
     return 0
+
+
+def _check_places(places: Iterable[tuple[str | None, tuple[str, ...]]]) -> None:
+    """Refuse files that have another ending than those told, or cannot be written."""
+    from symflex.emit.write import check_writable
+
+    for path, endings in places:
+        if path and Path(path).suffix.lower() not in endings:
+            raise UsageError(Diagnostic("SF902", f"'{Path(path).name}' must end in {' or '.join(endings)}"))
+        if path:
+            check_writable(Path(path))

@@ -8,7 +8,7 @@ import click
 
 from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
-from symflex.cli.reporting import note, outside, reporting
+from symflex.cli.reporting import load, note, outside, reporting
 from symflex.cli.setting import setting
 from symflex.errors import Diagnostic, UsageError
 
@@ -70,7 +70,7 @@ def command(
         message = f"'{Path(output).name}' must end in {' or '.join(WRITERS)}"
         raise UsageError(Diagnostic("SF902", message))
     check_writable(Path(output))
-    model = pipeline.load(spec, allow_outside, settings)
+    model = load(spec, allow_outside, settings)
     pairs = pipeline.pick_pairs(model, [tf] if tf else [])
     if tf is None and len(pairs) > 1:
         others = ", ".join("/".join(pair) for pair in pairs[1:])

@@ -9,7 +9,7 @@ import click
 
 from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
-from symflex.cli.reporting import note, outside, reporting
+from symflex.cli.reporting import load, note, outside, reporting
 from symflex.cli.setting import setting
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
@@ -73,7 +73,7 @@ def command(
     if SWEEP in (spec, kind):
         options = bool(tfs or gain or limits)
         return _plot_sweep(spec if kind == SWEEP else kind, modes, output, width, font, is_more=options)
-    model = pipeline.load(spec, allow_outside, settings)
+    model = load(spec, allow_outside, settings)
     if modes is not None:
         model = replace(model, analysis=replace(model.analysis, modes=modes))
     figure = next((f for f in model.figures if f.name == kind), None)

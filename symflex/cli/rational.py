@@ -6,7 +6,7 @@ import click
 
 from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, note, outside, reporting, say
+from symflex.cli.reporting import emit_json, load, note, outside, reporting, say
 from symflex.cli.setting import setting
 
 
@@ -49,7 +49,7 @@ def command(
     from symflex import pipeline
     from symflex.emit.rational_format import rational_json, rational_text
 
-    model = pipeline.load(spec, allow_outside, settings)
+    model = load(spec, allow_outside, settings)
     pairs = pipeline.pick_pairs(model, [tf] if tf else [])
     if tf is None and len(pairs) > 1:
         others = ", ".join("/".join(pair) for pair in pairs[1:])

@@ -14,7 +14,9 @@ from symflex.errors import Diagnostic, SymflexError
 from symflex.errors.diagnostic import printable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+
+    from symflex.model import Model
 
 P = ParamSpec("P")
 LAYOUT = "\n\t" + "".join(map(chr, (0xA0, 0x1680, *range(0x2000, 0x200B), 0x202F, 0x205F, 0x3000)))
@@ -58,12 +60,26 @@ def colours() -> bool:
 
 def show_error(error: SymflexError) -> None:
     """Print every diagnostic to stderr."""
-    for diagnostic in error.diagnostics:
+    show(error.diagnostics)
+
+
+def show(diagnostics: Iterable[Diagnostic]) -> None:
+    """Print errors in red and warnings in yellow to stderr."""
+    for diagnostic in diagnostics:
         text = diagnostic.render()
         if colours():
-            mark = f"error[{diagnostic.code}]"
-            text = text.replace(mark, click.style(mark, fg="red", bold=True), 1)
+            colour = "red" if diagnostic.severity == "error" else "yellow"
+            text = text.replace(diagnostic.mark, click.style(diagnostic.mark, fg=colour, bold=True), 1)
         click.echo(text, err=True)
+
+
+def load(spec: str, allow_outside: tuple[str, ...] = (), settings: Mapping[str, str] | None = None) -> Model:
+    """Read a specification, and print its warnings to stderr."""
+    from symflex import pipeline
+
+    model = pipeline.load(spec, allow_outside, settings)
+    show(pipeline.warnings(model))
+    return model
 
 
 def say(text: str, *, nl: bool = True, err: bool = False) -> None:

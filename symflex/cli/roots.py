@@ -10,7 +10,7 @@ import click
 from symflex.budget import entered_budget
 from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, note, outside, reporting, say, show_error, terminal_width
+from symflex.cli.reporting import emit_json, load, note, outside, reporting, say, show_error, terminal_width
 from symflex.cli.setting import setting
 from symflex.errors import BudgetError, Diagnostic, UsageError
 
@@ -86,7 +86,7 @@ def command(
     chosen = region_of(modes, mode, band, region)
     # However short the time is, what is sought is told, and how many roots there are.
     with entered_budget().at_least(DERIVING).entered():
-        model = pipeline.load(spec, allow_outside, settings)
+        model = load(spec, allow_outside, settings)
         pairs = pipeline.pick_pairs(model, [tf] if tf else [])
         if tf is None and len(pairs) > 1:
             others = ", ".join("/".join(pair) for pair in pairs[1:])

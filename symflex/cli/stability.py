@@ -10,7 +10,7 @@ import click
 from symflex.budget import entered_budget
 from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, outside, reporting, say
+from symflex.cli.reporting import emit_json, load, outside, reporting, say
 from symflex.cli.setting import setting
 from symflex.errors import Diagnostic, UsageError
 
@@ -73,7 +73,7 @@ def command(
     from symflex.emit.stability import stability_text
     from symflex.stability import pick_gain
 
-    model = pipeline.load(spec, allow_outside, settings)
+    model = load(spec, allow_outside, settings)
     parameter = pick_gain(model.parameters, gain)
     chosen = None if limits is None else (gain_limit(limits[0], parameter), gain_limit(limits[1], parameter))
     highest = None if up_to is None else _radians(up_to)

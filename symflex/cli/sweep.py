@@ -9,7 +9,7 @@ import click
 
 from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, note, outside, reporting, say, terminal_width
+from symflex.cli.reporting import emit_json, load, note, outside, reporting, say, terminal_width
 from symflex.cli.roots import region_of
 from symflex.cli.setting import setting
 from symflex.errors import Diagnostic, UsageError
@@ -103,7 +103,7 @@ def command(
         raise UsageError(Diagnostic("SF902", "give only one of --workers and --scheduler"))
     if fresh and not output:
         raise UsageError(Diagnostic("SF902", "--fresh is for a file: give -o FILE"))
-    model = pipeline.load(spec, allow_outside, settings)
+    model = load(spec, allow_outside, settings)
     pairs = pipeline.pick_pairs(model, [tf] if tf else [])
     _check_options(of, modes, band, count, gain)
     design = read_design(model.parameters, over, draws or 0, seed)

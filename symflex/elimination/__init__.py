@@ -4,6 +4,7 @@ from symflex.elimination.closing import ClosedSystem, Closure, close
 from symflex.elimination.determinants import Determinants
 from symflex.elimination.expanded_size import expanded_terms
 from symflex.elimination.minors import Minors, expansion_order
+from symflex.elimination.reach import unreached
 from symflex.elimination.singular import explain_singular, is_singular
 from symflex.elimination.star_mesh import Elimination, eliminate
 from symflex.elimination.straight_line import ONE, Step, StraightLine, Workbench
@@ -27,4 +28,5 @@ __all__ = [
     "expansion_order",
     "explain_singular",
     "is_singular",
+    "unreached",
 ]

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from flint import nmod_poly
 
+    from symflex.elements import LinearForm, Variable
     from symflex.equations import EquationRow, Equations
     from symflex.errors import Span
     from symflex.kernels import Factored, Propagation
@@ -43,7 +44,7 @@ def explain_singular(equations: Equations) -> ModelError:
     nodes = [v for v in open_unknowns if v.kind == "node"]
     if constraints:
         owners = list(dict.fromkeys(r.about.owner for r in constraints))
-        names = _listed([f"'{o}'" for o in owners])
+        names = listed([f"'{o}'" for o in owners])
         message = (
             f"the constraints of {names} repeat or contradict each other"
             if len(owners) > 1
@@ -53,7 +54,7 @@ def explain_singular(equations: Equations) -> ModelError:
     elif conditions := [r for r in rows if r.role == "condition"]:
         problems += _dependent_conditions(equations, conditions)
     elif nodes:
-        names = _listed([f"'{v}'" for v in nodes])
+        names = listed([f"'{v}'" for v in nodes])
         alone = len(nodes) == 1
         what, verb, hold = ("node", "it floats", "it") if alone else ("nodes", "they float", "them")
         problems.append(
@@ -65,7 +66,7 @@ def explain_singular(equations: Equations) -> ModelError:
             )
         )
     elif loops:
-        names = _listed([f"'{r.about}'" for r in loops])
+        names = listed([f"'{r.about}'" for r in loops])
         problems.append(
             Diagnostic(
                 "SF303",
@@ -75,7 +76,7 @@ def explain_singular(equations: Equations) -> ModelError:
             )
         )
     if not problems:
-        names = _listed([f"'{v}'" for v in open_unknowns])
+        names = listed([f"'{v}'" for v in open_unknowns])
         place = _place(equations, open_unknowns[0].owner) if open_unknowns else None
         problems.append(Diagnostic("SF304", f"nothing determines {names}", place))
     return ModelError(*problems)
@@ -87,9 +88,9 @@ def _dependent_conditions(equations: Equations, rows: list[EquationRow]) -> list
     found = [(r.about.owner, int(r.about.component.split()[-1])) for r in rows]
     conditions = [fields[name].conditions[number - 1] for name, number in found]
     texts = [f"'{format_expression(c)}'" for c in conditions]
-    names = _listed([f"'{n}'" for n in dict.fromkeys(name for name, _ in found)])
+    names = listed([f"'{n}'" for n in dict.fromkeys(name for name, _ in found)])
     message = (
-        f"the conditions {_listed(texts)} of field {names} repeat or contradict each other: "
+        f"the conditions {listed(texts)} of field {names} repeat or contradict each other: "
         "the state is not determined"
         if len(texts) > 1
         else f"the condition {texts[0]} of field {names} always holds: one is missing in its place"
@@ -99,7 +100,8 @@ def _dependent_conditions(equations: Equations, rows: list[EquationRow]) -> list
     ]
 
 
-def _listed(names: list[str]) -> str:
+def listed(names: list[str]) -> str:
+    """Return names as a sentence lists them, the first few of many."""
     if len(names) > SHOWN:
         names = [*names[:SHOWN], f"{len(names) - SHOWN} more"]
     return (
@@ -111,26 +113,35 @@ def _listed(names: list[str]) -> str:
     )
 
 
-def _at_random_point(equations: Equations) -> nmod_mat:
-    """Return A(s) at a random point, where wavenumbers and kernels satisfy their relations."""
+def numbers_at_random(equations: Equations) -> tuple[int, Callable[[Factored], int]]:
+    """Return a prime, and what evaluates coefficients at a random point that fulfils the kernels' laws."""
     if equations.propagation is not None:
         field, values = _point_of_kernels(equations, equations.propagation)
-        return _matrix(equations, field.prime, lambda c: _number(field, c, equations.ring.names, values))
+        return field.prime, lambda c: _number(field, c, equations.ring.names, values)
     point = random_point(equations.ring.names)
     for name, value in equations.definitions:
         point[name] = residue(value, point)
-    return _matrix(equations, PRIME, lambda coefficient: residue(coefficient, point))
+    return PRIME, lambda coefficient: residue(coefficient, point)
 
 
-def _matrix(equations: Equations, prime: int, value: Callable[[Factored], int]) -> nmod_mat:
-    columns = {v: i for i, v in enumerate(equations.unknowns)}
-    entries = [0] * (len(equations.rows) * len(columns))
-    for i, row in enumerate(equations.rows):
-        for variable, coefficient in row.form.terms:
+def _at_random_point(equations: Equations) -> nmod_mat:
+    """Return A(s) at a random point."""
+    prime, value = numbers_at_random(equations)
+    return matrix_of([row.form for row in equations.rows], equations.unknowns, prime, value)
+
+
+def matrix_of(
+    forms: Sequence[LinearForm], variables: Sequence[Variable], prime: int, value: Callable[[Factored], int]
+) -> nmod_mat:
+    """Return the coefficients of variables in forms, one row for each form."""
+    columns = {v: i for i, v in enumerate(variables)}
+    entries = [0] * (len(forms) * len(columns))
+    for i, form in enumerate(forms):
+        for variable, coefficient in form.terms:
             if variable in columns:
                 position = i * len(columns) + columns[variable]
                 entries[position] = (entries[position] + value(coefficient)) % prime
-    return nmod_mat(len(equations.rows), len(columns), entries, prime)
+    return nmod_mat(len(forms), len(columns), entries, prime)
 
 
 def _number(

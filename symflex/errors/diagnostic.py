@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from difflib import get_close_matches
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -28,6 +28,8 @@ class Diagnostic:
         Where; ``None`` when the problem has no place in a text.
     hint : str, optional
         What to do about it.
+    severity : str
+        ``error``, or ``warning`` for what is allowed and perhaps not meant.
 
     Examples
     --------
@@ -44,13 +46,17 @@ class Diagnostic:
     message: str
     span: Span | None = None
     hint: str | None = None
+    severity: Literal["error", "warning"] = "error"
+
+    @property
+    def mark(self) -> str:
+        """What it is, and its code: ``error[SF201]``."""
+        return f"{self.severity}[{self.code}]"
 
     def render(self) -> str:
         """Return the diagnostic as the lines a terminal shows."""
-        if self.span is None:
-            lines = [f"error[{self.code}]: {self.message}"]
-        else:
-            lines = [f"{self.span}: error[{self.code}]: {self.message}", *_excerpt(self.span)]
+        said = f"{self.mark}: {self.message}"
+        lines = [said] if self.span is None else [f"{self.span}: {said}", *_excerpt(self.span)]
         if self.hint:
             lines.append(f"  hint: {self.hint}")
         return "\n".join(printable(line) for line in lines)

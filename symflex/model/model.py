@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from symflex.blocks import Block as BlockType
     from symflex.elements import Element, Placing, Variable
-    from symflex.errors import Span
+    from symflex.errors import Diagnostic, Span
     from symflex.expressions import Equation, Expression
 
 Assumption = Literal["positive", "nonnegative", "real"]
@@ -228,6 +228,7 @@ class Published:
 class Model:
     """Everything a specification says, resolved.
 
+    ``warnings`` are what it says that may not be meant, from its text alone; those of models in blocks too.
     ``quotients`` holds the dimension of every output over input that is known; it may be so where neither
     end's is, as when one is the other times a block.
 
@@ -253,6 +254,7 @@ class Model:
     published: tuple[Published, ...] = ()
     signal_units: tuple[tuple[Variable, Dimension], ...] = ()
     quotients: tuple[tuple[tuple[str, str], Dimension], ...] = ()
+    warnings: tuple[Diagnostic, ...] = field(default=(), compare=False, repr=False)
 
     @property
     def is_distributed(self) -> bool:

@@ -61,6 +61,7 @@ from symflex.model.units import (
     port_unit,
     quotients,
 )
+from symflex.model.unused import unused
 from symflex.spec import ArrayValue, TableValue, parse_with_recovery
 
 if TYPE_CHECKING:
@@ -233,7 +234,8 @@ def resolve(spec: Spec, origin: Origin) -> Model:
         problems += _empty_sections(spec)
     if problems:
         raise SpecError(*_in_order(problems, spec.source))
-    return model
+    inner = [w for b in model.blocks if b.submodel is not None for w in b.submodel.warnings]
+    return replace(model, warnings=tuple(_in_order([*unused(model), *inner], spec.source)))
 
 
 def _check_count(reader: Reader, spec: Spec, outputs: Sequence[Output], inputs: Sequence[DraftInput]) -> None:

@@ -92,7 +92,9 @@ def chapter_of(
     if model.source:
         blocks.append(text(f"{model.source}."))
     files: dict[str, bytes] = {}
-    warnings: list[str] = []
+    doubts = pipeline.warnings(model)
+    blocks += [Notice(f"Warning: {w.message}.") for w in doubts]
+    warnings = [f"{w.span}: {w.message} ({w.code})" for w in doubts]
     code = 0
     for i, (key, make) in enumerate(SECTIONS.items()):
         if progress is not None:

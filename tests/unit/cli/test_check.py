@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.unit.cli.commands import DERIVATIONS
+from tests.unit.cli.commands import DERIVATIONS, OSCILLATOR
 
 
 def test_a_good_specification_is_summed_up_on_stdout(shell):
@@ -32,6 +32,7 @@ def test_json_of_a_good_specification(shell):
         "schema": "symflex.check/1",
         "ok": True,
         "problems": [],
+        "warnings": [],
         "transfer_functions": ["X/F", "V/F"],
     }
 
@@ -64,3 +65,53 @@ def test_json_of_a_file_that_does_not_exist_names_no_place(shell):
 @pytest.mark.parametrize("path", DERIVATIONS, ids=lambda p: p.stem)
 def test_every_derivation_passes(shell, path):
     assert shell("check", path).code == 0
+
+
+MISSPELT = OSCILLATOR.replace('"ground"', '"gruond"')
+
+
+def test_a_warning_is_printed_with_its_place_and_the_model_is_ok(shell):
+    (shell.folder / "y.toml").write_text(MISSPELT, encoding="utf-8")
+    done = shell("check", "y.toml")
+    assert (done.code, done.out.splitlines()[0]) == (0, "y.toml: ok, 1 warning")
+    assert done.err.splitlines() == [
+        "y.toml:9:44: warning[SF650]: only spring 'wall' touches node 'gruond' and nothing reads it: "
+        "it changes nothing",
+        '  9 | wall = { type = "spring", between = ["x", "gruond"], k = "k" }',
+        "    |                                            ^^^^^^",
+        "  hint: did you mean 'ground'?",
+    ]
+
+
+def test_strict_makes_a_warning_exit_3(shell):
+    (shell.folder / "y.toml").write_text(MISSPELT, encoding="utf-8")
+    assert [shell("check", name, "--strict").code for name in ("x.toml", "y.toml")] == [0, 3]
+
+
+def test_warnings_stand_in_the_json_as_problems_do(shell):
+    (shell.folder / "y.toml").write_text(MISSPELT, encoding="utf-8")
+    done = shell("check", "y.toml", "--json", "--strict")
+    assert (done.code, done.err, done.json["ok"], done.json["problems"]) == (3, "", True, [])
+    (warning,) = done.json["warnings"]
+    assert (warning["code"], warning["line"], warning["column"]) == ("SF650", 9, 44)
+
+
+QUICK = [
+    ["derive"], ["roots"], ["rational", "--modes", "1"], ["export", "--to", "numpy"], ["audit"],
+    ["measure", "--tf", "X/F", "--band", "1", "2", "-o", "a.csv"], ["stability", "--gain", "k"],
+    ["colocation", "--tf", "X/F", "--with", "V/F"],
+]  # fmt: skip
+LONG = [
+    ["plot", "paper", "-o", "a.svg"], ["sweep", "--over", "k=1,2", "--of", "poles"],
+    ["report", "--no-pdf", "-o", "r"],
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "arguments", [*QUICK, *(pytest.param(a, marks=pytest.mark.slow) for a in LONG)], ids=lambda a: a[0]
+)
+def test_every_command_that_reads_a_specification_prints_its_warnings_once(shell, arguments):
+    (shell.folder / "y.toml").write_text(MISSPELT, encoding="utf-8")
+    done = shell(arguments[0], "y.toml", *arguments[1:])
+    assert done.err.count("SF650") == 1
+    assert "SF650" not in done.out

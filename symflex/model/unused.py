@@ -1,0 +1,141 @@
+"""What a specification declares and nothing uses, which is all the trace that many a typing error leaves."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symflex.elements import LineElement
+from symflex.errors import Diagnostic
+from symflex.errors.diagnostic import nearest
+from symflex.expressions import Attribute, names
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from symflex.errors import Span
+    from symflex.expressions import Expression
+    from symflex.model.model import Definition, Model, PlacedElement
+
+SHOWN = 4
+
+
+def unused(model: Model) -> tuple[Diagnostic, ...]:
+    """Return a warning for every loose node and for every name that nothing uses.
+
+    Parameters
+    ----------
+    model : Model
+        Resolved.
+
+    Returns
+    -------
+    tuple of Diagnostic
+        SF650 a node that one element touches, or that branches join to one other node only, and that nothing
+        reads or drives; SF651 a parameter, block, signal, free input or field that nothing uses.
+    """
+    return (*_loose_nodes(model), *_unused_names(model))
+
+
+def unnamed_definitions(model: Model) -> tuple[Definition, ...]:
+    """Return the definitions that no expression names; a sum among them may stand in a print all the same."""
+    used = _uses(model)
+    return tuple(d for d in model.definitions if not used.get(d.name, set()) - {d.name})
+
+
+def unused_name(kind: str, name: str, span: Span | None) -> Diagnostic:
+    """Return the warning that nothing uses what bears a name."""
+    hint = "remove it, or use it where another name stands by mistake"
+    return Diagnostic("SF651", f"nothing uses {kind} '{name}'", span, hint, "warning")
+
+
+def _expressions(model: Model) -> Iterator[tuple[str, Expression]]:
+    """Yield every expression with the name of its owner, empty where its use of that name counts too."""
+    yield from ((d.name, d.expression) for d in model.definitions)
+    yield from (("", e) for use in model.elements for _, e in use.values)
+    yield from ((b.name, e) for b in model.blocks for _, e in b.values)
+    yield from ((x.name, x.expression) for x in model.signals)
+    yield from (("", o.expression) for o in model.outputs)
+    for field in model.fields:
+        yield from ((field.name, e) for e in (field.start, field.end, *field.equations, *field.conditions))
+    for printed in model.published:
+        yield from (("", e) for e in (printed.expression, *(e for _, e in printed.where)))
+        if printed.scale is not None:
+            yield "", printed.scale
+
+
+def _read(expression: Expression) -> Iterator[str]:
+    for node in names(expression):
+        yield node.owner if isinstance(node, Attribute) else node.name
+
+
+def _uses(model: Model) -> dict[str, set[str]]:
+    """Return, by name, the owners of the expressions it stands in."""
+    used: dict[str, set[str]] = {}
+    for owner, expression in _expressions(model):
+        for name in _read(expression):
+            used.setdefault(name, set()).add(owner)
+    return used
+
+
+def _unused_names(model: Model) -> Iterator[Diagnostic]:
+    used = _uses(model)
+    shared = {p.name for b in model.blocks if b.submodel is not None for p in b.submodel.parameters}
+    shared |= {f.gain for f in model.figures}
+    for parameter in model.parameters:
+        if parameter.name not in shared and not used.get(parameter.name):
+            yield unused_name("parameter", parameter.name, parameter.span)
+    for source in model.inputs:
+        if source.kind == "signal" and not used.get(source.name):
+            yield unused_name("input", source.name, source.span)
+    groups = (
+        ("block", ((b.name, (b.name,), b.span) for b in model.blocks)),
+        ("signal", ((x.name, (x.name,), x.span) for x in model.signals)),
+        ("field", ((f.name, f.unknowns, f.span) for f in model.fields)),
+    )
+    for kind, items in groups:
+        for name, borne, span in items:
+            if not {owner for n in borne for owner in used.get(n, ())} - {name}:
+                yield unused_name(kind, name, span)
+
+
+def _loose_nodes(model: Model) -> Iterator[Diagnostic]:
+    read = {*_uses(model), *(r.node for source in model.inputs for r in source.nodes)}
+    touching: dict[str, dict[str, PlacedElement]] = {}
+    for use in model.elements:
+        for _, references in use.nodes:
+            for reference in references:
+                touching.setdefault(reference.node, {})[use.name] = use
+    everything = [n.name for n in model.nodes]
+    for node in model.nodes:
+        uses = tuple(touching.get(node.name, {}).values())
+        if node.name in read or not uses:
+            continue
+        joined = {r.node for use in uses for _, references in use.nodes for r in references} - {node.name}
+        are_branches = all(_is_branch(use) for use in uses)
+        if len(uses) > 1 and not (are_branches and len(joined) == 1):
+            continue
+        others = [name for name in (*everything, "ground") if name != node.name and name not in joined]
+        close = nearest(node.name, others)
+        if isinstance(uses[0].element, LineElement):
+            # The free end of a beam is usual: only what looks like another name was hardly meant.
+            others = [name for name in others if _letters(name) == _letters(node.name)]
+            if not others:
+                continue
+            close = nearest(node.name, others)
+        who = [f"{use.element.type_name} '{use.name}'" for use in uses]
+        shown = " and ".join(who) if len(who) <= SHOWN else f"{who[0]} and {len(who) - 1} other branches"
+        verb, end = ("touches", "that end is free") if len(uses) == 1 else ("touch", "that end is free")
+        if are_branches:
+            end = f"{'it changes' if len(uses) == 1 else 'they change'} nothing"
+        message = f"only {shown} {verb} node '{node.name}' and nothing reads it: {end}"
+        hint = close or "attach something to it, or read it in an output"
+        yield Diagnostic("SF650", message, node.span, hint, "warning")
+
+
+def _is_branch(use: PlacedElement) -> bool:
+    """Tell whether an element without mass joins two nodes and carries nothing with one of them free."""
+    return not isinstance(use.element, LineElement) and [len(r) for _, r in use.nodes] == [2]
+
+
+def _letters(name: str) -> list[str]:
+    return sorted(name.lower().replace("_", ""))

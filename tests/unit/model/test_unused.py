@@ -1,0 +1,150 @@
+"""Typing errors leave loose nodes and unused names behind; models as they are meant leave none."""
+
+from __future__ import annotations
+
+import pytest
+
+from symflex import pipeline
+from tests.house.repository import ROOT
+
+PLAIN = """symflex = 1
+[parameters]
+m = "1 kg"
+k = "2 N/m"
+{parameters}
+[elements]
+body = {{ type = "mass", at = "x", m = "m" }}
+wall = {{ type = "spring", between = ["x", "ground"], k = "k" }}
+{elements}
+[inputs]
+F = {{ force = "x" }}
+{inputs}
+[outputs]
+X = "x"
+{outputs}
+{sections}
+"""
+
+
+def warned_by(**parts):
+    keys = ("parameters", "elements", "inputs", "outputs", "sections")
+    return pipeline.warnings(pipeline.loads(PLAIN.format(**{k: parts.get(k, "") for k in keys})))
+
+
+def warned(**parts):
+    return [(w.code, w.span.text, w.hint) for w in warned_by(**parts)]
+
+
+def told(**parts):
+    return [(code, where) for code, where, _ in warned(**parts)]
+
+
+LINE = 'E = "70 GPa", I = "1e-9 m^4", rho = "2700 kg/m^3", A = "1e-4 m^2", l = "1 m"'
+
+
+def test_a_model_as_it_is_meant_has_no_warnings():
+    assert warned() == []
+
+
+def test_a_misspelt_ground_is_a_node_that_one_element_touches():
+    spring = 'two = { type = "spring", between = ["x", "gruond"], k = "k" }'
+    assert warned(elements=spring) == [("SF650", "gruond", "did you mean 'ground'?")]
+
+
+def test_a_spring_and_a_damper_to_the_same_misspelt_node_leave_it_loose():
+    both = (
+        'two = { type = "spring", between = ["x", "gruond"], k = "k" }\n'
+        'loss = { type = "damper", between = ["x", "gruond"], b = "1 N*s/m" }'
+    )
+    assert told(elements=both) == [("SF650", "gruond")]
+
+
+def test_a_node_that_is_read_is_not_loose():
+    spring = 'two = { type = "spring", between = ["x", "y"], k = "k" }'
+    assert "SF650" not in {code for code, _ in told(elements=spring, outputs='Y = "y"')}
+
+
+def test_the_free_tip_of_a_beam_is_meant():
+    beam = (
+        f'arm = {{ type = "beam", between = ["x", "tip"], {LINE} }}\nguide = {{ type = "slider", at = "x" }}'
+    )
+    assert told(elements=beam) == []
+
+
+def test_the_tip_of_a_beam_that_is_another_name_with_letters_exchanged_is_not():
+    beam = f'arm = {{ type = "beam", between = ["x", "gruond"], {LINE} }}'
+    beam += '\nguide = { type = "slider", at = "x" }'
+    assert told(elements=beam) == [("SF650", "gruond")]
+
+
+@pytest.mark.parametrize(
+    ("part", "line", "name"),
+    [
+        ("parameters", 'm_2 = "3 kg"', "m_2"),
+        ("inputs", "u = {}", "u"),
+        ("sections", '[signals]\ne = "2*x"', "e"),
+        ("sections", '[signals]\ne = "2*x + e/3"', "e"),
+        ("sections", '[blocks]\nC = { type = "integrator" }', "C"),
+        ("sections", '[definitions]\nw_0 = "sqrt(k/m)"', "w_0"),
+        ("sections", '[definitions]\nS = "k + 3*k^2"', "S"),
+        ("sections", '[fields.w]\ndomain = ["0 m", "1 m"]\nequation = "w\'\' = 2*w"\n'
+         'conditions = ["w(0) = 0", "w(1) = 0"]', "w"),
+    ],
+)  # fmt: skip
+def test_a_name_that_nothing_uses_is_told(part, line, name):
+    assert told(**{part: line}) == [("SF651", name)]
+
+
+def test_of_many_warnings_the_first_hundred_are_told_and_the_others_counted():
+    found = warned_by(parameters="\n".join(f"p_{i} = {i + 1}" for i in range(130)))
+    assert [w.span.text for w in found[:100]] == [f"p_{i}" for i in range(100)]
+    assert [w.message for w in found[100:]] == ["30 more warnings"]
+
+
+def test_a_definition_that_no_expression_names_is_used_where_the_print_shows_it():
+    # X/F = 1/Z
+    assert told(sections='[definitions]\nZ = "m*s^2 + k"') == []
+
+
+def test_a_parameter_of_a_printed_formula_alone_is_used():
+    formula = '[published."X/F"]\nexpr = "1/(m*s^2 + k_p)"'
+    assert told(parameters='k_p = "2 N/m"', sections=formula) == []
+
+
+def test_a_parameter_that_only_a_model_block_shares_is_used(tmp_path):
+    inner = PLAIN.format(parameters="", elements="", inputs="", outputs="", sections="")
+    (tmp_path / "inner.toml").write_text(inner, encoding="utf-8")
+    outer = (
+        'symflex = 1\nparameters = { m = "1 kg" }\ninputs = { u = {} }\noutputs = { y = "G*u" }\n'
+        '[blocks]\nG = { type = "model", spec = "inner.toml", tf = "X/F" }\n'
+    )
+    (tmp_path / "outer.toml").write_text(outer, encoding="utf-8")
+    assert pipeline.load(tmp_path / "outer.toml").warnings == ()
+
+
+def test_the_warnings_of_a_model_block_are_those_of_its_file(tmp_path):
+    inner = PLAIN.format(parameters='m_2 = "1 kg"', elements="", inputs="", outputs="", sections="")
+    (tmp_path / "inner.toml").write_text(inner, encoding="utf-8")
+    outer = (
+        'symflex = 1\ninputs = { u = {} }\noutputs = { y = "(G + H)*u" }\n'
+        '[blocks]\nG = { type = "model", spec = "inner.toml", tf = "X/F" }\n'
+        'H = { type = "model", spec = "inner.toml", tf = "X/F" }\n'
+    )
+    (tmp_path / "outer.toml").write_text(outer, encoding="utf-8")
+    (warning,) = pipeline.load(tmp_path / "outer.toml").warnings
+    assert (warning.code, warning.span.text, warning.span.source.name) == (
+        "SF651",
+        "m_2",
+        str(tmp_path / "inner.toml"),
+    )
+
+
+SHIPPED = [
+    *sorted((ROOT / "derivations").rglob("*.toml")),
+    *sorted((ROOT / "symflex/templates").glob("*.toml")),
+]
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_a_shipped_model_has_no_warnings(path):
+    assert pipeline.warnings(pipeline.load(path)) == ()
