@@ -110,7 +110,7 @@ def gain_limit(text: str, parameter: Parameter) -> Fraction | None:
         own = f"is in '{parameter.unit}'" if parameter.unit else "is a number without a unit"
         message = f"'{parameter.name}' {own}, the range is in '{quantity.unit}'"
         raise UsageError(Diagnostic("SF203", message))
-    number, pi_power = quantity.angular()
+    number, pi_power = quantity.cyclic() if parameter.cycles else quantity.angular()
     if pi_power:
         raise UsageError(Diagnostic("SF902", wrong))
     return number

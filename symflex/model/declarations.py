@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from enum import Enum
 from fractions import Fraction
 from typing import TYPE_CHECKING, cast
 
@@ -26,6 +27,18 @@ ASSUMPTIONS = ("positive", "nonnegative", "real")
 PARAMETER_KEYS = ("value", "unit", "doc", "latex", "assume")
 
 
+class Reading(Enum):
+    """How the cycles in a parameter's unit are meant where it is used.
+
+    ``CYCLES``: as they are. ``TURNED``: as they are, and 2 pi stands beside the name wherever it is used.
+    ``CONVERTED``: as radians, which the places it is given to ask for.
+    """
+
+    CYCLES = "cycles"
+    TURNED = "turned"
+    CONVERTED = "converted"
+
+
 @dataclass(frozen=True, slots=True)
 class DeclaredParameter:
     """A parameter as written: its quantity still counts cycles; ``None`` when symbolic."""
@@ -39,16 +52,23 @@ class DeclaredParameter:
     doc: str
     span: Span
 
-    def resolve(self, *, angular: bool, implied_unit: str) -> Parameter:
-        """Return the parameter in SI units, its cycles read as angular or not."""
-        value, unit = None, implied_unit
+    @property
+    def measured(self) -> Quantity | None:
+        """What it is measured in, with its cycles; ``None`` where no unit was written."""
+        if self.quantity is None:
+            return one_of(self.unit_text) if self.unit_text else None
+        return self.quantity if self.has_unit else None
+
+    def resolve(self, reading: Reading, implied_unit: str) -> Parameter:
+        """Return the parameter in SI units, in cycles or in radians as it was read."""
+        value, unit, measured = None, implied_unit, self.measured
         if self.quantity is not None:
-            value = ExactValue(*(self.quantity.angular() if angular else self.quantity.cyclic()))
-        if self.has_unit and self.quantity is not None:
-            unit = implied_unit or _unit_text(self.quantity, angular=angular)
-        elif self.unit_text:
-            unit = _unit_text(one_of(self.unit_text), angular=angular)
-        return Parameter(self.name, value, unit, self.assume, self.latex, self.doc, self.span)
+            is_converted = reading is Reading.CONVERTED
+            value = ExactValue(*(self.quantity.angular() if is_converted else self.quantity.cyclic()))
+        if measured is not None and (self.quantity is None or reading is Reading.TURNED or not implied_unit):
+            unit = _unit_text(measured, reading)
+        cycles = measured.cycles if measured is not None and reading is not Reading.CONVERTED else 0
+        return Parameter(self.name, value, unit, self.assume, self.latex, self.doc, self.span, cycles)
 
 
 def one_of(unit_text: str) -> Quantity:
@@ -57,15 +77,22 @@ def one_of(unit_text: str) -> Quantity:
     return Quantity(Fraction(1), 0, unit.cycles, unit.dimension, unit.radians, unit_text)
 
 
-def _unit_text(quantity: Quantity, *, angular: bool) -> str:
-    """Return the SI unit, with rad where the declared unit turned."""
-    turns = quantity.radians + (quantity.cycles if angular else 0)
-    text = str(quantity.dimension)
+def _unit_text(quantity: Quantity, reading: Reading) -> str:
+    """Return the SI unit, with rad or rev where the declared unit turned."""
+    turns, turn, text = quantity.radians, "rad", str(quantity.dimension)
+    if reading is Reading.CONVERTED:
+        turns += quantity.cycles
+    elif reading is Reading.TURNED:
+        if (quantity.cycles, text) == (1, "1/s"):
+            return "Hz"
+        turns, turn = quantity.cycles, "rev"
+    if abs(turns) > 1 and turn == "rev":
+        turn = f"{turn}^{abs(turns)}"
     if turns > 0 and text.startswith("1"):
-        return "rad" + text[1:]
-    if turns > 0 and quantity.dimension == DIMENSIONLESS:
-        return "rad"
-    return f"{text}/rad" if turns < 0 and "/" not in text else text
+        return turn + text[1:]
+    if turns > 0 and turn != "rad":
+        return f"{turn}*{text}"
+    return f"{text}/{turn}" if turns < 0 and ("/" not in text or turn != "rad") else text
 
 
 def read_label(reader: Reader, table: TableValue, what: str) -> str:

@@ -7,6 +7,12 @@ expression. A parameter given as a bare number has no unit and stops the check w
 Hz, rpm and rev count cycles. A value in them is angular (2 pi enters, exactly) where an angular quantity is
 needed or where it is added to terms in s; it is left as cycles where the expression converts it itself with a
 factor pi (``2*pi*f``) or where a time is needed (``1/f``). One parameter must be read one way throughout.
+
+    s + f_c         read as s + 2*pi*f_c        inferred: warned of, and printed with the 2 pi
+    s + 2*pi*f_c    read as it stands           said by the expression
+    omega_p = f_c   read as 2*pi*f_c            said by the port, which is in rad/s; printed with the 2 pi
+    T = 1/f_c       read as it stands           inferred: warned of
+    f_c/f_s         read as it stands           both must be read alike elsewhere
 """
 
 from __future__ import annotations
@@ -31,17 +37,23 @@ from symflex.expressions import (
     Product,
     Quotient,
     Sum,
+    format_expression,
     measured,
     names,
+    number,
+    power,
+    product_of,
+    quotient,
     substitute,
 )
 from symflex.kernels import FUNCTIONS, LAPLACE
+from symflex.model.declarations import Reading
 from symflex.model.linearity import integer_exponent
 from symflex.model.reading import QuantityLiteral
 from symflex.quantities import DIMENSIONLESS, Dimension, unit_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from symflex.errors import Span
     from symflex.model.scope import Scope
@@ -116,11 +128,25 @@ class Measure:
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
-    """One use of a parameter given in cycles: angular or not, and where."""
+class Use:
+    """One use of a parameter given in cycles: angular or not, whether its place left that open, and where."""
 
     angular: bool
+    inferred: bool
     span: Span | None
+
+
+def turned_name(name: str, cycles: int) -> Expression:
+    """Return a name with the 2 pi that make its cycles radians.
+
+    Examples
+    --------
+    >>> from symflex.expressions import format_expression
+    >>> [format_expression(turned_name("f", n)) for n in (1, 2, -1)]
+    ['2*pi*f', '4*pi^2*f', 'f/(2*pi)']
+    """
+    two_pi = [number(2 ** abs(cycles)), power(Name("pi"), abs(cycles))]
+    return product_of([*two_pi, Name(name)]) if cycles > 0 else quotient(Name(name), product_of(two_pi))
 
 
 class DimensionSystem:
@@ -154,7 +180,8 @@ class DimensionSystem:
         self._known = dict(known)
         self._blocks = block_measures
         self._solved: dict[Variable, Solution] = {}
-        self._readings: dict[str, list[Reading]] = {}
+        self._uses: dict[str, list[Use]] = {}
+        self._ratios: list[tuple[tuple[str, ...], Span | None]] = []
         self._defined: dict[str, Measure] = {}
         self._axes: dict[str, Measure] = {}
         self._sound_points: set[tuple[str, Expression]] = set()
@@ -192,6 +219,10 @@ class DimensionSystem:
                     declared,
                 )
             )
+
+    def read(self, expression: Expression) -> None:
+        """Take an expression as whole: nothing around it tells how cycles in it are meant."""
+        self._read_cycles(self.measure(expression), None, expression.span)
 
     def equate(self, variable: Variable, expression: Expression) -> None:
         """Demand that a signal is measured as its expression is."""
@@ -237,29 +268,62 @@ class DimensionSystem:
         reduced = self._reduce(measure)
         return None if reduced.unknowns or reduced.open else reduced.dimension
 
-    def finish(self) -> Mapping[str, bool]:
-        """Return, per parameter given in cycles, whether it is angular; contradictions become problems."""
-        readings: dict[str, bool] = {}
-        for name, uses in self._readings.items():
-            readings[name] = uses[0].angular
+    def finish(self) -> Mapping[str, Reading]:
+        """Return how every parameter given in cycles is read; contradictions become problems."""
+        angular = {name: uses[0] for name, uses in self._uses.items()}
+        for name, uses in self._uses.items():
             other = next((u for u in uses if u.angular != uses[0].angular), None)
             if other is not None:
-                first = uses[0].span
-                place = f" (line {first.line})" if first else ""
-                words = (
-                    ("an angular frequency", "cycles")
-                    if uses[0].angular
-                    else ("cycles", "an angular frequency")
-                )
-                self.problems.append(
-                    Diagnostic(
-                        "SF204",
-                        f"'{name}' is read as {words[0]}{place} and as {words[1]} here",
-                        other.span,
-                        "write 2*pi*f wherever an angular frequency is meant, or give the value in rad/s",
+                self._note_contradiction(name, uses[0], name, other)
+        for among, span in self._ratios:
+            known = [(name, angular[name]) for name in among if name in angular]
+            for name, use in known:
+                if use.angular != known[0][1].angular:
+                    self._note_contradiction(known[0][0], known[0][1], name, replace(use, span=span))
+            if known:
+                angular |= {
+                    name: replace(known[0][1], inferred=False) for name in among if name not in angular
+                }
+        counted = {name: q for name, q in self._quantities.items() if q is not None and q.cycles}
+        return {name: self._reading(name, q, angular.get(name)) for name, q in counted.items()}
+
+    def _reading(self, name: str, quantity: Quantity, use: Use | None) -> Reading:
+        """Return one parameter's reading; what no use decides is angular."""
+        if use is not None and not use.angular:
+            return Reading.CYCLES
+        # A pitch in mm/rev at a port in m/rad is converted as mm is to m; a frequency stays what it is.
+        is_converted = quantity.cycles < 0 and not any(u.inferred for u in self._uses.get(name, ()))
+        return Reading.CONVERTED if is_converted else Reading.TURNED
+
+    def _note_contradiction(self, first: str, one: Use, second: str, other: Use) -> None:
+        place = f" (line {one.span.line})" if one.span else ""
+        words = ("an angular frequency", "cycles")
+        here, there = words if one.angular else words[::-1]
+        message = f"'{first}' is read as {here}{place} and as {there} here"
+        if first != second:
+            message = f"'{first}' is read as {here}{place}, '{second}' as {there}, and here they are compared"
+        hint = "write 2*pi*f wherever an angular frequency is meant, or give the value in rad/s"
+        self.problems.append(Diagnostic("SF204", message, other.span, hint))
+
+    def readings(self) -> Iterator[Diagnostic]:
+        """Yield a warning for every use whose reading its place left open."""
+        for name, uses in self._uses.items():
+            quantity = self._quantities[name]
+            unit = quantity.unit if quantity is not None else ""
+            turned = turned_name(name, quantity.cycles if quantity is not None else 1)
+            shown = format_expression(turned)
+            for use in dict.fromkeys(u for u in uses if u.inferred):
+                if use.angular:
+                    message = f"'{name}', in '{unit}', is read in radians here: as {shown}"
+                    hint = f"write {shown} to say so, or give '{name}' in '1/s' where no 2*pi is meant"
+                else:
+                    message = f"'{name}', in '{unit}', is read in cycles here: without 2*pi"
+                    hint = (
+                        f"write {shown} where radians are meant; give '{name}' in '1/s' to say that none are"
                     )
-                )
-        return readings
+                if quantity is not None and quantity.dimension != PER_SECOND:
+                    hint = f"write {shown} where radians are meant"
+                yield Diagnostic("SF655", message, use.span, hint, "warning")
 
     def measure(self, expression: Expression) -> Measure:
         """Return what an expression is measured in; disagreeing sums become problems."""
@@ -400,7 +464,9 @@ class DimensionSystem:
                 self._read_cycles(measure, None, term.span)
         closed = [(t, self._reduce(m)) for t, m in measures if not m.open]
         if not closed:
-            return Measure(open=True, cyclic=frozenset() if mixed else measures[0][1].cyclic)
+            if mixed:
+                return Measure(open=True)
+            return replace(measures[0][1], cyclic=frozenset().union(*(m.cyclic for _, m in measures)))
         first_term, first = next(((t, m) for t, m in closed if not m.literal), closed[0])
         for term, measure in closed:
             if term is first_term:
@@ -427,17 +493,18 @@ class DimensionSystem:
         self, measure: Measure, angular: bool | None, span: Span | None, wanted: Dimension | None = None
     ) -> None:
         """Decide how the cycles in a complete term are meant."""
-        if not measure.cyclic or not (measure.cycles or measure.pis):
+        if not measure.cyclic:
             return
-        if measure.pis and measure.pis == measure.cycles:
-            reading = False
-        elif angular is not None and angular:
-            reading = True
-        else:
-            is_time = (wanted or measure.dimension) == SECOND
-            reading = not (measure.cycles < 0 and is_time)
+        if not measure.cycles:
+            self._ratios.append((tuple(sorted(measure.cyclic)), span))
+            return
+        is_said = measure.pis == measure.cycles or angular is True
+        is_time = (wanted or measure.dimension) == SECOND
+        is_angular = measure.pis != measure.cycles and (
+            angular is True or not (measure.cycles < 0 and is_time)
+        )
         for name in sorted(measure.cyclic):
-            self._readings.setdefault(name, []).append(Reading(reading, span))
+            self._uses.setdefault(name, []).append(Use(is_angular, not is_said, span))
 
     def _reduce(self, measure: Measure) -> Measure:
         """Replace solved variables by what they were solved for."""

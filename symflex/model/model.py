@@ -39,13 +39,15 @@ class Parameter:
     name : str
         As declared.
     value : ExactValue or None
-        In SI units (angular frequencies in rad/s); ``None`` keeps it symbolic.
+        In SI units; what is declared in Hz, rpm or rev counts cycles. ``None`` keeps it symbolic.
     unit : str
         SI unit of ``value``; empty when neither declared nor implied by its use.
     assume : str
         ``positive``, ``nonnegative`` or ``real``.
     latex, doc : str
         Label and description; empty when not given.
+    cycles : int
+        Exponent of the cycle in what ``value`` counts: 1 for Hz, 0 for rad/s.
     """
 
     name: str
@@ -55,6 +57,7 @@ class Parameter:
     latex: str = ""
     doc: str = ""
     span: Span | None = field(default=None, compare=False, repr=False)
+    cycles: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from symflex.elements import LineElement, Placing
 from symflex.errors import Diagnostic, Span, SpecError, UsageError
-from symflex.expressions import Expression
+from symflex.expressions import Equation, Expression, substitute
 from symflex.model.analysis import PI_NEARLY, read_analysis, read_figures, read_published
 from symflex.model.blocks import Loads, Origin, read_blocks
 from symflex.model.boundary import (
@@ -23,11 +23,8 @@ from symflex.model.boundary import (
     stretches,
     varying_constants,
 )
-from symflex.model.declarations import (
-    DeclaredParameter,
-    read_definitions,
-    read_parameters,
-)
+from symflex.model.declarations import DeclaredParameter, Reading, read_definitions, read_parameters
+from symflex.model.dimensions import turned_name
 from symflex.model.draft import Draft, broken_names
 from symflex.model.fields import read_fields
 from symflex.model.linearity import check_expression, without_signal
@@ -59,6 +56,7 @@ from symflex.model.units import (
     measured_variables,
     output_dimension,
     port_unit,
+    printed_in_cycles,
     quotients,
 )
 from symflex.model.unused import unused
@@ -207,7 +205,7 @@ def resolve(spec: Spec, origin: Origin) -> Model:
         fields,
     )
     broken = broken_names(sections, draft) | twins
-    model = _finish(reader, draft, broken)
+    model, turned = _finish(reader, draft, broken)
     later = Reader()
     model = replace(
         model,
@@ -215,7 +213,9 @@ def resolve(spec: Spec, origin: Origin) -> Model:
         source=reader.plain(spec.root, "source", "the specification"),
         analysis=read_analysis(reader, sections["analysis"]),
         figures=read_figures(later, sections["figures"], model),
-        published=read_published(later, sections["published"], model),
+        published=tuple(
+            printed_in_cycles(p, draft, turned) for p in read_published(later, sections["published"], model)
+        ),
     )
     readable = readable_names(model, broken)
     for published in model.published:
@@ -235,7 +235,7 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     if problems:
         raise SpecError(*_in_order(problems, spec.source))
     inner = [w for b in model.blocks if b.submodel is not None for w in b.submodel.warnings]
-    return replace(model, warnings=tuple(_in_order([*unused(model), *inner], spec.source)))
+    return replace(model, warnings=tuple(_in_order([*model.warnings, *unused(model), *inner], spec.source)))
 
 
 def _check_count(reader: Reader, spec: Spec, outputs: Sequence[Output], inputs: Sequence[DraftInput]) -> None:
@@ -331,7 +331,7 @@ def _inherited_parameters(
     reader: Reader, declared: Sequence[DeclaredParameter], blocks: Sequence[PlacedBlock]
 ) -> tuple[Parameter, ...]:
     """Return the parameters that ``model`` blocks bring along; an equal name must be equal in value."""
-    own = {p.name: p.resolve(angular=True, implied_unit="") for p in declared}
+    own = {p.name: p.resolve(Reading.TURNED, "") for p in declared}
     found: dict[str, Parameter] = {}
     for block in blocks:
         for parameter in block.submodel.parameters if block.submodel else ():
@@ -349,8 +349,11 @@ def _inherited_parameters(
     return tuple(found.values())
 
 
-def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> Model:
-    """Check names, linearity and units, and turn the draft into a model."""
+def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model, Mapping[str, Expression]]:
+    """Check names, linearity and units, and turn the draft into a model.
+
+    What is in cycles and read in radians gets its 2 pi wherever it stands; the second result says which.
+    """
     nodes = {n.name: n for n in draft.nodes}
     placed = tuple(_place(d, nodes) for d in draft.elements)
     inputs = tuple(d.input for d in draft.inputs)
@@ -384,28 +387,42 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> Model:
     _check_points(reader, draft, placed, around, fields_placed)
     implied = implied_units(placed, draft.blocks)
     parameters = [
-        p.resolve(angular=readings.get(p.name, True), implied_unit=implied.get(p.name, ""))
-        for p in draft.declared
+        p.resolve(readings.get(p.name, Reading.CYCLES), implied.get(p.name, "")) for p in draft.declared
     ]
     units = {v: d for v in measured_variables(draft) if (d := system.dimension(system.variable(v)))}
-    return Model(
+    cycles = {p.name: p.cycles for p in (*parameters, *draft.inherited)}
+    turned = {n: turned_name(n, cycles[n]) for n, r in readings.items() if r is Reading.TURNED}
+
+    def whole(expression: Expression, unit: str = "") -> Expression:
+        return substitute(lower(expression, unit), turned)
+
+    model = Model(
         parameters=(*parameters, *draft.inherited),
-        definitions=tuple(replace(d, expression=lower(d.expression)) for d in draft.definitions),
+        definitions=tuple(replace(d, expression=whole(d.expression)) for d in draft.definitions),
         nodes=draft.nodes,
         elements=tuple(
-            replace(e, values=tuple((n, lower(v, port_unit(e, n))) for n, v in e.values)) for e in placed
+            replace(e, values=tuple((n, whole(v, port_unit(e, n))) for n, v in e.values)) for e in placed
         ),
-        signals=tuple(replace(x, expression=lower(x.expression)) for x in draft.signals),
+        signals=tuple(replace(x, expression=whole(x.expression)) for x in draft.signals),
         blocks=tuple(
-            replace(b, values=tuple((n, lower(v, block_unit(b, n))) for n, v in b.values))
+            replace(b, values=tuple((n, whole(v, block_unit(b, n))) for n, v in b.values))
             for b in draft.blocks
         ),
-        fields=tuple(replace(f, start=lower(f.start), end=lower(f.end)) for f in draft.fields),
+        fields=tuple(
+            replace(
+                f,
+                start=whole(f.start),
+                end=whole(f.end),
+                equations=tuple(_turned(e, turned) for e in f.equations),
+                conditions=tuple(_turned(e, turned) for e in f.conditions),
+            )
+            for f in draft.fields
+        ),
         inputs=tuple(measured_input(i, system) for i in inputs),
         outputs=tuple(
             replace(
                 o,
-                expression=lower(o.expression),
+                expression=whole(o.expression),
                 dimension=(d := output_dimension(o, system)),
                 unit="" if d is None else str(d),
             )
@@ -413,7 +430,14 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> Model:
         ),
         signal_units=tuple(units.items()),
         quotients=tuple(quotients(draft, system)),
+        warnings=tuple(system.readings()),
     )
+    return model, turned
+
+
+def _turned(equation: Equation, turned: Mapping[str, Expression]) -> Equation:
+    left, right = (substitute(side, turned) for side in equation.children)
+    return Equation(left, right, span=equation.span)
 
 
 def _place(draft: DraftElement, nodes: Mapping[str, Node]) -> PlacedElement:
@@ -439,7 +463,7 @@ def _place(draft: DraftElement, nodes: Mapping[str, Node]) -> PlacedElement:
 
 def _surroundings(draft: Draft, scope: Scope) -> Surroundings:
     """Return what places along x are made of."""
-    parameters = [p.resolve(angular=True, implied_unit="") for p in draft.declared]
+    parameters = [p.resolve(Reading.TURNED, "") for p in draft.declared]
     parameters += draft.inherited
     extended = bool(draft.fields) or any(True for _ in ranged_values(draft))
     definitions = {d.name: d.expression for d in draft.definitions} if extended else {}

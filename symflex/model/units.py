@@ -8,11 +8,8 @@ from typing import TYPE_CHECKING
 
 from symflex.elements import ACROSS_UNIT, THROUGH_UNIT, LineElement, Variable
 from symflex.errors import Span
-from symflex.expressions import Expression, Name, names, power, product_of
-from symflex.model.declarations import (
-    DeclaredParameter,
-    one_of,
-)
+from symflex.expressions import Expression, Name, names, power, product_of, substitute
+from symflex.model.declarations import DeclaredParameter, Reading
 from symflex.model.dimensions import DimensionSystem, Measure
 from symflex.model.input_kinds import INPUT_KINDS
 from symflex.model.model import (
@@ -23,13 +20,14 @@ from symflex.model.model import (
     Parameter,
     PlacedBlock,
     PlacedElement,
+    Published,
 )
 from symflex.model.reading import QuantityLiteral, Reader, signed_number
 from symflex.model.scope import Scope, build_scope
 from symflex.quantities import DIMENSIONLESS, Dimension, Quantity, unit_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator, Sequence
+    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
     from symflex.model.draft import Draft
 
@@ -79,7 +77,7 @@ def check_units(
         else:
             system.equate(Variable("signal", signal.name), signal.expression)
     for output in draft.outputs:
-        system.measure(output.expression)
+        system.read(output.expression)
     return system
 
 
@@ -103,11 +101,7 @@ def declared_quantities(
     declared: Sequence[DeclaredParameter], inherited: Sequence[Parameter]
 ) -> dict[str, Quantity | None]:
     """Return what every parameter is measured in, ``None`` where no unit was written."""
-    found: dict[str, Quantity | None] = {}
-    for p in declared:
-        found[p.name] = p.quantity if p.has_unit else None
-        if p.quantity is None and p.unit_text:
-            found[p.name] = one_of(p.unit_text)
+    found = {p.name: p.measured for p in declared}
     for parameter in inherited:
         found[parameter.name] = _in_si(parameter)
     return found
@@ -129,12 +123,38 @@ def constant_measure(
     return measure
 
 
+def printed_in_cycles(published: Published, draft: Draft, turned: Mapping[str, Expression]) -> Published:
+    """Return a printed formula with 2 pi beside every parameter that is read in radians.
+
+    A formula that converts one by itself, ``2*pi*f``, is left as it is.
+    """
+    if not turned:
+        return published
+    quantities = declared_quantities(draft.declared, draft.inherited)
+    own = [Definition(name, expression) for name, expression in published.where]
+    hidden = {d.name for d in own}
+    definitions = [*(d for d in draft.definitions if d.name not in hidden), *own]
+    scope = build_scope([n for n in quantities if n not in hidden], definitions, (), (), (), (), ())
+    system = DimensionSystem(scope, quantities, {d.name: d.expression for d in definitions}, {}, {})
+    for root in (published.expression, published.scale):
+        if root is not None:
+            system.read(root)
+    readings = system.finish()
+    used = {n: e for n, e in turned.items() if readings[n] is not Reading.CYCLES and n not in hidden}
+    return replace(
+        published,
+        expression=substitute(published.expression, used),
+        where=tuple((name, substitute(e, used)) for name, e in published.where),
+        scale=None if published.scale is None else substitute(published.scale, used),
+    )
+
+
 def _in_si(parameter: Parameter) -> Quantity | None:
     """Return a quantity of a resolved parameter's unit, ``None`` when it has none."""
     if not parameter.unit:
         return None
     unit = unit_of(parameter.unit)
-    return Quantity(Fraction(1), 0, 0, unit.dimension, unit.radians, parameter.unit)
+    return Quantity(Fraction(1), 0, parameter.cycles, unit.dimension, unit.radians, parameter.unit)
 
 
 def _require(

@@ -343,7 +343,10 @@ def _read_value(parameter: Parameter, given: float | Fraction | Decimal | str | 
         if quantity.unit and wanted is not None and quantity.dimension != wanted.dimension:
             message = f"'{parameter.name}' is in '{parameter.unit}', the value given in '{quantity.unit}'"
             raise UsageError(Diagnostic("SF203", message))
-        angular = wanted is None or bool(wanted.radians)
+        if parameter.cycles and quantity.cycles != parameter.cycles and quantity.radians == parameter.cycles:
+            turns = parameter.cycles  # "314 rad/s" for what is in Hz
+            return ExactValue(quantity.magnitude / Fraction(2) ** turns, quantity.pi_power - turns)
+        angular = not parameter.cycles and (wanted is None or bool(wanted.radians))
         return ExactValue(*(quantity.angular() if angular else quantity.cyclic()))
     if isinstance(given, float) and isfinite(given):
         # A numpy double is a float whose own repr is no number.
