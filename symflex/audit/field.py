@@ -195,7 +195,11 @@ class Field:
             n = exponent.numerator
             bits = max(abs(value.unit.numerator).bit_length(), value.unit.denominator.bit_length())
             if bits * abs(n) > LARGEST_NUMBER_BITS:
-                raise BudgetError(Diagnostic("SF501", f"a number would exceed {LARGEST_NUMBER_BITS} bits"))
+                message, hint = (
+                    f"a number would exceed {LARGEST_NUMBER_BITS} bits",
+                    "name the power in 'where'",
+                )
+                raise BudgetError(Diagnostic("SF501", message, None, hint))
             return value**n
         unit = self.ring.generator(UNIT)
         turns = (2 if value.unit < 0 else 0) + sum(e for f, e in value.factors if f == unit)

@@ -83,7 +83,8 @@ def command(
         raise UsageError(Diagnostic("SF902", f"there is no figure '{kind[:64]}'", None, hint))
     drawn = figure.kind if figure else kind
     if drawn not in (*FIGURES, *LOOP_FIGURES):
-        raise UsageError(Diagnostic("SF911", f"figures of kind '{drawn}' are not available yet"))
+        hint = "there are " + ", ".join((*FIGURES, *LOOP_FIGURES))
+        raise UsageError(Diagnostic("SF911", f"figures of kind '{drawn}' are not available yet", None, hint))
     path = _checked_path(output or f"{Path(spec).stem}_{kind}.pdf")
     width_mm = None if width is None else column_width(width)
     font = _checked_font(font or ("latex" if path.suffix == ".pgf" else DEFAULT_FONT))

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from symflex.model import Model
 
 P = ParamSpec("P")
+SMALLER = "ask for fewer transfer functions, roots or points, or give parameters numbers in place of symbols"
 LAYOUT = "\n\t" + "".join(map(chr, (0xA0, 0x1680, *range(0x2000, 0x200B), 0x202F, 0x205F, 0x3000)))
 """Ends of lines and blanks, which Python does not count as printable and terminals show."""
 
@@ -43,7 +44,7 @@ def reporting(command: Callable[P, int | None]) -> Callable[P, int]:
             show_error(error)
             return error.exit_code
         except MemoryError:
-            show_error(SymflexError(Diagnostic("SF504", "out of memory")))
+            show_error(SymflexError(Diagnostic("SF504", "out of memory", None, SMALLER)))
             return 5
         except BrokenPipeError:
             # The reader of a pipe went away; nothing is left to tell it, neither now nor at exit.

@@ -376,11 +376,8 @@ def _driven(medium: Medium, length: Factored, propagation: Propagation) -> list[
         if number == POLYNOMIAL:
             integral = _monomial(propagation.embed(length), n)
         elif part.coefficients[0].is_zero:
-            message = (
-                "a uniform load on a field that has a solution constant in x is not available; "
-                "let the load enter the conditions"
-            )
-            raise ModelError(Diagnostic("SF910", message))
+            message = "a uniform load on a field that has a solution constant in x is not available"
+            raise ModelError(Diagnostic("SF910", message, None, "let the load enter the conditions"))
         else:
             rest = one - h[n - 1]
             for k in range(1, n):

@@ -211,10 +211,12 @@ class Evaluator:
         inside = {n.name for n in names(opened) if isinstance(n, Name)}
         if LAPLACE in inside or inner.depends_on(LAPLACE):
             message = f"{name} of an expression in s is not available yet"
-            raise ModelError(Diagnostic("SF910", message, expression.span))
+            hint = "a dead time is a block of type delay; waves come with rods, beams and [fields]"
+            raise ModelError(Diagnostic("SF910", message, expression.span, hint))
         if block := next((n for n in self.blocks if n in inside), None):
             message = f"{name} of a block ('{block}') is not available yet"
-            raise ModelError(Diagnostic("SF910", message, expression.span))
+            hint = "blocks may be added, multiplied, divided and raised to integer powers"
+            raise ModelError(Diagnostic("SF910", message, expression.span, hint))
         if name == "sqrt" and inner.is_constant and (root := exact_root(inner.unit)) is not None:
             return Factored.number(self.ring, root)
         if inner.is_zero and name in ("sin", "tan", "sinh", "tanh"):
@@ -271,7 +273,8 @@ class Opener:
                 f"the argument of {call.name} is too large with its definitions opened: more than "
                 f"{OPENED_PARTS} parts or {OPENED_DEPTH} levels"
             )
-            raise ModelError(Diagnostic("SF103", message, call.span))
+            hint = "declare the value of the argument as a parameter"
+            raise ModelError(Diagnostic("SF103", message, call.span, hint))
         return substitute(expression, self._opened) if inner else expression
 
 

@@ -195,9 +195,10 @@ class _Builder(Transformer[Token, _Piece]):
     def power(self, base: _Piece, _operator: Token, exponent: _Piece) -> _Piece:
         reading = base.reading
         if problem := exponent_problem(exponent.size, reading.limits):
-            reading.refuse(exponent.start, exponent.end, "SF103", problem)
+            reading.refuse(exponent.start, exponent.end, "SF103", problem, "write a smaller exponent")
         if problem := power_problem(base.size, exponent.size, reading.limits):
-            reading.refuse(base.start, exponent.end, "SF103", problem)
+            hint = "name the base in [definitions], or write a smaller exponent"
+            reading.refuse(base.start, exponent.end, "SF103", problem, hint)
         node = Power(base.node, exponent.node, span=reading.text.at(base.start, exponent.end))
         return _piece(node, base, exponent, size_of_power(base.size, exponent.size))
 
@@ -392,16 +393,16 @@ def _check_token(reading: _Reading, token: Token) -> None:
         reading.refuse(start, end, "SF112", message)
     if token.type == "PRIMES" and len(token) > limits.order:
         message = f"a derivative of order {len(token)}; at most {limits.order} is allowed"
-        reading.refuse(start, end, "SF103", message)
+        reading.refuse(start, end, "SF103", message, "write a system of lower order in more unknowns")
     if token.type == "NUMBER":
         mantissa, _, exponent = token.lower().partition("e")
         digits = len(mantissa) - mantissa.count(".")
         if digits > limits.digits:
             message = f"this number has {digits} digits; at most {limits.digits} are allowed"
-            reading.refuse(start, end, "SF103", message)
+            reading.refuse(start, end, "SF103", message, "leave out the last digits")
         significant = exponent.lstrip("+-0")
         # Compared by length first: the exponent may itself have thousands of digits.
         longest = len(str(limits.decimal_exponent))
         if len(significant) > longest or int(significant or "0") > limits.decimal_exponent:
             message = f"the exponent of this number is beyond {limits.decimal_exponent}"
-            reading.refuse(start, end, "SF103", message)
+            reading.refuse(start, end, "SF103", message, "choose units in which values lie nearer to 1")

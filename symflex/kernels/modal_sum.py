@@ -222,7 +222,9 @@ class ModalSums:
         ways = (comb(self.modes[m].roots + count - 1, count) for m, count in Counter(slots).items())
         if prod(ways) > KEY_LIMIT:
             message = f"the closed form has more than {KEY_LIMIT} products of exponentials"
-            raise BudgetError(Diagnostic("SF503", message))
+            raise BudgetError(
+                Diagnostic("SF503", message, None, "split the model, or give more parameters numbers")
+            )
 
     def _keys(
         self, slots: tuple[int, ...], terms: Sequence[tuple[tuple[int, ...], fmpz_mpoly]]

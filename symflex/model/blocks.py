@@ -161,7 +161,7 @@ def _value(reader: Reader, value: Value, where: str, *, coefficients: bool) -> E
         return None
     if len(value.items) > EXPONENT_LIMIT + 1:
         message = f"{where} has {len(value.items)} coefficients; at most {EXPONENT_LIMIT + 1} are allowed"
-        reader.note("SF103", message, value.span)
+        reader.note("SF103", message, value.span, "write a product of blocks of lower order")
         return None
     found = [reader.expression(item, where) for item in value.items]
     parts = [None if part is None else lower(part) for part in found]
@@ -215,7 +215,10 @@ def _load(reader: Reader, path_text: Text, origin: Origin) -> Model | None:
         reader.note("SF215", f"specifications refer to each other in a circle: {circle}", path_text.span)
         return None
     if len(origin.ancestors) >= NESTING_LIMIT:
-        reader.note("SF103", f"model blocks are nested deeper than {NESTING_LIMIT}", path_text.span)
+        message = f"model blocks are nested deeper than {NESTING_LIMIT}"
+        reader.note(
+            "SF103", message, path_text.span, "copy the innermost models into the files that use them"
+        )
         return None
     loads, own = origin.loads, origin.ancestors[-1]
     if path not in loads.models and path not in loads.failed:
@@ -236,7 +239,8 @@ def _load(reader: Reader, path_text: Text, origin: Origin) -> Model | None:
     loads.blocks[own] = loads.blocks.get(own, 0) + 1 + loads.blocks.get(path, 0)
     if loads.blocks[own] > BLOCK_LIMIT:
         message = f"more than {BLOCK_LIMIT} model blocks, counted with those inside model blocks"
-        reader.note("SF103", message, path_text.span)
+        hint = "name a product of them once, and use the name"
+        reader.note("SF103", message, path_text.span, hint)
         return None
     return loads.models.get(path)
 

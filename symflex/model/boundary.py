@@ -262,7 +262,7 @@ def _check_equations(reader: Reader, field: Field, around: Surroundings, point: 
         return None
     if order > ORDER_LIMIT:
         message = f"field '{field.name}' is of order {order} in x; at most {ORDER_LIMIT} is allowed"
-        reader.note("SF103", message, field.equations[0].span)
+        reader.note("SF103", message, field.equations[0].span, "split what is independent into two fields")
         return None
     if not _can_be_solved(found, highest):
         leading = " and ".join(u + "'" * k for u, k in highest.items())

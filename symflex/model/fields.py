@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 FIELD_LIMIT = 100
 UNKNOWN_LIMIT = 12
 CONDITION_LIMIT = 200
+SPLIT = "split it into several fields, which conditions may join"
 KEYS = ("domain", "unknowns", "equation", "equations", "conditions", "latex", "doc")
 EXAMPLE = """for instance: domain = ["0", "l"], equation = "E*A*u'' = rho*A*s^2*u", conditions = [...]"""
 
@@ -42,7 +43,8 @@ def read_fields(reader: Reader, section: TableValue | None, taken: Collection[st
     for i, entry in enumerate(section.entries if section else ()):
         if i >= FIELD_LIMIT:
             count = len(section.entries) if section else 0
-            reader.note("SF103", f"{count} fields; at most {FIELD_LIMIT} are allowed", entry.key_span)
+            message = f"{count} fields; at most {FIELD_LIMIT} are allowed"
+            reader.note("SF103", message, entry.key_span, "join parts of equal equations into one field")
             break
         field = _read_field(reader, entry, taken, owners)
         if field is not None:
@@ -95,7 +97,8 @@ def _unknowns(
         reader.note("SF242", f"{what} has no unknowns", place, "leave the key out to name one as the field")
         return None
     if len(texts) > UNKNOWN_LIMIT:
-        reader.note("SF103", f"{what} has {len(texts)} unknowns; at most {UNKNOWN_LIMIT} are allowed", place)
+        message = f"{what} has {len(texts)} unknowns; at most {UNKNOWN_LIMIT} are allowed"
+        reader.note("SF103", message, place, SPLIT)
         return None
     good = True
     for text in texts:
@@ -161,7 +164,7 @@ def _equations(reader: Reader, entry: Entry, table: TableValue) -> tuple[Equatio
         texts = reader.strings(given, f"equations of {what}", "an array of equations")
     if texts is not None and len(texts) > UNKNOWN_LIMIT:
         message = f"{what} has {len(texts)} equations; at most {UNKNOWN_LIMIT} are allowed"
-        reader.note("SF103", message, given.value.span)
+        reader.note("SF103", message, given.value.span, SPLIT)
         return None
     return _parsed(reader, texts)
 
@@ -176,7 +179,7 @@ def _conditions(reader: Reader, entry: Entry, table: TableValue) -> tuple[Equati
     texts = reader.strings(given, f"conditions of field '{entry.key}'", "an array of equations")
     if texts is not None and len(texts) > CONDITION_LIMIT:
         message = f"field '{entry.key}' has {len(texts)} conditions; at most {CONDITION_LIMIT} are allowed"
-        reader.note("SF103", message, given.value.span)
+        reader.note("SF103", message, given.value.span, SPLIT)
         return None
     return _parsed(reader, texts)
 

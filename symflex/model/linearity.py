@@ -200,7 +200,12 @@ def _power_degree(power: Power, base: Degree, exponent: Expression, problems: li
         return base
     if abs(value) > EXPONENT_LIMIT:
         problems.append(
-            Diagnostic("SF103", f"exponent {value} is larger than {EXPONENT_LIMIT}", exponent.span)
+            Diagnostic(
+                "SF103",
+                f"exponent {value} is larger than {EXPONENT_LIMIT}",
+                exponent.span,
+                "write a product of lower powers, in blocks of their own",
+            )
         )
     if base == "linear" and value != 1:
         problems.append(
@@ -257,7 +262,8 @@ def _value_degree(call: Call, scope: Scope, constant: bool, problems: list[Diagn
         return "unknown"
     if call.order > ORDER_LIMIT:
         message = f"a derivative of order {call.order}; at most {ORDER_LIMIT} is allowed"
-        problems.append(Diagnostic("SF103", message, call.span))
+        hint = "the field's equation gives higher derivatives by lower ones"
+        problems.append(Diagnostic("SF103", message, call.span, hint))
     _degree(call.argument, scope, True, problems)
     return "linear"
 

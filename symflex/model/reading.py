@@ -70,7 +70,8 @@ class Reader:
         self.problems.extend(diagnostics)
         if len(self.problems) > MAX_PROBLEMS:
             message = f"more than {MAX_PROBLEMS} problems; these are the ones found first"
-            raise SpecError(*self.problems[:MAX_PROBLEMS], Diagnostic("SF103", message))
+            more = Diagnostic("SF103", message, None, "mend these, and check again")
+            raise SpecError(*self.problems[:MAX_PROBLEMS], more)
 
     def misfit(self, message: str, value: Value, hint: str | None = None) -> None:
         """Note a value of the wrong kind, unless its syntax error is already reported."""

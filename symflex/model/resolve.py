@@ -246,7 +246,8 @@ def _check_count(reader: Reader, spec: Spec, outputs: Sequence[Output], inputs: 
             f"{len(outputs)} outputs and {len(inputs)} inputs make {len(outputs) * len(inputs)} transfer "
             f"functions; at most {MAX_PAIRS} are allowed"
         )
-        raise SpecError(*reader.problems, Diagnostic("SF103", message, entry.key_span))
+        hint = "split the outputs over several specifications"
+        raise SpecError(*reader.problems, Diagnostic("SF103", message, entry.key_span, hint))
 
 
 def _lost_sections(spec: Spec) -> bool:

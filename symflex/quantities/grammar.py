@@ -135,6 +135,7 @@ _Placed = TypeVar("_Placed", Constant, PlacedUnit)
 _Result = tuple[Constant, PlacedUnit]
 
 _ONE_NUMBER: Final = "the number stands before the unit and the unit holds no other, except 1 in '1/s'"
+NEARER: Final = "choose a unit in which the number lies nearer to 1"
 _NO_UNIT: Final = Unit(Fraction(1))
 # Stands at no place, so that a unit alone never seems to touch it.
 _NO_CONSTANT: Final = Constant(Fraction(1), 0, -1, -1)
@@ -156,7 +157,7 @@ def evaluate(value: str, kind: str) -> tuple[Constant, PlacedUnit]:
     """
     if len(value) > MAXIMUM_CHARACTERS:
         message = f"a {kind} of {len(value)} characters; at most {MAXIMUM_CHARACTERS} are read"
-        raise RejectedError("SF103", message, 0, len(value))
+        raise RejectedError("SF103", message, 0, len(value), "write the number in fewer digits")
     if not value.strip(SPACES):
         hint = "write a number and a unit, as in '35 kN/m'"
         if kind == "unit":
@@ -188,7 +189,7 @@ def _check_nesting(value: str) -> None:
         depth += (character == "(") - (character == ")")
         if depth > MAXIMUM_NESTING:
             message = f"parentheses nested deeper than {MAXIMUM_NESTING}"
-            raise RejectedError("SF103", message, place, place + 1)
+            raise RejectedError("SF103", message, place, place + 1, "write the value of what is inside")
 
 
 def _syntax_rejection(unexpected: UnexpectedInput, value: str, kind: str) -> RejectedError:
@@ -227,7 +228,7 @@ def _checked(constant: Constant) -> Constant:
         message = f"the number is too large to be kept exactly (more than {MAXIMUM_BITS} bits)"
         if size <= MAXIMUM_BITS:
             message = f"the power of pi is beyond {MAXIMUM_NUMBER_POWER}"
-        raise RejectedError("SF103", message, constant.start, constant.end)
+        raise RejectedError("SF103", message, constant.start, constant.end, NEARER)
     return constant if value else Constant(value, 0, constant.start, constant.end)
 
 
@@ -237,7 +238,10 @@ def _checked_unit(placed: PlacedUnit) -> PlacedUnit:
     powers = (unit.pi_power, unit.cycles, unit.radians)
     parts = (part for e in unit.dimension.exponents for part in (e.numerator, e.denominator))
     if size > MAXIMUM_BITS or any(abs(power) > MAXIMUM_UNIT_EXPONENT for power in (*powers, *parts)):
-        raise RejectedError("SF103", "the unit's powers are too large", placed.start, placed.end)
+        message = "the unit's powers are too large"
+        raise RejectedError(
+            "SF103", message, placed.start, placed.end, "write it in lower powers of SI units"
+        )
     return placed
 
 
@@ -265,10 +269,10 @@ class _Evaluator(Transformer[Token, _Result]):
         mantissa, _, exponent = number.lower().partition("e")
         if sum(character != "." for character in mantissa) > MAXIMUM_DIGITS:
             message = f"a number of more than {MAXIMUM_DIGITS} digits"
-            raise RejectedError("SF103", message, _start(number), _end(number))
+            raise RejectedError("SF103", message, _start(number), _end(number), "leave out the last digits")
         if exponent and abs(int(exponent)) > MAXIMUM_DECIMAL_EXPONENT:
             message = f"a decimal exponent beyond {MAXIMUM_DECIMAL_EXPONENT}"
-            raise RejectedError("SF103", message, _start(number), _end(number))
+            raise RejectedError("SF103", message, _start(number), _end(number), NEARER)
         return Constant(Fraction(str(number)), 0, _start(number), _end(number))
 
     def pi(self, token: Token) -> Constant:
@@ -312,7 +316,7 @@ class _Evaluator(Transformer[Token, _Result]):
         power = exponent.magnitude.numerator
         if abs(power) > MAXIMUM_NUMBER_POWER:
             message = f"an exponent beyond {MAXIMUM_NUMBER_POWER}"
-            raise RejectedError("SF103", message, exponent.start, exponent.end)
+            raise RejectedError("SF103", message, exponent.start, exponent.end, "write the power's value")
         if not base.magnitude and power < 0:
             raise RejectedError("SF202", "division by zero", base.start, exponent.end)
         return _checked(Constant(base.magnitude**power, base.pi_power * power, base.start, exponent.end))
@@ -328,7 +332,7 @@ class _Evaluator(Transformer[Token, _Result]):
         above, degree = exponent.value.numerator, exponent.value.denominator
         if max(abs(above), degree) > MAXIMUM_UNIT_POWER:
             message = f"a unit's power beyond {MAXIMUM_UNIT_POWER}"
-            raise RejectedError("SF103", message, exponent.start, exponent.end)
+            raise RejectedError("SF103", message, exponent.start, exponent.end, "write it in lower powers")
         unit: Unit | None = base.unit**above
         if degree > 1:
             unit = (base.unit**above).root(degree)

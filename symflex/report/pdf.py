@@ -22,6 +22,7 @@ HOW_TO: Final = (
     "macOS: brew install --cask mactex); then: pdflatex report.tex, three times"
 )
 _LAST_LINES: Final = 12
+BY_HAND: Final = "report.tex is written: compile it by hand, or ask for --no-pdf"
 
 
 def has_compiler() -> bool:
@@ -64,8 +65,10 @@ def compile_pdf(tex: str, figures: Mapping[str, bytes], epoch: int | None) -> by
                     command, cwd=folder, env=environment, capture_output=True, check=False, timeout=SECONDS
                 )
             except (OSError, subprocess.TimeoutExpired) as error:
-                raise SymflexError(Diagnostic("SF912", f"pdflatex did not finish: {error}")) from None
+                message = f"pdflatex did not finish: {error}"
+                raise SymflexError(Diagnostic("SF912", message, None, BY_HAND)) from None
             if done.returncode:
                 log = done.stdout.decode(errors="replace").splitlines()[-_LAST_LINES:]
-                raise SymflexError(Diagnostic("SF912", "pdflatex failed: " + " / ".join(log)))
+                message = "pdflatex failed: " + " / ".join(log)
+                raise SymflexError(Diagnostic("SF912", message, None, BY_HAND))
         return (folder / "report.pdf").read_bytes()

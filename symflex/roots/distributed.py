@@ -355,7 +355,8 @@ def _find(sides: Sequence[Side], region: Region) -> list[Root]:
         wanted += lacking
     if shared and sides[0].modes < region.count:
         # Of zeros there may be none that no pole takes with it; poles are what was asked for.
-        raise BudgetError(Diagnostic("SF505", "too many poles and zeros coincide to tell the modes"))
+        message = "too many poles and zeros coincide to tell the modes"
+        raise BudgetError(Diagnostic("SF505", message, None, "ask for a band, which shows those that do not"))
     return shared
 
 

@@ -238,7 +238,8 @@ class RootSearch:
             except RootOnPathError:
                 continue
             return high + nudge, found
-        raise BudgetError(Diagnostic("SF505", f"roots do not separate near {exp(high).real:g} rad/s"))
+        message = f"roots do not separate near {exp(high).real:g} rad/s"
+        raise BudgetError(Diagnostic("SF505", message, None, "ask for a band that ends elsewhere"))
 
     def _search(self, cell: Cell) -> Found:
         cells = [cell]

@@ -179,7 +179,8 @@ class Winding:
             if abs(turns - order) < SAME_ORDER:
                 return z
             z -= RING
-        raise BudgetError(Diagnostic("SF505", "the lowest root cannot be found"))
+        message, hint = "the lowest root cannot be found", "ask for a band, which needs no lowest root"
+        raise BudgetError(Diagnostic("SF505", message, None, hint))
 
     def _scale(self) -> float:
         """Return ln of a frequency at which the largest argument of a kernel is about one."""

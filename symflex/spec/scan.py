@@ -256,7 +256,8 @@ def scan(source: Source) -> Scan:
     text = " " + source.text[1:] if source.text.startswith("\ufeff") else source.text
     if len(text) > MAX_BYTES or len(text.encode("utf-8", "surrogatepass")) > MAX_BYTES:
         message = f"the text is larger than {MAX_BYTES} bytes"
-        raise SpecError(Diagnostic("SF103", message, Span(source, 0, 0)))
+        hint = "divide it into files that blocks of type model join"
+        raise SpecError(Diagnostic("SF103", message, Span(source, 0, 0), hint))
     if broken := _SURROGATE.search(text):
         message = f"half a surrogate pair, U+{ord(broken[0]):04X}, is no character"
         raise SpecError(Diagnostic("SF101", message, Span(source, *broken.span())))

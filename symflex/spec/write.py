@@ -16,6 +16,8 @@ INLINE_SECTIONS: Final = frozenset({"parameters", "elements", "inputs", "outputs
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 _NOT_LITERAL = re.compile(r"[\x00-\x08\x0a-\x1f\x7f']")
 _ESCAPED = re.compile(r'[\x00-\x1f\x7f"\\]')
+SHORTER = "give fewer digits, or a unit in which the number lies nearer to 1"
+FLATTER = "no key of a specification needs as many"
 _SURROGATE = re.compile(r"[\ud800-\udfff]")
 _SHORT_ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r", "\b": "\\b", "\f": "\\f"}
 _BITS_PER_DIGIT = 3.3219280948873626
@@ -79,7 +81,7 @@ def _items(mapping: Mapping[Any, object], path: tuple[str, ...]) -> list[tuple[s
     items = []
     for key, value in mapping.items():
         if not isinstance(key, str) or _SURROGATE.search(key):
-            raise _refused("SF104", path, f"the key {key!r} is no text")
+            raise _refused("SF104", path, f"the key {key!r} is no text", "keys are strings")
         items.append((key, value))
     return items
 
@@ -94,7 +96,7 @@ def _value(value: object, path: tuple[str, ...], depth: int = 0) -> str:
             return "true" if value else "false"
         case str():
             if _SURROGATE.search(value):
-                raise _refused("SF104", path, "the text holds half a surrogate pair")
+                raise _refused("SF104", path, "the text holds half a surrogate pair", "leave it out")
             return _string(value)
         case int() | Fraction():
             return _rational(Fraction(value), path)
@@ -104,9 +106,10 @@ def _value(value: object, path: tuple[str, ...], depth: int = 0) -> str:
             return _decimal(value, path)
     if not isinstance(value, Mapping | list | tuple):
         message = f"a value of type '{type(value).__name__}' has no place in a specification"
-        raise _refused("SF104", path, message)
+        hint = "text, numbers, booleans, lists and mappings have"
+        raise _refused("SF104", path, message, hint)
     if depth >= MAX_NESTING:
-        raise _refused("SF103", path[:3], f"brackets nested deeper than {MAX_NESTING}")
+        raise _refused("SF103", path[:3], f"brackets nested deeper than {MAX_NESTING}", FLATTER)
     if isinstance(value, Mapping):
         pairs = [f"{_key(key)} = {_value(v, (*path, key), depth + 1)}" for key, v in _items(value, path)]
         return f"{{ {', '.join(pairs)} }}" if pairs else "{}"
@@ -124,7 +127,7 @@ def _rational(value: Fraction, path: tuple[str, ...]) -> str:
     numerator, denominator = value.numerator, value.denominator
     # Python refuses to print very long integers; measure before printing.
     if max(numerator.bit_length(), denominator.bit_length()) > MAX_LITERAL * _BITS_PER_DIGIT + 1:
-        raise _refused("SF103", path, f"number of more than {MAX_LITERAL} characters")
+        raise _refused("SF103", path, f"number of more than {MAX_LITERAL} characters", SHORTER)
     if denominator == 1:
         literal = str(numerator)
     else:
@@ -156,10 +159,10 @@ def _decimal(value: Decimal, path: tuple[str, ...]) -> str:
 
 def _checked(literal: str, path: tuple[str, ...]) -> str:
     if problem := number_problem(literal):
-        raise _refused("SF103", path, problem)
+        raise _refused("SF103", path, problem, SHORTER)
     return literal
 
 
-def _refused(code: str, path: tuple[str, ...], message: str) -> SpecError:
+def _refused(code: str, path: tuple[str, ...], message: str, hint: str) -> SpecError:
     where = ".".join(_key(part) if not _SURROGATE.search(part) else ascii(part) for part in path)
-    return SpecError(Diagnostic(code, f"{where}: {message}" if where else message))
+    return SpecError(Diagnostic(code, f"{where}: {message}" if where else message, None, hint))

@@ -106,7 +106,8 @@ def _opened(expression: Expression, known: Mapping[str, Expression], sizes: Mapp
     used = [n.name for n in names(expression) if isinstance(n, Name) and n.name in known]
     if sum(sizes[name] for name in used) > PARTS_LIMIT:
         message = f"an expression would have more than {PARTS_LIMIT} parts with its definitions opened"
-        raise BudgetError(Diagnostic("SF501", message, expression.span))
+        hint = "make a signal of what is used often, which is not opened"
+        raise BudgetError(Diagnostic("SF501", message, expression.span, hint))
     return substitute(expression, known) if used else expression
 
 

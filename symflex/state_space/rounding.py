@@ -146,7 +146,8 @@ class Rounding:
         if not isfinite(found) or abs(found) < float_info.min:
             size = "large" if abs(found) > 1 else "small"
             message = f"{what} is too {size} for double precision"
-            raise ModelError(Diagnostic("SF233", message))
+            hint = "choose units in which values lie nearer to 1, such as mm and t"
+            raise ModelError(Diagnostic("SF233", message, None, hint))
         return found
 
     def _rational(self, value: FieldElement) -> Fraction | None:

@@ -103,4 +103,7 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
             finally:
                 executor.shutdown(wait=False)
     except distributed.KilledWorker as error:
-        raise BudgetError(Diagnostic("SF508", f"a worker ended before its work: {error}")) from None
+        message = f"a worker ended before its work: {error}"
+        raise BudgetError(
+            Diagnostic("SF508", message, None, "take fewer workers, or more memory each")
+        ) from None

@@ -113,7 +113,8 @@ class GeneralSeries:
             if any(len(c) for c in total):
                 total = _product(total, kernel, zero)
                 if sum(map(len, total)) > WORK_LIMIT:
-                    raise BudgetError(Diagnostic("SF503", "the power series has too many terms"))
+                    message, hint = "the power series has too many terms", "give more parameters numbers"
+                    raise BudgetError(Diagnostic("SF503", message, None, hint))
             if power in by_power:
                 inner = self._nested(by_power[power], at + 1, count)
                 total = [a + b for a, b in zip(total, inner, strict=True)]

@@ -241,4 +241,5 @@ class _Planner:
 
 
 def _without_structure() -> BudgetError:
-    return BudgetError(Diagnostic("SF503", "the closed form has too little structure for recurrences"))
+    message = "the closed form has too little structure for recurrences"
+    return BudgetError(Diagnostic("SF503", message, None, "give more parameters numbers, or split the model"))

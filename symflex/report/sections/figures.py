@@ -41,7 +41,12 @@ def figure_section(study: Study) -> Part | None:
             drawn = attempt(lambda f=figure: _loop_picture(study, f, files))  # type: ignore[misc]
         elif figure.kind not in FIGURES:
             drawn = SymflexError(
-                Diagnostic("SF911", f"figures of kind '{figure.kind}' are not available yet")
+                Diagnostic(
+                    "SF911",
+                    f"figures of kind '{figure.kind}' are not available yet",
+                    None,
+                    "there are " + ", ".join((*FIGURES, *LOOP_FIGURES)),
+                )
             )
         elif chosen:
             drawn = attempt(lambda f=figure, c=chosen: _picture(study, f, c, files))  # type: ignore[misc]

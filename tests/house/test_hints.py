@@ -1,0 +1,47 @@
+"""A message that points to a limit says the way round it."""
+
+from __future__ import annotations
+
+import ast
+import re
+
+import pytest
+
+from tests.house.repository import ROOT
+
+LIMITS = re.compile(r"SF(103|104|230|231|233|235|236|5\d\d|910|911|912|914|917|919)\Z")
+"""Sizes and nesting, labels, double precision, rational functions, budgets, and what there is not yet."""
+
+HINT_AFTER = {"Diagnostic": 3, "note": 3, "refuse": 2, "Slip": 2, "RejectedError": 4, "_refused": 3}
+"""How many arguments after its code a call takes the hint."""
+
+
+def calls():
+    """Yield every call that makes a diagnostic of a limit, with its place and its hint, if it has one."""
+    for path in sorted((ROOT / "symflex").rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if not isinstance(node, ast.Call):
+                continue
+            name = getattr(node.func, "id", getattr(node.func, "attr", ""))
+            for i, argument in enumerate(node.args):
+                text = getattr(argument, "value", None)
+                if name in HINT_AFTER and isinstance(text, str) and LIMITS.match(text):
+                    after = node.args[i + HINT_AFTER[name] :]
+                    hint = (
+                        after[0] if after else next((k.value for k in node.keywords if k.arg == "hint"), None)
+                    )
+                    yield f"{path.relative_to(ROOT)}:{node.lineno} {text}", hint
+
+
+FOUND = dict(calls())
+
+
+def test_limits_are_found():
+    assert len(FOUND) > 60
+
+
+@pytest.mark.parametrize("place", FOUND)
+def test_a_message_of_a_limit_says_the_way_round_it(place):
+    hint = FOUND[place]
+    assert hint is not None
+    assert not (isinstance(hint, ast.Constant) and hint.value is None)
