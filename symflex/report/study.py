@@ -291,7 +291,11 @@ def attempt(compute: Callable[[], T]) -> T | SymflexError:
     except SymflexError as error:
         return error
     except MemoryError:
-        return BudgetError(Diagnostic("SF504", "out of memory"))
+        return BudgetError(
+            Diagnostic(
+                "SF504", "out of memory", None, "give parameters numbers in place of symbols, or --jobs 1"
+            )
+        )
 
 
 def said(error: SymflexError) -> str:

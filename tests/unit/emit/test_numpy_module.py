@@ -282,10 +282,17 @@ def test_defaults_are_the_doubles_nearest_to_the_exact_values(folder):
     module = imported(
         exported(pipeline.load(DERIVATIONS / "polynomial_resonance.toml")).text, folder, "resonance"
     )
-    # 11 Hz in rad/s, 22*pi = 69.115038378975457108...
-    assert module.PARAMETERS["omega_p1"]["value"] == 69.11503837897546
+    # 25 mm per turn in m/rad, 1/(80*pi) = 0.00397887357729738339422...
+    assert module.PARAMETERS["r"]["value"] == 0.0039788735772973835
     signature = inspect.signature(module.A_tip_over_V_cmd)
-    assert signature.parameters["omega_p1"].default == 69.11503837897546
+    assert signature.parameters["r"].default == 0.0039788735772973835
+
+
+def test_a_frequency_in_hertz_is_taken_in_hertz(folder):
+    module = imported(
+        exported(pipeline.load(DERIVATIONS / "polynomial_resonance.toml")).text, folder, "in_hertz"
+    )
+    assert module.PARAMETERS["omega_p1"] == {"value": 11.0, "unit": "Hz", "doc": "peak of mode 1"}
 
 
 def test_transfer_functions_are_found_by_name(two_mass):

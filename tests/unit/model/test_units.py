@@ -33,7 +33,7 @@ def undamped_at(text, omega):
     """Tell whether a resonance with zeta = 0.1 and omega_z = 2 omega_p stands at an angular frequency."""
     (tf,) = pipeline.derive_all(resolve(text))
     value = pipeline.bind(tf)(1j * omega)
-    # Poles: s^2 + 0.2 omega s + omega^2 = 0.2j omega^2. Zeros: s^2 + 0.4 omega s + 4 omega^2 = (3 + 0.4j) omega^2
+    # There the poles' part is 0.2j omega^2, and that of zeros (-1 + 0.4j + 4) omega^2, times (1/2)^2.
     return value == pytest.approx((3 + 0.4j) / 4 / 0.2j, rel=1e-12)
 
 
