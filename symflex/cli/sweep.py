@@ -95,6 +95,7 @@ def command(
     """
     from symflex import pipeline
     from symflex.cli.progress import ProgressBar
+    from symflex.emit.sweep_files import check_writable
     from symflex.emit.sweep_text import sweep_json, sweep_text
     from symflex.sweep import read_design
     from symflex.sweep.executors import open_executor
@@ -103,6 +104,8 @@ def command(
         raise UsageError(Diagnostic("SF902", "give only one of --workers and --scheduler"))
     if fresh and not output:
         raise UsageError(Diagnostic("SF902", "--fresh is for a file: give -o FILE"))
+    if output:
+        check_writable(Path(output))
     model = load(spec, allow_outside, settings)
     pairs = pipeline.pick_pairs(model, [tf] if tf else [])
     _check_options(of, modes, band, count, gain)
