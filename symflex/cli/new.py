@@ -12,22 +12,29 @@ from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 
 TEMPLATES: dict[str, str] = {
-    "mass_spring": "mass on a spring and damper",
-    "two_mass": "two masses joined by a flexible transmission",
-    "motor_axis": "current-controlled motor, ball screw and carriage",
-    "bending_beam": "sliding mass, massless beam and rigid tip body",
-    "sliding_beam": "sliding-free bending beam, written as a boundary-value problem",
-    "flexible_arm": "current-controlled motor, screw, carriage, flexible arm and gripper",
+    "mass_spring": "A mass on a spring and a damper, driven by a force.",
+    "two_mass": "Two masses joined by a spring and a damper.",
+    "motor_axis": "A motor with a current loop moves a carriage by a ball screw.",
+    "motor_loop": "A motor with current, velocity and position loop turns a load over a flexible coupling.",
+    "bending_beam": "A sliding mass carries a massless beam with a rigid body at its end.",
+    "sliding_beam": "A beam that slides at one end and is free at the other, as a boundary-value problem.",
+    "flexible_arm": "A flexible arm on a driven hub, with a gripper mass at its tip.",
 }
 
 
-@click.command("new")
+@click.command(
+    "new", epilog="\b\n" + "\n".join(("Templates:", *(f"  {n}: {s}" for n, s in TEMPLATES.items())))
+)
 @click.argument("template", required=False)
+@click.option("--list", "is_list", is_flag=True, help="List the templates, as without TEMPLATE.")
 @click.option("-o", "--output", type=click.Path(), help="File to write; standard output by default.")
 @reporting
-def command(template: str | None, *, output: str | None) -> int:
-    """Write the specification TEMPLATE to start from; without TEMPLATE, list them."""
-    if template is None:
+def command(template: str | None, *, output: str | None, is_list: bool) -> int:
+    """Write the specification TEMPLATE to start from; without TEMPLATE, list them.
+
+    A template says at its head what it is and what to try next.
+    """
+    if template is None or is_list:
         width = max(len(name) for name in TEMPLATES)
         for name, summary in TEMPLATES.items():
             say(f"{name.ljust(width)}  {summary}")
@@ -46,5 +53,5 @@ def command(template: str | None, *, output: str | None) -> int:
     from symflex.emit.write import write_atomically
 
     write_atomically(Path(output), text.encode())
-    note(f"wrote {output}; try: symflex derive {output}")
+    note(f"wrote {output}; try: symflex derive {output}, and what its head says")
     return 0

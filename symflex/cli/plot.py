@@ -73,7 +73,7 @@ def command(
     if SWEEP in (spec, kind):
         options = bool(tfs or gain or limits)
         return _plot_sweep(spec if kind == SWEEP else kind, modes, output, width, font, is_more=options)
-    chosen = _checked_path(output) if output else None
+    given = _checked_path(output) if output else None
     model = load(spec, allow_outside, settings)
     model = model if modes is None else replace(model, analysis=replace(model.analysis, modes=modes))
     figure = next((f for f in model.figures if f.name == kind), None)
@@ -85,7 +85,7 @@ def command(
     if drawn not in (*FIGURES, *LOOP_FIGURES):
         hint = "there are " + ", ".join((*FIGURES, *LOOP_FIGURES))
         raise UsageError(Diagnostic("SF911", f"figures of kind '{drawn}' are not available yet", None, hint))
-    path = chosen or _checked_path(f"{Path(spec).stem}_{kind}.pdf")
+    path = given or _checked_path(f"{Path(spec).stem}_{kind}.pdf")
     width_mm = None if width is None else column_width(width)
     font = _checked_font(font or ("latex" if path.suffix == ".pgf" else DEFAULT_FONT))
     named = gain or (figure.gain if figure else "")

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import tomllib
+from importlib.resources import files
 
 import pytest
 
@@ -209,6 +210,42 @@ def test_a_julia_module_is_called_after_its_file(shell):
 def test_templates_are_listed_with_a_summary(shell):
     lines = shell("new").out.splitlines()
     assert [line.split()[0] for line in lines] == list(TEMPLATES)
+
+
+def test_the_list_of_templates_and_the_help_give_a_sentence_to_each(shell):
+    assert shell("new", "--list").out == shell("new").out
+    said = shell("new", "--help").out
+    assert all(
+        f"{name}: {sentence}" in said and sentence.endswith(".") for name, sentence in TEMPLATES.items()
+    )
+
+
+def commands_of(template):
+    """Return the commands that the head of a template proposes."""
+    text = (files("symflex") / "templates" / f"{template}.toml").read_text(encoding="utf-8")
+    head = [line for line in text.splitlines()[1:6] if line.startswith("#")]
+    return head, [line.partition("symflex ")[2].split() for line in head if "symflex " in line]
+
+
+@pytest.mark.parametrize("template", TEMPLATES)
+def test_a_template_says_at_its_head_what_it_is_and_what_to_try_next(template):
+    head, commands = commands_of(template)
+    assert head[0].endswith(".") and "Try next" in head[1]
+    assert len(commands) >= 2
+
+
+@pytest.mark.parametrize(
+    ("template", "arguments"),
+    [
+        pytest.param(t, c, marks=pytest.mark.slow if c[0] == "plot" else ())
+        for t in TEMPLATES
+        for c in commands_of(t)[1]
+    ],
+    ids=lambda value: value if isinstance(value, str) else value[0],
+)
+def test_what_a_template_proposes_works(shell, template, arguments):
+    shell("new", template, "-o", f"{template}.toml")
+    assert shell(*arguments).code == 0
 
 
 @pytest.mark.parametrize("template", TEMPLATES)
