@@ -312,17 +312,15 @@ class DimensionSystem:
             unit = quantity.unit if quantity is not None else ""
             turned = turned_name(name, quantity.cycles if quantity is not None else 1)
             shown = format_expression(turned)
+            is_frequency = quantity is not None and quantity.dimension == PER_SECOND
             for use in dict.fromkeys(u for u in uses if u.inferred):
+                without = f"give '{name}' in '1/s'" if is_frequency else "give it without turns"
                 if use.angular:
                     message = f"'{name}', in '{unit}', is read in radians here: as {shown}"
-                    hint = f"write {shown} to say so, or give '{name}' in '1/s' where no 2*pi is meant"
+                    hint = f"write {shown} to say so, or {without} where no 2*pi is meant"
                 else:
                     message = f"'{name}', in '{unit}', is read in cycles here: without 2*pi"
-                    hint = (
-                        f"write {shown} where radians are meant; give '{name}' in '1/s' to say that none are"
-                    )
-                if quantity is not None and quantity.dimension != PER_SECOND:
-                    hint = f"write {shown} where radians are meant"
+                    hint = f"write {shown} where radians are meant; {without} to say that none are"
                 yield Diagnostic("SF655", message, use.span, hint, "warning")
 
     def measure(self, expression: Expression) -> Measure:
