@@ -14,11 +14,11 @@ from symflex.errors.diagnostic import nearest
 TEMPLATES: dict[str, str] = {
     "mass_spring": "A mass on a spring and a damper, driven by a force.",
     "two_mass": "Two masses joined by a spring and a damper.",
-    "motor_axis": "A motor with a current loop moves a carriage by a ball screw.",
-    "motor_loop": "A motor with current, velocity and position loop turns a load over a flexible coupling.",
-    "bending_beam": "A sliding mass carries a massless beam with a rigid body at its end.",
-    "sliding_beam": "A beam that slides at one end and is free at the other, as a boundary-value problem.",
-    "flexible_arm": "A flexible arm on a driven hub, with a gripper mass at its tip.",
+    "motor_axis": "A motor with a current loop, a ball screw and a carriage.",
+    "motor_loop": "Current, velocity and position loop of a motor with a load.",
+    "bending_beam": "A sliding mass, a massless beam and a rigid body at its end.",
+    "sliding_beam": "A beam that slides at one end, as a boundary-value problem.",
+    "flexible_arm": "A flexible arm on a driven hub, with a gripper at its tip.",
 }
 
 
