@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from flint import nmod_mat
 
 from symflex.errors import Diagnostic, ModelError
+from symflex.errors.diagnostic import nearest
 from symflex.expressions import format_expression
 from symflex.kernels import PRIME, random_point, residue
 from symflex.kernels.origin import find_point
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from symflex.equations import EquationRow, Equations
     from symflex.errors import Span
     from symflex.kernels import Factored, Propagation
+    from symflex.model import Model
 
 SHOWN = 6
 
@@ -62,7 +64,7 @@ def explain_singular(equations: Equations) -> ModelError:
                 "SF301",
                 f"nothing determines {what} {names}: {verb}",
                 _place(equations, nodes[0].owner),
-                f"connect {hold} to ground or give {hold} a mass",
+                _meant(equations.model, nodes) or f"connect {hold} to ground or give {hold} a mass",
             )
         )
     elif loops:
@@ -80,6 +82,13 @@ def explain_singular(equations: Equations) -> ModelError:
         place = _place(equations, open_unknowns[0].owner) if open_unknowns else None
         problems.append(Diagnostic("SF304", f"nothing determines {names}", place))
     return ModelError(*problems)
+
+
+def _meant(model: Model, nodes: Sequence[Variable]) -> str | None:
+    """Return the nearest name to that of a lone node which an input names and no element touches."""
+    touched = [r.node for use in model.elements for _, references in use.nodes for r in references]
+    is_strange = len(nodes) == 1 and nodes[0].owner not in touched
+    return nearest(nodes[0].owner, touched) if is_strange else None
 
 
 def _dependent_conditions(equations: Equations, rows: list[EquationRow]) -> list[Diagnostic]:
