@@ -1,11 +1,27 @@
 """Blocks usable as factors in expressions. A new block is one class and one line in ``BLOCKS``."""
 
 from symflex.blocks.block import Block, BlockParameter
-from symflex.blocks.library import Delay, Integrator, LeadLag, Pid, Resonance, TransferFunctionBlock
+from symflex.blocks.library import (
+    Delay,
+    Integrator,
+    Lag,
+    LeadLag,
+    Pid,
+    Resonance,
+    TransferFunctionBlock,
+)
 
 BLOCKS: dict[str, Block] = {
     block.type_name: block
-    for block in (Resonance(), TransferFunctionBlock(), Integrator(), LeadLag(), Pid(), Delay())
+    for block in (
+        Resonance(),
+        TransferFunctionBlock(),
+        Integrator(),
+        LeadLag(),
+        Lag(),
+        Pid(),
+        Delay(),
+    )
 }
 
 MODEL_BLOCK = "model"

@@ -80,6 +80,18 @@ class LeadLag(Block):
         return values["k"] * (values["T_1"] * s + 1) / (values["T_2"] * s + 1)
 
 
+class Lag(Block):
+    """A real pole at ``-1/T``: a first-order low-pass filter."""
+
+    type_name = "lag"
+    summary = "k/(1 + T s)"
+    parameters = (BlockParameter("k", "", "a gain", "1"), BlockParameter("T", "s", "a time constant"))
+
+    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
+        """Return the filter's transfer function."""
+        return values["k"] / (values["T"] * s + 1)
+
+
 class Pid(Block):
     """Proportional, integral and filtered derivative action, in parallel form."""
 

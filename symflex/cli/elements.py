@@ -97,7 +97,9 @@ def _describe(element: Element) -> None:
     for port in element.ports:
         nodes = "node" if port.terminals == 1 else f"{port.terminals} nodes"
         default = f", default {', '.join(port.default)}" if port.default is not None else ""
-        say(_key(port.name, f"{nodes}, {DOMAIN_WORDS.get(port.domain, port.domain)}: {port.doc}{default}"))
+        pair = f"; or {port.pair}, 2 nodes, with the reaction on the second" if port.pair else ""
+        words = DOMAIN_WORDS.get(port.domain, port.domain)
+        say(_key(port.name, f"{nodes}, {words}: {port.doc}{default}{pair}"))
     for parameter in element.parameters:
         say(_parameter(parameter, _only(parameter)))
     for choice in element.choices:
@@ -161,6 +163,7 @@ def _element_json(element: Element) -> dict[str, object]:
                 "domain": p.domain,
                 "doc": p.doc,
                 "default": None if p.default is None else list(p.default),
+                "pair": p.pair or None,
             }
             for p in element.ports
         ],

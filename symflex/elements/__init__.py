@@ -32,6 +32,7 @@ from symflex.elements.inertia import Inertia
 from symflex.elements.line import LineElement
 from symflex.elements.mass import Mass
 from symflex.elements.massless_beam import MasslessBeam
+from symflex.elements.piezo import Piezo
 from symflex.elements.rigid import RigidBody, RigidLink
 from symflex.elements.rod import Rod
 from symflex.elements.rotary_damper import RotaryDamper
@@ -68,6 +69,7 @@ ELEMENTS: dict[str, Element] = {
         VoltageSource(),
         CurrentSource(),
         DcMotor(),
+        Piezo(),
         Transformer(),
         Gyrator(),
     )

@@ -155,6 +155,8 @@ class Port:
         What the node is.
     default : tuple of str, optional
         Nodes used when the key is missing.
+    pair : str
+        The key that names two nodes in its place, the second one for the reaction; empty without one.
     """
 
     name: str
@@ -162,6 +164,7 @@ class Port:
     domain: PortDomain
     doc: str
     default: tuple[str, ...] | None = None
+    pair: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,15 +16,21 @@ from symflex.elements.element import (
 
 def _through_source(use: ElementUse, quantity: str) -> Stamp:
     form = use.forms[quantity]
-    return Stamp(injections=(Injection(use.across("at")[0], form),), through=((quantity, form),))
+    return Stamp(injections=_delivered(use, form), through=((quantity, form),))
+
+
+def _delivered(use: ElementUse, form: LinearForm) -> tuple[Injection, ...]:
+    """Return what is delivered into the node, with the reaction where there is a second one."""
+    signs = (use.one, -use.one)
+    return tuple(Injection(n, form * sign) for n, sign in zip(use.across("at"), signs, strict=False))
 
 
 class ForceSource(Element):
-    """A force f [N] applied to a node; ``f`` is the force delivered."""
+    """A force f [N] applied to a node, or between two, on the first; ``f`` is the force delivered."""
 
     type_name = "force_source"
     summary = "Force applied to a node"
-    ports = (Port("at", 1, "translation", "node the force acts on"),)
+    ports = (Port("at", 1, "translation", "node the force acts on", pair="between"),)
     parameters = (ParameterPort("f", "N", "a force", signal=True),)
     through = ("f",)
 
@@ -34,11 +40,11 @@ class ForceSource(Element):
 
 
 class TorqueSource(Element):
-    """A torque tau [N m] applied to a node; ``tau`` is the torque delivered."""
+    """A torque tau [N m] applied to a node, or between two, on the first; ``tau`` is the torque delivered."""
 
     type_name = "torque_source"
     summary = "Torque applied to a node"
-    ports = (Port("at", 1, "rotation", "node the torque acts on"),)
+    ports = (Port("at", 1, "rotation", "node the torque acts on", pair="between"),)
     parameters = (ParameterPort("tau", "N*m", "a torque", signal=True),)
     through = ("tau",)
 
@@ -48,11 +54,11 @@ class TorqueSource(Element):
 
 
 class CurrentSource(Element):
-    """A current i [A] delivered into a node from ground."""
+    """A current i [A] delivered into a node from ground, or into the first of two from the second."""
 
     type_name = "current_source"
     summary = "Current delivered into a node"
-    ports = (Port("at", 1, "electrical", "node the current enters"),)
+    ports = (Port("at", 1, "electrical", "node the current enters", pair="between"),)
     parameters = (ParameterPort("i", "A", "a current", signal=True),)
     through = ("i",)
 
@@ -62,23 +68,23 @@ class CurrentSource(Element):
 
 
 class VoltageSource(Element):
-    """A voltage v [V] from ground to a node; ``i`` [A] is the current it delivers into the node."""
+    """A voltage v [V] of a node over ground, or over a second node; ``i`` [A] is delivered into the first."""
 
     type_name = "voltage_source"
     summary = "Voltage imposed on a node"
-    ports = (Port("at", 1, "electrical", "node held at the voltage"),)
+    ports = (Port("at", 1, "electrical", "node held at the voltage", pair="between"),)
     parameters = (ParameterPort("v", "V", "a voltage", signal=True),)
     through = ("i",)
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute the delivered current and the row ``v_node = v``."""
-        (node,) = use.across("at")
         current = use.unknown("i")
         flow = LinearForm.of((current, use.one))
-        law = LinearForm.of((node, use.one)) + use.forms["v"] * (-use.one)
+        ends = zip(use.across("at"), (use.one, -use.one), strict=False)
+        law = LinearForm.of(*ends) + use.forms["v"] * (-use.one)
         return Stamp(
             unknowns=(current,),
             rows=(Row(current, law, "constraint"),),
-            injections=(Injection(node, flow),),
+            injections=_delivered(use, flow),
             through=(("i", flow),),
         )

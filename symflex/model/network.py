@@ -97,7 +97,8 @@ class NetworkReader:
         element = self._element_type(table, entry) if table else None
         if table is None or element is None:
             return None
-        keys = [p.name for p in element.ports] + [p.name for p in element.parameters]
+        keys = [key for p in element.ports for key in (p.name, p.pair) if key]
+        keys += [p.name for p in element.parameters]
         keys += [c.name for c in element.choices]
         reader.keys(table, ("type", *keys, "doc"), f"{element.type_name} '{entry.key}'")
         nodes = [(port, self._references(table, port, entry, element)) for port in element.ports]
@@ -197,7 +198,14 @@ class NetworkReader:
         self, table: TableValue, port: Port, entry: Entry, element: Element
     ) -> tuple[NodeReference, ...] | None:
         what = f"{port.name} of {element.type_name} '{entry.key}'"
-        found = table.get(port.name)
+        found, wanted = table.get(port.name), port.terminals
+        both = table.get(port.pair) if port.pair else None
+        if found is not None and both is not None:
+            message = f"{element.type_name} '{entry.key}' takes {port.name} or {port.pair}, not both"
+            self.reader.note("SF217", message, both.key_span)
+            return None
+        if both is not None:
+            what, found, wanted = f"{port.pair} of {element.type_name} '{entry.key}'", both, 2
         if found is None:
             if port.default is not None:
                 return tuple(NodeReference(n) for n in port.default)
@@ -209,17 +217,18 @@ class NetworkReader:
                 f"ports of {element.type_name}: {ports}",
             )
             return None
-        kind = "the name of a node" if port.terminals == 1 else f"an array of {port.terminals} nodes"
+        kind = "the name of a node" if wanted == 1 else f"an array of {wanted} nodes"
         texts = self.reader.strings(found, what, kind)
         if texts is None:
             return None
-        if len(texts) != port.terminals:
-            plural = "node" if port.terminals == 1 else "nodes"
+        if len(texts) != wanted:
+            plural = "node" if wanted == 1 else "nodes"
+            hint = f"two nodes are written {port.pair} = [...]" if port.pair else None
             self.reader.note(
                 "SF217",
-                f"{what} takes {port.terminals} {plural}, found {len(texts)}",
+                f"{what} takes {wanted} {plural}, found {len(texts)}",
                 found.value.span,
-                'an end that does not move is at "ground"' if len(texts) < port.terminals else None,
+                'an end that does not move is at "ground"' if len(texts) < wanted else hint,
             )
             return None
         references = [self._reference(t, port.domain, what) for t in texts]

@@ -34,6 +34,7 @@ MODELS = {
     "slider": ("x", "force", 'at = "x"'),
     "pin": ("x.theta", "torque", 'at = "x"'),
     "dc_motor": ("x", "torque", 'terminals = ["v", "ground"], shaft = "x", R = "p", k_t = "q"'),
+    "piezo": ("x", "force", 'terminals = ["v", "ground"], between = ["x", "ground"], alpha = "p", k = "q"'),
     "transformer": ("x", "force", 'from = "x", to = "y", ratio = "p"'),
     "gyrator": ("x", "force", 'from = "x", to = "y", ratio = "p"'),
 }
@@ -49,6 +50,7 @@ REST = {
     "slider": 'body = { type = "rigid_body", at = "x", m = "p" }',
     "pin": 'body = { type = "rigid_body", at = "x", m = "p", J = "q", cg = "q" }',
     "dc_motor": 'load = { type = "resistor", between = ["v", "ground"], R = "q" }',
+    "piezo": 'load = { type = "resistor", between = ["v", "ground"], R = "q" }',
     "transformer": 'load = { type = "spring", between = ["y", "ground"], k = "q" }',
     "gyrator": 'load = { type = "spring", between = ["y", "ground"], k = "q" }',
 }
@@ -58,6 +60,7 @@ BLOCK_VALUES = {
     "tf": 'num = "p", den = "1 + q*s"',
     "integrator": "",
     "lead_lag": 'T_1 = "p", T_2 = "q"',
+    "lag": 'T = "p"',
     "pid": 'k_p = "p", k_i = "q"',
     "delay": 'T = "p"',
 }
