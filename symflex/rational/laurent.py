@@ -6,8 +6,10 @@ from the pole's multiplicity, at s = 0 from series over a prime field, so a quot
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_series, arb, ctx
@@ -17,6 +19,16 @@ from symflex.kernels import Factored
 from symflex.kernels.origin import Origin
 from symflex.rational.local_values import BRANCHES, local_values, series_length
 from symflex.roots import precision
+from symflex.roots.kernel_function import KernelFunction
+from symflex.roots.local_series import (
+    BITS_A_POINT,
+    REACH,
+    SERIES_BITS,
+    SERIES_POINTS,
+    TERMS,
+    LocalSeries,
+    local_series,
+)
 from symflex.roots.precision import bits_for_digits
 
 if TYPE_CHECKING:
@@ -25,6 +37,9 @@ if TYPE_CHECKING:
     from symflex.roots import Root
     from symflex.transfer import BoundTransferFunction
     from symflex.transfer.enclose_kernels import KernelValues
+
+Taylor = Callable[[acb, int], list[acb] | None]
+"""The Taylor coefficients of a function at a point, as many as are wanted."""
 
 FIRST_BITS = 192
 LAST_BITS = 12288
@@ -193,7 +208,7 @@ def expand_at_pole(bound: BoundTransferFunction, root: Root, digits: int) -> tup
     UncertifiedError
         SF405 when the poles cannot be told apart, or the coefficients cannot be told.
     """
-    multiplicity = root.multiplicity
+    multiplicity, ratio = root.multiplicity, bound.ratio
     if not root.certified:
         message = f"poles of {bound.name} that cannot be told apart have no residues of their own"
         raise UncertifiedError(Diagnostic("SF405", message, None, "more digits may tell them apart"))
@@ -201,12 +216,12 @@ def expand_at_pole(bound: BoundTransferFunction, root: Root, digits: int) -> tup
     while bits <= LAST_BITS:
         with precision(bits):
             evaluator = _evaluator(bound)
-            for extra in range(COINCIDENT + 1):
-                pole = _refined(bound, evaluator, root, multiplicity + extra)
-                found = None if pole is None else _principal(bound, evaluator, pole, multiplicity, extra)
-                if pole is not None and found is not None:
-                    break
-            if pole is not None and found is not None:
+            above, below = (partial(_part, evaluator, v) for v in (ratio.numerator(), ratio.denominator()))
+            known = _expanded(above, below, root)
+            if known is None and (smooth := _smooth_sides(bound, root, bits)) is not None:
+                known = _expanded(*smooth, root)
+            if known is not None:
+                pole, found, extra = known
                 if root.is_real:
                     found = [acb(c.real) for c in found]
                 if _is_accurate(found, digits, bits):
@@ -219,19 +234,27 @@ def expand_at_pole(bound: BoundTransferFunction, root: Root, digits: int) -> tup
     raise UncertifiedError(Diagnostic("SF405", message))
 
 
-def _refined(bound: BoundTransferFunction, evaluator: KernelValues, root: Root, order: int) -> acb | None:
+def _expanded(above: Taylor, below: Taylor, root: Root) -> tuple[acb, list[acb], int] | None:
+    """Return a refined pole, its principal part, and how many zeros lie on top of it."""
+    for extra in range(COINCIDENT + 1):
+        pole = _refined(below, root, root.multiplicity + extra)
+        found = None if pole is None else _principal(above, below, pole, root.multiplicity, extra)
+        if pole is not None and found is not None:
+            return pole, found, extra
+    return None
+
+
+def _refined(below: Taylor, root: Root, order: int) -> acb | None:
     """Return a smaller ball around a root of the denominator, by interval Newton steps (Moore 1966).
 
     At a root of order k the Taylor coefficient number k - 1, as a function of s, has a simple one.
     """
-    below = bound.ratio.denominator()
     ball = _on_axis(root, root.enclosure())
     for _ in range(NEWTON_STEPS):
         if ball.rad() == 0:
             break
         middle = ball.mid()
-        value = _part(evaluator, below, middle, order + 1)
-        slope = _part(evaluator, below, ball, order + 1)
+        value, slope = below(middle, order + 1), below(ball, order + 1)
         if value is None or slope is None or slope[order].contains(0):
             return None
         step = _on_axis(root, middle - value[order - 1] / (order * slope[order]))
@@ -247,21 +270,18 @@ def _on_axis(root: Root, ball: acb) -> acb:
     return acb(arb(0), ball.imag) if root.on_imaginary_axis else ball
 
 
-def _principal(
-    bound: BoundTransferFunction, evaluator: KernelValues, pole: acb, multiplicity: int, extra: int
-) -> list[acb] | None:
+def _principal(above: Taylor, below: Taylor, pole: acb, multiplicity: int, extra: int) -> list[acb] | None:
     """Return the coefficients from ``(s - p)^-multiplicity`` to ``(s - p)^-1``."""
     count = 2 * multiplicity + extra
-    above = _part(evaluator, bound.ratio.numerator(), pole, count)
-    below = _part(evaluator, bound.ratio.denominator(), pole, count)
-    if above is None or below is None:
+    num, den = above(pole, count), below(pole, count)
+    if num is None or den is None:
         return None
     first = multiplicity + extra
-    if below[first].contains(0) or not all(c.contains(0) for c in (*below[:first], *above[:extra])):
+    if den[first].contains(0) or not all(c.contains(0) for c in (*den[:first], *num[:extra])):
         return None
     with series_length(multiplicity):
-        rest = acb_series(below[first:], multiplicity)
-        quotient = acb_series(above[extra : extra + multiplicity], multiplicity) / rest
+        rest = acb_series(den[first:], multiplicity)
+        quotient = acb_series(num[extra : extra + multiplicity], multiplicity) / rest
     found = [quotient[i] for i in range(multiplicity)]
     return found if all(c.is_finite() for c in found) else None
 
@@ -280,6 +300,40 @@ def _part(evaluator: KernelValues, part: Factored, centre: acb, terms: int) -> l
             for _ in range(abs(exponent)):
                 total = total * series if exponent > 0 else total / series
     return [total[i] for i in range(terms)]
+
+
+def _smooth_sides(bound: BoundTransferFunction, root: Root, bits: int) -> tuple[Taylor, Taylor] | None:
+    """Return the Taylor coefficients of both sides next to a pole where wavenumbers vanish or meet.
+
+    Numerator and denominator are as smooth in s there as anywhere: values on a circle tell them.
+    """
+    if not bound.is_distributed:
+        return None
+    sides = [KernelFunction(bound, value) for value in (bound.num, bound.den)]
+    above, below = (side.part for side in sides)
+    if any(side.power != 1 for side in sides) or not (above / below / bound.ratio).is_one:
+        return None
+    centre = root.enclosure().mid()
+    reach = (centre.abs_upper() * REACH).mid()
+    points = SERIES_POINTS + bits // BITS_A_POINT
+    found = [local_series(side, centre, reach, bits + SERIES_BITS, points) for side in sides]
+    if found[0] is None or found[1] is None:
+        return None
+    # The series are of the factors, without the numbers in front.
+    return partial(_of_series, found[0], _fraction(above)), partial(_of_series, found[1], _fraction(below))
+
+
+def _of_series(series: LocalSeries, unit: arb, centre: acb, terms: int) -> list[acb] | None:
+    """Return the Taylor coefficients at a point close to where a series was found."""
+    off = (centre - series.centre).abs_upper()
+    radius = (2 * off).max(series.reach * arb(2) ** -(ctx.prec // TERMS)).upper()
+    found = series.around(centre, radius)
+    if found is None or terms > len(found[0]):
+        return None
+    coefficients, missing = found
+    # What is missed is analytic, and no larger than that on the circle: Cauchy's estimate.
+    errors = [(missing / radius**k).upper() for k in range(terms)]
+    return [unit * (c + acb(arb(0, e), arb(0, e))) for c, e in zip(coefficients, errors, strict=False)]
 
 
 def about_zero(ball: arb) -> arb:

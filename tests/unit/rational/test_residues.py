@@ -242,3 +242,51 @@ y = "w(l)"
         circle = [r * np.exp(2j * np.pi * k / n) for k in range(n)]
         mean = sum(tf(p + z) * z for z in circle) / n
         assert complex(residue.value.mid()) == pytest.approx(mean, rel=1e-12)
+
+
+FLOATING = """
+symflex = 1
+parameters = {{ E = 7e10, I = 1.2e-9, rho = 2700, A = 1.5e-4, l = 1, k_f = 1e4, c_f = 2{more} }}
+inputs.F = {{ force = "x" }}
+outputs.Y = "y"
+[elements.arm]
+type = "beam"
+between = ["x", "y"]
+E = "E"
+I = "I"
+rho = "rho"
+A = "A"
+l = "l"
+k_f = "k_f"
+c_f = "c_f"
+"""
+
+
+@pytest.mark.parametrize(
+    ("declared", "used"),
+    [
+        (", N = 200", 'N = "N"'),
+        (", G = 2.6e10, kappa = 0.85", 'theory = "timoshenko"\nG = "G"\nkappa = "kappa"'),
+    ],
+    ids=["two wavenumbers of which one vanishes at the pole", "thick"],
+)
+def test_a_free_beam_on_a_lossy_foundation_translates_as_the_oscillator_that_its_mass_makes(declared, used):
+    model = pipeline.loads(FLOATING.format(more=declared) + used)
+    residues = upper(find_residues(pipeline.derive_bound(model, [("Y", "F")])[0]))
+    mass, damping, stiffness = mpmath.mpf("0.405"), 2, 10**4
+    with mpmath.workdps(40):
+        pole = (-damping + mpmath.sqrt(mpmath.mpc(damping**2 - 4 * mass * stiffness))) / (2 * mass)
+        # 1/(m s^2 + c s + k) near its pole
+        found = min(residues, key=lambda r: abs(complex(r.pole.mid()) - complex(pole)))
+        assert_holds(found.coefficients[0], 1 / (2 * mass * pole + damping), 14)
+    assert not found.is_estimate
+
+
+def test_a_slender_free_beam_on_a_lossy_foundation_translates_and_turns_at_one_pole():
+    model = pipeline.loads(FLOATING.format(more=""))
+    residues = upper(find_residues(pipeline.derive_bound(model, [("Y", "F")])[0]))
+    mass, damping, stiffness = mpmath.mpf("0.405"), 2, 10**4
+    with mpmath.workdps(40):
+        pole = (-damping + mpmath.sqrt(mpmath.mpc(damping**2 - 4 * mass * stiffness))) / (2 * mass)
+        # From end to end turning counts (l/2)(-l/2)/(l^2/12) = -3 times what translating does.
+        assert_holds(residues[0].coefficients[0], -2 / (2 * mass * pole + damping), 14)
