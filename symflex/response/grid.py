@@ -6,19 +6,20 @@ Input: certified poles and zeros. Output: angular frequencies [rad/s].
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import pairwise
 from math import log, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from symflex.errors import Diagnostic, UsageError
-from symflex.roots import Band
+from symflex.errors import Diagnostic, SymflexError, UsageError
+from symflex.response.respond import evaluate
+from symflex.roots import Band, Certificate, Everything, PoleZeroMap
 from symflex.roots.locate import locate
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from symflex.roots import PoleZeroMap
     from symflex.transfer import BoundTransferFunction
 
 REFINED_DAMPING = 0.3
@@ -28,6 +29,12 @@ WIDEST_ANGLE = 0.94 * pi / 2
 POINTS_PER_DECADE = 6
 COARSE_STEPS = 3
 DEFAULT_BAND_HZ = (0.1, 10.0)
+WITHOUT_ROOTS = ("SF404", "SF505")
+"""Codes of searches that end without roots; where the time is over, that is said instead."""
+FOLLOWING_ERROR = 0.02
+"""Of the square of a value between two others, over their product: a tenth of a decibel, half a degree."""
+FOLLOWING_ROUNDS = 12
+MOST_POINTS = 20_000
 BEYOND_LAST_POLE = 1.3
 """A distributed system has further poles just above the last one found."""
 
@@ -66,6 +73,32 @@ def default_band(*maps: PoleZeroMap) -> tuple[float, float]:
     return (min(lows) / 10, max(highs)) if lows else DEFAULT_BAND_HZ
 
 
+def roots_if_found(bound: BoundTransferFunction, band: Band | None = None) -> PoleZeroMap:
+    """Return the poles and zeros, or as many as can be had: a response needs none.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        With numbers.
+    band : Band, optional
+        Everything by default; for a distributed system :func:`symflex.roots.default_region`.
+
+    Returns
+    -------
+    PoleZeroMap
+        Its certificate says why where roots may be missing.
+    """
+    region = band if bound.is_distributed else None
+    try:
+        return locate(bound, region)
+    except SymflexError as error:
+        problem = error.diagnostics[0]
+        if problem.code not in WITHOUT_ROOTS:
+            raise
+        certificate = Certificate("", False, 0, 0, problem.message, is_exceeded=True, code=problem.code)
+        return PoleZeroMap(bound.name, region or Everything(), (), (), (), certificate, is_infinite=True)
+
+
 def adaptive_grid(
     bound: BoundTransferFunction,
     low_hz: float,
@@ -90,7 +123,9 @@ def adaptive_grid(
     -------
     array of float
         Increasing. Around a root -a + j b the points advance in equal steps of the phase it causes, b itself
-        among them; around a root on the axis they close in up to 1e-7 b and leave it out.
+        among them; around a root on the axis they close in up to 1e-7 b and leave it out. Where roots may be
+        missing, points are added until the values turn little from one to the next: a peak narrower than the
+        first steps may be missed then.
 
     Raises
     ------
@@ -126,7 +161,26 @@ def adaptive_grid(
     for centre in on_axis:
         # A hair less than the gap, so that the points placed at the gap itself survive rounding.
         grid = grid[np.abs(grid - centre) > 0.99 * AXIS_GAP * centre]
-    return grid
+    return _followed(bound, grid) if found.certificate.is_exceeded else grid
+
+
+def _followed(bound: BoundTransferFunction, grid: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Return a grid with points added where a straight line misses the logarithm of the values between."""
+    known = dict(zip(grid.tolist(), evaluate(bound, grid).tolist(), strict=True))
+    pending = list(pairwise(grid.tolist()))
+    for _ in range(FOLLOWING_ROUNDS):
+        middles = np.array([(a * b) ** 0.5 for a, b in pending])
+        values = evaluate(bound, middles).tolist()
+        known.update(zip(middles.tolist(), values, strict=True))
+        split = []
+        for (a, b), middle, value in zip(pending, middles.tolist(), values, strict=True):
+            product = known[a] * known[b]
+            if not abs(value * value - product) < FOLLOWING_ERROR * abs(product):
+                split += [(a, middle), (middle, b)]
+        pending = split
+        if not pending or len(known) > MOST_POINTS:
+            break
+    return np.array(sorted(known))
 
 
 def _offsets(width: float, centre: float, reach: float) -> npt.NDArray[np.float64]:

@@ -84,7 +84,7 @@ def respond(
     quantity, unit = bound.source.quantity, bound.source.unit
     if bound.ratio.is_zero:
         return FrequencyResponse(bound.name, grid, np.zeros(grid.shape, np.complex128), quantity, unit)
-    values = _evaluate(bound, grid)
+    values = evaluate(bound, grid)
     if bound.is_distributed:
         turns = _follow_turns(bound, grid, values)
     else:
@@ -108,8 +108,8 @@ def _follow_turns(
     return turns.astype(np.int64)
 
 
-def _evaluate(bound: BoundTransferFunction, omega: npt.NDArray[np.float64]) -> npt.NDArray[np.complex128]:
-    """Return the values, with more bits for those points where cancellation asks for them."""
+def evaluate(bound: BoundTransferFunction, omega: npt.NDArray[np.float64]) -> npt.NDArray[np.complex128]:
+    """Return the values at angular frequencies, with more bits where cancellation asks for them."""
     values = np.zeros(omega.shape, np.complex128)
     pending, bits = list(enumerate(omega.tolist())), FIRST_BITS
     if bound.is_distributed:

@@ -22,9 +22,8 @@ from symflex.emit.figures.style import (
     stability_lines,
     title_lines,
 )
-from symflex.response import adaptive_grid, default_band, respond
+from symflex.response import adaptive_grid, default_band, respond, roots_if_found
 from symflex.roots import Band
-from symflex.roots.locate import locate
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -64,16 +63,19 @@ def draw_bode(
     """
     # The default roots of distributed systems serve for nothing but a band.
     given = band_hz or _band_of_model(tfs[0])
-    low, high = given or default_band(*(locate(bound) for bound in bounds))
+    low, high = given or default_band(*(roots_if_found(bound) for bound in bounds))
     band = Band(Fraction(low), Fraction(high))
-    maps = [locate(bound, band if bound.is_distributed else None) for bound in bounds]
+    maps = [roots_if_found(bound, band) for bound in bounds]
     responses = [
         respond(bound, adaptive_grid(bound, low, high, roots=found), found)
         for bound, found in zip(bounds, maps, strict=True)
     ]
     width = width or COLUMN_INCHES
     shaky = [found for found in maps if found.verdict.word in ("unstable", "unknown")]
-    lines = title_lines(title, width)
+    lines = [
+        *title_lines(title, width),
+        *(line for m in maps for line in title_lines(said_of_grid(m), width)),
+    ]
     said = stability_lines(shaky, width)
     units = {response.unit for response in responses}
     legend_columns = min(len(tfs), LEGEND_COLUMNS if len(units) == 1 else LEGEND_COLUMNS_WITH_UNITS)
@@ -112,6 +114,14 @@ def draw_bode(
     if lines:
         figure.suptitle("\n".join(lines), fontsize=TITLE_POINTS, linespacing=TITLE_SPACING, parse_math=False)
     return figure
+
+
+def said_of_grid(found: PoleZeroMap) -> str:
+    """Return what a figure has to say where roots may be missing that its grid should know of."""
+    certificate = found.certificate
+    if not certificate.is_exceeded:
+        return ""
+    return f"{found.tf}: {certificate.reason}; drawn where its values turn, without knowing all roots"
 
 
 def draw_response(response: FrequencyResponse) -> Figure | None:

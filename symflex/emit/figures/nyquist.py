@@ -20,9 +20,8 @@ from symflex.emit.figures.style import (
     new_figure,
     title_lines,
 )
-from symflex.response import adaptive_grid, default_band, respond
+from symflex.response import adaptive_grid, default_band, respond, roots_if_found
 from symflex.roots import Band
-from symflex.roots.locate import locate
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -115,11 +114,11 @@ def _curve(
     band = bound.source.model.analysis.band
     given = band_hz or (None if band is None else (float(band[0]), float(band[1])))
     if given is None:
-        low, high = default_band(locate(bound))
+        low, high = default_band(roots_if_found(bound))
         low, high = low / WIDENED, high * WIDENED
     else:
         low, high = given
-    found = locate(bound, Band(Fraction(low), Fraction(high)) if bound.is_distributed else None)
+    found = roots_if_found(bound, Band(Fraction(low), Fraction(high)))
     response = respond(bound, adaptive_grid(bound, low, high, roots=found), found)
     values: npt.NDArray[np.complex128] = np.array(response.values, dtype=np.complex128)
     finite: npt.NDArray[np.complex128] = values[np.isfinite(values)]

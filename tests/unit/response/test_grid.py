@@ -1,12 +1,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from symflex import pipeline
 from symflex.errors import UsageError
-from symflex.response import adaptive_grid, default_band, respond
+from symflex.response import adaptive_grid, default_band, respond, roots_if_found
 from symflex.roots.locate import locate
 from tests.unit.response.systems import rational
 
@@ -86,3 +88,54 @@ def test_the_default_band_of_two_functions_shows_both():
 
 def test_the_default_band_of_integrators_alone_is_a_decade_around_one_hertz():
     assert default_band(locate(rational("1/s^2"))) == (0.1, 10)
+
+
+def without_roots(bound):
+    """What a search that found no root leaves behind."""
+    found = locate(bound)
+    certificate = replace(
+        found.certificate, certified=False, is_exceeded=True, reason="too long", code="SF505"
+    )
+    return replace(found, poles=(), zeros=(), certificate=certificate)
+
+
+def test_where_no_root_is_known_the_grid_follows_the_values_through_a_resonance():
+    # 1/(s^2 + 2 zeta s + 1) with zeta = 1/100 has its peak 1/(2 zeta sqrt(1 - zeta^2)) at sqrt(1 - 2 zeta^2).
+    bound = rational("1/(s^2 + s/50 + 1)")
+    omega = adaptive_grid(bound, 0.01, 1.0, 100, roots=without_roots(bound))
+    peak = np.abs(1 / (1 - omega**2 + 1j * omega / 50)).max()
+    assert peak == pytest.approx(50 / math.sqrt(1 - 1e-4), rel=1e-3)
+
+
+def test_where_no_root_is_known_the_values_turn_little_from_point_to_point():
+    bound = rational("1/(s^2 + s/50 + 1)")
+    omega = adaptive_grid(bound, 0.01, 1.0, 100, roots=without_roots(bound))
+    phase = np.unwrap(np.angle(1 / (1 - omega**2 + 1j * omega / 50)))
+    assert np.abs(np.diff(phase)).max() < math.radians(15)
+
+
+def test_a_grid_without_roots_ends_where_values_have_no_logarithm():
+    bound = rational("(s^2 + 1)/(s^2 + 4)")
+    assert len(adaptive_grid(bound, 0.01, 1.0, 50, roots=without_roots(bound))) < 3000
+
+
+MATCHED = """
+symflex = 1
+parameters = { E = "210 GPa", rho = "7800 kg/m^3", A = "1e-4 m^2", l = "2 m" }
+inputs.F = { unit = "N" }
+outputs.V = "s*u(l)"
+[fields.u]
+domain = ["0", "l"]
+equation = "E*u'' = rho*s^2*u"
+conditions = ["E*A*u'(0) = -F", "E*A*u'(l) = -A*sqrt(E*rho)*s*u(l)"]
+"""
+
+
+@pytest.mark.slow
+def test_a_rod_that_ends_in_its_own_impedance_has_a_response_though_its_roots_cannot_be_had():
+    # A wave runs along it once: V/F = exp(-s l/c)/(A sqrt(E rho)).
+    (bound,) = pipeline.derive_bound(pipeline.loads(MATCHED), [("V", "F")])
+    assert not roots_if_found(bound).certificate.certified
+    omega = np.array([10.0, 1e3, 3e4])
+    expected = np.exp(-1j * omega * 2 * math.sqrt(7800 / 210e9)) / (1e-4 * math.sqrt(210e9 * 7800))
+    assert respond(bound, omega).values == pytest.approx(expected, rel=1e-12)
