@@ -175,7 +175,16 @@ def derive_all(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> 
     Those in which some wavenumbers have a formula and others have none take a second one, without names.
     """
     wanted = model.transfer_functions if pairs is None else tuple(pairs)
-    found = _derive_all(assemble(model), wanted)
+    try:
+        found = _derive_all(assemble(model), wanted)
+    except BudgetError as error:
+        if error.diagnostics[0].code not in ("SF501", "SF502") or not model.is_distributed:
+            raise
+        # A chain of elements of one law is far smaller as one, though its print has other lengths.
+        joined = equations_room.assemble(model, transfer_room.nested_transfer, is_joined=True)
+        if not joined.is_joined:
+            raise
+        found = _derive_all(joined, wanted)
     mixed = [i for i, tf in enumerate(found) if tf.is_mixed]
     if not mixed:
         return found

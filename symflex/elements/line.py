@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from symflex.elements.element import Terminal, Variable
+    from symflex.kernels import Factored
 
 
 class LineElement(Element):
@@ -65,7 +66,7 @@ class LineElement(Element):
         first = self._delivered_first(use)
         second = [use.unknown(quantity) for quantity in self.through]
         state_a = self.initial_state(use)
-        state_b = [*((v, one) for v in self._across(b)), *((v, -one) for v in second)]
+        state_b = self.final_state(use)
         unknowns = (*first, *second)
         rows = [
             Row(about, LinearForm.of(end, *((v, -c) for v, c in zip(state_a, line, strict=True))))
@@ -82,6 +83,11 @@ class LineElement(Element):
     def initial_state(self, use: ElementUse) -> tuple[Variable | None, ...]:
         """Return the unknowns that are the state at x = 0, None where it is held to zero."""
         return (*self._across(use.terminals["between"][0]), *self._delivered_first(use))
+
+    def final_state(self, use: ElementUse) -> list[tuple[Variable | None, Factored]]:
+        """Return the unknowns that are the state at x = l, each with its sign."""
+        across = self._across(use.terminals["between"][1])
+        return [*((v, use.one) for v in across), *((use.unknown(q), -use.one) for q in self.through)]
 
     def _delivered_first(self, use: ElementUse) -> list[Variable]:
         return [use.unknown(f"{quantity}_a") for quantity in self.through]

@@ -6,14 +6,14 @@ Output: :class:`Equations`; every element has left its stamp, parallel branches 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from graphlib import CycleError, TopologicalSorter
 from typing import TYPE_CHECKING
 
 from symflex.budget import spend
 from symflex.elements import ElementUse, LinearForm, Stamp, Terminal, Variable
 from symflex.elements.line import LineElement
-from symflex.equations.distributed import survey
+from symflex.equations.distributed import survey, transfer_matrix
 from symflex.equations.equations import ConstantFunction, Continuum, EquationRow, Equations, OutputRow
 from symflex.equations.evaluate import Evaluator, Opener
 from symflex.equations.realisation import written_denominator
@@ -53,6 +53,7 @@ def assemble(
     *,
     is_nameless: bool = False,
     is_sparse: bool = False,
+    is_joined: bool = False,
 ) -> Equations:
     """Stamp every element and signal of a model into one linear system.
 
@@ -68,6 +69,8 @@ def assemble(
     is_sparse : bool
         True for a ring of any number of names, in which nothing is expanded; not for distributed models. Rows
         are not cleared of denominators then.
+    is_joined : bool
+        True to take line elements of one law that meet as one, see :mod:`symflex.equations.chains`.
 
     Raises
     ------
@@ -92,7 +95,9 @@ def assemble(
         ),
         is_sparse,
     )
-    distributed = _Assembly(model, ring, constants, nested).survey(is_nameless=is_nameless)
+    distributed = _Assembly(model, ring, constants, nested).survey(
+        is_nameless=is_nameless, is_joined=is_joined
+    )
     whole = ring if distributed is None else distributed.propagation.ring
     return _Assembly(model, whole, constants, nested, distributed).run()
 
@@ -148,8 +153,9 @@ class _Assembly:
     through: dict[Variable, LinearForm] = field(default_factory=dict)
     continua: list[Continuum] = field(default_factory=list)
     states: dict[str, tuple[Variable | None, ...]] = field(default_factory=dict)
+    lines: dict[str, tuple[LineElement, ElementUse]] = field(default_factory=dict)
 
-    def survey(self, *, is_nameless: bool) -> Distributed | None:
+    def survey(self, *, is_nameless: bool, is_joined: bool) -> Distributed | None:
         """Return the model's distributed parts; this assembly is over the ring without kernels."""
         lines = any(isinstance(use.element, LineElement) for use in self.model.elements)
         delays = any(b.block is not None and b.block.kernel_time for b in self.model.blocks)
@@ -158,7 +164,9 @@ class _Assembly:
         evaluator, _ = self._evaluator(self._blocks())
         if self.problems:
             raise ModelError(*self.problems)
-        return survey(self.model, evaluator, _expressions(self.model), is_nameless=is_nameless)
+        return survey(
+            self.model, evaluator, _expressions(self.model), is_nameless=is_nameless, is_joined=is_joined
+        )
 
     def _evaluator(self, blocks: Mapping[str, Factored]) -> tuple[Evaluator, dict[str, int]]:
         known = {d.name for d in self.model.definitions}
@@ -191,6 +199,7 @@ class _Assembly:
             stamp = self._stamp(use, evaluator, nodes, values)
             if stamp is not None:
                 self._take(use, stamp)
+        self._join()
         self._take_inputs(nodes)
         for variable, expression in values:
             self._equal(variable, expression, evaluator)
@@ -219,6 +228,7 @@ class _Assembly:
             None if self.distributed is None else self.distributed.propagation,
             None if self.distributed is None else self._cleared(),
             tuple(self.continua),
+            self.distributed is not None and bool(self.distributed.links),
         )
 
     def _cleared(self) -> Factored:
@@ -229,6 +239,39 @@ class _Assembly:
             if row.role == "condition" or (row.about.kind == "through" and row.about.owner in transmissions):
                 product = product * common_denominator(self.ring, row.form.coefficients)
         return product
+
+    def _join(self) -> None:
+        """Let the ends of a chain follow from its start and what enters on the way."""
+        if self.distributed is None:
+            return
+        propagation = self.distributed.propagation
+        for link in self.distributed.links:
+            (element, use), (_, first) = self.lines[link.name], self.lines[link.first]
+            medium, _ = self.distributed.lines[link.name]
+            start = element.initial_state(first)
+            entering = []
+            for before, after, distance in link.entries:
+                jump = [
+                    ((v, use.one), (end, -factor))
+                    for v, (end, factor) in zip(
+                        element.initial_state(self.lines[after][1]),
+                        element.final_state(self.lines[before][1]),
+                        strict=True,
+                    )
+                ]
+                # What moves across is the same on both sides of a node.
+                entering.append((transfer_matrix(medium, distance, propagation), jump, len(element.ends)))
+            forms = []
+            for i, end in enumerate(element.final_state(use)):
+                terms = [end, *((v, -c) for v, c in zip(start, use.transmission[i], strict=True))]
+                for matrix, jump, across in entering:
+                    terms += [(v, -matrix[i][j] * c) for j in range(across, len(jump)) for v, c in jump[j]]
+                forms.append(LinearForm.of(*terms))
+            places = [
+                k for k, r in enumerate(self.rows) if r.about.kind == "through" and r.about.owner == link.name
+            ]
+            for place, form in zip(places, forms, strict=True):
+                self.rows[place] = replace(self.rows[place], form=form)
 
     def _solutions(self) -> Iterable[FieldSolution]:
         """Return the fields' solutions, each once."""
@@ -395,6 +438,7 @@ class _Assembly:
             transmissions.get(use.name, ()),
         )
         if isinstance(use.element, LineElement):
+            self.lines[use.name] = (use.element, element_use)
             self._extend_line(use.element, element_use)
         return use.element.stamp(element_use)
 

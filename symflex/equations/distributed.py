@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from symflex.budget import spend
 from symflex.elements import LinearForm, Variable
 from symflex.elements.line import LineElement
+from symflex.equations.chains import Link, find_links
 from symflex.equations.coefficients import read_equation
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
 from symflex.expressions import Call, Expression, names
@@ -131,6 +132,8 @@ class Distributed:
         Per line element, its equations and its length.
     along : mapping of str to str
         Per quantity of a line element along x, the state of its field theory.
+    links : tuple of Link
+        Of elements that follow from the start of a chain.
     """
 
     propagation: Propagation
@@ -140,6 +143,7 @@ class Distributed:
     evaluator: Evaluator
     lines: Mapping[str, tuple[Medium, Factored]]
     along: Mapping[str, str]
+    links: tuple[Link, ...] = ()
 
     def value(self, call: Call, states: Mapping[str, Sequence[Variable | None]]) -> LinearForm:
         """Return a field's unknown, an element's quantity, or a derivative, at the point a call names.
@@ -199,7 +203,12 @@ class _Demands:
 
 
 def survey(
-    model: Model, evaluator: Evaluator, expressions: Iterable[Expression], *, is_nameless: bool = False
+    model: Model,
+    evaluator: Evaluator,
+    expressions: Iterable[Expression],
+    *,
+    is_nameless: bool = False,
+    is_joined: bool = False,
 ) -> Distributed | None:
     """Return the distributed parts of a model, ``None`` when it has none.
 
@@ -213,6 +222,8 @@ def survey(
         Everything in which a field may be evaluated at a point.
     is_nameless : bool
         True to give no wavenumber a name.
+    is_joined : bool
+        True to take line elements of one law that meet as one.
 
     Raises
     ------
@@ -230,10 +241,19 @@ def survey(
         for use in model.elements:
             if isinstance(use.element, LineElement):
                 medium, length = _line(use, evaluator, demands, s)
-                demands.need(medium, length)
                 lines.append((use.name, medium, length))
                 for state, quantity in zip(medium.system.states, use.element.along, strict=True):
                     along.update((f"{use.name}.{name}", state) for name in quantity)
+        known = {name: (medium.system, length) for name, medium, length in lines}
+        links = find_links(model, known) if is_joined else ()
+        linked = {link.name: link for link in links}
+        media = {name: medium for name, medium, _ in lines}
+        for link in links:
+            for length in (link.length, *(x for _, _, x in link.entries)):
+                demands.need(media[link.name], length)
+        for name, medium, length in lines:
+            if name not in linked:
+                demands.need(medium, length)
         for block in model.blocks:
             if block.block is not None and block.block.kernel_time:
                 time = evaluator.constant(dict(block.values)[block.block.kernel_time])
@@ -260,7 +280,10 @@ def survey(
     one = Factored.number(propagation.ring, 1)
     return Distributed(
         propagation,
-        {name: transfer_matrix(medium, length, propagation) for name, medium, length in lines},
+        {
+            name: transfer_matrix(medium, linked[name].length if name in linked else length, propagation)
+            for name, medium, length in lines
+        },
         {
             name: one if time.is_zero else propagation.fundamental(number, time)[0]
             for name, number, time in delays
@@ -269,6 +292,7 @@ def survey(
         evaluator,
         {name: (medium, length) for name, medium, length in lines},
         along,
+        links,
     )
 
 

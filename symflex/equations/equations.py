@@ -102,6 +102,8 @@ class Equations:
         What the generators of distributed parts are; ``ring`` is its ring then.
     continua : tuple of Continuum
         The distributed parts.
+    is_joined : bool
+        Elements of one law that meet were taken as one.
     """
 
     model: Model
@@ -115,3 +117,4 @@ class Equations:
     propagation: Propagation | None = None
     cleared: Factored | None = None
     continua: tuple[Continuum, ...] = ()
+    is_joined: bool = False

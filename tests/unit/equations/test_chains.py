@@ -1,0 +1,116 @@
+"""Elements of one law that meet are one element: the same function, of a far smaller determinant."""
+
+from __future__ import annotations
+
+import pytest
+
+from symflex import pipeline, transfer
+from symflex.equations import assemble
+from tests.house.repository import slow_ones
+
+BEAM = 'type = "beam", E = 7e10, I = 1.2e-9, rho = 2700, A = 1.5e-4, k_f = 1e4, c_f = 3'
+TIMOSHENKO = BEAM + ', theory = "timoshenko", G = 2.6e10, kappa = 0.85'
+KINDS = {
+    "beam": BEAM,
+    "beam under tension": BEAM + ", N = 50",
+    "thick beam": TIMOSHENKO,
+    "rod": 'type = "rod", E = 7e10, rho = 2700, A = 1.5e-4, eta = 1e-5',
+    "string": 'type = "string", N = 180, rho = 7850, A = 1.2e-6, c_f = 0.1',
+}
+POINTS = (3 + 40j, -2 + 900j, 150j)
+
+
+def chain(kind, *lengths, more="", turned=()):
+    """Elements from node n_0 on, driven at n_1, seen at the last but one node; n_0 is held by a spring."""
+    rows = ['hold = { type = "spring", between = ["n_0", "ground"], k = 2000 }']
+    for i, length in enumerate(lengths):
+        ends = (f"n_{i}", f"n_{i + 1}")
+        a, b = ends[::-1] if i in turned else ends
+        rows.append(f'e_{i} = {{ {KINDS[kind]}, between = ["{a}", "{b}"], l = {length} }}')
+    return pipeline.loads(
+        "symflex = 1\n[elements]\n" + "\n".join(rows) + f"\n{more}\n[inputs]\n"
+        f'F = {{ force = "n_1" }}\n[outputs]\nY = "n_{len(lengths) - 1}"\nS = "e_1.f"\n'
+    )
+
+
+def values(equations, pairs):
+    found = [transfer.bind(tf) for tf in transfer.derive_all(equations, pairs)]
+    return [bound(s) for bound in found for s in POINTS]
+
+
+SLOW = {"beam under tension", "thick beam"}
+"""Apart, their determinants have thousands of terms."""
+
+
+@pytest.mark.parametrize("kind", slow_ones(KINDS, lambda kind: kind in SLOW))
+def test_a_chain_taken_as_one_element_has_the_response_of_its_parts(kind):
+    model = chain(kind, 0.3, 0.5)
+    apart, joined = (assemble(model, is_joined=is_joined) for is_joined in (False, True))
+    assert (apart.is_joined, joined.is_joined) == (False, True)
+    pairs = model.transfer_functions
+    assert values(joined, pairs) == pytest.approx(values(apart, pairs), rel=1e-9)
+
+
+@pytest.mark.slow
+def test_three_elements_with_an_input_between_have_the_response_of_their_parts():
+    model = chain("beam", 0.2, 0.3, 0.1)
+    pairs = model.transfer_functions
+    apart, joined = (assemble(model, is_joined=is_joined) for is_joined in (False, True))
+    assert values(joined, pairs) == pytest.approx(values(apart, pairs), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "model",
+    [
+        chain("beam", 0.3, 0.5, more='m = { type = "mass", at = "n_1", m = 1 }'),
+        chain("beam", 0.3, 0.5, turned=(1,)),
+        pipeline.loads(
+            "symflex = 1\n[elements]\n"
+            f'a = {{ {BEAM}, between = ["ground", "x"], l = 1 }}\n'
+            f'b = {{ {BEAM}, N = 10, between = ["x", "y"], l = 1 }}\n'
+            '[inputs]\nF = { force = "x" }\n[outputs]\nY = "y"\n'
+        ),
+    ],
+    ids=["a mass between", "turned round", "another law"],
+)
+def test_elements_are_not_one_where_anything_parts_them(model):
+    assert not assemble(model, is_joined=True).is_joined
+
+
+THICK = """
+symflex = 1
+parameters = { E = "70 GPa", G = "26 GPa", kappa = 0.85, I = "1.2e-9 m^4", rho = "2700 kg/m^3",
+               A = "1.5e-4 m^2", k_f = "1e4 N/m^2", a = "0.2 m", b = "0.3 m", c = "0.5 m" }
+inputs.F = { force = "n_1" }
+outputs.Y = "n_2"
+elements.hold = { type = "pin", at = "n_0" }
+""".replace("\n               ", " ")
+PART = """
+[elements.e_{i}]
+type = "beam"
+theory = "timoshenko"
+between = ["n_{i}", "n_{j}"]
+E = "E"
+G = "G"
+kappa = "kappa"
+I = "I"
+rho = "rho"
+A = "A"
+k_f = "k_f"
+l = "{l}"
+"""
+
+
+@pytest.mark.slow
+def test_three_thick_beams_of_other_lengths_on_a_foundation_have_a_closed_form():
+    model = pipeline.loads(THICK + "".join(PART.format(i=i, j=i + 1, l="abc"[i]) for i in range(3)))
+    (tf,) = pipeline.derive_all(model)
+    # By reciprocity it is the response at n_1 to a force at n_2.
+    swapped = pipeline.loads(
+        (THICK + "".join(PART.format(i=i, j=i + 1, l="abc"[i]) for i in range(3)))
+        .replace('force = "n_1"', 'force = "n_2"')
+        .replace('outputs.Y = "n_2"', 'outputs.Y = "n_1"')
+    )
+    (other,) = pipeline.derive_all(swapped)
+    one, two = transfer.bind(tf), transfer.bind(other)
+    assert [one(s) for s in POINTS] == pytest.approx([two(s) for s in POINTS], rel=1e-12)
