@@ -17,7 +17,8 @@ from symflex.errors import DataError, Diagnostic, UsageError
 from symflex.measurement.archive import read_archive
 from symflex.measurement.netcdf import read_netcdf
 from symflex.spec.read import read_bytes
-from symflex.sweep.sweep import SCHEMA, Labelled, Sweep, missing_library
+from symflex.sweep.point_margins import MARGINS
+from symflex.sweep.sweep import DRAW, FREQUENCY, MODE, SCHEMA, Labelled, Sweep, missing_library
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -31,6 +32,14 @@ SIZE_LIMIT = 2**30
 ARRAYS_LIMIT = 10_000
 HEADER = "header"
 CHARACTERS = "characters"
+_ROOTS = ("re", "im", "radius", "status", "link", "multiplicity", "frequency_hz", "damping_ratio")
+ARRAYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "poles": ((MODE,), _ROOTS),
+    "zeros": ((MODE,), _ROOTS),
+    "response": ((FREQUENCY,), ("re", "im")),
+    "margins": ((), (*MARGINS, "stable")),
+}
+"""By what is swept: the axis that arrays have besides those of points, and their names."""
 
 
 def archive(arrays: Mapping[str, Array]) -> bytes:
@@ -266,6 +275,13 @@ def _texts_joined(dims: tuple[str, ...], values: Array) -> tuple[tuple[str, ...]
 
 
 def _sweep(attributes: Mapping[str, str], arrays: list[Labelled], coordinates: set[str]) -> Sweep:
+    """Return a sweep, with every array that one of its kind has, in its shape.
+
+    Raises
+    ------
+    ValueError
+        With what is missing or does not fit.
+    """
     sizes: dict[str, int] = {}
     for each in arrays:
         for dim, size in zip(each.dims, each.values.shape, strict=True):
@@ -277,5 +293,21 @@ def _sweep(attributes: Mapping[str, str], arrays: list[Labelled], coordinates: s
         tuple(each for each in arrays if each.name in coordinates),
         tuple(each for each in arrays if each.name not in coordinates),
     )
-    found["point_status"]
+    known = {each.name: each for each in (*found.coordinates, *found.variables)}
+    if found.of not in ARRAYS or "point_status" not in known:
+        message = f"it holds no {found.of[:40] or 'results'} with their status"
+        raise ValueError(message)
+    own, names = ARRAYS[found.of]
+    points = known["point_status"].dims
+    swept = found.attribute("parameters").split()
+    expected = {name: (points + own, "fiub") for name in names} | {dim: ((dim,), "fiu") for dim in own}
+    expected |= {"point_status": (points, "fiu"), "code": (points, "U")}
+    expected |= {name: ((DRAW,) if (name,) != known[name].dims else (name,), "fiu") for name in swept}
+    for name, (dims, kinds) in expected.items():
+        if name not in known or known[name].dims != dims or known[name].values.dtype.kind not in kinds:
+            message = f"'{name[:40]}' is missing, or of another shape or kind"
+            raise ValueError(message)
+    if not set(points) <= {*swept, DRAW} or 0 in known["point_status"].values.shape:
+        message = "its axes are no parameters, or empty"
+        raise ValueError(message)
     return found

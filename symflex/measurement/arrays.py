@@ -87,7 +87,7 @@ def responses_of(arrays: Mapping[str, np.ndarray], name: str, stem: str) -> tupl
     Raises
     ------
     DataError
-        SF602 arrays missing or of the wrong shape; SF603, SF604, SF605 values.
+        SF602 arrays missing or of the wrong shape; SF603, SF604 values; SF605 none, or too few.
 
     Examples
     --------
@@ -168,6 +168,8 @@ def _rows(array: np.ndarray, size: int, name: str, what: str) -> np.ndarray:
         shape = " x ".join(map(str, array.shape))
         message = f"'{name}': {what} has the shape {shape}, and there are {size} frequencies"
         raise DataError(Diagnostic("SF602", message, None, _HINT))
+    if not len(table):
+        raise DataError(Diagnostic("SF605", f"'{name}': {what} is empty"))
     if len(table) > MAX_RESPONSES:
         raise DataError(Diagnostic("SF607", f"'{name}' holds more than {MAX_RESPONSES} responses"))
     return table

@@ -81,6 +81,8 @@ class ByteReader:
         dtype = np.dtype(self.order + kind)
         count = prod(shape)
         if not count:
+            if max(shape) > len(self.data):  # nothing is there, and yet it would be walked through
+                raise ValueError(CUT)
             return np.empty(tuple(shape), dtype)
         taken = self.take(count * dtype.itemsize)
         if dtype.kind == "U":

@@ -29,6 +29,9 @@ _TEXT_4 = 1
 _NAME_LIMIT = 63
 """Characters of a name in MATLAB."""
 VARIABLES_LIMIT: Final = 10_000
+"""Also of cells, and of lines of a text."""
+TEXT_LIMIT = 1000
+"""Characters of a line: of texts, numpy gives each the room of the longest."""
 _OTHER: Final[npt.NDArray[Any]] = np.empty(0, object)
 """What stands for a structure, a sparse matrix and the like, whose content nobody asks for."""
 
@@ -76,7 +79,9 @@ def read_variables(data: bytes, limit: int) -> Arrays:
         raise ValueError(message)
     reader = ByteReader(memoryview(data)[_HEADER:], order)
     found: Arrays = {}
-    while reader.left:
+    for _ in range(VARIABLES_LIMIT + 1):
+        if not reader.left:
+            return found
         kind, content = _element(reader)
         if kind == _COMPRESSED:
             stream = zlib.decompressobj()
@@ -87,12 +92,10 @@ def read_variables(data: bytes, limit: int) -> Arrays:
             if not stream.eof:
                 raise ValueError(CUT)
             kind, content = _element(ByteReader(inflated, order))
-        if len(found) >= VARIABLES_LIMIT:
-            raise OverflowError
         if kind == _MATRIX:
             name, array = _matrix(ByteReader(content, order), are_cells_read=True)
             found[name] = array
-    return found
+    raise OverflowError
 
 
 def _element(reader: ByteReader) -> tuple[int, memoryview]:
@@ -121,6 +124,8 @@ def _matrix(reader: ByteReader, *, are_cells_read: bool) -> tuple[str, npt.NDArr
             inner, content = _element(reader)
             if inner == _MATRIX and content:
                 cells.append(_matrix(ByteReader(content, reader.order), are_cells_read=False)[1])
+                if len(cells) > VARIABLES_LIMIT:
+                    raise OverflowError
         is_text = all(cell.dtype.kind == "U" and cell.size == 1 for cell in cells)
         return name, np.array([str(cell.item()) for cell in cells]) if cells and is_text else _OTHER
     if kind not in _NUMERIC:
@@ -162,17 +167,21 @@ def _lines(kind: int, content: memoryview, order: str, shape: list[int]) -> npt.
     rows = shape[0] if shape else 0
     if not text:
         return np.array("")
+    if rows > VARIABLES_LIMIT:
+        raise OverflowError
     if rows < 1 or len(text) % rows:
         message = "text does not fill its lines"
         raise ValueError(message)
-    return np.squeeze(np.array([text[row::rows].rstrip(" \0") for row in range(rows)]))
+    return np.squeeze(np.array([text[row : rows * TEXT_LIMIT : rows].rstrip(" \0") for row in range(rows)]))
 
 
 def _version_4(data: bytes) -> Arrays:
     found: Arrays = {}
     order = "<" if int.from_bytes(data[:4], "little") < 5000 else ">"  # noqa: PLR2004 - MOPT, 0 to 4052
     reader = ByteReader(data, order)
-    while reader.left:
+    for _ in range(VARIABLES_LIMIT + 1):
+        if not reader.left:
+            return found
         mopt, rows, columns, is_complex, length = (reader.integer("i4") for _ in range(5))
         kind, text = mopt // 10 % 10, mopt % 10
         if not 0 <= mopt < 5000 or kind >= len(_STORED_4) or length < 1:  # noqa: PLR2004
@@ -183,13 +192,14 @@ def _version_4(data: bytes) -> Arrays:
         values = reader.numbers(_STORED_4[kind], shape, "F")
         if is_complex == 1:
             values = _complex(values, reader.numbers(_STORED_4[kind], shape, "F"))
-        if len(found) >= VARIABLES_LIMIT:
-            raise OverflowError
         if text == _TEXT_4:
+            if rows > VARIABLES_LIMIT:
+                raise OverflowError
+            values = values[:, :TEXT_LIMIT]
             is_character = (values.real >= 0) & (values.real < SURROGATES[0])
             codes = np.where(is_character, values.real, ord("?")).astype(np.uint32)
             lines = ["".join(map(chr, row)).rstrip(" \0") for row in codes.tolist()]
             found[name] = np.squeeze(np.array(lines))
         else:
             found[name] = _OTHER if text else np.squeeze(values)
-    return found
+    raise OverflowError

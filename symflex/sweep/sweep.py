@@ -238,7 +238,8 @@ def _roots(design: Design, rows: Rows, between: Between | None) -> tuple[list[Na
     """Return the arrays of roots, sorted by the names of modes, and how many modes there are."""
     s = rows["re"] + 1j * rows["im"]
     names = follow(s, rows["family"].astype(np.int64), predecessors(design), between)
-    shape = (design.count, names.modes)
+    modes_kept = max(names.modes, 1)  # one that is absent everywhere: formats and readers know no empty axis
+    shape = (design.count, modes_kept)
     points, places = np.nonzero(names.mode >= 0)
     modes = names.mode[points, places]
 
@@ -262,7 +263,7 @@ def _roots(design: Design, rows: Rows, between: Between | None) -> tuple[list[Na
         ("damping_ratio", own, ratio + 0.0, "", "damping ratio"),
         ("at_zero", (), rows["at_zero"], "", "multiplicity of the root at s = 0"),
     ]
-    return found, names.modes
+    return found, modes_kept
 
 
 def _margin_names() -> list[tuple[str, str, str]]:

@@ -1,0 +1,30 @@
+"""Measured responses in MATLAB files."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import scipy.io
+
+from symflex.measurement.arrays import read_mat
+from tests.fuzz.measured import RESPONSE, answered
+
+ROOMS = ("symflex.measurement",)
+
+
+def seeds():
+    """Return files of both formats, compressed and not."""
+    arrays = {"f": RESPONSE.frequency_hz, "H": RESPONSE.values, "coherence": RESPONSE.coherence, "tf": "X/F"}
+    found = []
+    for form, is_compressed in (("4", False), ("5", False), ("5", True)):
+        buffer = io.BytesIO()
+        more = {"tf": np.array(["X/F"], object), "s": {"a": 1}} if form == "5" else {}
+        scipy.io.savemat(buffer, arrays | more, format=form, do_compression=is_compressed)
+        found.append(buffer.getvalue())
+    return found
+
+
+def run(data):
+    """Read a file."""
+    answered(read_mat, data)

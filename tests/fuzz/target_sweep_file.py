@@ -1,0 +1,56 @@
+"""Results of sweeps in netCDF and numpy archives."""
+
+from __future__ import annotations
+
+import tempfile
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+
+from symflex import pipeline
+from symflex.emit.sweep_files import netcdf_bytes, npz_bytes, read_sweep
+from symflex.emit.sweep_text import sweep_json, sweep_text
+from symflex.errors import SymflexError
+from symflex.sweep import read_design
+from tests.fuzz.target_numpy_archive import packed, unpacked
+
+ROOMS = ("symflex.measurement", "symflex.emit.sweep_files", "symflex.emit.sweep_text", "symflex.sweep")
+MODEL = """
+symflex = 1
+parameters = { m = "1 kg", c = "1 N*s/m", k = "4 N/m", K = "1 N/m" }
+elements.b = { type = "mass", at = "x", m = "m" }
+elements.d = { type = "damper", between = ["x", "ground"], b = "c" }
+elements.k = { type = "spring", between = ["x", "ground"], k = "k" }
+elements.a = { type = "force_source", at = "x", f = "K*(F - x)" }
+inputs.F = {}
+outputs.X = "x"
+"""
+
+
+def seeds():
+    """Return small sweeps of every kind in both formats."""
+    model = pipeline.loads(MODEL)
+    design = read_design(model.parameters, ["k=1,2"])
+    found = []
+    for of, frequencies in (("poles", ()), ("zeros", ()), ("response", (0.1, 1.0)), ("margins", ())):
+        task = pipeline.sweep_task(
+            model, ("X", "F"), design, of, None, frequencies, "K" if of == "margins" else ""
+        )
+        sweep = pipeline.sweep(task, design)
+        found += [netcdf_bytes(sweep), unpacked(npz_bytes(sweep))]
+    return found
+
+
+@cache
+def place():
+    """Return a file to write to."""
+    return Path(tempfile.mkdtemp()) / "a.nc"
+
+
+def run(data):
+    """Read a file; what is read can be told in words and as JSON."""
+    place().write_bytes(data if data[:3] == b"CDF" else packed(data))
+    with suppress(SymflexError):
+        sweep = read_sweep(place())
+        sweep_text(sweep, 80)
+        sweep_json(sweep)
