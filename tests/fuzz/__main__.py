@@ -15,7 +15,7 @@ from tests.fuzz import TARGETS
 from tests.fuzz.engine import UNGUIDED
 
 COUNT = re.compile(r"stat::number_of_executed_units:\s*(\d+)")
-STARTING_SECONDS = 120
+STARTING_SECONDS = 240
 """What a target may take beyond its time: for its seeds, which are made before."""
 
 

@@ -14,6 +14,13 @@ from importlib import import_module
 from pathlib import Path
 
 UNGUIDED = "--unguided"
+LIMITS = (
+    "-timeout=120",
+    "-report_slow_units=120",
+    "-rss_limit_mb=2000",
+    "-max_len=5000",
+    "-print_final_stats=1",
+)
 
 
 def main(arguments):
@@ -45,8 +52,7 @@ def main(arguments):
     corpus.mkdir(exist_ok=True)
     for i, seed in enumerate(target.seeds()):
         (corpus / f"seed-{i}").write_bytes(seed)
-    limits = ["-timeout=60", "-rss_limit_mb=2000", "-print_final_stats=1", "-max_len=5000"]
-    atheris.Setup([target_name, *limits, *options, f"-artifact_prefix={folder}/", str(corpus)], one)
+    atheris.Setup([target_name, *LIMITS, *options, f"-artifact_prefix={folder}/", str(corpus)], one)
     atheris.Fuzz()
 
 
