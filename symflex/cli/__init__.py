@@ -121,6 +121,12 @@ def run(arguments: list[str] | None = None, *, is_program: bool = False) -> int:
     except click.exceptions.Abort:
         click.echo("stopped", err=True)
         return 130
+    except OSError as error:  # of click's own texts; commands see to theirs
+        from symflex.cli.reporting import note, silence
+
+        silence(sys.stdout)
+        note(f"error[SF903]: cannot write to standard output: {error.strerror}")
+        return 2
     except click.ClickException as problem:
         from symflex.cli.reporting import say  # most commands go well
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 import os
 import sys
+from contextlib import suppress
 from functools import wraps
-from typing import TYPE_CHECKING, ParamSpec
+from typing import TYPE_CHECKING, ParamSpec, TextIO
 
 import click
 
-from symflex.errors import Diagnostic, SymflexError
+from symflex.errors import Diagnostic, SymflexError, UsageError
 from symflex.errors.diagnostic import printable
 
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ def reporting(command: Callable[P, int | None]) -> Callable[P, int]:
             return 5
         except BrokenPipeError:
             # The reader of a pipe went away; nothing is left to tell it, neither now nor at exit.
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            silence(sys.stdout)
             return 0
 
     return run
@@ -71,7 +72,7 @@ def show(diagnostics: Iterable[Diagnostic]) -> None:
         if colours():
             colour = "red" if diagnostic.severity == "error" else "yellow"
             text = text.replace(diagnostic.mark, click.style(diagnostic.mark, fg=colour, bold=True), 1)
-        click.echo(text, err=True)
+        _print(text, err=True)
 
 
 def load(spec: str, allow_outside: tuple[str, ...] = (), settings: Mapping[str, str] | None = None) -> Model:
@@ -84,8 +85,33 @@ def load(spec: str, allow_outside: tuple[str, ...] = (), settings: Mapping[str, 
 
 
 def say(text: str, *, nl: bool = True, err: bool = False) -> None:
-    """Print a text; what could drive a terminal is escaped, wherever it came from."""
-    click.echo(printable(text, LAYOUT), nl=nl, err=err)
+    """Print a text; what could drive a terminal is escaped, wherever it came from.
+
+    Raises
+    ------
+    UsageError
+        SF903 when standard output cannot be written: a full disk. Of standard error nobody can be told.
+    """
+    _print(printable(text, LAYOUT), nl=nl, err=err)
+
+
+def _print(text: str, *, nl: bool = True, err: bool = False) -> None:
+    try:
+        click.echo(text, nl=nl, err=err)
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        silence(sys.stderr if err else sys.stdout)
+        if not err:
+            message = f"cannot write to standard output: {error.strerror or 'input/output error'}"
+            raise UsageError(Diagnostic("SF903", message)) from None
+
+
+def silence(stream: TextIO) -> None:
+    """Let what a stream still holds, and cannot write, go nowhere, also when the interpreter ends."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+        stream.flush()
 
 
 def note(message: str) -> None:
@@ -96,7 +122,7 @@ def note(message: str) -> None:
 def emit_json(document: Mapping[str, object]) -> None:
     """Print a document as JSON to stdout; what could drive a terminal is escaped."""
     text = json.dumps(document, indent=2, ensure_ascii=False)
-    click.echo("".join(c if c.isprintable() or c == "\n" else json.dumps(c)[1:-1] for c in text))
+    _print("".join(c if c.isprintable() or c == "\n" else json.dumps(c)[1:-1] for c in text))
 
 
 def diagnostic_json(diagnostic: Diagnostic) -> dict[str, object]:
