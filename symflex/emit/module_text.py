@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symflex.emit.forms import print_form
+from symflex.emit.latex.table import decimal_text, rational_value
 from symflex.emit.program import inert, nearest_double, wrapped
 from symflex.expressions import Number, Quotient, format_expression
 from symflex.transfer import NestedTransferFunction
@@ -108,7 +109,30 @@ def described(parameter: Parameter, name: str) -> str:
     parts = [inert(parameter.doc).rstrip(".")] if parameter.doc.strip() else []
     parts += [f"'{inert(parameter.name)}' in the model"] if name != parameter.name else []
     text = f"{', '.join(parts) or 'parameter of the model'}"
-    return f"{text} [{inert(parameter.unit)}]." if parameter.unit else f"{text}."
+    text = f"{text} [{inert(parameter.unit)}]." if parameter.unit else f"{text}."
+    written = value_as_written(parameter)
+    return f"{text} {inert(written)} in the model." if written else text
+
+
+def value_as_written(parameter: Parameter) -> str:
+    """Return a value in the unit it was written in, empty where that is the SI unit of the code.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... parameters = {E = "70 GPa", l = "2 m"}
+    ... inputs.u = {}
+    ... outputs.y = "E*l*u"
+    ... ''')
+    >>> [value_as_written(p) for p in model.parameters]
+    ['70 GPa', '']
+    """
+    value, unit = parameter.as_written()
+    if value is None or unit in (parameter.unit, ""):
+        return ""
+    return f"{decimal_text(rational_value(value))} {unit}"
 
 
 def default_value(parameter: Parameter) -> str:

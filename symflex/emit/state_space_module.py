@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from symflex.emit.module_text import default_value
+from symflex.emit.module_text import default_value, value_as_written
 from symflex.emit.numpy_expression import WIDTH, Printer, statement
 from symflex.emit.program import (
     Add,
@@ -314,7 +314,9 @@ class _Module:
         described = [inert(parameter.doc).rstrip(".")] if parameter.doc.strip() else []
         described += [f"'{inert(parameter.name)}' in the model"] if name != parameter.name else []
         text = f"{', '.join(described) or 'parameter of the model'}"
-        return text + (f" [{inert(parameter.unit)}]." if parameter.unit else ".")
+        text += f" [{inert(parameter.unit)}]." if parameter.unit else "."
+        written = value_as_written(parameter)
+        return f"{text} {inert(written)} in the model." if written else text
 
 
 def _table(name: str, rows: Sequence[tuple[str, str, str]]) -> str:

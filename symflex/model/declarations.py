@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, cast
 from symflex.errors import Diagnostic, SpecError, Text
 from symflex.expressions import Expression, Name, names
 from symflex.model.labels import check_label
-from symflex.model.model import Assumption, Definition, ExactValue, Parameter
+from symflex.model.model import ONE, Assumption, Definition, ExactValue, Parameter
 from symflex.model.reading import Reader
 from symflex.model.scope import RESERVED
 from symflex.quantities import DIMENSIONLESS, Quantity, parse_unit, unit_of
@@ -68,13 +68,35 @@ class DeclaredParameter:
         if measured is not None and (self.quantity is None or reading is Reading.TURNED or not implied_unit):
             unit = _unit_text(measured, reading)
         cycles = measured.cycles if measured is not None and reading is not Reading.CONVERTED else 0
-        return Parameter(self.name, value, unit, self.assume, self.latex, self.doc, self.span, cycles)
+        written = self.quantity.unit if self.quantity is not None else self.unit_text
+        if measured is not None and measured.cycles != cycles:
+            written = ""
+        return Parameter(
+            self.name,
+            value,
+            unit,
+            self.assume,
+            self.latex,
+            self.doc,
+            self.span,
+            cycles,
+            written_unit=written,
+            scale=_scale(written),
+        )
 
 
 def one_of(unit_text: str) -> Quantity:
     """Return the SI unit of the same kind as a unit, with its cycles and radians."""
     unit = unit_of(unit_text)
     return Quantity(Fraction(1), 0, unit.cycles, unit.dimension, unit.radians, unit_text)
+
+
+def _scale(written: str) -> ExactValue:
+    """Return what one of a unit is in SI."""
+    if not written:
+        return ONE
+    unit = unit_of(written)
+    return ExactValue(unit.scale, unit.pi_power)
 
 
 def _unit_text(quantity: Quantity, reading: Reading) -> str:

@@ -6,14 +6,13 @@ Every noun here is pure data made by :func:`symflex.model.resolve`; positions do
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from fractions import Fraction
+from typing import TYPE_CHECKING, Final, Literal
 
 from symflex.elements import LineElement
 from symflex.quantities import Dimension
 
 if TYPE_CHECKING:
-    from fractions import Fraction
-
     from symflex.blocks import Block as BlockType
     from symflex.elements import Element, Placing, Variable
     from symflex.errors import Diagnostic, Span
@@ -28,6 +27,9 @@ class ExactValue:
 
     rational: Fraction
     pi_power: int = 0
+
+
+ONE: Final = ExactValue(Fraction(1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +50,10 @@ class Parameter:
         Label and description; empty when not given.
     cycles : int
         Exponent of the cycle in what ``value`` counts: 1 for Hz, 0 for rad/s.
+    written_unit : str
+        The unit as it was declared; empty when it was not, or when its cycles are meant as radians.
+    scale : ExactValue
+        What one of that unit is in the unit of ``value``.
     """
 
     name: str
@@ -58,6 +64,26 @@ class Parameter:
     doc: str = ""
     span: Span | None = field(default=None, compare=False, repr=False)
     cycles: int = 0
+    written_unit: str = ""
+    scale: ExactValue = ONE
+
+    def as_written(self, value: ExactValue | None = None) -> tuple[ExactValue | None, str]:
+        """Return a value, by default the parameter's own, in the unit that was written, with that unit.
+
+        Examples
+        --------
+        >>> E = Parameter("E", ExactValue(Fraction(70 * 10**9)), "Pa", written_unit="GPa",
+        ...               scale=ExactValue(Fraction(10**9)))
+        >>> E.as_written()
+        (ExactValue(rational=Fraction(70, 1), pi_power=0), 'GPa')
+        """
+        known = self.value if value is None else value
+        if not self.written_unit:
+            return known, self.unit
+        if known is None:
+            return None, self.written_unit
+        of_pi = known.pi_power - self.scale.pi_power if known.rational else 0
+        return ExactValue(known.rational / self.scale.rational, of_pi), self.written_unit
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,14 @@ from typing import TYPE_CHECKING
 from symflex.emit.c.functions import Functions
 from symflex.emit.c.names import KEYWORDS, RESERVED
 from symflex.emit.c.support import support
-from symflex.emit.module_text import COST, ITERATED, default_value, formula_lines, origin_lines
+from symflex.emit.module_text import (
+    COST,
+    ITERATED,
+    default_value,
+    formula_lines,
+    origin_lines,
+    value_as_written,
+)
 from symflex.emit.program import Piecewise, Verification, choose_programs, identifiers, inert, wrapped
 from symflex.emit.program.calls import RuntimeCalls
 from symflex.errors import Diagnostic, UsageError
@@ -327,7 +334,9 @@ class _Files:
     def _defaults(self) -> str:
         lines = [f"const {self.structure} {self.prefix}_defaults = {{"]
         for parameter in self.model.parameters:
-            lines.append(f"    .{self.members[parameter.name]} = {default_value(parameter) or 'NAN'},")
+            entry = f"    .{self.members[parameter.name]} = {default_value(parameter) or 'NAN'},"
+            written = value_as_written(parameter)
+            lines.append(f"{entry} /* {_harmless(inert(written))} */" if written else entry)
         if not self.model.parameters:
             lines.append("    0")
         return "\n".join([*lines, "};"]) + "\n"

@@ -34,10 +34,11 @@ def bound_html(bound: BoundTransferFunction) -> str:
         (
             f"${escape_label(labels[name])}$" if name in labels else "",
             f"<code>{escape_html(name)}</code>",
-            decimal_text(rational_value(value)),
-            escape_html(parameters[name].unit if name in parameters and parameters[name].unit != "1" else ""),
+            decimal_text(rational_value(value if shown is None else shown)),
+            escape_html("" if unit == "1" else unit),
         )
         for name, value in bound.values
+        for shown, unit in (parameters[name].as_written(value) if name in parameters else (value, ""),)
     ]
     if rows:
         lines.append(html_table(("Symbol", "Name", "Value", "Unit"), (TEXT, TEXT, NUMBER, TEXT), rows))

@@ -35,7 +35,7 @@ def model_html(model: Model) -> str:
                 f"${escape_label(labels[p.name])}$",
                 f"<code>{escape_html(p.name)}</code>",
                 _value(p),
-                escape_html("" if p.unit == "1" else p.unit),
+                escape_html("" if p.as_written()[1] == "1" else p.as_written()[1]),
                 _cut(p.doc),
             )
             for p in model.parameters
@@ -55,7 +55,8 @@ def escape_label(latex: str) -> str:
 
 
 def _value(parameter: Parameter) -> str:
-    return "symbolic" if parameter.value is None else decimal_text(rational_value(parameter.value))
+    value, _ = parameter.as_written()
+    return "symbolic" if value is None else decimal_text(rational_value(value))
 
 
 def _cut(text: str) -> str:

@@ -274,8 +274,8 @@ def _heading(model: Model) -> str:
 
 def _about_values(model: Model) -> str:
     if all(p.value is None for p in model.parameters):
-        return "All parameters are symbolic; units are SI units."
-    return f"Values are in SI units, with {VALUE_DIGITS} significant digits where they are not shorter."
+        return "All parameters are symbolic."
+    return f"Values have {VALUE_DIGITS} significant digits where they are not shorter."
 
 
 def _introduction(tf: AnyTransferFunction) -> str:

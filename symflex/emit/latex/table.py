@@ -53,7 +53,7 @@ _FREQUENCY_BITS: Final = 256
 
 
 def parameter_table(model: Model, *, width_mm: float = COLUMNS_MM["a4"]) -> str:
-    r"""Return the table of a model's parameters: symbol, meaning, value in SI units.
+    r"""Return the table of a model's parameters: symbol, meaning, value in the unit it was given in.
 
     Values that are not short decimals are rounded to :data:`VALUE_DIGITS` significant digits; a parameter
     without a value is called symbolic. Needs booktabs, siunitx and array.
@@ -248,18 +248,19 @@ def _cut(text: str) -> str:
 
 
 def _value(parameter: Parameter) -> str:
-    if parameter.value is None:
-        unit = parameter.unit
+    value, unit = parameter.as_written()
+    if value is None:
         return f"symbolic, in {unit_latex(unit)}" if unit and unit != "1" else "symbolic"
-    return quantity_latex(decimal_text(rational_value(parameter.value)), parameter.unit)
+    return quantity_latex(decimal_text(rational_value(value)), unit)
 
 
 def _value_width(parameter: Parameter) -> float:
-    unit = "" if parameter.unit == "1" else parameter.unit
-    width = text_width(unit) * (1.0 if siunitx_unit(parameter.unit) is None else 1.1) + 0.4
-    if parameter.value is None:
+    value, written = parameter.as_written()
+    unit = "" if written == "1" else written
+    width = text_width(unit) * (1.0 if siunitx_unit(written) is None else 1.1) + 0.4
+    if value is None:
         return text_width("symbolic, in ") + width
-    return number_width(decimal_text(rational_value(parameter.value))) + width
+    return number_width(decimal_text(rational_value(value))) + width
 
 
 def rational_value(value: ExactValue) -> Fraction:

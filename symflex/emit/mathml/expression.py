@@ -268,6 +268,8 @@ def _inner_styles(node: Expression, style: Style) -> tuple[Style, ...]:
             return style, Style.INLINE
         case Call(name="exp", argument=argument) if is_short(argument):
             return (Style.INLINE,)
+        case Call(name=name, argument=Quotient(denominator=Number())) if name in _TRIGONOMETRIC:
+            return (Style.INLINE,)
         case _:
             return (style,) * len(node.children)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from symflex.emit.latex import model_labels, parameter_table
 from symflex.emit.latex.table import decimal_text, rational_value
 from symflex.emit.mathml import label_mathml
-from symflex.report.document import Code, Mathematics, Table, columns, text
+from symflex.report.document import Code, Mathematics, Table, columns
 from symflex.report.numerals import exponents, unit_text
 from symflex.report.part import Part
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def parameter_section(study: Study) -> Part | None:
-    """Return the table of parameters: symbol, value in SI units, meaning."""
+    """Return the table of parameters: symbol, value in the unit it was given in, meaning."""
     model = study.model
     if not model.parameters:
         return None
@@ -25,8 +25,9 @@ def parameter_section(study: Study) -> Part | None:
     rows: list[tuple[Cell, ...]] = []
     for p in model.parameters:
         symbol = Mathematics(label_mathml(p.name, labels), labels[p.name])
-        value = "symbolic" if p.value is None else exponents(decimal_text(rational_value(p.value)))
-        rows.append(((symbol,), (Code(p.name),), (value,), (unit_text(p.unit),), (p.doc,)))
+        exact, unit = p.as_written()
+        value = "symbolic" if exact is None else exponents(decimal_text(rational_value(exact)))
+        rows.append(((symbol,), (Code(p.name),), (value,), (unit_text(unit),), (p.doc,)))
     heads = columns(("Symbol", "plain"), ("Name", "plain"), ("Value", "number"), ("Unit", "plain"), "Meaning")
     table = Table(heads, tuple(rows), latex=parameter_table(model))
-    return Part("Parameters", (text("In SI units."), table))
+    return Part("Parameters", (table,))
