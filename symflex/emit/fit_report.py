@@ -72,7 +72,7 @@ def fit_text(fit: Fit, width: int = 80, shapes: FittedModeShapes | None = None) 
             mark = " <" if s.count == found.count else "" if s.is_usable else f" {s.status}"
             numbers = f"{s.bic:10.1f}   {s.aicc:10.1f}   {sqrt(s.reduced):8.4g}"
             lines.append(f"  {s.count:10d}   {s.parameters:10d}   {numbers}{mark}")
-        told = ["did not fail"] + ["are not weak (a damping ratio lost in its error)"] * any(
+        told = ["did not fail"] + ["are not weak (a resonance lost in noise)"] * any(
             s.status == "weak" for s in fit.scores
         )
         words = f"chosen by {fit.criterion.upper()}, the lowest of those that {' and '.join(told)}"

@@ -17,7 +17,7 @@ from symflex.fitting.rational_start import poles_from_aaa, poles_from_vector_fit
 from symflex.fitting.resonances import Resonances
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     import numpy.typing as npt
 
@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 
 CRITERIA = ("bic", "aicc")
 MOST_MODES = 12
-PATIENCE = 1
+PATIENCE, MORE_PATIENCE = 1, 3
+"""Numbers of resonances tried after the best: where the noise is nearly reached, and where it is far."""
 QUICK_STEPS = 25
 EXPLAINED = 1.15
 WEAK = 0.5
@@ -87,7 +88,8 @@ class Score:
     reduced : float
         The sum of squares per degree of freedom.
     status : str
-        ``usable``; ``failed`` when the fit did; ``weak`` when it has a damping ratio lost in its own error.
+        ``usable``; ``failed`` when the fit did; ``weak`` when it has a damping ratio lost in its own error,
+        or strong evidence for one resonance more is missing.
     """
 
     count: int
@@ -103,25 +105,22 @@ class Score:
         return self.status == "usable"
 
 
-def _from_peaks(problem: FitProblem, count: int) -> list[Resonances]:
+def _from_peaks(problem: FitProblem, count: int) -> Iterator[Resonances]:
     """Return the start of the paper, and what linear least squares put over its poles."""
     slopes = problem.slopes
     if len(slopes) > 1:
         slopes = tuple(slope for slope in (problem.guessed_slope(),) if slope in problem.slopes) or slopes[:1]
     start = start_from_peaks(problem.with_slope(slopes[0]), count)
     if start is None:
-        return []
-    start = replace(
-        start,
-        slope=np.full(start.responses, slopes[0]),
-        delay=np.array(problem.delays),
-    )
+        return
+    start = replace(start, slope=np.full(start.responses, slopes[0]), delay=np.array(problem.delays))
+    yield start
     poles = start.omega_p * (-start.zeta_p + 1j * np.sqrt(1 - start.zeta_p**2))
-    return [start, *_over(problem, [poles, relocated(problem, poles)])]
+    yield from _over(problem, [poles, relocated(problem, poles)])
 
 
-def _over(problem: FitProblem, choices: list[Complex]) -> list[Resonances]:
-    found: list[Resonances] = []
+def _over(problem: FitProblem, choices: list[Complex]) -> Iterator[Resonances]:
+    """Return the likely functions over each choice of poles; where s has a known power, one for each."""
     known: list[Complex] = []
     for poles in choices:
         if any(
@@ -129,11 +128,10 @@ def _over(problem: FitProblem, choices: list[Complex]) -> list[Resonances]:
         ):
             continue
         known.append(poles)
-        found += over_poles(problem, poles, MOST_NUMERATORS)
-    return found
+        yield from over_poles(problem, poles, MOST_NUMERATORS if len(problem.slopes) > 1 else 1)
 
 
-STARTS: Mapping[str, Callable[[FitProblem, int], list[Resonances]]] = {
+STARTS: Mapping[str, Callable[[FitProblem, int], Iterator[Resonances]]] = {
     "peaks": _from_peaks,
     "vector": lambda problem, count: _over(problem, poles_from_vector_fitting(problem, count)),
     "aaa": lambda problem, count: _over(problem, poles_from_aaa(problem, count)),
@@ -176,7 +174,10 @@ def best_of_starts(
             met.append(refined)
             if best is None or _is_better(problem, found, best):
                 best = found
-        if best is not None and best.failure is None and _is_explained(problem, best.refined):
+            # Where the power of s is open, another may explain the lines as well.
+            if len(problem.slopes) == 1 and _is_enough(problem, best):
+                break
+        if best is not None and _is_enough(problem, best):
             break
     if best is None:
         return None
@@ -213,7 +214,9 @@ def chosen_order(
         usable = [_value(s, criterion) for s in scores[:-1] if s.is_usable]
         is_lower = scores[-1].is_usable and _value(scores[-1], criterion) < min(usable)
         worse = 0 if is_lower else worse + 1
-        if worse > PATIENCE:
+        # Fewer resonances than there are may be no better than none, each with something large left over.
+        is_near = min(s.reduced for s in scores) < FAR_BETTER or not problem.is_noise_estimated
+        if worse > (PATIENCE if is_near else MORE_PATIENCE):
             break
     weak: tuple[Score, Candidate] | None = None
     failed: list[tuple[Score, Diagnostic]] = []
@@ -236,7 +239,7 @@ def chosen_order(
         if best.failure is not None:
             failed.append((score, best.failure))
             scores = _marked(scores, score.count, "failed")
-        elif _is_weak(best.refined):
+        elif _is_weak(best.refined) or not _is_founded(scores, score, criterion):
             weak = weak or (score, best)
             scores = _marked(scores, score.count, "weak")
         else:
@@ -254,6 +257,12 @@ def _preferred(score: Score, failure: Diagnostic, *, problem_has_base: bool) -> 
     known = "check --base" if problem_has_base else "give what is known of the system with --base"
     hint = f"{known}, or a number with --modes"
     return Diagnostic(failure.code, message, None, hint)
+
+
+def _is_founded(scores: Sequence[Score], score: Score, criterion: str) -> bool:
+    """Return whether there is strong evidence for so many: one more may have found its place in the noise."""
+    fewer = [_value(s, criterion) for s in scores if s.count < score.count and s.status != "failed"]
+    return not fewer or _value(score, criterion) < min(fewer) - CLEAR
 
 
 def _is_weak(refined: Refined) -> bool:
@@ -383,6 +392,10 @@ def _signs_tried(problem: FitProblem, best: Candidate) -> Candidate:
             if _is_better(problem, found, best):
                 best = found
     return best
+
+
+def _is_enough(problem: FitProblem, best: Candidate) -> bool:
+    return best.failure is None and _is_explained(problem, best.refined)
 
 
 def _is_explained(problem: FitProblem, refined: Refined) -> bool:

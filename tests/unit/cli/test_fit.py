@@ -79,6 +79,40 @@ def test_a_fit_without_base_is_a_specification_of_its_own(oscillator):
     assert oscillator("export", "one.toml", "--to", "numpy").code == 0
 
 
+def test_a_poor_fit_says_so_first_and_strict_makes_it_exit_code_4(oscillator):
+    f = np.arange(2.0, 60.0, 0.25)
+    noise = np.random.default_rng(1).standard_normal((2, f.size)) * 0.02
+    h = 1 / ((1 + 0.04j * f / 20 - (f / 20) ** 2) * (1 + 0.04j * f / 30 - (f / 30) ** 2))
+    h = h * (1 + noise[0] + 1j * noise[1])
+    rows = [f"{a},{b.real!r},{b.imag!r}" for a, b in zip(f.tolist(), h.tolist(), strict=True)]
+    (oscillator.folder / "two.csv").write_text("\n".join(["f,re,im", *rows]) + "\n")
+    done = oscillator("fit", "two.csv", "--modes", "1")
+    assert done.code == 0
+    assert done.out.startswith("POOR FIT: ")
+    document = oscillator("fit", "two.csv", "--modes", "1", "--json").json
+    assert document["poor"] is True
+    assert document["poor_because"]
+    strict = oscillator("fit", "two.csv", "--modes", "1", "--strict", "-o", "poor.toml")
+    assert (strict.code, strict.out) == (4, "")
+    assert "SF618" in strict.err
+    assert not (oscillator.folder / "poor.toml").exists()
+    assert oscillator("fit", "two.csv", "--modes", "2", "--strict").code == 0
+
+
+def test_a_fitted_delay_is_written_and_taken_by_check_derive_and_roots(oscillator):
+    lines = (oscillator.folder / "one.csv").read_text().splitlines()
+    table = np.array([[float(x) for x in line.split(",")] for line in lines[1:]])
+    h = (table[:, 1] + 1j * table[:, 2]) * np.exp(-2j * np.pi * table[:, 0] * 0.003)
+    rows = [f"{a},{b.real!r},{b.imag!r}" for a, b in zip(table[:, 0].tolist(), h.tolist(), strict=True)]
+    (oscillator.folder / "late.csv").write_text("\n".join(["f,re,im", *rows]) + "\n")
+    done = oscillator("fit", "late.csv", "--modes", "1", "--delay", "-o", "late.toml", "--json")
+    assert done.code == 0
+    assert done.json["delay_fitted"] is True
+    assert done.json["responses"][0]["delay"]["value"] == pytest.approx(0.003, rel=1e-4)
+    for command in ("check", "derive", "roots"):
+        assert oscillator(command, "late.toml").code == 0
+
+
 def test_json_has_the_documented_keys(oscillator):
     document = oscillator("fit", "one.csv", "--modes", "1", "--json").json
     assert document["schema"] == "symflex.fit/1"
