@@ -120,7 +120,7 @@ def _from_peaks(problem: FitProblem, count: int) -> Iterator[Resonances]:
 
 
 def _over(problem: FitProblem, choices: list[Complex]) -> Iterator[Resonances]:
-    """Return the likely functions over each choice of poles; where s has a known power, one for each."""
+    """Return the likely functions over each choice of poles."""
     known: list[Complex] = []
     for poles in choices:
         if any(
@@ -128,7 +128,7 @@ def _over(problem: FitProblem, choices: list[Complex]) -> Iterator[Resonances]:
         ):
             continue
         known.append(poles)
-        yield from over_poles(problem, poles, MOST_NUMERATORS if len(problem.slopes) > 1 else 1)
+        yield from over_poles(problem, poles, MOST_NUMERATORS)
 
 
 STARTS: Mapping[str, Callable[[FitProblem, int], Iterator[Resonances]]] = {
