@@ -184,7 +184,10 @@ def test_square_roots_of_every_point_of_a_disc_are_enclosed(place, count):
     is_real = place[1] == 0
     assert sum(r.multiplicity for r in found) == (2 if is_real else 4) * count
     assert all(r.certified is (count == 1) for r in found)
-    points = [p for p in points_of(z) if not (is_real and count == 1) or p.imag == 0]
+    exact_zero = is_real and count == 1
+    assert all((r.is_real or r.on_imaginary_axis) is exact_zero for r in found)
+    assert not encloses(found, acb(0))
+    points = [p for p in points_of(z) if not exact_zero or p.imag == 0]
     for point in points:
         with precision(400):
             s = point.sqrt()
