@@ -6,6 +6,7 @@ import os
 import sys
 from importlib import import_module
 from io import StringIO, TextIOWrapper
+from pathlib import Path
 
 import click
 
@@ -89,15 +90,21 @@ def main(arguments: list[str] | None = None) -> None:
     """Run the command line and exit with the documented code."""
     # The matrices of a fit are small: threads that wait for each other cost more than they compute.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:  # closed by who started the program
+            setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))
     for stream in (sys.stdout, sys.stderr):
         # A unit such as µm must not stop a command where the terminal's encoding lacks the character.
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
     code = run(arguments, is_program=True)
-    if code == BUDGET_EXCEEDED:
-        # Taking a large computation apart piece by piece would take time that is over.
+    try:
         sys.stdout.flush()
         sys.stderr.flush()
+    except OSError as problem:
+        code = _unwritable(problem)
+    if code == BUDGET_EXCEEDED:
+        # Taking a large computation apart piece by piece would take time that is over.
         os._exit(code)
     sys.exit(code)
 
@@ -134,4 +141,24 @@ def run(arguments: list[str] | None = None, *, is_program: bool = False) -> int:
         problem.show(shown)
         say(shown.getvalue(), nl=False, err=True)
         return problem.exit_code
+    except OSError as problem:
+        if problem.filename is not None:
+            raise
+        return _unwritable(problem)
     return result if isinstance(result, int) else 0
+
+
+def _unwritable(problem: OSError) -> int:
+    """Say that what a command printed could not be written, as to a full device; return the exit code."""
+    from symflex.cli.reporting import show_error  # most commands go well
+    from symflex.errors import Diagnostic, UsageError
+
+    # What is left cannot be written at exit either.
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    error = UsageError(Diagnostic("SF903", f"cannot write what is printed: {problem.strerror}"))
+    try:
+        show_error(error)
+    except OSError:
+        os.dup2(nowhere, 2)
+    return error.exit_code

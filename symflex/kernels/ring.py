@@ -115,18 +115,18 @@ def expanded_length(polynomial: fmpz_mpoly, lengths: Sequence[int]) -> int | Non
     --------
     >>> ring = Ring(("s", "x", "y"))
     >>> s, x, y = ring.context.gens()
-    >>> expanded_length(s * x + x * y, (1, 2, 3))
-    8
+    >>> expanded_length(s * x + x * y, (1, 2, 3)), expanded_length(x**60, (1, 2, 3))
+    (8, 61)
     """
     if all(length <= 1 for length, d in zip(lengths, polynomial.degrees(), strict=True) if int(d)):
         return len(polynomial)
+    if len(polynomial) <= MANY:
+        # A power of a sum has as many terms as one can choose from its own, some more than once.
+        powers = (zip(lengths, map(int, m), strict=True) for m in polynomial.monoms())
+        return sum(prod(comb(n + e - 1, e) for n, e in each if e) for each in powers)
     values = polynomial.coeffs()
-    if min(values) >= 1 and max(values) <= FEW:
-        # Every monomial counts at least once, as its coefficient is at least one.
-        return int(polynomial(*lengths))
-    if len(values) > MANY:
-        return None
-    return sum(int(prod(map(pow, lengths, map(int, m)))) for m in polynomial.monoms())
+    # Every monomial counts at least once, as its coefficient is at least one.
+    return int(polynomial(*lengths)) if min(values) >= 1 and max(values) <= FEW else None
 
 
 def check_expansion(

@@ -28,6 +28,9 @@ OVERLAP_WORTH: Final = 0.947
 SAMPLING: Final = 2.56
 """Sampling rate over the highest line, as analysers have it."""
 SENSOR_DAMPING: Final = 0.7
+LOWEST_HZ: Final = 1e-15
+HIGHEST_HZ: Final = 1e15
+"""Beyond, squares and slopes of responses leave what doubles can hold; light has 1e15 Hz."""
 MOST_SAMPLES: Final = 20_000_000
 BEYOND: Final = 6
 """Lines above the highest one shown that are excited too: a window sees that far."""
@@ -89,6 +92,9 @@ class MeasurementPlan:
             or not 0 < self.low_hz < self.high_hz
         ):
             message = "a measurement needs 0 < LO < HI and a distance of lines below HI"
+            raise UsageError(Diagnostic("SF902", message))
+        if not LOWEST_HZ <= self.low_hz < self.high_hz <= HIGHEST_HZ:
+            message = f"frequencies of a measurement lie between {LOWEST_HZ:g} and {HIGHEST_HZ:g} Hz"
             raise UsageError(Diagnostic("SF902", message))
         if self.noise < 0 or self.averages < 1 or (self.rolloff_hz is not None and self.rolloff_hz <= 0):
             raise UsageError(Diagnostic("SF902", "noise, averages and roll-off are positive"))
@@ -191,6 +197,8 @@ def _interpolated(function: Callable[[Real], Complex], frequency: Real, plan: Me
 
     coarse = np.unique(np.append(np.arange(0, frequency.size, step), frequency.size - 1))
     values = np.asarray(function(2 * np.pi * frequency[coarse]))
+    if not np.isfinite(values).all():
+        return np.full(frequency.shape, np.nan, np.complex128)
     if not np.isfinite(values).all():
         return np.full(frequency.shape, np.nan, np.complex128)
     return np.asarray(CubicSpline(frequency[coarse], values)(frequency))

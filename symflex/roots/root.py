@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from flint import acb, arb
+from flint import acb, arb, fmpz
 
 from symflex.roots.precision import precision
 
@@ -227,7 +227,7 @@ def _format(count: int, last: int) -> str:
     """Write ``count * 10**last``, plainly where that is short, else with an exponent."""
     if count == 0:
         return "0"
-    sign, text = ("-" if count < 0 else ""), str(abs(count))
+    sign, text = ("-" if count < 0 else ""), str(fmpz(abs(count)))  # Python refuses more than 4300 digits
     leading = len(text) - 1 + last
     if last > 0 or leading < PLAIN_FROM:
         return f"{sign}{text[0]}{'.' if len(text) > 1 else ''}{text[1:]}e{leading}"

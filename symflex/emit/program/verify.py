@@ -482,14 +482,23 @@ def _part(bound: BoundTransferFunction | BoundNested) -> float:
     return min(1.0, LIGHT / sum(len(f) for f, _ in bound.ratio.factors))
 
 
-def _roots(coefficients: Sequence[acb]) -> NDArray[np.complex128]:
+def _roots(coefficients: Sequence[acb], *, is_scaled: bool = False) -> NDArray[np.complex128]:
     """Return rough roots of a polynomial with ascending coefficients of any size."""
     sizes = [c.abs_upper() for c in coefficients]
     largest = max(sizes, default=None)
     if largest is None or not largest > 0:
         return np.array([], dtype=complex)
     scaled = [complex(float((c.real / largest).mid()), float((c.imag / largest).mid())) for c in coefficients]
-    return np.asarray(np.roots(scaled[::-1]), dtype=complex)
+    with np.errstate(all="ignore"):
+        is_within = np.isfinite(np.divide(scaled, scaled[-1])).all()
+    if is_within:
+        return np.asarray(np.roots(scaled[::-1]), dtype=complex)
+    if is_scaled or not sizes[-1] > 0:
+        return np.array([], dtype=complex)
+    # Quotients of coefficients are beyond doubles: roots are counted in their geometric mean.
+    first = next(i for i, size in enumerate(sizes) if size > 0)
+    mean = ((sizes[first].log() - sizes[-1].log()) / max(len(sizes) - 1 - first, 1)).exp()
+    return float(mean.mid()) * _roots([c * mean**i for i, c in enumerate(coefficients)], is_scaled=True)
 
 
 class References:

@@ -138,3 +138,26 @@ def test_the_work_ends_with_who_watches_it():
     process.kill()
     assert ended(process)[0] == -signal.SIGKILL
     assert is_gone(worker)
+
+
+FULL = pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no full device")
+
+
+@FULL
+@pytest.mark.parametrize("arguments", [("--help",), ("elements",), ("new",), ("check", "x.toml"), ("cache",)])
+def test_what_cannot_be_printed_is_an_error_with_a_code(arguments, shell):
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "symflex", *arguments],
+            cwd=shell.folder,
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+    assert (done.returncode, "SF903" in done.stderr, "Traceback" in done.stderr) == (2, True, False)
+
+
+def test_a_program_without_standard_output_works(shell):
+    code = "import os, sys; os.close(1); os.execv(sys.executable, [sys.executable, '-m', 'symflex', 'new'])"
+    done = subprocess.run([sys.executable, "-c", code], cwd=shell.folder, stderr=subprocess.PIPE, text=True)
+    assert (done.returncode, done.stderr) == (0, "")

@@ -165,3 +165,19 @@ def test_parameters_without_a_value_are_named_in_one_message(shell):
     assert done.code == 3
     assert done.err.count("error[SF229]") == 1
     assert "2 parameters have no value: m, k" in done.err or "2 parameters have no value: k, m" in done.err
+
+
+def test_ten_thousand_digits_are_printed(shell):
+    # s^2 + 2: sqrt(2) = 1.41421356...; Python alone converts integers of at most 4300 digits.
+    (shell.folder / "two.toml").write_text(
+        'symflex = 1\nparameters = { m = "1 kg", k = "2 N/m" }\ninputs.F = { force = "x" }\noutputs.X = "x"\n'
+        'elements.m = { type = "mass", at = "x", m = "m" }\n'
+        'elements.k = { type = "spring", between = ["x", "ground"], k = "k" }\n'
+    )
+    done = shell("roots", "two.toml", "--digits", "10000", "--json")
+    found = done.json["poles"][0]["im"].lstrip("-").replace(".", "")
+    assert (done.code, len(found)) == (0, 10_000)
+    # Read in parts, for the same reason.
+    assert found[:9] == "141421356"
+    number = sum(int(found[i : i + 1000]) * 10 ** (9000 - i) for i in range(0, 10_000, 1000))
+    assert abs(number**2 - 2 * 10**19998) < 4 * 10**9999

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from flint import acb, acb_poly
 
 from symflex import pipeline
 from symflex.emit.program import (
@@ -18,7 +19,7 @@ from symflex.emit.program import (
     build_program,
     choose_program,
 )
-from symflex.emit.program.verify import DEFAULT_BAND, Verification, frequency_text, sample_frequencies
+from symflex.emit.program.verify import DEFAULT_BAND, Verification, _roots, frequency_text, sample_frequencies
 
 DERIVATIONS = Path(__file__).parents[3] / "derivations" / "eppinger1988"
 BAND = (Fraction(1, 10), Fraction(1000))
@@ -129,3 +130,11 @@ def test_a_lossless_resonance_inside_the_band_does_not_spoil_the_measure():
 )
 def test_a_frequency_is_printed_with_a_prefix(hertz, text):
     assert frequency_text(Fraction(hertz)) == text
+
+
+def test_rough_roots_are_found_where_quotients_of_coefficients_are_beyond_doubles():
+    # (s^2 + 1e24)^30 has coefficients up to 1e720.
+    polynomial = acb_poly([acb(10) ** 24, 0, 1]) ** 30
+    found = _roots(polynomial.coeffs())
+    assert len(found) == 60
+    assert abs(np.exp(np.mean(np.log(abs(found)))) / 1e12 - 1) < 1e-6

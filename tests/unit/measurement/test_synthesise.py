@@ -63,6 +63,8 @@ def test_files_say_that_they_are_synthetic(suffix):
         MeasurementPlan(5.0, 2.0, 1.0),
         MeasurementPlan(1.0, 10.0, 20.0),
         MeasurementPlan(1.0, float("nan"), 1.0),
+        MeasurementPlan(1.0, 1e300, 1e297),
+        MeasurementPlan(1e-300, 1.0, 1e-3),
         MeasurementPlan(1.0, 1e6, 1e-3, 1000),
         MeasurementPlan(1.0, 10.0, 1.0, noise=-1.0),
         MeasurementPlan(1.0, 10.0, 1.0, averages=0),
