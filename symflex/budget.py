@@ -108,9 +108,14 @@ class Budget:
         return part
 
     @property
+    def deadline(self) -> float | None:
+        """The time by the clock at which it is over; ``None`` without a limit."""
+        return None if self.seconds is None else self._start + self.seconds
+
+    @property
     def left(self) -> float | None:
         """Seconds left, not below 0; ``None`` without a limit."""
-        return None if self.seconds is None else max(0.0, self._start + self.seconds - self.clock())
+        return None if self.deadline is None else max(0.0, self.deadline - self.clock())
 
     @property
     def is_timed(self) -> bool:

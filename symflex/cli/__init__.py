@@ -128,12 +128,6 @@ def run(arguments: list[str] | None = None, *, is_program: bool = False) -> int:
     except click.exceptions.Abort:
         click.echo("stopped", err=True)
         return 130
-    except OSError as error:  # of click's own texts; commands see to theirs
-        from symflex.cli.reporting import note, silence
-
-        silence(sys.stdout)
-        note(f"error[SF903]: cannot write to standard output: {error.strerror}")
-        return 2
     except click.ClickException as problem:
         from symflex.cli.reporting import say  # most commands go well
 
@@ -150,15 +144,8 @@ def run(arguments: list[str] | None = None, *, is_program: bool = False) -> int:
 
 def _unwritable(problem: OSError) -> int:
     """Say that what a command printed could not be written, as to a full device; return the exit code."""
-    from symflex.cli.reporting import show_error  # most commands go well
-    from symflex.errors import Diagnostic, UsageError
+    from symflex.cli.reporting import note, silence  # most commands go well
 
-    # What is left cannot be written at exit either.
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 1)
-    error = UsageError(Diagnostic("SF903", f"cannot write what is printed: {problem.strerror}"))
-    try:
-        show_error(error)
-    except OSError:
-        os.dup2(nowhere, 2)
-    return error.exit_code
+    silence(sys.stdout)
+    note(f"error[SF903]: cannot write to standard output: {problem.strerror or 'input/output error'}")
+    return 2

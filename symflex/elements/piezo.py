@@ -12,7 +12,6 @@ from symflex.elements.element import (
     Row,
     Stamp,
 )
-from symflex.kernels import common_denominator
 
 
 class Piezo(Element):
@@ -50,11 +49,14 @@ class Piezo(Element):
         )
         rows = []
         for through, per_volt, per_metre in laws:
-            form = LinearForm.of(
-                (through, one), (p, -per_volt), (q, per_volt), (a, -per_metre), (b, per_metre)
+            rows.append(
+                Row(
+                    through,
+                    LinearForm.of(
+                        (through, one), (p, -per_volt), (q, per_volt), (a, -per_metre), (b, per_metre)
+                    ),
+                )
             )
-            # Where a coefficient is divided by s, the row is multiplied: equations stay polynomial.
-            rows.append(Row(through, form * common_denominator(one.ring, form.coefficients)))
         delivered = ((a, force, -one), (b, force, one), (p, current, -one), (q, current, one))
         return Stamp(
             unknowns=(force, current),

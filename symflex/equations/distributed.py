@@ -248,11 +248,10 @@ def survey(
         links = find_links(model, known) if is_joined else ()
         linked = {link.name: link for link in links}
         media = {name: medium for name, medium, _ in lines}
-        for link in links:
-            for length in (link.length, *(x for _, _, x in link.entries)):
-                demands.need(media[link.name], length)
-        for name, medium, length in lines:
-            if name not in linked:
+        wanted = [(media[link.name], (link.length, *(x for _, _, x in link.entries))) for link in links]
+        wanted += [(medium, (length,)) for name, medium, length in lines if name not in linked]
+        for medium, lengths in wanted:
+            for length in lengths:
                 demands.need(medium, length)
         for block in model.blocks:
             if block.block is not None and block.block.kernel_time:

@@ -7,12 +7,15 @@ import platform
 import re
 from collections.abc import Mapping
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, ProcessPoolExecutor, wait
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
 from importlib import metadata
 from multiprocessing import get_context
+from time import monotonic
 from typing import TYPE_CHECKING, Final
 
+from symflex.budget import TIME_OVER, Budget, entered_budget
 from symflex.cache import derivation_cache, entered_cache
 from symflex.errors import (
     BudgetError,
@@ -47,6 +50,10 @@ if TYPE_CHECKING:
 MOST_MODELS: Final = 200
 TICK: Final = 0.5
 """Seconds between two reports of progress while nothing ends."""
+CHAPTERS: Final = 0.8
+"""Part of the time after which chapters end with what they have, so that there is some for writing."""
+WAITING: Final = 0.9
+"""Part of the time after which those that do not end are no longer waited for."""
 DATA_SUFFIXES: Final = frozenset((".csv", ".tsv", ".npz", ".mat", ".uff", ".unv"))
 """Of data files that are looked for in folders."""
 
@@ -245,9 +252,10 @@ def write_chapters(
     if processes < 1 or len(named) == 1:
         for stem, path in named.items():
             progress.report(len(done) / len(named), f"model {len(done) + 1} of {len(named)}: {stem}")
-            done[stem] = chapter_of(
-                path, stem, measured, allow_outside, progress if len(named) == 1 else None
-            )
+            with entered_budget().share(CHAPTERS).entered():
+                done[stem] = chapter_of(
+                    path, stem, measured, allow_outside, progress if len(named) == 1 else None
+                )
         return tuple(done.values())
     done = _in_processes(named, processes, progress, measured, allow_outside)
     # A process that ends takes with it what others have begun: alone, the models show which one it is.
@@ -273,9 +281,12 @@ def _in_processes(
     spawning = get_context("spawn")
     count = min(processes, len(named))
     done: dict[str, Chapter] = {}
+    chapters, time = entered_budget().share(CHAPTERS), entered_budget().share(WAITING)
     with ProcessPoolExecutor(count, mp_context=spawning, initializer=end_with_parent) as pool:
         waiting = {
-            pool.submit(_chapter_in, store, path, stem, measured, allow_outside): stem
+            pool.submit(
+                _chapter_in, store, path, stem, measured, allow_outside, chapters.deadline, chapters.memory
+            ): stem
             for stem, path in named.items()
         }
         total = len(waiting)
@@ -284,7 +295,15 @@ def _in_processes(
                 at_work = ", ".join(list(waiting.values())[:count])
                 ended = total - len(waiting)
                 progress.report(ended / (total + 1), f"{ended} of {counted(total, 'model')}; {at_work}")
-                for future in wait(waiting, TICK, FIRST_COMPLETED).done:
+                if time.left == 0:
+                    # Processes in an operation that cannot be asked end with this one.
+                    pool.shutdown(wait=False, cancel_futures=True)
+                    for stem in waiting.values():
+                        reason = TIME_OVER.message
+                        code = BudgetError.exit_code
+                        done[stem] = failed_chapter(named[stem], stem, reason, code, allow_outside)
+                    break
+                for future in wait(waiting, min(TICK, time.left or TICK), FIRST_COMPLETED).done:
                     stem = waiting.pop(future)
                     chapter = _outcome(future, named[stem], stem, allow_outside)
                     if chapter is not None:
@@ -320,11 +339,14 @@ def _chapter_in(
     stem: str,
     measured: tuple[MeasuredResponse, ...],
     allow_outside: tuple[Path, ...],
+    deadline: float | None,
+    memory: int | None,
 ) -> Chapter:
-    """Return a chapter, with the cache of the process that asks for it."""
-    if store is None:
-        return chapter_of(path, stem, measured, allow_outside)
-    with derivation_cache(store.folder, store.seconds):
+    """Return a chapter, with the cache and the budget of the process that asks for it."""
+    # The clock of all processes began when the computer did.
+    seconds = None if deadline is None else deadline - monotonic()
+    cache = nullcontext() if store is None else derivation_cache(store.folder, store.seconds)
+    with Budget(seconds, memory=memory).entered(), cache:
         return chapter_of(path, stem, measured, allow_outside)
 
 

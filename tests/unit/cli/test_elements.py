@@ -36,7 +36,7 @@ def test_json_of_an_entry_has_the_documented_keys(shell):
     (motor,) = document["elements"]
     assert document["blocks"] == []
     assert set(motor) == {"type", "summary", "ports", "parameters", "choices", "through"}
-    assert set(motor["ports"][0]) == {"name", "nodes", "domain", "doc", "default"}
+    assert set(motor["ports"][0]) == {"name", "nodes", "domain", "doc", "default", "pair"}
     assert set(motor["parameters"][0]) == {"name", "unit", "doc", "default", "only"}
 
 

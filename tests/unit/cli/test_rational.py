@@ -8,7 +8,7 @@ from tests.unit.rational.rods import CLAMPED_ROD
 KEYS = {
     "schema", "tf", "quantity", "unit", "form", "modes", "exact", "certified", "gain", "num", "den", "poles",
     "zeros", "residues", "correction", "order_at_zero", "leading_coefficient", "valid_to_hz", "error",
-    "sampled", "omitted_hz",
+    "sampled", "omitted_hz", "stability",
 }  # fmt: skip
 
 

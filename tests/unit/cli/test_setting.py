@@ -28,6 +28,7 @@ F = { force = "x" }
 [outputs]
 X = "x"
 V = "s*x"
+Y = "x/2"
 Filtered = "x/(s + f_c)"
 [published."X/F"]
 expr = "1/(m*s^2 + b*s + k + K)"
@@ -148,7 +149,7 @@ def test_a_length_that_is_set_is_checked_where_it_is_used(spec):
         ["derive", "spec.toml", "--tf", "X/F", "--form", "zpk"],
         ["rational", "spec.toml", "--tf", "X/F"],
         ["stability", "spec.toml", "--gain", "K"],
-        ["colocation", "spec.toml", "--tf", "V/F", "--with", "X/F"],
+        ["colocation", "spec.toml", "--tf", "Y/F", "--with", "X/F"],
         ["export", "spec.toml", "--tf", "X/F", "--to", "numpy"],
         ["plot", "spec.toml", "bode", "--tf", "X/F", "-o", "a.svg"],
         ["measure", "spec.toml", "--tf", "X/F", "-o", "a.csv"],

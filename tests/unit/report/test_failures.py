@@ -8,12 +8,12 @@ from concurrent.futures.process import BrokenProcessPool
 
 import pytest
 
+from symflex.budget import Silent
 from symflex.errors import BudgetError, Diagnostic, SpecError
 from symflex.report import compose, name_specifications, report_article, report_page, write_chapters
 from symflex.report import report as report_module
 from symflex.report.chapter import chapter_of
 from symflex.report.study import Study, attempt
-from symflex.roots.budget import Silent
 from tests.unit.report.models import SMALL, SYMBOLIC
 
 WRONG_UNIT = SMALL.replace('"24 N/m"', '"24 N"')
