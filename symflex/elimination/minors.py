@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 MINOR_LIMIT = 200_000
 ROW_LIMIT = 700
-MEMORY_LIMIT = 250_000_000
-"""Bytes that all minors of a system may take together: a free chain of sixteen masses needs 200 MB. The
+MEMORY_LIMIT = 300_000_000
+"""Bytes that all minors of a system may take together: a free chain of sixteen masses needs 270 MB. The
 engine takes almost three times as much for a while."""
 
 Entry = TypeVar("Entry")

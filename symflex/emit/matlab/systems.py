@@ -181,8 +181,8 @@ def system_functions(
         "    varargin(1) = [];",
         "  end",
         *continued(f"[num, den, delay] = {read}(varargin{{:}});", "  "),
-        *continued(f"ends = {ends};", "  "),
-        *continued(f"units = {{{units}}};", "  "),
+        f"  ends = {ends};",  # strings are not broken over lines
+        f"  units = {{{units}}};",
         "  value = system_of(kind, num, den, delay, ends, units);",
     ]
     return ["\n".join([*lines, "end", ""]), "\n".join([*more, "end", ""])]
