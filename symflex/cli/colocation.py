@@ -45,16 +45,12 @@ def command(
     the end could not be told.
     """
     from symflex import pipeline
-    from symflex.cli.roots import frequency_limit
+    from symflex.cli.roots import band_limits
 
     limits = None
     if band is not None:
-        low, high = (float(frequency_limit(x, "--band", "0.1 or '1 kHz'", hertz=True)) for x in band)
-        if not 0 < low < high:
-            raise UsageError(
-                Diagnostic("SF902", "--band takes two frequencies, the lower one first, above 0")
-            )
-        limits = (low, high)
+        low, high = band_limits(band, above_zero=True)
+        limits = (float(low), float(high))
     found = pipeline.colocation(
         load(spec, allow_outside, settings),
         tf,

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import inf, isfinite
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -14,8 +16,19 @@ from symflex.cli.setting import setting
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 
+if TYPE_CHECKING:
+    from fractions import Fraction
+
+    from symflex.emit.figures import AxisLimits
+    from symflex.model import Model
+    from symflex.model.model import Figure
+
+Ends = tuple[str, str]
 SUFFIXES = (".pdf", ".pgf", ".png", ".svg")
 SWEEP = "sweep"
+CURVES = ("bode", "nyquist")
+"""Kinds over the logarithm of the frequency, which has no 0."""
+S_PLANES = ("locus", "poles_zeros")
 
 
 @click.command("plot")
@@ -24,6 +37,10 @@ SWEEP = "sweep"
 @click.argument("kind")
 @click.option("--tf", "tfs", multiple=True, metavar="OUT/IN", help="Draw this transfer function; repeatable.")
 @click.option("--gain", metavar="K", help="Draw a locus, or a Nyquist plot, of the loop with this gain.")
+@click.option("--band", nargs=2, metavar="LO HI", help='Frequencies shown: 0.1 1000, "1 kHz".')
+@click.option("--xlim", nargs=2, metavar="LO HI", help="Ends of the axis across; rad/s in an s plane.")
+@click.option("--ylim", nargs=2, metavar="LO HI", help="Ends of the axis upwards; dB of a Bode plot.")
+@click.option("--phase", nargs=2, metavar="LO HI", help="Ends of the phases of a Bode plot [deg].")
 @click.option("--range", "limits", nargs=2, metavar="LO HI", help="First and last gain of a locus.")
 @click.option("--modes", type=click.IntRange(1), help="How many modes are shown, the lowest ones.")
 @click.option("-o", "--output", type=click.Path(), help="File to write: .pdf, .pgf, .svg or .png.")
@@ -41,6 +58,10 @@ def command(
     settings: dict[str, str],
     tfs: tuple[str, ...],
     gain: str | None,
+    band: Ends | None,
+    xlim: Ends | None,
+    ylim: Ends | None,
+    phase: Ends | None,
     limits: tuple[str, str] | None,
     modes: int | None,
     output: str | None,
@@ -57,6 +78,10 @@ def command(
     'symflex plot sweep FILE' draws a .nc or .npz that 'symflex sweep -o' wrote: modes over one parameter and
     their loci, or medians and what holds 90 % of the points.
 
+    --band shows a band of frequencies: of bode and nyquist the curves, of modes those in it, and of what is
+    drawn in the s plane all up to its end. --xlim, --ylim and --phase set the ends of axes; those of a
+    frequency or in the s plane may have a unit, '1 kHz'.
+
     Without -o the figure is written to the current folder as SPEC_KIND.pdf.
 
     A .pgf is for papers set with LaTeX: load the package pgf and input the file. Its texts take the paper's
@@ -65,26 +90,17 @@ def command(
     """
     from symflex import pipeline
     from symflex.cli.stability import gain_limit
-    from symflex.emit.figures import DEFAULT_FONT, FIGURES, LOOP_FIGURES, draw, draw_loop, save
+    from symflex.emit.figures import DEFAULT_FONT, LOOP_FIGURES, draw, draw_loop, save
     from symflex.emit.latex import column_width
-    from symflex.model.analysis import FIGURE_KINDS
     from symflex.stability import pick_gain
 
     if SWEEP in (spec, kind):
-        options = bool(tfs or gain or limits)
+        options = bool(tfs or gain or limits or band or xlim or ylim or phase)
         return _plot_sweep(spec if kind == SWEEP else kind, modes, output, width, font, is_more=options)
     given = _checked_path(output) if output else None
     model = load(spec, allow_outside, settings)
     model = model if modes is None else replace(model, analysis=replace(model.analysis, modes=modes))
-    figure = next((f for f in model.figures if f.name == kind), None)
-    if figure is None and kind not in (*FIGURES, *FIGURE_KINDS):
-        names = [*FIGURES, "locus", *(f.name for f in model.figures)]
-        hint = nearest(kind, names) or "choose from: " + ", ".join(names)
-        raise UsageError(Diagnostic("SF902", f"there is no figure '{kind[:64]}'", None, hint))
-    drawn = figure.kind if figure else kind
-    if drawn not in (*FIGURES, *LOOP_FIGURES):
-        hint = "there are " + ", ".join((*FIGURES, *LOOP_FIGURES))
-        raise UsageError(Diagnostic("SF911", f"figures of kind '{drawn}' are not available yet", None, hint))
+    figure, drawn = _named(model, kind)
     path = given or _checked_path(f"{Path(spec).stem}_{kind}.pdf")
     width_mm = None if width is None else column_width(width)
     font = _checked_font(font or ("latex" if path.suffix == ".pgf" else DEFAULT_FONT))
@@ -92,6 +108,8 @@ def command(
     if (gain or limits) and drawn not in LOOP_FIGURES:
         message = f"--gain and --range are for {' and '.join(LOOP_FIGURES)}, not for '{drawn}'"
         raise UsageError(Diagnostic("SF902", message))
+    shown, frame = _part_shown(drawn, band, xlim, ylim, phase)
+    shown = shown or (figure.band if figure else None)
     if drawn == "locus" and not named:
         message = "a locus is drawn of a loop"
         raise UsageError(Diagnostic("SF902", message, None, "name its gain: --gain K, or gain in [figures]"))
@@ -103,7 +121,15 @@ def command(
         )
         loop = pipeline.characteristic_loop(model, named)
         drawing = draw_loop(
-            drawn, loop, limits=chosen, modes=modes, title=title or None, width_mm=width_mm, font=font
+            drawn,
+            loop,
+            limits=chosen,
+            modes=modes,
+            band_hz=shown,
+            frame=frame,
+            title=title or None,
+            width_mm=width_mm,
+            font=font,
         )
         save(drawing, path, font=font)
         note(f"wrote {path}")
@@ -118,7 +144,17 @@ def command(
                 note(f"{bound.name} is identically zero and is left out")
         bounds = tuple(bound for bound in bounds if not bound.ratio.is_zero) or bounds
     sources = [bound.source for bound in bounds]
-    save(draw(drawn, sources, bounds, title=title or None, width_mm=width_mm, font=font), path, font=font)
+    drawing = draw(
+        drawn,
+        sources,
+        bounds,
+        band_hz=shown,
+        frame=frame,
+        title=title or None,
+        width_mm=width_mm,
+        font=font,
+    )
+    save(drawing, path, font=font)
     note(f"wrote {path}")
     return 0
 
@@ -134,7 +170,9 @@ def _plot_sweep(
 ) -> int:
     """Draw what 'symflex sweep -o' wrote."""
     if is_more:
-        raise UsageError(Diagnostic("SF902", "--tf, --gain and --range are not for a sweep"))
+        raise UsageError(
+            Diagnostic("SF902", "--tf, --gain, --range, --band and ends of axes are not for a sweep")
+        )
     from symflex.emit.figures import DEFAULT_FONT, draw_sweep, save
     from symflex.emit.figures.pgf import MM_PER_INCH
     from symflex.emit.latex import column_width
@@ -146,6 +184,89 @@ def _plot_sweep(
     save(draw_sweep(read_sweep(file), modes=modes, width=inches, font=chosen), path, font=chosen)
     note(f"wrote {path}")
     return 0
+
+
+def _named(model: Model, kind: str) -> tuple[Figure | None, str]:
+    """Return the figure of the specification that is named, if any, and the kind to draw.
+
+    Raises
+    ------
+    UsageError
+        SF902 when there is none of that name; SF911 when its kind is not available yet.
+    """
+    from symflex.emit.figures import FIGURES, LOOP_FIGURES
+    from symflex.model.analysis import FIGURE_KINDS
+
+    figure = next((f for f in model.figures if f.name == kind), None)
+    if figure is None and kind not in (*FIGURES, *FIGURE_KINDS):
+        names = [*FIGURES, "locus", *(f.name for f in model.figures)]
+        hint = nearest(kind, names) or "choose from: " + ", ".join(names)
+        raise UsageError(Diagnostic("SF902", f"there is no figure '{kind[:64]}'", None, hint))
+    drawn = figure.kind if figure else kind
+    if drawn not in (*FIGURES, *LOOP_FIGURES):
+        hint = "there are " + ", ".join((*FIGURES, *LOOP_FIGURES))
+        raise UsageError(Diagnostic("SF911", f"figures of kind '{drawn}' are not available yet", None, hint))
+    return figure, drawn
+
+
+def _part_shown(
+    kind: str, band: Ends | None, xlim: Ends | None, ylim: Ends | None, phase: Ends | None
+) -> tuple[tuple[Fraction, Fraction] | None, AxisLimits]:
+    """Return the band [Hz] and the limits of axes that options say.
+
+    Raises
+    ------
+    UsageError
+        SF902 for limits that are none, and for two of the frequencies of a Bode plot.
+    """
+    from symflex.cli.roots import band_limits
+    from symflex.emit.figures import AxisLimits
+
+    if xlim and kind == "bode":
+        if band:
+            raise UsageError(Diagnostic("SF902", "give only one of --band and --xlim"))
+        band, xlim = xlim, None
+    is_plane = kind in S_PLANES
+    frame = AxisLimits(
+        _ends(xlim, "--xlim", is_frequency=is_plane),
+        _ends(ylim, "--ylim", is_frequency=is_plane),
+        _ends(phase, "--phase"),
+    )
+    return None if band is None else band_limits(band, above_zero=kind in CURVES), frame
+
+
+def _ends(texts: Ends | None, option: str, *, is_frequency: bool = False) -> tuple[float, float] | None:
+    """Return the ends of an axis: numbers, or frequencies [rad/s].
+
+    Raises
+    ------
+    UsageError
+        SF902 for what is no number, and where the first is not the lower one.
+    """
+    if texts is None:
+        return None
+    from symflex.cli.roots import frequency_limit
+
+    if is_frequency:
+        low, high = (float(frequency_limit(text, option, "-10 or '3 rad/s'", hertz=False)) for text in texts)
+    else:
+        low, high = (_number(text, option) for text in texts)
+    if not low < high:
+        raise UsageError(Diagnostic("SF902", f"{option} takes two numbers, the lower one first"))
+    return low, high
+
+
+def _number(text: str, option: str) -> float:
+    number = text.strip()
+    for unit in ("dB", "deg", "°"):
+        number = number.removesuffix(unit).strip()
+    try:
+        value = float(number)
+    except ValueError:
+        value = inf
+    if not isfinite(value):
+        raise UsageError(Diagnostic("SF902", f"{option} takes numbers such as -60, found '{text[:40]}'"))
+    return value
 
 
 def _checked_path(name: str) -> Path:

@@ -154,10 +154,7 @@ def region_of(
     if mode is not None:
         return Mode(mode)
     if band is not None:
-        low, high = (frequency_limit(text, "--band", "0.1 or '1 kHz'", hertz=True) for text in band)
-        if not 0 <= low < high:
-            raise UsageError(Diagnostic("SF902", "--band takes two frequencies in Hz, the lower one first"))
-        return Band(low, high)
+        return Band(*band_limits(band))
     if region is not None:
         re_low, re_high, im_low, im_high = (
             frequency_limit(text, "--region", "-10 or '3 rad/s'", hertz=False) for text in region
@@ -166,6 +163,23 @@ def region_of(
             raise UsageError(Diagnostic("SF902", "--region takes RE0 <= RE1 and IM0 <= IM1"))
         return Rectangle(re_low, re_high, im_low, im_high)
     return None
+
+
+def band_limits(band: tuple[str, str], *, above_zero: bool = False) -> tuple[Fraction, Fraction]:
+    """Return the ends of a band [Hz].
+
+    Raises
+    ------
+    UsageError
+        SF902 for what is no frequency, where the first is not the lower one, and for 0 where frequencies are
+        equally spaced in their logarithm.
+    """
+    low, high = (frequency_limit(text, "--band", "0.1 or '1 kHz'", hertz=True) for text in band)
+    if not 0 <= low < high or (above_zero and not low):
+        above = " above 0" if above_zero else ""
+        message = f"--band takes two frequencies in Hz{above}, the lower one first"
+        raise UsageError(Diagnostic("SF902", message))
+    return low, high
 
 
 def frequency_limit(text: str, option: str, example: str, *, hertz: bool) -> Fraction:

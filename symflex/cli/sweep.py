@@ -155,16 +155,14 @@ def _check_options(
 
 def _frequencies(model: Model, band: tuple[str, str] | None, count: int | None) -> list[float]:
     """Return frequencies [Hz] that are equally spaced in their logarithm."""
-    from symflex.cli.roots import frequency_limit
+    from symflex.cli.roots import band_limits
     from symflex.sweep.frequencies import logarithmic
 
     if band is not None:
-        low, high = (frequency_limit(text, "--band", "0.1 or '1 kHz'", hertz=True) for text in band)
+        low, high = band_limits(band, above_zero=True)
     elif model.analysis.band is not None:
         low, high = model.analysis.band
     else:
         hint = "give one with --band LO HI"
         raise UsageError(Diagnostic("SF902", "the specification has no [analysis] band", None, hint))
-    if not 0 < low < high:
-        raise UsageError(Diagnostic("SF902", "--band takes two frequencies above 0 Hz, the lower one first"))
     return logarithmic(low, high, count or FREQUENCIES)

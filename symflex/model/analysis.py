@@ -123,7 +123,7 @@ def read_figures(reader: Reader, section: TableValue | None, model: Model) -> tu
         table = reader.table(entry, what) if reader.name(entry, "a figure") else None
         if table is None:
             continue
-        reader.keys(table, ("kind", "of", "gain", "data", "title", "doc"), what)
+        reader.keys(table, ("kind", "of", "gain", "band", "data", "title", "doc"), what)
         kind = _kind(reader, table, entry, what)
         of = table.get("of")
         texts = reader.strings(of, f"of of {what}") if of else ()
@@ -131,7 +131,9 @@ def read_figures(reader: Reader, section: TableValue | None, model: Model) -> tu
         gain = _gain(reader, table, kind, what, model)
         title = reader.plain(table, "title", what)
         has_data = _has_data(reader, table, kind, chosen, what)
-        found.append(Figure(entry.key, kind, chosen, title, gain, entry.key_span, has_data))
+        limits = table.get("band")
+        band = _band(reader, limits) if limits else None
+        found.append(Figure(entry.key, kind, chosen, title, gain, entry.key_span, has_data, band))
     return tuple(found)
 
 

@@ -230,7 +230,10 @@ class Analysis:
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A figure the specification asks for; of a loop when a gain is named, in reports over measured data."""
+    """A figure the specification asks for; of a loop when a gain is named, in reports over measured data.
+
+    ``band`` holds the frequencies it shows [Hz], where it says so itself.
+    """
 
     name: str
     kind: str
@@ -239,6 +242,7 @@ class Figure:
     gain: str = ""
     span: Span | None = field(default=None, compare=False, repr=False)
     has_data: bool = False
+    band: tuple[Fraction, Fraction] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -141,15 +141,15 @@ def lowest_mode_shapes(
 
 
 def lowest_modes(
-    bound: BoundTransferFunction, count: int, digits: int = DIGITS
+    bound: BoundTransferFunction, count: int, digits: int = DIGITS, band: Band | None = None
 ) -> tuple[tuple[NumberedShape, ...], StabilityVerdict]:
-    """Return the shapes of the lowest modes other than at 0, hidden ones among them.
+    """Return the shapes of the lowest modes, or of those in a band, other than at 0; hidden ones among them.
 
     Those of poles in the right half plane follow, wherever they lie. Whether the model is stable comes with
     them.
     """
     search = _Search(bound)
-    found = search.map(Modes(count), digits + SPARE_DIGITS)
+    found = search.map(band or Modes(count), digits + SPARE_DIGITS)
     candidates = [(root, False) for root in found.all_poles] + [(h.root, True) for h in found.hidden]
     chosen = [(root, hidden) for root, hidden in candidates if not root.is_zero and not root.im < 0]
     chosen.sort(key=lambda pair: float(pair[0].natural_frequency().mid()))

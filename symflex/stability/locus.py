@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from symflex.budget import Budget, entered_budget, spend
 from symflex.errors import Diagnostic, UncertifiedError, UsageError
 from symflex.kernels import Factored
-from symflex.roots import Modes, Position
+from symflex.roots import Band, Modes, Position
 from symflex.roots.locate import locate
 from symflex.roots.right_half_plane import is_right
 from symflex.stability.loop_function import LoopFunction
@@ -136,6 +136,8 @@ def trace_locus(
     limits: tuple[Fraction | None, Fraction | None] | None = None,
     modes: int | None = None,
     budget: Budget | None = None,
+    *,
+    band_hz: tuple[float, float] | None = None,
 ) -> RootLocus:
     """Return the root locus of a loop.
 
@@ -146,9 +148,12 @@ def trace_locus(
     limits : (Fraction, Fraction), optional
         From 0 to 10 times the nominal gain by default.
     modes : int, optional
-        Of a loop with kernels, how many modes are traced; 5 by default.
+        Of a loop with kernels, how many modes are traced; by default those up to the end of the band at the
+        first gain, or 5.
     budget : Budget, optional
         Of the search for roots.
+    band_hz : (float, float), optional
+        [Hz]
 
     Raises
     ------
@@ -158,10 +163,14 @@ def trace_locus(
     budget = budget or entered_budget()
     above, below = _parts(loop)
     low, high = _range(loop, limits)
+    at_first = _with(loop.bound, above, below + above * low)
+    if modes is None and band_hz is not None and loop.bound.kernels:
+        shown = locate(at_first, Band(Fraction(0), Fraction(band_hz[1])), 15, budget).poles
+        modes = sum(root.multiplicity for root in shown if not root.im < 0)
     wanted = modes or loop.bound.source.model.analysis.modes or DEFAULT_MODES
     region: Region | None = Modes(wanted) if loop.bound.kernels else None
     wider: Region | None = Modes(wanted + 2) if loop.bound.kernels else None
-    start = locate(_with(loop.bound, above, below + above * low), region, 15, budget)
+    start = locate(at_first, region, 15, budget)
     end = locate(_with(loop.bound, above, below + above * high), wider, 15, budget)
     function = LoopFunction.of(loop.bound, below, above)
     poles, final = _points(start.all_poles), _points(end.all_poles)

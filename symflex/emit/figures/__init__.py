@@ -5,12 +5,13 @@ A new kind is one file with a drawing function, and one line in :data:`FIGURES`.
 
 from __future__ import annotations
 
+from math import pi
 from typing import TYPE_CHECKING
 
 from matplotlib.text import Text
 
 from symflex.emit.figures.bode import draw_bode, draw_response
-from symflex.emit.figures.drawing import Drawing
+from symflex.emit.figures.drawing import FREE, AxisLimits, Drawing
 from symflex.emit.figures.fit import draw_fit
 from symflex.emit.figures.labels import label_of_name
 from symflex.emit.figures.locus import draw_locus, number_label
@@ -53,6 +54,7 @@ __all__ = [
     "FONTS",
     "FORMATS",
     "LOOP_FIGURES",
+    "AxisLimits",
     "Drawing",
     "draw",
     "draw_fit",
@@ -71,6 +73,7 @@ def draw(
     bounds: Sequence[BoundTransferFunction],
     *,
     band_hz: tuple[float | Fraction, float | Fraction] | None = None,
+    frame: AxisLimits = FREE,
     title: str | None = None,
     width_mm: float | None = None,
     font: str = DEFAULT_FONT,
@@ -86,7 +89,9 @@ def draw(
     band_hz : (number, number), optional
         Frequencies shown [Hz]. Without it a Bode plot takes the model's ``band``, or else one that shows all
         poles and zeros; a pole-zero plot focuses on the resonances that belong together and marks the rest at
-        its border; of the lowest modes, all are shown.
+        its border, and with it shows those up to its end; of modes, the lowest are shown, or those in it.
+    frame : AxisLimits, optional
+        Of axes, in place of those that suit what is drawn.
     title : str, optional
         Printed as it is, never read as mathematics.
     width_mm : float, optional
@@ -102,7 +107,8 @@ def draw(
     ------
     UsageError
         SF208 an unknown kind; SF911 a kind that is not available yet; SF227 an empty band; SF208 an unknown
-        font; SF902 the width is not between 80 and 1000 mm or too small for what is drawn.
+        font; SF902 the width is not between 80 and 1000 mm or too small for what is drawn, or limits are of
+        axes that the figure has not.
     ModelError
         SF402 a transfer function is identically zero.
     """
@@ -119,6 +125,7 @@ def draw(
             )
         hint = nearest(kind, FIGURES) or "kinds: " + ", ".join(FIGURES)
         raise UsageError(Diagnostic("SF208", f"there is no figure of kind '{kind[:64]}'", None, hint))
+    _check_frame(kind, frame)
     if not tfs or len(tfs) != len(bounds):
         message = (
             f"a figure needs as many bound as symbolic transfer functions, not {len(bounds)} and {len(tfs)}"
@@ -127,11 +134,31 @@ def draw(
     for bound in bounds:
         if bound.ratio.is_zero:
             raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero: nothing to draw"))
-    band = None if band_hz is None else (float(band_hz[0]), float(band_hz[1]))
+    band = _checked_band(band_hz)
     width = None if width_mm is None else checked_width(width_mm) / MM_PER_INCH
     with paper_style(font):
-        figure = FIGURES[kind](tfs, bounds, band_hz=band, title=title, width=width)
+        figure = FIGURES[kind](tfs, bounds, band_hz=band, frame=frame, title=title, width=width)
     return _with_every_letter(figure, font)
+
+
+def _checked_band(band_hz: tuple[float | Fraction, float | Fraction] | None) -> tuple[float, float] | None:
+    if band_hz is None:
+        return None
+    low, high = float(band_hz[0]), float(band_hz[1])
+    if not 0 <= low < high < float("inf"):
+        message = f"a band runs from a lower to a higher frequency, not from {low:g} to {high:g} Hz"
+        raise UsageError(Diagnostic("SF227", message))
+    return low, high
+
+
+def _check_frame(kind: str, frame: AxisLimits) -> None:
+    """Refuse limits of axes that a kind of figure has not."""
+    if frame.phase and kind != "bode":
+        raise UsageError(Diagnostic("SF902", "limits of a phase are for 'bode'"))
+    if frame.x and kind == "bode":
+        raise UsageError(Diagnostic("SF902", "the frequencies of a Bode plot are its band"))
+    if frame != FREE and kind == "modes":
+        raise UsageError(Diagnostic("SF902", "mode shapes have no limits: their largest displacement is 1"))
 
 
 def _with_every_letter(figure: Figure, font: str) -> Figure:
@@ -149,6 +176,8 @@ def draw_loop(
     *,
     limits: tuple[Fraction | None, Fraction | None] | None = None,
     modes: int | None = None,
+    band_hz: tuple[float | Fraction, float | Fraction] | None = None,
+    frame: AxisLimits = FREE,
     title: str | None = None,
     width_mm: float | None = None,
     font: str = DEFAULT_FONT,
@@ -164,7 +193,11 @@ def draw_loop(
     limits : (Fraction, Fraction), optional
         First and last gain of a locus; from 0 to 10 times the nominal one by default.
     modes : int, optional
-        Traced in the locus of a loop with kernels.
+        Traced in the locus of a loop with kernels; by default those in the band, or the lowest five.
+    band_hz : (number, number), optional
+        Frequencies of a Nyquist plot [Hz]; a locus is shown up to its end.
+    frame : AxisLimits, optional
+        Of axes, in place of those that suit what is drawn.
     title : str, optional
         Printed as it is.
     width_mm, font
@@ -182,13 +215,24 @@ def draw_loop(
         raise UsageError(
             Diagnostic("SF208", f"no figure of kind '{kind[:64]}' is drawn of a loop", None, hint)
         )
+    _check_frame(kind, frame)
+    band = _checked_band(band_hz)
     width = None if width_mm is None else checked_width(width_mm) / MM_PER_INCH
     with paper_style(font):
         if kind == "locus":
-            locus = trace_locus(loop, limits, modes)
+            locus = trace_locus(loop, limits, modes, band_hz=band)
             require_arrival(locus)
-            return _with_every_letter(draw_locus(locus, title, width), font)
+            reach = None if band is None else 2 * pi * band[1]
+            return _with_every_letter(draw_locus(locus, title, width, reach=reach, frame=frame), font)
         bound = loop_gain(loop)
         label = f"loop gain, ${label_of_name(loop.gain.name)} = {number_label(float(loop.nominal or 0))}$"
-        figure = draw_nyquist([bound.source], [bound], title=title, width=width, labels=[label])
+        figure = draw_nyquist(
+            [bound.source],
+            [bound],
+            band_hz=band,
+            frame=frame,
+            title=title,
+            width=width,
+            labels=[label],
+        )
         return _with_every_letter(figure, font)

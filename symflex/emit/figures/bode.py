@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, MultipleLocator, NullFormatter
 
+from symflex.emit.figures.drawing import FREE
 from symflex.emit.figures.labels import label_of_frequency, label_of_tf, label_of_unit
 from symflex.emit.figures.style import (
     COLOURS,
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from symflex.emit.figures.drawing import AxisLimits, Limits
     from symflex.response import FrequencyResponse
     from symflex.roots import PoleZeroMap
     from symflex.transfer import BoundTransferFunction, TransferFunction
@@ -52,7 +54,8 @@ def draw_bode(
     tfs: Sequence[TransferFunction],
     bounds: Sequence[BoundTransferFunction],
     *,
-    band_hz: tuple[float, float] | None = None,
+    band_hz: Limits | None = None,
+    frame: AxisLimits = FREE,
     title: str | None = None,
     width: float | None = None,
 ) -> Figure:
@@ -83,7 +86,7 @@ def draw_bode(
     figure = new_figure(width, height)
     figure.set_layout_engine("constrained", h_pad=0.02, w_pad=0.03, hspace=0.03)
     top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[1.25, 1])
-    limits = _magnitude_limits(responses, maps)
+    limits = frame.y or _magnitude_limits(responses, maps)
     looks = zip(cycle(COLOURS), cycle(DASHES), strict=False)
     for tf, response, found, (colour, dash) in zip(tfs, responses, maps, looks, strict=False):
         label = label_of_tf(tf)
@@ -95,7 +98,7 @@ def draw_bode(
     top.yaxis.set_major_locator(MaxNLocator(nbins=7, steps=[1, 2, 4, 5, 10], min_n_ticks=3))
     unit = label_of_unit(units.pop()) if len(units) == 1 else ""
     top.set_ylabel(f"Magnitude [dB re 1 {unit}]" if unit else "Magnitude [dB]")
-    _set_phase_axis(bottom, responses)
+    _set_phase_axis(bottom, responses, frame.phase)
     set_frequency_axis(bottom, low, high)
     for axes in (top, bottom):
         axes.grid(visible=True)
@@ -208,16 +211,17 @@ def _near_undamped(omega: npt.NDArray[np.float64], found: PoleZeroMap) -> npt.ND
     return near
 
 
-def _set_phase_axis(axes: Axes, responses: Sequence[FrequencyResponse]) -> None:
+def _set_phase_axis(axes: Axes, responses: Sequence[FrequencyResponse], limits: Limits | None = None) -> None:
     phase = np.degrees(np.concatenate([response.phase for response in responses]))
     phase = phase[np.isfinite(phase)]
-    lowest, highest = (float(phase.min()), float(phase.max())) if phase.size else (0.0, 0.0)
+    lowest, highest = limits or ((float(phase.min()), float(phase.max())) if phase.size else (0.0, 0.0))
     for step in PHASE_STEPS:
         if highest - lowest < PHASE_TICKS * step:
             break
     middle, half = (lowest + highest) / 2, max((highest - lowest) / 2, step)
-    axes.set_ylim(middle - PHASE_MARGIN * half, middle + PHASE_MARGIN * half)
-    axes.yaxis.set_major_locator(MultipleLocator(step))
+    axes.set_ylim(*(limits or (middle - PHASE_MARGIN * half, middle + PHASE_MARGIN * half)))
+    is_plain = limits is not None and not 2 * PHASE_STEPS[0] <= highest - lowest < PHASE_TICKS * step
+    axes.yaxis.set_major_locator(MaxNLocator(nbins=7) if is_plain else MultipleLocator(step))
     axes.set_ylabel("Phase [deg]")
 
 

@@ -9,6 +9,7 @@ from matplotlib.patches import Circle
 from matplotlib.ticker import MaxNLocator
 
 from symflex.emit.figures.curves import drawable
+from symflex.emit.figures.drawing import FREE
 from symflex.emit.figures.labels import label_of_name
 from symflex.emit.figures.style import (
     COLOURS,
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from symflex.emit.figures.drawing import AxisLimits
     from symflex.roots import Root
     from symflex.stability import RootLocus
 
@@ -34,12 +36,21 @@ ZERO_REACH: Final = 1.6
 """Zeros are shown up to so many times the largest pole."""
 END_REACH: Final = 10.0
 """Poles that run away are shown at the last gain up to so many times the largest at the first."""
+LEGEND_LETTERS: Final = 18.0
+"""So many letters of three labels have room in a line, per inch."""
 CLOSE: Final = 0.3
 """Narrowest width shown, over the height."""
 
 
-def draw_locus(locus: RootLocus, title: str | None = None, width: float | None = None) -> Figure:
-    """Draw a root locus.
+def draw_locus(
+    locus: RootLocus,
+    title: str | None = None,
+    width: float | None = None,
+    *,
+    reach: float | None = None,
+    frame: AxisLimits = FREE,
+) -> Figure:
+    """Draw a root locus, of what lies up to ``reach`` [rad/s] from 0, or within limits.
 
     Crosses are the poles at the first gain, squares those at the last, circles the zeros; all three are
     proved. The lines between are traced numerically: solid from poles at the first gain, dashed from
@@ -54,7 +65,9 @@ def draw_locus(locus: RootLocus, title: str | None = None, width: float | None =
     axes = figure.subplots()
     starts, zeros = ([_point(root) for root in roots] for roots in (locus.start.all_poles, locus.start.zeros))
     ends = list(locus.ends)
-    _set_view(axes, locus, starts, zeros)
+    _set_view(axes, locus, starts, zeros, reach)
+    axes.set_xlim(*(frame.x or axes.get_xlim()))
+    axes.set_ylim(*(frame.y or axes.get_ylim()))
     right, seen = max(axes.get_xlim()[1], 0.0), float(np.max(np.abs([axes.get_xlim(), axes.get_ylim()])))
     axes.axvspan(0, right, color="#FBEDE4", zorder=0, linewidth=0)
     for value, draw in ((0, axes.axhline), (0, axes.axvline)):
@@ -107,10 +120,11 @@ def draw_locus(locus: RootLocus, title: str | None = None, width: float | None =
         axis.set_major_locator(MaxNLocator(nbins=6, steps=[1, 2, 2.5, 5, 10]))
     verdicts = (locus.start.verdict.headline, locus.end.verdict.headline)
     said = [f"${name} = {gain}$, {verdict}" for gain, verdict in zip((low, high), verdicts, strict=True)]
+    letters = sum(len(str(label).replace("$", "")) for label in axes.get_legend_handles_labels()[1])
     figure.legend(
         title="\n".join(said),
         loc="outside upper center",
-        ncols=3,
+        ncols=3 if letters <= LEGEND_LETTERS * width else 2,
         frameon=False,
         handletextpad=0.2,
         columnspacing=1.0,
@@ -136,7 +150,9 @@ def number_label(value: float) -> str:
     return power if mantissa == "1" else rf"{mantissa}\times {power}"
 
 
-def _set_view(axes: Axes, locus: RootLocus, starts: list[complex], zeros: list[complex]) -> None:
+def _set_view(
+    axes: Axes, locus: RootLocus, starts: list[complex], zeros: list[complex], reach: float | None
+) -> None:
     """Show all poles at both gains but those that run far away, and the zeros not much further out."""
     entered = [branch[-1] for branch in (*locus.entering, *locus.joining) if branch]
     size = max((abs(s) for s in (*starts, *entered)), default=0.0)
@@ -145,6 +161,9 @@ def _set_view(axes: Axes, locus: RootLocus, starts: list[complex], zeros: list[c
     size = max(map(abs, held), default=size) or size
     traced = [s for branch in locus.branches for s in branch]
     near = [*held, *(s for s in (*traced, *zeros) if abs(s) <= ZERO_REACH * size)]
+    if reach is not None:
+        size, near = reach, [s for s in (*starts, *locus.ends, *traced, *zeros) if abs(s) <= reach]
+        near.append(reach * 1j)
     high = ROOM * max((abs(s.imag) for s in near), default=size) or size
     left = min((s.real for s in near), default=0.0)
     right = max((s.real for s in near), default=0.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from itertools import pairwise
 from math import floor, log10
 from typing import TYPE_CHECKING, Final
@@ -10,6 +11,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, MaxNLocator, NullFormatter
 
+from symflex.emit.figures.drawing import FREE
 from symflex.emit.figures.labels import PLAIN_HIGH, label_of_name
 from symflex.emit.figures.pgf import MM_PER_INCH
 from symflex.emit.figures.runs import Run, Stems, panels_of
@@ -26,6 +28,7 @@ from symflex.emit.figures.style import (
 )
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.modes import lowest_modes
+from symflex.roots import Band
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,6 +37,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from symflex.emit.figures.drawing import AxisLimits, Limits
     from symflex.emit.figures.runs import Panel
     from symflex.modes import ModeShape
     from symflex.transfer import BoundTransferFunction, TransferFunction
@@ -63,15 +67,16 @@ def draw_modes(
     tfs: Sequence[TransferFunction],
     bounds: Sequence[BoundTransferFunction],
     *,
-    band_hz: tuple[float, float] | None = None,
+    band_hz: Limits | None = None,
+    frame: AxisLimits = FREE,
     title: str | None = None,
     width: float | None = None,
 ) -> Figure:
     """Draw the shapes of the lowest modes of the first function's model, hidden ones among them.
 
-    As many as ``[analysis]`` says, else five, and all of poles in the right half plane; rigid-body motions at
-    0 are left out. The title says whether the model is stable. The part in phase with
-    the largest displacement is drawn in full, what moves in quadrature dashed. See
+    As many as ``[analysis]`` says, else five, or the first 40 of a band; and all of poles in the right half
+    plane. Rigid-body motions at 0 are left out. The title says whether the model is stable. The part in
+    phase with the largest displacement is drawn in full, what moves in quadrature dashed. See
     :func:`symflex.emit.figures.draw`.
 
     Raises
@@ -81,17 +86,16 @@ def draw_modes(
     UsageError
         SF902 when the panels have no room in the width asked for.
     """
-    count = min(tfs[0].model.analysis.modes or DEFAULT_MODES, MODES_LIMIT)
-    numbered, verdict = lowest_modes(bounds[0], count)
+    del frame  # largest displacements are 1, and :func:`draw` refuses others
+    band = None if band_hz is None else Band(Fraction(band_hz[0]), Fraction(band_hz[1]))
+    count = min(tfs[0].model.analysis.modes or (MODES_LIMIT if band else DEFAULT_MODES), MODES_LIMIT)
+    numbered, verdict = lowest_modes(bounds[0], count, band=band)
     shapes = [found.shape for found in numbered]
-    if band_hz is not None:
-        low, high = band_hz
-        shapes = [s for s in shapes if low <= s.pole.frequency_hz() <= high or s.pole.re > 0]
     panels = panels_of(tfs[0].model, shapes)
     if not panels:
-        raise ModelError(
-            Diagnostic("SF402", f"{bounds[0].name} has no mode other than at 0 that has a shape")
-        )
+        where = "" if band_hz is None else f" between {band_hz[0]:g} and {band_hz[1]:g} Hz"
+        message = f"{bounds[0].name} has no mode other than at 0 that has a shape{where}"
+        raise ModelError(Diagnostic("SF402", message))
     width = width or (COLUMN_INCHES if len(panels) <= PANELS_IN_COLUMN else PAGE_INCHES)
     titles = (title_lines(title, width), title_lines(verdict.headline, width))
     lines = [line for group in titles for line in group]

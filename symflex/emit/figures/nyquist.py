@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from symflex.emit.figures.curves import drawable
+from symflex.emit.figures.drawing import FREE
 from symflex.emit.figures.labels import label_of_tf
 from symflex.emit.figures.style import (
     COLOURS,
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from symflex.emit.figures.drawing import AxisLimits, Limits
     from symflex.roots.right_half_plane import StabilityVerdict
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
@@ -39,7 +41,11 @@ WIDENED: Final = 10.0
 """How far beyond the band of poles and zeros the curve is drawn, to both sides."""
 REACHES: Final = (1.5, 2.5)
 """Half the side of the square shown of a loop gain, about -1."""
+OBLONG: Final = 4.0
+"""Limits asked for whose ratio exceeds this have a scale each."""
 QUANTILE: Final = 0.9
+WITHIN: Final = 0.9
+"""An arrow stands in so much of what is shown."""
 SHAFT: Final = 0.01
 """Length of an arrow without its head, in halves of the square."""
 
@@ -48,7 +54,8 @@ def draw_nyquist(
     tfs: Sequence[TransferFunction],
     bounds: Sequence[BoundTransferFunction],
     *,
-    band_hz: tuple[float, float] | None = None,
+    band_hz: Limits | None = None,
+    frame: AxisLimits = FREE,
     title: str | None = None,
     width: float | None = None,
     labels: Sequence[str] = (),
@@ -71,6 +78,10 @@ def draw_nyquist(
     found = [_curve(bound, band_hz) for bound in bounds]
     curves = [curve for curve, _ in found]
     reach = _reach(np.concatenate(curves), is_loop=bool(labels))
+    across, upwards = frame.x or (-reach, reach), frame.y or (-reach, reach)
+    axes.set_xlim(*across)
+    axes.set_ylim(*upwards)
+    reach = max(map(abs, (*across, *upwards)))
     for i, ((curve, poles), colour) in enumerate(zip(found, cycle(COLOURS), strict=False)):
         values = drawable(curve, reach)
         label = f"{labels[i] if labels else label_of_tf(tfs[i])}, {_open_poles(poles)}"
@@ -78,11 +89,10 @@ def draw_nyquist(
         axes.plot(values.real, -values.imag, "--", color=colour, linewidth=0.6, zorder=2)
     if reach > 1:
         axes.plot([-1], [0], "+", color="black", markersize=8, markeredgewidth=1.1, zorder=4)
-    axes.set_xlim(-reach, reach)
-    axes.set_ylim(-reach, reach)
-    axes.set_aspect("equal", adjustable="box")
+    if 1 / OBLONG < (across[1] - across[0]) / (upwards[1] - upwards[0]) < OBLONG:
+        axes.set_aspect("equal", adjustable="box")
     for values, colour in zip(curves, cycle(COLOURS), strict=False):
-        _point_along(axes, values, reach, colour)
+        _point_along(axes, values, colour)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10]))
     axes.set_xlabel("Real part")
@@ -133,9 +143,13 @@ def _reach(values: npt.NDArray[np.complex128], *, is_loop: bool) -> float:
     return 1.1 * float(np.quantile(np.abs(values), QUANTILE)) or 1.0
 
 
-def _point_along(axes: Axes, values: npt.NDArray[np.complex128], reach: float, colour: str) -> None:
+def _point_along(axes: Axes, values: npt.NDArray[np.complex128], colour: str) -> None:
     """Draw an arrow halfway along the part of a curve that is shown."""
-    shown = np.flatnonzero((np.abs(values.real) < 0.9 * reach) & (np.abs(values.imag) < 0.9 * reach))
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    half_width, half_height = (right - left) / 2, (high - low) / 2
+    aside = np.abs(values.real - (left + right) / 2) / half_width
+    aside = np.maximum(aside, np.abs(values.imag - (low + high) / 2) / half_height)
+    shown = np.flatnonzero(aside < WITHIN)
     steps = np.abs(np.diff(values[shown])) if shown.size > 2 else np.array([])  # noqa: PLR2004
     if not steps.size or not float(steps.sum()) > 0:
         return
@@ -143,7 +157,7 @@ def _point_along(axes: Axes, values: npt.NDArray[np.complex128], reach: float, c
     i = int(shown[min(middle, shown.size - 2)])
     a, step = values[i], values[min(i + 1, values.size - 1)] - values[i]
     # Its head alone: the next value may be far outside.
-    b = a + SHAFT * reach * step / abs(step)
+    b = a + SHAFT * min(half_width, half_height) * step / abs(step)
     axes.annotate(
         "",
         (b.real, b.imag),

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import ceil
 from typing import TYPE_CHECKING, Final
 
 from matplotlib.ticker import MaxNLocator
 
+from symflex.emit.figures.drawing import FREE
 from symflex.emit.figures.labels import label_of_tf
 from symflex.emit.figures.placement import Panel, text_width
 from symflex.emit.figures.s_plane import Mark, View, choose_view, leaving, marks_of
@@ -22,6 +24,7 @@ from symflex.emit.figures.style import (
     title_lines,
     write_titles,
 )
+from symflex.roots import Band
 from symflex.roots.locate import locate
 
 if TYPE_CHECKING:
@@ -30,6 +33,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from symflex.emit.figures.drawing import AxisLimits, Limits
     from symflex.roots import PoleZeroMap
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
@@ -48,7 +52,8 @@ def draw_poles_zeros(
     tfs: Sequence[TransferFunction],
     bounds: Sequence[BoundTransferFunction],
     *,
-    band_hz: tuple[float, float] | None = None,
+    band_hz: Limits | None = None,
+    frame: AxisLimits = FREE,
     title: str | None = None,
     width: float | None = None,
 ) -> Figure:
@@ -56,10 +61,12 @@ def draw_poles_zeros(
 
     All panels show the same part of the s plane. A root outside it is named at the border where the ray from
     the origin to it leaves the panel. A multiple root carries its multiplicity. Of distributed systems the
-    default modes are shown, as far up as the highest pole, and all poles in the right half plane. What the
-    title says of stability holds for all poles, drawn or not.
+    default modes are shown, as far up as the highest pole, or those up to the end of a band, and all poles in
+    the right half plane. Within limits asked for, scales may differ, and the title counts what is outside.
+    What it says of stability holds for all poles, drawn or not.
     """
-    maps = [locate(bound) for bound in bounds]
+    region = None if band_hz is None else Band(Fraction(0), Fraction(band_hz[1]))
+    maps = [locate(bound, region if bound.is_distributed else None) for bound in bounds]
     panels = [marks_of(found) for found in maps]
     count = len(panels)
     width = width or (COLUMN_INCHES if count <= PANELS_IN_COLUMN else PAGE_INCHES)
@@ -72,9 +79,18 @@ def draw_poles_zeros(
         _highest_pole(maps) if band_hz is None else band_hz[1],
         (narrowest, WIDEST),
     )
-    panel_width = min(room, TALLEST_INCHES * view.ratio)
-    panel_height = panel_width / view.ratio
-    titles = (title_lines(title, width), stability_lines(maps, width))
+    is_asked = frame != FREE
+    if is_asked:
+        view = View(frame.x or view.re, frame.y or view.im, frozenset())
+    shape = min(max(view.ratio, narrowest), WIDEST) if is_asked else view.ratio
+    panel_width = min(room, TALLEST_INCHES * shape)
+    panel_height = panel_width / shape
+    outside = [_said_of_rest(found, view) for found in maps] if is_asked else []
+    titles = (
+        title_lines(title, width),
+        stability_lines(maps, width),
+        [line for said in outside if said for line in title_lines(said, width)],
+    )
     lines = [line for group in titles for line in group]
     above = LINE_INCHES * len(lines) + (0.04 if lines else 0)
     height = above + rows * (TOP + panel_height + BOTTOM)
@@ -88,6 +104,10 @@ def draw_poles_zeros(
         box = (x / width, y / height, panel_width / width, panel_height / height)
         axes = figure.add_axes(box)
         _draw_panel(axes, marks, view, panel_width, panel_height)
+        if is_asked:
+            axes.set_aspect("auto")
+        else:
+            _name_the_rest(axes, marks, view, panel_width)
         axes.set_title(label_of_tf(tf), pad=4)
         axes.set_xlabel(r"$\mathrm{Re}(s)$ [rad/s]", labelpad=2)
         if column == 0:
@@ -132,8 +152,23 @@ def _draw_panel(axes: Axes, marks: Sequence[Mark], view: View, width: float, hei
     for mark in inside:
         if mark.multiplicity > 1:
             _number(axes, mark, panel)
+
+
+def _name_the_rest(axes: Axes, marks: Sequence[Mark], view: View, width: float) -> None:
+    """Name at the border what lies outside."""
+    panel = Panel(view, width, tuple(mark.s for mark in marks if view.shows(mark)))
     for group in leaving(marks, view):
         _point_outside(axes, group, panel)
+
+
+def _said_of_rest(found: PoleZeroMap, view: View) -> str:
+    """Return how many of the roots found lie outside the limits that were asked for."""
+    counts = {
+        kind: sum(m.multiplicity for m in marks_of(found) if m.kind == kind and not view.shows(m))
+        for kind in GLYPHS
+    }
+    said = [f"{n} {kind}{'s' if n > 1 else ''}" for kind, n in counts.items() if n]
+    return f"{found.tf}: {' and '.join(said)} outside" if said else ""
 
 
 def _number(axes: Axes, mark: Mark, panel: Panel) -> None:

@@ -10,6 +10,7 @@ from symflex.emit.export import Export
 from symflex.emit.forms import print_forms
 from symflex.emit.latex import TEXT_WIDTH_MM, Picture, latex_document, latex_files
 from symflex.errors import ModelError, SymflexError
+from symflex.model.model import Figure as Asked
 from symflex.roots.locate import locate
 from symflex.transfer import NestedTransferFunction, bind
 
@@ -97,31 +98,30 @@ class LatexExporter:
             if of:
                 named = {**DEFAULT_FIGURES, **LOOP_TITLES}
                 title = figure.title or named.get(figure.kind, figure.kind)
-                self._add(pictures, warnings, figure.name, figure.kind, of, title, figure.gain)
+                self._add(pictures, warnings, figure, of, title)
         asked = {figure.kind for figure in model.figures}
         for kind, title in DEFAULT_FIGURES.items() if bounds else ():
             if kind not in asked:
-                self._add(pictures, warnings, kind, kind, bounds[:MOST_IN_A_FIGURE], title)
+                self._add(pictures, warnings, Asked(kind, kind, ()), bounds[:MOST_IN_A_FIGURE], title)
         return pictures, warnings
 
     def _add(
         self,
         pictures: list[Picture],
         warnings: list[str],
-        name: str,
-        kind: str,
+        asked: Asked,
         bounds: Sequence[BoundTransferFunction],
         title: str,
-        gain: str = "",
     ) -> None:
         """Draw one figure, without its title, which stands below it."""
         from symflex.emit.figures import render  # imports matplotlib
         from symflex.emit.figures.pgf import MM_PER_INCH
 
+        name, kind = asked.name, asked.kind
         of = bounds[:1] if kind == "modes" else bounds  # all functions of a model have the same modes
         sources = [bound.source for bound in of]
         try:
-            figure = self._drawn(kind, of, gain)
+            figure = self._drawn(asked, of)
         except SymflexError as error:
             spend()
             is_without_modes = kind == "modes" and error.diagnostics[0].code == "SF402"
@@ -132,20 +132,22 @@ class LatexExporter:
         if height > TALLEST_MM:
             warnings.append(f"the figure {name} is left out: it is {height:.0f} mm high")
             return
-        is_told = kind == "modes" or bool(gain) or title not in DEFAULT_FIGURES.values()
+        is_told = kind == "modes" or bool(asked.gain) or title not in DEFAULT_FIGURES.values()
         shown = () if is_told else tuple(sources)
         latex = render(figure, "pgf", font="latex").decode("ascii")
         pictures.append(Picture(name, latex, title, shown))
 
-    def _drawn(self, kind: str, of: Sequence[BoundTransferFunction], gain: str) -> Figure:
+    def _drawn(self, asked: Asked, of: Sequence[BoundTransferFunction]) -> Figure:
         from symflex.emit.figures import LOOP_FIGURES, draw, draw_loop
         from symflex.stability import characteristic_loop, pick_gain
 
-        if gain and kind in LOOP_FIGURES:
+        kind, band = asked.kind, asked.band
+        if asked.gain and kind in LOOP_FIGURES:
             source = of[0].source
-            loop = characteristic_loop(source, pick_gain(source.model.parameters, gain))
-            return draw_loop(kind, loop, width_mm=self.width_mm, font="latex")
-        return draw(kind, [bound.source for bound in of], of, width_mm=self.width_mm, font="latex")
+            loop = characteristic_loop(source, pick_gain(source.model.parameters, asked.gain))
+            return draw_loop(kind, loop, band_hz=band, width_mm=self.width_mm, font="latex")
+        sources = [bound.source for bound in of]
+        return draw(kind, sources, of, band_hz=band, width_mm=self.width_mm, font="latex")
 
     def _parts(
         self, tfs: Sequence[AnyTransferFunction]

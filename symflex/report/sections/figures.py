@@ -72,7 +72,7 @@ def _defaults(study: Study, drawable: dict[tuple[str, str], BoundTransferFunctio
 
 def _loop_picture(study: Study, figure: Figure, files: dict[str, bytes]) -> Picture:
     """Draw a root locus, or a Nyquist plot of the loop gain."""
-    drawn = draw_loop(figure.kind, study.loop(figure.gain))
+    drawn = draw_loop(figure.kind, study.loop(figure.gain), band_hz=figure.band)
     caption = f"{figure.title}. " if figure.title else ""
     caption += f"{LOOP_WORDS[figure.kind]} {figure.gain}."
     return picture(f"{study.stem}_{figure.name}", drawn, caption, files)
@@ -90,6 +90,6 @@ def _picture(
         kind = "SYNTHETIC data, computed and not measured" if told.measured.is_synthetic else "measured data"
         caption += f"{told.measured.name} over {kind}, {told.measured.values.size} lines."
         return picture(f"{study.stem}_{figure.name}", drawn, caption, files)
-    drawn = draw(figure.kind, [b.source for b in chosen], chosen)
+    drawn = draw(figure.kind, [b.source for b in chosen], chosen, band_hz=figure.band)
     caption += f"{WORDS.get(figure.kind, figure.kind)} of {', '.join(b.name for b in chosen)}."
     return picture(f"{study.stem}_{figure.name}", drawn, caption, files)

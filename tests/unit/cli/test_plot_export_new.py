@@ -56,6 +56,21 @@ def test_a_figure_of_the_specification_is_drawn_by_its_name(shell):
         (("bode", "--font", "tims"), "SF902"),
         (("bode", "--width", "wide"), "SF902"),
         (("bode", "--width", "20"), "SF902"),
+        (("bode", "--band", "2", "1"), "SF902"),
+        (("bode", "--band", "0", "1"), "SF902"),
+        (("nyquist", "--band", "0", "1"), "SF902"),
+        (("poles_zeros", "--band", "nan", "1"), "SF902"),
+        (("bode", "--band", "1", "2 kg"), "SF902"),
+        (("bode", "--band", "1", "2", "--xlim", "1", "2"), "SF902"),
+        (("bode", "--xlim", "0", "1"), "SF902"),
+        (("bode", "--ylim", "0", "inf"), "SF902"),
+        (("bode", "--ylim", "0 kg", "1"), "SF902"),
+        (("bode", "--phase", "10", "-10"), "SF902"),
+        (("nyquist", "--phase", "-10", "10"), "SF902"),
+        (("nyquist", "--xlim", "nan", "1"), "SF902"),
+        (("poles_zeros", "--ylim", "1", "1"), "SF902"),
+        (("poles_zeros", "--xlim", "-1 m", "1"), "SF902"),
+        (("modes", "--ylim", "-1", "1"), "SF902"),
     ],
     ids=str,
 )
@@ -70,6 +85,33 @@ def test_a_figure_is_as_wide_as_asked_for(shell, width, written):
     assert shell("plot", "x.toml", "poles_zeros", "--width", width, "-o", "a.pgf").code == 0
     text = (shell.folder / "a.pgf").read_text(encoding="ascii")
     assert rf"\pgfpathrectangle{{\pgfpointorigin}}{{\pgfqpoint{{{written}}}" in text
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("bode", "--band", "0.5", "2 kHz", "--ylim", "-60 dB", "20", "--phase", "-200 deg", "10"),
+        ("bode", "--xlim", "3 rad/s", "2 kHz"),
+        ("nyquist", "--band", "1", "10", "--xlim", "-2", "1"),
+        ("poles_zeros", "--band", "0", "10", "--xlim", "-3", "1 Hz", "--ylim", "0", "10 rad/s"),
+        ("modes", "--band", "0", "1 kHz"),
+    ],
+    ids=str,
+)
+def test_a_figure_shows_the_part_asked_for(shell, arguments):
+    done = shell("plot", "x.toml", *arguments, "-o", "a.svg")
+    assert (done.code, done.err) == (0, "wrote a.svg\n")
+
+
+def test_a_band_on_the_command_line_comes_before_that_of_the_figure(shell):
+    text = (shell.folder / "x.toml").read_text(encoding="utf-8")
+    figure = '\n[figures.near]\nkind = "bode"\nof = ["X/F"]\nband = ["1 Hz", "2 Hz"]\n'
+    (shell.folder / "near.toml").write_text(text + figure, encoding="utf-8")
+    for name, more in (("own", ()), ("same", ("--band", "1", "2")), ("other", ("--band", "1", "3"))):
+        assert shell("plot", "near.toml", "near", *more, "-o", f"{name}.svg").code == 0
+    own, same, other = ((shell.folder / f"{name}.svg").read_bytes() for name in ("own", "same", "other"))
+    assert own == same
+    assert own != other
 
 
 def test_a_figure_takes_the_font_asked_for(shell):

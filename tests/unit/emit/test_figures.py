@@ -10,7 +10,7 @@ import matplotlib
 import numpy as np
 import pytest
 
-from symflex.emit.figures import FIGURES, FORMATS, LOOP_FIGURES, draw, render, save
+from symflex.emit.figures import FIGURES, FORMATS, LOOP_FIGURES, AxisLimits, draw, render, save
 from symflex.emit.figures.labels import label_of, label_of_name, label_of_tf, label_of_unit
 from symflex.emit.figures.s_plane import Mark, choose_view, leaving
 from symflex.errors import ModelError, UsageError
@@ -276,6 +276,90 @@ def test_a_band_may_be_given_in_exact_numbers(tfs):
 
 def test_a_band_asked_for_comes_first(tfs):
     assert drawn("bode", tfs, band_hz=(1, 3)).axes[0].get_xlim() == pytest.approx((1, 3))
+
+
+@pytest.mark.parametrize("band", [(3, 1), (2, 2), (-1, 2), (np.nan, 2), (1, np.nan), (1, np.inf)], ids=str)
+@pytest.mark.parametrize("kind", FIGURES)
+def test_a_band_that_is_none_is_refused(kind, band, tfs):
+    with pytest.raises(UsageError, match="SF227"):
+        drawn(kind, tfs, band_hz=band)
+
+
+@pytest.mark.parametrize(
+    "ends",
+    [(1, 0), (2, 2), (np.nan, 1), (0, np.nan), (-np.inf, 0), (0, np.inf), (-1e300, 1e300), (1, 1 + 1e-12)],
+    ids=str,
+)
+@pytest.mark.parametrize("axis", ["x", "y", "phase"])
+def test_limits_of_an_axis_that_are_none_are_refused(axis, ends):
+    with pytest.raises(UsageError, match="SF902"):
+        AxisLimits(**{axis: ends})
+
+
+def test_a_bode_plot_has_the_limits_asked_for(undamped):
+    frame = AxisLimits(y=(-60.0, 40.0), phase=(-200.0, 20.0))
+    top, bottom = drawn("bode", undamped, frame=frame).axes
+    assert top.get_ylim() == (-60, 40)
+    assert bottom.get_ylim() == (-200, 20)
+    # An undamped peak still runs to the frame.
+    assert max(line.get_ydata().max() for line in top.lines) > 40
+
+
+@pytest.mark.parametrize("ends", [(-1.0, 1.0), (0.0, 1e-9), (-1e30, 1e30), (-400.0, 0.0)], ids=str)
+def test_phases_have_a_few_ticks_whatever_their_limits_are(ends, tfs):
+    figure = drawn("bode", tfs, frame=AxisLimits(phase=ends))
+    assert 2 <= len(figure.axes[1].get_yticks()) <= 12
+
+
+@pytest.mark.parametrize("kind", ["nyquist", "poles_zeros"])
+def test_a_plane_has_the_limits_asked_for(kind, tfs):
+    for axes in drawn(kind, tfs, frame=AxisLimits(x=(-3.0, 1.0), y=(0.0, 2.0))).axes:
+        assert (axes.get_xlim(), axes.get_ylim()) == ((-3, 1), (0, 2))
+
+
+def test_one_axis_may_be_left_as_it_is(tfs):
+    free, asked = (drawn("poles_zeros", tfs, frame=f).axes[0] for f in (AxisLimits(), AxisLimits(x=(-9, 1))))
+    assert asked.get_ylim() == free.get_ylim()
+    assert asked.get_xlim() == (-9, 1)
+
+
+def test_roots_outside_the_limits_asked_for_are_counted():
+    # (s - 30) is unstable and outside: the title says both.
+    figure = drawn_rational("poles_zeros", "(s + 5)/((s^2 + 1*s + 1)*(s - 30))", frame=AxisLimits(x=(-2, 1)))
+    said = [text.get_text() for text in figure.texts]
+    assert any("unstable, 1 pole" in text for text in said)
+    assert any(text.endswith(": 1 pole and 1 zero outside") for text in said)
+
+
+@pytest.mark.parametrize(
+    ("kind", "limits", "said"),
+    [
+        ("nyquist", {"phase": (0, 1)}, "for 'bode'"),
+        ("poles_zeros", {"phase": (0, 1)}, "for 'bode'"),
+        ("bode", {"x": (0, 1)}, "its band"),
+        ("modes", {"y": (0, 1)}, "mode shapes"),
+    ],
+)
+def test_limits_of_an_axis_that_a_figure_has_not_are_refused(kind, limits, said, tfs):
+    with pytest.raises(UsageError, match=f"SF902.*{said}"):
+        drawn(kind, tfs, frame=AxisLimits(**limits))
+
+
+def test_a_band_chooses_among_all_modes():
+    # A free chain of two equal masses: one mode, at sqrt(100) rad/s.
+    tfs = derived(TWO_MASSES.replace("DAMPING", "0"))
+    titles = [axes.get_title(loc="left") for axes in drawn("modes", tfs, band_hz=(1.5, 1.7)).axes]
+    assert titles == ["$1.592$ Hz"]
+    with pytest.raises(ModelError, match=r"SF402.*between 1\.7 and 2 Hz"):
+        drawn("modes", tfs, band_hz=(1.7, 2))
+
+
+def test_a_nyquist_plot_of_a_band_ends_with_it():
+    # 1/(s + 1) at 1/(2 pi) Hz is (1 - j)/2.
+    turn = 1 / (2 * np.pi)
+    figure = drawn_rational("nyquist", "1/(s + 1)", band_hz=(turn / 1e4, turn))
+    (curve,) = (line for line in figure.axes[0].lines if line.get_label().endswith("$P = 0$"))
+    assert (curve.get_xdata()[-1], curve.get_ydata()[-1]) == pytest.approx((0.5, -0.5))
 
 
 def test_without_a_band_all_poles_and_zeros_are_shown():

@@ -184,6 +184,13 @@ def test_a_figure_names_its_kind_and_functions():
     assert (figure.name, figure.kind, figure.of) == ("one", "bode", (("X", "F"),))
 
 
+def test_a_figure_may_have_a_band_of_its_own():
+    (figure,) = pipeline.loads(MASS + '[figures.one]\nkind = "bode"\nband = [2, "1 kHz"]\n').figures
+    assert figure.band == (2, 1000)
+    assert codes(MASS + '[figures.one]\nkind = "bode"\nband = [3, 2]\n') == ["SF227"]
+    assert codes(MASS + '[figures.one]\nkind = "bode"\nband = ["1 m", 2]\n') == ["SF203"]
+
+
 def test_a_figure_of_a_function_that_is_not_there_is_refused():
     assert codes(MASS + '[figures.one]\nkind = "bode"\nof = ["Y/F"]\n') == ["SF218"]
 

@@ -6,10 +6,11 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from scipy.special import lambertw
 
 import symflex
 from symflex import pipeline
-from symflex.emit.figures import draw_loop
+from symflex.emit.figures import AxisLimits, draw_loop
 from symflex.errors import UsageError
 from symflex.stability import loop_gain, trace_locus
 
@@ -198,6 +199,33 @@ def test_the_frame_holds_the_poles_at_the_last_gain(loop):
     # The fifth mode is near (2 n + 1) pi / T for n = 3.
     assert axes.get_ylim()[1] > 7 * np.pi / 0.1
     assert axes.get_xlim()[0] < -3
+
+
+def test_a_locus_is_shown_as_far_as_the_band_reaches(loop):
+    done = characteristic(loop("K*(s + 30)/((s + 1)*(s + 2))"))
+    (axes,) = draw_loop("locus", done, band_hz=(0, 20 / (2 * np.pi))).axes
+    assert 20 < axes.get_ylim()[1] < 25
+    assert axes.get_xlim()[0] > -25
+
+
+def test_as_many_modes_are_traced_as_a_band_holds(loop):
+    # (s + 1) exp(s/10) = -1 where s = 10 W(-exp(1/10)/10) - 1.
+    known = [10 * lambertw(-np.exp(0.1) / 10, branch) - 1 for branch in range(-8, 8)]
+    wanted = sorted((s for s in known if abs(s) < 300), key=lambda s: (s.imag, s.real))
+    done = characteristic(loop("K*D/(s + 1)", T="0.1 s"))
+    traced = trace_locus(done, (Fraction(1), Fraction(2)), band_hz=(0, 300 / (2 * np.pi)))
+    found = [complex(float(r.re.mid()), float(r.im.mid())) for r in traced.start.poles]
+    assert len(wanted) > 8
+    assert np.allclose(sorted(found, key=lambda s: (s.imag, s.real)), wanted, rtol=1e-9)
+
+
+def test_a_locus_has_the_limits_asked_for_and_counts_what_is_outside(loop):
+    frame = AxisLimits(x=(-3, 1), y=(0, 2))
+    done = characteristic(loop("K*(s + 30)/((s + 1)*(s + 2))"))
+    figure = draw_loop("locus", done, limits=(Fraction(0), Fraction(1000)), frame=frame)
+    assert (figure.axes[0].get_xlim(), figure.axes[0].get_ylim()) == ((-3, 1), (0, 2))
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert labels == ["poles, $K = 0$", "poles, $K = 1000$ (all outside)"]
 
 
 def test_the_legend_names_what_is_seen(loop):
