@@ -139,6 +139,10 @@ def run(arguments: list[str] | None = None, *, is_program: bool = False) -> int:
         if problem.filename is not None:
             raise
         return _unwritable(problem)
+    except SystemExit as stop:
+        if not isinstance(stop.__context__, BrokenPipeError):
+            raise
+        return 0  # the reader of a help text went away, which ends other commands so too
     return result if isinstance(result, int) else 0
 
 

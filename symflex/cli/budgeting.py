@@ -69,7 +69,7 @@ class Memory(click.ParamType[int]):
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> int:
         """Return bytes."""
         found = SIZE.fullmatch(str(value))
-        size = int(float(found[1]) * UNITS[found[2].upper()]) if found else 0
+        size = min(int(float(found[1]) * UNITS[found[2].upper()]), sys.maxsize) if found else 0
         if size < SMALLEST_MEMORY:
             message = f"'{str(value)[:40]}' is no amount of memory such as '4 GB', of 250 MB or more"
             self.fail(message, param, ctx)

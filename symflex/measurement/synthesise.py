@@ -122,7 +122,7 @@ def synthesise(
     Raises
     ------
     UsageError
-        SF902 for a plan that cannot be meant, or a response that is not finite in the band.
+        SF902 for a plan that cannot be meant, or what the sensor shows is not finite in the band.
 
     Examples
     --------
@@ -146,25 +146,29 @@ def synthesise(
         raise UsageError(
             Diagnostic("SF902", message, None, "an undamped resonance has no stationary response")
         )
-    if plan.rolloff_hz is not None:
-        x = frequency / plan.rolloff_hz
-        response = response / (1 - x * x + 2j * SENSOR_DAMPING * x)
-    drive, signal = np.fft.irfft(spectrum, size), np.fft.irfft(spectrum * response, size)
-    signal = signal + plan.noise * float(signal.std()) * random.standard_normal(size)
-    lines: Real = np.asarray(np.fft.rfftfreq(record, 1 / rate), np.float64)
-    window = np.sin(np.pi * np.arange(record) / record) ** 2
-    power_in = np.zeros(lines.size)
-    power_out = np.zeros(lines.size)
-    cross = np.zeros(lines.size, np.complex128)
-    for start in range(0, size - record + 1, record // 2):
-        spend()
-        one = np.fft.rfft(window * drive[start : start + record])
-        two = np.fft.rfft(window * signal[start : start + record])
-        power_in += np.abs(one) ** 2
-        power_out += np.abs(two) ** 2
-        cross += np.conj(one) * two
-    shown = (lines >= plan.low_hz * (1 - 1e-9)) & (lines <= plan.high_hz * (1 + 1e-9)) & (lines > 0)
-    coherence = np.abs(cross[shown]) ** 2 / (power_in[shown] * power_out[shown])
+    with np.errstate(all="ignore"):  # what leaves the doubles is told below
+        if plan.rolloff_hz is not None:
+            x = frequency / plan.rolloff_hz
+            response = response / (1 - x * x + 2j * SENSOR_DAMPING * x)
+        drive, signal = np.fft.irfft(spectrum, size), np.fft.irfft(spectrum * response, size)
+        signal = signal + plan.noise * float(signal.std()) * random.standard_normal(size)
+        lines: Real = np.asarray(np.fft.rfftfreq(record, 1 / rate), np.float64)
+        window = np.sin(np.pi * np.arange(record) / record) ** 2
+        power_in = np.zeros(lines.size)
+        power_out = np.zeros(lines.size)
+        cross = np.zeros(lines.size, np.complex128)
+        for start in range(0, size - record + 1, record // 2):
+            spend()
+            one = np.fft.rfft(window * drive[start : start + record])
+            two = np.fft.rfft(window * signal[start : start + record])
+            power_in += np.abs(one) ** 2
+            power_out += np.abs(two) ** 2
+            cross += np.conj(one) * two
+        shown = (lines >= plan.low_hz * (1 - 1e-9)) & (lines <= plan.high_hz * (1 + 1e-9)) & (lines > 0)
+        coherence = np.abs(cross[shown]) ** 2 / (power_in[shown] * power_out[shown])
+    if not (np.isfinite(coherence).all() and np.isfinite(cross[shown]).all()):
+        message = f"what the sensor shows of {name} leaves what doubles can hold"
+        raise UsageError(Diagnostic("SF902", message, None, "less --noise, or a higher --rolloff"))
     independent = 1.0 if plan.averages == 1 else round(OVERLAP_WORTH * plan.averages, 2)
     sensor = "no sensor" if plan.rolloff_hz is None else f"sensor 2nd order, {plan.rolloff_hz:g} Hz"
     note = (
@@ -197,8 +201,6 @@ def _interpolated(function: Callable[[Real], Complex], frequency: Real, plan: Me
 
     coarse = np.unique(np.append(np.arange(0, frequency.size, step), frequency.size - 1))
     values = np.asarray(function(2 * np.pi * frequency[coarse]))
-    if not np.isfinite(values).all():
-        return np.full(frequency.shape, np.nan, np.complex128)
     if not np.isfinite(values).all():
         return np.full(frequency.shape, np.nan, np.complex128)
     return np.asarray(CubicSpline(frequency[coarse], values)(frequency))

@@ -64,6 +64,11 @@ def test_memory_is_read_in_decimal_and_binary_units(given, bytes_):
 
 
 @linux
+def test_a_memory_beyond_what_systems_count_is_no_limit():
+    assert ended(started("sys.exit(3)", "--memory", "999999999 TB"))[::2] == (3, "")
+
+
+@linux
 def test_what_cannot_be_asked_is_ended_and_said():
     code, out, err = ended(started(ENDLESS, "--budget", "0.5"))
     assert (code, out) == (5, "")

@@ -160,8 +160,11 @@ def test_no_color_is_respected_on_a_terminal(shell):
     assert b"\x1b" not in error_on_a_terminal(shell.folder, NO_COLOR="1")
 
 
-def test_a_reader_that_goes_away_is_no_error():
-    command = [sys.executable, "-m", "symflex", "derive", str(TWO_MASS)]
+@pytest.mark.parametrize(
+    "words", [("derive", str(TWO_MASS)), ("--help",), ("roots", "--help"), ("--version",)]
+)
+def test_a_reader_that_goes_away_is_no_error(words):
+    command = [sys.executable, "-m", "symflex", *words]
     reading, writing = os.pipe()
     os.close(reading)
     done = subprocess.run(

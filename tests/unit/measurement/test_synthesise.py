@@ -82,3 +82,10 @@ def test_an_undamped_resonance_has_no_stationary_response():
 
     with pytest.raises(UsageError):
         synthesise("y/u", undamped, PLAN)
+
+
+@pytest.mark.parametrize(("noise", "rolloff"), [(0.0, 1e-300), (1e300, None)])
+def test_a_sensor_whose_values_leave_the_doubles_is_refused(noise, rolloff):
+    plan = MeasurementPlan(2.0, 100.0, 1.0, 4, noise, rolloff)
+    with pytest.raises(UsageError, match="SF902"):
+        synthesise("y/u", first_order, plan)
