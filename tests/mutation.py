@@ -1,21 +1,25 @@
-"""Measure how many small changes of a module its tests notice.
+"""Measure how many small changes of modules their tests notice.
 
     python -m tests.mutation symflex/roots/krawczyk.py tests/unit/roots/test_krawczyk.py
+    python -m tests.mutation --sample 40 symflex/roots/side.py symflex/roots/tail.py
 
-changes the module in a copy of the checkout, one place at a time (mutmut does), runs the tests named, and
+changes the modules in a copy of the checkout, one place at a time (mutmut does), runs the tests named, and
 prints the share of changes that they notice and the diff of every other. Without tests the unit tests of the
-module's room are taken. Functions with a decorator (properties, cached results) are not changed. The figures
-of the core stand in docs/mutation.md.
+modules' rooms are taken; ``--sample`` draws so many changes of each module, the same ones each time. Those
+of functions with a decorator (properties, cached results) are not made. The figures of the core stand in
+docs/mutation.md.
 """
 
 from __future__ import annotations
 
+import argparse
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from random import Random
 
 ROOT = Path(__file__).resolve().parents[1]
 COPIED = [
@@ -31,22 +35,27 @@ COPIED = [
 SETTINGS = """
 [tool.mutmut]
 source_paths = ["symflex"]
-only_mutate = [{module!r}]
+only_mutate = {modules!r}
 also_copy = {copied!r}
 pytest_add_cli_args = ["-n0", "-q", "-p", "no:cacheprovider", "-p", "no:warnings"]
 pytest_add_cli_args_test_selection = {tests!r}
 """
 MUTMUT = (sys.executable, "-m", "mutmut")
 NOTICED = {"killed", "timeout"}
+SEED = 15
 
 
-def measure(module: str, tests: list[str], children: int = 2) -> None:
-    """Print which changes of a module survive the tests, and the share of those noticed."""
+def measure(modules: list[str], tests: list[str], *, sample: int | None = None, children: int = 2) -> None:
+    """Print which changes of modules survive the tests, and the shares of those noticed."""
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder)
 
         def run(*command: str) -> str:
             return subprocess.run(command, cwd=copy, capture_output=True, text=True, check=False).stdout
+
+        def verdicts() -> dict[str, str]:
+            listed = run(*MUTMUT, "results", "--all", "true")
+            return dict(re.findall(r"^ *(\S+): ([a-z ]+)$", listed, re.MULTILINE))
 
         listed = subprocess.run(
             ("git", "ls-files", "-co", "--exclude-standard"), cwd=ROOT, capture_output=True, check=True
@@ -55,23 +64,44 @@ def measure(module: str, tests: list[str], children: int = 2) -> None:
             (copy / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(ROOT / name, copy / name)
         with (copy / "pyproject.toml").open("a") as file:
-            file.write(SETTINGS.format(module=module, copied=COPIED, tests=tests))
-        said = run(*MUTMUT, "run", "--max-children", str(children))
-        verdicts = dict(
-            re.findall(r"^ *(\S+): ([a-z ]+)$", run(*MUTMUT, "results", "--all", "true"), re.MULTILINE)
-        )
-        if not verdicts or "not checked" in verdicts.values():
+            file.write(SETTINGS.format(modules=modules, copied=COPIED, tests=tests))
+        chosen: list[str] = []
+        if sample is not None:
+            # A run for a change that does not exist lists all changes, and which tests reach them.
+            run(*MUTMUT, "run", "none")
+            found = list(verdicts())
+            for module in modules:
+                own = [name for name in found if _module_of(name) == module]
+                chosen += Random(SEED).sample(own, min(sample, len(own)))
+        said = run(*MUTMUT, "run", "--max-children", str(children), *chosen)
+        every = {name: v for name, v in verdicts().items() if not chosen or name in chosen}
+        if not every or "not checked" in every.values():
             sys.exit(f"the tests fail, or cannot be run, without a change:\n{said[-4000:]}")
-        survived = [name for name, verdict in verdicts.items() if verdict not in NOTICED]
+        survived = [name for name, verdict in every.items() if verdict not in NOTICED]
         for name in survived:
             diff = [
                 line for line in run(*MUTMUT, "show", name).splitlines() if re.match(r"[-+](?![-+])", line)
             ]
-            print(f"{name.rpartition('.')[2]} ({verdicts[name]})", *diff, sep="\n")
-    noticed = len(verdicts) - len(survived)
-    print(f"{module}: {noticed} of {len(verdicts)} changes noticed, {noticed / len(verdicts):.0%}")
+            print(f"{name.rpartition('.')[2]} ({every[name]})", *diff, sep="\n")
+    for module in modules:
+        tried = [name for name in every if _module_of(name) == module]
+        noticed = len(tried) - len(set(survived).intersection(tried))
+        print(f"{module}: {noticed} of {len(tried)} changes noticed, {noticed / max(1, len(tried)):.0%}")
+
+
+def _module_of(change: str) -> str:
+    return change.rpartition(".")[0].replace(".", "/") + ".py"
 
 
 if __name__ == "__main__":
-    chosen, *named = sys.argv[1:]
-    measure(chosen, named or [f"tests/unit/{Path(chosen).parts[1]}"])
+    parser = argparse.ArgumentParser(
+        description="Measure how many small changes of modules their tests notice."
+    )
+    parser.add_argument("paths", nargs="+", metavar="PATH", help="modules, symflex/..., and tests")
+    parser.add_argument("--sample", type=int, metavar="N", help="draw N changes of each module")
+    parser.add_argument("--children", type=int, default=2, metavar="N", help="processes (2)")
+    given = parser.parse_args()
+    changed = [path for path in given.paths if path.startswith("symflex/")]
+    rooms = sorted({f"tests/unit/{Path(path).parts[1]}" for path in changed})
+    named = [path for path in given.paths if path not in changed]
+    measure(changed, named or rooms, sample=given.sample, children=given.children)

@@ -65,3 +65,59 @@ def test_a_mass_on_a_beam_has_an_effect_and_one_beside_it_has_none():
         'held = { type = "spring", between = ["z", "ground"], k = "k" }'
     )
     assert told(elements=beam) == [("SF654", "c")]
+
+
+def messages(**parts):
+    model = pipeline.loads(CHAIN.format(**{"elements": LINK, "inputs": FORCE, "outputs": 'X = "x"'} | parts))
+    return [(w.code, w.message, w.hint, w.severity) for w in pipeline.warnings(model)]
+
+
+FORCE = 'F = { force = "x" }'
+LOOSE = "is a node's name misspelt, or does an end hang free?"
+
+
+def test_an_output_that_is_zero_only_by_balance_is_told():
+    # A spring without mass: k x is the force at every frequency.
+    elements = 'held = { type = "spring", between = ["z", "ground"], k = "k" }\n' + LINK
+    outputs = 'X = "z"\nY = "k*z - F"'
+    assert messages(elements=elements, inputs='F = { force = "z" }', outputs=outputs)[-1] == (
+        "SF653",
+        "no input reaches output 'Y': all its transfer functions are 0",
+        "is a name in its expression, or on the way to it, misspelt?",
+        "warning",
+    )
+
+
+def test_an_idle_input_is_told_with_what_may_be_wrong():
+    assert messages(inputs=f"{FORCE}\nu = {{}}", outputs='X = "x + u - u"') == [
+        (
+            "SF652",
+            "input 'u' reaches no output: all its transfer functions are 0",
+            "is a name on its way misspelt, or does an output lack?",
+            "warning",
+        )
+    ]
+
+
+def test_one_part_that_nothing_moves_is_told_as_one():
+    first, _ = messages(elements="", outputs='X = "x"\nY = "y"')
+    assert first == ("SF654", "mass 'b' changes no transfer function: no input moves it", LOOSE, "warning")
+
+
+def test_parts_that_nothing_strains_are_told_together():
+    ring = "\n".join(
+        f'{name} = {{ type = "spring", between = ["{one}", "{two}"], k = "k" }}'
+        for name, one, two in (("r_1", "y", "p"), ("r_2", "p", "q"), ("r_3", "q", "y"))
+    )
+    ((code, message, hint, severity),) = messages(elements=f"{LINK}\n{ring}")
+    assert (code, hint, severity) == ("SF654", LOOSE, "warning")
+    assert message.endswith("change no transfer function: no input strains them")
+    assert [name in message for name in ("spring 'r_1'", "spring 'r_2'", "spring 'r_3'")] == [True] * 3
+
+
+def test_a_part_that_is_driven_one_way_is_one_that_no_output_sees():
+    # The force on y follows from x, and y acts on nothing.
+    push = 'push = { type = "force_source", at = "y", f = "k*x" }'
+    assert messages(elements=push) == [
+        ("SF654", "mass 'b' changes no transfer function: no output sees it", LOOSE, "warning")
+    ]
