@@ -1,0 +1,170 @@
+"""Values to double precision, on functions in balls whose accuracy a test lays down."""
+
+from __future__ import annotations
+
+from math import inf, isnan, nan
+
+import pytest
+from flint import acb, arb, ctx
+
+from symflex.transfer.double_value import (
+    DOUBLE_BITS,
+    FIRST_BITS,
+    LAST_BITS,
+    NEAR,
+    double_value,
+    order_near,
+)
+
+FAIL = acb(arb("nan"), arb("nan"))
+
+
+def accurate(value, bits):
+    """Return a ball about a number that is right to so many bits and no more."""
+    with ctx.workprec(LAST_BITS):
+        found = acb(arb(value, arb(value) * arb(2) ** (-1 - bits)))
+    assert found.rel_accuracy_bits() == bits
+    return found
+
+
+class Levels:
+    """A function that notes the precisions at which it was asked for, and answers by them."""
+
+    def __init__(self, answer):
+        self.answer, self.asked = answer, []
+
+    def enclosed(self, bits):
+        self.asked.append(bits)
+        return lambda s: self.answer(bits, s)
+
+    def __call__(self, s, patience=None):
+        return double_value(self.enclosed, lambda s: self.answer(FIRST_BITS, s), s, patience)
+
+
+def test_a_value_that_is_right_at_first_is_not_asked_for_again():
+    function = Levels(lambda bits, s: s * acb(2, 3))
+    assert function(1 - 1j) == 5 + 1j
+    assert function.asked == []
+
+
+@pytest.mark.parametrize(("bits", "asked"), [(DOUBLE_BITS, []), (DOUBLE_BITS - 1, [2 * FIRST_BITS])])
+def test_one_bit_more_than_a_double_has_is_enough(bits, asked):
+    function = Levels(lambda level, s: accurate(0.75, bits if level == FIRST_BITS else 100))
+    assert function(1j) == 0.75
+    assert function.asked == asked
+
+
+def test_the_precision_is_doubled_up_to_a_last_one_and_then_the_value_counts_as_zero():
+    function = Levels(lambda bits, s: accurate(0.75, 10))
+    assert function(1j) == 0
+    assert function.asked == [192, 384, 768, 1536, 3072, 6144]
+
+
+def test_a_value_that_is_never_finite_is_a_pole():
+    value = Levels(lambda bits, s: FAIL)(1j)
+    assert (value.real, isnan(value.imag)) == (inf, True)
+
+
+@pytest.mark.parametrize("bits", [3072, 6144])
+def test_late_accuracy_is_waited_for(bits):
+    function = Levels(lambda level, s: s if level >= bits else FAIL)
+    assert function(0.5 + 0.25j) == 0.5 + 0.25j
+    assert function.asked[-1] == bits
+
+
+@pytest.mark.parametrize("s", [complex(nan, 1), complex(1, nan), complex(inf, 1), complex(1, -inf)])
+def test_where_no_number_is_given_no_number_is_returned(s):
+    value = Levels(lambda bits, s: acb(1))(s)
+    assert isnan(value.real)
+    assert isnan(value.imag)
+
+
+PLACE = 3 + 4j
+
+
+def undefined(at):
+    """Return a function that is no number at a point, and has a given form beside it."""
+
+    def answer(bits, s):
+        with ctx.workprec(bits):
+            offset = s - acb(PLACE.real, PLACE.imag)
+            return FAIL if offset.contains(0) else at(offset)
+
+    return answer
+
+
+@pytest.mark.parametrize(("patience", "asked"), [(0, []), (1, [192]), (2, [192, 384])])
+def test_a_limit_is_sought_after_as_many_doublings_as_said(patience, asked):
+    function = Levels(undefined(lambda offset: acb(2, 5) + offset))
+    assert function(PLACE, patience) == 2 + 5j
+    assert function.asked[: len(asked)] == asked
+    assert [bits for bits in function.asked[len(asked) :] if bits < 768] == []
+
+
+def test_a_function_that_vanishes_at_such_a_point_is_zero_there():
+    assert Levels(undefined(lambda offset: offset * acb(2, 5)))(PLACE, 0) == 0
+
+
+@pytest.mark.parametrize("order", [-1, -2])
+def test_a_function_that_grows_towards_such_a_point_has_a_pole_there(order):
+    value = Levels(undefined(lambda offset: acb(1) / offset**-order))(PLACE, 0)
+    assert (value.real, isnan(value.imag)) == (inf, True)
+
+
+def test_a_function_that_is_no_number_about_such_a_point_has_no_limit():
+    value = Levels(lambda bits, s: FAIL)(PLACE, 0)
+    assert (value.real, isnan(value.imag)) == (inf, True)
+
+
+def test_a_finite_value_of_few_bits_is_made_better_before_it_is_a_limit():
+    function = Levels(lambda bits, s: accurate(0.75, 10 if bits < 400 else 100))
+    assert function(PLACE, 0) == 0.75
+    assert function.asked == [192, 384, 768]
+
+
+@pytest.mark.parametrize("order", [-3, -1, 0, 1, 2, 5])
+@pytest.mark.parametrize("s", [0j, 0.25j, 300 - 400j])
+def test_orders_are_read_off_beside_a_point(order, s):
+    def function(bits):
+        def at(z):
+            with ctx.workprec(bits):
+                return (z - acb(s.real, s.imag)) ** order * acb(3, -7)
+
+        return at
+
+    found, value = order_near(function, s)
+    assert found == order
+    with ctx.workprec(LAST_BITS):
+        # The nearer point stands off by 2^-220 of what is larger: the point's size, or one.
+        offset = arb(2) ** -NEAR[1] * max(abs(s), 1.0)
+        assert abs(value / (acb(3, -7) * acb(offset) ** order) - 1) < arb(2) ** -DOUBLE_BITS
+
+
+@pytest.mark.parametrize(("least", "found"), [(768, 768), (1536, 1536), (6144, 6144), (6145, None)])
+def test_beside_a_point_the_precision_is_raised_as_far(least, found):
+    function = Levels(lambda bits, s: acb(2) if bits >= least else FAIL)
+    order, value = order_near(function.enclosed, 1j)
+    assert (order, value is None) == (0, found is None)
+    assert function.asked[0] == 768
+    assert max(function.asked) == (found or LAST_BITS)
+
+
+def test_values_beside_a_point_that_are_finite_and_of_few_bits_do_not_count():
+    assert order_near(lambda bits: lambda s: accurate(0.75, DOUBLE_BITS - 1), 1j) == (0, None)
+    assert order_near(lambda bits: lambda s: accurate(0.75, DOUBLE_BITS), 1j)[1] is not None
+
+
+@pytest.mark.parametrize("fails_at", NEAR)
+def test_both_points_are_needed(fails_at):
+    def function(bits):
+        def at(s):
+            with ctx.workprec(bits):
+                return (
+                    FAIL
+                    if abs(s) < arb(2) ** (0.5 - fails_at) and abs(s) > arb(2) ** (-0.5 - fails_at)
+                    else s
+                )
+
+        return at
+
+    assert order_near(function, 0j) == (0, None)
