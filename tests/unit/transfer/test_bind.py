@@ -1,0 +1,373 @@
+"""Transfer functions with numbers, against mpmath at forty digits and messages in full."""
+
+from __future__ import annotations
+
+import math
+from decimal import Decimal
+from fractions import Fraction
+from itertools import product as combinations
+
+import mpmath
+import pytest
+from flint import acb, ctx
+
+from symflex import pipeline
+from symflex.errors import ModelError, UsageError
+from symflex.model import ExactValue
+from symflex.transfer.bind import bind_polynomials, read_values
+
+HEADER = "symflex = 1\n[parameters]\n"
+TWO_MASSES = f"""{HEADER}m = "2 kg"
+M = "7/3 kg"
+k = "8 N/m"
+b = {{ value = "0.1 N*s/m", assume = "nonnegative" }}
+a = {{ value = "-3", assume = "real" }}
+[elements]
+first = {{ type = "mass", at = "x", m = "m" }}
+second = {{ type = "mass", at = "y", m = "M" }}
+link = {{ type = "spring", between = ["x", "y"], k = "k" }}
+loss = {{ type = "damper", between = ["x", "y"], b = "b" }}
+wall = {{ type = "spring", between = ["x", "ground"], k = "3*k" }}
+[inputs]
+F = {{ force = "x" }}
+[outputs]
+Y = "y"
+V = "s*y"
+I = "-y/s"
+W = "sqrt(k*m)*pi*y + a*x"
+"""
+DIGITS = 40
+
+
+def derive(text, output="Y", source="F"):
+    return pipeline.derive(pipeline.assemble(pipeline.loads(text)), output, source)
+
+
+def value_of(exact):
+    return mpmath.mpf(exact.rational.numerator) / exact.rational.denominator * mpmath.pi**exact.pi_power
+
+
+def responses(s, given):
+    """Return x and y per force by the two equations of motion."""
+    m, M, k, b = (value_of(given[name]) for name in ("m", "M", "k", "b"))
+    w = k + b * s
+    determinant = (m * s**2 + w + 3 * k) * (M * s**2 + w) - w**2
+    return (M * s**2 + w) / determinant, w / determinant
+
+
+def formula(output, s, given):
+    x, y = responses(s, given)
+    m, k, a = (value_of(given[name]) for name in ("m", "k", "a"))
+    return {"Y": y, "V": s * y, "I": -y / s, "W": mpmath.sqrt(k * m) * mpmath.pi * y + a * x}[output]
+
+
+def holds(ball, exact):
+    """Tell whether a ball holds a number known to forty digits, and is small itself."""
+    with ctx.workprec(400):
+        at = acb(mpmath.nstr(exact.real, 60), mpmath.nstr(exact.imag, 60))
+        return bool(abs(ball - at) < abs(at) * acb(10).real ** -DIGITS)
+
+
+DECLARED = {
+    "m": ExactValue(Fraction(2)),
+    "M": ExactValue(Fraction(7, 3)),
+    "k": ExactValue(Fraction(8)),
+    "b": ExactValue(Fraction(1, 10)),
+    "a": ExactValue(Fraction(-3)),
+}
+GIVEN = (
+    {},
+    {"b": ExactValue(Fraction(0)), "m": ExactValue(Fraction(5, 7))},
+    {
+        "k": ExactValue(Fraction(3, 7), 2),
+        "M": ExactValue(Fraction(5, 3), -1),
+        "b": ExactValue(Fraction(2), 1),
+    },
+    {"m": ExactValue(Fraction(1, 9), -3), "k": ExactValue(Fraction(4, 25)), "a": ExactValue(Fraction(0))},
+)
+POINTS = (mpmath.mpc("0.5", "-1.25"), mpmath.mpc(3, 7), mpmath.mpc("-0.125", "1024"))
+
+
+@pytest.mark.parametrize(("output", "given"), [*combinations("YVIW", GIVEN)])
+def test_balls_hold_what_the_equations_of_motion_give_at_forty_digits(output, given):
+    tf = derive(TWO_MASSES, output)
+    used = {name: value for name, value in given.items() if name != "a" or output == "W"}
+    enclosed = pipeline.bind(tf, used).enclosed(300)
+    for s in POINTS:
+        with mpmath.workdps(80):
+            point, exact = acb(s.real.__float__(), s.imag.__float__()), formula(output, s, DECLARED | given)
+            slope = mpmath.diff(
+                lambda z: mpmath.log(formula(output, z, DECLARED | given)), s, h=mpmath.mpf(10) ** -25
+            )
+        assert holds(enclosed(point), exact)
+        with ctx.workprec(300):
+            error = abs(
+                enclosed.logarithmic_derivative(point)
+                - acb(mpmath.nstr(slope.real, 40), mpmath.nstr(slope.imag, 40))
+            )
+            assert error < 1e-20
+
+
+ROD = f"""{HEADER}E = "70 GPa"
+rho = "2700 kg/m^3"
+A = "1e-4 m^2"
+l = "2 m"
+a = {{ value = 1, assume = "real" }}
+[elements]
+bar = {{ type = "rod", E = "E", rho = "rho", A = "A", l = "l", between = ["base", "tip"] }}
+WALL
+[inputs]
+F = {{ force = "tip" }}
+[outputs]
+X = "tip"
+V = "s*tip"
+N = "a*tip"
+"""
+FREE = ROD.replace("WALL", "")
+HELD = ROD.replace("WALL", 'wall = { type = "spring", between = ["base", "ground"], k = "3 N/m" }')
+
+
+def rod(s, given, k):
+    """Return the tip's displacement per force: E A u'' = rho A s^2 u, held at x = 0 by a spring."""
+    E, rho, A, length = (value_of(given[name]) for name in ("E", "rho", "A", "l"))
+    q = s * mpmath.sqrt(rho / E)
+    stiff = E * A * q
+    ch, sh = mpmath.cosh(q * length), mpmath.sinh(q * length)
+    return (ch * stiff + k * sh) / (stiff * (stiff * sh + k * ch))
+
+
+METAL = {
+    "E": ExactValue(Fraction(70 * 10**9)),
+    "rho": ExactValue(Fraction(2700)),
+    "A": ExactValue(Fraction(1, 10**4)),
+    "l": ExactValue(Fraction(2)),
+}
+
+
+@pytest.mark.parametrize(("text", "k"), [(FREE, 0), (HELD, 3)], ids=["free", "held"])
+@pytest.mark.parametrize(
+    "given", [{}, {"l": ExactValue(Fraction(1, 3), 1)}, {"A": ExactValue(Fraction(1, 7), -2)}]
+)
+def test_rods_have_the_values_of_the_wave_equation_at_forty_digits(text, k, given):
+    bound = pipeline.bind(derive(text, "X"), given)
+    assert bound.is_distributed
+    for s in (300 - 400j, 0.5 + 8192j):
+        with mpmath.workdps(80):
+            exact = rod(mpmath.mpc(s), METAL | given, k)
+            slope = mpmath.diff(
+                lambda z: mpmath.log(rod(z, METAL | given, k)), mpmath.mpc(s), h=mpmath.mpf(10) ** -20
+            )
+        point = acb(s.real, s.imag)
+        assert holds(bound.enclosed(400)(point), exact)
+        above, below = (bound.enclosed_part(part, 400)(point) for part in (bound.num, bound.den))
+        with ctx.workprec(400):
+            assert holds(above / below, exact)
+            error = bound.enclosed(400).logarithmic_derivative(point) - acb(
+                mpmath.nstr(slope.real, 30), mpmath.nstr(slope.imag, 30)
+            )
+            assert abs(error) < 1e-15
+        assert bound(s) == pytest.approx(complex(exact), rel=4e-16)
+
+
+@pytest.mark.parametrize(
+    ("text", "output", "a", "limit"),
+    [
+        # Two metres of rod on a spring of 3 N/m: 1/3 + l/(E A).
+        (HELD, "X", 1, 1 / 3 + 2 / 7e6),
+        (HELD, "V", 1, 0.0),
+        (HELD, "N", -1, -(1 / 3 + 2 / 7e6)),
+        (FREE, "X", 1, math.inf),
+        (FREE, "V", 1, math.inf),
+        (FREE, "N", -1, -math.inf),
+        (FREE, "N", 0, 0.0),
+    ],
+)
+def test_the_limit_of_a_rod_at_zero(text, output, a, limit):
+    values = {"a": a} if output == "N" else {}
+    assert pipeline.bind(derive(text, output), values).limit_at_zero() == pytest.approx(limit, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("output", "limit"), [("Y", 1 / 24), ("V", 0.0), ("I", -math.inf), ("W", 4 * math.pi / 24 - 3 / 24)]
+)
+def test_the_limit_of_masses_and_springs_at_zero(output, limit):
+    # At rest both masses move by F/(3 k).
+    assert pipeline.bind(derive(TWO_MASSES, output)).limit_at_zero() == pytest.approx(limit, rel=1e-15)
+
+
+def diagnostic(error, code, values=None, text=TWO_MASSES, output="Y", source="F"):
+    with pytest.raises(error) as caught:
+        pipeline.bind(derive(text, output, source), values)
+    (found,) = caught.value.diagnostics
+    assert found.code == code
+    return found
+
+
+@pytest.mark.parametrize(
+    ("name", "hint"),
+    [("MM", "did you mean 'M'?"), ("something", "parameters: m, M, k, b, a")],
+)
+def test_an_unknown_name_is_told_with_the_nearest_or_all(name, hint):
+    found = diagnostic(UsageError, "SF902", {"k": 1, name: 3})
+    assert (found.message, found.hint) == (f"there is no parameter '{name}'", hint)
+
+
+def test_a_very_long_unknown_name_is_shortened():
+    assert diagnostic(UsageError, "SF902", {"x" * 99: 3}).message == f"there is no parameter '{'x' * 64}'"
+
+
+def test_one_missing_value_is_told_where_its_parameter_stands():
+    found = diagnostic(ModelError, "SF229", text=TWO_MASSES.replace('m = "2 kg"', "m = {}"))
+    assert found.message == "parameter 'm' has no value"
+    assert found.hint == "give it a value here, or to bind() in Python"
+    assert found.span.line == 3
+
+
+def many(count):
+    names = [f"p_{i}" for i in range(count)]
+    lines = "\n".join(f"{name} = {{}}" for name in names)
+    return f"""{HEADER}{lines}
+[inputs]
+U = {{}}
+[outputs]
+Y = "({" + ".join(names)})*U"
+"""
+
+
+@pytest.mark.parametrize(("count", "more"), [(2, ""), (40, ""), (41, " and 1 more"), (45, " and 5 more")])
+def test_missing_values_are_told_in_one_line_of_forty_names(count, more):
+    found = diagnostic(ModelError, "SF229", text=many(count), source="U")
+    shown = ", ".join(f"p_{i}" for i in range(min(count, 40)))
+    assert found.message == f"{count} parameters have no value: {shown}{more}"
+    assert found.hint == "give them values in [parameters], or to bind() in Python"
+    assert found.span is None
+
+
+@pytest.mark.parametrize(("name", "assume"), [("k", "positive"), ("b", "nonnegative")])
+def test_a_negative_value_is_refused_where_the_model_excludes_it(name, assume):
+    found = diagnostic(UsageError, "SF209", {name: Fraction(-1, 10**9)})
+    assert found.message == f"parameter '{name}' is negative, but is assumed {assume}"
+    assert found.hint == 'say assume = "real" in the model'
+
+
+def test_zero_and_real_values_are_taken():
+    assert dict(pipeline.bind(derive(TWO_MASSES), {"k": 0, "b": 1}).values)["k"].rational == 0
+    assert dict(pipeline.bind(derive(TWO_MASSES, "W"), {"a": -9}).values)["a"].rational == -9
+
+
+def test_a_denominator_that_vanishes_is_told_with_a_way_out():
+    found = diagnostic(ModelError, "SF231", {"m": 0, "M": 0, "k": 0, "b": 0})
+    assert found.message == "the denominator of Y/F is zero for these values"
+    assert found.hint == "a rigid or massless limit has its own equations"
+
+
+def test_a_wavenumber_that_vanishes_is_told_with_a_way_out():
+    moved = FREE.replace('F = { force = "tip" }', 'F = { displacement = "tip" }').replace(
+        'X = "tip"', 'X = "base"'
+    )
+    found = diagnostic(ModelError, "SF231", {"rho": 0}, moved, "X")
+    assert found.message == "a wavenumber of X/F is zero at every s for these values"
+    assert (
+        found.hint
+        == "a rigid or massless limit has its own equations: write the zero in place of the parameter"
+    )
+
+
+@pytest.mark.parametrize("given", [math.inf, None, 1j, Decimal("Infinity")])
+def test_what_is_no_number_is_told_by_name(given):
+    assert diagnostic(UsageError, "SF902", {"k": given}).message == "the value of 'k' must be a finite number"
+
+
+def test_a_wrong_unit_is_told_with_both():
+    found = diagnostic(UsageError, "SF203", {"k": "3 N"})
+    assert found.message == "'k' is in 'N/m', the value given in 'N'"
+
+
+TURNING = f"""{HEADER}f = "50 Hz"
+w = "3 rad/s"
+n = {{}}
+[inputs]
+U = {{}}
+[outputs]
+Y = "U*f/(s + w)"
+Z = "U*n/(s + f)"
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "exact"),
+    [
+        ("f", "60 Hz", ExactValue(Fraction(60))),
+        ("f", "120 rpm", ExactValue(Fraction(2))),
+        ("f", "60 rad/s", ExactValue(Fraction(30), -1)),
+        ("f", "60", ExactValue(Fraction(60))),
+        ("w", "60 rad/s", ExactValue(Fraction(60))),
+        ("w", "60 Hz", ExactValue(Fraction(120), 1)),
+        ("w", "30 rpm", ExactValue(Fraction(1), 1)),
+    ],
+)
+def test_turns_and_radians_are_converted_to_what_a_parameter_counts(name, given, exact):
+    model = pipeline.loads(TURNING)
+    parameter = next(p for p in model.parameters if p.name == name)
+    assert read_values((parameter,), {name: given}) == ((name, exact),)
+
+
+def test_values_read_before_stay_as_they_are_and_all_stand_in_declared_order():
+    parameters = pipeline.loads(TURNING).parameters
+    known = ExactValue(Fraction(1, 3), 5)
+    assert read_values(parameters, {"n": known}) == (
+        ("f", ExactValue(Fraction(50))),
+        ("w", ExactValue(Fraction(3))),
+        ("n", known),
+    )
+
+
+def test_a_parameter_that_is_not_in_the_function_may_be_given_and_is_kept():
+    bound = pipeline.bind(derive(TURNING, "Y", "U"), {"n": 7})
+    assert [name for name, _ in bound.values] == ["f", "w", "n"]
+
+
+HIDING = f"""{HEADER}a = 1
+c = 2
+d = {{ value = 3, assume = "real" }}
+[inputs]
+U = {{}}
+[outputs]
+Y = "(s + a)^2*(s + d)/((s + c)^3*(s + 5))*U"
+Z = "(s^2 + d)*s/((s + c)*s^2)*U"
+"""
+
+
+@pytest.mark.parametrize(
+    ("values", "factors"),
+    [
+        ({}, []),
+        ({"a": 2}, [("s + 2", 2)]),
+        ({"a": 2, "d": 2}, [("s + 2", 3)]),
+        ({"d": 5}, [("s + 5", 1)]),
+        ({"a": 5, "d": 2}, [("s + 2", 1), ("s + 5", 1)]),
+    ],
+)
+def test_what_values_cancel_is_hidden_with_its_power(values, factors):
+    bound = pipeline.bind(derive(HIDING, "Y", "U"), values)
+    assert sorted((str(h.polynomial), h.multiplicity) for h in bound.hidden) == factors
+    s = mpmath.mpf("1.5")
+    a, c, d = (mpmath.mpf(values.get(n, v)) for n, v in (("a", 1), ("c", 2), ("d", 3)))
+    exact = (s + a) ** 2 * (s + d) / ((s + c) ** 3 * (s + 5))
+    assert bound(1.5 + 0j) == pytest.approx(complex(exact), rel=1e-15)
+
+
+def test_polynomials_get_the_values_of_a_function_bound_before():
+    tf = derive(TWO_MASSES, "W")
+    bound = pipeline.bind(tf, {"k": ExactValue(Fraction(3, 7), 2), "m": "5 kg"})
+    polynomials = [f for f, _ in tf.ratio.factors]
+    found = bind_polynomials(tf, bound, polynomials)
+    with mpmath.workdps(80):
+        given = DECLARED | dict(bound.values)
+        exact = formula("W", POINTS[0], given)
+    point = acb(0.5, -1.25)
+    with ctx.workprec(300):
+        value = acb(tf.ratio.unit.numerator) / tf.ratio.unit.denominator
+        for image, (_, exponent) in zip(found, tf.ratio.factors, strict=True):
+            value *= bound.enclosed_part(image, 300)(point) ** exponent
+        assert holds(value, exact)
