@@ -1,0 +1,493 @@
+"""Adding up how far an argument turns, on functions whose turns are known; windings of known polynomials."""
+
+from __future__ import annotations
+
+from cmath import log, phase
+from dataclasses import dataclass, field
+from itertools import pairwise
+from math import asin, inf, pi
+
+import pytest
+from flint import acb, arb
+
+from symflex.budget import Budget
+from symflex.errors import BudgetError
+from symflex.roots import precision
+from symflex.roots.argument_principle import (
+    CertifiedWinding,
+    Circle,
+    Line,
+    _angle,
+    _argument,
+    _principal,
+    _whole,
+)
+from symflex.roots.kernel_function import Sample
+from symflex.roots.series_steps import SeriesSteps
+from symflex.roots.stepping import ROOM, angle, deviation, total_turn
+from symflex.roots.winding import Cell, RootOnPathError, Winding, continuous_step
+from tests.unit.roots.known_functions import KnownFunction, exact
+
+
+@pytest.mark.parametrize(
+    ("off", "size", "seen"),
+    [(0, 1, 0), (1, 2, pi / 6), (0.999, 1, asin(0.999)), (1, 1, pi / 2), (3, 1, 3 * pi / 2)],
+)
+def test_a_disc_is_seen_from_0_at_twice_the_arc_sine(off, size, seen):
+    assert angle(arb(off), arb(size)) == pytest.approx(seen, rel=1e-7)
+
+
+def test_an_angle_is_rounded_up():
+    third = arb(1) / 3
+    assert angle(third, arb(1)) >= asin(1 / 3)
+
+
+@pytest.mark.parametrize(
+    ("ball", "turned"),
+    [
+        (acb(arb(4, 0), arb(0)), 0),
+        (acb(arb(4, 2), arb(0)), pi / 6),
+        (acb(arb(0), arb(-4, 2)), pi / 6),
+        (acb(arb(0, 1), arb(0)), inf),
+        (acb(arb("nan"), arb(0)), inf),
+        (acb(arb(1, 2), arb(0)), pi),
+    ],
+)
+def test_a_ball_of_values_turns_as_far_as_its_disc_is_seen(ball, turned):
+    assert deviation(ball) == pytest.approx(turned, rel=1e-6)
+
+
+def spiral(turns, *, bound=lambda start, end: 6 * (end - start)):
+    """Return a change of argument that is uniform, and notes its steps."""
+    steps = []
+
+    def change(start, end):
+        off = bound(start, end)
+        steps.append((start, end, off <= ROOM))
+        return off, arb(2 * pi * turns * (end - start)) if off <= ROOM else arb(1000)
+
+    return change, steps
+
+
+@pytest.mark.parametrize("first", [0.01, 0.3, 1, 5])
+def test_steps_that_are_short_enough_cover_the_path_once(first):
+    change, steps = spiral(2.5)
+    assert float(total_turn(change, first, 1e-6)) == pytest.approx(5 * pi)
+    taken = [(start, end) for start, end, short in steps if short]
+    assert (taken[0][0], taken[-1][1]) == (0, 1)
+    assert all(a[1] == b[0] for a, b in pairwise(taken))
+    assert steps[0][1] == min(1, first)
+
+
+def test_steps_grow_where_nothing_turns_and_shrink_where_much_does():
+    change, steps = spiral(1, bound=lambda start, end: (80 if 0.4 < end < 0.6 else 0.5) * (end - start))
+    total_turn(change, 0.01, 1e-6)
+    lengths = {start: end - start for start, end, short in steps if short}
+    inside = [length for start, length in lengths.items() if 0.42 < start < 0.58]
+    assert max(inside) <= ROOM / 80 + 1e-9
+    assert max(lengths.values()) > 4 * max(inside)
+    # A step grows by at most a half, and so many are needed to cover the path.
+    taken = sorted(lengths.values())
+    assert all(b <= 1.5 * a + 1e-12 for a, b in pairwise(taken) if b > a)
+    assert len(steps) < 120
+
+
+def test_no_step_is_taken_that_may_have_turned_by_more():
+    change, steps = spiral(1, bound=lambda start, end: ROOM * (end - start) / 0.125)
+    total_turn(change, 0.125, 1e-6)
+    assert all(end - start <= 0.125 for start, end, short in steps if short)
+    assert steps[0][2]
+
+
+def test_a_root_on_the_path_ends_in_steps_that_are_too_short():
+    change, steps = spiral(1, bound=lambda start, end: inf if start <= 0.5 <= end else 0.1)
+    with pytest.raises(RootOnPathError):
+        total_turn(change, 0.2, 1e-3)
+    assert 1e-3 <= min(end - start for start, end, _ in steps) < 2.1e-3
+
+
+# ------------------------------------------------------------------------------------- certified paths
+
+
+@pytest.mark.parametrize("start", [0.0, 0.2, 0.75])
+@pytest.mark.parametrize(
+    "path",
+    [
+        Line(complex(1, 0), complex(1, pi)),
+        Line(complex(-2, pi / 2), complex(3, pi / 2)),
+        Line(complex(2, -1), complex(-1, 2)),
+        Line(complex(40, 3), complex(40, -3)),
+        Circle(acb(3, -4), arb("0.5")),
+        Circle(acb(0), arb(7)),
+    ],
+    ids=str,
+)
+def test_a_steps_ball_holds_the_path_and_its_reach_the_distance_from_its_middle(path, start):
+    end = min(1.0, start + 0.125)
+    with precision(64):
+        ball, centre, reach = path.step(start, end)
+        ends = path.step(start, end)[0]
+    with precision(200):
+        for i in range(65):
+            t = start + (end - start) * i / 64
+            point = path.point(t)
+            assert ball.overlaps(point)
+            assert abs(point - centre).lower() <= reach * (1 + 2.0**-30)
+        assert ends.contains(path.point((start + end) / 2).mid())
+        # No larger than it has to be.
+        length = sum(abs(path.point(start + i / 512) - path.point(start + (i + 1) / 512)) for i in range(64))
+        assert reach < length
+
+
+def test_an_end_is_met_exactly():
+    with precision(200):
+        assert Line(0j, complex(0, pi)).point(1).contains(acb(-1))
+        assert Line(complex(0, -pi / 2), 1j).point(0).contains(acb(0, -1))
+        assert Line(complex(1, 0), complex(2, 0)).point(1).contains(acb(2).exp())
+        assert Circle(acb(1, 1), arb(2)).point(0.25).contains(acb(1, 3))
+        assert float(abs(Line(0j, complex(0, pi)).point(1) + 1).upper()) < 1e-50
+
+
+def test_doubles_nearest_to_pi_stand_for_pi():
+    with precision(200):
+        for double, number in (
+            (pi, arb.pi()),
+            (-pi, -arb.pi()),
+            (pi / 2, arb.pi() / 2),
+            (-pi / 2, -arb.pi() / 2),
+        ):
+            assert _angle(double).overlaps(number)
+            assert not _angle(double).contains(arb(double))
+        assert _angle(1.5) == arb(1.5)
+        assert _angle(0.0) == 0
+
+
+@pytest.mark.parametrize(
+    ("difference", "expected"), [(1, 1), (7, 7 - 2 * pi), (-7, 2 * pi - 7), (-3, -3), (3.2, 3.2 - 2 * pi)]
+)
+def test_a_difference_of_arguments_is_less_than_half_a_turn(difference, expected):
+    assert float(_principal(arb(difference))) == pytest.approx(expected)
+
+
+def test_half_a_turn_could_be_either_way():
+    with pytest.raises(RootOnPathError):
+        _principal(arb.pi())
+    with pytest.raises(RootOnPathError):
+        _principal(arb(3, 0.2))
+
+
+def test_arguments_are_continuous_across_the_negative_real_axis():
+    ball = _argument(acb(-2, arb(0, 0.1)))
+    assert ball.contains(arb.pi())
+    assert float(ball.rad()) < 0.06
+    assert float(_argument(acb(3, 3))) == pytest.approx(pi / 4)
+    assert float(_argument(acb(-3, 3))) == pytest.approx(3 * pi / 4)
+
+
+def test_turns_are_whole_where_one_integer_is_in_the_ball():
+    assert _whole(arb(-2, 0.9)) == -2
+    for turns in (arb(0.5, 0.1), arb(1, 1.1)):
+        with pytest.raises(RootOnPathError):
+            _whole(turns)
+
+
+@dataclass(frozen=True, eq=False)
+class Followed(KnownFunction):
+    """A known product with what windings ask of a function; its exponents may be negative."""
+
+    has_fundamental: bool = False
+    work: int = 0
+    levels: list = field(default_factory=list)
+
+    def turn_of_exponentials(self, ball, start, end, bits):
+        return None
+
+    def enclosed(self, s, bits):
+        self.levels.append(bits)
+        return super().enclosed(s, bits)
+
+    def order_at_zero(self):
+        return self.power * sum(e * sum(bool(r == 0) for r in roots) for roots, e in self.roots)
+
+    def at_logarithm(self, z):
+        point = acb(z.real, z.imag).exp()
+        values = [(*self.value_and_slope(i, point), e) for i, (_, e) in enumerate(self.roots)]
+        if any(value == 0 for value, _, _ in values):
+            return None
+        total = sum(e * log(complex(value)) for value, _, e in values)
+        slope = sum(e * complex(point * change / value) for value, change, e in values)
+        return Sample(total * self.power, slope * self.power)
+
+    def reach(self, radius):
+        return radius
+
+    def count_inside(self, within):
+        return self.power * sum(e * sum(within(complex(r)) for r in roots) for roots, e in self.roots)
+
+
+PRODUCTS = {
+    "simple": (((1, (0, 2), (0, -2)), 1),),
+    "double": (((1, 1), 1), (((-3, 1), (-3, -1)), 2)),
+    "quotient": (((4, (1, 1), (1, -1)), 1), (((2, 3), (2, -3), -5), -1)),
+    "at zero": (((0, 0, 3), 1), ((-2,), 3)),
+}
+CELLS = [Cell(-1, 1, -1, 1), Cell(0.5, 2, -2, 2), Cell(-0.5, 2.5, 0.1, 3.1), Cell(1, 1.7, 0.5, pi)]
+
+
+def z_of(root):
+    value = complex(root)
+    return None if value == 0 else log(value)
+
+
+@pytest.mark.parametrize("power", [1, 2])
+@pytest.mark.parametrize("cell", CELLS, ids=str)
+@pytest.mark.parametrize("name", PRODUCTS)
+@pytest.mark.parametrize("kind", [Winding, CertifiedWinding])
+def test_a_cell_holds_as_many_roots_as_were_put_there(kind, name, cell, power):
+    function = Followed(PRODUCTS[name], power=power)
+    expected = function.count_inside(lambda root: root != 0 and cell.holds(log(root)))
+    try:
+        assert kind(function, Budget()).count(cell) == expected
+    except RootOnPathError:
+        # The cell's edge at pi is the negative real axis.
+        assert cell.left == pi
+        assert any(complex(r).real < 0 == complex(r).imag for roots, _ in function.roots for r in roots)
+
+
+@pytest.mark.parametrize("name", PRODUCTS)
+@pytest.mark.parametrize("radius", [0.5, 1.5, 2.5, 3.05, 10])
+def test_a_disc_about_0_holds_as_many_roots_as_were_put_there(name, radius):
+    function = Followed(PRODUCTS[name])
+    expected = function.count_inside(lambda root: abs(root) < radius)
+    assert CertifiedWinding(function, Budget()).count_within(float(log(radius).real), pi) == expected
+
+
+@pytest.mark.parametrize("shift", [0.999, 1.001])
+def test_a_disc_tells_roots_just_inside_from_those_just_outside(shift):
+    function = Followed((((exact((2, 1)), exact((2, -1))), 1),))
+    with precision(100):
+        centre, radius = acb(2, 3), arb(2) * arb(shift)
+    count = CertifiedWinding(function, Budget()).count_in_disc(centre, radius.mid())
+    assert count == (1 if shift > 1 else 0)
+
+
+def test_a_root_on_a_circle_is_not_counted():
+    function = Followed(((((2, 1), (2, -1)), 1),))
+    with pytest.raises(RootOnPathError):
+        CertifiedWinding(function, Budget()).count_in_disc(acb(2, 3), arb(2))
+
+
+def test_an_edge_followed_before_is_followed_back_by_the_same_turn():
+    function = Followed(PRODUCTS["double"])
+    winding = CertifiedWinding(function, Budget())
+    there = winding.certified_turn(1j, complex(2, 1))
+    evaluations = len(function.levels)
+    back = winding.certified_turn(complex(2, 1), 1j)
+    assert len(function.levels) == evaluations
+    assert there.overlaps(-back)
+    assert not float(there) == pytest.approx(0, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("start", "end"), [(0j, 2 + 0j), (0.3 + 0.2j, 1 + 2j), (2 + 3j, -1 + 0.5j), (1j, 3j)]
+)
+def test_a_turn_is_the_change_of_the_argument(start, end):
+    function = Followed((((9, (-5, 8)), 2), (((0, 30),), -1)))
+    values = [
+        sum(
+            phase(complex(function.value_and_slope(i, acb(z.real, z.imag).exp())[0])) * e
+            for i, (_, e) in enumerate(function.roots)
+        )
+        for z in (start, end)
+    ]
+    certified = CertifiedWinding(function, Budget()).certified_turn(start, end)
+    plain = Winding(function, Budget()).turn(start, end)
+    difference = values[1] - values[0]
+    assert (float(certified) - difference) / (2 * pi) == pytest.approx(
+        round((float(certified) - difference) / (2 * pi)), abs=1e-9
+    )
+    assert plain == pytest.approx(float(certified))
+    assert float(certified.rad()) < 1e-9
+
+
+@pytest.mark.parametrize(("radius", "turned"), [(0.05, True), (0.3, True), (1.2, False)])
+def test_a_power_series_tells_how_far_a_step_turns(radius, turned):
+    # One root is a unit away from the middle of the step.
+    function = Followed((((1, (-4, 2)), 1),))
+    steps = SeriesSteps(function)
+    with precision(200):
+        start, end = acb(2) - arb(radius) * acb(0, 1), acb(2) + arb(radius) * acb(0, 1)
+        exact_turn = sum(((end - root).arg() - (start - root).arg() for root in function.roots[0][0]), arb(0))
+    bound, turn = steps.change(acb(2), arb(radius), start, end, 64)
+    if turned:
+        assert bound <= ROOM
+        assert turn.overlaps(exact_turn)
+        assert float(turn.rad()) < 1e-5
+    else:
+        # The disc holds the root: the argument may wind.
+        assert bound > ROOM
+
+
+def test_a_series_serves_the_next_step_too_where_that_lies_well_within():
+    asked = []
+
+    class Counted(Followed):
+        def value(self, s, bits):
+            asked.append(bits)
+            return super().value(s, bits)
+
+    function = Counted((((100,), 1),))
+    steps = SeriesSteps(function)
+    steps.change(acb(2), arb(1), acb(1), acb(3), 64)
+    first = len(asked)
+    bound, turn = steps.change(acb(2.25), arb(0.25), acb(2), acb(2.5), 64)
+    assert len(asked) == first
+    assert bound <= ROOM
+    assert turn.contains(0)
+    steps.change(acb(30), arb(1), acb(29), acb(31), 64)
+    assert len(asked) > first
+
+
+# ----------------------------------------------------------------------------------- cells and samples
+
+
+def test_a_cell_has_four_edges_counterclockwise():
+    corners = [complex(1, 2), complex(3, 2), complex(3, 5), complex(1, 5)]
+    edges = Cell(1, 3, 2, 5).edges
+    assert {e[0] for e in edges} == set(corners)
+    area = sum(a.real * b.imag - b.real * a.imag for a, b in edges) / 2
+    assert area == 6
+    assert all(a[1] == b[0] for a, b in zip(edges, [*edges[1:], edges[0]], strict=True))
+
+
+def test_a_cell_has_a_centre_and_a_size():
+    assert (Cell(1, 3, 2, 5).centre, Cell(1, 3, 2, 5).size, Cell(0, 7, 2, 5).size) == (2 + 3.5j, 3, 7)
+
+
+@pytest.mark.parametrize(
+    ("z", "margin", "held"),
+    [
+        (2 + 3j, 0, True),
+        (1 + 3j, 0, False),
+        (3 + 3j, 0, False),
+        (2 + 2j, 0, False),
+        (2 + 5j, 0, False),
+        (0.9 + 3j, 0.2, True),
+        (3.1 + 3j, 0.2, True),
+        (2 + 1.9j, 0.2, True),
+        (2 + 5.1j, 0.2, True),
+        (0.7 + 3j, 0.2, False),
+        (3.3 + 3j, 0.2, False),
+        (2 + 1.7j, 0.2, False),
+        (2 + 5.3j, 0.2, False),
+        (9 + 3j, 0, False),
+    ],
+)
+def test_a_cell_holds_points_inside_and_in_its_margin(z, margin, held):
+    assert Cell(1, 3, 2, 5).holds(z, margin) is held
+
+
+@pytest.mark.parametrize(
+    ("cell", "parts"),
+    [
+        (Cell(0, 4, 0, 2), (Cell(0, 1, 0, 2), Cell(1, 4, 0, 2))),
+        (Cell(1, 3, 2, 6), (Cell(1, 3, 2, 3), Cell(1, 3, 3, 6))),
+        (Cell(0, 4, 1, 5), (Cell(0, 1, 1, 5), Cell(1, 4, 1, 5))),
+    ],
+)
+def test_a_cell_is_cut_across_its_longer_side(cell, parts):
+    assert cell.split(0.25) == parts
+
+
+@pytest.mark.parametrize(
+    "hole", [Cell(1, 2, 1, 2), Cell(-1, 2, 1, 2), Cell(3, 9, -1, 9), Cell(1, 2, -5, 5), Cell(-9, 9, -9, 9)]
+)
+def test_what_is_left_around_a_hole_is_the_cell_without_it(hole):
+    cell = Cell(0, 4, 0, 3)
+    left = cell.without(hole)
+    for x in range(1, 40, 2):
+        for y in range(1, 30, 2):
+            z = complex(x / 10 + 0.01, y / 10 + 0.01)
+            assert sum(part.holds(z) for part in left) == (not hole.holds(z)), z
+
+
+@pytest.mark.parametrize("hole", [Cell(4, 5, 0, 3), Cell(-2, 0, 0, 3), Cell(0, 4, 3, 4), Cell(0, 4, -1, 0)])
+def test_a_hole_that_only_touches_leaves_the_cell_whole(hole):
+    assert Cell(0, 4, 0, 3).without(hole) == (Cell(0, 4, 0, 3),)
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "step", "turned"),
+    [
+        (Sample(0j, 1j), Sample(0.5j, 1j), 0.5, 0.5),
+        # The logarithm jumps by a turn where the function crosses the negative real axis.
+        (Sample(3j, 1j), Sample(3.5j - 2j * pi, 1j), 0.5, 0.5),
+        (Sample(-3j, -1j), Sample(-3.5j + 2j * pi, -1j), 0.5, -0.5),
+        (Sample(0j, 1j), Sample(0.79j, 1j), 0.5, 0.79),
+        (Sample(0j, 1j), Sample(0.81j, 1j), 0.5, None),
+        (Sample(0j, 0j), Sample(0.31 + 0j, 0j), 0.5, None),
+        (Sample(0j, 1j), Sample(1j, 4.9j), 0.5, None),
+        (Sample(0j, -1.9 + 0j), Sample(0j, 1.9 + 0j), 0.5, 0.0),
+        (Sample(0j, -2.1 + 0j), Sample(0j, 2.1 + 0j), 0.5, None),
+    ],
+)
+def test_a_step_is_told_where_slopes_agree_with_values(start, end, step, turned):
+    found = continuous_step(start, end, step)
+    assert found == (None if turned is None else pytest.approx(turned))
+
+
+@pytest.mark.parametrize("left", [pi])
+@pytest.mark.parametrize("name", PRODUCTS)
+def test_within_the_smallest_radius_are_only_roots_at_0(name, left):
+    function = Followed(PRODUCTS[name])
+    z = Winding(function, Budget()).smallest(left)
+    least = min(abs(complex(r)) for roots, _ in function.roots for r in roots if r != 0)
+    assert z < log(least).real
+    assert z > log(least).real - 8
+
+
+def test_the_smallest_radius_stays_away_from_holes():
+    function = Followed(PRODUCTS["simple"])
+    hole = Cell(-9, -8, 0, 1)
+    assert Winding(function, Budget()).smallest(pi, [hole]) <= -9 - log(2).real
+
+
+def test_a_function_without_a_lowest_root_is_said_to_have_none():
+    class Wrong(Followed):
+        def order_at_zero(self):
+            return 5
+
+    with pytest.raises(BudgetError) as caught:
+        Winding(Wrong(PRODUCTS["simple"]), Budget()).smallest(pi)
+    (found,) = caught.value.diagnostics
+    assert (found.code, found.message) == ("SF505", "the lowest root cannot be found")
+    assert found.hint == "ask for a band, which needs no lowest root"
+
+
+@pytest.mark.parametrize(
+    ("work", "is_timed", "ends"),
+    [(5_000_001, False, True), (5_000_000, False, False), (5_000_001, True, False)],
+)
+def test_work_has_an_end_where_no_time_is_given(work, is_timed, ends):
+    winding = Winding(Followed(PRODUCTS["simple"], work=work), Budget(1000.0) if is_timed else Budget())
+    if not ends:
+        winding.spend()
+        return
+    with pytest.raises(BudgetError) as caught:
+        winding.spend()
+    (found,) = caught.value.diagnostics
+    assert (found.code, found.message) == ("SF505", "the search for roots takes too long")
+    assert found.hint == "ask for fewer modes or a smaller region"
+
+
+def test_a_path_of_too_many_pieces_is_refused():
+    with pytest.raises(BudgetError) as caught:
+        Winding(Followed(PRODUCTS["simple"]), Budget()).turn(0j, complex(0, 3e6))
+    assert caught.value.diagnostics[0].code == "SF505"
+
+
+def test_a_sample_at_a_root_says_so_each_time():
+    winding = Winding(Followed(((((1, 0),), 1),)), Budget())
+    for _ in range(2):
+        with pytest.raises(RootOnPathError):
+            winding.sample(0j)
