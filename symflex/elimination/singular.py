@@ -64,7 +64,7 @@ def explain_singular(equations: Equations) -> ModelError:
                 "SF301",
                 f"nothing determines {what} {names}: {verb}",
                 _place(equations, nodes[0].owner),
-                _meant(equations.model, nodes) or f"connect {hold} to ground or give {hold} a mass",
+                _meant(equations.model, nodes, f"connect {hold} to ground or give {hold} a mass"),
             )
         )
     elif loops:
@@ -84,11 +84,17 @@ def explain_singular(equations: Equations) -> ModelError:
     return ModelError(*problems)
 
 
-def _meant(model: Model, nodes: Sequence[Variable]) -> str | None:
-    """Return the nearest name to that of a lone node which an input names and no element touches."""
-    touched = [r.node for use in model.elements for _, references in use.nodes for r in references]
-    is_strange = len(nodes) == 1 and nodes[0].owner not in touched
-    return nearest(nodes[0].owner, touched) if is_strange else None
+def _meant(model: Model, nodes: Sequence[Variable], otherwise: str) -> str:
+    """Return a hint with the nearest name to that of a lone node which one element touches at most."""
+    owners = {node.owner for node in nodes}
+    touched = [{r.node for _, references in use.nodes for r in references} for use in model.elements]
+    (owner,) = owners if len(owners) == 1 else ("",)
+    touching = sum(owner in t for t in touched)
+    if not owner or touching > 1:
+        return otherwise
+    close = nearest(owner, sorted({"ground"}.union(*touched) - {owner}))
+    # A name no element touches is no node; the lone node of one may be meant as it is.
+    return otherwise if close is None else close if not touching else f"{close} else {otherwise}"
 
 
 def _dependent_conditions(equations: Equations, rows: list[EquationRow]) -> list[Diagnostic]:

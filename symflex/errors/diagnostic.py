@@ -91,8 +91,12 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
     --------
     >>> nearest("sprnig", ["mass", "spring"])
     "did you mean 'spring'?"
+    >>> nearest("X", ["x", "XY"])
+    "did you mean 'x'?"
     """
     if len(name) > 64:  # noqa: PLR2004
         return None
-    matches = get_close_matches(name, sorted(known), n=1, cutoff=0.6)
+    known = sorted(known)
+    same = [n for n in known if n.lower() == name.lower()]
+    matches = same or get_close_matches(name, known, n=1, cutoff=0.6)
     return f"did you mean '{matches[0]}'?" if matches else None

@@ -204,7 +204,9 @@ class DimensionSystem:
             self._read_cycles(measure, None, expression.span)
             return
         wanted = unit_of(unit)
-        self._read_cycles(measure, bool(wanted.radians), expression.span, wanted.dimension)
+        # N m/A is V s/rad: a gain per turn that is given as it stands is per radian wherever that fits.
+        is_gain = isinstance(expression, Name) and measure.cycles < 0 and wanted.dimension != SECOND
+        self._read_cycles(measure, bool(wanted.radians) or is_gain, expression.span, wanted.dimension)
         if measure.open or not names(expression):
             return
         reduced = self._reduce(measure.times(Measure(wanted.dimension).power(-1)))

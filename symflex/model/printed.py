@@ -106,8 +106,9 @@ def _unknown(node: Name, known: Collection[str], readable: Readable) -> Diagnost
         message = f"'{node.name}' is {described}; a printed formula holds s and constants only"
         hint = "define it in 'where' if the print means something else"
         return Diagnostic("SF212", message, node.span, hint)
-    close = nearest(node.name, {*known, *readable.constants}) or "define it in 'where'"
-    return Diagnostic("SF210", f"unknown name '{node.name[:64]}' in a printed formula", node.span, close)
+    close = nearest(node.name, {*known, *readable.constants})
+    hint = f"{close} else define it in 'where'" if close else "define it in 'where'"
+    return Diagnostic("SF210", f"unknown name '{node.name[:64]}' in a printed formula", node.span, hint)
 
 
 def _exponent_problems(expression: Expression) -> Iterator[Diagnostic]:

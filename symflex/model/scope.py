@@ -230,10 +230,11 @@ def nearest_name(name: str, known: Sequence[str]) -> str | None:
     >>> nearest_name("K", ["m", "k"]), nearest_name("c", ["m", "k"])
     ("did you mean 'k'?", 'known names: m, k')
     """
-    same = [n for n in known if n.lower() == name.lower()]
     if len(known) > COMPARED_NAMES:
-        known = [n for n in known if n[:1].lower() == name[:1].lower()][:COMPARED_NAMES]
-    hint = f"did you mean '{same[0]}'?" if same else nearest(name, known)
+        known = [n for n in known if n.lower() == name.lower()] or [
+            n for n in known if n[:1].lower() == name[:1].lower()
+        ][:COMPARED_NAMES]
+    hint = nearest(name, known)
     if hint is None and 0 < len(known) <= LISTED_NAMES:
         return "known names: " + ", ".join(known)
     return hint

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from symflex.elements import LineElement
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from symflex.model.model import Definition, Model, PlacedElement
 
 SHOWN = 4
+ALIKE = 0.8
+"""Of ``difflib``: 'grond' and 'groud' are 0.9 like 'ground', 'round_1' is 0.77."""
 
 
 def unused(model: Model) -> tuple[Diagnostic, ...]:
@@ -118,7 +121,7 @@ def _loose_nodes(model: Model) -> Iterator[Diagnostic]:
         close = nearest(node.name, others)
         if isinstance(uses[0].element, LineElement):
             # The free end of a beam is usual: only what looks like another name was hardly meant.
-            others = [name for name in others if _letters(name) == _letters(node.name)]
+            others = [name for name in others if _looks_like(node.name, name)]
             if not others:
                 continue
             close = nearest(node.name, others)
@@ -135,6 +138,13 @@ def _loose_nodes(model: Model) -> Iterator[Diagnostic]:
 def _is_branch(use: PlacedElement) -> bool:
     """Tell whether an element without mass joins two nodes and carries nothing with one of them free."""
     return not isinstance(use.element, LineElement) and [len(r) for _, r in use.nodes] == [2]
+
+
+def _looks_like(name: str, other: str) -> bool:
+    """Tell whether two names have the same letters, or nearly those of the ground, as which none is named."""
+    if _letters(name) == _letters(other):
+        return True
+    return other == "ground" and bool(get_close_matches(name.lower(), [other], cutoff=ALIKE))
 
 
 def _letters(name: str) -> list[str]:

@@ -333,3 +333,20 @@ def test_a_loop_with_another_gain_is_solved():
     text = f'{HEADER}k = {{}}\n[signals]\ne = "U + k*e"\n[inputs]\nU = {{}}\n[outputs]\nX = "e"\n'
     (tf,) = pipeline.derive_all(pipeline.loads(text))
     assert str(tf.ratio) in ("-1*(k - 1)^-1", "(k - 1)^-1*-1")
+
+
+@pytest.mark.parametrize(("node", "meant"), [("X", "x"), ("x_tpi", "x_tip"), ("gruond", "ground")])
+def test_a_floating_node_that_one_element_touches_is_compared_with_the_others(node, meant):
+    text = f"""symflex = 1
+parameters = {{ m = "1 kg", k = "2 N/m" }}
+inputs = {{ r = {{}} }}
+outputs = {{ X = "x" }}
+[elements]
+a = {{ type = "mass", at = "x", m = "m" }}
+b = {{ type = "mass", at = "x_tip", m = "m" }}
+c = {{ type = "spring", between = ["x", "x_tip"], k = "k" }}
+d = {{ type = "force_source", at = "{node}", f = "k*r" }}
+"""
+    with pytest.raises(ModelError, match="SF301") as caught:
+        pipeline.derive_all(pipeline.loads(text))
+    assert caught.value.diagnostics[0].hint.startswith(f"did you mean '{meant}'?")

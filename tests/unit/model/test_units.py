@@ -121,6 +121,23 @@ W = "s*z"
     assert value_of(text, "k_e") == ExactValue(Fraction(3, 2), -1)
 
 
+def test_a_speed_constant_given_as_the_torque_constant_is_per_radian_without_a_word():
+    text = f"""{HEADER}k_m = "50 V/krpm"
+[elements]
+motor = {{ type = "dc_motor", terminals = ["v", "ground"], shaft = "z", R = 1, k_t = "k_m" }}
+rotor = {{ type = "inertia", at = "z", J = "1 kg*m^2" }}
+[inputs]
+V = {{ voltage = "v" }}
+[outputs]
+W = "s*z"
+"""
+    assert value_of(text, "k_m") == ExactValue(Fraction(3, 2), -1)
+    assert resolve(text).warnings == ()
+    (tf,) = pipeline.derive_all(resolve(text))
+    # k/(s + k^2) with k = 3/(2 pi) is 2 pi/3 at 0.
+    assert pipeline.bind(tf)(0) == pytest.approx(2 * math.pi / 3)
+
+
 def test_an_angular_frequency_in_radians_per_second_is_taken_as_it_is():
     assert value_of(with_output('"7 rad/s"', "U/(s + f)"), "f") == ExactValue(Fraction(7), 0)
 

@@ -77,6 +77,20 @@ def test_the_tip_of_a_beam_that_is_another_name_with_letters_exchanged_is_not():
     assert told(elements=beam) == [("SF650", "gruond")]
 
 
+@pytest.mark.parametrize("name", ["grond", "groun", "goround", "Ground"])
+def test_the_end_of_a_beam_that_is_nearly_the_ground_is_not_free(name):
+    beam = f'arm = {{ type = "beam", between = ["x", "{name}"], {LINE} }}'
+    beam += '\nguide = { type = "slider", at = "x" }'
+    assert told(elements=beam) == [("SF650", name)]
+
+
+@pytest.mark.parametrize("name", ["round_1", "gr", "x_ground_end", "tip"])
+def test_the_end_of_a_beam_with_a_name_of_its_own_is_free(name):
+    beam = f'arm = {{ type = "beam", between = ["x", "{name}"], {LINE} }}'
+    beam += '\nguide = { type = "slider", at = "x" }'
+    assert told(elements=beam) == []
+
+
 @pytest.mark.parametrize(
     ("part", "line", "name"),
     [
