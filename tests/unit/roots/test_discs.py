@@ -2,9 +2,30 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+from itertools import combinations
+from random import Random
+
+import pytest
 from flint import acb, acb_poly, arb
 
-from symflex.roots.discs import Disc, LevelPolynomial, complete, groups, overlapping_pairs, with_mirrors
+from symflex.budget import Budget
+from symflex.roots import precision
+from symflex.roots.discs import (
+    CENTRE_STEPS,
+    NEWTON_STEPS,
+    Disc,
+    LevelPolynomial,
+    all_roots,
+    complete,
+    connected,
+    groups,
+    is_symmetric,
+    middle_of,
+    overlapping_pairs,
+    real_symmetric_roots,
+    with_mirrors,
+)
 
 
 def relative(z):
@@ -21,10 +42,17 @@ def test_touching_discs_count_as_overlapping():
     assert overlapping_pairs([Disc(acb(0), arb(1)), Disc(acb(2), arb(1))]) == [(0, 1)]
 
 
-def test_discs_a_hair_apart_are_told_apart_beyond_double_precision():
-    gap = arb(2) ** -60
-    assert overlapping_pairs([Disc(acb(1), gap / 4), Disc(acb(1 + gap), gap / 4)]) in ([], [(0, 1)])
-    assert overlapping_pairs([Disc(acb(0), gap), Disc(acb(4 * gap), gap)]) == []
+@pytest.mark.parametrize("scale", [0, 1, 10**6])
+@pytest.mark.parametrize("hair", [-70, -40])
+def test_discs_a_hair_apart_are_told_apart_beyond_double_precision(hair, scale):
+    with precision(200):
+        gap = arb(2) ** hair
+        apart, near = acb(scale, 2 * scale), acb(scale, 2 * scale) + acb(3, 4) / 5
+        # Centres one apart, radii a half each but for a hair.
+        assert overlapping_pairs([Disc(apart.mid(), arb(0.5)), Disc(near.mid(), (0.5 - gap).mid())]) == []
+        assert overlapping_pairs([Disc(apart.mid(), arb(0.5)), Disc(near.mid(), (0.5 + gap).mid())]) == [
+            (0, 1)
+        ]
 
 
 def test_a_set_of_discs_that_misses_a_root_is_not_complete():
@@ -58,3 +86,199 @@ def test_pellet_refuses_a_count_that_is_wrong():
 def test_groups_follow_chains_of_touching_discs():
     row = [Disc(acb(3 * i), arb(1.6)) for i in range(3)] + [Disc(acb(50), arb(1))]
     assert [len(group) for group in groups(row)] == [3, 1]
+
+
+def monic(*roots):
+    product = acb_poly([1])
+    for root in roots:
+        product *= acb_poly([-acb(root), 1])
+    return LevelPolynomial.of(product)
+
+
+def nothing(centre):
+    return arb(0)
+
+
+def test_a_newton_disc_is_as_many_times_the_step_as_there_are_roots():
+    # s^4 - 16 at 10: a step of 2.496, and the nearest root 8 away.
+    disc = LevelPolynomial.of(acb_poly([-16, 0, 0, 0, 1])).polish(acb(10), lambda centre: arb(20))
+    assert (disc.centre, float(disc.radius)) == (acb(10), pytest.approx(4 * 2.496))
+
+
+@pytest.mark.parametrize("start", [2.2, -3.2, 0.4, 1.1 + 1.7j, 1.2 + 2.3j])
+def test_a_polished_disc_is_as_small_as_wanted_or_as_digits_allow(start):
+    roots = [2, -3, 1 + 2j, 1 - 2j, Fraction(1, 3)]
+    with precision(300):
+        exact = [acb(arb(r.numerator) / r.denominator) if isinstance(r, Fraction) else acb(r) for r in roots]
+        for goal in (lambda centre: arb(10) ** -30, nothing):
+            disc = monic(*exact).polish(acb(start), goal)
+            assert disc.radius < arb(10) ** (-30 if goal is not nothing else -70)
+            assert sum(bool(abs(root - disc.centre) <= disc.radius) for root in exact) == 1
+            assert disc.is_real is (complex(start).imag == 0)
+
+
+def test_a_guess_where_the_slope_vanishes_is_left_unproved():
+    disc = monic(1, -1).polish(acb(0), nothing)
+    assert (disc.centre, disc.radius.is_finite()) == (acb(0), False)
+
+
+def test_polishing_spends_its_budget_and_ends():
+    spent = []
+
+    class Counted(Budget):
+        def spend(self):
+            spent.append(1)
+
+    with precision(10000):
+        level = LevelPolynomial.of(acb_poly([-2, 0, 1]), Counted())
+        level.polish(acb(10) ** 900, nothing)
+    assert len(spent) == NEWTON_STEPS
+
+
+def test_pairs_are_those_whose_exact_distance_is_not_more_than_both_radii():
+    random = Random(5)
+    numbers = [
+        (random.randrange(-64, 65), random.randrange(-64, 65), random.randrange(1, 24)) for _ in range(40)
+    ]
+    numbers += [(0, 0, 100), (300, 400, 400), (3, 4, 3), (6, 8, 2)]
+    discs = [Disc(acb(x, y) / 8, arb(r) / 8) for x, y, r in numbers]
+    expected = [
+        (i, j)
+        for (i, a), (j, b) in combinations(enumerate(numbers), 2)
+        if (a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 <= (a[2] + b[2]) ** 2
+    ]
+    assert overlapping_pairs(discs) == expected
+    # Groups are what these pairs connect.
+    found = connected(discs)
+    assert sorted(i for group in found for i in group) == list(range(len(discs)))
+    for i, j in combinations(range(len(discs)), 2):
+        together = any(i in group and j in group for group in found)
+        reached = {i}
+        while more := {b for a, b in [*expected, *((b, a) for a, b in expected)] if a in reached} - reached:
+            reached |= more
+        assert together is (j in reached)
+
+
+def test_discs_that_hold_all_roots_and_are_disjoint_are_complete():
+    discs = [Disc(acb(0), arb(1), 2), Disc(acb(5, 3), arb(1), 1)]
+    assert complete(discs, 4)
+    assert not complete(discs, 3)
+    assert not complete(discs, 5)
+    assert not complete([*discs, Disc(acb(1.5), arb(1))], 5)
+    assert not complete([Disc(acb(0), arb("inf"), 2)], 2)
+
+
+@pytest.mark.parametrize("scale", [1, 1e-12, 1e9])
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_pellets_disc_holds_exactly_as_many_roots_as_asked_for(count, scale):
+    near = [Fraction(1, 2) + Fraction(k, 10**7) for k in range(count)]
+    others = [Fraction(4), Fraction(-3), Fraction(5)]
+    with precision(300):
+        exact = [acb(arb(r.numerator) / r.denominator * scale) for r in near + others]
+        disc = monic(*exact).surround((exact[0] * (1 + arb(10) ** -9)).mid(), count)
+        assert disc.count == count
+        assert [bool(abs(root - disc.centre) < disc.radius) for root in exact] == [True] * count + [False] * 3
+        assert disc.radius < abs(exact[0]) * 1e-3
+        assert disc.is_real
+
+
+def test_pellets_disc_off_the_real_axis_stays_there():
+    with precision(200):
+        disc = monic(acb(1, 2), acb(1, 2) + acb(1e-9), acb(1, -2), acb(1, -2) + acb(1e-9)).surround(
+            acb(1, 2), 2
+        )
+    assert (disc.count, disc.is_real, float(disc.centre.imag.mid())) == (2, False, 2)
+
+
+def test_pellets_disc_about_two_of_three_close_roots_leaves_the_third_out():
+    with precision(200):
+        roots = [acb(1), acb(1 + arb(10) ** -9), acb(1 + 2 * arb(10) ** -9)]
+        disc = monic(*roots).surround(acb(1), 2)
+        assert [bool(abs(root - disc.centre) < disc.radius) for root in roots] == [True, True, False]
+
+
+def test_pellet_gives_up_where_no_two_of_three_roots_are_closer():
+    with precision(200):
+        # The second derivative of s^3 - s vanishes in the middle of the three.
+        assert monic(1, 0, -1).surround(acb(0), 2) is None
+
+
+def test_roots_of_a_cluster_are_told_apart_by_the_polynomial_next_to_it():
+    with precision(400):
+        offsets = [arb(10) ** -30 * k for k in (-1, 2, 5)]
+        exact = [acb(1 + offset) for offset in offsets]
+        level = monic(*exact, acb(7), acb(-4))
+        discs = level.separate(acb(1), 3, lambda centre: arb(10) ** -60, [lambda p: None, all_roots])
+        assert len(discs) == 3
+        for root in exact:
+            assert sum(bool(abs(root - d.centre) <= d.radius) for d in discs) == 1
+        assert all(d.radius < arb(10) ** -40 for d in discs)
+        assert level.separate(acb(1), 3, nothing, [lambda p: None]) is None
+        assert level.separate(acb(1), 3, nothing, []) is None
+
+
+def test_a_cluster_off_the_real_axis_needs_no_engine_for_real_polynomials():
+    with precision(400):
+        small = arb(10) ** -30
+        exact = [acb(1, 2), acb(1 + small, 2), acb(1, -2), acb(1 + small, -2)]
+        discs = monic(*exact).separate(acb(1, 2), 2, lambda centre: arb(10) ** -60, [])
+        assert [sum(bool(abs(root - d.centre) <= d.radius) for d in discs) for root in exact] == [1, 1, 0, 0]
+
+
+def test_an_exactly_multiple_root_is_not_separated():
+    with precision(200):
+        assert monic(1, 1, -4).separate(acb(1), 2, nothing, [all_roots]) is None
+
+
+def test_looking_for_a_clusters_centre_ends():
+    spent = []
+
+    class Counted(Budget):
+        def spend(self):
+            spent.append(1)
+
+    with precision(30000):
+        LevelPolynomial.of(acb_poly([-2, 0, 0, 1]), Counted()).surround(acb(10) ** 4000, 1)
+    assert len(spent) == CENTRE_STEPS
+
+
+def test_roots_are_listed_in_the_closed_upper_half_plane():
+    found = real_symmetric_roots(acb_poly([-25, 19, 5, 1]))
+    assert sorted((round(float(r.real), 6), round(float(r.imag), 6)) for r in found) == [(-3, 4), (1, 0)]
+    assert found[0].imag == 0
+
+
+def test_roots_that_do_not_separate_are_not_listed():
+    double = acb_poly([arb(1, 1e-3), -2, 1])
+    assert real_symmetric_roots(double) is None
+    assert all_roots(double) is None
+    # No real polynomial: i and 2i have no mirror images.
+    assert real_symmetric_roots(acb_poly([-2, acb(0, -3), 1])) is None
+
+
+def test_discs_without_a_radius_are_grouped_by_closeness():
+    far = arb("inf")
+    row = [
+        Disc(acb(1), far),
+        Disc(acb(1 + 2.0**-31), far),
+        Disc(acb(1 + 2.0**-20), far),
+        Disc(acb(3), arb(1.5)),
+    ]
+    assert [len(group) for group in groups(row)] == [2, 1, 1]
+    assert groups(row)[0] == (row[0], row[1])
+
+
+@pytest.mark.parametrize(
+    ("centres", "middle", "symmetric"),
+    [
+        ([acb(1, 2), acb(1, 4)], acb(1, 3), False),
+        ([acb(1, 2), acb(3, -2)], acb(2, 0), False),
+        ([acb(1, 2), acb(1, -2), acb(4, 1)], acb(2), True),
+        ([acb(1, 2), acb(4), acb(1, 1)], acb(2), True),
+    ],
+)
+def test_the_middle_of_a_group_is_real_where_the_group_mirrors_itself(centres, middle, symmetric):
+    discs = [Disc(c, arb(1)) for c in centres]
+    assert is_symmetric(discs) is symmetric
+    assert middle_of(discs) == middle
+    assert middle_of(discs).imag == middle.imag
