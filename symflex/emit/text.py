@@ -331,7 +331,7 @@ def _root_rows(roots: Sequence[Root], digits: int) -> list[Row]:
         times = f"x{root.multiplicity}" if root.multiplicity > 1 else ""
         flags = times + ("" if root.certified else "?") + ("|" if root.on_boundary else "")
         zeta = root.damping_ratio()
-        shown_zeta = "" if zeta is None else f"{zeta:.6g}"
+        shown_zeta = "" if zeta is None else "~0" if p.re.startswith("0e") else f"{zeta:.6g}"
         im = f"+-{p.im}" if mirrored else p.im
         rows.append((flags, p.re, im, p.radius, f"{root.frequency_hz():.6g}", shown_zeta))
     return rows

@@ -50,8 +50,8 @@ class StabilityVerdict:
     Parameters
     ----------
     word : str
-        ``stable``; ``unstable``, with poles in the right half plane; ``marginal``, with none there and some
-        on the imaginary axis; ``unknown``.
+        ``stable``; ``unstable``, with poles in the right half plane; ``marginal``, with none there, which is
+        proved, and some on the imaginary axis; ``unknown``.
     right : int or None
         Poles in the open right half plane, with multiplicity; ``None`` where they are not all counted.
     certified : bool
@@ -155,8 +155,8 @@ def judge(roots: Sequence[Root], unproved: str = "", proof: str = "") -> Stabili
         if all(root.is_zero for root in on_axis):
             times = sum(root.multiplicity for root in on_axis)
             where = "a pole at 0" if times == 1 else f"{times} poles at 0"
-        if unproved and not proof:
-            return StabilityVerdict("marginal", None, False, f"{where}; {unproved}")
+        if unproved and not proof:  # a pole that grows may lie beyond what was counted
+            return StabilityVerdict("unknown", None, False, f"{where}; {unproved}")
         return StabilityVerdict("marginal", 0, True, f"{where}; {proof}" if proof else where)
     if proof:
         return StabilityVerdict("stable", 0, True, f"{proof}; {unproved}" if unproved else proof)
@@ -212,12 +212,13 @@ def search_right(
     if any(hole.right < pi / 2 for hole in side.holes):
         return RightHalfPlane(tuple(known), ACCUMULATING)
     radius, unproved = _end(side, reached)
-    if unproved and side.function.is_even:
-        # Roots mirror each other in the axis, and a path along it would meet them.
+    # Roots mirror each other in the axis, and a path along it would meet them.
+    is_mirrored = bool(unproved) and side.function.is_even
+    if is_mirrored and radius <= reached:
         return RightHalfPlane(tuple(known), _up_to(unproved, reached))
     count: int | None = None
     try:
-        count = side.count_right(log(radius * MARGIN))
+        count = None if is_mirrored else side.count_right(log(radius * MARGIN))
     except RootOnPathError:
         pass
     except BudgetError as error:
@@ -234,7 +235,8 @@ def search_right(
             proof = again.prove(region)
         except BudgetError as error:
             more = f"{count} are counted, and not all found: " if count else ""
-            return RightHalfPlane(tuple(known), more + error.diagnostics[0].message)
+            said = _up_to(unproved, reached) if is_mirrored else more + error.diagnostics[0].message
+            return RightHalfPlane(tuple(known), said)
         seen = [root for root in again.roots if root.re.contains(0) or is_right(root)]
         if not proof.is_complete if count is None else _count(seen) != count:
             said = _up_to(unproved, reached) if unproved else proof.reason or NOT_COUNTED

@@ -27,7 +27,7 @@ class RootDecimals:
     Parameters
     ----------
     re, im : str
-        Decimal strings; ``"0"`` when the component is exactly zero.
+        Decimal strings; ``"0"`` when the component is exactly zero, ``"0e-15"`` when it is only not told from 0.
     radius : str
         Distance bound, rounded up, such as ``"3.1e-52"``; ``"0"`` when the print is exact.
     """
@@ -134,6 +134,8 @@ def decimals(re: arb, im: arb, digits: int) -> RootDecimals:
     --------
     >>> decimals(arb(1, 1e-3), arb(2) / 3, 6)
     RootDecimals(re='1.00', im='0.666667', radius='1.1e-3')
+    >>> decimals(arb(0), arb(0, 1e-16), 6)
+    RootDecimals(re='0', im='0e-15', radius='1.1e-16')
     """
     shown_re, re_error = _round_ball(re, digits)
     shown_im, im_error = _round_ball(im, digits)
@@ -210,9 +212,9 @@ def _decimal_exponent(value: Fraction) -> int:
 def _round_ball(ball: arb, digits: int) -> tuple[str, Fraction]:
     """Return the print of a real ball and a bound on its distance from every point of the ball."""
     middle, radius = exact_fraction(ball), exact_fraction(ball.rad())
-    if middle == 0:
+    if middle == 0 == radius:
         return "0", radius
-    last = _decimal_exponent(abs(middle)) - digits + 1
+    last = _decimal_exponent(abs(middle or radius)) - digits + 1
     if radius:
         last = max(last, _decimal_exponent(radius) + 1)
     unit = Fraction(10) ** last
@@ -226,7 +228,7 @@ def _round_ball(ball: arb, digits: int) -> tuple[str, Fraction]:
 def _format(count: int, last: int) -> str:
     """Write ``count * 10**last``, plainly where that is short, else with an exponent."""
     if count == 0:
-        return "0"
+        return f"0e{last}"
     sign, text = ("-" if count < 0 else ""), str(fmpz(abs(count)))  # Python refuses more than 4300 digits
     leading = len(text) - 1 + last
     if last > 0 or leading < PLAIN_FROM:

@@ -126,6 +126,43 @@ def test_a_critical_neutral_loop_is_not_known():
     assert "have no end" in verdict.reason
 
 
+NEGATIVE_MASS = """
+elements.m = { type = "mass", at = "x", m = "m" }
+parameters.m = { value = "-0.2 kg", assume = "real" }
+"""
+
+
+@pytest.mark.parametrize("region", [None, Band(0, Fraction(1, 100)), Mode(1)], ids=str)
+def test_a_pole_that_grows_without_losses_is_found_above_what_was_asked_for(region):
+    # Of impedance 1, ended by -m s^2 with m = 1/5: coth(s) = s/5.
+    verdict = found(ROD + NEGATIVE_MASS + FORCE, region)
+    right = [float(p.re.mid()) for p in verdict.all_poles if p.re > 0]
+    assert right == pytest.approx([float(mpmath.findroot(lambda s: mpmath.coth(s) - s / 5, 5))])
+    assert verdict.verdict.word == "unstable"
+
+
+def test_without_proof_of_what_lies_beyond_poles_on_the_axis_are_no_verdict():
+    field = """
+symflex = 1
+inputs.F = {}
+outputs.U = "u(1)"
+[fields.u]
+domain = ["0", "1"]
+equation = "u'' = s^2*u"
+conditions = ["u(0) = 0", "u'(1) = F"]
+"""
+    verdict = found(field).verdict
+    assert (verdict.word, verdict.right, verdict.certified) == ("unknown", None, False)
+    assert verdict.reason.startswith("poles on the imaginary axis; known up to")
+
+
+def test_a_part_not_told_from_zero_is_not_printed_as_zero():
+    # s + pi/2 exp(-s) has the roots +-j pi/2, exactly (Hayes 1950), which no enclosure can tell.
+    root = found(HAYES.format(gain="pi/2"), Modes(1)).poles[0]
+    assert root.decimal(15).re.startswith("0e-")
+    assert "  ~0" in roots_text(found(HAYES.format(gain="pi/2"), Modes(1)), 15)
+
+
 def test_a_passive_structure_is_marginal_by_its_energy():
     verdict = found(ROD + FORCE).verdict
     assert (verdict.word, verdict.right, verdict.certified) == ("marginal", 0, True)
