@@ -218,7 +218,7 @@ def replace_condition(model: Model, source: Input, output: Expression) -> Replac
         one value of a field.
     """
     unknowns = {u for f in model.fields for u in f.unknowns}
-    calls = [n for n in names(output) if isinstance(n, Call) and n.name in unknowns]
+    calls = [*{n: None for n in names(output) if isinstance(n, Call) and n.name in unknowns}]
     constants = {p.name for p in model.parameters} | {d.name for d in model.definitions} | {"s", "pi"}
     rest = [n for n in names(output) if not isinstance(n, Call)]
     if len(calls) != 1 or any(not isinstance(n, Name) or n.name not in constants for n in rest):

@@ -1,6 +1,7 @@
-"""What conditions of fields make one: values of two fields at a joint, or of a field and a node.
+"""What is one place: ends of elements and their nodes, and values that conditions of fields make equal.
 
-Input: a model. Output: groups of values that are equal by a condition such as ``w_2(l/2) = w_1(l/2)``.
+Input: a model. Output: the same model in which every place is written in one way, and groups of values that
+are equal by a condition such as ``w_2(l/2) = w_1(l/2)``.
 
 Example: of a beam of two fields, with the force a jump of the shear in a condition of ``w_2``, the output
 ``w_1(l/2)`` is ``w_2(l/2)``, on which the force does work.
@@ -9,8 +10,10 @@ Example: of a beam of two fields, with the force a jump of the shear in a condit
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from symflex.elements import LineElement
 from symflex.expressions import (
     Attribute,
     Call,
@@ -18,17 +21,102 @@ from symflex.expressions import (
     Name,
     Negative,
     Number,
+    Product,
     Sum,
-    format_expression,
     names,
     replace_values,
 )
+from symflex.model.analysis import PI_NEARLY
+from symflex.model.nodes import variable_of
+from symflex.model.points import Line
 
 if TYPE_CHECKING:
+    from collections.abc import Hashable, Iterator
+
     from symflex.expressions import Expression
-    from symflex.model import Input, Model
+    from symflex.model import Input, Model, PlacedElement
 
 PAIR = 2
+
+
+def in_one_way(model: Model) -> Model:
+    """Return a model whose places are written in one way: ends of elements as nodes, equal points alike.
+
+    Points are equal by the parameters' values where they have some.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... parameters.l = "2 m"
+    ... elements.bar = { type = "rod", between = ["ground", "x"], E = 1, A = 1, rho = 1, l = "l" }
+    ... inputs.F = { force = "x" }
+    ... outputs.U = "s*bar.u(l/2 + 1 m)"
+    ... ''')
+    >>> from symflex.expressions import format_expression
+    >>> format_expression(in_one_way(model).outputs[0].expression)
+    's*x'
+    """
+    line = Line(
+        {d.name: d.expression for d in model.definitions},
+        frozenset(),
+        frozenset(),
+        {p.name: p.value.rational * PI_NEARLY**p.value.pi_power for p in model.parameters if p.value},
+    )
+    ends = {
+        (f"{use.name}.{name}", line.key(place)): shown
+        for use in model.elements
+        if isinstance(use.element, LineElement)
+        for name, place, shown in _ends(model, use, use.element)
+    }
+    spelled: dict[Hashable, Expression] = {}
+    unknowns = {u for field in model.fields for u in field.unknowns}
+
+    def written(expression: Expression) -> Expression:
+        changed: dict[Call, Expression] = {}
+        for call in (n for n in names(expression) if isinstance(n, Call)):
+            place = line.key(call.argument) if call.name in unknowns or "." in call.name else None
+            if call.name in unknowns:
+                changed[call] = replace(call, argument=spelled.setdefault(place, call.argument))
+            elif not call.order and (call.name, place) in ends:
+                changed[call] = ends[call.name, place]
+        return replace_values(expression, changed)
+
+    for field in model.fields:
+        for end in (field.start, field.end):
+            spelled.setdefault(line.key(end), end)
+    fields = [
+        replace(
+            f,
+            conditions=tuple(replace(c, left=written(c.left), right=written(c.right)) for c in f.conditions),
+        )
+        for f in model.fields
+    ]
+    signals = [replace(each, expression=written(each.expression)) for each in model.signals]
+    outputs = [replace(each, expression=written(each.expression)) for each in model.outputs]
+    return replace(model, fields=tuple(fields), signals=tuple(signals), outputs=tuple(outputs))
+
+
+def _ends(
+    model: Model, use: PlacedElement, element: LineElement
+) -> Iterator[tuple[str, Expression, Expression]]:
+    """Yield what the motion of an element's ends is called, the place, and the node that moves so."""
+    (_, references), *_ = use.nodes
+    nodes = {node.name: node for node in model.nodes}
+    read_otherwise = {each.name for each in model.signals} | {each.name for each in model.inputs}
+    domain = element.ports[0].domain
+    for reference, place in zip(
+        references, (Number(Fraction(0)), dict(use.values)[element.length]), strict=True
+    ):
+        if reference.is_ground or reference.node in read_otherwise:
+            continue
+        for component, called in zip(element.ends, element.along, strict=False):
+            picked = replace(reference, component=component) if domain == "planar" else reference
+            moved = variable_of(picked, nodes[reference.node], domain)
+            shown = Attribute(moved.owner, moved.component) if moved.component else Name(moved.owner)
+            for name in called:
+                yield name, place, shown
 
 
 def joined_values(model: Model) -> list[list[Expression]]:
@@ -50,6 +138,7 @@ def joined_values(model: Model) -> list[list[Expression]]:
     ... equation = "v'' - s^2*v = 0"
     ... conditions = ["v'(1) - u'(1) = F", "v(2) = 0"]
     ... ''')
+    >>> from symflex.expressions import format_expression
     >>> [[format_expression(value) for value in group] for group in joined_values(model)]
     [['u(1)', 'v(1)']]
     """
@@ -59,9 +148,9 @@ def joined_values(model: Model) -> list[list[Expression]]:
             equal = _equal(model, condition)
             if equal is None:
                 continue
-            met = [g for g in groups if any(_is_same(a, b) for a in g for b in equal)]
+            met = [g for g in groups if any(value in g for value in equal)]
             whole = [value for group in met for value in group]
-            whole += [value for value in equal if not any(_is_same(value, other) for other in whole)]
+            whole += [value for value in equal if value not in whole]
             groups = [*(g for g in groups if g not in met), whole]
     return groups
 
@@ -74,10 +163,8 @@ def seen_at_the_input(model: Model, output: str, source: Input) -> Model:
     """
     (wanted,) = (o for o in model.outputs if o.name == output)
     unknowns = {u for f in model.fields for u in f.unknowns}
-    shown = [n for n in names(wanted.expression) if isinstance(n, Call) and n.name in unknowns]
-    if len(shown) != 1:
-        return model
-    group = next((g for g in joined_values(model) if any(_is_same(v, shown[0]) for v in g)), [])
+    shown = {n for n in names(wanted.expression) if isinstance(n, Call) and n.name in unknowns}
+    group = next((g for g in joined_values(model) if all(v in g for v in shown)), []) if shown else []
     loaded = {
         unknown
         for field in model.fields
@@ -88,9 +175,9 @@ def seen_at_the_input(model: Model, output: str, source: Input) -> Model:
         (v for v in group if (v.name in loaded if isinstance(v, Call) else not loaded)),
         None,
     )
-    if chosen is None or chosen == shown[0]:
+    if chosen is None:
         return model
-    changed = replace(wanted, expression=replace_values(wanted.expression, {shown[0]: chosen}))
+    changed = replace(wanted, expression=replace_values(wanted.expression, dict.fromkeys(shown, chosen)))
     return replace(model, outputs=tuple(changed if o is wanted else o for o in model.outputs))
 
 
@@ -105,6 +192,8 @@ def _equal(model: Model, condition: Equation) -> tuple[Expression, Expression] |
         if len(plus) != 1:
             return None
         left, right = plus[0], minus[0]
+    if isinstance(left, Product) and isinstance(right, Product) and left.factors[:-1] == right.factors[:-1]:
+        left, right = left.factors[-1], right.factors[-1]
     return (left, right) if _is_value(model, left) and _is_value(model, right) else None
 
 
@@ -119,10 +208,6 @@ def _is_value(model: Model, side: Expression) -> bool:
         case Name(name=name) | Attribute(owner=name):
             return any(node.name == name for node in model.nodes)
     return False
-
-
-def _is_same(a: Expression, b: Expression) -> bool:
-    return format_expression(a) == format_expression(b)
 
 
 def _holds(condition: Equation, name: str) -> bool:

@@ -25,7 +25,7 @@ from symflex.explanation.comparison import Relation, agree, relate, varying
 from symflex.explanation.constraints import Constraint, hold, open_circuit, replace_condition
 from symflex.explanation.coordinates import acting, measured
 from symflex.explanation.ends import ends_of_element, ends_of_field, is_line
-from symflex.explanation.joints import seen_at_the_input
+from symflex.explanation.joints import in_one_way, seen_at_the_input
 from symflex.explanation.parts import Part, Separation, separate
 from symflex.explanation.text import explanation_json, explanation_text
 from symflex.expressions import format_expression, power, product_of
@@ -222,7 +222,7 @@ def explain_zeros(
     if len(model.elements) > SYMBOLIC_ELEMENTS:
         given = with_numbers(given)
     pair = (bound.source.output.name, bound.source.input.name)
-    given = seen_at_the_input(given, pair[0], bound.source.input)
+    given = seen_at_the_input(in_one_way(given), pair[0], bound.source.input)
     if bound.ratio.is_zero:
         return ZeroExplanation(bound.name, "zero", "proved", *pair)
     equations = assemble(given, nested)

@@ -17,7 +17,7 @@ from symflex.model.linearity import integer_exponent
 from symflex.model.units import lower
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Hashable, Mapping
 
 Monomial = tuple[tuple[str, int], ...]
 Polynomial = dict[Monomial, Fraction]
@@ -79,6 +79,20 @@ class Line:
         """Return the number a place is with the parameters' values."""
         polynomial = self._read(place)
         return None if polynomial is None else self._value(polynomial)
+
+    def key(self, place: Expression) -> Hashable:
+        """Return what is equal of equal places: the number, else the polynomial, else the place as written.
+
+        >>> half = Quotient(Name("l"), Number(Fraction(2)))
+        >>> line = Line({}, frozenset({"l"}), frozenset(), {})
+        >>> line.key(half) == line.key(Product((Number(Fraction(1, 2)), Name("l"))))
+        True
+        """
+        polynomial = self._read(place)
+        if polynomial is None:
+            return place
+        value = self._value(polynomial)
+        return frozenset(polynomial.items()) if value is None else value
 
     def _value(self, polynomial: Polynomial) -> Fraction | None:
         total = Fraction(0)

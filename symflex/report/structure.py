@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
 
-from symflex.explanation.joints import joined_values
+from symflex.explanation.joints import in_one_way, joined_values
 from symflex.expressions import Attribute, Call, Derivative, Expression, Name, format_expression, names
 
 if TYPE_CHECKING:
@@ -95,6 +95,8 @@ def is_colocated(model: Model, output: Output, source: Input) -> bool | None:
     bool or None
         None where the output shows no motion of a place, or where the input acts at none.
     """
+    model = in_one_way(model)
+    (output,) = (each for each in model.outputs if each.name == output.name)
     starts, ends = _acted_on(model, source), _shown(model, output)
     if not starts or not ends:
         return None

@@ -27,7 +27,7 @@ class RootDecimals:
     Parameters
     ----------
     re, im : str
-        Decimal strings; ``"0"`` when the component is exactly zero, ``"0e-15"`` when it is only not told from 0.
+        Decimal strings; ``"0"`` when the component is exactly zero, ``"0e-15"`` when only not told from 0.
     radius : str
         Distance bound, rounded up, such as ``"3.1e-52"``; ``"0"`` when the print is exact.
     """

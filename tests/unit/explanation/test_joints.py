@@ -43,6 +43,8 @@ CONTINUITY = (
     "w_1(l/2) = w_2(l/2)",
     "w_1(l/2) - w_2(l/2) = 0",
     "0 = w_2(l/2) - w_1(l/2)",
+    "EI*w_2(l/2) - EI*w_1(l/2) = 0",
+    "w_2(0.5*l) = w_1(l/2)",
 )
 NODE = """
 symflex = 1
@@ -94,3 +96,58 @@ def test_the_table_of_models_says_the_same(text, name, expected):
     model = pipeline.loads(text.replace("DEFLECTION", CONTINUITY[0]))
     output = next(o for o in model.outputs if o.name == name)
     assert is_colocated(model, output, model.inputs[0]) is expected
+
+
+@pytest.mark.parametrize("shown", ["w_1(0.5*l)", "w_2(0.5 m)", "s^2*(w_1(l/2) + w_2(l/2))/2"])
+def test_one_point_is_the_same_however_it_is_written(shown):
+    text = SPANS.replace("DEFLECTION", CONTINUITY[0]).replace('Y_1 = "w_1(l/2)"', f'Y_1 = "{shown}"')
+    assert told(text, "Y_1/F") == ("colocated", "proved")
+
+
+SHAFT = """
+symflex = 1
+parameters.l = "1 m"
+elements.axle  = { type = "shaft", between = ["p", "q"], G = 2, J = 3, rho = 1, l = "l" }
+elements.wheel = { type = "inertia", at = "q", J = 1 }
+inputs.T = { torque = TORQUE }
+outputs.Y = "SHOWN"
+"""
+
+
+@pytest.mark.parametrize(
+    ("torque", "shown", "kind"),
+    [
+        ('"p"', "axle.theta(0)", "colocated"),
+        ('"q"', "s*axle.theta(2*l - 1 m)", "colocated"),
+        ('"p"', "axle.theta(l)", "noncolocated"),
+        ('"q"', "axle.theta(l/2)", "noncolocated"),
+        ('["p", "q"]', "axle.theta(l) - axle.theta(0)", "colocated"),
+        ('["p", "q"]', "axle.theta(0)", "noncolocated"),
+    ],
+)
+def test_the_end_of_an_element_is_its_node(torque, shown, kind):
+    assert told(SHAFT.replace("TORQUE", torque).replace("SHOWN", shown), "Y/T") == (kind, "proved")
+
+
+@pytest.mark.parametrize(
+    ("load", "shown", "kind"),
+    [
+        ('force = "c"', "a.y(l)", "colocated"),
+        ('force = "c"', "b.y(0)", "colocated"),
+        ('torque = "c.theta"', "a.theta(l)", "colocated"),
+        ('force = "c"', "a.theta(l)", "noncolocated"),
+        ('torque = "c.theta"', "a.y(l)", "noncolocated"),
+        ('force = "c"', "b.y(l)", "noncolocated"),
+    ],
+)
+def test_a_deflection_is_colocated_with_a_force_and_a_slope_with_a_torque(load, shown, kind):
+    beam = 'type = "beam", E = 1, I = 1, rho = 1, A = 1, l = "l"'
+    text = f"""
+symflex = 1
+parameters.l = "1 m"
+elements.a = {{ {beam}, between = ["ground", "c"] }}
+elements.b = {{ {beam}, between = ["c", "e"] }}
+inputs.F = {{ {load} }}
+outputs.Y = "{shown}"
+"""
+    assert told(text, "Y/F") == (kind, "proved")
