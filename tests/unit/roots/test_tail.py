@@ -1,0 +1,195 @@
+"""Radii beyond which no root lies in the right half plane: Cauchy's bound, and its edge."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import log, pi, prod, sqrt
+
+import mpmath
+import pytest
+from flint import acb, arb
+
+from symflex import pipeline
+from symflex.roots import precision
+from symflex.roots.tail import (
+    ADVANCED,
+    NARROW,
+    NEUTRAL,
+    NO_FORMULA,
+    NO_LOSS,
+    TWO_WAVENUMBERS,
+    _is_dominated,
+    _Power,
+    right_tail,
+)
+
+
+def bound(text):
+    model = pipeline.loads(text)
+    return pipeline.derive_bound(model, model.transfer_functions)[0]
+
+
+def delayed(denominator):
+    return bound(f"""symflex = 1
+blocks.D = {{ type = "delay", T = "0.7 s" }}
+blocks.E = {{ type = "delay", T = "0.3 s" }}
+inputs.u = {{}}
+outputs.y = "u/({denominator})"
+""")
+
+
+def tail(function, start=1e-3):
+    return right_tail(function, [prod(f**e for f, e in function.den.factors if e > 0)], [acb(1)], start)
+
+
+LARGER_THAN_THE_REST = {
+    "s^2 + 1*s + 3*D": (1 + sqrt(13)) / 2,
+    "s + 10*D": 10,
+    "s + 10*D^3": 10,
+    "s + s*D/2 + 2": 4,
+    "4*s^2 + 3*s^2*E + s*D + 2": 2,
+    "s^2 + 2*D*s - 5*E": 1 + sqrt(6),
+    "s^3 - 5*D*s^2 + 7": float(mpmath.findroot(lambda r: r**3 - 5 * r**2 - 7, 5)),
+}
+
+
+@pytest.mark.parametrize(("denominator", "radius"), LARGER_THAN_THE_REST.items())
+def test_delays_end_where_the_highest_power_outweighs_the_rest(denominator, radius):
+    # On the imaginary axis exponentials are as large as one: no smaller radius is a bound for all dead times.
+    function = delayed(denominator)
+    found = tail(function)
+    assert found.reason == ""
+    assert radius <= found.radius <= radius * NARROW * 1.001
+    assert tail(function, 1.01 * radius).radius == 1.01 * radius
+    assert radius <= tail(function, 0.99 * radius).radius <= radius * NARROW * 1.001
+
+
+def test_a_root_on_the_axis_is_never_left_outside():
+    # s + (pi/2) exp(-s): a root at j pi/2, just where Cauchy's bound ends.
+    function = bound("""symflex = 1
+blocks.D = { type = "delay", T = "1 s" }
+inputs.u = {}
+outputs.y = "u/(s + 1*D)"
+""")
+    ring = function.ratio.ring
+    s, decay = ring.context.gen(0), ring.generator(function.kernels.generators[0])
+    for start in (0.5, 1.5, pi / 2 * (1 - 1e-9)):
+        with precision(64):
+            found = right_tail(function, [s, decay], [acb(1), acb(arb.pi() / 2)], start)
+        assert pi / 2 <= found.radius <= pi / 2 * NARROW * 1.001
+    with precision(64):
+        turned = right_tail(function, [s, decay], [acb(0, 1), acb(0, arb.pi() / 2)], pi / 2 * (1 + 1e-6))
+    assert turned.radius == pi / 2 * (1 + 1e-6)
+
+
+ELEMENT = """symflex = 1
+elements.part = {{ type = "{kind}", between = ["ground", "x"], {values}, l = 1 }}
+inputs.F = {{ force = "x" }}
+outputs.X = "x"
+"""
+BEAM = "E = 1, I = 1, rho = 1, A = 1"
+
+
+@pytest.mark.parametrize(
+    ("function", "reason"),
+    [
+        (lambda: delayed("1 + s*D"), ADVANCED),
+        (lambda: delayed("s + 3*s^2*E + 1"), ADVANCED),
+        (lambda: delayed("s + s*D + 1"), NEUTRAL),
+        (lambda: delayed("s + 2*s*D + 1"), NEUTRAL),
+        (lambda: bound(ELEMENT.format(kind="rod", values="E = 1, rho = 1, A = 1")), NO_LOSS),
+        (lambda: bound(ELEMENT.format(kind="beam", values=BEAM)), NO_LOSS),
+        (
+            lambda: bound(
+                ELEMENT.format(kind="beam", values=BEAM + ', theory = "timoshenko", G = 1, kappa = 1')
+            ),
+            TWO_WAVENUMBERS,
+        ),
+    ],
+    ids=["advanced", "advanced in s^2", "critical", "neutral", "rod", "beam", "timoshenko"],
+)
+def test_where_no_term_outweighs_the_others_it_is_said_why(function, reason):
+    found = tail(function())
+    assert (found.radius, found.reason) == (None, reason)
+
+
+def test_the_reasons_differ():
+    assert len({ADVANCED, NEUTRAL, NO_LOSS, NO_FORMULA, TWO_WAVENUMBERS}) == 5
+
+
+# ------------------------------------------------------------------- sums of a few exponentials, by hand
+
+GROWING, LEVEL, DECAYING = ((0, 1, 0),), (), ((0, -1, 0),)
+REAL = [_Power(Fraction(1), acb(1))]
+TURNING = [_Power(Fraction(1), acb(0, 1))]
+
+
+def powers(**terms):
+    """Return amplitudes, each named by the power of s it stands before: p2 = 3 is 3 s^2."""
+    return {Fraction(name[1:]): acb(number) for name, number in terms.items()}
+
+
+@pytest.mark.parametrize(
+    ("terms", "arguments", "edge"),
+    [
+        # exp(r) > 3
+        ({GROWING: powers(p0=1), LEVEL: powers(p0=3)}, REAL, log(3)),
+        ({GROWING: powers(p0=2), LEVEL: powers(p0=-3), DECAYING: powers(p0=0)}, REAL, log(1.5)),
+        ({GROWING: powers(p0=1), DECAYING: powers(p0=3)}, REAL, log(3) / 2),
+        # exp(r) > 3 r^2, beyond the last of three places where both are equal
+        (
+            {GROWING: powers(p0=1), LEVEL: powers(p2=3)},
+            REAL,
+            float(mpmath.findroot(lambda r: mpmath.exp(r) - 3 * r**2, 4)),
+        ),
+        # r > 2 of one exponential alone
+        ({GROWING: powers(p1=1, p0=2)}, REAL, 2),
+        ({LEVEL: powers(p2=1, p1=-1, p0=-2)}, REAL, 2),
+        # r - 2 > 3 exp(-r)
+        (
+            {GROWING: powers(p1=1, p0=2), LEVEL: powers(p0=3)},
+            REAL,
+            float(mpmath.findroot(lambda r: r - 2 - 3 * mpmath.exp(-r), 2)),
+        ),
+        # what only turns is as large as its amplitude
+        ({LEVEL: powers(p1=1), GROWING: powers(p0=5)}, TURNING, 5),
+        ({LEVEL: powers(p1=2), GROWING: powers(p0=5), DECAYING: powers(p0=3)}, TURNING, 4),
+        # an exponent of the root of s falls, if more slowly
+        (
+            {GROWING: powers(p0=1), LEVEL: powers(p0=3)},
+            [_Power(Fraction(1, 2), acb(2))],
+            (log(3) / 2) ** 2,
+        ),
+    ],
+)
+def test_one_term_outweighs_the_others_from_a_radius_on(terms, arguments, edge):
+    with precision(64):
+        assert _is_dominated(terms, arguments, arb(edge * 1.001))
+        assert _is_dominated(terms, arguments, arb(edge * 30))
+        assert not _is_dominated(terms, arguments, arb(edge * 0.999))
+
+
+def test_a_term_that_is_small_and_still_grows_against_the_largest_outweighs_it_later():
+    # exp(r) > r^3/100 at every r, and r^3 exp(-r) falls from 3 on.
+    terms = {GROWING: powers(p0=1), LEVEL: powers(p3="0.01")}
+    with precision(64):
+        assert not _is_dominated(terms, REAL, arb(2.99))
+        assert _is_dominated(terms, REAL, arb(3.01))
+
+
+def test_what_grows_faster_than_the_largest_term_outweighs_it_later():
+    slow = [_Power(Fraction(1), acb("0.001"))]
+    terms = {LEVEL: powers(p1=1), GROWING: powers(p0=5)}
+    with precision(64):
+        assert not _is_dominated(terms, slow, arb(10))
+        # A delay's exponent never grows: a positive rate is rounding.
+        assert _is_dominated(terms, [_Power(Fraction(1), acb("0.001"), is_delay=True)], arb(10))
+        # Not so of what a delay is divided by.
+        shrinking = {LEVEL: powers(p1=1), DECAYING: powers(p0=5)}
+        assert not _is_dominated(shrinking, [_Power(Fraction(1), acb("-0.001"), is_delay=True)], arb(10))
+
+
+def test_a_term_that_may_be_zero_outweighs_nothing():
+    with precision(64):
+        assert not _is_dominated({LEVEL: {Fraction(1): acb(arb(0, 1))}}, REAL, arb(10))
+        assert not _is_dominated({LEVEL: powers(p0=0)}, REAL, arb(10))
