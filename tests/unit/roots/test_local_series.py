@@ -101,6 +101,25 @@ def test_where_values_are_no_numbers_on_arcs_these_are_cut():
     assert 25 * 0.9 < float(bound_on_circle(function, acb(0), arb(5), 4)) < 25 * 1.5
 
 
+@pytest.mark.parametrize("arcs", [1, 3, 16])
+@pytest.mark.parametrize("narrow", [1.0, 0.1])
+def test_the_circle_is_covered_whatever_arcs_it_is_cut_into(arcs, narrow):
+    seen = []
+
+    @dataclass(frozen=True, eq=False)
+    class Recorded(KnownFunction):
+        def value(self, s, bits):
+            if max(s.real.rad(), s.imag.rad()) > 5 * narrow:
+                return acb("nan")
+            seen.append(s)
+            return acb(1)
+
+    assert float(bound_on_circle(Recorded((((0,), 1),)), CENTRE, arb(5), arcs)) == 1
+    for k in range(720):
+        point = CENTRE + 5 * (acb(0, arb(k) / 720) * 2 * arb.pi()).exp()
+        assert any(ball.contains(point.mid()) for ball in seen), k
+
+
 def test_nothing_is_bounded_where_a_function_branches():
     @dataclass(frozen=True, eq=False)
     class Branching(KnownFunction):
