@@ -42,6 +42,7 @@ def product(factors):
 
 def assert_cancelled(numerator, denominator):
     result, shared = cancel(numerator, denominator)
+    assert (result.ring, shared.ring) == (RING, RING)
     (a, b), (c, d) = sides(numerator), sides(denominator)
     top, bottom = a * d, b * c
     above, below = sides(result)
@@ -100,7 +101,14 @@ def test_a_common_denominator_is_no_common_factor():
 
 def test_zero_over_anything_is_zero_and_shares_nothing():
     result, shared = cancel(Factored.number(RING, 0), product([(S + K, 1)]))
-    assert (result.is_zero, shared.unit, shared.factors) == (True, Fraction(1), ())
+    assert (result.is_zero, shared.unit, shared.factors, shared.ring) == (True, Fraction(1), (), RING)
+
+
+def test_what_a_denominator_is_divided_by_is_no_common_factor():
+    f, g = product([(S + K, 1)]), product([(S - K, 1)])
+    for numerator, denominator in ((f * f, g / f), (g / f, f * f)):
+        _, shared = cancel(numerator, denominator)
+        assert shared.factors == ()
 
 
 def test_numbers_in_front_are_kept():
