@@ -66,7 +66,7 @@ class Closure:
         return result
 
     def _image(self, factor: fmpz_mpoly) -> fmpz_mpoly:
-        closed = self._closed.get(str(factor)) if len(factor) > 1 else None
+        closed = self._closed.get(str(factor))
         return self._embed(factor) if closed is None else closed
 
     @cached_property
@@ -77,7 +77,7 @@ class Closure:
         return tuple(self.ring.generator(n) if n in index else absent for n in self.base.names)
 
     def _embed(self, factor: fmpz_mpoly) -> fmpz_mpoly:
-        return factor.compose(*self._embedding, ctx=self.ring.context)
+        return factor.compose(*self._embedding)
 
     def open(self, polynomial: fmpz_mpoly) -> Factored:
         """Return a closed polynomial over ``base``; factors that stand in front stay factored."""

@@ -381,6 +381,59 @@ def test_a_series_that_may_vanish_in_the_middle_tells_nothing(coefficients):
     assert _followed(series, acb(2), arb(0.5), acb(1.5), acb(2.5))[0] == inf
 
 
+@dataclass(frozen=True, eq=False)
+class Exponentials(Followed):
+    """A function whose sum of exponentials tells how far it turns on short steps only."""
+
+    longest: float = 0.05
+
+    def turn_of_exponentials(self, ball, start, end, bits):
+        off = float(abs(end - start).upper()) / self.longest
+        turn = arb(0)
+        for roots, exponent in self.roots:
+            for root in roots:
+                turn += exponent * ((end - root) / (start - root)).arg()
+        return (off, turn) if off <= ROOM else (off, arb(77))
+
+
+@pytest.mark.parametrize("tries_series", [True, False])
+@pytest.mark.parametrize("is_analytic", [True, False])
+def test_series_help_where_steps_are_too_long_for_exponentials(tries_series, is_analytic):
+    asked = []
+
+    @dataclass(frozen=True, eq=False)
+    class Function(Exponentials):
+        def is_analytic_on(self, ball, bits):
+            asked.append(bits)
+            return is_analytic
+
+    function = Function(PRODUCTS["double"])
+    winding = CertifiedWinding(function, Budget(), tries_series=tries_series)
+    assert winding.count(Cell(0, 1.5, 0.2, 3)) == function.count_inside(
+        lambda root: Cell(0, 1.5, 0.2, 3).holds(log(root))
+    )
+    assert bool(asked) is tries_series
+
+
+def test_a_function_without_a_formula_is_followed_by_its_series():
+    function = Followed(PRODUCTS["double"], has_fundamental=True)
+    cell = Cell(0, 1.5, 0.2, 3)
+    expected = function.count_inside(lambda root: cell.holds(log(root)))
+    assert CertifiedWinding(function, Budget()).count(cell) == expected
+
+
+@pytest.mark.parametrize("broken", ["value", "slope"])
+def test_a_step_on_which_nothing_is_known_proves_nothing(broken):
+    class Unknown(Followed):
+        def enclosed_about(self, ball, centre, bits):
+            bad = acb("nan") if broken == "slope" else acb(arb(0, 1))
+            found = super().enclosed_about(ball, centre, bits)
+            return [(v, bad, e) if broken == "slope" else (bad, d, e) for v, d, e in found]
+
+    winding = CertifiedWinding(Unknown(PRODUCTS["double"]), Budget())
+    assert winding._change(Line(1j, 2 + 1j), 0.0, 0.01, 64)[0] == inf
+
+
 @pytest.mark.parametrize("least", [200, 1000])
 def test_the_precision_is_raised_where_a_factor_is_lost(least):
     class Blurred(Followed):
