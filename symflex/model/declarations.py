@@ -104,9 +104,9 @@ def _unit_text(quantity: Quantity, reading: Reading) -> str:
     turns, turn, text = quantity.radians, "rad", str(quantity.dimension)
     if reading is Reading.CONVERTED:
         turns += quantity.cycles
+    elif (quantity.cycles, text) == (1, "1/s"):
+        return "Hz"
     elif reading is Reading.TURNED:
-        if (quantity.cycles, text) == (1, "1/s"):
-            return "Hz"
         turns, turn = quantity.cycles, "rev"
     if abs(turns) > 1 and turn == "rev":
         turn = f"{turn}^{abs(turns)}"

@@ -244,3 +244,10 @@ def test_the_root_of_a_quotient_has_half_the_exponents():
     text = f'{HEADER}m = "2 kg"\nk = "8 N/m"\n' + SIGNAL.format("U*sqrt(k/m)/(s + sqrt(k/m))")
     (tf,) = pipeline.derive_all(resolve(text))
     assert pipeline.bind(tf)(2 + 0j) == 0.5
+
+
+@pytest.mark.parametrize("where", ["2*pi*f", "f"], ids=["2 pi written", "2 pi entered"])
+@pytest.mark.parametrize("declared", ['"30 Hz"', '"1800 rpm"', '{ unit = "Hz" }'])
+def test_a_frequency_that_counts_cycles_is_in_hertz_wherever_its_2_pi_comes_from(declared, where):
+    (parameter,) = resolve(with_output(declared, f"U/(s + {where})")).parameters
+    assert parameter.unit == "Hz"
