@@ -9,9 +9,12 @@ from itertools import permutations
 import pytest
 from flint import acb, arb, fmpq
 
-from symflex.roots import PolynomialInS, Root, precision
+from symflex.budget import Budget
+from symflex.roots import POLYNOMIAL, Everything, PolynomialInS, Root, RootProblem, precision
 from symflex.roots.discs import Disc
+from symflex.roots.durand_kerner import propose_by_durand_kerner
 from symflex.roots.polynomial import (
+    _by_degree,
     _conjugates,
     _hull,
     _is_apart,
@@ -19,6 +22,7 @@ from symflex.roots.polynomial import (
     _roots_of,
     _square_roots,
     _touching,
+    find_polynomial_roots,
     in_order,
 )
 from symflex.roots.squarefree import Part
@@ -235,3 +239,58 @@ def test_roots_stand_by_natural_frequency_then_real_part_then_positive_imaginary
         shuffled = placed[start:] + placed[:start]
         found = in_order([root(*place) for place in shuffled])
         assert [(int(float(r.re.mid())), int(float(r.im.mid()))) for r in found] == wanted
+
+
+@pytest.mark.parametrize(("degree", "places"), [(1, 0), (12, 0), (13, 1), (64, 1), (65, None), (200, None)])
+def test_the_engine_of_small_degrees_comes_second_for_larger_ones_and_then_not_at_all(degree, places):
+    engines = _by_degree(degree, Budget())
+    found = engines.index(propose_by_durand_kerner) if propose_by_durand_kerner in engines else None
+    assert (found, len(engines)) == (places, 1 if places is None else 2)
+
+
+def test_digits_and_problems_that_are_none_are_refused():
+    with pytest.raises(ValueError, match="digits must be at least 1, not 0"):
+        find_polynomial_roots(RootProblem(()), 0)
+    with pytest.raises(TypeError, match="polynomial is for products of polynomials"):
+        POLYNOMIAL.find(None, Everything(), 10)
+    assert not POLYNOMIAL.accepts(None)
+    assert POLYNOMIAL.accepts(RootProblem(()))
+    assert find_polynomial_roots(RootProblem(()), 1) == ()
+
+
+def product_of(*factors):
+    return RootProblem(tuple((part(*roots).polynomial, exponent) for roots, exponent in factors))
+
+
+@pytest.mark.parametrize("exponent", [20, 40, 90])
+def test_roots_of_two_factors_closer_than_the_digits_asked_for_are_told_apart(exponent):
+    near = 1 + Fraction(1, 10**exponent)
+    found = find_polynomial_roots(product_of(((1, 5), 1), ((near,), 2)), 5)
+    assert [(r.multiplicity, r.certified) for r in found] == [(1, True), (2, True), (1, True)]
+    with precision(2000):
+        assert encloses(found[:1], acb(1))
+        assert not encloses(found[:1], acb(exact(near)))
+        assert encloses(found[1:2], acb(exact(near)))
+
+
+def test_roots_at_zero_are_one_root_with_both_marks():
+    (zero, other) = find_polynomial_roots(product_of(((0, 0, 3), 2)), 10)
+    assert (zero.multiplicity, zero.on_imaginary_axis, zero.is_real, bool(zero.re == 0)) == (
+        4,
+        True,
+        True,
+        True,
+    )
+    assert (other.multiplicity, other.is_real) == (2, True)
+
+
+def test_an_engine_given_is_the_one_that_is_asked():
+    asked = []
+
+    def propose(polynomial):
+        asked.append(polynomial)
+        return propose_by_durand_kerner(polynomial)
+
+    found = find_polynomial_roots(product_of(((1, -7, 30), 1)), 10, (propose,))
+    assert len(asked) >= 1
+    assert [round(float(r.re.mid()), 6) for r in found] == [1, -7, 30]
