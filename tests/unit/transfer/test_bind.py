@@ -12,7 +12,7 @@ import pytest
 from flint import acb, ctx
 
 from symflex import pipeline
-from symflex.errors import ModelError, UsageError
+from symflex.errors import ModelError, SpecError, UsageError
 from symflex.model import ExactValue
 from symflex.transfer.bind import _derived_with_numbers, bind_polynomials, read_values
 
@@ -288,6 +288,8 @@ def test_a_wrong_unit_is_told_with_both():
 TURNING = f"""{HEADER}f = "50 Hz"
 w = "3 rad/s"
 n = {{}}
+g = "3 Hz^2"
+r = "2 1/s"
 [inputs]
 U = {{}}
 [outputs]
@@ -306,6 +308,12 @@ Z = "U*n/(s + f)"
         ("w", "60 rad/s", ExactValue(Fraction(60))),
         ("w", "60 Hz", ExactValue(Fraction(120), 1)),
         ("w", "30 rpm", ExactValue(Fraction(1), 1)),
+        ("g", "48 rad^2/s^2", ExactValue(Fraction(12), -2)),
+        ("g", "5 Hz^2", ExactValue(Fraction(5))),
+        # Without a unit of its own a parameter takes radians, in 1/s it counts what is counted.
+        ("n", "60 Hz", ExactValue(Fraction(120), 1)),
+        ("n", "60 N", ExactValue(Fraction(60))),
+        ("r", "60 Hz", ExactValue(Fraction(60))),
     ],
 )
 def test_turns_and_radians_are_converted_to_what_a_parameter_counts(name, given, exact):
@@ -321,6 +329,8 @@ def test_values_read_before_stay_as_they_are_and_all_stand_in_declared_order():
         ("f", ExactValue(Fraction(50))),
         ("w", ExactValue(Fraction(3))),
         ("n", known),
+        ("g", ExactValue(Fraction(3))),
+        ("r", ExactValue(Fraction(2))),
     )
 
 
@@ -404,3 +414,66 @@ def test_deriving_with_numbers_from_the_start_gives_the_same_function(output):
     assert numeric.name == bound.name
     for s in (0.5 + 2j, -3 + 0.25j):
         assert numeric(s) == pytest.approx(bound(s), rel=1e-15)
+
+
+def test_a_quantity_that_cannot_be_read_is_told_with_its_place():
+    with pytest.raises(SpecError) as caught:
+        pipeline.bind(derive(TWO_MASSES), {"k": "3 N/mm^x"})
+    (found,) = caught.value.diagnostics
+    assert (found.span.source.name, found.span.line) == ("<value>", 1)
+    assert found.span.start > 0
+    assert found.span.text in "3 N/mm^x"
+
+
+class Scalar:
+    """A number of a library that says its size, or does not."""
+
+    def __init__(self, value, **size):
+        self.__dict__.update(size)
+        self.value = value
+
+    def item(self):
+        return self.value
+
+
+@pytest.mark.parametrize(
+    ("given", "is_read"), [(Scalar(0.5), True), (Scalar(0.5, size=1), True), (Scalar(0.5, size=2), False)]
+)
+def test_what_other_libraries_call_a_number_is_one_if_it_is_alone(given, is_read):
+    if is_read:
+        assert dict(pipeline.bind(derive(TWO_MASSES), {"k": given}).values)["k"].rational == Fraction(1, 2)
+    else:
+        diagnostic(UsageError, "SF902", {"k": given})
+
+
+ROOTS = f"""{HEADER}k = 2
+m = 9
+[inputs]
+U = {{}}
+[outputs]
+Y = "U/(s^2 + sqrt(k/m)^2)"
+Z = "U/(s^2 + sqrt(k/m)^4)"
+W = "U/(s^2 + sqrt(k/m)*s + sqrt(k/m)^2)"
+"""
+
+
+@pytest.mark.parametrize(
+    ("output", "values", "denominator"),
+    [
+        ("Y", {}, "9*s^2 + 2"),
+        ("Y", {"k": 50, "m": 3}, "3*s^2 + 50"),
+        ("Z", {}, "81*s^2 + 4"),
+        ("Z", {"k": 5, "m": 2}, "4*s^2 + 25"),
+    ],
+)
+def test_even_powers_of_roots_of_rational_numbers_are_rational(output, values, denominator):
+    ((polynomial, exponent),) = pipeline.bind(derive(ROOTS, output, "U"), values).ratio.factors
+    assert (str(polynomial), exponent) == (denominator, -1)
+
+
+def test_odd_powers_of_roots_stay_what_they_are():
+    bound = pipeline.bind(derive(ROOTS, "W", "U"))
+    with mpmath.workdps(60):
+        root = mpmath.sqrt(mpmath.mpf(2) / 9)
+        s = mpmath.mpc(0.5, -1.25)
+        assert holds(bound.enclosed(300)(acb(0.5, -1.25)), 1 / (s**2 + root * s + root**2))
