@@ -282,3 +282,19 @@ def test_the_middle_of_a_group_is_real_where_the_group_mirrors_itself(centres, m
     assert is_symmetric(discs) is symmetric
     assert middle_of(discs) == middle
     assert middle_of(discs).imag == middle.imag
+
+
+def test_a_mirror_image_holds_as_many_roots():
+    disc = Disc(acb(5, 3), arb(1), 2)
+    assert disc.mirrored() == Disc(acb(5, -3), arb(1), 2)
+    assert complete([disc, Disc(acb(0), arb(1))], 5)
+
+
+@pytest.mark.parametrize("wide", [1e-4, 1e-20])
+def test_pellets_disc_is_for_every_polynomial_in_the_balls_of_its_coefficients(wide):
+    # s^2 - c with abs(c) up to a small number, whose root is the distance.
+    with precision(200):
+        level = LevelPolynomial.of(acb_poly([acb(arb(0, wide)), 0, 1, arb("0.001")]))
+        disc = level.surround(acb(0), 2)
+        assert disc.radius >= arb(wide).sqrt()
+        assert disc.radius < 3 * arb(wide).sqrt()
