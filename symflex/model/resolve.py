@@ -334,16 +334,20 @@ def _inherited_parameters(
     """Return the parameters that ``model`` blocks bring along; an equal name must be equal in value."""
     own = {p.name: p.resolve(Reading.TURNED, "") for p in declared}
     found: dict[str, Parameter] = {}
+    bringing: dict[str, str] = {}
     for block in blocks:
         for parameter in block.submodel.parameters if block.submodel else ():
             known = own.get(parameter.name) or found.get(parameter.name)
             if known is None:
                 found[parameter.name] = parameter
+                bringing[parameter.name] = block.name
             elif known.value is not None and parameter.value is not None and known.value != parameter.value:
+                other = bringing.get(parameter.name)
+                than = f" than in block '{other}' ({known.span})" if other else ""
                 reader.note(
                     "SF226",
                     f"parameter '{parameter.name}' has another value in block '{block.name}' "
-                    f"({parameter.span})",
+                    f"({parameter.span}){than}",
                     known.span if known.name in own else block.span,
                     "rename one of the two: parameters of a model block are shared by name",
                 )

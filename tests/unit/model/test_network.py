@@ -135,6 +135,15 @@ def test_a_parameter_of_another_value_is_refused(tmp_path):
     assert [d.code for d in caught.value.diagnostics] == ["SF226"]
 
 
+def test_two_blocks_with_one_parameter_of_two_values_are_both_named(tmp_path):
+    more = 'H = { type = "model", spec = "parts/other.toml", tf = "X/F" }\n[inputs]'
+    outer = OUTER.format(parameters="").replace("[inputs]", more).replace("G*u", "G*u + H*u")
+    path = nested(tmp_path, outer)
+    (tmp_path / "parts" / "other.toml").write_text(INNER.replace('m = "3 kg"', 'm = "4 kg"'), "utf-8")
+    with pytest.raises(SpecError, match=r"in block 'H' \(.*other\.toml:.* than in block 'G' \(.*inner\.toml"):
+        pipeline.load(path)
+
+
 def test_a_definition_called_like_an_inner_parameter_is_refused(tmp_path):
     text = OUTER.format(parameters='[parameters]\nk = 2\n[definitions]\nm = "2*k"\n')
     with pytest.raises(SpecError) as caught:
