@@ -111,7 +111,9 @@ def command(
     elif format_ == "latex":
         from symflex.emit.latex import transfer_function_latex
 
-        say("\n\n".join(transfer_function_latex(tf, printed, width_mm=column) for tf, printed in entries))
+        verdicts = (f"% {printed.stability.headline}\n" if printed.stability else "" for printed in forms)
+        equations = (transfer_function_latex(tf, printed, width_mm=column) for tf, printed in entries)
+        say("\n\n".join(map(str.__add__, verdicts, equations)))
     else:
         from symflex.emit.text import derive_text
 

@@ -34,6 +34,7 @@ def derive_json(tf: AnyTransferFunction, form: PrintedForm) -> dict[str, object]
         "laws": [[name, format_expression(law)] for name, law in form.laws],
         "latex": inline_latex(tf, form),
         "hidden": None if isinstance(tf, NestedTransferFunction) else hidden,
+        "stability": form.stability.to_json_dict() if form.stability else None,
     }
 
 

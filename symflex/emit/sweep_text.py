@@ -39,11 +39,23 @@ def sweep_text(sweep: Sweep, width: int = 80) -> str:
     codes = sorted({code for code in sweep["code"].reshape(-1).tolist() if code})
     if codes:
         lines.append(f"{INDENT}codes: {', '.join(codes)}")
+    if sweep.of == "poles":
+        unstable = _unstable_points(sweep)
+        lines.append(
+            f"{INDENT}unstable at {unstable} of {points}"
+            if unstable
+            else f"{INDENT}stability not known: no pole shown grows; others and hidden modes are not examined"
+        )
     if sweep.of in ("poles", "zeros"):
         lines += _roots(sweep)
     elif sweep.of == "margins":
         lines += _margins(sweep)
     return "\n".join(piece for line in lines for piece in _fitted(line, width))
+
+
+def _unstable_points(sweep: Sweep) -> int:
+    """Return at how many points a pole that is shown lies in the right half plane, which is proved."""
+    return int(np.sum(np.any((sweep["status"] > 0) & (sweep["damping_ratio"] < 0), axis=-1)))
 
 
 def counted(count: int, what: str) -> str:
@@ -154,6 +166,8 @@ def sweep_json(sweep: Sweep) -> dict[str, object]:
         "codes": sorted({code for code in sweep["code"].reshape(-1).tolist() if code}),
     }
     if sweep.of in ("poles", "zeros"):
+        if sweep.of == "poles":
+            document["unstable_points"] = _unstable_points(sweep)
         document["links"] = _link_counts(sweep)
         document["modes"] = [
             {

@@ -43,6 +43,7 @@ def form_text(tf: AnyTransferFunction, form: PrintedForm) -> str:
     """Return ``OUT/IN = num/den`` on one line, and a line per definition or law used."""
     whole = form.num if _is_one(form.den) else Quotient(form.num, form.den)
     lines = [f"{_left_side(tf, form)} = {format_expression(whole)}"]
+    lines += [f"  {form.stability.headline}"] if form.stability else []
     lines += [f"  where {name} = {format_expression(e)}" for name, e in form.where]
     lines += [f"  where {line}" for law in form.laws for line in law_lines(*law)]
     return "\n".join(lines)
@@ -61,7 +62,8 @@ def derive_text(tf: AnyTransferFunction, form: PrintedForm, width: int = WIDTH) 
         Columns available; longer sums are broken before plus and minus.
     """
     quantity = tf.quantity + (f" [{tf.unit}]" if tf.unit else "")
-    lines = [f"{_left_side(tf, form)}   {quantity}, {form.name} form", ""]
+    verdict = f"; {form.stability.headline}" if form.stability else ""
+    lines = [f"{_left_side(tf, form)}   {quantity}, {form.name} form{verdict}", ""]
     num, den = wrapped(form.num, width - 2), wrapped(form.den, width - 2)
     if _is_one(form.den):
         lines += [INDENT + line for line in num]

@@ -100,12 +100,14 @@ class Root:
             return float((frequency / (2 * arb.pi())).mid())
 
     def damping_ratio(self) -> float | None:
-        """Return -re/abs(s): exactly 0.0 on the imaginary axis, None at 0 and where abs(s) may be 0."""
+        """Return -re/abs(s): 0.0 on the imaginary axis or not told from it, None where abs(s) may be 0."""
         if self.on_imaginary_axis:
             return None if self.is_real else 0.0
         frequency = self.natural_frequency()
         if not frequency > 0:
             return None
+        if self.re.contains(0):
+            return 0.0
         with precision(FLOAT_BITS):
             return float((-self.re / frequency).mid())
 

@@ -10,6 +10,7 @@ from symflex.kernels import LAPLACE
 
 if TYPE_CHECKING:
     from symflex.expressions import Equation
+    from symflex.roots.right_half_plane import StabilityVerdict
     from symflex.transfer import TransferFunction
 
 
@@ -34,6 +35,8 @@ class PrintedForm:
         formula.
     argument : Expression
         Of the transfer function: s, or the imaginary unit times the angular frequency.
+    stability : StabilityVerdict, optional
+        Of a form that lists poles: whether the model is stable, which hidden modes decide too.
     """
 
     name: str
@@ -42,6 +45,7 @@ class PrintedForm:
     where: tuple[tuple[str, Expression], ...] = ()
     laws: tuple[tuple[str, Equation], ...] = ()
     argument: Expression = S
+    stability: StabilityVerdict | None = None
 
     def at(self, name: str) -> str:
         """Return what a signal is called where it is a function of another argument than s.

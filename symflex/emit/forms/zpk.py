@@ -42,7 +42,10 @@ def zpk_form(tf: TransferFunction, digits: int) -> PrintedForm:
     found = locate(bound, None, digits + GUARD_DIGITS)
     gain = _decimal(_gain(bound, digits), digits)
     return PrintedForm(
-        "zpk", product_of([gain, *_factors(found.zeros, digits)]), product_of(_factors(found.poles, digits))
+        "zpk",
+        product_of([gain, *_factors(found.zeros, digits)]),
+        product_of(_factors(found.poles, digits)),
+        stability=found.verdict,
     )
 
 

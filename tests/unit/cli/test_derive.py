@@ -13,7 +13,7 @@ from tests.unit.emit.residues import point_for
 
 LONG = {"six_mass", "fitted_resonances", "polynomial_resonance"}
 """Their forms take seconds to print and to read."""
-ENTRY_KEYS = {"tf", "quantity", "unit", "form", "num", "den", "where", "laws", "latex", "hidden"}
+ENTRY_KEYS = {"tf", "quantity", "unit", "form", "num", "den", "where", "laws", "latex", "hidden", "stability"}
 
 
 def test_text_shows_a_fraction_under_its_name_and_unit(shell):

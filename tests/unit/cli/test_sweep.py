@@ -46,3 +46,12 @@ def test_one_point_is_not_several(shell):
     done = shell("sweep", "x.toml", "--over", "k=18", "--workers", "1")
     assert "V/F: poles at 1 point\n" in done.out or "X/F: poles at 1 point\n" in done.out
     assert "  k = 18 N/m, 1 value\n" in done.out
+
+
+def test_a_sweep_of_poles_says_at_how_many_points_one_grows(shell):
+    # s^2 + b s + 4 has its roots in the right half plane for b < 0.
+    text = 'symflex = 1\nparameters.b = { assume = "real" }\ninputs.u = {}\noutputs.y = "u/(s^2 + b*s + 4)"'
+    (shell.folder / "grows.toml").write_text(text)
+    assert "unstable at 2 of 3 points" in shell("sweep", "grows.toml", "--over", "b=-1,-0.5,1").out
+    assert shell("sweep", "grows.toml", "--over", "b=-1,-0.5,1", "--json").json["unstable_points"] == 2
+    assert "stability not known: no pole shown grows" in shell("sweep", "grows.toml", "--over", "b=1,2").out

@@ -13,6 +13,8 @@ import pytest
 from symflex import pipeline
 from symflex.emit.forms import hidden_expressions, print_form
 from symflex.emit.forms.usage import RATIONAL
+from symflex.emit.json_format import derive_json
+from symflex.emit.text import derive_text
 from symflex.errors import ModelError
 from symflex.expressions import format_expression
 from tests.contract.exact import Point, read, value_of
@@ -263,3 +265,13 @@ def test_a_long_print_is_read_back():
     (tf, *_) = pipeline.derive_all(pipeline.load(FOLDER / "six_mass.toml"))
     form = print_form(tf)
     assert read(format_expression(form.den)) == form.den
+
+
+def test_a_form_that_lists_poles_says_what_a_hidden_one_makes_of_stability():
+    text = 'symflex = 1\ninputs.u = {}\nsignals.x = "u/(s - 3)"\noutputs.y = "(s - 3)*x/(s + 1)"'
+    tf = tf_of(text, "y", "u")
+    form = print_form(tf, "zpk")
+    assert (
+        derive_text(tf, form).splitlines()[0].endswith("zpk form; unstable: 1 pole in the right half plane")
+    )
+    assert derive_json(tf, form)["stability"]["right_half_plane"] == 1
