@@ -6,7 +6,7 @@ Newton steps of rising precision come close to a root, and interval Newton steps
 from __future__ import annotations
 
 from functools import cache
-from math import frexp
+from math import frexp, isfinite
 from typing import TYPE_CHECKING
 
 from flint import arb
@@ -63,7 +63,10 @@ class AxisRoots:
     def _approached(self, source: AxisFunction, guess: float) -> tuple[arb, int]:
         """Return t close to a root, and how many of its bits are right by all appearances."""
         t, known = arb(guess), GUESS_BITS
-        lost = int(guess * source.fastest(guess)).bit_length() + MARGIN_BITS
+        turned = guess * source.fastest(guess)
+        if not isfinite(turned):
+            return t, 0  # too large for doubles, in which nothing is then known
+        lost = int(turned).bit_length() + MARGIN_BITS
         while 2 * known - lost < self._goal_bits:
             spend()
             bits = _level(2 * known + GUARD_BITS, self._half_bits)

@@ -198,7 +198,7 @@ class LosslessSearch:
                 return self._proved(chosen), log(chosen[-1].frequency * guess.frequency) / 2
             chosen.append(guess)
             total += guess.exponent
-        return self._proved(chosen), log(low)
+        return self._proved(chosen), log(low) if low else self.smallest()
 
     def _about(self, modes: int) -> float:
         """Return an abs(s) below which about so many modes lie, not far too large in any case."""
@@ -221,6 +221,7 @@ class LosslessSearch:
         found.sort(key=lambda guess: guess.frequency)
         return found, samples
 
+    @np.errstate(all="ignore")  # what is too large for doubles changes no sign
     def _sign_changes(self, source: AxisFunction, low: float, high: float) -> tuple[list[float], int]:
         """Return t at every sign change between two abs(s), close to doubles' precision."""
         start, end = source.at_frequency(low), source.at_frequency(high)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from flint import arb
+from flint import arb, fmpz
 
 from symflex.emit.forms.printed import PrintedForm
 from symflex.emit.forms.usage import require_rational
@@ -91,7 +91,8 @@ def _decimal(value: arb, digits: int) -> Expression:
     exact = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
     if not exact:
         return number(0)
-    scale = digits - len(str(int(abs(exact)))) if abs(exact) >= 1 else digits
+    # Python writes no integer of more than 4300 digits.
+    scale = digits - len(str(fmpz(int(abs(exact))))) if abs(exact) >= 1 else digits
     while abs(exact) * Fraction(10) ** scale < Fraction(10) ** (digits - 1):
         scale += 1
     return number(Fraction(round(exact * Fraction(10) ** scale)) / Fraction(10) ** scale)

@@ -275,3 +275,9 @@ def test_a_form_that_lists_poles_says_what_a_hidden_one_makes_of_stability():
         derive_text(tf, form).splitlines()[0].endswith("zpk form; unstable: 1 pole in the right half plane")
     )
     assert derive_json(tf, form)["stability"]["right_half_plane"] == 1
+
+
+def test_zpk_writes_a_gain_of_more_digits_than_python_does():
+    text = 'symflex = 1\nparameters.a = 1e200\ninputs.u = {}\noutputs.y = "a^23*u/(s + 1)"'
+    num, _ = printed(tf_of(text, "y", "u"), "zpk", 4)
+    assert num == "1" + 4600 * "0"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from symflex import pipeline
-from symflex.errors import ModelError
+from symflex.errors import BudgetError, ModelError
 from symflex.response import respond
 from symflex.roots import Modes
 from symflex.roots.locate import locate
@@ -110,3 +110,18 @@ def test_the_phase_passes_poles_beside_a_delayed_input():
 def test_the_phase_survives_a_frequency_as_near_to_a_pole_as_doubles_allow():
     phase = respond(bound(DELAYED_ROD), [np.pi / 2, 3.0]).phase
     assert phase[1] == pytest.approx(-np.pi - 0.003)
+
+
+def test_frequencies_beyond_doubles_are_a_typed_error():
+    # The first is about sqrt(E I/(rho A)) = 1e168 rad/s; squares of it are beyond doubles.
+    text = """
+symflex = 1
+inputs.F = { force = "q" }
+outputs.Y = "q"
+[elements]
+arm  = { type = "beam", between = ["ground", "q"], E = 9e3, I = 8e62, A = 7e-270, rho = 0.26, l = 1 }
+load = { type = "mass", at = "q", m = 165 }
+"""
+    with pytest.raises(BudgetError) as failed:
+        locate(pipeline.derive_bound(pipeline.loads(text), [("Y", "F")])[0], Modes(3))
+    assert failed.value.diagnostics[0].code == "SF505"
