@@ -113,6 +113,16 @@ def test_where_no_term_outweighs_the_others_it_is_said_why(function, reason):
     assert (found.radius, found.reason) == (None, reason)
 
 
+@pytest.mark.parametrize("eta", ["0.5", "0.01"])
+@pytest.mark.parametrize("kind", ["rod", "beam"])
+def test_losses_in_the_material_end_the_poles(kind, eta):
+    values = (BEAM if kind == "beam" else "E = 1, rho = 1, A = 1") + f', eta = "{eta} s"'
+    found = tail(bound(ELEMENT.format(kind=kind, values=values)), 1.0)
+    # From 1/eta on the loss is more than the stiffness, and waves decay within a wavelength.
+    assert found.reason == ""
+    assert 1 / float(eta) < found.radius < 10 / float(eta)
+
+
 def test_the_reasons_differ():
     assert len({ADVANCED, NEUTRAL, NO_LOSS, NO_FORMULA, TWO_WAVENUMBERS}) == 5
 
