@@ -17,9 +17,11 @@ from symflex.roots.tail import (
     NEUTRAL,
     NO_FORMULA,
     NO_LOSS,
+    SECTORS,
     TWO_WAVENUMBERS,
     _is_dominated,
     _Power,
+    _turned,
     right_tail,
 )
 
@@ -121,6 +123,34 @@ def test_losses_in_the_material_end_the_poles(kind, eta):
     # From 1/eta on the loss is more than the stiffness, and waves decay within a wavelength.
     assert found.reason == ""
     assert 1 / float(eta) < found.radius < 10 / float(eta)
+
+
+def test_all_sectors_of_the_quadrant_are_asked(monkeypatch):
+    asked = set()
+
+    def turned(arguments, sector):
+        asked.add(sector)
+        return _turned(arguments, sector)
+
+    monkeypatch.setattr("symflex.roots.tail._turned", turned)
+    assert tail(delayed("s + 10*D"), 20.0).radius == 20
+    assert asked == set(range(SECTORS))
+
+
+@pytest.mark.parametrize("power", [Fraction(1), Fraction(1, 2)])
+@pytest.mark.parametrize("sector", [0, 17, SECTORS - 1])
+def test_a_sector_holds_its_directions_and_no_others(sector, power):
+    with precision(64):
+        (found,) = _turned([_Power(power, acb(2))], sector)
+        assert found.power == power
+        for i in range(-20, 31):
+            angle = (sector + i / 10) * pi / (2 * SECTORS) * float(power)
+            held = found.unit.overlaps(acb(2) * acb(0, angle).exp())
+            if 0 <= i <= 10:
+                assert held
+            elif not -10 < i < 20:
+                assert not held
+        assert float(abs(found.unit).mid()) == pytest.approx(2, rel=0.01)
 
 
 def test_the_reasons_differ():
