@@ -477,3 +477,22 @@ def test_odd_powers_of_roots_stay_what_they_are():
         root = mpmath.sqrt(mpmath.mpf(2) / 9)
         s = mpmath.mpc(0.5, -1.25)
         assert holds(bound.enclosed(300)(acb(0.5, -1.25)), 1 / (s**2 + root * s + root**2))
+
+
+def test_what_values_cancel_beside_a_rod_is_hidden_too():
+    text = FREE.replace("a = { value", 'p = "1 1/s"\nq = "2 1/s"\na = { value').replace(
+        'N = "a*tip"', 'N = "(s + p)/(s + q)*tip"'
+    )
+    tf = derive(text, "N")
+    assert pipeline.bind(tf).hidden == ()
+    bound = pipeline.bind(tf, {"p": 3, "q": 3})
+    assert [(str(h.polynomial), h.multiplicity) for h in bound.hidden] == [("s + 3", 1)]
+    assert bound(5j) == pytest.approx(pipeline.bind(derive(text, "X"))(5j), rel=1e-15)
+
+
+def test_numerator_and_denominator_of_a_rod_are_entire_and_do_not_vanish_together_at_rest():
+    bound = pipeline.bind(derive(HELD, "X"))
+    for part in (bound.num, bound.den):
+        near, nearer = (complex(bound.enclosed_part(part, 400)(acb(10.0**-e))) for e in (6, 9))
+        assert abs(nearer) > 1e-9
+        assert nearer == pytest.approx(near, rel=1e-6)
