@@ -148,8 +148,8 @@ def trace_locus(
     limits : (Fraction, Fraction), optional
         From 0 to 10 times the nominal gain by default.
     modes : int, optional
-        Of a loop with kernels, how many modes are traced; by default those up to the end of the band at the
-        first gain, or 5.
+        Of a loop with kernels, how many modes are traced; by default as many as lie in the band at the
+        first or at the last gain, or 5.
     budget : Budget, optional
         Of the search for roots.
     band_hz : (float, float), optional
@@ -164,14 +164,16 @@ def trace_locus(
     above, below = _parts(loop)
     low, high = _range(loop, limits)
     at_first = _with(loop.bound, above, below + above * low)
+    at_last = _with(loop.bound, above, below + above * high)
     if modes is None and band_hz is not None and loop.bound.kernels:
-        shown = locate(at_first, Band(Fraction(0), Fraction(band_hz[1])), 15, budget).poles
-        modes = sum(root.multiplicity for root in shown if not root.im < 0)
+        band = Band(Fraction(0), Fraction(band_hz[1]))
+        shown = [locate(bound, band, 15, budget).poles for bound in (at_first, at_last)]
+        modes = max(sum(root.multiplicity for root in poles if not root.im < 0) for poles in shown)
     wanted = modes or loop.bound.source.model.analysis.modes or DEFAULT_MODES
     region: Region | None = Modes(wanted) if loop.bound.kernels else None
     wider: Region | None = Modes(wanted + 2) if loop.bound.kernels else None
     start = locate(at_first, region, 15, budget)
-    end = locate(_with(loop.bound, above, below + above * high), wider, 15, budget)
+    end = locate(at_last, wider, 15, budget)
     function = LoopFunction.of(loop.bound, below, above)
     poles, final = _points(start.all_poles), _points(end.all_poles)
     bottom, top = float(low), float(high)

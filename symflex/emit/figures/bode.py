@@ -8,7 +8,15 @@ from math import ceil, log10
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, MultipleLocator, NullFormatter
+from matplotlib.ticker import (
+    FuncFormatter,
+    LogLocator,
+    MaxNLocator,
+    MultipleLocator,
+    NullFormatter,
+    NullLocator,
+    ScalarFormatter,
+)
 
 from symflex.emit.figures.drawing import FREE
 from symflex.emit.figures.labels import label_of_frequency, label_of_tf, label_of_unit
@@ -45,6 +53,8 @@ PHASE_MARGIN: Final = 1.12
 PHASE_STEPS: Final = (45, 90, 180, 360, 720, 1440)
 PHASE_TICKS: Final = 7.5
 SHORT_BAND_DECADES: Final = 1.3
+NARROW_BAND_DECADES: Final = 0.6
+"""Between a frequency and four times it there may be one tick of 1, 2 and 5."""
 UNDAMPED: Final = 1e-4
 UNDAMPED_REACH: Final = 0.01
 UNDAMPED_MARGIN_DB: Final = 15.0
@@ -231,6 +241,11 @@ def set_frequency_axis(axes: Axes, low: float, high: float) -> None:
     axes.set_xlim(low, high)
     axes.set_xlabel("Frequency [Hz]")
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: label_of_frequency(value)))
-    if log10(high / low) < SHORT_BAND_DECADES:
+    decades = log10(high / low)
+    if decades < NARROW_BAND_DECADES:
+        axes.xaxis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10]))
+        axes.xaxis.set_major_formatter(ScalarFormatter(useMathText=True))
+        axes.xaxis.set_minor_locator(NullLocator())
+    elif decades < SHORT_BAND_DECADES:
         axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.xaxis.set_minor_formatter(NullFormatter())

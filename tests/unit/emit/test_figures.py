@@ -354,6 +354,16 @@ def test_a_band_chooses_among_all_modes():
         drawn("modes", tfs, band_hz=(1.7, 2))
 
 
+@pytest.mark.parametrize(
+    "band", [(9, 11), (12, 18), (1, 3), (2e6, 2.1e6), (1000, 1000.01), (0.001, 0.0012)], ids=str
+)
+def test_a_narrow_band_has_frequencies_that_differ_below_it(band, tfs):
+    figure = drawn("bode", tfs, band_hz=band)
+    figure.canvas.draw()
+    labels = [t.get_text() for t in figure.axes[1].get_xticklabels() if t.get_text()]
+    assert len(set(labels)) == len(labels) >= 3
+
+
 def test_a_nyquist_plot_of_a_band_ends_with_it():
     # 1/(s + 1) at 1/(2 pi) Hz is (1 - j)/2.
     turn = 1 / (2 * np.pi)

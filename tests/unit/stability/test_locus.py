@@ -219,6 +219,19 @@ def test_as_many_modes_are_traced_as_a_band_holds(loop):
     assert np.allclose(sorted(found, key=lambda s: (s.imag, s.real)), wanted, rtol=1e-9)
 
 
+def test_poles_in_the_band_at_the_last_gain_are_traced_too(loop):
+    # At the gain 0 there is one pole; at the last one, poles are at 10 W(-2 exp(1/10)/10) - 1.
+    known = [10 * lambertw(-0.2 * np.exp(0.1), n) - 1 for n in range(-8, 8)]
+    traced = trace_locus(
+        characteristic(loop("K*D/(s + 1)", T="0.1 s")),
+        (Fraction(0), Fraction(2)),
+        band_hz=(0, 300 / (2 * np.pi)),
+    )
+    wanted = [s for s in known if abs(s) < 300]
+    assert len(wanted) > 8
+    assert all(min(abs(s - end) for end in traced.ends) < 1e-6 for s in wanted)
+
+
 def test_a_locus_has_the_limits_asked_for_and_counts_what_is_outside(loop):
     frame = AxisLimits(x=(-3, 1), y=(0, 2))
     done = characteristic(loop("K*(s + 30)/((s + 1)*(s + 2))"))
