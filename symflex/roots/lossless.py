@@ -195,7 +195,7 @@ class LosslessSearch:
         for guess in guesses:
             if total >= modes and guess.frequency > chosen[-1].frequency * (1 + CLOSE):
                 # The circle passes between the last mode wanted and the next.
-                return self._proved(chosen), log(chosen[-1].frequency * guess.frequency) / 2
+                return self._proved(chosen), (log(chosen[-1].frequency) + log(guess.frequency)) / 2
             chosen.append(guess)
             total += guess.exponent
         return self._proved(chosen), log(low) if low else self.smallest()

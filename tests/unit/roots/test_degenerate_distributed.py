@@ -125,3 +125,17 @@ load = { type = "mass", at = "q", m = 165 }
     with pytest.raises(BudgetError) as failed:
         locate(pipeline.derive_bound(pipeline.loads(text), [("Y", "F")])[0], Modes(3))
     assert failed.value.diagnostics[0].code == "SF505"
+
+
+def test_frequencies_whose_product_is_no_double_are_found():
+    # Of a free rod: n pi/l sqrt(E/rho).
+    text = """
+symflex = 1
+elements.bar = { type = "rod", between = ["p", "q"], E = 7e-188, A = 3, rho = 7, l = 1e100 }
+inputs.F = { force = "p" }
+outputs.Y = "q"
+"""
+    found = locate(pipeline.derive_bound(pipeline.loads(text), [("Y", "F")])[0], Modes(2))
+    expected = [0, *(n * np.pi / 1e100 * 1e-94 for n in (1, 2))]
+    upper = sorted(float(p.im.mid()) for p in found.poles if p.im >= 0)
+    assert upper[: len(expected)] == pytest.approx(expected, rel=1e-12, abs=0)
