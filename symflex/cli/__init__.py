@@ -119,6 +119,7 @@ def run(arguments: list[str] | None = None, *, is_program: bool = False) -> int:
     is_program : bool
         This process does nothing else, so that a command may work in one of its own under watch.
     """
+    printed_to = sys.stdout
     try:
         result = group.main(
             args=arguments, prog_name="symflex", standalone_mode=False, obj=WATCHED if is_program else None
@@ -139,10 +140,10 @@ def run(arguments: list[str] | None = None, *, is_program: bool = False) -> int:
         if problem.filename is not None:
             raise
         return _unwritable(problem)
-    except SystemExit as stop:
-        if not isinstance(stop.__context__, BrokenPipeError):
+    except SystemExit:
+        if sys.stdout is printed_to:
             raise
-        return 0  # the reader of a help text went away, which ends other commands so too
+        return 0  # click has put another in its place: the reader of a help text went away
     return result if isinstance(result, int) else 0
 
 
