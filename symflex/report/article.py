@@ -201,7 +201,8 @@ def _widths(table: Table, room: float) -> list[float]:
         lines = [line for cell in (column.head, *(row[i] for row in table.rows)) for line in _lines(cell)]
         natural.append(scale * max(sum(width for _, width in line) for line in lines) + _SLACK_MM)
         words = max((width for line in lines for _, width in line), default=0.0)
-        least.append(min(natural[i], scale * words + _SLACK_MM))
+        # Longer words are broken; TeX has no widths of metres.
+        least.append(min(natural[i], scale * words + _SLACK_MM, room / 2))
     if sum(natural) <= room:
         return natural
     kept = [n if c.side != "text" else m for c, n, m in zip(table.columns, natural, least, strict=True)]

@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 
 GROUP_LIMIT = 5_000
 """Number of terms up to which a polynomial is nested for print."""
+DEEPEST_NEST = 60
+"""Degree in all parameters up to which a sum is nested: each level of print takes out one of them."""
 FACTOR_LIMIT = 400
 """Number of terms up to which a coefficient is factored for print."""
 
@@ -226,7 +228,7 @@ class Arranger:
 
     def _split(self, terms: dict[tuple[int, ...], int]) -> Expression:
         shared = self._most_shared(terms)
-        if shared is None:
+        if shared is None or max(sum(m[1:]) for m in terms) > DEEPEST_NEST:
             return self._sum(terms)
         chosen = {m: c for m, c in terms.items() if m[shared]}
         others = {m: c for m, c in terms.items() if not m[shared]}

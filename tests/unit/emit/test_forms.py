@@ -281,3 +281,15 @@ def test_zpk_writes_a_gain_of_more_digits_than_python_does():
     text = 'symflex = 1\nparameters.a = 1e200\ninputs.u = {}\noutputs.y = "a^23*u/(s + 1)"'
     num, _ = printed(tf_of(text, "y", "u"), "zpk", 4)
     assert num == "1" + 4600 * "0"
+
+
+def test_a_power_of_a_block_of_many_poles_is_not_nested_level_by_level():
+    # (s + a)^900 has 901 terms, each of which would be nested in the one before.
+    text = """symflex = 1
+parameters = { a = "3 1/s" }
+blocks.G = { type = "tf", num = "1", den = "(s + a)^30" }
+signals.u = "G^30*r"
+inputs.r = {}
+outputs.U = "u"
+"""
+    assert printed(tf_of(text, "U", "r"), "definitions") == ("1", "(s + a)^900")

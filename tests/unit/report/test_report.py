@@ -95,6 +95,15 @@ def test_hostile_text_reaches_no_command_of_tex(hostile):
     assert article.count(r"\end{document}") == 1
 
 
+def test_a_title_of_five_thousand_letters_makes_no_column_wider_than_the_page(tmp_path):
+    article = report_article(
+        report_on(tmp_path, a=SYMBOLIC.replace("symflex = 1", f'symflex = 1\ntitle = "{"x" * 5000}"'))
+    )
+    widths = [float(width) for width in re.findall(r"p\{([0-9.]+)mm\}", article)]
+    assert widths
+    assert max(widths) < 210  # A4
+
+
 def test_hostile_names_lead_to_plain_files(tmp_path):
     (tmp_path / '<b> ..%2f" onx=1.toml').write_text(SMALL, encoding="utf-8")
     named = name_specifications(find_specifications([tmp_path]))
