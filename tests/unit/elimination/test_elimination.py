@@ -11,6 +11,7 @@ import sympy
 import symflex
 from symflex import pipeline
 from symflex.elimination import Minors, close, eliminate_unit_pivots, expansion_order, is_singular
+from symflex.elimination.singular import listed
 from symflex.errors import BudgetError, ModelError
 from symflex.kernels import Ring
 from tests.contract.exact import Point, solve
@@ -315,6 +316,63 @@ def test_a_singular_system_is_explained(name):
     assert problem.code == code
     assert all(n in problem.message for n in named)
     assert problem.span is not None
+
+
+def said(head, tail):
+    with pytest.raises(ModelError) as caught:
+        pipeline.derive_all(pipeline.loads(HEADER + head + tail))
+    (problem,) = caught.value.diagnostics
+    return problem.code, problem.message, problem.hint, problem.span.text
+
+
+LOOP = "the loop through {} is algebraic and has no unique solution: its gain is exactly one"
+SAID = {
+    "a node between two massless links to nowhere": (
+        "nothing determines nodes 'a' and 'c': they float",
+        "connect them to ground or give them a mass",
+        "a",
+    ),
+    "a node held twice": (
+        "the constraints of 'one' and 'two' repeat or contradict each other",
+        "remove one of them",
+        "two",
+    ),
+    "an algebraic loop of gain one": (
+        LOOP.format("'e'"),
+        "put a dynamic element or another gain into the loop",
+        "e",
+    ),
+    "an algebraic loop of gain one through two signals": (
+        LOOP.format("'e' and 'g'"),
+        "put a dynamic element or another gain into the loop",
+        "e",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SAID)
+def test_what_makes_a_system_singular_is_said_in_a_sentence_with_a_way_out(name):
+    head, tail, code, _ = SINGULAR[name]
+    message, hint, place = SAID[name]
+    found = said(head, tail)
+    assert found[:3] == (code, message, hint)
+    assert place in found[3]
+
+
+@pytest.mark.parametrize(
+    ("names", "sentence"),
+    [
+        ([], "the system"),
+        (["a"], "a"),
+        (["a", "b"], "a and b"),
+        (["a", "b", "c"], "a, b and c"),
+        (list("abcdef"), "a, b, c, d, e and f"),
+        (list("abcdefg"), "a, b, c, d, e, f and 1 more"),
+        (list("abcdefghi"), "a, b, c, d, e, f and 3 more"),
+    ],
+)
+def test_names_are_listed_as_in_a_sentence(names, sentence):
+    assert listed(names) == sentence
 
 
 @pytest.mark.parametrize("name", SINGULAR)
