@@ -289,3 +289,12 @@ def test_newtons_steps_begin_with_the_bits_asked_for(first_bits):
     prove_simple(Watched(((((2, 3),), 1),)), near(acb(2, 3)), 100, first_bits=first_bits)
     assert levels[0] == first_bits
     assert all(later <= 2 * earlier for earlier, later in pairwise(levels))
+
+
+@pytest.mark.parametrize("off", [(0.25, 0), (0, 0.25), (0.25, -0.25)])
+def test_what_symmetry_proves_to_be_zero_is_zero_whatever_newtons_image_is(off):
+    imaginary = Told(((((0, 5), (0, -5)), 1),), is_even=True, step=step_of(*off))
+    found = prove_simple(imaginary, acb(0, 5), 5)
+    assert (bool(found.re == 0), found.on_imaginary_axis, found.is_real) == (True, True, False)
+    real = prove_simple(Told(((((-4, 0),), 1),), step=step_of(*off)), acb(-4), 5)
+    assert (bool(real.im == 0), real.on_imaginary_axis, real.is_real) == (True, False, True)
