@@ -70,7 +70,7 @@ def within_budget(budget: Budget) -> Proposer:
     Traceback (most recent call last):
     ...
     symflex.errors.exceptions.BudgetError: error[SF506]: the time given is over
-      hint: allow more time, or ask for fewer roots
+      hint: allow more time, or ask for less
     """
 
     def propose(polynomial: acb_poly) -> tuple[acb, ...] | None:

@@ -232,12 +232,15 @@ def search_right(
         again = Side(bound, part, digits, budget)
         try:
             again.search(region)
-            proof = again.prove(region)
+            # Roots of lossless systems lie on the border, and beyond what was asked for it is not followed.
+            proof = None if is_mirrored else again.prove(region)
         except BudgetError as error:
             more = f"{count} are counted, and not all found: " if count else ""
             said = _up_to(unproved, reached) if is_mirrored else more + error.diagnostics[0].message
             return RightHalfPlane(tuple(known), said)
         seen = [root for root in again.roots if root.re.contains(0) or is_right(root)]
+        if proof is None:
+            return RightHalfPlane(tuple(seen), _up_to(unproved, reached))
         if not proof.is_complete if count is None else _count(seen) != count:
             said = _up_to(unproved, reached) if unproved else proof.reason or NOT_COUNTED
             return RightHalfPlane(tuple(seen), said)

@@ -346,4 +346,5 @@ def damping_text(root: Root, digits: int) -> str:
 
 def _certified(decimal: str, *, is_exact: bool) -> str:
     """Return a decimal as a cell; a zero that is not exact is nearly zero."""
-    return decimal if decimal != "0" or is_exact else r"{$\approx 0$}"
+    is_near_zero = decimal.partition("e")[0] == "0" and not is_exact
+    return r"{$\approx 0$}" if is_near_zero else decimal
