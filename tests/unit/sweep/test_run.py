@@ -211,10 +211,14 @@ def is_alive(process):
     return bool(listed.stdout.strip()) and not listed.stdout.strip().startswith(b"Z")
 
 
-def children_of(process):
+def descendants_of(process):
+    """Return the processes below one: a command works in one of its own, which has the workers."""
     listed = subprocess.run(["ps", "-A", "-o", "pid=,ppid="], capture_output=True, text=True, check=True)
-    pairs = (map(int, line.split()) for line in listed.stdout.splitlines())
-    return [child for child, parent in pairs if parent == process]
+    pairs = [tuple(map(int, line.split())) for line in listed.stdout.splitlines()]
+    found = [process]
+    for parent in found:
+        found += [child for child, of in pairs if of == parent]
+    return found[1:]
 
 
 @pytest.mark.slow
@@ -229,8 +233,8 @@ def test_the_workers_of_a_sweep_that_is_killed_end(tmp_path):
             if len(list(journal.glob("chunk-*.npz"))) >= 4 or p.poll() is not None:
                 break
             time.sleep(0.01)
-        workers = children_of(p.pid)
-        assert len(workers) >= 2
+        workers = descendants_of(p.pid)
+        assert len(workers) >= 3
         p.send_signal(signal.SIGKILL)
     for _ in range(3000):
         if not any(map(is_alive, workers)):
