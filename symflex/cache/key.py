@@ -58,9 +58,9 @@ def programs_digest() -> str:
     The text, because a version does not change with every change in a checkout.
     """
     root = Path(__file__).parents[1]
-    files = [path for room in DERIVING for path in sorted((root / room).glob("*.py"))]
     digest = hashlib.sha256(flint.__version__.encode())
     try:
+        files = [path for room in DERIVING for path in sorted((root / room).glob("*.py"))]
         for path in files:
             text = path.read_bytes()
             digest.update(f"\n{path.parent.name}/{path.name} {len(text)}\n".encode() + text)

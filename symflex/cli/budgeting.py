@@ -83,8 +83,11 @@ def budgeted(command: Callable[P, int]) -> Callable[..., int]:
     def run(*args: P.args, **kwargs: P.kwargs) -> int:
         seconds: float | None = kwargs.pop("budget", None)  # type: ignore[assignment]
         memory: int = kwargs.pop("memory")  # type: ignore[assignment]
-        budget = Budget(seconds, memory=int(IN_ORDER * memory))
-        is_watched = sys.platform == "linux" and click.get_current_context().find_root().obj is WATCHED
+        is_program = click.get_current_context().find_root().obj is WATCHED
+        # Called from Python, a command does not answer for what its caller holds.
+        held = 0 if is_program else memory_held()
+        budget = Budget(seconds, memory=held + int(IN_ORDER * memory))
+        is_watched = is_program and sys.platform == "linux"
         if is_watched:
             code = _watched(seconds, memory)
             if code is not None:

@@ -51,6 +51,14 @@ def reporting(command: Callable[P, int | None]) -> Callable[P, int]:
             # The reader of a pipe went away; nothing is left to tell it, neither now nor at exit.
             silence(sys.stdout)
             return 0
+        except OSError as error:
+            # Whatever reads or writes a file says so with its own code; this is all else a system can refuse.
+            place = f"'{error.filename}'" if error.filename else None
+            said = ": ".join(
+                filter(None, ("the system refused an operation", place, error.strerror or str(error)))
+            )
+            show_error(UsageError(Diagnostic("SF905", said)))
+            return UsageError.exit_code
 
     return run
 

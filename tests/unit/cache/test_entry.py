@@ -1,15 +1,18 @@
 from __future__ import annotations
 
 import copy
+import errno
 import json
+import os
 from dataclasses import fields, replace
+from pathlib import Path
 
 import pytest
 
 from symflex import pipeline
 from symflex.cache import derivation_cache, remember
 from symflex.cache.entry import entry_content, read_entry
-from symflex.cache.key import derivation_key
+from symflex.cache.key import derivation_key, programs_digest
 from symflex.model import Model, with_numbers
 from symflex.transfer import TransferFunction, derive_all
 
@@ -153,6 +156,14 @@ def test_programs_whose_text_is_not_there_keep_nothing(monkeypatch, tmp_path):
     with derivation_cache(tmp_path, seconds=0) as store:
         assert pipeline.derive_all(pipeline.loads(CHAIN))
         assert store.usage().entries == 0
+
+
+def test_programs_whose_folders_cannot_be_listed_keep_nothing(monkeypatch):
+    def refuse(*_):
+        raise OSError(errno.EMFILE, os.strerror(errno.EMFILE))
+
+    monkeypatch.setattr(Path, "glob", refuse)
+    assert programs_digest.__wrapped__() == ""
 
 
 def test_what_is_kept_is_not_derived_again(monkeypatch, tmp_path):

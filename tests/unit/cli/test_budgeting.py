@@ -68,6 +68,12 @@ def test_a_memory_beyond_what_systems_count_is_no_limit():
     assert ended(started("sys.exit(3)", "--memory", "999999999 TB"))[::2] == (3, "")
 
 
+def test_a_command_called_from_python_does_not_answer_for_what_its_caller_holds(shell, monkeypatch):
+    for place in ("budget.peak_memory", "budget.memory_held", "cli.budgeting.memory_held"):
+        monkeypatch.setattr(f"symflex.{place}", lambda: 10**11)
+    assert shell("roots", "x.toml").code == 0
+
+
 @linux
 def test_what_cannot_be_asked_is_ended_and_said():
     code, out, err = ended(started(ENDLESS, "--budget", "0.5"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import pty
 import re
@@ -62,6 +63,16 @@ def test_an_exceeded_budget_ends_with_code_5(shell, monkeypatch):
     monkeypatch.setattr(pipeline, "derive_all", too_large)
     done = shell("derive", "x.toml", "--representation", "expanded")
     assert (done.code, done.err) == (5, "error[SF501]: too large, for this test\n")
+
+
+def test_what_the_system_refuses_is_an_error_with_a_code(shell, monkeypatch):
+    def refuse(*_):
+        raise OSError(errno.EMFILE, os.strerror(errno.EMFILE))
+
+    monkeypatch.setattr(pipeline, "derive_all", refuse)
+    done = shell("derive", "x.toml")
+    assert (done.code, done.out) == (2, "")
+    assert done.err == "error[SF905]: the system refused an operation: Too many open files\n"
 
 
 def test_what_is_too_large_expanded_is_printed_in_nested_form(shell, monkeypatch):
