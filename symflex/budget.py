@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 GB: Final = 10**9
+LOOK: Final = 0.005
+"""Seconds between two looks at the memory, in which a process can take 10 MB: each asks the system."""
 TIME_OVER: Final = Diagnostic("SF506", "the time given is over", None, "allow more time, or ask for less")
 
 
@@ -78,9 +80,11 @@ class Budget:
     clock: Callable[[], float] = monotonic
     memory: int | None = None
     _start: float = field(init=False, repr=False, compare=False)
+    _look: float = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "_start", self.clock())
+        object.__setattr__(self, "_look", self._start)
 
     def share(self, fraction: float) -> Budget:
         """Return a budget that began when this one did and ends after a fraction of its time.
@@ -136,11 +140,16 @@ class Budget:
             entered._check()  # noqa: SLF001 - of the same class
 
     def _check(self) -> None:
-        if self.seconds is not None and self.clock() - self._start > self.seconds:
+        if self.seconds is None and self.memory is None:
+            return
+        now = self.clock()
+        if self.seconds is not None and now - self._start > self.seconds:
             raise BudgetError(TIME_OVER)
-        # The most it ever held is known at once; what it holds now has to be read from a file.
-        if self.memory is not None and peak_memory() > self.memory and memory_held() > self.memory:
-            raise BudgetError(memory_used_up(self.memory))
+        if self.memory is not None and now >= self._look:
+            # The most it ever held is known at once; what it holds now has to be read from a file.
+            if peak_memory() > self.memory and memory_held() > self.memory:
+                raise BudgetError(memory_used_up(self.memory))
+            object.__setattr__(self, "_look", now + LOOK)
 
     @contextmanager
     def entered(self) -> Iterator[Budget]:

@@ -18,7 +18,7 @@ from symflex.errors import BudgetError, Diagnostic
 from symflex.kernels.sparse import SparseContext, SparsePolynomial
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from symflex.kernels.sparse import Monomial
 
@@ -76,6 +76,16 @@ class Ring:
     def generator(self, name: str) -> fmpz_mpoly:
         """Return the generator called ``name``."""
         return self.context.gen(self.index[name])
+
+    def used_in(self, polynomials: Iterable[fmpz_mpoly]) -> frozenset[str]:
+        """Return the names of the generators that occur."""
+        used: set[str] = set()
+        for polynomial in polynomials:
+            if (sparse := _sparse(polynomial)) is not None:
+                used |= {self.names[i] for m in sparse.parts for i, _ in m}
+            elif len(polynomial):
+                used |= {n for n, d in zip(self.names, polynomial.degrees(), strict=True) if int(d)}
+        return frozenset(used)
 
     def bytes_of(self, terms: int) -> int:
         """Return about how much memory a polynomial takes: a byte per exponent, and its coefficients."""

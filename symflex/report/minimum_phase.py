@@ -182,8 +182,7 @@ def _has_one_scale(tf: TransferFunction) -> bool:
     for factor, exponent in tf.ratio.factors:
         if exponent < 0 or len(factor) == 1:
             continue
-        used = {name for name, d in zip(ring.names, factor.degrees(), strict=True) if d}
-        if not used <= kernels:
+        if not ring.used_in((factor,)) <= kernels:
             return False
     lengths = {str(k.length) for k in table.kernels}
     kinds = {law.kind for law in table.dispersions}

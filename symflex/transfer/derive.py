@@ -187,7 +187,9 @@ class _Workshop:
                 self._without_kernels(v) for v in (ratio, above, below, cancelled)
             )
         if table:
-            table = table.restricted(_generators_in(above, below, cancelled))
+            table = table.restricted(
+                above.ring.used_in(f for v in (above, below, cancelled) for f, _ in v.factors)
+            )
         model = self._equations.model
         known = dict(model.quotients).get((output.name, given.name))
         return TransferFunction(
@@ -231,11 +233,3 @@ class _Workshop:
 
 def _integer_content(polynomial: fmpz_mpoly) -> fmpz:
     return polynomial.term_content().leading_coefficient()
-
-
-def _generators_in(*values: Factored) -> set[str]:
-    """Return the names of all generators that occur."""
-    names = values[0].ring.names
-    return {
-        names[i] for v in values for f, _ in v.factors for i, degree in enumerate(f.degrees()) if int(degree)
-    }

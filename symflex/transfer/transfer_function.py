@@ -10,7 +10,7 @@ from symflex.expressions import Name, names
 from symflex.kernels import LAPLACE, NO_KERNELS, KernelTable, ModalSums, degree_in
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Sequence, Set
 
     from flint import fmpz_mpoly
 
@@ -242,20 +242,17 @@ class TransferFunction:
         return self._parameters_in([h.polynomial for h in self.hidden])
 
     def _parameters_in(self, polynomials: Sequence[fmpz_mpoly]) -> tuple[Parameter, ...]:
-        return self._parameters_named(
-            {n for i, n in enumerate(self.ring.names) if any(degree_in(p, i) for p in polynomials)}
-        )
+        return self._parameters_named(self.ring.used_in(polynomials))
 
     def _opened_names(self, found: frozenset[str]) -> set[str]:
         """Return names with those in definitions among them, and in definitions of these."""
         used = set(found)
         for name, value in reversed(self.definitions):
             if name in used:
-                ring = value.ring
-                used |= {n for f, _ in value.factors for i, n in enumerate(ring.names) if degree_in(f, i)}
+                used |= value.ring.used_in(f for f, _ in value.factors)
         return used
 
-    def _parameters_named(self, used: set[str]) -> tuple[Parameter, ...]:
+    def _parameters_named(self, used: Set[str]) -> tuple[Parameter, ...]:
         for constant in self.constants:
             if constant.generator in used:
                 used |= {n.name for n in names(constant.expression) if isinstance(n, Name)}

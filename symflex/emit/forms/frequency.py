@@ -24,7 +24,6 @@ from symflex.emit.forms.notation import (
     plain_printer,
     reachable,
     speed_squared,
-    used_generators,
     wave_times_length,
 )
 from symflex.emit.forms.printed import PrintedForm
@@ -123,7 +122,7 @@ class _Page:
             image, times = self._real(factor)
             value, turns = value * image**exponent, turns + times * exponent
         value = self._turned(value, turns)
-        lines, symbols = self._explained(used_generators(self.ring, (f for f, _ in value.factors)))
+        lines, symbols = self._explained(self.ring.used_in(f for f, _ in value.factors))
         printer = self._printer(symbols)
         sides = shortest_sides(printer, value, self._laws())
         argument = product_of([symbols[IMAGINARY], symbols[LAPLACE]])

@@ -22,7 +22,6 @@ from symflex.emit.forms.notation import (
     angles_of,
     notation_of,
     reachable,
-    used_generators,
 )
 from symflex.expressions import (
     Name,
@@ -58,7 +57,7 @@ def hidden_expressions(tf: AnyTransferFunction) -> Hidden:
     """
     if isinstance(tf, NestedTransferFunction):
         return ()  # not looked for
-    used = used_generators(tf.ring, (h.polynomial for h in tf.hidden))
+    used = tf.ring.used_in(h.polynomial for h in tf.hidden)
     if used & set(tf.kernels.generators):
         notation = notation_of(tf, used, Naming.of(tf))
         opened = _opened(notation.lines)
@@ -83,7 +82,7 @@ def with_hidden(tf: AnyTransferFunction, form: PrintedForm) -> tuple[PrintedForm
     """
     if isinstance(tf, NestedTransferFunction):
         return form, ()
-    used = used_generators(tf.ring, (h.polynomial for h in tf.hidden))
+    used = tf.ring.used_in(h.polynomial for h in tf.hidden)
     if not used & set(tf.kernels.generators):
         return form, hidden_expressions(tf)
     naming = Naming.of(tf)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from symflex.emit.forms.arrange import Arranger
 from symflex.emit.forms.constants import constant_symbols
 from symflex.emit.forms.kept import KeptDefinitions
-from symflex.emit.forms.notation import Naming, Notation, notation_of, used_generators, wavenumber_laws
+from symflex.emit.forms.notation import Naming, Notation, notation_of, wavenumber_laws
 from symflex.emit.forms.printed import PrintedForm
 from symflex.emit.forms.products import ProductPrinter, shortest_sides
 from symflex.emit.forms.usage import require_kernels
@@ -32,7 +32,7 @@ def hyperbolic_form(tf: TransferFunction, digits: int) -> PrintedForm:
 
 def in_kernels(tf: TransferFunction, name: str, value: Factored) -> PrintedForm:
     """Return a form of a value over the transfer function's ring."""
-    used = used_generators(tf.ratio.ring, (f for f, _ in value.factors))
+    used = tf.ratio.ring.used_in(f for f, _ in value.factors)
     notation = notation_of(tf, used, Naming.of(tf))
     printer = kernel_printer(tf, notation)
     sides = shortest_sides(printer, value, wavenumber_laws(tf))
@@ -49,7 +49,7 @@ def kernel_printer(tf: TransferFunction, notation: Notation) -> ProductPrinter:
 
 def collected_form(tf: TransferFunction) -> PrintedForm:
     """Return the polynomial form of a function with kernels: both sides by descending powers of s."""
-    used = used_generators(tf.ratio.ring, (f for f, _ in tf.ratio.factors))
+    used = tf.ratio.ring.used_in(f for f, _ in tf.ratio.factors)
     notation = notation_of(tf, used, Naming.of(tf))
     arranger = kernel_printer(tf, notation).arranger
     return PrintedForm(

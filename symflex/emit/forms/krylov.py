@@ -15,7 +15,6 @@ from symflex.emit.forms.notation import (
     Naming,
     notation_of,
     reachable,
-    used_generators,
     wavenumber_laws,
 )
 from symflex.emit.forms.printed import PrintedForm
@@ -47,7 +46,7 @@ def krylov_form(tf: TransferFunction, digits: int) -> PrintedForm:
         return in_kernels(tf, "krylov", tf.ratio)
     change, value = in_krylov_functions(tf.ratio.ring, tf.kernels, tf.ratio)
     ring = change.ring
-    used = used_generators(ring, (f for f, _ in value.factors))
+    used = ring.used_in(f for f, _ in value.factors)
     naming = Naming.of(tf)
     families = _families(change, used, naming)
     explained: set[str] = set(used)

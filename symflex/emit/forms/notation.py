@@ -29,8 +29,6 @@ from symflex.kernels import LAPLACE, Dispersion, Factored, Kernel, KernelTable
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
 
-    from flint import fmpz_mpoly
-
     from symflex.kernels import Ring
     from symflex.transfer import TransferFunction
 
@@ -87,14 +85,6 @@ class Naming:
     def taken(self) -> Collection[str]:
         """The names that are not free any more."""
         return self._taken
-
-
-def used_generators(ring: Ring, polynomials: Iterable[fmpz_mpoly]) -> frozenset[str]:
-    """Return the generators that occur."""
-    used: set[str] = set()
-    for polynomial in polynomials:
-        used |= {n for n, d in zip(ring.names, polynomial.degrees(), strict=True) if int(d)}
-    return frozenset(used)
 
 
 def angles_of(table: KernelTable, used: Collection[str] | None = None) -> tuple[Angle, ...]:

@@ -23,7 +23,6 @@ from symflex.emit.forms.notation import (
     reachable,
     speed_squared,
     times_length,
-    used_generators,
     wave_notation,
     wave_times_length,
     wavenumber_laws,
@@ -85,7 +84,7 @@ class _Page:
     def __init__(self, tf: TransferFunction) -> None:
         self._tf = tf
         source = tf.ratio.ring
-        used = used_generators(source, (f for f, _ in tf.ratio.factors))
+        used = source.used_in(f for f, _ in tf.ratio.factors)
         self._angles = angles_of(tf.kernels, used)
         self._bending = [
             d

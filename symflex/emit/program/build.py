@@ -110,19 +110,10 @@ def _used_definitions(tf: TransferFunction) -> Iterator[tuple[str, Factored]]:
     if tf.closed is None:
         return
     closure = tf.closed.closure
-    used = _used(closure.ring, (tf.closed.num, tf.closed.den))
+    used = closure.ring.used_in((tf.closed.num, tf.closed.den))
     polynomials = [p for name, p in closure.sums if name in used]
-    used |= _used(closure.base, polynomials)
+    used |= closure.base.used_in(polynomials)
     yield from ((name, value) for name, value in tf.definitions if name in used)
-
-
-def _used(ring: Ring, polynomials: Iterable[fmpz_mpoly]) -> set[str]:
-    found: set[str] = set()
-    for polynomial in polynomials:
-        spend()
-        if len(polynomial):
-            found |= {name for name, d in zip(ring.names, polynomial.degrees(), strict=True) if int(d)}
-    return found
 
 
 @dataclass
@@ -141,7 +132,8 @@ class Generators:
 
     def images(self, ring: Ring, polynomials: Iterable[fmpz_mpoly]) -> Images:
         """Return what stands for a ring's generators, for those in use."""
-        used = _used(ring, polynomials)
+        spend()
+        used = ring.used_in(polynomials)
         pairs = [self._generator(n) if n in used or n == LAPLACE else (0, 0) for n in ring.names]
         return Images(tuple(v for v, _ in pairs), tuple(d for _, d in pairs), ring.index[PI], self.is_far)
 
