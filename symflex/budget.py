@@ -134,12 +134,9 @@ class Budget:
         BudgetError
             SF506 when the time is over, SF504 when the memory is used up.
         """
-        self._check()
         entered = _ENTERED.get()
         if entered is not None and entered is not self:
-            entered._check()  # noqa: SLF001 - of the same class
-
-    def _check(self) -> None:
+            entered.spend()
         if self.seconds is None and self.memory is None:
             return
         now = self.clock()
@@ -180,7 +177,7 @@ def spend() -> None:
     """
     entered = _ENTERED.get()
     if entered is not None:
-        entered._check()  # noqa: SLF001 - of the same module
+        entered.spend()
 
 
 def memory_used_up(memory: int) -> Diagnostic:
