@@ -15,7 +15,7 @@ import sys
 from functools import wraps
 from math import inf
 from time import monotonic
-from typing import TYPE_CHECKING, Final, ParamSpec
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -26,8 +26,6 @@ from symflex.errors import BudgetError, Diagnostic
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-P = ParamSpec("P")
 
 MEMORY: Final = "2 GB"
 MEMORY_VARIABLE: Final = "SYMFLEX_MEMORY"
@@ -76,23 +74,21 @@ class Memory(click.ParamType[int]):
         return size
 
 
-def budgeted(command: Callable[P, int]) -> Callable[..., int]:
+def budgeted(command: Callable[..., int]) -> Callable[..., int]:
     """Give a command the options ``--budget`` and ``--memory``, and see that they are kept."""
 
     @wraps(command)
-    def run(*args: P.args, **kwargs: P.kwargs) -> int:
-        seconds: float | None = kwargs.pop("budget", None)  # type: ignore[assignment]
-        memory: int = kwargs.pop("memory")  # type: ignore[assignment]
+    def run(*args: object, budget: float | None, memory: int, **kwargs: object) -> int:
         is_program = click.get_current_context().find_root().obj is WATCHED
         # Called from Python, a command does not answer for what its caller holds.
         held = 0 if is_program else memory_held()
-        budget = Budget(seconds, memory=held + int(IN_ORDER * memory))
+        whole = Budget(budget, memory=held + int(IN_ORDER * memory))
         is_watched = is_program and sys.platform == "linux"
         if is_watched:
-            code = _watched(seconds, memory)
+            code = _watched(budget, memory)
             if code is not None:
                 return code
-        with budget.entered():
+        with whole.entered():
             code = command(*args, **kwargs)
         if is_watched:
             os.kill(os.getppid(), FINISHED)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import click
 
 from symflex.cli.budgeting import budgeted
-from symflex.cli.reporting import diagnostic_json, emit_json, listed, outside, reporting, say, show
-from symflex.cli.setting import setting
+from symflex.cli.reporting import diagnostic_json, emit_json, listed, outside, reporting, say, setting, show
 from symflex.errors import SymflexError
 from symflex.errors.diagnostic import printable
 

@@ -12,8 +12,7 @@ import click
 from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
 from symflex.cli.derive import chosen_representation
-from symflex.cli.reporting import load, note, outside, reporting, say
-from symflex.cli.setting import setting
+from symflex.cli.reporting import load, note, outside, reporting, say, setting
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 

@@ -11,8 +11,7 @@ import click
 
 from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
-from symflex.cli.reporting import load, note, outside, reporting
-from symflex.cli.setting import setting
+from symflex.cli.reporting import load, note, outside, reporting, setting
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 

@@ -34,6 +34,25 @@ outside = click.option(
 )
 
 
+def setting(command: Callable[..., int | None]) -> Callable[..., int]:
+    """Give a command the option ``--set``; it gets what that says as ``settings``, by name."""
+
+    @wraps(command)
+    def run(*args: object, settings: tuple[str, ...], **kwargs: object) -> int:
+        from symflex.model import read_settings  # a command's help needs none of it
+
+        return command(*args, settings=read_settings(settings), **kwargs) or 0
+
+    option = click.option(
+        "--set",
+        "settings",
+        multiple=True,
+        metavar="NAME=VALUE",
+        help="Another value of a parameter: k='80 kN/m', or SI units; repeatable.",
+    )
+    return option(run)
+
+
 def reporting(command: Callable[P, int | None]) -> Callable[P, int]:
     """Turn a :class:`SymflexError` into its message on stderr and its exit code; a closed pipe is none."""
 

@@ -10,8 +10,17 @@ import click
 from symflex.budget import entered_budget
 from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, load, note, outside, reporting, say, show_error, terminal_width
-from symflex.cli.setting import setting
+from symflex.cli.reporting import (
+    emit_json,
+    load,
+    note,
+    outside,
+    reporting,
+    say,
+    setting,
+    show_error,
+    terminal_width,
+)
 from symflex.errors import BudgetError, Diagnostic, UsageError
 
 if TYPE_CHECKING:

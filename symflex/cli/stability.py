@@ -10,8 +10,7 @@ import click
 from symflex.budget import entered_budget
 from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, load, outside, reporting, say
-from symflex.cli.setting import setting
+from symflex.cli.reporting import emit_json, load, outside, reporting, say, setting
 from symflex.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:

@@ -9,9 +9,8 @@ import click
 
 from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, load, note, outside, reporting, say, terminal_width
+from symflex.cli.reporting import emit_json, load, note, outside, reporting, say, setting, terminal_width
 from symflex.cli.roots import region_of
-from symflex.cli.setting import setting
 from symflex.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:
