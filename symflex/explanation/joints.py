@@ -129,14 +129,8 @@ def joined_values(model: Model) -> list[list[Expression]]:
     ... symflex = 1
     ... inputs.F = {}
     ... outputs.U = "u(1)"
-    ... [fields.u]
-    ... domain = ["0", "1"]
-    ... equation = "u'' - s^2*u = 0"
-    ... conditions = ["u(0) = 0", "u(1) = v(1)"]
-    ... [fields.v]
-    ... domain = ["1", "2"]
-    ... equation = "v'' - s^2*v = 0"
-    ... conditions = ["v'(1) - u'(1) = F", "v(2) = 0"]
+    ... fields.u = { domain = [0, 1], equation = "u'' = u", conditions = ["u(0) = 0", "u(1) = v(1)"] }
+    ... fields.v = { domain = [1, 2], equation = "v'' = v", conditions = ["v'(1) = u'(1) + F", "v(2) = 0"] }
     ... ''')
     >>> from symflex.expressions import format_expression
     >>> [[format_expression(value) for value in group] for group in joined_values(model)]
