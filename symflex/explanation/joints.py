@@ -26,7 +26,6 @@ from symflex.expressions import (
     names,
     replace_values,
 )
-from symflex.model.analysis import PI_NEARLY
 from symflex.model.nodes import variable_of
 from symflex.model.points import Line
 
@@ -58,12 +57,7 @@ def in_one_way(model: Model) -> Model:
     >>> format_expression(in_one_way(model).outputs[0].expression)
     's*x'
     """
-    line = Line(
-        {d.name: d.expression for d in model.definitions},
-        frozenset(),
-        frozenset(),
-        {p.name: p.value.rational * PI_NEARLY**p.value.pi_power for p in model.parameters if p.value},
-    )
+    line = Line.of_numbers(model.definitions, ((p.name, p.value) for p in model.parameters))
     ends = {
         (f"{use.name}.{name}", line.key(place)): shown
         for use in model.elements

@@ -10,7 +10,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symflex.expressions import Name, names
-from symflex.model.analysis import PI_NEARLY
 from symflex.model.points import Line
 
 if TYPE_CHECKING:
@@ -62,12 +61,7 @@ def is_passive(model: Model, values: Iterable[tuple[str, ExactValue]]) -> bool:
     """
     if model.signals or model.blocks or model.fields:
         return False
-    line = Line(
-        {d.name: d.expression for d in model.definitions},
-        frozenset(),
-        frozenset(),
-        {name: value.rational * PI_NEARLY**value.pi_power for name, value in values},
-    )
+    line = Line.of_numbers(model.definitions, values)
     inputs = {each.name for each in model.inputs}
     return all(_is_passive(use, line, inputs) for use in model.elements)
 

@@ -17,7 +17,9 @@ from symflex.model.linearity import integer_exponent
 from symflex.model.units import lower
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable, Mapping
+    from collections.abc import Hashable, Iterable, Mapping
+
+    from symflex.model.model import Definition, ExactValue
 
 Monomial = tuple[tuple[str, int], ...]
 Polynomial = dict[Monomial, Fraction]
@@ -53,6 +55,14 @@ class Line:
     nonnegative: frozenset[str]
     values: Mapping[str, Fraction]
     _opened: dict[str, Polynomial | None] = field(default_factory=dict, repr=False)
+
+    @staticmethod
+    def of_numbers(
+        definitions: Iterable[Definition], values: Iterable[tuple[str, ExactValue | None]]
+    ) -> Line:
+        """Return the line of parameters of which nothing is known but the values of some."""
+        numbers = {name: v.rational * PI_NEARLY**v.pi_power for name, v in values if v is not None}
+        return Line({d.name: d.expression for d in definitions}, frozenset(), frozenset(), numbers)
 
     def __post_init__(self) -> None:
         """Open the definitions in order, so that a long chain is not followed at once."""
