@@ -20,7 +20,7 @@ from symflex.expressions.nodes import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
 
 def names(expression: Expression) -> tuple[Name | Attribute | Call | Derivative, ...]:
@@ -43,26 +43,22 @@ def names(expression: Expression) -> tuple[Name | Attribute | Call | Derivative,
     (Call(name='sin', argument=Name(name='x'), order=0), Name(name='x'), Attribute(owner='motor', name='i'),
      Name(name='x'))
     """
-    found: list[Name | Attribute | Call | Derivative] = []
-    pending = [expression]
-    while pending:
-        node = pending.pop()
-        if isinstance(node, Name | Attribute | Call | Derivative):
-            found.append(node)
-        pending.extend(reversed(node.children))
-    return tuple(found)
+    return tuple(n for n in _nodes(expression) if isinstance(n, Name | Attribute | Call | Derivative))
 
 
 def measured(expression: Expression) -> tuple[Measured, ...]:
     """Return every number with a unit, in order of appearance."""
-    found: list[Measured] = []
+    return tuple(n for n in _nodes(expression) if isinstance(n, Measured))
+
+
+def _nodes(expression: Expression) -> list[Expression]:
+    found: list[Expression] = []
     pending = [expression]
     while pending:
         node = pending.pop()
-        if isinstance(node, Measured):
-            found.append(node)
+        found.append(node)
         pending.extend(reversed(node.children))
-    return tuple(found)
+    return found
 
 
 def substitute(expression: Expression, mapping: Mapping[str, Expression]) -> Expression:
@@ -87,22 +83,7 @@ def substitute(expression: Expression, mapping: Mapping[str, Expression]) -> Exp
     >>> substitute(Sum((a, c)), {"a": Sum((b, c)), "c": a})
     Sum(terms=(Name(name='b'), Name(name='c'), Name(name='a')))
     """
-    done: list[Expression] = []
-    pending: list[tuple[Expression, bool]] = [(expression, False)]
-    while pending:
-        node, is_ready = pending.pop()
-        before = node.children
-        if not before:
-            done.append(_replacement(node, mapping))
-        elif not is_ready:
-            pending.append((node, True))
-            pending.extend((child, False) for child in reversed(before))
-        else:
-            after = done[-len(before) :]
-            del done[-len(before) :]
-            is_same = all(old is new for old, new in zip(before, after, strict=True))
-            done.append(node if is_same else _rebuilt(node, after))
-    return done[0]
+    return _replaced(expression, lambda node: _replacement(node, mapping))
 
 
 def replace_values(expression: Expression, mapping: Mapping[Call, Expression]) -> Expression:
@@ -114,21 +95,36 @@ def replace_values(expression: Expression, mapping: Mapping[Call, Expression]) -
     >>> replace_values(Sum((value, Name("x"))), {value: Name("tip")})
     Sum(terms=(Name(name='tip'), Name(name='x')))
     """
-    if isinstance(expression, Call) and expression in mapping:
-        return mapping[expression]
-    if not expression.children:
-        return expression
-    return _rebuilt(expression, [replace_values(child, mapping) for child in expression.children])
+    return _replaced(expression, lambda node: mapping.get(node, node) if isinstance(node, Call) else node)
 
 
-def _replacement(leaf: Expression, mapping: Mapping[str, Expression]) -> Expression:
-    match leaf:
+def _replaced(expression: Expression, new: Callable[[Expression], Expression]) -> Expression:
+    done: list[Expression] = []
+    pending: list[tuple[Expression, bool]] = [(expression, False)]
+    while pending:
+        node, is_ready = pending.pop()
+        before = node.children
+        if not is_ready and ((replacement := new(node)) is not node or not before):
+            done.append(replacement)
+        elif not is_ready:
+            pending.append((node, True))
+            pending.extend((child, False) for child in reversed(before))
+        else:
+            after = done[-len(before) :]
+            del done[-len(before) :]
+            is_same = all(old is new for old, new in zip(before, after, strict=True))
+            done.append(node if is_same else _rebuilt(node, after))
+    return done[0]
+
+
+def _replacement(node: Expression, mapping: Mapping[str, Expression]) -> Expression:
+    match node:
         case Name(name=name):
-            return mapping.get(name, leaf)
+            return mapping.get(name, node)
         case Attribute(owner=owner, name=name):
-            return mapping.get(f"{owner}.{name}", leaf)
+            return mapping.get(f"{owner}.{name}", node)
         case _:
-            return leaf
+            return node
 
 
 def _rebuilt(node: Expression, children: Sequence[Expression]) -> Expression:
