@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from symflex.emit.module_text import default_value, value_as_written
+from symflex.emit.module_text import default_value, described
 from symflex.emit.numpy_expression import WIDTH, Printer, statement
 from symflex.emit.program import (
     Add,
@@ -298,7 +298,7 @@ class _Module:
         for parameter in self._parameters:
             name = self._names[parameter.name]
             lines.append(f"    {name} : float{'' if parameter.value is None else ', optional'}")
-            lines += wrapped(self._description(parameter, name), WIDTH, "        ")
+            lines += wrapped(described(parameter, name), WIDTH, "        ")
         n, m, p = len(system.states), len(system.inputs), len(system.outputs)
         lines += ["", "    Returns", "    -------"]
         shapes = zip(LETTERS, ((n, n), (n, m), (p, n), (p, m)), strict=True)
@@ -308,15 +308,6 @@ class _Module:
             lines += ["", "    Notes", "    -----"]
             lines += wrapped(inert(f"None of these may be zero: {', '.join(divisors)}."), WIDTH, "    ")
         return lines
-
-    @staticmethod
-    def _description(parameter: Parameter, name: str) -> str:
-        described = [inert(parameter.doc).rstrip(".")] if parameter.doc.strip() else []
-        described += [f"'{inert(parameter.name)}' in the model"] if name != parameter.name else []
-        text = f"{', '.join(described) or 'parameter of the model'}"
-        text += f" [{inert(parameter.unit)}]." if parameter.unit else "."
-        written = value_as_written(parameter)
-        return f"{text} {inert(written)} in the model." if written else text
 
 
 def _table(name: str, rows: Sequence[tuple[str, str, str]]) -> str:

@@ -127,9 +127,8 @@ def _loose_nodes(model: Model) -> Iterator[Diagnostic]:
             close = nearest(node.name, others)
         who = [f"{use.element.type_name} '{use.name}'" for use in uses]
         shown = " and ".join(who) if len(who) <= SHOWN else f"{who[0]} and {len(who) - 1} other branches"
-        verb, end = ("touches", "that end is free") if len(uses) == 1 else ("touch", "that end is free")
-        if are_branches:
-            end = f"{'it changes' if len(uses) == 1 else 'they change'} nothing"
+        verb, change = ("touches", "it changes") if len(uses) == 1 else ("touch", "they change")
+        end = f"{change} nothing" if are_branches else "that end is free"
         message = f"only {shown} {verb} node '{node.name}' and nothing reads it: {end}"
         hint = close or "attach something to it, or read it in an output"
         yield Diagnostic("SF650", message, node.span, hint, "warning")

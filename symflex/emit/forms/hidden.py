@@ -85,9 +85,7 @@ def with_hidden(tf: AnyTransferFunction, form: PrintedForm) -> tuple[PrintedForm
     used = tf.ring.used_in(h.polynomial for h in tf.hidden)
     if not used & set(tf.kernels.generators):
         return form, hidden_expressions(tf)
-    naming = Naming.of(tf)
-    naming.keep(name for name, _ in form.where)
-    notation = notation_of(tf, used, naming)
+    notation = notation_of(tf, used, _naming(tf, form))
     known = {_key(e): Name(name) for name, e in _opened(form.where).items()}
     names: dict[str, Expression] = {
         name: known[_key(e)] for name, e in _opened(notation.lines).items() if _key(e) in known
@@ -95,7 +93,7 @@ def with_hidden(tf: AnyTransferFunction, form: PrintedForm) -> tuple[PrintedForm
     arguments = [name for name, _ in notation.lines][: len(angles_of(tf.kernels, used))]
     for ratio in MULTIPLES[1:]:
         # The same lines with other lengths: an argument that the form has as a multiple of its own.
-        scaled = notation_of(tf, used, _repeated(tf, form), _stretched(tf.kernels, ratio))
+        scaled = notation_of(tf, used, _naming(tf, form), _stretched(tf.kernels, ratio))
         for name, expression in _opened(scaled.lines).items():
             if name in arguments and name not in names and _key(expression) in known:
                 part = product_of([number(ratio.denominator), known[_key(expression)]])
@@ -111,8 +109,8 @@ def _factors(tf: TransferFunction, notation: Notation) -> Hidden:
     return tuple((printer.sum(h.polynomial), h.multiplicity) for h in tf.hidden)
 
 
-def _repeated(tf: TransferFunction, form: PrintedForm) -> Naming:
-    """Return a naming that gives the names of a first one again."""
+def _naming(tf: TransferFunction, form: PrintedForm) -> Naming:
+    """Return a naming that leaves a form its names, and gives the same ones every time."""
     naming = Naming.of(tf)
     naming.keep(name for name, _ in form.where)
     return naming
