@@ -59,7 +59,6 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
-    from symflex.model import Parameter
     from symflex.state_space import StateSpace
     from symflex.transfer import AnyTransferFunction
 
