@@ -15,7 +15,7 @@ from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.kernels import Factored
 from symflex.model.passive import is_passive
-from symflex.roots.pole_zero_map import Certificate, Exclusion, HiddenRoot, PoleZeroMap
+from symflex.roots.pole_zero_map import Certificate, Exclusion, HiddenRoot, PoleZeroMap, right_beyond
 from symflex.roots.polynomial import POLYNOMIAL, in_order
 from symflex.roots.region import Band, Everything, Mode, Modes, Position
 from symflex.roots.right_half_plane import DEGENERATE, PASSIVE, is_right, judge, search_right
@@ -106,8 +106,9 @@ def locate_distributed(
     except BudgetError as error:
         with Budget().entered():
             verdict, right, hidden = searched.judged(error.diagnostics[0].message, is_over=True)
-    beyond = _not_among(right, [*chosen[0], *(h.root for h in searched.hidden)])
-    hidden = _not_among(hidden, [h.root for h in searched.hidden])
+    known = [h.root for h in searched.hidden]
+    beyond = in_order(right_beyond(right, [*chosen[0], *known]))
+    hidden = in_order(right_beyond(hidden, known))
     # Nobody asked for these modes and no others.
     is_free = is_default and isinstance(where, Modes)
     found += sum(root.multiplicity for root in (*beyond, *hidden))
@@ -134,11 +135,6 @@ def locate_distributed(
         verdict=verdict,
         unstable=() if is_free else beyond,
     )
-
-
-def _not_among(roots: Sequence[Root], shown: Sequence[Root]) -> tuple[Root, ...]:
-    """Return the roots in the right half plane that are not shown, in order of natural frequency."""
-    return in_order([r for r in roots if is_right(r) and not any(overlap(r, other) for other in shown)])
 
 
 class _Searched:

@@ -271,7 +271,7 @@ def find_pole_zero_map(
     concealed += [
         HiddenRoot(root, cause)
         for (_, cause), known, whole_roots in zip(hidden, others, every[2:], strict=False)
-        for root in _right_beyond(whole_roots, known)
+        for root in right_beyond(whole_roots, known)
     ]
     missing = "" if counted == found else reason or "not all poles were found"
     verdict = judge([root for i, roots in enumerate(every) if i != 1 for root in roots], missing)
@@ -284,12 +284,12 @@ def find_pole_zero_map(
         certificate,
         digits,
         verdict=verdict,
-        unstable=_right_beyond(every[0], pole_roots),
+        unstable=right_beyond(every[0], pole_roots),
     )
 
 
-def _right_beyond(roots: Sequence[Root], shown: Sequence[Root]) -> tuple[Root, ...]:
-    """Return the roots in the right half plane that are not shown; both are of one search."""
+def right_beyond(roots: Sequence[Root], shown: Sequence[Root]) -> tuple[Root, ...]:
+    """Return the roots in the right half plane that are not shown."""
     return tuple(
         root for root in roots if is_right(root) and not any(overlap(root, other) for other in shown)
     )
