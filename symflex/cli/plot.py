@@ -193,7 +193,7 @@ def _named(model: Model, kind: str) -> tuple[Figure | None, str]:
     UsageError
         SF902 when there is none of that name; SF911 when its kind is not available yet.
     """
-    from symflex.emit.figures import FIGURES, LOOP_FIGURES
+    from symflex.emit.figures import FIGURES, LOOP_FIGURES, unavailable
     from symflex.model.analysis import FIGURE_KINDS
 
     figure = next((f for f in model.figures if f.name == kind), None)
@@ -203,8 +203,7 @@ def _named(model: Model, kind: str) -> tuple[Figure | None, str]:
         raise UsageError(Diagnostic("SF902", f"there is no figure '{kind[:64]}'", None, hint))
     drawn = figure.kind if figure else kind
     if drawn not in (*FIGURES, *LOOP_FIGURES):
-        hint = "there are " + ", ".join((*FIGURES, *LOOP_FIGURES))
-        raise UsageError(Diagnostic("SF911", f"figures of kind '{drawn}' are not available yet", None, hint))
+        raise UsageError(unavailable(drawn))
     return figure, drawn
 
 

@@ -64,6 +64,7 @@ __all__ = [
     "draw_sweep",
     "render",
     "save",
+    "unavailable",
 ]
 
 
@@ -119,10 +120,7 @@ def draw(
                 Diagnostic("SF902", message, None, "name its gain: --gain K, or gain in [figures]")
             )
         if kind in FIGURE_KINDS:
-            hint = "available: " + ", ".join(FIGURES)
-            raise UsageError(
-                Diagnostic("SF911", f"figures of kind '{kind}' are not available yet", None, hint)
-            )
+            raise UsageError(unavailable(kind))
         hint = nearest(kind, FIGURES) or "kinds: " + ", ".join(FIGURES)
         raise UsageError(Diagnostic("SF208", f"there is no figure of kind '{kind[:64]}'", None, hint))
     _check_frame(kind, frame)
@@ -139,6 +137,12 @@ def draw(
     with paper_style(font):
         figure = FIGURES[kind](tfs, bounds, band_hz=band, frame=frame, title=title, width=width)
     return _with_every_letter(figure, font)
+
+
+def unavailable(kind: str) -> Diagnostic:
+    """Return what is said of a kind that is announced and not drawn yet."""
+    hint = "there are " + ", ".join((*FIGURES, *LOOP_FIGURES))
+    return Diagnostic("SF911", f"figures of kind '{kind}' are not available yet", None, hint)
 
 
 def _checked_band(band_hz: tuple[float | Fraction, float | Fraction] | None) -> tuple[float, float] | None:

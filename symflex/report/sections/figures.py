@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from symflex.emit.figures import FIGURES, LOOP_FIGURES, draw, draw_loop, draw_measured
+from symflex.emit.figures import FIGURES, LOOP_FIGURES, draw, draw_loop, draw_measured, unavailable
 from symflex.errors import Diagnostic, SymflexError, UncertifiedError
 from symflex.model import Figure
 from symflex.report.document import Notice
@@ -40,14 +40,7 @@ def figure_section(study: Study) -> Part | None:
         if figure.gain and figure.kind in LOOP_FIGURES:
             drawn = attempt(lambda f=figure: _loop_picture(study, f, files))  # type: ignore[misc]
         elif figure.kind not in FIGURES:
-            drawn = SymflexError(
-                Diagnostic(
-                    "SF911",
-                    f"figures of kind '{figure.kind}' are not available yet",
-                    None,
-                    "there are " + ", ".join((*FIGURES, *LOOP_FIGURES)),
-                )
-            )
+            drawn = SymflexError(unavailable(figure.kind))
         elif chosen:
             drawn = attempt(lambda f=figure, c=chosen: _picture(study, f, c, files))  # type: ignore[misc]
         else:
