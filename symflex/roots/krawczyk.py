@@ -151,7 +151,7 @@ def _box(
         is_real = bool(abs(middle.imag) < reach / SMALLER)
         middle = acb(arb(0) if on_axis else middle.real, arb(0) if is_real else middle.imag)
         reach = reach.mid()
-        box = middle + acb(arb(0, reach), arb(0, reach))
+        box = acb(arb(middle.real, reach), arb(middle.imag, reach))
         factors = function.enclosed_about(box, middle, bits)
         value, slope, exponent = factors[chosen]
         step = value / slope

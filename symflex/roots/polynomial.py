@@ -302,16 +302,16 @@ def _hull(balls: Sequence[arb]) -> arb:
 
 def in_order(roots: Sequence[Root]) -> tuple[Root, ...]:
     """Sort by natural frequency, real part, imaginary part downwards; overlapping balls count as equal."""
-    frequencies = [root.natural_frequency() for root in roots]
-    keyed = [(float(f.mid()), f, root) for f, root in zip(frequencies, roots, strict=True)]
+    keyed = [(root.natural_frequency(), root) for root in roots]
 
-    def compare(a: tuple[float, arb, Root], b: tuple[float, arb, Root]) -> int:
-        if abs(a[0] - b[0]) > ROUNDING * (a[0] + b[0]):
-            return 1 if a[0] > b[0] else -1
-        return _sign(a[1], b[1]) or _sign(a[2].re, b[2].re) or _sign(b[2].im, a[2].im)
+    def compare(a: tuple[arb, Root], b: tuple[arb, Root]) -> int:
+        x, y = float(a[0].mid()), float(b[0].mid())
+        if abs(x - y) > ROUNDING * (x + y):
+            return 1 if x > y else -1
+        return _sign(a[0], b[0]) or _sign(a[1].re, b[1].re) or _sign(b[1].im, a[1].im)
 
-    return tuple(root for _, _, root in sorted(keyed, key=cmp_to_key(compare)))
+    return tuple(root for _, root in sorted(keyed, key=cmp_to_key(compare)))
 
 
 def _sign(a: arb, b: arb) -> int:
-    return 1 if a > b else -1 if a < b else 0
+    return int(a > b) - int(a < b)

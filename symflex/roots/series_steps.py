@@ -36,6 +36,8 @@ BLURRED = 2.0
 """Reported where that is exceeded: more than any step may turn."""
 COVERED = 0.4
 """Of the radius to which it is bounded, how much of a series serves for steps."""
+NOTHING = (inf, arb("nan"))
+"""Bound and turn where nothing is proved."""
 
 
 @dataclass(eq=False)
@@ -73,21 +75,21 @@ class SeriesSteps:
         """
         bits = max(BITS, 2 * bits)
         with precision(bits):
-            centre, radius = middle.mid(), (reach.upper() + (middle - middle.mid()).abs_upper()).upper()
+            centre, radius = middle.mid(), reach + (middle - middle.mid()).abs_upper()
             last = self._last
             if last is not None and bits <= self._bits and _covers(last, centre, radius):
                 bound, turn = _followed(last, centre, radius, start, end)
                 if bound <= ROOM or last.reach < radius * (2 * WIDER):
                     return bound, turn
-            self._last, self._bits = self._made(centre, (radius * WIDER).upper(), bits), bits
-            return (inf, arb(0)) if self._last is None else _followed(self._last, centre, radius, start, end)
+            self._last, self._bits = self._made(centre, (radius * WIDER).mid(), bits), bits
+            return NOTHING if self._last is None else _followed(self._last, centre, radius, start, end)
 
     def _made(self, centre: acb, reach: arb, bits: int) -> LocalSeries | None:
         bound = bound_on_circle(self.function, centre, reach, ARCS)
         if bound is None:
             return None
         # Terms enough to make up for what the bound is larger than the function.
-        excess = float((bound / abs(self.function.value(centre, bits))).upper().log()) if bound > 0 else 0.0
+        excess = float((bound / abs(self.function.value(centre, bits))).upper().log())
         terms = FEWEST + ceil(max(0.0, excess) / log(WIDER)) if isfinite(excess) else MOST
         if terms > MOST:
             return None
@@ -103,11 +105,11 @@ def _followed(series: LocalSeries, centre: acb, radius: arb, start: acb, end: ac
     """Return what a series tells of a step in a disc."""
     here = series.around(centre, radius)
     if here is None or len(here[0]) < LEAST:
-        return inf, arb(0)
+        return NOTHING
     coefficients, missed = here
     growth = (coefficients[1] / coefficients[0]).mid()
     if not growth.is_finite():
-        return inf, arb(0)
+        return NOTHING
     size = abs(growth)
     count = len(coefficients)
     terms = acb_poly(list(coefficients))
@@ -119,18 +121,18 @@ def _followed(series: LocalSeries, centre: acb, radius: arb, start: acb, end: ac
     wide = radius * BEYOND
     largest = acb_poly([abs(c) for c in coefficients])(acb(wide)).real * (size * wide).exp()
     cut = largest * arb(BEYOND) ** -count * BEYOND / (BEYOND - 1)
-    error = (cut + missed * (size * radius).exp()).upper()
+    error = cut + missed * (size * radius).exp()
     power, off = arb(1), error
     for coefficient in flat[1:]:
         power *= radius
         off += abs(coefficient) * power
     first = flat[0]
-    if not off.is_finite() or not abs(first) > 0:
-        return inf, arb(0)
-    bound = angle(off.upper(), first.abs_lower())
-    if not error < first.abs_lower() * SHARP:
+    if not off.is_finite():
+        return NOTHING
+    bound = angle(off, abs(first))
+    if not error < abs(first) * SHARP:
         # What was cut off would make the argument at the ends too blurred to add up.
-        bound = max(bound, BLURRED)
+        bound = max(BLURRED, bound)
     unsure = acb(arb(0, error), arb(0, error))
     ends = [acb_poly(flat)(place - centre) + unsure for place in (start, end)]
     turn = (growth * (end - start)).imag

@@ -285,8 +285,6 @@ def _is_dominated(terms: dict[Powers, dict[Fraction, acb]], arguments: list[_Pow
     for power, coefficient in own.items():
         if power != highest:
             lead -= (abs(coefficient) * radius ** _ratio(power - highest)).upper()
-    if not lead > 0:
-        return False
     total = arb(0)
     base = {i: complex(a, b) for i, a, b in chosen}
     for powers, amplitude in terms.items():
@@ -295,7 +293,8 @@ def _is_dominated(terms: dict[Powers, dict[Fraction, acb]], arguments: list[_Pow
         difference = {i: -c for i, c in base.items()}
         for i, a, b in powers:
             difference[i] = difference.get(i, 0) + complex(a, b)
-        decay: list[tuple[Fraction, arb]] = []
+        # The term's exponent less the largest term's, and how it falls: d/d(ln r).
+        exponent, slope = arb(0), arb(0)
         for i, c in difference.items():
             if not c:
                 continue
@@ -303,13 +302,13 @@ def _is_dominated(terms: dict[Powers, dict[Fraction, acb]], arguments: list[_Pow
             if rate > 0:
                 if not (arguments[i].is_delay and c.imag == 0 and c.real > 0):
                     return False
-                rate = arb(0)
-            decay.append((arguments[i].power, -rate))
+                continue
+            degree = _ratio(arguments[i].power)
+            exponent += rate * radius**degree
+            slope += rate * degree * radius**degree
         for power, coefficient in amplitude.items():
-            over = power - highest
-            exponent = sum((rate * radius ** _ratio(e) for e, rate in decay), arb(0))
-            slope = sum((rate * _ratio(e) * radius ** _ratio(e) for e, rate in decay), arb(0))
-            if over > 0 and not slope > _ratio(over):
+            over = _ratio(power - highest)
+            if over > 0 and not -slope > over:
                 return False
-            total += abs(coefficient).upper() * radius ** _ratio(over) * (-exponent).exp()
+            total += abs(coefficient).upper() * radius**over * exponent.exp()
     return bool(total < lead)

@@ -298,3 +298,27 @@ def test_what_symmetry_proves_to_be_zero_is_zero_whatever_newtons_image_is(off):
     assert (bool(found.re == 0), found.on_imaginary_axis, found.is_real) == (True, True, False)
     real = prove_simple(Told(((((-4, 0),), 1),), step=step_of(*off)), acb(-4), 5)
     assert (bool(real.im == 0), real.on_imaginary_axis, real.is_real) == (True, False, True)
+
+
+@pytest.mark.parametrize("wide", [(0, 0.5), (0.5, 0), (0.5, 0.5)])
+@pytest.mark.parametrize("digits", [20, 60])
+def test_a_root_is_certified_only_where_both_parts_are_known_to_the_digits_asked_for(wide, digits):
+    # Newton's image is half as large as the box, 0.4 of the bits: the first box tells less than that.
+    def step(reach):
+        return acb(arb(0, reach * wide[0]), arb(0, reach * wide[1]))
+
+    root = prove_simple(Told(((((2, 3),), 1),), step=step), acb(2, 3), digits)
+    assert root.certified
+    with precision(8000):
+        assert root.re.rad() + root.im.rad() <= abs(acb(2, 3)) * ten(-digits)
+
+
+def test_factors_that_only_seem_to_vanish_in_a_box_are_cleared_by_the_count_of_the_series():
+    def others(reach):
+        return [(acb(0), acb(1)), (acb(0), acb(1))]
+
+    function = Told(((((2, 3),), 1), (((20, 3),), 1), (((-2, 30),), 1)), others=others)
+    box = _box(function, acb(2, 3), (64, 200), 0, even=False)
+    assert box.touching == ()
+    root = prove_simple(function, acb(2, 3), 10, factor=0)
+    assert (root.certified, root.multiplicity, holds(root, acb(2, 3))) == (True, 1, True)

@@ -116,6 +116,15 @@ def test_a_hull_holds_every_ball_and_little_else(balls, order):
         assert hull.upper() - hull.lower() <= width * exact("1.00001") + exact(Fraction(1, 10**100))
 
 
+def test_a_hull_holds_balls_whose_middle_is_no_number_of_the_precision():
+    # Of 64 bits, 1 and the next number: their mean is neither.
+    low, high = exact(1), exact(1 + Fraction(1, 2**63))
+    with precision(64):
+        for balls in ([low, high], [high, low]):
+            assert _hull(balls).contains(low)
+            assert _hull(balls).contains(high)
+
+
 def test_a_cluster_becomes_one_box_with_all_its_roots():
     cluster = [root(1, 1, 0.25, multiplicity=2), root(1.125, 1, 0.25), root(1, 0.75, 0.25, multiplicity=3)]
     merged = _merge(cluster)
@@ -177,6 +186,7 @@ def test_a_disc_with_one_root_about_a_real_centre_holds_a_real_root():
 def test_a_disc_with_two_roots_about_a_real_centre_may_hold_a_pair():
     (found,) = _conjugates(disc(-3, 0, 0.5, 2))
     assert (found.is_real, found.certified, found.multiplicity) == (False, False, 2)
+    assert found.on_imaginary_axis is False
     assert found.im.contains(exact(0.5))
 
 
@@ -239,6 +249,17 @@ def test_roots_stand_by_natural_frequency_then_real_part_then_positive_imaginary
         shuffled = placed[start:] + placed[:start]
         found = in_order([root(*place) for place in shuffled])
         assert [(int(float(r.re.mid())), int(float(r.im.mid()))) for r in found] == wanted
+
+
+@pytest.mark.parametrize("size", [1, 10**9, Fraction(1, 10**9)])
+def test_roots_whose_frequencies_are_not_told_apart_stand_by_their_real_parts(size):
+    # Boxes about abs(s) = 5 and 5 (1 - 2e-13), both a part in 1e12 wide.
+    wide = 5 * size / Fraction(10**12)
+    left = root(-3 * size, 4 * size, wide)
+    axis = root(0, 5 * size * (1 - Fraction(2, 10**13)), wide)
+    lower = root(0, Fraction(49, 10) * size, wide)
+    for start in permutations([left, axis, lower]):
+        assert in_order(start) == (lower, left, axis)
 
 
 @pytest.mark.parametrize(("degree", "places"), [(1, 0), (12, 0), (13, 1), (64, 1), (65, None), (200, None)])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cmath import log, phase
+from cmath import exp, log, phase
 from dataclasses import dataclass, field
 from itertools import pairwise
 from math import asin, inf, pi
@@ -24,7 +24,7 @@ from symflex.roots.argument_principle import (
 )
 from symflex.roots.kernel_function import Sample
 from symflex.roots.local_series import LocalSeries
-from symflex.roots.series_steps import BLURRED, SeriesSteps, _followed
+from symflex.roots.series_steps import BLURRED, MOST, SeriesSteps, _followed
 from symflex.roots.stepping import ROOM, angle, deviation, total_turn
 from symflex.roots.winding import Cell, RootOnPathError, Winding, continuous_step
 from tests.unit.roots.known_functions import KnownFunction, exact
@@ -349,6 +349,129 @@ def test_a_series_serves_the_next_step_too_where_that_lies_well_within():
     assert len(asked) > first
 
 
+@dataclass(frozen=True, eq=False)
+class Steep(Followed):
+    """``((s + 98)/100)^600``: about 2 like ``exp(6 (s - 2))``."""
+
+    def value(self, s, bits):
+        with precision(bits):
+            return ((s + 98) / 100) ** 600
+
+
+def turn_of_steep(start, end):
+    with precision(200):
+        return 600 * ((end + 98).arg() - (start + 98).arg())
+
+
+def test_what_grows_like_an_exponential_turns_by_more_than_half_a_turn_on_a_step():
+    start, end = acb(2, -0.5), acb(2, 0.5)
+    bound, turn = SeriesSteps(Steep(())).change(acb(2), arb(0.5), start, end, 64)
+    assert bound <= ROOM
+    assert turn.overlaps(turn_of_steep(start, end))
+    assert float(turn.rad()) < 1e-5
+    assert turn > 5.9
+
+
+def test_what_a_wide_series_does_not_tell_is_told_by_one_of_the_steps_own():
+    # 1.1 left of the middle the function is exp(6.6) smaller, and lost in the wide series.
+    steps = SeriesSteps(Steep(()))
+    assert steps.change(acb(2), arb(0.5), acb(2, -0.5), acb(2, 0.5), 64)[0] <= ROOM
+    steps.change(acb(2), arb(1), acb(2, -1), acb(2, 1), 64)
+    start, end = acb(arb(0.9), -0.45), acb(arb(0.9), 0.45)
+    bound, turn = steps.change(acb(0.9), arb(0.45), start, end, 64)
+    assert bound <= ROOM
+    assert turn.overlaps(turn_of_steep(start, end))
+
+
+@pytest.mark.parametrize("size", [0, 200, -8000])
+def test_a_function_far_smaller_than_its_bound_takes_more_terms_whatever_its_size(size):
+    # 1 + (x/1.02)^155 is 1 in the middle, and exp(212) on four times the radius.
+    class Flat(Followed):
+        def value(self, s, bits):
+            with precision(bits):
+                return (1 + ((s - 2) * 50 / 51) ** 155) * arb(10) ** size
+
+    bound, turn = SeriesSteps(Flat(())).change(acb(2), arb(1), acb(2, -1), acb(2, 1), 64)
+    assert bound == pytest.approx(asin((50 / 51) ** 155), rel=1e-4)
+    with precision(200):
+        # j^155 = -j
+        assert turn.overlaps(-2 * ((arb(50) / 51) ** 155).atan())
+    assert float(turn.rad()) < 1e-5
+
+
+def test_a_function_as_large_as_its_bound_takes_few_values():
+    asked = []
+
+    class Counted(Followed):
+        def value(self, s, bits):
+            asked.append(s)
+            return super().value(s, bits)
+
+    bound, _ = SeriesSteps(Counted((((100,), 1),))).change(acb(2), arb(1), acb(1), acb(3), 64)
+    assert bound <= ROOM
+    assert len(asked) < MOST / 3
+
+
+@pytest.mark.parametrize(("large", "bits"), [(35, 64), (35, 100), (90, 160)])
+def test_a_small_difference_of_large_terms_is_followed(large, bits):
+    class Difference(Followed):
+        def value(self, s, bits):
+            with precision(bits):
+                term = arb(10) ** large * arb.pi()
+                return (super().value(s, bits) + term) - term
+
+    bound, turn = SeriesSteps(Difference((((-18,), 1),))).change(acb(2), arb(1), acb(2, -1), acb(2, 1), bits)
+    assert bound <= ROOM
+    assert turn.overlaps(2 * (arb(1) / 20).atan())
+    assert float(turn.rad()) < 1e-5
+
+
+@pytest.mark.parametrize(("bits", "least"), [(64, 300), (500, 900)])
+def test_a_middle_that_is_told_from_0_by_more_digits_only_is_no_obstacle(bits, least):
+    class Blurred(Followed):
+        def value(self, s, bits):
+            blur = acb(arb(0, 1000), arb(0, 1000)) if bits < least else acb(0)
+            return super().value(s, bits) + blur
+
+    steps = SeriesSteps(Blurred((((-18,), 1),)))
+    bound, turn = steps.change(acb(2), arb(1), acb(2, -1), acb(2, 1), bits)
+    assert bound <= ROOM
+    assert turn.overlaps(2 * (arb(1) / 20).atan())
+
+
+def test_of_a_function_that_is_0_everywhere_nothing_is_told():
+    class Zero(Followed):
+        def value(self, s, bits):
+            return acb(0)
+
+    steps = SeriesSteps(Zero(()))
+    assert steps.change(acb(2), arb(1), acb(1), acb(3), 64)[0] == inf
+
+
+@pytest.mark.parametrize(("off", "is_told"), [(0.9, False), (3, True)])
+def test_a_step_reaches_as_far_as_its_middle_may_lie_off(off, is_told):
+    # The middle is told to half a unit, the step goes half a unit further.
+    steps = SeriesSteps(Followed(((((arb(2) + off, 0),), 1),)))
+    bound, _ = steps.change(acb(arb(2, 0.5), 0), arb(0.5), acb(2), acb(2), 64)
+    assert (bound <= ROOM) is is_told
+
+
+def test_a_step_that_its_own_series_does_not_tell_needs_no_second_one():
+    asked = []
+
+    class Counted(Followed):
+        def value(self, s, bits):
+            asked.append(s)
+            return super().value(s, bits)
+
+    steps = SeriesSteps(Counted(((((arb("2.5"), 0),), 1),)))
+    step = (acb(2), arb(1), acb(1), acb(3), 64)
+    assert steps.change(*step)[0] > ROOM
+    first = len(asked)
+    assert steps.change(*step)[0] > ROOM
+    assert len(asked) == first
+
+
 @pytest.mark.parametrize("unit", [(1, 0), (0, 1), (0.6, -0.8)])
 @pytest.mark.parametrize(("extra", "is_sharp"), [(1.2e-8, True), (1.4e-8, False)])
 def test_what_a_product_of_series_is_cut_off_by_is_bounded_by_cauchys_estimate(extra, is_sharp, unit):
@@ -388,7 +511,47 @@ def test_an_exponential_turns_by_itself_and_leaves_nothing(growth):
         assert float(turn.rad()) < 1e-12
 
 
-@pytest.mark.parametrize("coefficients", [(1,), (0, 1, 2), (acb(arb(0, 1)), 1, 2), (acb("nan"), 1, 1)])
+def exponential(rate, terms):
+    found = [acb(1)]
+    for n in range(1, terms):
+        found.append(found[-1] * rate / n)
+    return tuple(found)
+
+
+@pytest.mark.parametrize(("terms", "is_sharp"), [(18, False), (19, True)])
+def test_what_is_cut_off_counts_by_both_factors_where_they_are_largest(terms, is_sharp):
+    # exp(x) and exp(-x) are up to exp(3) on three times the radius: exp(6) * 1.5/3^19 is less than 2^-20.
+    with precision(160):
+        series = LocalSeries(acb(2), exponential(1, terms), arb(100), arb(0))
+        assert (_followed(series, acb(2), arb(1), acb(1), acb(3))[0] < BLURRED) is is_sharp
+
+
+@pytest.mark.parametrize(("extra", "is_sharp"), [(0.9, True), (1.1, False)])
+def test_what_is_missing_of_a_series_weighs_more_where_the_exponential_is_small(extra, is_sharp):
+    # Divided by exp(2x), on a radius of one.
+    missing = extra * 2.0**-20 * exp(-2).real / (0.25**40 / 0.75)
+    with precision(160):
+        series = LocalSeries(acb(2), exponential(2, 40), arb(4), arb(missing))
+        bound, turn = _followed(series, acb(2), arb(1), acb(2, -1), acb(2, 1))
+        assert (bound < BLURRED) is is_sharp
+        assert turn.contains(4)
+        assert float(turn.rad()) > 2 * extra * 2.0**-20
+
+
+@pytest.mark.parametrize("order", [1, 2, 5])
+def test_a_coefficient_counts_with_all_that_it_may_be(order):
+    coefficients = [acb(1), *[acb(0)] * 20, acb("1e-30")]
+    coefficients[order] = acb(arb(0, 0.5))
+    with precision(160):
+        series = LocalSeries(acb(2), tuple(coefficients), arb(4), arb(0))
+        bound, _ = _followed(series, acb(2), arb(1), acb(1), acb(3))
+    assert bound == pytest.approx(asin(0.5), rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    "coefficients",
+    [(1,), (0, 1, 2), (acb(arb(0, 1)), 1, 2), (acb("nan"), 1, 1), (1, 1, acb("nan")), (1, acb("inf"), 1)],
+)
 def test_a_series_that_may_vanish_in_the_middle_tells_nothing(coefficients):
     series = LocalSeries(acb(2), tuple(acb(c) for c in coefficients), arb(8), arb(0))
     assert _followed(series, acb(2), arb(0.5), acb(1.5), acb(2.5))[0] == inf

@@ -19,6 +19,7 @@ from symflex.roots.tail import (
     NO_LOSS,
     SECTORS,
     TWO_WAVENUMBERS,
+    _at_infinity,
     _is_dominated,
     _Power,
     _turned,
@@ -153,6 +154,130 @@ def test_a_sector_holds_its_directions_and_no_others(sector, power):
         assert float(abs(found.unit).mid()) == pytest.approx(2, rel=0.01)
 
 
+# ------------------------------------------------------------------------------- waves with known roots
+
+
+def field(equation, *conditions):
+    listed = ", ".join(f'"{each}"' for each in conditions)
+    return bound(f"""symflex = 1
+[fields.w]
+domain = ["0", "1"]
+equation = "{equation}"
+conditions = [{listed}]
+[inputs]
+F = {{}}
+[outputs]
+y = "w(1)"
+""")
+
+
+CLAMPED = ("w(0) = 0", "w'(0) = 0", "w''(1) = 0", "w'''(1) = F")
+
+
+@pytest.mark.parametrize(
+    ("equation", "conditions", "reason"),
+    [
+        # Diffusion backwards: cos(sqrt(s)) has the roots ((n + 1/2) pi)^2; the beam's are the cantilever's
+        # wavenumbers to the fourth.
+        ("w'' + s*w = 0", ("w(0) = 0", "w'(1) = F"), NO_LOSS),
+        ("w'''' - s*w = 0", CLAMPED, NO_LOSS),
+        ("w''' - s*w = 0", ("w(0) = 0", "w'(0) = 0", "w'(1) = F"), NO_FORMULA),
+    ],
+)
+def test_fields_with_poles_along_the_positive_axis_have_no_end(equation, conditions, reason):
+    found = tail(field(equation, *conditions))
+    assert (found.radius, found.reason) == (None, reason)
+
+
+def plus(function, number, start=1e-3):
+    """Return the tail of cosh(wavenumber) and a number."""
+    cosh = function.ratio.ring.generator(function.kernels.kernels[0].generator)
+    return right_tail(function, [cosh, cosh**0], [acb(1), acb(number)], start)
+
+
+DIFFUSION = ("w'' - s*w = 0", "w(0) = 0", "w'(1) = F")
+
+
+@pytest.mark.parametrize("number", [100, 3000])
+def test_diffusion_ends_where_its_exponential_outweighs_a_number(number):
+    # Of cosh(sqrt(s)) + c the last root right of the axis is (acosh(c) + j pi)^2; on the imaginary axis,
+    # where exponentials are smallest, sinh(sqrt(R/2)) is c.
+    last = abs((mpmath.acosh(number) + 1j * pi) ** 2)
+    edge = 2 * float(mpmath.asinh(number)) ** 2
+    assert last < edge <= plus(field(*DIFFUSION), number).radius <= edge * 1.1
+    assert plus(field(*DIFFUSION), number, 0.9 * edge).radius >= edge
+
+
+def lossy_rod(modulus, eta):
+    return bound(ELEMENT.format(kind="rod", values=f'E = "{modulus} Pa", rho = 1, A = 1, eta = "{eta} s"'))
+
+
+@pytest.mark.parametrize(("modulus", "value"), [("1", 1.0), ("2*pi", 2 * pi)])
+def test_a_lossy_rod_ends_where_its_exponential_outweighs_a_number(modulus, value):
+    # gamma^2 = rho s^2/(E (1 + eta s)), its smallest real part on the imaginary axis.
+    eta, number = 10.0, 100
+
+    def excess(r):
+        return mpmath.sinh(mpmath.re(1j * r / mpmath.sqrt(value * (1 + 1j * r * eta)))) - number
+
+    edge = float(mpmath.findroot(excess, (100 * value, 10000 * value), solver="anderson"))
+    assert edge * 0.999 <= plus(lossy_rod(modulus, eta), number).radius <= edge * 1.1
+
+
+def test_a_cantilever_that_creeps_ends_where_bending_dies_out():
+    # w'''' + s w = 0, mu^4 = s/4: cosh(2 mu) + cos(2 mu) + 2, the largest exponential against the others.
+    def is_larger(r):
+        sizes = []
+        for k in range(101):
+            mu = (r / 4) ** 0.25 * mpmath.expj(pi / 8 * k / 100)
+            rest = mpmath.exp(-2 * mu.real) + mpmath.exp(2 * mu.imag) + mpmath.exp(-2 * mu.imag) + 4
+            sizes.append(mpmath.exp(2 * mu.real) - rest)
+        return min(sizes) > 0
+
+    found = tail(field("w'''' + s*w = 0", *CLAMPED)).radius
+    assert is_larger(found)
+    assert not is_larger(found / 1.25)
+
+
+@pytest.mark.parametrize("eta", [10.0, 0.5])
+@pytest.mark.parametrize("radius", [5.0, 40.0])
+def test_beyond_a_radius_a_rational_function_is_a_power_of_s_times_what_is_in_the_ball(radius, eta):
+    function = lossy_rod("2*pi", eta)
+    with precision(64):
+        kernels = function.kernel_values({name: evaluate() for name, evaluate in function.constants})
+        power, ball = _at_infinity(kernels, function.kernels.dispersions[0].characteristic[0], radius)
+        assert power == 1
+        for size in (1.0001, 1.5, 4, 1000, 1e12):
+            for k in range(-12, 13):
+                s = acb(radius * size) * acb(0, arb.pi() * k / 24).exp()
+                assert ball.contains((-s / (2 * arb.pi() * (1 + eta * s))).mid())
+        # Of eta + 1/s a half side of 1/R, and no more.
+        limit = -1 / (2 * arb.pi() * eta)
+        assert ball.contains(acb(limit.mid()))
+        share = 1 / (eta * radius)
+        assert abs(ball - limit).upper() < (abs(limit) * 2 * share / (1 - 2 * share)).lower()
+
+
+def test_a_factor_that_may_vanish_beyond_a_radius_is_no_power_of_s():
+    # eta + 1/s is 0 for s = -1/eta.
+    function = lossy_rod("1", 10.0)
+    with precision(64):
+        kernels = function.kernel_values({name: evaluate() for name, evaluate in function.constants})
+        law = function.kernels.dispersions[0].characteristic[0]
+        assert _at_infinity(kernels, law, 0.0999) is None
+        assert _at_infinity(kernels, law, 0.2) is not None
+
+
+@pytest.mark.parametrize(("scale", "reason"), [(-1, NEUTRAL), (-2, ADVANCED)])
+def test_what_cancels_between_polynomials_does_not_count(scale, reason):
+    # s + s D + s^2 D, and s^2 D times the scale.
+    function = delayed("s + s*D + 1")
+    ring = function.ratio.ring
+    s, decay = ring.context.gen(0), ring.generator(function.kernels.generators[0])
+    found = right_tail(function, [s + s * decay + s**2 * decay, s**2 * decay], [acb(1), acb(scale)], 1.0)
+    assert (found.radius, found.reason) == (None, reason)
+
+
 def test_the_reasons_differ():
     assert len({ADVANCED, NEUTRAL, NO_LOSS, NO_FORMULA, TWO_WAVENUMBERS}) == 5
 
@@ -199,6 +324,23 @@ def powers(**terms):
             {GROWING: powers(p0=1), LEVEL: powers(p0=3)},
             [_Power(Fraction(1, 2), acb(2))],
             (log(3) / 2) ** 2,
+        ),
+        # of exp((2 + j) (1 +- j) r) the one with minus is the larger: exp(3 r) > 5 exp(r)
+        (
+            {((0, 1, 1),): powers(p0=5), ((0, 1, -1),): powers(p0=1)},
+            [_Power(Fraction(1), acb(2, 1))],
+            log(5) / 2,
+        ),
+        # two arguments: exp(3 r) > 7 exp(r), 2 exp(2 r) > 5 exp(r)
+        (
+            {((0, 1, 0), (1, 1, 0)): powers(p0=1), ((1, 1, 0),): powers(p0=7)},
+            [_Power(Fraction(1), acb(2)), REAL[0]],
+            log(7) / 2,
+        ),
+        (
+            {((0, 1, 0),): powers(p0=2), LEVEL: powers(p0=5)},
+            [_Power(Fraction(1), acb(2)), REAL[0]],
+            log(2.5) / 2,
         ),
     ],
 )
