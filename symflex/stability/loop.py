@@ -108,7 +108,8 @@ def characteristic_loop(
     position = tf.ratio.ring.index.get(gain.name)
     if position is not None and any(value.depends_on(gain.name) for value in tf.kernels.values):
         message = f"'{gain.name}' is part of a wavenumber, a length or a delay, and no gain"
-        raise ModelError(Diagnostic("SF801", message, gain.span))
+        hint = f"follow its poles by value: symflex sweep FILE --over {gain.name}=FROM:TO:lin:20"
+        raise ModelError(Diagnostic("SF801", message, gain.span, hint))
     if position is None or not _depends(tf, position):
         message = f"no pole of the model depends on '{gain.name}'"
         hint = "a loop is closed in [signals], as in e = 'r - y', u = 'K*e'"
