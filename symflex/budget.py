@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 GB: Final = 10**9
-LOOK: Final = 0.005
-"""Seconds between two looks at the memory, in which a process can take 10 MB: each asks the system."""
+LOOK: Final = 0.02
+"""Seconds between two looks at the memory, in which a process can take 40 MB: each asks the system."""
 TIME_OVER: Final = Diagnostic("SF506", "the time given is over", None, "allow more time, or ask for less")
 
 
