@@ -66,13 +66,9 @@ def command(
 
 
 def _tolerance(text: str, option: str, units: tuple[str, ...], example: str) -> float:
-    number = text.strip()
-    for unit in units:
-        number = number.removesuffix(unit).strip()
-    try:
-        value = float(number)
-    except ValueError:
-        value = 0.0
+    from symflex.cli.roots import plain_number
+
+    value = plain_number(text, units)
     if not 0 < value < float("inf"):
         message = f"{option} takes a positive number such as '{example}', found '{text[:40]}'"
         raise UsageError(Diagnostic("SF902", message))

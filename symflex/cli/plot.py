@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import inf, isfinite
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -243,28 +243,19 @@ def _ends(texts: Ends | None, option: str, *, is_frequency: bool = False) -> tup
     """
     if texts is None:
         return None
-    from symflex.cli.roots import frequency_limit
+    from symflex.cli.roots import frequency_limit, plain_number
 
     if is_frequency:
         low, high = (float(frequency_limit(text, option, "-10 or '3 rad/s'", hertz=False)) for text in texts)
     else:
-        low, high = (_number(text, option) for text in texts)
+        low, high = (plain_number(text, ("dB", "deg", "°")) for text in texts)
+        for text, end in zip(texts, (low, high), strict=True):
+            if not isfinite(end):
+                message = f"{option} takes numbers such as -60, found '{text[:40]}'"
+                raise UsageError(Diagnostic("SF902", message))
     if not low < high:
         raise UsageError(Diagnostic("SF902", f"{option} takes two numbers, the lower one first"))
     return low, high
-
-
-def _number(text: str, option: str) -> float:
-    number = text.strip()
-    for unit in ("dB", "deg", "°"):
-        number = number.removesuffix(unit).strip()
-    try:
-        value = float(number)
-    except ValueError:
-        value = inf
-    if not isfinite(value):
-        raise UsageError(Diagnostic("SF902", f"{option} takes numbers such as -60, found '{text[:40]}'"))
-    return value
 
 
 def _checked_path(name: str) -> Path:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from math import nan
 from typing import TYPE_CHECKING
 
 import click
@@ -189,6 +190,16 @@ def band_limits(band: tuple[str, str], *, above_zero: bool = False) -> tuple[Fra
         message = f"--band takes two frequencies in Hz{above}, the lower one first"
         raise UsageError(Diagnostic("SF902", message))
     return low, high
+
+
+def plain_number(text: str, units: tuple[str, ...]) -> float:
+    """Return the number a text says, with or without one of some units; not a number where it says none."""
+    for unit in units:
+        text = text.strip().removesuffix(unit)
+    try:
+        return float(text)
+    except ValueError:
+        return nan
 
 
 def frequency_limit(text: str, option: str, example: str, *, hertz: bool) -> Fraction:
