@@ -100,7 +100,7 @@ _OPERATORS: Final = {"exp": "exp", "log": "log", "sin": "sin", "cos": "cos", "ta
     name: name for name in ("sinh", "cosh", "tanh", "coth")
 }
 _WIDEST_OPERATOR: Final = always(2.3)
-_TRIGONOMETRIC: Final = frozenset(("sin", "cos", "tan", "sinh", "cosh", "tanh"))
+TRIGONOMETRIC: Final = frozenset(("sin", "cos", "tan", "sinh", "cosh", "tanh"))
 _SHORT_EXPONENT: Final = 8
 _MOST_PRIMES: Final = 3
 
@@ -169,7 +169,7 @@ class Writer:
             children = node.children
             if not is_ready:
                 pending.append((node, where, True))
-                inner = zip(children, _inner_styles(node, where), strict=True)
+                inner = zip(children, inner_styles(node, where), strict=True)
                 pending.extend((child, style, False) for child, style in reversed(list(inner)))
             else:
                 pieces = done[-len(children) :]
@@ -319,7 +319,8 @@ def _number(value: Fraction, style: Style) -> Piece:
     return _quotient(number_piece(above), number_piece(below), style)
 
 
-def _inner_styles(node: Expression, style: Style) -> tuple[Style, ...]:
+def inner_styles(node: Expression, style: Style) -> tuple[Style, ...]:
+    """Return in which style each operand is set."""
     match node:
         case Quotient():
             inner = Style.TEXT if style is Style.DISPLAY else Style.INLINE
@@ -328,7 +329,7 @@ def _inner_styles(node: Expression, style: Style) -> tuple[Style, ...]:
             return style, Style.INLINE
         case Call(name="exp", argument=argument) if is_short(argument):
             return (Style.INLINE,)
-        case Call(name=name, argument=Quotient(denominator=Number())) if name in _TRIGONOMETRIC:
+        case Call(name=name, argument=Quotient(denominator=Number())) if name in TRIGONOMETRIC:
             return (Style.INLINE,)
         case _:
             return (style,) * len(node.children)
@@ -410,7 +411,7 @@ def _power(base: Expression, exponent: Expression, pieces: Sequence[Piece]) -> P
         return _root(below)
     raised = f"^{{{above.latex}}}"
     size = above.size.raised + SCRIPT_SPACE
-    if isinstance(base, Call) and base.name in _TRIGONOMETRIC and isinstance(exponent, Number):
+    if isinstance(base, Call) and base.name in TRIGONOMETRIC and isinstance(exponent, Number):
         # The exponent of a function stands at its name.
         head = FUNCTIONS[base.name].latex
         latex = f"{head}{raised}{below.latex.removeprefix(head)}"

@@ -12,9 +12,11 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from symflex.emit.latex.expression import (
+    TRIGONOMETRIC,
     Shape,
     Style,
     Writer,
+    inner_styles,
     is_half,
     is_short,
     numbers_first,
@@ -52,7 +54,6 @@ if TYPE_CHECKING:
 PIECE_EM: Final = 17.0
 """Width up to which a piece is not broken [em]: that of a narrow telephone's screen."""
 
-_TRIGONOMETRIC: Final = frozenset(("sin", "cos", "tan", "sinh", "cosh", "tanh"))
 _MOST_PRIMES: Final = 3
 
 
@@ -128,7 +129,7 @@ class MathmlWriter:
                 done.append(_number(node.value, where))
             elif not is_ready:
                 pending.append((node, where, True))
-                inner = zip(node.children, _inner_styles(node, where), strict=True)
+                inner = zip(node.children, inner_styles(node, where), strict=True)
                 pending.extend((child, style, False) for child, style in reversed(list(inner)))
             else:
                 pieces = done[-len(node.children) :]
@@ -259,21 +260,6 @@ def _decimal(text: str) -> Markup:
     return Markup(row(numeral(mantissa), operator("⋅"), ten), Shape.PRODUCT)
 
 
-def _inner_styles(node: Expression, style: Style) -> tuple[Style, ...]:
-    match node:
-        case Quotient():
-            inner = Style.TEXT if style is Style.DISPLAY else Style.INLINE
-            return inner, inner
-        case Power():
-            return style, Style.INLINE
-        case Call(name="exp", argument=argument) if is_short(argument):
-            return (Style.INLINE,)
-        case Call(name=name, argument=Quotient(denominator=Number())) if name in _TRIGONOMETRIC:
-            return (Style.INLINE,)
-        case _:
-            return (style,) * len(node.children)
-
-
 def _combined(node: Expression, pieces: Sequence[Markup], style: Style) -> Markup:
     match node:
         case Sum(terms=terms):
@@ -366,7 +352,7 @@ def _power(base: Expression, exponent: Expression, pieces: Sequence[Markup]) -> 
     below, above = pieces
     if is_half(exponent):
         return _root(below)
-    if isinstance(base, Call) and base.name in _TRIGONOMETRIC and isinstance(exponent, Number):
+    if isinstance(base, Call) and base.name in TRIGONOMETRIC and isinstance(exponent, Number):
         # The exponent of a function stands at its name.
         name = identifier(base.name)
         content = below.mathml.replace(name, f"<msup>{name}{above.mathml}</msup>", 1)
