@@ -110,7 +110,7 @@ def _constant_functions(model: Model) -> tuple[ConstantFunction, ...]:
     found: dict[str, ConstantFunction] = {}
     for part in _with_submodels(model):
         opener = Opener({d.name: d.expression for d in part.definitions})
-        for expression in _expressions(part):
+        for _, expression in part.expressions():
             for call in reversed(names(expression)):
                 if isinstance(call, Call) and call.name in FUNCTIONS:
                     opened = opener.open(call)
@@ -124,16 +124,6 @@ def _with_submodels(model: Model) -> Iterable[Model]:
     for block in model.blocks:
         if block.submodel is not None:
             yield from _with_submodels(block.submodel)
-
-
-def _expressions(model: Model) -> Iterable[Expression]:
-    yield from (d.expression for d in model.definitions)
-    for values in (*(u.values for u in model.elements), *(b.values for b in model.blocks)):
-        yield from (e for _, e in values)
-    yield from (x.expression for x in model.signals)
-    yield from (x.expression for x in model.outputs)
-    for found in model.fields:
-        yield from (found.start, found.end, *found.equations, *found.conditions)
 
 
 @dataclass
@@ -164,9 +154,8 @@ class _Assembly:
         evaluator, _ = self._evaluator(self._blocks())
         if self.problems:
             raise ModelError(*self.problems)
-        return survey(
-            self.model, evaluator, _expressions(self.model), is_nameless=is_nameless, is_joined=is_joined
-        )
+        expressions = [e for _, e in self.model.expressions()]
+        return survey(self.model, evaluator, expressions, is_nameless=is_nameless, is_joined=is_joined)
 
     def _evaluator(self, blocks: Mapping[str, Factored]) -> tuple[Evaluator, dict[str, int]]:
         known = {d.name for d in self.model.definitions}

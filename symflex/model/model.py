@@ -13,6 +13,8 @@ from symflex.elements import LineElement
 from symflex.quantities import Dimension
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from symflex.blocks import Block as BlockType
     from symflex.elements import Element, Placing, Variable
     from symflex.errors import Diagnostic, Span
@@ -301,6 +303,16 @@ class Model:
                 for b in self.blocks
             )
         )
+
+    def expressions(self) -> Iterator[tuple[str, Expression]]:
+        """Yield all expressions but printed ones, each with the name it defines, empty where that is none."""
+        yield from ((d.name, d.expression) for d in self.definitions)
+        yield from (("", e) for use in self.elements for _, e in use.values)
+        yield from ((b.name, e) for b in self.blocks for _, e in b.values)
+        yield from ((x.name, x.expression) for x in self.signals)
+        yield from (("", o.expression) for o in self.outputs)
+        for f in self.fields:
+            yield from ((f.name, e) for e in (f.start, f.end, *f.equations, *f.conditions))
 
     @property
     def transfer_functions(self) -> tuple[tuple[str, str], ...]:

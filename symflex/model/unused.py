@@ -11,10 +11,9 @@ from symflex.errors.diagnostic import nearest
 from symflex.expressions import Attribute, names
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from symflex.errors import Span
-    from symflex.expressions import Expression
     from symflex.model.model import Definition, Model, PlacedElement
 
 SHOWN = 4
@@ -36,7 +35,8 @@ def unused(model: Model) -> tuple[Diagnostic, ...]:
         SF650 a node that one element touches, or that branches join to one other node only, and that nothing
         reads or drives; SF651 a parameter, block, signal, free input or field that nothing uses.
     """
-    return (*_loose_nodes(model), *_unused_names(model))
+    used = _uses(model)
+    return (*_loose_nodes(model, used), *_unused_names(model, used))
 
 
 def unnamed_definitions(model: Model) -> tuple[Definition, ...]:
@@ -51,37 +51,17 @@ def unused_name(kind: str, name: str, span: Span | None) -> Diagnostic:
     return Diagnostic("SF651", f"nothing uses {kind} '{name}'", span, hint, "warning")
 
 
-def _expressions(model: Model) -> Iterator[tuple[str, Expression]]:
-    """Yield every expression with the name of its owner, empty where its use of that name counts too."""
-    yield from ((d.name, d.expression) for d in model.definitions)
-    yield from (("", e) for use in model.elements for _, e in use.values)
-    yield from ((b.name, e) for b in model.blocks for _, e in b.values)
-    yield from ((x.name, x.expression) for x in model.signals)
-    yield from (("", o.expression) for o in model.outputs)
-    for field in model.fields:
-        yield from ((field.name, e) for e in (field.start, field.end, *field.equations, *field.conditions))
-    for printed in model.published:
-        yield from (("", e) for e in (printed.expression, *(e for _, e in printed.where)))
-        if printed.scale is not None:
-            yield "", printed.scale
-
-
-def _read(expression: Expression) -> Iterator[str]:
-    for node in names(expression):
-        yield node.owner if isinstance(node, Attribute) else node.name
-
-
 def _uses(model: Model) -> dict[str, set[str]]:
     """Return, by name, the owners of the expressions it stands in."""
     used: dict[str, set[str]] = {}
-    for owner, expression in _expressions(model):
-        for name in _read(expression):
-            used.setdefault(name, set()).add(owner)
+    printed = (e for p in model.published for e in (p.expression, p.scale, *(e for _, e in p.where)))
+    for owner, expression in (*model.expressions(), *(("", e) for e in printed if e is not None)):
+        for n in names(expression):
+            used.setdefault(n.owner if isinstance(n, Attribute) else n.name, set()).add(owner)
     return used
 
 
-def _unused_names(model: Model) -> Iterator[Diagnostic]:
-    used = _uses(model)
+def _unused_names(model: Model, used: Mapping[str, set[str]]) -> Iterator[Diagnostic]:
     shared = {p.name for b in model.blocks if b.submodel is not None for p in b.submodel.parameters}
     shared |= {f.gain for f in model.figures}
     for parameter in model.parameters:
@@ -101,8 +81,8 @@ def _unused_names(model: Model) -> Iterator[Diagnostic]:
                 yield unused_name(kind, name, span)
 
 
-def _loose_nodes(model: Model) -> Iterator[Diagnostic]:
-    read = {*_uses(model), *(r.node for source in model.inputs for r in source.nodes)}
+def _loose_nodes(model: Model, used: Mapping[str, set[str]]) -> Iterator[Diagnostic]:
+    read = {*used, *(r.node for source in model.inputs for r in source.nodes)}
     touching: dict[str, dict[str, PlacedElement]] = {}
     for use in model.elements:
         for _, references in use.nodes:
