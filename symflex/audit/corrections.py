@@ -28,6 +28,7 @@ from symflex.expressions import (
     Product,
     Quotient,
     Sum,
+    is_number,
     number,
     product_of,
     quotient,
@@ -402,12 +403,12 @@ def _replaced(expression: Expression, part: Expression, new: Expression) -> Expr
         case Sum():
             return sum_of(children)
         case Product():
-            return product_of(children) if _is_one(new) else Product(tuple(_flat(children)))
+            return product_of(children) if is_number(new, 1) else Product(tuple(_flat(children)))
         case Negative():
             inner = children[0]
             return inner.operand if isinstance(inner, Negative) else Negative(inner)
         case Quotient():
-            return children[0] if _is_one(children[1]) else Quotient(children[0], children[1])
+            return children[0] if is_number(children[1], 1) else Quotient(children[0], children[1])
         case Power():
             return Power(children[0], children[1])
         case Call(name):
@@ -421,10 +422,6 @@ def _flat(children: list[Expression]) -> list[Expression]:
     for child in children:
         flat.extend(child.factors if isinstance(child, Product) else [child])
     return flat
-
-
-def _is_one(expression: Expression) -> bool:
-    return isinstance(expression, Number) and expression.value == 1
 
 
 def _above(expression: Expression) -> Expression:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from symflex.emit.forms import print_form
 from symflex.emit.latex.table import decimal_text, rational_value
 from symflex.emit.program import inert, nearest_double, wrapped
-from symflex.expressions import Number, Quotient, format_expression
+from symflex.expressions import Quotient, format_expression, is_number
 from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
@@ -60,8 +60,7 @@ def formula_lines(tf: AnyTransferFunction, width: int) -> list[str]:
 
 
 def _lines_of(name: str, form: PrintedForm, width: int) -> list[str]:
-    is_whole = isinstance(form.den, Number) and form.den.value == 1
-    whole = format_expression(form.num if is_whole else Quotient(form.num, form.den))
+    whole = format_expression(form.num if is_number(form.den, 1) else Quotient(form.num, form.den))
     lines = wrapped(inert(f"{name} = {whole}"), width, "", "    ")
     for i, (symbol, expression) in enumerate(form.where):
         word = "where" if i == 0 else "     "

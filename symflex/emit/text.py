@@ -12,9 +12,9 @@ from symflex.expressions import (
     Derivative,
     Equation,
     Expression,
-    Number,
     Quotient,
     format_expression,
+    is_number,
     names,
 )
 from symflex.transfer import NestedTransferFunction
@@ -41,7 +41,7 @@ SHALLOW = 8
 
 def form_text(tf: AnyTransferFunction, form: PrintedForm) -> str:
     """Return ``OUT/IN = num/den`` on one line, and a line per definition or law used."""
-    whole = form.num if _is_one(form.den) else Quotient(form.num, form.den)
+    whole = form.num if is_number(form.den, 1) else Quotient(form.num, form.den)
     lines = [f"{_left_side(tf, form)} = {format_expression(whole)}"]
     lines += [f"  {form.stability.headline}"] if form.stability else []
     lines += [f"  where {name} = {format_expression(e)}" for name, e in form.where]
@@ -65,7 +65,7 @@ def derive_text(tf: AnyTransferFunction, form: PrintedForm, width: int = WIDTH) 
     verdict = f"; {form.stability.headline}" if form.stability else ""
     lines = [f"{_left_side(tf, form)}   {quantity}, {form.name} form{verdict}", ""]
     num, den = wrapped(form.num, width - 2), wrapped(form.den, width - 2)
-    if _is_one(form.den):
+    if is_number(form.den, 1):
         lines += [INDENT + line for line in num]
     else:
         bar = max(len(line) for line in (*num, *den))
@@ -119,10 +119,6 @@ def law_lines(name: str, law: Equation) -> list[str]:
 
 def _where_words() -> Iterator[str]:
     return chain(["where"], repeat("     "))
-
-
-def _is_one(expression: Expression) -> bool:
-    return isinstance(expression, Number) and expression.value == 1
 
 
 def _placed(line: str, width: int, *, alone: bool) -> str:

@@ -227,7 +227,7 @@ def replace_condition(model: Model, source: Input, output: Expression) -> Replac
         (field, i)
         for field in model.fields
         for i, condition in enumerate(field.conditions)
-        if _holds(condition, source.name)
+        if holds(condition, source.name)
     ]
     if len(places) != 1 or _is_elsewhere(model, source.name):
         return None
@@ -242,7 +242,8 @@ def replace_condition(model: Model, source: Input, output: Expression) -> Replac
     return ReplacedCondition(field, number, calls[0], constraint)
 
 
-def _holds(expression: Expression, name: str) -> bool:
+def holds(expression: Expression, name: str) -> bool:
+    """Tell whether a name stands in an expression."""
     return any(isinstance(n, Name) and n.name == name for n in names(expression))
 
 
@@ -253,4 +254,4 @@ def _is_elsewhere(model: Model, name: str) -> bool:
         *(output.expression for output in model.outputs),
         *(e for field in model.fields for e in field.equations),
     ]
-    return any(_holds(e, name) for e in found)
+    return any(holds(e, name) for e in found)

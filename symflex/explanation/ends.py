@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from symflex.elements import LineElement, Variable
 from symflex.elements.massless_beam import MasslessBeam
 from symflex.explanation.parts import SUPPORTS, coordinates_of
-from symflex.expressions import Call, Derivative, Name, Number, format_expression, names
+from symflex.expressions import Call, Derivative, Name, format_expression, is_number, names
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -118,7 +118,7 @@ def _single(condition: Equation, unknown: str) -> Call | None:
     if len(own) != 1 or len(calls) != 1:
         return None
     other = next(side for side in sides if own[0] not in names(side))
-    plain = isinstance(other, Number) and not other.value
+    plain = is_number(other, 0)
     return own[0] if plain or _is_load(other) else None
 
 

@@ -14,6 +14,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symflex.elements import LineElement
+from symflex.explanation.constraints import holds
 from symflex.expressions import (
     Attribute,
     Call,
@@ -23,6 +24,7 @@ from symflex.expressions import (
     Number,
     Product,
     Sum,
+    is_number,
     names,
     replace_values,
 )
@@ -156,7 +158,7 @@ def seen_at_the_input(model: Model, output: str, source: Input) -> Model:
     loaded = {
         unknown
         for field in model.fields
-        if any(_holds(condition, source.name) for condition in field.conditions)
+        if any(holds(condition, source.name) for condition in field.conditions)
         for unknown in field.unknowns
     }
     chosen = next(
@@ -172,9 +174,9 @@ def seen_at_the_input(model: Model, output: str, source: Input) -> Model:
 def _equal(model: Model, condition: Equation) -> tuple[Expression, Expression] | None:
     """Return the two values that a condition says are equal, ``None`` when it says anything else."""
     left, right = condition.left, condition.right
-    if _is_zero(left):
+    if is_number(left, 0):
         left, right = right, left
-    if _is_zero(right) and isinstance(left, Sum) and len(left.terms) == PAIR:
+    if is_number(right, 0) and isinstance(left, Sum) and len(left.terms) == PAIR:
         plus = [term for term in left.terms if not isinstance(term, Negative)]
         minus = [term.operand for term in left.terms if isinstance(term, Negative)]
         if len(plus) != 1:
@@ -185,10 +187,6 @@ def _equal(model: Model, condition: Equation) -> tuple[Expression, Expression] |
     return (left, right) if _is_value(model, left) and _is_value(model, right) else None
 
 
-def _is_zero(side: Expression) -> bool:
-    return isinstance(side, Number) and not side.value
-
-
 def _is_value(model: Model, side: Expression) -> bool:
     match side:
         case Call(name=name):
@@ -196,7 +194,3 @@ def _is_value(model: Model, side: Expression) -> bool:
         case Name(name=name) | Attribute(owner=name):
             return any(node.name == name for node in model.nodes)
     return False
-
-
-def _holds(condition: Equation, name: str) -> bool:
-    return any(isinstance(n, Name) and n.name == name for n in names(condition))

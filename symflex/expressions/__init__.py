@@ -1,6 +1,6 @@
 """Expressions as text and as trees: read, printed, built and searched."""
 
-from symflex.expressions.build import negative, number, power, product_of, quotient, sum_of
+from symflex.expressions.build import is_number, negative, number, power, product_of, quotient, sum_of
 from symflex.expressions.format import format_expression
 from symflex.expressions.limits import PROGRAM_LIMITS, USER_LIMITS, Limits
 from symflex.expressions.nodes import (
@@ -41,6 +41,7 @@ __all__ = [
     "Quotient",
     "Sum",
     "format_expression",
+    "is_number",
     "measured",
     "names",
     "negative",

@@ -43,7 +43,7 @@ def sum_of(terms: Iterable[Expression]) -> Expression:
         is_negative, term = _signed(pending.pop())
         if isinstance(term, Sum) and not is_negative:
             pending.extend(reversed(term.terms))
-        elif not _is_number(term, 0):
+        elif not is_number(term, 0):
             flat.append(Negative(term) if is_negative else term)
     if not flat:
         return number(0)
@@ -96,11 +96,11 @@ def quotient(numerator: Expression, denominator: Expression) -> Expression:
     """
     above_is_negative, above = _signed(numerator)
     below_is_negative, below = _signed(denominator)
-    if _is_number(below, 0):
+    if is_number(below, 0):
         raise ZeroDivisionError("the denominator is zero")
-    if _is_number(above, 0):
+    if is_number(above, 0):
         return above
-    whole = above if _is_number(below, 1) else Quotient(above, below)
+    whole = above if is_number(below, 1) else Quotient(above, below)
     return whole if above_is_negative == below_is_negative else Negative(whole)
 
 
@@ -121,10 +121,10 @@ def power(base: Expression, exponent: Expression | int) -> Expression:
     Negative(operand=Power(base=Name(name='s'), exponent=Number(value=Fraction(3, 1))))
     """
     exponent_is_negative, size = _signed(number(exponent) if isinstance(exponent, int) else exponent)
-    if _is_number(size, 0):
+    if is_number(size, 0):
         return number(1)
     base_is_negative, root = _signed(base)
-    if isinstance(size, Number) and _is_number(root, 0):
+    if isinstance(size, Number) and is_number(root, 0):
         if exponent_is_negative:
             raise ZeroDivisionError("a negative power of zero")
         return root
@@ -132,7 +132,7 @@ def power(base: Expression, exponent: Expression | int) -> Expression:
     if base_is_negative and not is_integer:
         root = Negative(root)
     is_odd = is_integer and isinstance(size, Number) and size.value.numerator % 2 == 1
-    if _is_number(root, 1) or (_is_number(size, 1) and not exponent_is_negative):
+    if is_number(root, 1) or (is_number(size, 1) and not exponent_is_negative):
         raised = root
     else:
         raised = Power(root, Negative(size) if exponent_is_negative else size)
@@ -149,7 +149,7 @@ def negative(operand: Expression) -> Expression:
     Name(name='a')
     """
     is_negative, inner = _signed(operand)
-    return inner if is_negative or _is_number(inner, 0) else Negative(inner)
+    return inner if is_negative or is_number(inner, 0) else Negative(inner)
 
 
 def _signed(expression: Expression) -> tuple[bool, Expression]:
@@ -162,5 +162,6 @@ def _signed(expression: Expression) -> tuple[bool, Expression]:
     return is_negative, expression
 
 
-def _is_number(expression: Expression, value: int) -> bool:
+def is_number(expression: Expression, value: Fraction | int) -> bool:
+    """Tell whether an expression is a given number, as one in the denominator of what has none."""
     return isinstance(expression, Number) and expression.value == value

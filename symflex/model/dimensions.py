@@ -38,6 +38,7 @@ from symflex.expressions import (
     Quotient,
     Sum,
     format_expression,
+    is_number,
     measured,
     names,
     number,
@@ -455,7 +456,7 @@ class DimensionSystem:
         return Measure()
 
     def _sum(self, expression: Expression, terms: tuple[Expression, ...]) -> Measure:
-        measures = [(t, self.measure(t)) for t in terms if not (isinstance(t, Number) and t.value == 0)]
+        measures = [(t, self.measure(t)) for t in terms if not is_number(t, 0)]
         if not measures:
             return Measure(open=True)
         mixed = len({(m.cycles, m.pis) if m.cyclic else None for _, m in measures}) > 1

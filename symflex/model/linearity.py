@@ -20,6 +20,7 @@ from symflex.expressions import (
     Product,
     Quotient,
     Sum,
+    is_number,
     names,
 )
 from symflex.kernels import FUNCTIONS, LAPLACE
@@ -66,7 +67,7 @@ def check_expression(expression: Expression, scope: Scope, *, constant: bool) ->
     """
     problems: list[Diagnostic] = []
     degree = _degree(expression, scope, constant, problems)
-    if not constant and degree == "constant" and not problems and not _is_zero(expression):
+    if not constant and degree == "constant" and not problems and not is_number(expression, 0):
         problems.append(without_signal(expression.span))
     return problems
 
@@ -98,10 +99,6 @@ def without_signal(span: Span | None) -> Diagnostic:
     )
 
 
-def _is_zero(expression: Expression) -> bool:
-    return isinstance(expression, Number) and expression.value == 0
-
-
 def _degree(expression: Expression, scope: Scope, constant: bool, problems: list[Diagnostic]) -> Degree:
     """Return the degree of an expression; note what is wrong."""
 
@@ -125,7 +122,7 @@ def _degree(expression: Expression, scope: Scope, constant: bool, problems: list
         case Negative(operand):
             return walk(operand)
         case Sum(terms):
-            return _sum_degree([(term, walk(term)) for term in terms if not _is_zero(term)], problems)
+            return _sum_degree([(term, walk(term)) for term in terms if not is_number(term, 0)], problems)
         case Product(factors):
             degrees = [walk(factor) for factor in factors]
             if degrees.count("linear") > 1:
@@ -149,7 +146,7 @@ def _degree(expression: Expression, scope: Scope, constant: bool, problems: list
                         LINEARISE,
                     )
                 )
-            if _is_zero(denominator):
+            if is_number(denominator, 0):
                 problems.append(Diagnostic("SF224", "division by zero", denominator.span))
             return _strongest([top, bottom])
         case Power(base, exponent):
@@ -186,9 +183,7 @@ def _sum_degree(terms: Sequence[tuple[Expression, Degree]], problems: list[Diagn
 def _power_degree(power: Power, base: Degree, exponent: Expression, problems: list[Diagnostic]) -> Degree:
     value = integer_exponent(exponent)
     if value is None:
-        half = isinstance(exponent, Quotient) or (
-            isinstance(exponent, Number) and exponent.value == Fraction(1, 2)
-        )
+        half = isinstance(exponent, Quotient) or is_number(exponent, Fraction(1, 2))
         problems.append(
             Diagnostic(
                 "SF225",

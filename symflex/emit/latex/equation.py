@@ -15,7 +15,7 @@ from symflex.emit.latex.expression import Piece, Style, Writer
 from symflex.emit.latex.label import labels_of, symbol
 from symflex.emit.latex.lines import break_lines
 from symflex.emit.latex.width import EM_MM, FRACTION_EDGES, MINUS, QUAD, RELATION
-from symflex.expressions import Call, Derivative, Expression, Name, Negative, Number, names, number
+from symflex.expressions import Call, Derivative, Expression, Name, Negative, is_number, names, number
 from symflex.kernels import LAPLACE
 
 if TYPE_CHECKING:
@@ -225,13 +225,8 @@ def split_sign(form: PrintedForm) -> tuple[str, Expression]:
     return ("-", num.operand) if isinstance(num, Negative) else ("", num)
 
 
-def is_one(expression: Expression) -> bool:
-    """Tell whether an expression is the number 1, as the denominator of what has none."""
-    return isinstance(expression, Number) and expression.value == 1
-
-
 def _right_side(form: PrintedForm, writer: Writer) -> tuple[str, float]:
-    if is_one(form.den):
+    if is_number(form.den, 1):
         piece = writer.piece(form.num)
         return piece.latex, piece.width
     sign, num = split_sign(form)
@@ -259,7 +254,7 @@ def _formula(
 def _rows(tf: AnyTransferFunction, form: PrintedForm, writer: Writer, width: float) -> list[_Row]:
     """Return the equations that a formula too wide for one line is made of."""
     left, left_width = _left_side(tf, form, writer)
-    if is_one(form.den):
+    if is_number(form.den, 1):
         return [_row(left, left_width, form.num, writer, width, left_width, _TAG)]
     return _named_parts(form, writer, width, left, left_width)
 

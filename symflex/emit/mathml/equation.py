@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from symflex.emit.latex.equation import form_labels, free_names, is_one, split_sign, varying_names
+from symflex.emit.latex.equation import form_labels, free_names, split_sign, varying_names
 from symflex.emit.latex.expression import Style, Writer
 from symflex.emit.mathml.element import identifier, operator, row
 from symflex.emit.mathml.expression import MathmlWriter
 from symflex.emit.mathml.label import label_mathml
-from symflex.expressions import Call, Derivative, Name, names, number
+from symflex.expressions import Call, Derivative, Name, is_number, names, number
 
 if TYPE_CHECKING:
     from symflex.emit.forms import PrintedForm
@@ -85,7 +85,7 @@ def _formula(
     tf: TransferFunction, form: PrintedForm, writer: MathmlWriter, labels: dict[str, str]
 ) -> list[Row]:
     left = ratio_mathml(tf)
-    if is_one(form.den):
+    if is_number(form.den, 1):
         return [Row(left, writer.pieces(form.num))]
     sign, num = split_sign(form)
     minus = operator("-", "prefix") if sign else ""
