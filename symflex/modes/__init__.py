@@ -1,6 +1,6 @@
 """Mode shapes: the motion of everything at a pole, taken from the equations and enclosed in balls."""
 
-from symflex.modes.find import NumberedShape, lowest_mode_shapes, lowest_modes, mode_shape, mode_shapes
+from symflex.modes.find import NumberedShape, lowest_modes, mode_shape, mode_shapes
 from symflex.modes.shape import DistributedShape, ModeShape, Motion
 
 __all__ = [
@@ -8,7 +8,6 @@ __all__ = [
     "ModeShape",
     "Motion",
     "NumberedShape",
-    "lowest_mode_shapes",
     "lowest_modes",
     "mode_shape",
     "mode_shapes",

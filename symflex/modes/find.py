@@ -133,15 +133,8 @@ def mode_shapes(
     return _shapes(bound, which, digits)[0]
 
 
-def lowest_mode_shapes(
-    bound: BoundTransferFunction, count: int, digits: int = DIGITS
-) -> tuple[NumberedShape, ...]:
-    """Return the shapes that :func:`lowest_modes` finds."""
-    return lowest_modes(bound, count, digits)[0]
-
-
 def lowest_modes(
-    bound: BoundTransferFunction, count: int, digits: int = DIGITS, band: Band | None = None
+    bound: BoundTransferFunction, count: int, band: Band | None = None
 ) -> tuple[tuple[NumberedShape, ...], StabilityVerdict]:
     """Return the shapes of the lowest modes, or of those in a band, other than at 0; hidden ones among them.
 
@@ -149,7 +142,7 @@ def lowest_modes(
     them.
     """
     search = _Search(bound)
-    found = search.map(band or Modes(count), digits + SPARE_DIGITS)
+    found = search.map(band or Modes(count), DIGITS + SPARE_DIGITS)
     candidates = [(root, False) for root in found.all_poles] + [(h.root, True) for h in found.hidden]
     chosen = [(root, hidden) for root, hidden in candidates if not root.is_zero and not root.im < 0]
     chosen.sort(key=lambda pair: float(pair[0].natural_frequency().mid()))
@@ -161,7 +154,7 @@ def lowest_modes(
         if any(_is_same(s.shape.pole, root) for s in shapes):
             continue
         try:
-            found_here = search.shapes(partial(search.again, root), digits)
+            found_here = search.shapes(partial(search.again, root), DIGITS)
         except UsageError:
             continue  # a common factor that is no mode of the model
         shapes += [NumberedShape(shape, is_hidden) for shape in found_here]

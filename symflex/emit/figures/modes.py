@@ -89,7 +89,7 @@ def draw_modes(
     del frame  # largest displacements are 1, and :func:`draw` refuses others
     band = None if band_hz is None else Band(Fraction(band_hz[0]), Fraction(band_hz[1]))
     count = min(tfs[0].model.analysis.modes or (MODES_LIMIT if band else DEFAULT_MODES), MODES_LIMIT)
-    numbered, verdict = lowest_modes(bounds[0], count, band=band)
+    numbered, verdict = lowest_modes(bounds[0], count, band)
     shapes = [found.shape for found in numbered]
     panels = panels_of(tfs[0].model, shapes)
     if not panels:

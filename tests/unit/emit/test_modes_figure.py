@@ -11,7 +11,7 @@ from symflex.emit.figures import draw, render
 from symflex.emit.figures.modes import heading, label_of_value
 from symflex.emit.figures.runs import Run, Stems, panels_of
 from symflex.errors import ModelError
-from symflex.modes import lowest_mode_shapes
+from symflex.modes import lowest_modes
 
 ROOT = Path(__file__).parents[3]
 EPPINGER, CLASSICS = ROOT / "derivations" / "eppinger1988", ROOT / "derivations" / "classics"
@@ -34,7 +34,7 @@ def drawn(model, modes=3):
 
 def panels(model, modes=2):
     (bound,) = pipeline.derive_bound(model, model.transfer_functions[:1])
-    return panels_of(bound.source.model, [found.shape for found in lowest_mode_shapes(bound, modes)])
+    return panels_of(bound.source.model, [found.shape for found in lowest_modes(bound, modes)[0]])
 
 
 def test_there_is_a_row_per_mode_with_its_frequency_and_damping():
@@ -170,7 +170,7 @@ def test_a_model_without_modes_has_nothing_to_draw():
 def test_a_real_pole_is_named_by_its_place():
     model = pipeline.load(EPPINGER / "robot_axis.toml")
     (bound,) = pipeline.derive_bound(model, model.transfer_functions[:1])
-    assert heading(lowest_mode_shapes(bound, 1)[0].shape) == "$s = -51.67$ rad/s"
+    assert heading(lowest_modes(bound, 1)[0][0].shape) == "$s = -51.67$ rad/s"
 
 
 @pytest.mark.parametrize(
