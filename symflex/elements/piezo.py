@@ -47,20 +47,17 @@ class Piezo(Element):
             (force, alpha, use.values["k"]),
             (current, use.values["C"] * use.s, alpha * use.s * -1),
         )
-        rows = []
-        for through, per_volt, per_metre in laws:
-            rows.append(
-                Row(
-                    through,
-                    LinearForm.of(
-                        (through, one), (p, -per_volt), (q, per_volt), (a, -per_metre), (b, per_metre)
-                    ),
-                )
+        rows = tuple(
+            Row(
+                out,
+                LinearForm.of((out, one), (p, -per_volt), (q, per_volt), (a, -per_metre), (b, per_metre)),
             )
+            for out, per_volt, per_metre in laws
+        )
         delivered = ((a, force, -one), (b, force, one), (p, current, -one), (q, current, one))
         return Stamp(
             unknowns=(force, current),
-            rows=tuple(rows),
+            rows=rows,
             injections=tuple(Injection(node, LinearForm.of((v, sign))) for node, v, sign in delivered),
             through=tuple((v.component, LinearForm.of((v, one))) for v in (force, current)),
         )

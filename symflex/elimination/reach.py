@@ -94,12 +94,10 @@ def _idle_elements(equations: Equations, driven: nmod_mat, felt: nmod_mat) -> It
             idle.setdefault("no output sees", []).append(use)
     for why, uses in idle.items():
         who = [f"{use.element.type_name} '{use.name}'" for use in uses]
-        alone = len(uses) == 1
-        changes = (
-            f"{'changes' if alone else 'change'} no transfer function: {why} {'it' if alone else 'them'}"
-        )
+        change, them = ("changes", "it") if len(uses) == 1 else ("change", "them")
+        message = f"{listed(who)} {change} no transfer function: {why} {them}"
         hint = "is a node's name misspelt, or does an end hang free?"
-        yield Diagnostic("SF654", f"{listed(who)} {changes}", uses[0].span, hint, "warning")
+        yield Diagnostic("SF654", message, uses[0].span, hint, "warning")
 
 
 def _ends(use: PlacedElement, model: Model) -> tuple[Variable, ...]:

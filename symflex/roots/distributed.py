@@ -263,15 +263,14 @@ class _Searched:
         product = Factored(
             bound.ratio.ring, Fraction(1), tuple((h.polynomial, h.multiplicity) for h in bound.hidden)
         )
-        parts = [] if bound.ratio.is_zero else [bound.den]
+        poles = [] if bound.ratio.is_zero else [(0, bound.den)]
         coincident = [h.root for h in self.hidden if h.cause == "coincident"]
         degenerate = _degenerate_points(bound)
         proof = PASSIVE if bound.is_of_model and is_passive(bound.source.model, bound.values) else ""
         found: list[tuple[Root, ...]] = []
         reasons: list[str] = []
-        for i, part in enumerate((*parts, product)):
-            is_hidden = i == len(parts)
-            place = (2 if parts else 0) if is_hidden else 0
+        for place, part in (*poles, (2 * len(poles), product)):
+            is_hidden = part is product
             try:
                 side = (
                     self.sides[place]
@@ -301,7 +300,7 @@ class _Searched:
         if proof:
             reasons = ["none of those found lies on the imaginary axis"]
         verdict = judge(roots, "; ".join(dict.fromkeys(reasons)), proof)
-        return verdict, found[0] if parts else (), found[-1]
+        return verdict, found[0] if poles else (), found[-1]
 
     def _reached(self, side: Side) -> float:
         """Return up to which abs(s) all roots of a side are known [rad/s]."""

@@ -34,8 +34,7 @@ def model_html(model: Model) -> str:
             (
                 f"${escape_label(labels[p.name])}$",
                 f"<code>{escape_html(p.name)}</code>",
-                _value(p),
-                escape_html("" if p.as_written()[1] == "1" else p.as_written()[1]),
+                *_written(p),
                 _cut(p.doc),
             )
             for p in model.parameters
@@ -54,9 +53,10 @@ def escape_label(latex: str) -> str:
     return latex.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
 
 
-def _value(parameter: Parameter) -> str:
-    value, _ = parameter.as_written()
-    return "symbolic" if value is None else decimal_text(rational_value(value))
+def _written(parameter: Parameter) -> tuple[str, str]:
+    value, unit = parameter.as_written()
+    shown = "symbolic" if value is None else decimal_text(rational_value(value))
+    return shown, escape_html("" if unit == "1" else unit)
 
 
 def _cut(text: str) -> str:
