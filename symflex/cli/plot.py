@@ -94,7 +94,7 @@ def command(
     from symflex.stability import pick_gain
 
     if SWEEP in (spec, kind):
-        options = bool(tfs or gain or limits or band or xlim or ylim or phase)
+        options = bool(settings or tfs or gain or limits or band or xlim or ylim or phase)
         return _plot_sweep(spec if kind == SWEEP else kind, modes, output, width, font, is_more=options)
     given = _checked_path(output) if output else None
     model = load(spec, allow_outside, settings)
@@ -169,9 +169,8 @@ def _plot_sweep(
 ) -> int:
     """Draw what 'symflex sweep -o' wrote."""
     if is_more:
-        raise UsageError(
-            Diagnostic("SF902", "--tf, --gain, --range, --band and ends of axes are not for a sweep")
-        )
+        message = "--set, --tf, --gain, --range, --band and ends of axes are not for a sweep"
+        raise UsageError(Diagnostic("SF902", message))
     from symflex.emit.figures import DEFAULT_FONT, draw_sweep, save
     from symflex.emit.figures.pgf import MM_PER_INCH
     from symflex.emit.latex import column_width

@@ -173,6 +173,13 @@ def test_what_is_swept_is_not_set(spec):
     assert (done.code, "'k' is swept and set" in done.err) == (2, True)
 
 
+def test_a_sweep_that_is_stored_is_not_drawn_with_other_values(spec):
+    assert spec("sweep", "spec.toml", "--over", "m=1:2:lin:2", "--workers", "1", "-o", "a.npz").code == 0
+    done = spec("plot", "sweep", "a.npz", "--set", "k=3", "-o", "a.svg")
+    assert (done.code, "--set" in done.err) == (2, True)
+    assert not (spec.folder / "a.svg").exists()
+
+
 def test_a_nested_models_parameter_is_set_too(spec):
     (spec.folder / "outer.toml").write_text(
         'symflex = 1\n[blocks]\nG = { type = "model", spec = "spec.toml", tf = "X/F" }\n'
