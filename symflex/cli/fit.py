@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
-from symflex.cli.reporting import emit_json, load, note, outside, reporting, say, terminal_width
+from symflex.cli.reporting import check_place, emit_json, load, note, outside, reporting, say, terminal_width
 from symflex.errors import Diagnostic, FitError, SymflexError, UsageError
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
 
 SUFFIXES = (".pdf", ".png", ".svg")
 
@@ -114,7 +110,9 @@ def command(
         raise UsageError(Diagnostic("SF902", "--tf names a transfer function of --base"))
     if base is not None and slope is not None:
         raise UsageError(Diagnostic("SF902", "--slope is for fits without --base"))
-    _check_places(((output, (".toml",)), (figure, SUFFIXES)))
+    for name, endings in ((output, (".toml",)), (figure, SUFFIXES)):
+        if name:
+            check_place(name, endings)
     if base is not None:
         load(base, allow_outside)
     every = prepared([one for path in data for one in read_measurement(path)], band, averages, window)
@@ -168,14 +166,3 @@ def command(
             save(draw_fit(found, r), one)
             note(f"wrote {one}")
     return 0
-
-
-def _check_places(places: Iterable[tuple[str | None, tuple[str, ...]]]) -> None:
-    """Refuse files that have another ending than those told, or cannot be written."""
-    from symflex.emit.write import check_writable
-
-    for path, endings in places:
-        if path and Path(path).suffix.lower() not in endings:
-            raise UsageError(Diagnostic("SF902", f"'{Path(path).name}' must end in {' or '.join(endings)}"))
-        if path:
-            check_writable(Path(path))

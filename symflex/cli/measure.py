@@ -8,7 +8,7 @@ import click
 
 from symflex.cli.budgeting import budgeted
 from symflex.cli.caching import caching
-from symflex.cli.reporting import load, note, outside, reporting, setting
+from symflex.cli.reporting import check_place, load, note, outside, reporting, setting
 from symflex.errors import Diagnostic, UsageError
 
 
@@ -62,13 +62,10 @@ def command(
     the same file.
     """
     from symflex import pipeline
-    from symflex.emit.write import check_writable, write_atomically
+    from symflex.emit.write import write_atomically
     from symflex.measurement import WRITERS, MeasurementPlan, measurement_bytes
 
-    if Path(output).suffix.lower() not in WRITERS:
-        message = f"'{Path(output).name}' must end in {' or '.join(WRITERS)}"
-        raise UsageError(Diagnostic("SF902", message))
-    check_writable(Path(output))
+    check_place(output, WRITERS)
     model = load(spec, allow_outside, settings)
     pairs = pipeline.pick_pairs(model, [tf] if tf else [])
     if tf is None and len(pairs) > 1:

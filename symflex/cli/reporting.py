@@ -7,6 +7,7 @@ import os
 import sys
 from contextlib import suppress
 from functools import wraps
+from pathlib import Path
 from typing import TYPE_CHECKING, ParamSpec, TextIO
 
 import click
@@ -15,7 +16,7 @@ from symflex.errors import Diagnostic, SymflexError, UsageError
 from symflex.errors.diagnostic import printable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
     from symflex.model import Model
 
@@ -109,6 +110,16 @@ def load(spec: str, allow_outside: tuple[str, ...] = (), settings: Mapping[str, 
     model = pipeline.load(spec, allow_outside, settings)
     show(pipeline.warnings(model))
     return model
+
+
+def check_place(name: str, endings: Collection[str]) -> None:
+    """Refuse a file that has none of some endings, or cannot be written."""
+    from symflex.emit.write import check_writable
+
+    path = Path(name)
+    if path.suffix.lower() not in endings:
+        raise UsageError(Diagnostic("SF902", f"'{path.name}' must end in {' or '.join(endings)}"))
+    check_writable(path)
 
 
 def say(text: str, *, nl: bool = True, err: bool = False) -> None:
