@@ -103,12 +103,12 @@ def _dependent_conditions(equations: Equations, rows: list[EquationRow]) -> list
     found = [(r.about.owner, int(r.about.component.split()[-1])) for r in rows]
     conditions = [fields[name].conditions[number - 1] for name, number in found]
     texts = [f"'{format_expression(c)}'" for c in conditions]
-    names = listed([f"'{n}'" for n in dict.fromkeys(name for name, _ in found)])
+    owners = [f"'{n}'" for n in dict.fromkeys(name for name, _ in found)]
+    of = f"{'field' if len(owners) == 1 else 'fields'} {listed(owners)}"
     message = (
-        f"the conditions {listed(texts)} of field {names} repeat or contradict each other: "
-        "the state is not determined"
+        f"the conditions {listed(texts)} of {of} repeat or contradict each other: the state is not determined"
         if len(texts) > 1
-        else f"the condition {texts[0]} of field {names} always holds: one is missing in its place"
+        else f"the condition {texts[0]} of {of} always holds: one is missing in its place"
     )
     return [
         Diagnostic("SF302", message, conditions[-1].span, "replace one of them by an independent condition")
