@@ -227,10 +227,10 @@ def test_a_node_that_floats_is_found_where_no_prime_field_holds_every_wavenumber
     beams = "".join(
         f'b{i} = {{ type = "beam", between = ["p{i}", "p{i + 1}"], E = "T", I = "{p}", A = "k", rho = "mu", '
         'l = "l" }\n'
-        for i, p in enumerate((2, 3, 5, 7, 11, 13, 17))
+        for i, p in enumerate(range(2, 8))
     )
     loose = 'K = { type = "spring", between = ["y", "z"], k = "k" }\n' if floats else ""
-    text = f'{STRINGS}[elements]\n{beams}{loose}[inputs]\nF = {{ force = "p0" }}\n[outputs]\nX = "p7"\n'
+    text = f'{STRINGS}[elements]\n{beams}{loose}[inputs]\nF = {{ force = "p0" }}\n[outputs]\nX = "p6"\n'
     if floats:
         assert what_is_wrong(text).message == "nothing determines nodes 'y' and 'z': they float"
     else:

@@ -2,16 +2,18 @@
 
 from fractions import Fraction
 from itertools import pairwise
+from random import Random
 
 import pytest
 from flint import fmpq, fmpq_mat
 
 from benchmarks.networks import NETWORKS, chain, ladder, network, ring, tree
 from symflex import pipeline
-from symflex.elimination import Step, Workbench, eliminate, expanded_terms
+from symflex.elimination import Step, Workbench, eliminate, expanded_terms, is_singular
 from symflex.elimination.straight_line import ONE, ZERO
 from symflex.equations import assemble
 from symflex.errors import ModelError
+from symflex.kernels.ring import terms_of
 
 
 def value(program, step, given):
@@ -191,3 +193,187 @@ def test_a_large_singular_system_names_what_floats(monkeypatch):
         pipeline.derive_nested(pipeline.loads(FLOATING))
     assert caught.value.diagnostics[0].code == "SF304"
     assert "'z'" in caught.value.diagnostics[0].message or "'y'" in caught.value.diagnostics[0].message
+
+
+# ------------------------------------------------------------- against the equations solved as they stand
+
+
+def number(coefficient, given):
+    """Return a coefficient in exact arithmetic."""
+    names = coefficient.ring.names
+    found = coefficient.unit
+    for factor, exponent in coefficient.factors:
+        total = Fraction(0)
+        for monomial, c in terms_of(factor):
+            term = Fraction(c)
+            for i, e in monomial:
+                term *= given[names[i]] ** e
+            total += term
+        found *= total**exponent
+    return found
+
+
+def solved(equations, given):
+    """Return every output per input, and the determinant, from the dense matrix in exact arithmetic."""
+    for name, value_of_it in equations.definitions:
+        given[name] = number(value_of_it, given)
+    columns = {v: i for i, v in enumerate((*equations.unknowns, *equations.inputs))}
+    size = len(equations.unknowns)
+    table = [[Fraction(0)] * len(columns) for _ in range(size + len(equations.outputs))]
+    for row, form in zip(table, [r.form for r in (*equations.rows, *equations.outputs)], strict=True):
+        for variable, coefficient in form.terms:
+            row[columns[variable]] += number(coefficient, given)
+    a = fmpq_mat(size, size, [fmpq(x.numerator, x.denominator) for row in table[:size] for x in row[:size]])
+    found = {}
+    for source in equations.inputs:
+        at = columns[source]
+        x = a.solve(
+            fmpq_mat(size, 1, [fmpq(-row[at].numerator, row[at].denominator) for row in table[:size]])
+        )
+        states = [Fraction(int(x[i, 0].p), int(x[i, 0].q)) for i in range(size)]
+        for out, row in zip(equations.outputs, table[size:], strict=True):
+            total = sum((c * y for c, y in zip(row, states, strict=False)), row[at])
+            found[out.name, source.owner] = total / number(out.divisor, given)
+    det = a.det()
+    return found, Fraction(int(det.p), int(det.q))
+
+
+def assert_solves(text, pairs=None):
+    """Let an elimination for all pairs, and one for each input alone, agree with the dense solution."""
+    equations = pipeline.assemble_sparse(pipeline.loads(text))
+    given = numbers(equations.ring.names)
+    expected, determinant = solved(equations, given)
+    for chosen in [
+        pairs or list(expected),
+        *([p for p in expected if p[1] == i.owner] for i in equations.inputs),
+    ]:
+        found = eliminate(equations, chosen)
+        for pair, (num, den) in zip(chosen, found.quotients, strict=True):
+            assert value(found.program, num, given) / value(found.program, den, given) == expected[pair], pair
+        product = Fraction(1)
+        for pivot in found.pivots:
+            product *= value(found.program, pivot, given)
+        assert abs(product) == abs(determinant)
+
+
+HEAD = "symflex = 1\n"
+# A motor, a screw and what it moves; links that turn and shift together; a loop; filtered outputs.
+MACHINE = """symflex = 1
+parameters = { L = {}, R = {}, k_t = {}, k_e = {}, J = {}, r = {}, m = {}, b = {}, k = {}, h = {}, k_p = {}, T = {} }
+[elements]
+amplifier = { type = "voltage_source", at = "v", v = "k_p*e" }
+rotor = { type = "inertia", at = "shaft", J = "J" }
+coupling = { type = "torsion_spring", between = ["shaft", "screw"], k = "k" }
+drive = { type = "transformer", from = "screw", to = "x", ratio = "r" }
+table = { type = "mass", at = "x", m = "m" }
+friction = { type = "damper", between = ["x", "base"], b = "b" }
+base = { type = "mass", at = "base", m = "3*m" }
+foot = { type = "spring", between = ["base", "ground"], k = "2*k" }
+arm = { type = "massless_beam", between = ["p", "q"], EI = "k", l = "h" }
+body = { type = "rigid_body", at = "q", m = "m", J = "J", cg = "h" }
+overhang = { type = "rigid_link", between = ["q", "t"], length = "h" }
+guide = { type = "slider", at = "p" }
+link = { type = "spring", between = ["x", "p.y"], k = "k" }
+[elements.motor]
+type = "dc_motor"
+terminals = ["v", "ground"]
+shaft = "shaft"
+L = "L"
+R = "R"
+k_t = "k_t"
+k_e = "k_e"
+[signals]
+e = "u - w - x/(T*s + 1)"
+w = "k_p*motor.i + T*s*t.y"
+[inputs]
+u = {}
+F = { force = "x" }
+G = { force = ["t.y", "base"] }
+V = { voltage = "n" }
+[outputs]
+X = "x"
+gap = "x - base"
+tilt = "t.theta + q.theta"
+filtered = "(u - x)/(T*s + 1)"
+error = "e + 2*u"
+drawn = "motor.i"
+n = "n"
+"""
+# Two voltages of one circuit, held by sources whose values depend on what flows elsewhere.
+CIRCUIT = """symflex = 1
+parameters = { R_1 = {}, R_2 = {}, L = {}, C = {}, g = {} }
+[elements]
+a = { type = "resistor", between = ["v_1", "v_2"], R = "R_1" }
+b = { type = "inductor", between = ["v_2", "v_3"], L = "L" }
+c = { type = "capacitor", between = ["v_3", "ground"], C = "C" }
+d = { type = "resistor", between = ["v_3", "v_1"], R = "R_2" }
+held = { type = "voltage_source", at = "v_4", v = "g*b.i" }
+moved = { type = "voltage_source", between = ["v_2", "v_4"], v = "U/2 - g*a.i" }
+pushed = { type = "current_source", at = "v_1", i = "g*v_3 + I" }
+[inputs]
+U = {}
+I = {}
+J = { current = "v_3" }
+[outputs]
+V_1 = "v_1"
+V_3 = "v_3 - R_2*I"
+i = "a.i + held.i"
+"""
+
+
+@pytest.mark.parametrize("text", [MACHINE, CIRCUIT], ids=["machine", "circuit"])
+def test_a_system_of_many_kinds_of_rows_responds_as_its_equations_say(text):
+    assert_solves(text)
+
+
+def graph(seed):
+    """Return signals that depend on each other at random, a unit gain now and then."""
+    random = Random(seed)
+    size = random.randrange(3, 7)
+    lines = []
+    for i in range(size):
+        others = random.sample([j for j in range(size) if j != i], random.randrange(1, 3))
+        terms = [f"{random.choice(['', '-', 'a*', 'T*s*', '-3*', 'b*'])}e{j}" for j in others]
+        terms += [f"{random.choice(['', '2*', 'c*'])}{u}" for u in ("u", "w") if random.random() < 0.4]
+        if i == 0:
+            terms.append("u/(T*s + 1)")
+        lines.append(f'e{i} = "{" + ".join(terms)}"')
+    outputs = "\n".join(f'y{i} = "a*e{i} - e{(i + 1) % size} + w"' for i in range(size))
+    body = "\n".join(lines)
+    return (
+        f"{HEAD}parameters = {{ a = {{}}, b = {{}}, c = {{}}, T = {{}} }}\n[signals]\n{body}\n"
+        f"[inputs]\nu = {{}}\nw = {{}}\n[outputs]\n{outputs}\n"
+    )
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_signals_depend_on_each_other_as_their_equations_say(seed):
+    text = graph(seed)
+    if is_singular(pipeline.assemble(pipeline.loads(text))):
+        with pytest.raises(ModelError):
+            pipeline.derive_nested(pipeline.loads(text))
+    else:
+        assert_solves(text)
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_forces_that_other_nodes_decide_act_as_the_equations_say(seed):
+    """Nodes whose balances are not those of branches alone: forces by what other nodes do."""
+    random = Random(seed)
+    size = random.randrange(3, 7)
+    lines = [
+        f'm{i} = {{ type = "mass", at = "x{i}", m = "m" }}' for i in range(size) if random.random() < 0.7
+    ]
+    for i in range(size):
+        other = random.choice(["ground", f"x{(i + 1) % size}"])
+        lines.append(f'k{i} = {{ type = "spring", between = ["x{i}", "{other}"], k = "{i + 1}*k" }}')
+    for i in range(2):
+        at, of = random.randrange(size), random.randrange(size)
+        lines.append(f'f{i} = {{ type = "force_source", at = "x{at}", f = "b*s*x{of} + F{i}" }}')
+    lines.append(f'g = {{ type = "damper", between = ["x0", "x{size - 1}"], b = "b" }}')
+    outputs = "\n".join(f'y{i} = "s*x{i} + k*F1"' for i in range(size))
+    body = "\n".join(lines)
+    assert_solves(
+        f"{HEAD}parameters = {{ m = {{}}, k = {{}}, b = {{}} }}\n[elements]\n{body}\n"
+        f'[inputs]\nF0 = {{}}\nF1 = {{}}\nG = {{ force = "x1" }}\n[outputs]\n{outputs}\n'
+    )
