@@ -259,7 +259,7 @@ def assert_solves(text, pairs=None):
 HEAD = "symflex = 1\n"
 # A motor, a screw and what it moves; links that turn and shift together; a loop; filtered outputs.
 MACHINE = """symflex = 1
-parameters = { L = {}, R = {}, k_t = {}, k_e = {}, J = {}, r = {}, m = {}, b = {}, k = {}, h = {}, k_p = {}, T = {} }
+parameters = { L = {}, R = {}, k_t = {}, k_e = {}, J = {}, r = {}, m = {}, b = {}, k = {}, k_p = {}, T = {} }
 [elements]
 amplifier = { type = "voltage_source", at = "v", v = "k_p*e" }
 rotor = { type = "inertia", at = "shaft", J = "J" }
@@ -269,9 +269,9 @@ table = { type = "mass", at = "x", m = "m" }
 friction = { type = "damper", between = ["x", "base"], b = "b" }
 base = { type = "mass", at = "base", m = "3*m" }
 foot = { type = "spring", between = ["base", "ground"], k = "2*k" }
-arm = { type = "massless_beam", between = ["p", "q"], EI = "k", l = "h" }
-body = { type = "rigid_body", at = "q", m = "m", J = "J", cg = "h" }
-overhang = { type = "rigid_link", between = ["q", "t"], length = "h" }
+arm = { type = "massless_beam", between = ["p", "q"], EI = "k", l = "r" }
+body = { type = "rigid_body", at = "q", m = "m", J = "J", cg = "r" }
+overhang = { type = "rigid_link", between = ["q", "t"], length = "r" }
 guide = { type = "slider", at = "p" }
 link = { type = "spring", between = ["x", "p.y"], k = "k" }
 [elements.motor]
