@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-from flint import acb, acb_poly, arb, ctx
+from flint import acb, acb_poly, arb, arb_poly, ctx
 
 from symflex.budget import Budget, entered_budget
 
@@ -179,9 +179,9 @@ class LevelPolynomial:
         for i in range(count):
             scale = (sizes[i] / pivot).root(count - i).upper()
             radius = scale if scale > radius else radius
+        others = arb_poly([0 if i == count else size for i, size in enumerate(sizes)])
         for _ in range(PELLET_DOUBLINGS):
-            rest = sum((sizes[i] * radius**i for i in range(self.degree + 1) if i != count), arb(0))
-            if pivot * radius**count > rest:
+            if pivot * radius**count > others(radius):
                 return Disc(centre, radius, count)
             radius = (2 * radius).upper()
         return None

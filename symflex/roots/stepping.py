@@ -65,8 +65,8 @@ def total_turn(change: Callable[[float, float], tuple[float, arb]], first: float
         When steps would become smaller than ``smallest``.
     """
     total = arb(0)
-    t, step = 0.0, min(1.0, first)
-    longest = 1 / NEARER
+    t, step = 0.0, first
+    longest = inf
     while t < 1:
         spend()
         end = min(1.0, t + step)

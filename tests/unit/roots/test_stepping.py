@@ -25,7 +25,7 @@ from symflex.roots.argument_principle import (
 from symflex.roots.kernel_function import Sample
 from symflex.roots.local_series import LocalSeries
 from symflex.roots.series_steps import BLURRED, MOST, SeriesSteps, _followed
-from symflex.roots.stepping import ROOM, angle, deviation, total_turn
+from symflex.roots.stepping import FORGETTING, GOAL, NEARER, ROOM, angle, deviation, total_turn
 from symflex.roots.winding import Cell, RootOnPathError, Winding, continuous_step
 from tests.unit.roots.known_functions import KnownFunction, exact
 
@@ -98,6 +98,29 @@ def test_no_step_is_taken_that_may_have_turned_by_more():
     total_turn(change, 0.125, 1e-6)
     assert all(end - start <= 0.125 for start, end, short in steps if short)
     assert steps[0][2]
+
+
+@pytest.mark.parametrize("off", [1.7, 2.0, 2.25])
+def test_after_a_step_that_was_too_long_one_is_tried_that_aims_at_the_goal(off):
+    change, steps = spiral(1, bound=lambda start, end: off * (end - start) / 0.25)
+    total_turn(change, 0.25, 1e-6)
+    (_, first, is_first_short), (_, second, is_second_short) = steps[:2]
+    assert (first, is_first_short, is_second_short) == (0.25, False, True)
+    assert second == pytest.approx(0.25 * GOAL / off)
+
+
+def test_where_a_step_was_too_long_those_after_it_grow_by_little():
+    change, steps = spiral(1, bound=lambda start, end: 2.0 if end - start > 0.3 else 0.01)
+    total_turn(change, 0.4, 1e-6)
+    assert [short for _, _, short in steps[:4]] == [False, True, True, True]
+    bounds = [NEARER * 0.4 * FORGETTING**n for n in (1, 2)]
+    assert [end - start for start, end, _ in steps[2:4]] == pytest.approx(bounds)
+
+
+def test_nothing_holds_steps_back_where_none_was_too_long():
+    change, steps = spiral(1, bound=lambda start, end: 0.01)
+    total_turn(change, 0.3, 1e-6)
+    assert [end for _, end, _ in steps] == pytest.approx([0.3, 0.75, 1])
 
 
 def test_a_root_on_the_path_ends_in_steps_that_are_too_short():
@@ -569,7 +592,7 @@ class Exponentials(Followed):
         for roots, exponent in self.roots:
             for root in roots:
                 turn += exponent * ((end - root) / (start - root)).arg()
-        return (off, turn) if off <= ROOM else (off, arb(77))
+        return (off, turn) if off <= ROOM else (off, arb(-77))
 
 
 @pytest.mark.parametrize("tries_series", [True, False])
@@ -589,6 +612,29 @@ def test_series_help_where_steps_are_too_long_for_exponentials(tries_series, is_
         lambda root: Cell(0, 1.5, 0.2, 3).holds(log(root))
     )
     assert bool(asked) is tries_series
+
+
+@pytest.mark.parametrize("wrong", [77, -77])
+def test_series_serve_alone_where_no_step_is_short_enough_for_exponentials(wrong):
+    class Hopeless(Followed):
+        def turn_of_exponentials(self, ball, start, end, bits):
+            return 2 * ROOM, arb(wrong)
+
+    function, cell = Hopeless(PRODUCTS["double"]), Cell(0, 1.5, 0.2, 3)
+    expected = function.count_inside(lambda root: cell.holds(log(root)))
+    assert CertifiedWinding(function, Budget(), tries_series=True).count(cell) == expected
+    with pytest.raises(RootOnPathError):
+        CertifiedWinding(function, Budget()).count(cell)
+
+
+@pytest.mark.parametrize("name", ["simple", "double"])
+def test_a_cell_may_be_as_small_as_its_roots_are_close(name):
+    function = Followed(PRODUCTS[name])
+    around, half = log(exact(function.roots[0][0][0])), 1e-5
+    cell = Cell(around.real - half, around.real + half, around.imag - half, around.imag + half)
+    expected = function.count_inside(lambda root: cell.holds(log(root)))
+    assert expected >= 1
+    assert CertifiedWinding(function, Budget()).count(cell) == expected
 
 
 def test_a_function_without_a_formula_is_followed_by_its_series():
@@ -611,14 +657,17 @@ def test_a_step_on_which_nothing_is_known_proves_nothing(broken):
 
 
 @pytest.mark.parametrize("least", [200, 1000])
-def test_the_precision_is_raised_where_a_factor_is_lost(least):
+@pytest.mark.parametrize("beyond", [0, 0.36])  # Less than the smallest abs(s) on the path, 1/e.
+def test_the_precision_is_raised_where_a_factor_is_lost(least, beyond):
     class Blurred(Followed):
         def enclosed(self, s, bits):
-            blur = acb(arb(0, 1e3), arb(0, 1e3)) if bits < least else acb(0)
+            is_lost = bits < least and abs(s) > beyond
+            blur = acb(arb(0, 1e3), arb(0, 1e3)) if is_lost else acb(0)
             return [(value + blur, slope, e) for value, slope, e in super().enclosed(s, bits)]
 
         def enclosed_about(self, ball, centre, bits):
-            blur = acb(arb(0, 1e3), arb(0, 1e3)) if bits < least else acb(0)
+            is_lost = bits < least and abs(centre) > beyond
+            blur = acb(arb(0, 1e3), arb(0, 1e3)) if is_lost else acb(0)
             found = super().enclosed_about(ball, centre, bits)
             return [(value + blur, slope, e) for value, slope, e in found]
 
