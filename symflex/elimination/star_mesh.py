@@ -15,7 +15,7 @@ signals. Which unknown is next is Markowitz's rule (1957): the one that can make
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
@@ -73,9 +73,9 @@ class _Row:
     is_balance: bool = False
 
     def copy(self) -> _Row:
-        """Return the row for an elimination of its own."""
+        """Return the row for an elimination of its own, which sets the load."""
         entries = {column: terms.copy() for column, terms in self.entries.items()}
-        return _Row(entries, self.own, self.implicit, self.ground.copy(), [], self.is_balance)
+        return replace(self, entries=entries, ground=self.ground.copy())
 
 
 @dataclass(frozen=True, slots=True)

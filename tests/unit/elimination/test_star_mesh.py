@@ -1,5 +1,6 @@
 """Straight-line programs of networks: their values, their size, and what singular systems say."""
 
+from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 from random import Random
@@ -118,6 +119,27 @@ def test_the_size_grows_by_the_same_for_every_mass(make, steps):
     assert len(growth) == 1
 
 
+def star(n):
+    """Return the branches of a mass with all others around it."""
+    return [(1, i) for i in range(2, n + 1)]
+
+
+@pytest.mark.parametrize("make", [chain, tree, star])
+def test_a_network_without_rings_needs_seven_operations_a_mass(make):
+    found = eliminate(assemble(network(make(60)), is_sparse=True), PAIRS[:1])
+    # b s + k, m s^2, Z + w, w/(Z + w), that times Z, and the sum: 7 with s^2 shared.
+    assert found.program.size(*found.quotients[0]) == 7 * 60 - 5
+
+
+def test_a_ring_needs_twelve_operations_a_mass():
+    sizes = []
+    for n in (30, 31):
+        found = eliminate(assemble(network(ring(n)), is_sparse=True), PAIRS[:1])
+        sizes.append(found.program.size(*found.quotients[0]))
+    # b s + k, m s^2, Z + v + w, v and w over that, those times Z, two sums; one branch for both ways.
+    assert sizes[1] - sizes[0] == 2 + 1 + 2 + 2 + 2 + 2 + 1
+
+
 def test_a_chain_of_more_names_than_are_expanded_needs_seven_operations_a_mass():
     found = eliminate(assemble(network(chain(500)), is_sparse=True), PAIRS[:1])
     # b s + k, m s^2, Z + w, w/(Z + w), that times Z, and the sum: 7 with s^2 shared.
@@ -179,7 +201,14 @@ outputs.y = "a"
 """
 
 
-@pytest.mark.parametrize(("text", "code"), [(FLOATING, "SF301"), (ALGEBRAIC, "SF303")])
+ITSELF = ALGEBRAIC.replace("b + u", "a + u")
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [(FLOATING, "SF301"), (ALGEBRAIC, "SF303"), (ITSELF, "SF303")],
+    ids=["floats", "loop", "itself"],
+)
 def test_a_singular_system_is_explained(text, code):
     model = pipeline.loads(text)
     with pytest.raises(ModelError) as caught:
@@ -377,3 +406,34 @@ def test_forces_that_other_nodes_decide_act_as_the_equations_say(seed):
         f"{HEAD}parameters = {{ m = {{}}, k = {{}}, b = {{}} }}\n[elements]\n{body}\n"
         f'[inputs]\nF0 = {{}}\nF1 = {{}}\nG = {{ force = "x1" }}\n[outputs]\n{outputs}\n'
     )
+
+
+APART = """symflex = 1
+parameters = { m = {}, n = {} }
+elements.here = { type = "mass", at = "x", m = "m" }
+elements.there = { type = "mass", at = "y", m = "n" }
+inputs.F = { force = ["x", "y"] }
+outputs.X = "x"
+outputs.Y = "y"
+outputs.both = "x + y"
+"""
+
+
+def test_a_division_that_is_all_of_a_response_is_its_quotient():
+    equations = pipeline.assemble_sparse(pipeline.loads(APART))
+    found = eliminate(equations, [("X", "F"), ("Y", "F"), ("both", "F")])
+    given = numbers(equations.ring.names)
+    s, m, n = (given[name] for name in "smn")
+    read = [tuple(value(found.program, step, given) for step in pair) for pair in found.quotients]
+    assert read == [(1, m * s**2), (-1, n * s**2), (1 / (m * s**2) - 1 / (n * s**2), 1)]
+
+
+def test_nothing_wanted_is_nothing_found():
+    found = eliminate(pipeline.assemble_sparse(pipeline.loads(APART)), [])
+    assert (found.quotients, found.pivots) == ((), ())
+
+
+def test_fewer_equations_than_unknowns_are_refused_with_what_they_leave_open():
+    equations = pipeline.assemble_sparse(pipeline.loads(APART))
+    with pytest.raises(ModelError, match="nothing determines node 'y': it floats"):
+        eliminate(replace(equations, rows=equations.rows[:1]), [("X", "F")])
