@@ -4,7 +4,7 @@ from symflex.stability.bandwidth import AllowedBandwidth
 from symflex.stability.colocation import DynamicColocation, dynamic_colocation
 from symflex.stability.crossing import Crossing, PoleCount
 from symflex.stability.find import find_stable_gains
-from symflex.stability.locus import RootLocus, loop_gain, require_arrival, trace_locus
+from symflex.stability.locus import RootLocus, closed_loop, loop_gain, require_arrival, trace_locus
 from symflex.stability.loop import GainPolynomial, Loop, characteristic_loop, pick_gain
 from symflex.stability.stability_map import (
     Boundary,
@@ -31,6 +31,7 @@ __all__ = [
     "RootLocus",
     "StabilityMap",
     "characteristic_loop",
+    "closed_loop",
     "decibels",
     "degrees",
     "dynamic_colocation",

@@ -102,12 +102,22 @@ def loop_gain(loop: Loop, gain: Fraction | None = None) -> BoundTransferFunction
     UsageError
         SF806 when the loop is no straight line in its gain, or K has no value.
     """
-    value = loop.nominal if gain is None else gain
     above, below = _parts(loop)
+    return _with(loop.bound, above * _value(loop, gain), below)
+
+
+def closed_loop(loop: Loop, gain: Fraction | None = None) -> BoundTransferFunction:
+    """Return ``B/(A + K B)``, whose poles are those of the closed loop; as :func:`loop_gain` otherwise."""
+    above, below = _parts(loop)
+    return _with(loop.bound, above, below + above * _value(loop, gain))
+
+
+def _value(loop: Loop, gain: Fraction | None) -> Fraction:
+    value = loop.nominal if gain is None else gain
     if value is None:
         message = f"'{loop.gain.name}' has no value"
         raise UsageError(Diagnostic("SF806", message, loop.gain.span, "give it one in [parameters]"))
-    return _with(loop.bound, above * value, below)
+    return value
 
 
 def _parts(loop: Loop) -> tuple[Factored, Factored]:
@@ -163,8 +173,7 @@ def trace_locus(
     budget = budget or entered_budget()
     above, below = _parts(loop)
     low, high = _range(loop, limits)
-    at_first = _with(loop.bound, above, below + above * low)
-    at_last = _with(loop.bound, above, below + above * high)
+    at_first, at_last = closed_loop(loop, low), closed_loop(loop, high)
     if modes is None and band_hz is not None and loop.bound.kernels:
         band = Band(Fraction(0), Fraction(band_hz[1]))
         shown = [locate(bound, band, 15, budget).poles for bound in (at_first, at_last)]

@@ -27,7 +27,8 @@ from symflex.emit.latex.column import checked_width
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.model.analysis import FIGURE_KINDS
-from symflex.stability import loop_gain, require_arrival, trace_locus
+from symflex.response import roots_if_found
+from symflex.stability import closed_loop, loop_gain, require_arrival, trace_locus
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -238,5 +239,6 @@ def draw_loop(
             title=title,
             width=width,
             labels=[label],
+            verdict=f"closed loop {roots_if_found(closed_loop(loop)).verdict.headline}",
         )
         return _with_every_letter(figure, font)

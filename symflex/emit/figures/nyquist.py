@@ -59,15 +59,17 @@ def draw_nyquist(
     title: str | None = None,
     width: float | None = None,
     labels: Sequence[str] = (),
+    verdict: str | None = None,
 ) -> Figure:
     """Draw the values of transfer functions for positive frequencies and, dashed, for negative ones.
 
     Of a loop gain, which ``labels`` tell apart, the part of the plane about -1 is shown; where a curve leaves
     it, it goes on outside. Arrows point to growing frequency. P is the number of poles of what is drawn in
     the right half plane: a closed loop is stable if the curve winds P times counterclockwise about -1.
+    ``verdict`` says below the title whether it is.
     """
     width = width or COLUMN_INCHES
-    lines = title_lines(title, width)
+    lines = [*title_lines(title, width), *title_lines(verdict, width)]
     figure = new_figure(width, HEIGHT_INCHES + LINE_INCHES * (len(lines) + 1))
     figure.set_layout_engine("constrained", h_pad=0.03, w_pad=0.03)
     axes = figure.subplots()
@@ -97,9 +99,9 @@ def draw_nyquist(
         axis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10]))
     axes.set_xlabel("Real part")
     axes.set_ylabel("Imaginary part")
-    figure.legend(loc="outside upper center", ncols=3, frameon=False)
-    if lines:
-        figure.suptitle("\n".join(lines), fontsize=TITLE_POINTS, linespacing=TITLE_SPACING, parse_math=False)
+    # A title of the figure would stand over a legend outside of the axes.
+    legend = figure.legend(loc="outside upper center", ncols=3, frameon=False, title="\n".join(lines))
+    legend.get_title().set(fontsize=TITLE_POINTS, linespacing=TITLE_SPACING, parse_math=False, ha="center")
     return figure
 
 

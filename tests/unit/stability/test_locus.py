@@ -247,3 +247,11 @@ def test_the_legend_names_what_is_seen(loop):
     assert axes.get_xlim()[0] > -300
     labels, _ = texts_and_frame(loop, "K/(s*(s + 1)*(s + 2))", (0, 10**9))
     assert labels[1].endswith("(all outside)")
+
+
+@pytest.mark.parametrize(("gain", "said"), [(1, "stable"), (4, "unstable: 2 poles in the right half plane")])
+def test_a_nyquist_plot_says_whether_the_closed_loop_is_stable(gain, said, loop):
+    # K exp(-s/2)/s is stable up to K = pi, where a pair crosses; the next one does at 5 pi.
+    figure = draw_loop("nyquist", characteristic(loop("K*D/s", K=gain)), title="A loop")
+    (legend,) = figure.legends
+    assert legend.get_title().get_text() == f"A loop\nclosed loop {said}"
