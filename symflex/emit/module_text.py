@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symflex.emit.forms import print_form
-from symflex.emit.latex.table import decimal_text, rational_value
+from symflex.emit.latex.table import decimal_text
 from symflex.emit.program import inert, nearest_double, wrapped
 from symflex.expressions import Quotient, format_expression, is_number
 from symflex.transfer import NestedTransferFunction
@@ -131,7 +131,7 @@ def value_as_written(parameter: Parameter) -> str:
     value, unit = parameter.as_written()
     if value is None or unit in (parameter.unit, ""):
         return ""
-    return f"{decimal_text(rational_value(value))} {unit}"
+    return f"{decimal_text(value)} {unit}"
 
 
 def default_value(parameter: Parameter) -> str:

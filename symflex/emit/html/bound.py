@@ -9,7 +9,7 @@ from symflex.emit.html.model import escape_label
 from symflex.emit.html.table import NUMBER, TEXT, html_table
 from symflex.emit.html.text import escape_html
 from symflex.emit.latex import model_labels, notebook_latex
-from symflex.emit.latex.table import decimal_text, rational_value
+from symflex.emit.latex.table import decimal_text
 
 if TYPE_CHECKING:
     from symflex.transfer import BoundTransferFunction
@@ -34,7 +34,7 @@ def bound_html(bound: BoundTransferFunction) -> str:
         (
             f"${escape_label(labels[name])}$" if name in labels else "",
             f"<code>{escape_html(name)}</code>",
-            decimal_text(rational_value(value if shown is None else shown)),
+            decimal_text(value if shown is None else shown),
             escape_html("" if unit == "1" else unit),
         )
         for name, value in bound.values

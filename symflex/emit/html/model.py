@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 from symflex.emit.html.table import NUMBER, TEXT, html_table
 from symflex.emit.html.text import escape_html
 from symflex.emit.latex import model_labels
-from symflex.emit.latex.table import decimal_text, rational_value
+from symflex.emit.latex.table import decimal_text
 
 if TYPE_CHECKING:
     from symflex.model import Model, Parameter
@@ -55,7 +55,7 @@ def escape_label(latex: str) -> str:
 
 def _written(parameter: Parameter) -> tuple[str, str]:
     value, unit = parameter.as_written()
-    shown = "symbolic" if value is None else decimal_text(rational_value(value))
+    shown = "symbolic" if value is None else decimal_text(value)
     return shown, escape_html("" if unit == "1" else unit)
 
 

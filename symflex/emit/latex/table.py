@@ -208,23 +208,26 @@ def _table_of(
     return tabular(columns, setting or SETTINGS[-1])
 
 
-def decimal_text(value: Fraction, digits: int = VALUE_DIGITS, *, is_rounded: bool = False) -> str:
-    """Return a rational number as a decimal, without trailing zeros unless it is known to be rounded.
+def decimal_text(value: ExactValue) -> str:
+    """Return a value as a decimal, with pi to eighty digits; without trailing zeros unless it is rounded.
 
     Examples
     --------
-    >>> [decimal_text(Fraction(v)) for v in ("0.11", "2/3", "210000000000", "-4.7e-12", "955377")]
+    >>> from symflex.model import ExactValue
+    >>> values = ("0.11", "2/3", "210000000000", "-4.7e-12", "955377")
+    >>> [decimal_text(ExactValue(Fraction(v))) for v in values]
     ['0.11', '0.6666667', '2.1e11', '-4.7e-12', '955377']
     """
-    if value == 0:
+    number = value.rational * _PI**value.pi_power
+    if number == 0:
         return "0"
-    sign, size = ("-" if value < 0 else ""), abs(value)
+    sign, size = ("-" if number < 0 else ""), abs(number)
     leading = _decimal_exponent(size)
-    count = round(size / Fraction(10) ** (leading - digits + 1))
-    if count == 10**digits:
+    count = round(size / Fraction(10) ** (leading - VALUE_DIGITS + 1))
+    if count == 10**VALUE_DIGITS:
         leading, count = leading + 1, count // 10
     text = str(count)
-    if Fraction(count) * Fraction(10) ** (leading - digits + 1) == size and not is_rounded:
+    if Fraction(count) * Fraction(10) ** (leading - VALUE_DIGITS + 1) == size:
         text = text.rstrip("0")
     if _SMALLEST_PLAIN <= leading < 0:
         return f"{sign}0.{'0' * (-leading - 1)}{text}"
@@ -251,7 +254,7 @@ def _value(parameter: Parameter) -> str:
     value, unit = parameter.as_written()
     if value is None:
         return f"symbolic, in {unit_latex(unit)}" if unit and unit != "1" else "symbolic"
-    return quantity_latex(decimal_text(rational_value(value)), unit)
+    return quantity_latex(decimal_text(value), unit)
 
 
 def _value_width(parameter: Parameter) -> float:
@@ -260,12 +263,7 @@ def _value_width(parameter: Parameter) -> float:
     width = text_width(unit) * (1.0 if siunitx_unit(written) is None else 1.1) + 0.4
     if value is None:
         return text_width("symbolic, in ") + width
-    return number_width(decimal_text(rational_value(value))) + width
-
-
-def rational_value(value: ExactValue) -> Fraction:
-    """Return the value with pi to eighty digits."""
-    return value.rational * _PI**value.pi_power
+    return number_width(decimal_text(value)) + width
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symflex.emit.latex import model_labels, parameter_table
-from symflex.emit.latex.table import decimal_text, rational_value
+from symflex.emit.latex.table import decimal_text
 from symflex.emit.mathml import label_mathml
 from symflex.report.document import Code, Mathematics, Table, columns
 from symflex.report.numerals import exponents, unit_text
@@ -26,7 +26,7 @@ def parameter_section(study: Study) -> Part | None:
     for p in model.parameters:
         symbol = Mathematics(label_mathml(p.name, labels), labels[p.name])
         exact, unit = p.as_written()
-        value = "symbolic" if exact is None else exponents(decimal_text(rational_value(exact)))
+        value = "symbolic" if exact is None else exponents(decimal_text(exact))
         rows.append(((symbol,), (Code(p.name),), (value,), (unit_text(unit),), (p.doc,)))
     heads = columns(("Symbol", "plain"), ("Name", "plain"), ("Value", "number"), ("Unit", "plain"), "Meaning")
     table = Table(heads, tuple(rows), latex=parameter_table(model))

@@ -60,11 +60,7 @@ def test_an_unknown_unit_is_escaped_text():
     ],
 )
 def test_a_value_is_a_short_decimal(value, text):
-    assert decimal_text(value) == text
-
-
-def test_rounded_values_keep_their_zeros():
-    assert decimal_text(Fraction(11), 6, is_rounded=True) == "11.0000"
+    assert decimal_text(ExactValue(value)) == text
 
 
 MODEL = Model(
