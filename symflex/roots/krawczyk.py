@@ -9,6 +9,7 @@ X, the function has that root with the factor's exponent for its multiplicity.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import inf
 from typing import TYPE_CHECKING
 
 from flint import acb, arb
@@ -105,7 +106,7 @@ def prove_simple(
             found = box
             with precision(bits):
                 size = acb(box.re, box.im).abs_lower()
-                error = (box.re.rad() + box.im.rad()).upper()
+                error = box.re.rad() + box.im.rad()
                 if not box.touching and error < size * arb(10) ** -digits:
                     return _root(box, box.exponent, certified=True)
                 s = acb(box.re.mid(), box.im.mid())
@@ -179,7 +180,7 @@ def _box(
 
 def _is_alone(function: KernelFunction, middle: acb, radius: arb, exponent: int, bits: int) -> bool:
     """Tell whether a function has so many roots near a point: where wavenumbers vanish, boxes do not say."""
-    within = (radius.upper() * SMALLER).mid()
+    within = (radius * SMALLER).mid()
     reach = within.max((middle.abs_upper() * REACH).mid())
     series = local_series(function, middle, reach, bits + SERIES_BITS, SERIES_POINTS + bits // BITS_A_POINT)
     return series is not None and series.count(within) == exponent * function.power
@@ -190,11 +191,11 @@ def _approached(
 ) -> tuple[acb, int] | None:
     """Return a point close to a root to a share of the bits, by Newton steps at rising precision."""
     first, bits = min(levels), levels[1]
-    level, chosen, patience = first, factor, STEPS
+    level, chosen, patience = first, factor or 0, STEPS
     for _ in range(STEPS):
         factors = function.enclosed(s, level)
-        if chosen is None or level == first:
-            chosen = nearest_factor(factors) if factor is None else factor
+        if factor is None and level == first:
+            chosen = nearest_factor(factors)
         value, slope, _ = factors[chosen]
         with precision(level):
             step = value / slope
@@ -225,5 +226,5 @@ def nearest_factor(factors: list[tuple[acb, acb, int]]) -> int:
     for i, (value, slope, exponent) in enumerate(factors):
         size, steepness = abs(value).mid(), abs(slope).mid()
         if exponent > 0 and steepness > 0:
-            sizes.append((float((size / steepness).log()) if size > 0 else -float("inf"), i))
+            sizes.append((float((size / steepness).log()) if size > 0 else -inf, i))
     return min(sizes)[1] if sizes else 0

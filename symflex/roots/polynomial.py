@@ -307,7 +307,7 @@ def in_order(roots: Sequence[Root]) -> tuple[Root, ...]:
     def compare(a: tuple[arb, Root], b: tuple[arb, Root]) -> int:
         x, y = float(a[0].mid()), float(b[0].mid())
         if abs(x - y) > ROUNDING * (x + y):
-            return 1 if x > y else -1
+            return _sign(a[0].mid(), b[0].mid())
         return _sign(a[0], b[0]) or _sign(a[1].re, b[1].re) or _sign(b[1].im, a[1].im)
 
     return tuple(root for _, root in sorted(keyed, key=cmp_to_key(compare)))

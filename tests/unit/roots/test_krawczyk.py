@@ -12,6 +12,7 @@ from symflex.roots import precision
 from symflex.roots.krawczyk import (
     BOX_SHARE,
     LEAST_BITS,
+    PATIENCE,
     SMALLER,
     Box,
     _box,
@@ -263,8 +264,9 @@ def test_a_box_keeps_the_size_in_which_it_proved_its_root_to_be_the_only_one():
     assert box.touching == ()
 
 
+@pytest.mark.parametrize("place", [(2, 3), (-4, 0), (0, 5)])
 @pytest.mark.parametrize("digits", [1, 20, 100])
-def test_the_first_precision_suffices_for_the_digits_asked_for(digits):
+def test_the_first_precision_suffices_for_the_digits_asked_for(digits, place):
     # One box is drawn: Newton's image is small enough the first time.
     boxes = []
 
@@ -273,7 +275,7 @@ def test_the_first_precision_suffices_for_the_digits_asked_for(digits):
             boxes.append(bits)
             return super().enclosed_about(ball, centre, bits)
 
-    prove_simple(Counted(((((2, 3), (11, 1)), 1),)), near(acb(2, 3)), digits)
+    prove_simple(Counted((((place, (11, 1)), 1),)), near(acb(*place)), digits)
     assert len(boxes) == 1
 
 
@@ -307,8 +309,9 @@ def test_a_root_is_certified_only_where_both_parts_are_known_to_the_digits_asked
     def step(reach):
         return acb(arb(0, reach * wide[0]), arb(0, reach * wide[1]))
 
-    root = prove_simple(Told(((((2, 3),), 1),), step=step), acb(2, 3), digits)
-    assert root.certified
+    function = Told(((((2, 3), (0, 3), (2, 0)), 1),), step=step)
+    root = prove_simple(function, acb(2, 3), digits)
+    assert (root.certified, holds(root, acb(2, 3))) == (True, True)
     with precision(8000):
         assert root.re.rad() + root.im.rad() <= abs(acb(2, 3)) * ten(-digits)
 
@@ -322,3 +325,74 @@ def test_factors_that_only_seem_to_vanish_in_a_box_are_cleared_by_the_count_of_t
     assert box.touching == ()
     root = prove_simple(function, acb(2, 3), 10, factor=0)
     assert (root.certified, root.multiplicity, holds(root, acb(2, 3))) == (True, 1, True)
+
+
+@pytest.mark.parametrize(("off", "is_told"), [(0.1, False), (0.24, False), (2, True), (3, True)])
+@pytest.mark.parametrize("turned", [True, False])
+def test_a_pair_mirrored_in_an_axis_is_told_apart_where_a_box_about_one_leaves_out_the_other(
+    off, is_told, turned
+):
+    bits = 200
+    with precision(8000):
+        reach = (arb(5) * arb(2) ** (-BOX_SHARE * bits)).mid()
+        one, other = (acb(5, sign * reach * off).mid() for sign in (1, -1))
+        if turned:
+            one, other = one * acb(0, 1), other * acb(0, 1)
+    function = KnownFunction(((((one.real, one.imag), (other.real, other.imag)), 1),), is_even=True)
+    box = _box(function, one, (bits, bits), None, even=True)
+    assert (box is not None) is is_told
+    if box is not None:
+        assert acb(box.re, box.im).contains(one)
+        assert not acb(box.re, box.im).contains(other)
+
+
+@pytest.mark.parametrize("turned", [True, False])
+def test_a_box_about_a_root_said_to_lie_on_an_axis_mirrors_itself(turned):
+    boxes = []
+
+    class Watched(KnownFunction):
+        def enclosed_about(self, ball, centre, bits):
+            boxes.append((ball, centre))
+            return super().enclosed_about(ball, centre, bits)
+
+    # Newton's steps end a tenth of the box off the axis, on which the root is not.
+    with precision(8000):
+        off = (arb(5) * arb(2) ** (-BOX_SHARE * 200) / 10).mid()
+    place = (off, arb(5)) if turned else (arb(5), off)
+    found = _box(Watched((((place,), 1),)), acb(*place), (200, 200), None, even=True)
+    (ball, centre), axis = boxes[-1], found.re if turned else found.im
+    assert axis == 0
+    for each in (ball, centre):
+        assert (each.real if turned else each.imag).mid() == 0
+
+
+def test_where_a_step_says_nothing_at_few_bits_more_are_taken():
+    class Unknown(KnownFunction):
+        def enclosed(self, s, bits):
+            return [(v, acb(0) if bits < 90 else d, e) for v, d, e in super().enclosed(s, bits)]
+
+    root = prove_simple(Unknown(((((2, 3),), 1),)), near(acb(2, 3)), 10)
+    assert (root.certified, holds(root, acb(2, 3))) == (True, True)
+
+
+def test_steps_of_unknown_sign_ask_for_more_digits():
+    class Blurred(KnownFunction):
+        def enclosed(self, s, bits):
+            blur = acb(arb(0, 1e-9), arb(0, 1e-9)) if bits < 120 else acb(0)
+            return [(v + blur, d, e) for v, d, e in super().enclosed(s, bits)]
+
+    root = prove_simple(Blurred(((((2, 3),), 1),)), near(acb(2, 3)), 10)
+    assert (root.certified, holds(root, acb(2, 3))) == (True, True)
+
+
+def test_steps_that_converge_like_those_to_a_double_root_are_given_up():
+    # One bit a step: some twenty at the first precision, and no more than the patience at the next one.
+    steps = []
+
+    class Counted(KnownFunction):
+        def enclosed(self, s, bits):
+            steps.append(bits)
+            return super().enclosed(s, bits)
+
+    assert prove_simple(Counted((((1, 1, -3), 1),)), acb(arb("1.125")), 10) is None
+    assert len(steps) < 30 + PATIENCE

@@ -14,6 +14,7 @@ from symflex.roots import POLYNOMIAL, Everything, PolynomialInS, Root, RootProbl
 from symflex.roots.discs import Disc
 from symflex.roots.durand_kerner import propose_by_durand_kerner
 from symflex.roots.polynomial import (
+    PolynomialRootFinder,
     _by_degree,
     _conjugates,
     _hull,
@@ -200,6 +201,7 @@ def test_square_roots_of_every_point_of_a_disc_are_enclosed(place, count):
     assert all(r.certified is (count == 1) for r in found)
     exact_zero = is_real and count == 1
     assert all((r.is_real or r.on_imaginary_axis) is exact_zero for r in found)
+    assert {type(mark) for r in found for mark in (r.is_real, r.on_imaginary_axis)} == {bool}
     assert not encloses(found, acb(0))
     points = [p for p in points_of(z) if not exact_zero or p.imag == 0]
     for point in points:
@@ -312,6 +314,6 @@ def test_an_engine_given_is_the_one_that_is_asked():
         asked.append(polynomial)
         return propose_by_durand_kerner(polynomial)
 
-    found = find_polynomial_roots(product_of(((1, -7, 30), 1)), 10, (propose,))
+    found = PolynomialRootFinder("named", (propose,)).find(product_of(((1, -7, 30), 1)), Everything(), 10)
     assert len(asked) >= 1
     assert [round(float(r.re.mid()), 6) for r in found] == [1, -7, 30]

@@ -351,12 +351,26 @@ def test_one_term_outweighs_the_others_from_a_radius_on(terms, arguments, edge):
         assert not _is_dominated(terms, arguments, arb(edge * 0.999))
 
 
-def test_a_term_that_is_small_and_still_grows_against_the_largest_outweighs_it_later():
-    # exp(r) > r^3/100 at every r, and r^3 exp(-r) falls from 3 on.
-    terms = {GROWING: powers(p0=1), LEVEL: powers(p3="0.01")}
+@pytest.mark.parametrize(
+    ("power", "unit", "over", "edge"),
+    [(1, 1, 3, 3), (1, 2, 3, 1.5), (Fraction(1, 2), 2, 1, 1), (Fraction(1, 2), 3, 2, 16 / 9)],
+)
+def test_a_term_that_is_small_and_still_grows_against_the_largest_outweighs_it_later(power, unit, over, edge):
+    # exp(c r^p) > r^q/1000 at every r, and r^q exp(-c r^p) falls from (q/(c p))^(1/p) on.
+    terms = {GROWING: powers(p0=1), LEVEL: {Fraction(over): acb("0.001")}}
+    arguments = [_Power(Fraction(power), acb(unit))]
     with precision(64):
-        assert not _is_dominated(terms, REAL, arb(2.99))
-        assert _is_dominated(terms, REAL, arb(3.01))
+        assert not _is_dominated(terms, arguments, arb(edge * 0.997))
+        assert _is_dominated(terms, arguments, arb(edge * 1.003))
+
+
+def test_what_falls_beside_a_delay_counts_too():
+    # exp((2 - d) r) > 5 for a delay's d, which is none but by rounding.
+    terms = {((0, -1, 0), (1, 1, 0)): powers(p0=1), LEVEL: powers(p0=5)}
+    arguments = [_Power(Fraction(1), acb("1e-6"), is_delay=True), _Power(Fraction(1), acb(2))]
+    with precision(64):
+        assert _is_dominated(terms, arguments, arb(log(5) / 2 * 1.001))
+        assert not _is_dominated(terms, arguments, arb(log(5) / 2 * 0.999))
 
 
 def test_what_grows_faster_than_the_largest_term_outweighs_it_later():
