@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import permutations
 from math import log, pi, prod, sqrt
 
 import mpmath
@@ -11,6 +12,7 @@ from flint import acb, arb
 
 from symflex import pipeline
 from symflex.roots import precision
+from symflex.roots.exponential_sum import MOST_EXPONENTIALS
 from symflex.roots.tail import (
     ADVANCED,
     NARROW,
@@ -19,6 +21,7 @@ from symflex.roots.tail import (
     NO_LOSS,
     SECTORS,
     TWO_WAVENUMBERS,
+    Tail,
     _at_infinity,
     _is_dominated,
     _Power,
@@ -157,17 +160,17 @@ def test_a_sector_holds_its_directions_and_no_others(sector, power):
 # ------------------------------------------------------------------------------- waves with known roots
 
 
-def field(equation, *conditions):
+def field(equation, *conditions, length=1):
     listed = ", ".join(f'"{each}"' for each in conditions)
     return bound(f"""symflex = 1
 [fields.w]
-domain = ["0", "1"]
+domain = ["0", "{length}"]
 equation = "{equation}"
 conditions = [{listed}]
 [inputs]
 F = {{}}
 [outputs]
-y = "w(1)"
+y = "w({length})"
 """)
 
 
@@ -195,33 +198,102 @@ def plus(function, number, start=1e-3):
     return right_tail(function, [cosh, cosh**0], [acb(1), acb(number)], start)
 
 
-DIFFUSION = ("w'' - s*w = 0", "w(0) = 0", "w'(1) = F")
+def diffusion(length=1):
+    return field("w'' - s*w = 0", "w(0) = 0", f"w'({length}) = F", length=length)
 
 
+@pytest.mark.parametrize("length", [1, 3, 0.5])
 @pytest.mark.parametrize("number", [100, 3000])
-def test_diffusion_ends_where_its_exponential_outweighs_a_number(number):
+def test_diffusion_ends_where_its_exponential_outweighs_a_number(number, length):
     # Of cosh(sqrt(s)) + c the last root right of the axis is (acosh(c) + j pi)^2; on the imaginary axis,
     # where exponentials are smallest, sinh(sqrt(R/2)) is c.
-    last = abs((mpmath.acosh(number) + 1j * pi) ** 2)
-    edge = 2 * float(mpmath.asinh(number)) ** 2
-    assert last < edge <= plus(field(*DIFFUSION), number).radius <= edge * 1.1
-    assert plus(field(*DIFFUSION), number, 0.9 * edge).radius >= edge
+    last = abs((mpmath.acosh(number) + 1j * pi) ** 2) / length**2
+    edge = 2 * float(mpmath.asinh(number)) ** 2 / length**2
+    function = diffusion(length)
+    assert last < edge <= plus(function, number).radius <= edge * 1.1
+    assert plus(function, number, 0.9 * edge).radius >= edge
+
+
+@pytest.mark.parametrize("power", [0, 1, 2])
+def test_powers_of_s_and_of_wavenumbers_weigh_with_the_exponential(power):
+    # s^n gamma cosh(gamma) + 10^4 with gamma = 2 sqrt(s), on the imaginary axis as above.
+    function = field("w'' - 4*s*w = 0", "w(0) = 0", "w'(1) = F")
+    ring = function.ratio.ring
+    (kernel, *_) = function.kernels.kernels
+    s, cosh = ring.context.gen(0), ring.generator(kernel.generator)
+    found = right_tail(
+        function, [s**power * ring.generator(kernel.wavenumber) * cosh, s**0], [acb(1), acb(1e4)], 1e-3
+    )
+
+    def excess(g):
+        return power * mpmath.log(g * g / 4) + mpmath.log(g * mpmath.sinh(g / sqrt(2))) - mpmath.log(1e4)
+
+    size = mpmath.findroot(excess, (1, 15), solver="anderson")
+    edge = float(size) ** 2 / 4
+    assert edge * 0.999 <= found.radius <= edge * 1.1
+
+
+def test_transport_with_diffusion_ends_where_its_exponential_outweighs_the_rest():
+    # cosh(g) - 1.5 sinh(g)/g + 3000 exp(-1.5), g^2 = s + 9/4.
+    def is_larger(r):
+        sizes = []
+        for k in range(101):
+            g = mpmath.sqrt(r * mpmath.expj(pi / 2 * k / 100) + 2.25)
+            rest = abs(mpmath.exp(-g) * (1 + 1.5 / g)) + 6000 * mpmath.exp(-1.5)
+            sizes.append(abs(mpmath.exp(g) * (1 - 1.5 / g)) - rest)
+        return min(sizes) > 0
+
+    found = tail(field("w'' + 3*w' - s*w = 0", "w(0) + 3000*w(1) = F", "w'(1) = 0")).radius
+    assert is_larger(found)
+    assert not is_larger(found / 1.25)
+
+
+def test_transport_that_grows_on_its_way_is_not_taken_for_a_delay():
+    # 2 + exp(1 - s): abs(exp(-s)) = 2/e, at s = 1 - log(2) + j (2n + 1) pi.
+    function = field("w' + (s - 1)*w = 0", "w(0) = F")
+    shifted = function.ratio.ring.generator(function.kernels.kernels[0].generator)
+    assert right_tail(function, [shifted**0, shifted], [acb(2), acb(1)], 1.0).radius is None
+
+
+def test_too_many_exponentials_are_not_looked_at():
+    function = delayed("s + s*D + 1")
+    decay = function.ratio.ring.generator(function.kernels.generators[0])
+    found = right_tail(function, [(1 + decay) ** MOST_EXPONENTIALS], [acb(1)], 1.0)
+    assert (found.radius, found.reason) == (None, NO_FORMULA)
+
+
+def test_a_delayed_term_that_cancels_wholly_is_none():
+    # 1 + 2 D, and s^2 D^2 - s^2 D^2.
+    function = delayed("s + s*D + 1")
+    ring = function.ratio.ring
+    s, decay = ring.context.gen(0), ring.generator(function.kernels.generators[0])
+    found = right_tail(function, [1 + 2 * decay + s**2 * decay**2, s**2 * decay**2], [acb(1), acb(-1)], 1.0)
+    assert (found.radius, found.reason) == (None, NEUTRAL)
+
+
+@pytest.mark.parametrize("given", [(None, ""), (1.0, NO_LOSS)])
+def test_a_tail_has_a_radius_or_a_reason(given):
+    with pytest.raises(ValueError, match=r"^a tail has either a radius or a reason$"):
+        Tail(*given)
 
 
 def lossy_rod(modulus, eta):
     return bound(ELEMENT.format(kind="rod", values=f'E = "{modulus} Pa", rho = 1, A = 1, eta = "{eta} s"'))
 
 
-@pytest.mark.parametrize(("modulus", "value"), [("1", 1.0), ("2*pi", 2 * pi)])
-def test_a_lossy_rod_ends_where_its_exponential_outweighs_a_number(modulus, value):
+@pytest.mark.parametrize(
+    ("modulus", "value", "loss", "eta"),
+    [("1", 1.0, "10", 10.0), ("2*pi", 2 * pi, "10", 10.0), ("1", 1.0, "pi^2", pi**2)],
+)
+def test_a_lossy_rod_ends_where_its_exponential_outweighs_a_number(modulus, value, loss, eta):
     # gamma^2 = rho s^2/(E (1 + eta s)), its smallest real part on the imaginary axis.
-    eta, number = 10.0, 100
+    number = 100
 
     def excess(r):
         return mpmath.sinh(mpmath.re(1j * r / mpmath.sqrt(value * (1 + 1j * r * eta)))) - number
 
     edge = float(mpmath.findroot(excess, (100 * value, 10000 * value), solver="anderson"))
-    assert edge * 0.999 <= plus(lossy_rod(modulus, eta), number).radius <= edge * 1.1
+    assert edge * 0.999 <= plus(lossy_rod(modulus, loss), number).radius <= edge * 1.1
 
 
 def test_a_cantilever_that_creeps_ends_where_bending_dies_out():
@@ -342,6 +414,15 @@ def powers(**terms):
             [_Power(Fraction(1), acb(2)), REAL[0]],
             log(2.5) / 2,
         ),
+        (
+            {((0, 1, 0), (1, 1, 0)): powers(p0=1), LEVEL: powers(p0=7)},
+            [_Power(Fraction(1), acb(2)), REAL[0]],
+            log(7) / 3,
+        ),
+        # balls count with all that they may be: exp(r) > 4, r/2 > 2, r > 3
+        ({GROWING: powers(p0=1), LEVEL: {Fraction(0): acb(arb(3, 1))}}, REAL, log(4)),
+        ({LEVEL: {Fraction(1): acb(arb(1, 0.5)), Fraction(0): acb(2)}}, REAL, 4),
+        ({LEVEL: {Fraction(1): acb(1), Fraction(0): acb(arb(2, 1))}}, REAL, 3),
     ],
 )
 def test_one_term_outweighs_the_others_from_a_radius_on(terms, arguments, edge):
@@ -362,6 +443,15 @@ def test_a_term_that_is_small_and_still_grows_against_the_largest_outweighs_it_l
     with precision(64):
         assert not _is_dominated(terms, arguments, arb(edge * 0.997))
         assert _is_dominated(terms, arguments, arb(edge * 1.003))
+
+
+def test_all_that_a_term_falls_by_makes_up_for_its_power():
+    # r^3 exp(-(2 + 1) r) falls from 1 on.
+    terms = {((0, 1, 0), (1, 1, 0)): powers(p0=1), LEVEL: powers(p3="0.001")}
+    with precision(64):
+        for arguments in permutations([_Power(Fraction(1), acb(2)), _Power(Fraction(1), acb(1))]):
+            assert not _is_dominated(terms, list(arguments), arb(0.997))
+            assert _is_dominated(terms, list(arguments), arb(1.003))
 
 
 def test_what_falls_beside_a_delay_counts_too():
@@ -389,3 +479,4 @@ def test_a_term_that_may_be_zero_outweighs_nothing():
     with precision(64):
         assert not _is_dominated({LEVEL: {Fraction(1): acb(arb(0, 1))}}, REAL, arb(10))
         assert not _is_dominated({LEVEL: powers(p0=0)}, REAL, arb(10))
+        assert not _is_dominated({LEVEL: {Fraction(1): acb(arb(0, 1)), Fraction(0): acb(100)}}, REAL, arb(10))
