@@ -10,7 +10,7 @@ from cmath import exp as cexp
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property, lru_cache
-from math import lcm
+from math import exp, lcm
 from typing import TYPE_CHECKING, Final
 
 from flint import acb, acb_series, arb
@@ -325,6 +325,14 @@ class KernelFunction:
                     rate = _number(values[kernel.wavenumber])
                 sizes.append(abs(rate * length).mid())
             return max(float(size) if size.is_finite() else 0.0 for size in sizes)
+
+    def frequency_of(self, waves: float) -> float:
+        """Return a frequency at which the largest argument of a kernel has a given size [rad/s]."""
+        low, high = -60.0, 60.0
+        for _ in range(60):
+            middle = (low + high) / 2
+            low, high = (middle, high) if self.reach(exp(middle)) < waves else (low, middle)
+        return exp(high)
 
     def _sample(self, found: list[tuple[acb, acb, int]], s: acb) -> Sample:
         total, slope = 0j, 0j

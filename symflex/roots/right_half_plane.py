@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from math import exp, log, pi
+from math import log, pi
 from typing import TYPE_CHECKING, Literal
 
 from flint import acb
@@ -249,12 +249,12 @@ def search_right(
 
 def _end(side: Side, reached: float) -> tuple[float, str]:
     """Return how far roots are to be counted [rad/s], and why there may be others beyond."""
-    start, radius = _frequency_of(side, 1.0), 0.0
+    start, radius = side.function.frequency_of(1.0), 0.0
     for factor, exponent in side.function.part.factors:
         if exponent > 0:
             tail = right_tail(side.function.bound, (factor,), (acb(1),), start)
             if tail.radius is None:
-                return max(reached, _frequency_of(side, WAVES)), tail.reason
+                return max(reached, side.function.frequency_of(WAVES)), tail.reason
             radius = max(radius, tail.radius)
     return radius, ""
 
@@ -266,12 +266,3 @@ def _count(roots: Sequence[Root]) -> int:
 def _up_to(reason: str, radius: float) -> str:
     """Say how far poles are known."""
     return f"known up to {radius / (2 * pi):.4g} Hz only: {reason}" if radius > 0 else reason
-
-
-def _frequency_of(side: Side, waves: float) -> float:
-    """Return a frequency at which the largest argument of a kernel has a given size [rad/s]."""
-    low, high = -60.0, 60.0
-    for _ in range(60):
-        middle = (low + high) / 2
-        low, high = (middle, high) if side.function.reach(exp(middle)) < waves else (low, middle)
-    return exp(high)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import exp, log, pi
+from math import log, pi
 from typing import TYPE_CHECKING
 
 from flint import acb, arb
@@ -111,22 +111,11 @@ class DistributedFactors:
     @cached_property
     def _scale(self) -> float:
         """A frequency at which the largest argument of a kernel is about one [rad/s]."""
-        return self._frequency_of(1.0)
+        return self._function(self.limits[1]).frequency_of(1.0)
 
     @cached_property
     def _without_end(self) -> float:
-        return self._frequency_of(WAVES) if self.up_to is None else self.up_to
-
-    def _frequency_of(self, waves: float) -> float:
-        function = self._function(self.limits[1])
-        low, high = -60.0, 60.0
-        for _ in range(60):
-            middle = (low + high) / 2
-            if function.reach(exp(middle)) < waves:
-                low = middle
-            else:
-                high = middle
-        return exp(high)
+        return self._function(self.limits[1]).frequency_of(WAVES) if self.up_to is None else self.up_to
 
     def _product(self, gain: Fraction) -> Factored:
         total = Factored.number(self.bound.ratio.ring, 1)
