@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from itertools import permutations
+from itertools import count, permutations
 
 import pytest
 from flint import acb, arb, fmpq
@@ -21,12 +21,13 @@ from symflex.roots.polynomial import (
     _is_apart,
     _merge,
     _roots_of,
+    _Search,
     _square_roots,
     _touching,
     find_polynomial_roots,
     in_order,
 )
-from symflex.roots.squarefree import Part
+from symflex.roots.squarefree import Part, Splitting
 
 CORNERS = [(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]
 
@@ -169,6 +170,7 @@ def disc(re, im, radius, count=1):
 def test_a_disc_off_the_real_axis_stands_for_a_root_and_its_conjugate(count):
     found = _conjugates(disc(-3, 4, 0.5, count))
     assert [(r.multiplicity, r.certified, r.is_real) for r in found] == [(count, count == 1, False)] * 2
+    assert [r.on_imaginary_axis for r in found] == [False, False]
     assert all(encloses(found[:1], p) or encloses(found[1:], p) for p in points_of(disc(-3, 4, 0.5)))
     assert bool(found[0].im > 0)
     assert bool(found[1].im < 0)
@@ -192,7 +194,9 @@ def test_a_disc_with_two_roots_about_a_real_centre_may_hold_a_pair():
 
 
 @pytest.mark.parametrize("count", [1, 2])
-@pytest.mark.parametrize("place", [(4, 0), (-4, 0), (0, 4), (3, 5), (-3, 5), (1e-3, 4), (-1e-3, 4)], ids=str)
+@pytest.mark.parametrize(
+    "place", [(4, 0), (-4, 0), (0.75, 0), (0, 4), (3, 5), (-3, 5), (1e-3, 4), (-1e-3, 4)], ids=str
+)
 def test_square_roots_of_every_point_of_a_disc_are_enclosed(place, count):
     z = disc(*place, 0.5, count)
     found = _square_roots(z)
@@ -211,7 +215,7 @@ def test_square_roots_of_every_point_of_a_disc_are_enclosed(place, count):
             assert encloses(found, -s)
 
 
-@pytest.mark.parametrize(("z", "real"), [(4, True), (-4, False)])
+@pytest.mark.parametrize(("z", "real"), [(4, True), (-4, False), (0.75, True), (-0.75, False)])
 def test_one_root_on_the_real_axis_of_s_squared_gives_an_exact_zero(z, real):
     found = _square_roots(disc(z, 0, 0.5))
     assert [r.is_real for r in found] == [real, real]
@@ -304,6 +308,7 @@ def test_roots_at_zero_are_one_root_with_both_marks():
         True,
         True,
     )
+    assert zero.im == 0
     assert (other.multiplicity, other.is_real) == (2, True)
 
 
@@ -317,3 +322,13 @@ def test_an_engine_given_is_the_one_that_is_asked():
     found = PolynomialRootFinder("named", (propose,)).find(product_of(((1, -7, 30), 1)), Everything(), 10)
     assert len(asked) >= 1
     assert [round(float(r.re.mid()), 6) for r in found] == [1, -7, 30]
+
+
+@pytest.mark.parametrize(("off", "kept"), [(Fraction(1, 2 * 10**9), 0), (1, 1)])
+def test_a_root_that_a_part_not_solved_may_share_is_left_out_of_a_search_broken_off(off, kept):
+    solved, other = part(2), part(2 + off, 7)
+    search = _Search(RootProblem(()), 10, (), Budget(0.0, clock=count().__next__))
+    search.splitting = Splitting(0, (solved, other))
+    search.solved[0] = [root(2, 0, 1e-9)]
+    search._prove_singly()
+    assert (len(search.solved[0]), search.solved[1]) == (kept, [])
