@@ -437,3 +437,46 @@ def test_fewer_equations_than_unknowns_are_refused_with_what_they_leave_open():
     equations = pipeline.assemble_sparse(pipeline.loads(APART))
     with pytest.raises(ModelError, match="nothing determines node 'y': it floats"):
         eliminate(replace(equations, rows=equations.rows[:1]), [("X", "F")])
+
+
+# Two beams and a spring side by side, whose stiffness is defined.
+BESIDE = """symflex = 1
+parameters = { EI = {}, l = {}, m = {}, k = {}, J = {} }
+definitions.c = "12*EI/l^3 + k"
+definitions.d = "c + k/3"
+[elements]
+upper = { type = "massless_beam", between = ["p", "q"], EI = "EI", l = "l" }
+lower = { type = "massless_beam", between = ["p", "q"], EI = "3*EI", l = "l" }
+middle = { type = "spring", between = ["p.y", "q.y"], k = "d" }
+near = { type = "rigid_body", at = "p", m = "m", J = "J", cg = "0 m" }
+far = { type = "rigid_body", at = "q", m = "2*m", J = "J", cg = "l/2" }
+ground = { type = "spring", between = ["p.y", "ground"], k = "c" }
+[inputs]
+F = { force = "p.y" }
+T = { torque = "q.theta" }
+[outputs]
+Y = "q.y"
+tilt = "p.theta"
+"""
+
+
+def test_what_joins_two_nodes_side_by_side_adds_up():
+    assert_solves(BESIDE)
+
+
+def test_what_an_input_does_not_reach_is_nothing_over_one():
+    text = APART.replace('["x", "y"]', '"x"')
+    found = eliminate(pipeline.assemble_sparse(pipeline.loads(text)), [("Y", "F")])
+    assert found.quotients == ((ZERO, ONE),)
+
+
+def test_impedances_to_ground_and_between_nodes_are_marked_as_such():
+    program = eliminate(assemble(network(chain(3)), is_sparse=True), PAIRS[:1]).program
+    given = numbers(program.names)
+    s = given["s"]
+    marked = {
+        role: {value(program, i, given) for i, r in program.roles.items() if r == role} for role in "Zw"
+    }
+    between = {given[f"k_{i}"] + given[f"b_{i}"] * s for i in (1, 2)}
+    assert between <= marked["w"]
+    assert given["m_3"] * s**2 in marked["Z"]
