@@ -180,10 +180,8 @@ class _Network:
                 diagonal.append(bench.factored(coefficient))
             elif column < 0:
                 loads.setdefault(variable.owner, []).append(bench.factored(coefficient, -1))
-            elif column in row.entries:
-                row.entries[column].append(bench.factored(coefficient, -1))
             else:
-                row.entries[column] = [bench.factored(coefficient, -1)]
+                row.entries.setdefault(column, []).append(bench.factored(coefficient, -1))
         ground = self._ground(row, diagonal) if is_balance else None
         if ground is None:
             if diagonal:
