@@ -657,7 +657,7 @@ def test_a_step_on_which_nothing_is_known_proves_nothing(broken):
 
 
 @pytest.mark.parametrize("least", [200, 1000])
-@pytest.mark.parametrize("beyond", [0, 0.36])  # Less than the smallest abs(s) on the path, 1/e.
+@pytest.mark.parametrize("beyond", [0, 0.3678794411])  # Just less than any abs(s) on the path, 1/e.
 def test_the_precision_is_raised_where_a_factor_is_lost(least, beyond):
     class Blurred(Followed):
         def enclosed(self, s, bits):
