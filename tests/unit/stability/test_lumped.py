@@ -145,6 +145,12 @@ def test_numbers_that_are_symbols_count_with_their_value():
         assert only.gain.overlaps(arb(2).sqrt())
 
 
+def test_a_number_below_is_cleared_too():
+    # s^2 + (K - 1/c) s + 1 with c = 1/sqrt(2).
+    of = factor([(1, 2), (-1, 1, -1), (1, 0)], [(1, 1)], constants=(("c", lambda: 1 / arb(2).sqrt()),))
+    assert crossings(of) == [(sqrt(2), [1], False, False)]
+
+
 def test_fractions_are_cleared():
     # s^2/4 + (K - 1/3) s/7 + 1.
     of = factor([(Fraction(1, 4), 2), (Fraction(-1, 21), 1), (1, 0)], [(Fraction(1, 7), 1)])
