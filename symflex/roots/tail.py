@@ -43,9 +43,11 @@ NARROW = 1.05
 """How far above one that is none a radius may be: the path about what lies within takes steps."""
 ROOTS = {"wave": 2, "bending": 4}
 NO_FORMULA = "without a formula for the wavenumbers no end of the poles is known"
+TOO_MANY = "of so many exponentials no end of the poles is known"
 TWO_WAVENUMBERS = "where a part has two wavenumbers no end of the poles is known"
 ADVANCED = "a delayed term has the highest power of s, and poles right of the axis have no end"
 NEUTRAL = "delayed terms share the highest power of s, none outweighs the others, and poles have no end"
+EVERY_DELAYED = "where every term is delayed no end of the poles is known"
 NO_LOSS = "poles of waves without enough loss have no end along the axis"
 
 
@@ -116,7 +118,7 @@ def right_tail(
     sums = [exponential_sum(bound.ratio.ring, table, arguments, f) for f in polynomials]
     known = [terms for terms in sums if terms is not None]
     if len(known) < len(sums):
-        return Tail(None, NO_FORMULA)
+        return Tail(None, TOO_MANY)
     with precision(BITS):
         kernels = bound.kernel_values({name: evaluate() for name, evaluate in bound.constants})
         values = ExponentialValues(kernels, arguments, tuple((terms, 1) for terms in known))
@@ -167,8 +169,10 @@ class _Function:
             own: max((p for p, c in amplitude.items() if abs(c).upper() > 0), default=Fraction(-1))
             for own, amplitude in powers[0].items()
         }
+        if () not in highest:
+            return EVERY_DELAYED
         delayed = max((p for own, p in highest.items() if own), default=Fraction(-1))
-        return ADVANCED if delayed > highest.get((), Fraction(-1)) else NEUTRAL
+        return ADVANCED if delayed > highest[()] else NEUTRAL
 
     def _powers(self, radius: float) -> tuple[dict[Powers, dict[Fraction, acb]], list[_Power]] | None:
         """Return amplitudes and arguments of the exponentials as powers of s, beyond a radius."""

@@ -15,11 +15,13 @@ from symflex.roots import precision
 from symflex.roots.exponential_sum import MOST_EXPONENTIALS
 from symflex.roots.tail import (
     ADVANCED,
+    EVERY_DELAYED,
     NARROW,
     NEUTRAL,
     NO_FORMULA,
     NO_LOSS,
     SECTORS,
+    TOO_MANY,
     TWO_WAVENUMBERS,
     Tail,
     _at_infinity,
@@ -103,6 +105,7 @@ BEAM = "E = 1, I = 1, rho = 1, A = 1"
         (lambda: delayed("s + 3*s^2*E + 1"), ADVANCED),
         (lambda: delayed("s + s*D + 1"), NEUTRAL),
         (lambda: delayed("s + 2*s*D + 1"), NEUTRAL),
+        (lambda: delayed("3*D + E"), EVERY_DELAYED),
         (lambda: bound(ELEMENT.format(kind="rod", values="E = 1, rho = 1, A = 1")), NO_LOSS),
         (lambda: bound(ELEMENT.format(kind="beam", values=BEAM)), NO_LOSS),
         (
@@ -112,7 +115,7 @@ BEAM = "E = 1, I = 1, rho = 1, A = 1"
             TWO_WAVENUMBERS,
         ),
     ],
-    ids=["advanced", "advanced in s^2", "critical", "neutral", "rod", "beam", "timoshenko"],
+    ids=["advanced", "advanced in s^2", "critical", "neutral", "every term", "rod", "beam", "timoshenko"],
 )
 def test_where_no_term_outweighs_the_others_it_is_said_why(function, reason):
     found = tail(function())
@@ -259,7 +262,7 @@ def test_too_many_exponentials_are_not_looked_at():
     function = delayed("s + s*D + 1")
     decay = function.ratio.ring.generator(function.kernels.generators[0])
     found = right_tail(function, [(1 + decay) ** MOST_EXPONENTIALS], [acb(1)], 1.0)
-    assert (found.radius, found.reason) == (None, NO_FORMULA)
+    assert (found.radius, found.reason) == (None, TOO_MANY)
 
 
 def test_a_delayed_term_that_cancels_wholly_is_none():
