@@ -128,15 +128,17 @@ def expanded_length(polynomial: fmpz_mpoly, lengths: Sequence[int]) -> int | Non
     >>> expanded_length(s * x + x * y, (1, 2, 3)), expanded_length(x**60, (1, 2, 3))
     (8, 61)
     """
-    if all(length <= 1 for length, d in zip(lengths, polynomial.degrees(), strict=True) if int(d)):
+    highest = max((int(d) for n, d in zip(lengths, polynomial.degrees(), strict=True) if n > 1), default=0)
+    if highest < 1:
         return len(polynomial)
-    if len(polynomial) <= MANY:
+    values = polynomial.coeffs()
+    # Every monomial counts at least once, as its coefficient is at least one.
+    is_quick = min(values) >= 1 and max(values) <= FEW
+    if len(polynomial) <= MANY and not (is_quick and highest == 1):
         # A power of a sum has as many terms as one can choose from its own, some more than once.
         powers = (zip(lengths, map(int, m), strict=True) for m in polynomial.monoms())
         return sum(prod(comb(n + e - 1, e) for n, e in each if e) for each in powers)
-    values = polynomial.coeffs()
-    # Every monomial counts at least once, as its coefficient is at least one.
-    return int(polynomial(*lengths)) if min(values) >= 1 and max(values) <= FEW else None
+    return int(polynomial(*lengths)) if is_quick else None
 
 
 def check_expansion(
