@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 import resource
 import statistics
@@ -58,14 +57,22 @@ class Measurement:
 def fastest(
     ways: Mapping[str, Callable[[], NDArray[Any]]], limit: float, *, rounds: int, agreement: float
 ) -> dict[str, float]:
-    """Return the fastest of some runs of every way, in seconds of processor time; the ways take turns.
+    """Return the fastest of some runs of every way, in seconds; see :func:`taking_turns`."""
+    runs = taking_turns(ways, limit, rounds=rounds, agreement=agreement)
+    return {name: min(times) for name, times in runs.items()}
+
+
+def taking_turns(
+    ways: Mapping[str, Callable[[], NDArray[Any]]], limit: float, *, rounds: int, agreement: float
+) -> dict[str, list[float]]:
+    """Return the times of some runs of every way, in seconds of processor time; the ways take turns.
 
     Raises
     ------
     RuntimeError
         When half of the values of one way differ relatively from the first one's by more than ``agreement``.
     """
-    best = dict.fromkeys(ways, math.inf)
+    runs: dict[str, list[float]] = {name: [] for name in ways}
     begin = time.process_time()
     with np.errstate(all="ignore"):
         first, *others = (way() for way in ways.values())
@@ -77,10 +84,15 @@ def fastest(
             for name, way in ways.items():
                 started = time.process_time()
                 way()
-                best[name] = min(best[name], time.process_time() - started)
+                runs[name].append(time.process_time() - started)
             if time.process_time() - begin > limit:
                 break
-    return best
+    return runs
+
+
+def typical_ratio(longer: Sequence[float], shorter: Sequence[float]) -> float:
+    """Return the median ratio of runs that took turns: what slows the machine slows both of a pair."""
+    return statistics.median(a / b for a, b in zip(longer, shorter, strict=True))
 
 
 @dataclass(frozen=True, slots=True)
