@@ -37,9 +37,7 @@ def behaviour_at_zero(field: Field, value: Factored) -> tuple[Factored, Fraction
 def _leading(field: Field, factor: fmpz_mpoly) -> tuple[Factored, Fraction] | None:
     """Return the coefficient and power of the root of s that dominates a factor."""
     steps = _steps(field)
-    sums = any(
-        int(d) and n.startswith("sum(") for n, d in zip(field.ring.names, factor.degrees(), strict=True)
-    )
+    sums = any(n.startswith("sum(") for n in field.ring.used_in((factor,)))
     used = [i for i in range(len(steps)) if _holds(field, factor, i)]
     if sums or len(used) > MOST_WAVES or len(factor) > MOST_TERMS:
         return None

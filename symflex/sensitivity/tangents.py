@@ -128,15 +128,8 @@ class Tangents:
     @cached_property
     def _used(self) -> frozenset[str]:
         """The generators that occur; constants that do not may have no value."""
-        names = self.tf.ratio.ring.names
         parts = (self.tf.num, self.tf.den, *self.tf.kernels.values)
-        return frozenset(
-            name
-            for part in parts
-            for factor, _ in part.factors
-            for name, degree in zip(names, factor.degrees(), strict=True)
-            if int(degree)
-        )
+        return self.tf.ratio.ring.used_in(factor for part in parts for factor, _ in part.factors)
 
 
 def _series(value: acb, slope: acb) -> acb_series:

@@ -83,15 +83,8 @@ class ClosedForm:
     @cached_property
     def generators(self) -> frozenset[str]:
         """The names that occur in it, also within its sums; those of definitions are not opened."""
-        ring = self.closure.ring
-        used = {
-            n for p in (self.num, self.den) for n, d in zip(ring.names, p.degrees(), strict=True) if int(d)
-        }
-        base = self.closure.base.names
-        for name, polynomial in self.closure.sums:
-            if name in used:
-                used |= {n for n, d in zip(base, polynomial.degrees(), strict=True) if int(d)}
-        return frozenset(used)
+        used = self.closure.ring.used_in((self.num, self.den))
+        return used | self.closure.base.used_in(p for name, p in self.closure.sums if name in used)
 
 
 @dataclass(frozen=True)

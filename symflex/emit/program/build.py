@@ -109,11 +109,7 @@ def _closes_polynomially(tf: TransferFunction) -> bool:
 def _used_definitions(tf: TransferFunction) -> Iterator[tuple[str, Factored]]:
     if tf.closed is None:
         return
-    closure = tf.closed.closure
-    used = closure.ring.used_in((tf.closed.num, tf.closed.den))
-    polynomials = [p for name, p in closure.sums if name in used]
-    used |= closure.base.used_in(polynomials)
-    yield from ((name, value) for name, value in tf.definitions if name in used)
+    yield from ((name, value) for name, value in tf.definitions if name in tf.closed.generators)
 
 
 @dataclass
