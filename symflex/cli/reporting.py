@@ -73,10 +73,8 @@ def reporting(command: Callable[P, int | None]) -> Callable[P, int]:
             return 0
         except OSError as error:
             # Whatever reads or writes a file says so with its own code; this is all else a system can refuse.
-            place = f"'{error.filename}'" if error.filename else None
-            said = ": ".join(
-                filter(None, ("the system refused an operation", place, error.strerror or str(error)))
-            )
+            place = f"'{error.filename}': " if error.filename else ""
+            said = f"the system refused an operation: {place}{error.strerror or error}"
             show_error(UsageError(Diagnostic("SF905", said)))
             return UsageError.exit_code
 
