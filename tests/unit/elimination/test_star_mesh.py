@@ -408,6 +408,55 @@ def test_forces_that_other_nodes_decide_act_as_the_equations_say(seed):
     )
 
 
+def moved(seed):
+    """Return a network with levers, a node that is moved, and springs that are equal or negative."""
+    random = Random(seed)
+    nodes = [f"x{i}" for i in range(random.randrange(3, 7))]
+    lines = [f'm_{x} = {{ type = "mass", at = "{x}", m = "m" }}' for x in nodes if random.random() < 0.4]
+    for i, x in enumerate(nodes):
+        for other in ["ground", *nodes[:i]]:
+            k = random.choice(["k", "k", "k", "-k", "-c"])
+            if random.random() < 0.5:
+                lines.append(f'k_{other}{x} = {{ type = "spring", between = ["{other}", "{x}"], k = "{k}" }}')
+    ends = random.sample(nodes, len(nodes))
+    for n in range(random.randrange(min(3, len(nodes) // 2 + 1))):
+        r = random.choice(["r", "1", "-1", "-r", "2"])
+        a, b = ends[2 * n : 2 * n + 2]
+        lines.append(f'r_{n} = {{ type = "transformer", from = "{a}", to = "{b}", ratio = "{r}" }}')
+    random.shuffle(lines)
+    a, b = random.sample(nodes, 2)
+    where = random.choice([f'"{a}"', f'["{a}", "{b}"]'])
+    outputs = "\n".join(f'Y_{x} = "{x}"' for x in nodes)
+    body = "\n".join(lines)
+    return (
+        f"{HEAD}parameters = {{ m = {{}}, k = {{}}, c = {{}}, r = {{}} }}\n[elements]\n{body}\n[inputs]\n"
+        f'F = {{ force = "{b}" }}\nG = {{ displacement = {where} }}\n[outputs]\n{outputs}\n'
+    )
+
+
+@pytest.mark.parametrize("seed", range(15, 55))
+def test_nodes_that_levers_and_inputs_move_respond_as_their_equations_say(seed):
+    assert_solves(moved(seed))
+
+
+LEVER = """symflex = 1
+parameters = { r = {}, m = {}, n = {} }
+elements.near = { type = "mass", at = "p", m = "m" }
+elements.far = { type = "mass", at = "q", m = "n" }
+elements.lever = { type = "transformer", from = "p", to = "q", ratio = "r" }
+inputs.F = { force = "p" }
+outputs.P = "p"
+"""
+
+
+def test_the_mass_behind_a_lever_is_found_without_a_division():
+    """Laws go first, by what stands as a number in them: P/F is 1/((m + n r^2) s^2)."""
+    equations = pipeline.assemble_sparse(pipeline.loads(LEVER))
+    found = eliminate(equations, [("P", "F")])
+    used = found.program.steps_of(*found.quotients[0])
+    assert not any(found.program.kinds[i] == Step.DIVIDE for i in used)
+
+
 APART = """symflex = 1
 parameters = { m = {}, n = {} }
 elements.here = { type = "mass", at = "x", m = "m" }
