@@ -7,9 +7,7 @@ kernels of base lengths only, equal functions become equal polynomials.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from itertools import combinations
-from math import lcm
 from typing import TYPE_CHECKING
 
 from flint import fmpq, fmpq_mat, fmpz_mat
@@ -18,6 +16,8 @@ from symflex.kernels.factored import Factored, common_denominator
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from flint import fmpz_mpoly
 
 SUBSET_LIMIT = 500
 """Number of subsets of the given lengths that are tried as a base."""
@@ -62,9 +62,7 @@ def length_base(lengths: Sequence[Factored], *, positive: bool = False) -> Lengt
     """
     ring = lengths[0].ring
     common = common_denominator(ring, lengths)
-    vectors, monomials = _vectors([length * common for length in lengths])
-    scale = lcm(*(x.denominator for v in vectors for x in v))
-    whole = [[int(x * scale) for x in v] for v in vectors]
+    whole, monomials = _vectors([(length * common).expand() for length in lengths])
     lattice = _lattice(whole)
     rank = len(lattice)
     chosen = _subset(whole, lattice, rank, positive=positive)
@@ -76,22 +74,15 @@ def length_base(lengths: Sequence[Factored], *, positive: bool = False) -> Lengt
             base.append(lengths[chosen[i]])
             continue
         polynomial = ring.context.from_dict({m: x for m, x in zip(monomials, row, strict=True) if x})
-        base.append(Factored.polynomial(ring, polynomial) * Fraction(1, scale) / common)
+        base.append(Factored.polynomial(ring, polynomial) / common)
     return LengthBase(tuple(base), coordinates)
 
 
-def _vectors(lengths: Sequence[Factored]) -> tuple[list[list[Fraction]], list[Monomial]]:
-    """Return every length as a rational vector over the monomials that occur."""
-    found: list[dict[Monomial, Fraction]] = []
-    monomials: dict[Monomial, None] = {}
-    for length in lengths:
-        unit = length.unit
-        expanded = (length / unit).expand()
-        terms = {tuple(int(e) for e in m): int(c) * unit for m, c in expanded.terms()}
-        monomials.update(dict.fromkeys(terms))
-        found.append(terms)
-    order = sorted(monomials, reverse=True)
-    return [[terms.get(m, Fraction(0)) for m in order] for terms in found], order
+def _vectors(lengths: Sequence[fmpz_mpoly]) -> tuple[list[list[int]], list[Monomial]]:
+    """Return every length as a vector over the monomials that occur."""
+    found = [{tuple(int(e) for e in m): int(c) for m, c in length.terms()} for length in lengths]
+    order = sorted({m for terms in found for m in terms}, reverse=True)
+    return [[terms.get(m, 0) for m in order] for terms in found], order
 
 
 def _lattice(vectors: list[list[int]]) -> list[list[int]]:

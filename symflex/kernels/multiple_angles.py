@@ -39,7 +39,6 @@ def lift(ring: Ring, polynomial: fmpz_mpoly, angle: Angle, n: int) -> Factored |
         ``None`` when the polynomial is no polynomial in kernels of the multiple.
     """
     even, odd = ring.index[angle.even.generator], ring.index[angle.odd.generator]
-    sign = -1 if angle.kind == "circular" else 1
     parts: dict[tuple[int, int], dict[tuple[int, ...], int]] = {}
     for monomial, coefficient in polynomial.terms():
         exponents = [int(e) for e in monomial]
@@ -65,7 +64,7 @@ def lift(ring: Ring, polynomial: fmpz_mpoly, angle: Angle, n: int) -> Factored |
             continue
         if i % n:
             return None
-        c_i, s_i = _multiple(ring, c, s, i // n, sign)
+        c_i, s_i = _multiple(ring, c, s, i // n)
         total = total + part * (s_i if o else c_i)
     return Factored.polynomial(ring, total) * Fraction(1, 2**highest)
 
@@ -88,12 +87,10 @@ def _harmonics(k: int, odd: int) -> list[tuple[int, int, int]]:
     return found
 
 
-def _multiple(
-    ring: Ring, c: fmpz_mpoly, s: fmpz_mpoly, times: int, sign: int
-) -> tuple[fmpz_mpoly, fmpz_mpoly]:
+def _multiple(ring: Ring, c: fmpz_mpoly, s: fmpz_mpoly, times: int) -> tuple[fmpz_mpoly, fmpz_mpoly]:
     """Return the even and the odd kernel of a multiple of the argument, in normal form."""
-    square = (c * c - 1) if sign > 0 else (1 - c * c)
     even, over = ring.constant(1), ring.constant(0)
     for _ in range(times):
-        even, over = even * c + sign * over * square, over * c + even
+        # sinh^2 and -sin^2 are both this square less one.
+        even, over = even * c + over * (c * c - 1), over * c + even
     return even, over * s
