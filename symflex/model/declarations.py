@@ -251,7 +251,7 @@ def without_sign(
         return None
     shown = "0" if magnitude == 0 else "negative"
     message = f"parameter '{name}' is {shown}, but a parameter is assumed {assume}"
-    hint = 'say assume = "nonnegative"' if magnitude == 0 else 'say assume = "real"'
+    hint = f'say assume = "{"nonnegative" if magnitude == 0 else "real"}" in the model'
     return Diagnostic("SF209", message, span, hint)
 
 
