@@ -21,9 +21,9 @@ BASE = Ring(("s", "r", "p", "l", "x"))
 S, R, P, L, X = (Factored.generator(BASE, name) for name in BASE.names)
 ZERO = S * 0
 KINDS = {
-    "wave": (R * S**2 * -1, ZERO),
-    "bending": (R * S**2, ZERO, ZERO, ZERO),
-    "pair": (R * S**2, ZERO, P * S**2 * -1 - R, ZERO),
+    "wave": (R * S**2 * -1 / P / 3, ZERO),
+    "bending": (R * S**2 / (P + R), ZERO, ZERO, ZERO),
+    "pair": (R * S**2 / P, ZERO, (P * S**2 * -1 - R) / (P + 2) / 5, ZERO),
     "general": (R * S**2, P, S, R),
 }
 POINT = {
@@ -96,6 +96,8 @@ def generator_values(found):
         length = value(kernel.length, POINT)
         if kernel.function == "fundamental":
             values[kernel.generator] = fundamental("general", length)[kernel.order]
+        elif kernel.function == "exp":
+            values[kernel.generator] = mp.exp(-value(kernel.dispersion.shift, POINT) * length)
         else:
             values[kernel.generator] = getattr(mp, kernel.function)(values[kernel.wavenumber] * length)
     for p in found.propagators:
@@ -257,3 +259,188 @@ def test_what_holds_other_multiples_is_not():
     c, s = ring.generator(angle.even.generator), ring.generator(angle.odd.generator)
     assert lift(ring, c**2 + s, angle, 2) is None
     assert lift(ring, c**2 + c, angle, 3) is None
+
+
+@pytest.mark.parametrize("kind", list(KINDS))
+def test_a_shift_of_all_exponents_is_a_decay_of_every_solution(kind):
+    found = propagate(BASE, [(Dispersion("w", kind, KINDS[kind], P / 2), [L, L - X])])
+    values = generator_values(found)
+    c = [value(k, POINT) for k in KINDS[kind]]
+    roots = [r - POINT["p"] / 2 for r in mp.polyroots([1, *reversed(c)], maxsteps=200, extraprec=200)]
+    slopes = [mp.fprod(r - other for other in roots if other is not r) for r in roots]
+    x = value(L - X, POINT)
+    for k, h in enumerate(found.fundamental(0, L - X)):
+        # The divided difference of lambda^k exp(lambda x) at all roots.
+        wanted = mp.fsum(r**k * mp.exp(r * x) / slope for r, slope in zip(roots, slopes, strict=True))
+        assert mp.almosteq(value(h, values), wanted, 1e-25)
+
+
+def test_delays_are_products_of_powers_of_the_shortest():
+    found = propagate(BASE, [(Dispersion("D", "exponential", (), S), [L + X * 2, L, X, L])])
+    (both,), (one,), (other,) = (found.fundamental(0, time) for time in (L + X * 2, L, X))
+    values = generator_values(found)
+    assert mp.almosteq(value(both, values), mp.exp(-POINT["s"] * (POINT["l"] + 2 * POINT["x"])), 1e-30)
+    assert mp.almosteq(value(one, values) * value(other, values) ** 2, value(both, values), 1e-30)
+    assert [(k.function, str(k.length)) for k in found.table.kernels] == [("exp", "l"), ("exp", "x")]
+
+
+def test_a_length_that_is_no_small_multiple_keeps_kernels_of_its_own():
+    kept = {n: [str(k.length) for k in propagation("wave", (L, L * n)).table.kernels] for n in (12, 13)}
+    assert kept == {12: ["l", "l"], 13: ["l", "l", "13*l", "13*l"]}
+
+
+def test_lengths_of_a_dispersion_without_names_keep_functions_of_their_own():
+    table = propagation("general", (L, L * 2)).table
+    assert [(str(k.length), k.order) for k in table.kernels] == [
+        (x, n) for x in ("l", "2*l") for n in range(4)
+    ]
+
+
+def test_a_second_dispersion_has_generators_of_its_own():
+    found = propagate(BASE, [(Dispersion(n, "wave", KINDS["wave"], ZERO), [L]) for n in ("a", "b")])
+    assert found.table.generators == (
+        "gamma[0]", "gamma[1]", "cosh[gamma[0],0]", "sinh[gamma[0],0]", "cosh[gamma[1],0]", "sinh[gamma[1],0]"
+    )  # fmt: skip
+    assert found.fundamental(1, L)[1].depends_on("H1[1,0]")
+
+
+def test_a_value_without_kernels_is_the_same_over_the_ring_with_them():
+    found = propagation("wave", (L,))
+    moved = found.embed((S + R) ** 2 / (L * 3))
+    assert moved.ring == found.ring
+    assert value(moved, POINT) == value((S + R) ** 2 / (L * 3), POINT)
+    assert found.embed(moved) is moved
+
+
+# ------------------------------------------------------------------------------------------- tables
+
+
+def two_laws():
+    """A delay, and waves at two lengths."""
+    return propagate(
+        BASE,
+        [(Dispersion("D", "exponential", (), S), [L]), (Dispersion("w", "wave", KINDS["wave"], R), [L, X])],
+    ).table
+
+
+@pytest.mark.parametrize(
+    ("names", "laws", "kernels"),
+    [
+        ((), "", 0),
+        (("s", "l"), "", 0),
+        (("exp[0,0]",), "D", 1),
+        (("gamma[1]",), "w", 6),
+        (("sinh[gamma[1],1]",), "w", 6),
+        (("exp[1,0]", "exp[0,0]"), "Dw", 7),
+    ],
+)
+def test_a_restricted_table_has_whole_dispersions_of_which_something_is_named(names, laws, kernels):
+    table = two_laws().restricted(names)
+    assert ("".join(d.name for d in table.dispersions), len(table.kernels)) == (laws, kernels)
+    assert {k.dispersion.name for k in table.kernels} == set(laws)
+    assert bool(table) == bool(laws)
+
+
+def test_the_kernels_of_a_dispersion_are_its_own():
+    table = two_laws()
+    delay, _ = table.dispersions
+    assert [k.generator for k in table.kernels_of(delay)] == ["exp[0,0]"]
+
+
+# ------------------------------------------------------------------------- exponentials and half angles
+
+
+def in_coordinates(change, values, length=1):
+    """Values of E, t and u beside those that are kept; kernels' lengths are multiplied by ``length``."""
+    found = dict(values)
+    for angle in change.angles:
+        x = values[angle.even.wavenumber] * value(angle.even.length, POINT) * length
+        if angle.kind == "hyperbolic":
+            found[angle.coordinates[0]] = mp.exp(x)
+        else:
+            found.update(zip(angle.coordinates, (mp.sin(x / 2), mp.cos(x / 2)), strict=True))
+    return found
+
+
+def mixed(kind):
+    """A polynomial in which kernels of two lengths occur to different degrees, and its change."""
+    found = propagation(kind, (L, X))
+    change = Exponentials(found.kernel_ring, found.table)
+    s, *kernels = (found.kernel_ring.generator(n) for n in ("s", *(k.generator for k in found.table.kernels)))
+    polynomial = s * 3 - 5 * kernels[0] ** 3 * kernels[-1] + s**2 * kernels[1] - 7 * kernels[-2] ** 2
+    return found, change, polynomial
+
+
+@pytest.mark.parametrize("kind", ["wave", "bending", "pair"])
+def test_in_exponentials_and_half_angles_a_polynomial_keeps_its_value(kind):
+    found, change, polynomial = mixed(kind)
+    values = generator_values(found)
+    before = polynomial_value(polynomial, found.kernel_ring.names, values)
+    assert mp.almosteq(value(change.transform(polynomial), in_coordinates(change, values)), before, 1e-30)
+
+
+def test_what_holds_no_kernel_stays_as_it_is_in_other_coordinates():
+    found, change, _ = mixed("bending")
+    assert str(change.transform(found.kernel_ring.generator("s") * 3 - 1)) == "(3*s - 1)"
+
+
+@pytest.mark.parametrize("kind", ["wave", "bending", "pair"])
+def test_restored_kernels_times_what_was_divided_out_have_the_value(kind):
+    found, change, polynomial = mixed(kind)
+    values = generator_values(found)
+    places = in_coordinates(change, values)
+    names = change.coordinates.names
+    for factor, _ in change.transform(polynomial).factors:
+        if any(change.parity(factor)):
+            continue
+        restored, powers = change.restore(factor)
+        waves = [places[a.coordinates[0]] for a in change.angles if a.kind == "hyperbolic"]
+        out = mp.fprod(e**n for e, n in zip(waves, powers, strict=True))
+        wanted = polynomial_value(factor, names, places)
+        assert mp.almosteq(value(restored, values) * out, wanted, 1e-28)
+
+
+@pytest.mark.parametrize("kind", ["wave", "bending", "pair"])
+def test_what_is_restored_in_half_the_length_has_the_value(kind):
+    found, change, _ = mixed(kind)
+    gens = [change.coordinates.generator(c) for a in change.angles for c in a.coordinates]
+    s = change.coordinates.generator("s")
+    polynomial = gens[0] ** 3 * s + 2 * gens[0] * gens[-1] ** 2 - 5 * gens[0] ** 4 * gens[-1] * gens[1]
+    whole = generator_values(found)
+    halves = dict(whole)
+    for kernel in found.table.kernels:
+        x = whole[kernel.wavenumber] * value(kernel.length, POINT) / 2
+        halves[kernel.generator] = getattr(mp, kernel.function)(x)
+    restored, powers = change.restore_halved(polynomial)
+    places = in_coordinates(change, whole)
+    waves = [places[a.coordinates[0]] for a in change.angles if a.kind == "hyperbolic"]
+    out = mp.fprod(mp.sqrt(e) ** n for e, n in zip(waves, powers, strict=True))
+    found_value = polynomial_value(restored, found.kernel_ring.names, halves) * out
+    assert mp.almosteq(found_value, polynomial_value(polynomial, change.coordinates.names, places), 1e-28)
+
+
+def test_what_is_free_of_kernels_is_split_off():
+    found = propagate(BASE, [(Dispersion("w", "wave", KINDS["wave"], R), [L])])
+    change = Exponentials(found.kernel_ring, found.table)
+    s, l, gamma, decay, e = (  # noqa: E741
+        change.coordinates.generator(n) for n in ("s", "l", "gamma[0]", "exp[0,0]", "E[gamma[0],0]")
+    )
+    free, rest = (s + gamma) * l, (e**2 + 1) * decay + s
+    assert change.split(free * rest) == (free, rest)
+
+
+def test_parity_is_that_of_the_degree_in_each_angle():
+    _, change, _ = mixed("bending")
+    e, t, u, f, v, _ = (change.coordinates.generator(c) for a in change.angles for c in a.coordinates)
+    assert change.parity(e**3 * t * u + e * u**2) == (1, 0, 0, 0)
+    assert change.parity(e**2 * t + e * u) == (0, 1, 0, 0)
+    assert change.parity(e**2 * f * v**3 + f) == (0, 0, 1, 1)
+
+
+def test_only_the_lengths_of_the_kernels_named_are_halved():
+    _, change, _ = mixed("wave")
+    first, second = (a.even for a in change.angles)
+    table = change.halved([second])
+    assert [str(k.length) for k in table.kernels] == ["l", "l", "1/2*x", "1/2*x"]
+    assert table.dispersions == change.table.dispersions
+    assert change.halved([first]).kernels[2].length is second.length
