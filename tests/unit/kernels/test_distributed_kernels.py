@@ -7,6 +7,7 @@ from itertools import islice, product
 import mpmath as mp
 import pytest
 
+from symflex.errors import BudgetError
 from symflex.kernels import Dispersion, Factored, Ring, propagate
 from symflex.kernels.exponentials import Exponentials
 from symflex.kernels.multiple_angles import lift
@@ -158,6 +159,35 @@ def test_what_the_relations_make_zero_is_zero(kind):
         "pair": lambda: waves[0] ** 4 + c[2] * waves[0] ** 2 + c[0],
     }[kind]()
     assert normal.reduce_factored(relation).is_zero
+
+
+@pytest.mark.parametrize(("kind", "degree"), [("wave", 2), ("bending", 4)])
+@pytest.mark.parametrize("power", [-7, -4, -1, 0, 1, 3, 4, 10])
+def test_a_power_of_a_wavenumber_is_balanced_between_zero_and_its_relation_s_degree(kind, degree, power):
+    found = propagation(kind, (L,))
+    wave = Factored.generator(found.kernel_ring, found.table.wavenumbers[0])
+    balanced = NormalForm(found.kernel_ring, embedded(found)).balance(wave**power * 3)
+    assert balanced.exponent_of(wave.expand()) == power % degree
+    values = generator_values(found)
+    assert mp.almosteq(value(balanced, values), value(wave**power * 3, values), 1e-30)
+
+
+def test_a_relation_between_two_wavenumbers_may_be_left_unused():
+    found = propagation("pair", (L,))
+    ring = found.kernel_ring
+    w = ring.generator("lambda_1[0]")
+    normal = NormalForm(ring, embedded(found))
+    assert normal.reduce(w**6, pairs=False).expand() == w**6
+    assert int(normal.reduce(w**6).numerator().expand().degrees()[ring.index["lambda_1[0]"]]) < 2
+
+
+def test_a_pair_of_wavenumbers_of_too_many_terms_ends_in_a_budget(monkeypatch):
+    monkeypatch.setattr("symflex.kernels.normal_form.PAIR_TERMS", 3)
+    found = propagation("pair", (L,))
+    ring = found.kernel_ring
+    with pytest.raises(BudgetError) as caught:
+        NormalForm(ring, embedded(found)).reduce(ring.generator("lambda_1[0]") ** 12)
+    assert caught.value.diagnostics[0].code == "SF502"
 
 
 @pytest.mark.parametrize("kind", ["wave", "bending", "pair"])
