@@ -6,7 +6,7 @@ Newton steps of rising precision come close to a root, and interval Newton steps
 from __future__ import annotations
 
 from functools import cache
-from math import frexp, isfinite
+from math import frexp, inf, isfinite
 from typing import TYPE_CHECKING
 
 from flint import arb
@@ -133,7 +133,7 @@ def bracketed(source: AxisFunction, low: float, high: float) -> float:
         for _ in range(BISECTIONS):
             value, slope = values.value_and_slope(arb(t))
             low, high = (low, t) if (value > 0) == rises else (t, high)
-            closer = t - float(value) / float(slope) if slope != 0 else t
+            closer = t - float(value) / float(slope) if slope != 0 else inf
             if not low <= closer <= high:
                 closer = (low + high) / 2
             if abs(closer - t) <= CLOSE * t:

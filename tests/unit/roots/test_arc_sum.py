@@ -1,0 +1,136 @@
+"""Turns of sums of exponentials on an arc where they are known: of one term, about roots, and bounds on them."""
+
+from __future__ import annotations
+
+from cmath import exp, rect
+from math import cos, inf, pi, sin, sqrt
+
+import pytest
+from flint import acb, arb
+
+from symflex.roots.arc_sum import ArcSum, Exponential, _most
+from symflex.roots.precision import precision
+from symflex.roots.winding import RootOnPathError
+
+
+@pytest.fixture(autouse=True)
+def working_precision():
+    with precision(64):
+        yield
+
+
+def term(p, q, powers):
+    """Return a term given numbers, and the coefficients of powers of x by their exponents."""
+    return Exponential(acb(p), acb(q), tuple((n, acb(c)) for n, c in powers.items()))
+
+
+def polynomial(*roots):
+    """Return the product of all x - root."""
+    coefficients = [acb(1)]
+    for root in roots:
+        shifted = [acb(0), *coefficients]
+        coefficients = [a - root * b for a, b in zip(shifted, [*coefficients, acb(0)], strict=True)]
+    return ArcSum((Exponential(acb(0), acb(0), tuple(enumerate(coefficients))),))
+
+
+@pytest.mark.parametrize("radius", [0.3, 7.0, 5000.0])
+@pytest.mark.parametrize(
+    ("p", "q", "n"), [(0, 0, 0), (0, 0, 3), (2 - 1j, 0, 0), (0, 1.5j, 2), (-1 + 0.5j, 2, 1), (3, -2 - 1j, 4)]
+)
+def test_one_term_turns_by_its_exponent_and_its_power(radius, p, q, n):
+    end = radius * rect(1, pi / 4)
+    turned = (p * (end - radius) + q * (end**2 - radius**2)).imag + n * pi / 4
+    found = ArcSum((term(p, q, {n: -2 + 3j}),)).turn(arb(radius))
+    assert float(found) == pytest.approx(turned, rel=1e-12, abs=1e-12)
+    assert found.rad() < 1e-9
+
+
+@pytest.mark.parametrize("angle", [0.01, pi / 8, 0.5, pi / 4 - 0.01])
+def test_passing_one_root_adds_a_whole_turn(angle):
+    # exp(x - root) - 1, next to whose root no others lie.
+    root = acb(3 * rect(1, angle))
+    terms = (term(1, 0, {0: (-root).exp()}), term(0, 0, {0: -1}))
+    below, above = (ArcSum(terms).turn(arb(3 * scale)) for scale in (1 - 1e-7, 1 + 1e-7))
+    assert abs(above - below - 2 * arb.pi()) < 1e-4
+
+
+@pytest.mark.parametrize("apart", [1e-2, 1e-1])
+def test_passing_one_of_two_close_roots_adds_one_turn_and_both_two(apart):
+    near, far = 3 * rect(1, 0.4), (3 + apart) * rect(1, 0.4 + apart)
+    within, between, beyond = (
+        polynomial(near, far).turn(arb(radius)) for radius in (3 - apart, 3 + apart / 2, 3 + 2 * apart)
+    )
+    # All but what they are seen to turn by from either side.
+    assert abs(between - within - 2 * arb.pi()) < 3
+    assert 2 < (beyond - within) / arb.pi() < 4
+
+
+@pytest.mark.parametrize("where", [0.0, 0.3, pi / 4])
+def test_a_root_on_the_arc_is_refused(where):
+    with pytest.raises(RootOnPathError):
+        polynomial(2 * rect(1, where)).turn(arb(2))
+
+
+@pytest.mark.parametrize("angle", [-0.01, pi / 4 + 0.01])
+def test_a_root_beside_the_arc_adds_no_turn(angle):
+    # x - root turns by what it turns as seen from the root: from end to end, on one side.
+    root, radius = 2 * rect(1, angle), 2.0
+    start, end = radius - root, radius * rect(1, pi / 4) - root
+    turned = (acb(end) / acb(start)).arg()
+    assert abs(polynomial(root).turn(arb(radius)) - turned) < 1e-9
+
+
+def test_a_function_that_is_zero_has_no_turn():
+    with pytest.raises(RootOnPathError):
+        ArcSum((term(1, 0, {0: 1}), term(1, 0, {0: -1}))).turn(arb(2))
+
+
+@pytest.mark.parametrize(
+    ("terms", "reach"),
+    [
+        ([(2j, 0)], pi),
+        ([(0, -3)], sqrt(2 * pi / 3)),
+        ([(1, 0), (4, 0), (-2, 0)], pi / 2),
+        ([(0, 0)], inf),
+        ([(0, 0), (1, 1)], (sqrt(1 + 8 * pi) - 1) / 2),
+    ],
+)
+def test_no_exponential_turns_more_than_once_up_to_the_reach(terms, reach):
+    # abs(p) r + abs(q) r^2 = 2 pi for the fastest.
+    found = ArcSum(tuple(term(p, q, {0: 1}) for p, q in terms)).reach
+    assert found == pytest.approx(reach, rel=1e-12)
+
+
+SUMS = [
+    # sinh(x) sin(x), cosh(2x) - cos(2x), x cosh(x) cos(x) + exp(x), 2 cosh(x^2) + x sinh(x^2)
+    {(1 + 1j, 0): {0: 1}, (1 - 1j, 0): {0: -1}, (-1 + 1j, 0): {0: -1}, (-1 - 1j, 0): {0: 1}},
+    {(2, 0): {0: 1}, (-2, 0): {0: 1}, (2j, 0): {0: -1}, (-2j, 0): {0: -1}},
+    {(1 + 1j, 0): {1: 1}, (1 - 1j, 0): {1: 1}, (1, 0): {0: 2}, (-1 + 1j, 0): {1: 1}, (-1 - 1j, 0): {1: 1}},
+    {(0, 1): {0: 2, 1: 1}, (0, -1): {0: 2, 1: -1}},
+]
+
+
+@pytest.mark.parametrize("terms", SUMS, ids=range(len(SUMS)))
+def test_the_largest_terms_tell_the_turn_but_for_one(terms):
+    # Next to the ends of an arc, where several are equally large, the argument may go either way.
+    found = ArcSum(tuple(term(p, q, powers) for (p, q), powers in terms.items()))
+    for radius in (30.5, 411.3):
+        assert abs(found.turn(arb(radius)) - found.estimate(radius)) < 2 * pi
+
+
+def test_the_turn_of_a_power_is_estimated_exactly():
+    assert ArcSum((term(0, 0, {3: 2j}),)).estimate(10.0) == 3 * pi / 4
+    # A coefficient may have any size and sign: the one that is largest at the start counts there.
+    both = ArcSum((term(1, 0, {0: 1}), term(0, 0, {2: -1e9})))
+    assert both.estimate(5.0) == pytest.approx(pi / 2, abs=0.4)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, 1.2])
+@pytest.mark.parametrize("value", [3 + 4j, 3 - 4j, -3 + 4j, -3 - 4j, -5, 5j])
+def test_a_number_turned_by_up_to_an_angle_is_bounded(value, angle):
+    bound = float(_most(acb(value), (arb(angle).sin(), arb(angle).cos())))
+    turned = [(value * exp(1j * angle * k / 50)).real for k in range(-50, 51)]
+    assert max(turned) <= bound + 1e-12
+    # Where the part along the axis is negative it is the bound itself.
+    largest = value.real if value.real > 0 else value.real * cos(angle)
+    assert bound == pytest.approx(largest + abs(value.imag) * sin(angle), abs=1e-12)

@@ -1,0 +1,228 @@
+"""Real functions on an axis against the same formulas in mpmath, and their roots where these are known."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+from flint import arb
+from mpmath import mp, mpf
+
+from symflex.roots.axis_function import (
+    FLOAT_BITS,
+    IMAGINARY,
+    REAL,
+    AxisFunction,
+    Enclosures,
+    Wave,
+    _products,
+)
+from symflex.roots.axis_root import CLOSE, AxisRoots, bits_of, bracketed, changes_sign
+from symflex.roots.precision import precision
+
+BITS = 300
+P, Q = mpf("1.25"), mpf("0.5")
+"""Rates of t and of t^2."""
+TIMES = ["0.3", "1", "1.7", "2.5", "6"]
+
+
+def root_of_two():
+    with mp.workprec(2 * BITS):
+        return mpmath.sqrt(2)
+
+
+def terms(t):
+    """Return all terms of a function of every kind, with constants sqrt(2) and 3."""
+    c, d, p, q = root_of_two(), 3, P * t, Q * t * t
+    cos, sin, exp = mpmath.cos, mpmath.sin, mpmath.exp
+    return [
+        (2 + 3 * c) * cos(p),
+        -(c**2) * d * t**2 * cos(p),
+        5 * t * sin(p),
+        exp(-p) * cos(q),
+        -t * exp(-p) * cos(q),
+        exp(-p) * d * t**3 * sin(q),
+        7 * exp(-2 * p),
+        4 * exp(-p - q) * cos(p - q),
+        -2 * t * exp(-p - q) * sin(p - q),
+        6 * exp(2 * p - q),
+    ]
+
+
+def every_kind(bits=BITS):
+    """Return the same function, on the real axis."""
+    with precision(bits):
+        one = Enclosures(bits, (arb(2).sqrt(), arb(3)), (arb("1.25"), arb("0.5")), (1, 2))
+    waves = (
+        Wave((0, 0), (1, 0), {0: {(): 2, ((0, 1),): 3}, 2: {((0, 2), (1, 1)): -1}}, {1: {(): 5}}),
+        Wave((-1, 0), (0, 1), {0: {(): 1}, 1: {(): -1}}, {3: {((1, 1),): 1}}),
+        Wave((-2, 0), (0, 0), {0: {(): 7}}, {}),
+        Wave((-1, -1), (1, -1), {0: {(): 4}}, {1: {(): -2}}),
+        Wave((2, -1), (0, 0), {0: {(): 6}}, {}),
+    )
+    return AxisFunction(waves, REAL, one)
+
+
+def value_and_slope(t):
+    """Return the sum of the terms and its derivative, as text of all digits."""
+    with mp.workprec(2 * BITS):
+        value, slope = sum(terms(mpf(t))), mpmath.diff(lambda x: sum(terms(x)), mpf(t), h=mpf(2) ** -BITS)
+        return mp.nstr(value, 75), mp.nstr(slope, 60)
+
+
+@pytest.mark.parametrize("t", TIMES)
+def test_values_and_slopes_are_those_of_the_formula(t):
+    values = every_kind().values(BITS)
+    with precision(BITS):
+        value, slope = (arb(text) for text in value_and_slope(t))
+        x = arb(t)
+        for found, expected, digits in (
+            (values.value(x), value, 70),
+            (values.slope(x), slope, 50),
+            (values.value_and_slope(x)[0], value, 70),
+            (values.value_and_slope(x)[1], slope, 50),
+        ):
+            assert abs(found - expected) < abs(expected) * arb(10) ** -digits
+
+
+@pytest.mark.parametrize("t", TIMES)
+def test_values_of_a_ball_are_in_the_ball_of_values(t):
+    values = every_kind().values(FLOAT_BITS)
+    with precision(FLOAT_BITS):
+        ball = arb(t, "0.01")
+        value, slope = values.value_and_slope(ball)
+        for k in range(-4, 5):
+            expected = value_and_slope(mpf(t) + mpf(k) / 400)
+            assert value.contains(arb(expected[0]).mid())
+            assert slope.contains(arb(expected[1]).mid())
+        # Not much wider than the way that the slope leads.
+        assert value.rad() < 100 * abs(slope).upper() * ball.rad()
+
+
+def test_samples_in_doubles_are_scaled_alike():
+    t = np.array([float(text) for text in TIMES])
+    values, slopes, sizes = every_kind().sampled(t)
+    for i, text in enumerate(TIMES):
+        x = mpf(text)
+        scale = mpmath.exp(max(0, 2 * P * x - Q * x * x))
+        value, slope = (mpf(each) for each in value_and_slope(text))
+        assert values[i] == pytest.approx(float(value / scale), rel=1e-12)
+        assert slopes[i] == pytest.approx(float(slope / scale), rel=1e-12)
+        assert sizes[i] == pytest.approx(float(sum(map(abs, terms(x))) / scale), rel=1e-12)
+
+
+def test_the_fastest_phase_is_that_of_the_largest_derivative():
+    # Phases p t, q t^2, p t - q t^2 and none: 1.25, t, abs(1.25 - t).
+    source = every_kind()
+    assert [source.fastest(t) for t in (0.5, 3.0)] == [1.25, 3.0]
+
+
+@pytest.mark.parametrize(("axis", "frequency"), [(REAL, 9.0), (IMAGINARY, 18.0)])
+def test_s_is_the_square_of_t_or_twice_that(axis, frequency):
+    # s = t^2, and s = ((1 + j) t)^2.
+    source = polynomial(1, axis=axis)
+    assert source.natural_frequency(3.0) == frequency
+    assert source.at_frequency(frequency) == 3.0
+
+
+def decay():
+    return AxisFunction((Wave((-1,), (0,), {0: {(): 1}}, {}),), REAL, Enclosures(64, (), (arb(1),), (1,)))
+
+
+def test_what_has_decayed_is_a_ball_that_holds_it():
+    values = decay().values(64)
+    with precision(64):
+        late, later = values.value(arb(127)), values.value(arb(129))
+        assert late.rel_accuracy_bits() > 50
+        assert later.contains(arb(-129).exp())
+        assert later.contains(0)
+        assert later.rad() < 1e-38
+
+
+def test_products_of_exponentials_are_known_by_their_factors():
+    growths = [(-1, 0), (0, -1), (-2, 0), (1, -3), (-1, -1), (-3, 0), (0, -3)]
+    products = _products(growths)
+    assert [product is None for product in products] == [True, True, False, True, False, False, False]
+    for growth, product in zip(growths, products, strict=True):
+        if product is not None:
+            one, other = (growths[i] for i in product)
+            assert (one[0] + other[0], one[1] + other[1]) == growth
+
+
+# --------------------------------------------------------------------- roots of polynomials in t, known
+
+
+def polynomial(*coefficients, axis=REAL):
+    """Return a polynomial in t, lowest power first."""
+    even = {n: {(): c} for n, c in enumerate(coefficients) if c}
+    return AxisFunction((Wave((0,), (0,), even, {}),), axis, Enclosures(2000, (), (arb(1),), (1,)))
+
+
+@pytest.mark.parametrize("digits", [5, 40, 300])
+@pytest.mark.parametrize("guess", [1.9999999, 2.0, 2 + 1e-12])
+def test_a_root_next_to_a_guess_is_enclosed(digits, guess):
+    # (t - 2)(t - 3)(t + 5)
+    source = polynomial(30, -19, 0, 1)
+    found = AxisRoots(digits).frequency(source, guess)
+    assert found.contains(4)
+    with precision(bits_of(digits)):
+        assert found.rad() < 4 * arb(10) ** -digits
+
+
+@pytest.mark.parametrize(("axis", "square"), [(REAL, 1), (IMAGINARY, 2)])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_of_two_roots_close_together_the_one_next_to_the_guess_is_enclosed(sign, axis, square):
+    # (t - 1)^2 - 2^-60, times 2^60: 1 +- 2^-30.
+    source = polynomial(2**60 - 1, -(2**61), 2**60, axis=axis)
+    found = AxisRoots(30).frequency(source, 1 + sign * 2.0**-30)
+    with precision(400):
+        roots = [square * (1 + s * arb(2) ** -30) ** 2 for s in (sign, -sign)]
+        assert [found.contains(root) for root in roots] == [True, False]
+
+
+@pytest.mark.parametrize(
+    "coefficients",
+    [
+        (4, -4, 1),  # (t - 2)^2
+        (5, -4, 1),  # (t - 2)^2 + 1
+        (2**62 + 1, -(2**62), 2**60),  # (t - 2)^2 + 2^-60
+        (-8, 12, -6, 1),  # (t - 2)^3
+        (1,),
+    ],
+)
+@pytest.mark.parametrize("guess", [2.0, 2 + 2.0**-30, 2.001])
+def test_no_root_is_enclosed_where_none_is_single(coefficients, guess):
+    assert AxisRoots(20).frequency(polynomial(*coefficients), guess) is None
+
+
+def test_a_guess_too_large_for_doubles_encloses_nothing():
+    one = Enclosures(64, (), (arb(1),), (2,))
+    source = AxisFunction((Wave((0,), (1,), {}, {0: {(): 1}}),), REAL, one)
+    assert AxisRoots(20).frequency(source, 1e200) is None
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "changes"),
+    [(1.0, 2.5, True), (2.5, 4.0, True), (1.0, 4.0, False), (2.1, 2.9, False), (2.0, 2.5, False)],
+)
+def test_signs_are_opposite_about_one_root(low, high, changes):
+    # (t - 2)(t - 3); at a root there is no sign.
+    assert changes_sign(polynomial(6, -5, 1), low, high) is changes
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize(("low", "high", "root"), [(0.5, 2.9, 2), (2.1, 30.0, 3), (0.0, 2.0001, 2)])
+def test_newton_steps_between_two_places_end_at_the_root(low, high, root, sign):
+    source = polynomial(6 * sign, -5 * sign, sign)
+    assert bracketed(source, low, high) == pytest.approx(root, rel=10 * CLOSE)
+
+
+def test_newton_steps_that_lead_away_are_bisected():
+    # t^7 - 1 from 1e-3 to 2e3: from the middle Newton's are short, and from next to 0 one leads far away.
+    assert bracketed(polynomial(-1, 0, 0, 0, 0, 0, 0, 1), 1e-3, 2e3) == pytest.approx(1, rel=10 * CLOSE)
+
+
+def test_a_slope_of_zero_ends_no_search_for_a_root():
+    # t^3 - 5 t^2 + 7 t - 1, stationary at 1 and at 7/3; its only root between 0 and 2 lies below 1.
+    (root,) = (float(r.real) for r in np.roots([1, -5, 7, -1]) if abs(r.imag) < 1e-9 and 0 < r.real < 1)
+    assert bracketed(polynomial(-1, 7, -5, 1), 0.0, 2.0) == pytest.approx(root, rel=10 * CLOSE)
