@@ -42,24 +42,6 @@ GROWTH_EXACT = 64
 GROWTH_FLOOR = 2048
 
 
-def isolate(
-    polynomial: PolynomialInS, digits: int, *, in_square: bool, proposers: Sequence[Proposer]
-) -> tuple[Disc, ...]:
-    """Enclose every root of a square-free polynomial; the last one of :func:`isolations`.
-
-    Examples
-    --------
-    >>> from symflex.roots.durand_kerner import propose_by_durand_kerner
-    >>> from symflex.roots.problem import PolynomialInS
-    >>> polynomial = PolynomialInS.from_integers([-2, 0, 1])
-    >>> discs = isolate(polynomial, 10, in_square=False, proposers=[propose_by_durand_kerner])
-    >>> [disc.is_real for disc in discs]
-    [True, True]
-    """
-    *_, discs = isolations(polynomial, digits, in_square=in_square, proposers=proposers)
-    return discs
-
-
 def isolations(
     polynomial: PolynomialInS,
     digits: int,

@@ -40,7 +40,7 @@ def prove_singly(
     polynomial : PolynomialInS
         In s, or in z = s^2; square-free, without the root 0.
     digits : int
-        As for :func:`symflex.roots.isolation.isolate`.
+        As for :func:`symflex.roots.isolation.isolations`.
     budget : Budget
         Heeded between roots and between steps.
     in_square : bool

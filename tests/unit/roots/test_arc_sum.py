@@ -1,4 +1,4 @@
-"""Turns of sums of exponentials on an arc where they are known: of one term, about roots, and their bounds."""
+"""Turns of sums of exponentials on an arc where they are known: of one term, about roots, and bounds."""
 
 from __future__ import annotations
 
