@@ -1,0 +1,231 @@
+"""Searching functions of the root of s whose roots are known: a clamped beam's, a rod's, a polynomial's."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import exp, inf, log, pi
+
+import mpmath
+import pytest
+from flint import acb, arb
+from mpmath import mp, mpf
+
+from symflex.roots import precision
+from symflex.roots.axis_function import IMAGINARY, REAL
+from symflex.roots.lossless import LosslessSearch
+from symflex.roots.winding import RootOnPathError
+from tests.unit.roots.lossless_functions import RATES, function_of
+
+DIGITS = 20
+
+# cosh(p x) + cos(p x) - 2 is 2 (cosh(b) cos(b) - 1) for b = p x exp(-j pi/4)/sqrt(2): at s = j w, b is real.
+CLAMPED = ((1, 0, 0, ((0, "cosh"),)), (1, 0, 0, ((0, "cos"),)), (-2, 0, 0, ()))
+# 3 s cosh(s/2) + sinh(s/2)/2: at s = j w, tan(w/2) = -6 w
+ROD = ((3, 2, 0, ((2, "cosh"),)), (1, 0, 0, ((2, "sinh"),)))
+# s^2 - 9, s^2 + 4
+REAL_PAIR, PAIR = ((1, 4, 0, ()), (-9, 0, 0, ())), ((1, 4, 0, ()), (4, 0, 0, ()))
+
+
+def clamped(n):
+    with mp.workdps(50):
+        b = mpmath.findroot(lambda b: mpmath.cos(b) - mpmath.sech(b), (n + mpf(1) / 2) * mp.pi)
+        return 2 * b**2 / mpf(RATES[0]) ** 2
+
+
+def rod(n):
+    """Return w with 3 w cos(w/2) + sin(w/2) = 0."""
+    with mp.workdps(50):
+        low, high = (2 * n - 1) * mp.pi, (2 * n - mpf(1) / 2) * mp.pi
+        return mpmath.findroot(
+            lambda w: 3 * w * mpmath.cos(w / 2) + mpmath.sin(w / 2), (low, high), solver="anderson"
+        )
+
+
+def search(*factors, order=0, digits=DIGITS):
+    return LosslessSearch(function_of(*factors), order, digits)
+
+
+def holds(root, value):
+    with precision(160):
+        return bool(abs(root.natural_frequency() - arb(mp.nstr(value, 45))) < value * 1e-19)
+
+
+def test_the_lowest_modes_are_found_up_to_between_the_last_and_the_next():
+    roots, reached = search((CLAMPED, 1), order=2).lowest(6)
+    assert len(roots) == 6
+    assert all(holds(root, clamped(n)) for n, root in enumerate(roots, 1))
+    assert clamped(6) < exp(reached) < clamped(7)
+    assert all(root.on_imaginary_axis and not root.is_real and root.multiplicity == 1 for root in roots)
+
+
+@pytest.mark.parametrize("modes", [1, 3, 40])
+def test_so_many_modes_of_two_factors_are_the_lowest_of_both(modes):
+    every = sorted([clamped(n) for n in range(1, 60)] + [rod(n) for n in range(1, 60)])
+    roots, reached = search((CLAMPED, 1), (ROD, 1), order=2).lowest(modes)
+    assert len(roots) == modes
+    assert all(holds(root, value) for root, value in zip(roots, every, strict=False))
+    assert every[modes - 1] < exp(reached) < every[modes]
+
+
+def test_a_multiple_root_is_as_many_modes():
+    roots, reached = search((CLAMPED, 3), order=6).lowest(4)
+    assert [root.multiplicity for root in roots] == [3, 3]
+    assert clamped(2) < exp(reached) < clamped(3)
+
+
+def test_roots_on_the_real_axis_are_modes_too():
+    roots, _ = search((REAL_PAIR, 1), (ROD, 1)).lowest(2)
+    (real, other) = sorted(roots, key=lambda root: not root.is_real)
+    assert holds(real, mpf(3))
+    assert (real.is_real, real.on_imaginary_axis, real.re > 0, real.im == 0) == (True, False, True, True)
+    assert holds(other, rod(1))
+    assert (other.is_real, other.on_imaginary_axis, other.im > 0, other.re == 0) == (False, True, True, True)
+
+
+def test_modes_of_a_polynomial_end():
+    found = search((PAIR, 1), (REAL_PAIR, 2))
+    roots, reached = found.lowest(9)
+    assert sorted((root.multiplicity, root.is_real) for root in roots) == [(1, False), (2, True)]
+    assert exp(reached) > 9
+
+
+def test_a_denominator_alone_has_nothing_to_find():
+    found = search((PAIR, -1))
+    assert found.lowest(3) == ([], found.smallest())
+
+
+def test_a_denominator_has_no_modes():
+    roots, _ = search((PAIR, -1), (REAL_PAIR, 1)).lowest(3)
+    assert [root.is_real for root in roots] == [True]
+
+
+@pytest.mark.parametrize("n", [1, 2, 7, 30])
+def test_a_circle_about_0_holds_both_roots_of_every_mode_below(n):
+    found = search((CLAMPED, 1), order=2)
+    between = (log(clamped(n)) + log(clamped(n + 1))) / 2
+    assert found.count(between) == 2 * n
+    close = 1e-6
+    assert found.count(log(clamped(n)) - close) == 2 * n - 2
+    assert found.count(log(clamped(n)) + close) == 2 * n
+
+
+def test_roots_of_a_denominator_are_taken_away_and_those_at_0_left_out():
+    found = search((PAIR, -1), (REAL_PAIR, 2), order=0)
+    assert [found.count(log(radius)) for radius in (1, 2.5, 4)] == [0, -2, 2]
+    assert search((PAIR, 1), order=2).count(log(3)) == 0
+
+
+@pytest.mark.parametrize("n", [1, 5])
+def test_a_circle_through_a_root_is_refused(n):
+    with pytest.raises(RootOnPathError):
+        search((CLAMPED, 1), order=2).count(float(log(clamped(n))))
+
+
+@dataclass(frozen=True)
+class Turned:
+    """Stands for a function that turns by so many quarters."""
+
+    quarters: arb
+
+    def turn(self, z):
+        return self.quarters * arb.pi() / 2
+
+
+@pytest.mark.parametrize(("middle", "radius"), [(10, 0.1), (10, 0.49), (10.3, 0.1), (9.7, 0.1)])
+def test_a_turn_known_to_less_than_half_a_quarter_is_a_count(middle, radius):
+    assert LosslessSearch(Turned(arb(middle, radius)), 3, DIGITS).count(1.0) == 7
+
+
+@pytest.mark.parametrize(
+    "quarters", [arb(10, 0.51), arb(10.3, 0.3), arb(10.5, 0.01), arb("nan"), arb(0, "inf")]
+)
+def test_a_turn_known_less_well_is_none(quarters):
+    with pytest.raises(RootOnPathError):
+        LosslessSearch(Turned(quarters), 3, DIGITS).count(1.0)
+
+
+def test_between_two_radii_all_roots_are_found():
+    found = search((CLAMPED, 1), (ROD, 1), order=2)
+    low, high = 30.0, 200.0
+    every = sorted(w for n in range(1, 60) for w in (clamped(n), rod(n)) if low < w < high)
+    roots = found.on_axes(log(low), log(high))
+    assert len(roots) == len(every) > 20
+    assert all(holds(root, value) for root, value in zip(roots, every, strict=True))
+
+
+def test_a_long_grid_is_sampled_in_batches_without_a_gap():
+    found = search((ROD, 1))
+    roots = found.between(0.5, 4500.0)
+    assert len(roots) == sum(0.5 < rod(n) < 4500 for n in range(1, 750))
+
+
+@pytest.mark.parametrize("modes", [0, 3])
+def test_a_scan_finds_modes_and_all_up_to_a_radius(modes):
+    found = search((CLAMPED, 1), order=2)
+    asked = []
+
+    def is_complete():
+        asked.append(len(found.roots))
+        return True
+
+    assert found.scan(modes, log(1000.0), is_complete) is True
+    assert len(found.roots) == sum(clamped(n) < 1000 for n in range(1, 30)) == asked[0] > 3
+    assert found.reached == log(1000.0)
+
+
+def test_a_scan_for_modes_beyond_a_radius_holds_these_and_says_whether_they_are_all():
+    found = search((CLAMPED, 1), order=2)
+    assert found.scan(20, log(1000.0), lambda: False) is False
+    assert len(found.roots) == 20
+    assert clamped(20) < exp(found.reached) < clamped(21)
+
+
+def test_before_a_scan_nothing_is_known():
+    found = search((CLAMPED, 1), order=2)
+    assert (found.roots, found.reached, found.missing, found.excluded, found.holes) == (
+        [],
+        -inf,
+        0,
+        set(),
+        (),
+    )
+    assert (found.is_even, found.left) == (True, pi / 2)
+    assert found.passing(3.0) == 3.0
+
+
+def test_nothing_is_sought_far_below_the_first_frequency():
+    found = search((CLAMPED, 1), order=2)
+    assert found.smallest() == pytest.approx(log(found.function.first_frequency) - 30)
+    assert found.smallest() < log(clamped(1)) - 25
+
+
+@pytest.mark.parametrize("number", [1, 2, 3, 10, 4000])
+def test_a_mode_by_its_number_is_that_one(number):
+    root = search((CLAMPED, 1), order=2).numbered(number)
+    assert holds(root, clamped(number))
+    assert (root.multiplicity, root.on_imaginary_axis) == (1, True)
+
+
+@pytest.mark.parametrize("number", [1, 2, 3, 4])
+def test_numbers_count_by_multiplicity_on_both_axes(number):
+    # The rod's first mode lies between.
+    root = search((PAIR, 1), (REAL_PAIR, 2), (ROD, 1)).numbered(number)
+    every = sorted([(2, 1), (3, 2), (3, 2), (float(rod(1)), 1)])
+    assert (float(root.natural_frequency()), root.multiplicity) == pytest.approx(every[number - 1])
+
+
+@pytest.mark.parametrize(("axis", "count"), [(REAL, 3), (IMAGINARY, 2)])
+def test_factors_are_searched_on_the_axis_where_they_are_real(axis, count):
+    # exp(p x) is real on the real axis only, and a denominator has no roots.
+    growing = ((1, 0, 0, ((0, "cosh"),)), (1, 0, 0, ((0, "sinh"),)))
+    assert len(search((CLAMPED, 1), (PAIR, 1), (growing, 1), (REAL_PAIR, -1))._factors_on(axis)) == count
+
+
+def test_a_root_is_proved_where_a_guess_is_close_and_nowhere_else():
+    found = search((CLAMPED, 1), order=2)
+    ((source, exponent),) = found._factors_on(IMAGINARY)
+    t = source.at_frequency(float(clamped(3)))
+    root = found._proved_at(source, t, exponent)
+    assert holds(root, clamped(3))
+    assert root.enclosure().overlaps(acb(arb(0), arb(float(clamped(3)), 1e-9)))
+    assert found._proved_at(source, source.at_frequency(float(clamped(3) + clamped(4)) / 2), exponent) is None
