@@ -1,0 +1,300 @@
+"""What known poles say of stability, and what is made of a count of those right of the axis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import exp, pi
+from types import SimpleNamespace
+
+import pytest
+from flint import arb
+
+from symflex.budget import Budget
+from symflex.errors import BudgetError, Diagnostic
+from symflex.roots import right_half_plane
+from symflex.roots.right_half_plane import (
+    ACCUMULATING,
+    NOT_COUNTED,
+    NOT_EXAMINED,
+    ON_AXIS,
+    RightHalfPlane,
+    StabilityVerdict,
+    judge,
+    search_right,
+)
+from symflex.roots.root import Root
+from symflex.roots.side import Proof
+from symflex.roots.tail import Tail
+from symflex.roots.winding import RootOnPathError
+
+
+def pole(re, im=0.0, times=1, size=0.0):
+    return Root(
+        arb(re, size),
+        arb(im, size),
+        times,
+        on_imaginary_axis=re == 0 and not size,
+        is_real=im == 0 and not size,
+    )
+
+
+LEFT, RIGHT, TWICE = pole(-1), pole(2, 3), pole(1, times=2)
+ON, ZERO, DOUBLE_ZERO, NEAR = pole(0, 5), pole(0), pole(0, times=2), pole(0, 5, size=0.1)
+
+
+@pytest.mark.parametrize(
+    ("roots", "unproved", "proof", "expected"),
+    [
+        ([], "", "", ("stable", 0, True, "", 0)),
+        ([LEFT], "", "", ("stable", 0, True, "", 0)),
+        ([LEFT], "no end", "", ("unknown", None, False, "no end", 0)),
+        ([LEFT], "", "passive", ("stable", 0, True, "passive", 0)),
+        ([LEFT], "no end", "passive", ("stable", 0, True, "passive; no end", 0)),
+        ([LEFT, NEAR], "", "", ("unknown", None, False, ON_AXIS, 0)),
+        ([LEFT, NEAR], "no end", "", ("unknown", None, False, "no end", 0)),
+        ([LEFT, RIGHT, TWICE], "", "", ("unstable", 3, True, "", 3)),
+        ([LEFT, RIGHT], "no end", "", ("unstable", None, True, "no end", 1)),
+        ([RIGHT, NEAR], "", "", ("unstable", None, True, ON_AXIS, 1)),
+        ([RIGHT, NEAR], "no end", "", ("unstable", None, True, "no end", 1)),
+        ([RIGHT, ON], "", "", ("unstable", 1, True, "", 1)),
+        ([LEFT, ON], "", "", ("marginal", 0, True, "poles on the imaginary axis", 0)),
+        ([ON, ZERO], "", "", ("marginal", 0, True, "poles on the imaginary axis", 0)),
+        ([LEFT, ZERO], "", "", ("marginal", 0, True, "a pole at 0", 0)),
+        ([ZERO, DOUBLE_ZERO], "", "", ("marginal", 0, True, "3 poles at 0", 0)),
+        ([ZERO], "no end", "", ("unknown", None, False, "a pole at 0; no end", 0)),
+        ([ZERO], "", "passive", ("marginal", 0, True, "a pole at 0; passive", 0)),
+        ([DOUBLE_ZERO], "no end", "passive", ("marginal", 0, True, "2 poles at 0; passive", 0)),
+    ],
+)
+def test_poles_allow_this_verdict_and_no_other(roots, unproved, proof, expected):
+    found = judge(roots, unproved, proof)
+    assert (found.word, found.right, found.certified, found.reason, found.found) == expected
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence", "headline", "brief"),
+    [
+        (("stable", 0, True), "stable", "stable", "stable"),
+        (("stable", 0, True, "passive"), "stable: passive", "stable", "stable"),
+        (
+            ("marginal", 0, True, "a pole at 0"),
+            "marginal, not asymptotically stable: a pole at 0",
+            "marginal",
+            "marginal",
+        ),
+        (
+            ("unstable", 1, True, "", 1),
+            "unstable: 1 pole in the right half plane",
+            "unstable: 1 pole in the right half plane",
+            "unstable",
+        ),
+        (
+            ("unstable", None, True, "no end", 3),
+            "unstable: at least 3 poles in the right half plane; no end",
+            "unstable: at least 3 poles in the right half plane",
+            "unstable",
+        ),
+        (
+            ("unknown", None, False, "no end"),
+            "stability not known: no end",
+            "stability not known",
+            "stability not known",
+        ),
+    ],
+)
+def test_a_verdict_is_said_in_a_sentence_a_headline_and_a_word(given, sentence, headline, brief):
+    verdict = StabilityVerdict(*given)
+    assert (verdict.sentence, verdict.headline, verdict.brief) == (sentence, headline, brief)
+
+
+def test_a_verdict_has_these_keys_as_data():
+    assert StabilityVerdict("unstable", None, True, "no end", 3).to_json_dict() == {
+        "verdict": "unstable",
+        "right_half_plane": None,
+        "certified": True,
+        "reason": "no end",
+        "right_half_plane_found": 3,
+    }
+
+
+@pytest.mark.parametrize("given", [("unstable", None, True), ("stable", 0, False)])
+def test_what_is_not_proved_or_not_counted_has_a_reason(given):
+    with pytest.raises(ValueError, match=r"^what is not proved needs a reason$"):
+        StabilityVerdict(*given)
+
+
+def test_what_was_not_examined_is_not_known():
+    assert NOT_EXAMINED.to_json_dict() == {
+        "verdict": "unknown",
+        "right_half_plane": None,
+        "certified": False,
+        "reason": "not examined",
+        "right_half_plane_found": 0,
+    }
+
+
+# ------------------------------------------------------------------- what is made of a count, by stand-ins
+
+SPENT = BudgetError(Diagnostic("SF505", "the budget is spent", None, ""))
+
+
+@dataclass
+class Half:
+    """A side that counts what it is told."""
+
+    count: int | Exception
+    is_even: bool = False
+    holes: tuple = ()
+    is_finite: bool = False
+    exponents: tuple = (1,)
+    roots: tuple = ()
+    proof: Proof | Exception | None = None
+    counted_to: list = field(default_factory=list)
+    searched: list = field(default_factory=list)
+
+    @property
+    def function(self):
+        part = SimpleNamespace(factors=[(f"factor {i}", e) for i, e in enumerate(self.exponents)])
+        return SimpleNamespace(
+            is_even=self.is_even, part=part, bound=None, frequency_of=lambda waves: 3 * waves
+        )
+
+    def count_right(self, z):
+        self.counted_to.append(exp(z))
+        if isinstance(self.count, Exception):
+            raise self.count
+        return self.count
+
+    def search(self, region):
+        self.searched.append(region)
+
+    def prove(self, region):
+        if isinstance(self.proof, Exception):
+            raise self.proof
+        return self.proof
+
+
+ENDING, ENDLESS = (Tail(7.0),), (Tail(None, "poles have no end"),)
+
+
+@pytest.fixture
+def searching(monkeypatch):
+    """Search right of the axis, given tails of the factors and what a search of the half plane finds."""
+
+    def search(side, known=(), reached=0.0, tails=ENDING, again=None):
+        every = iter(tails)
+        monkeypatch.setattr(right_half_plane, "right_tail", lambda *given: next(every))
+        monkeypatch.setattr(right_half_plane, "Side", lambda *given: again)
+        return search_right(None, None, side, known, reached, 10, Budget())
+
+    return search
+
+
+def up_to(radius, reason):
+    return f"known up to {radius / (2 * pi):.4g} Hz only: {reason}"
+
+
+def test_all_roots_of_a_polynomial_are_known(searching):
+    assert searching(Half(5, is_finite=True), [LEFT, RIGHT]) == RightHalfPlane((LEFT, RIGHT))
+
+
+@pytest.mark.parametrize(("right", "unproved"), [(1.5, ACCUMULATING), (1.6, "")])
+def test_roots_accumulate_right_of_the_axis_where_a_hole_begins_there(searching, right, unproved):
+    side = Half(0, holes=(SimpleNamespace(right=right),))
+    assert searching(side) == RightHalfPlane((), unproved)
+
+
+def test_as_many_as_are_counted_need_no_search(searching):
+    side = Half(3)
+    assert searching(side, [LEFT, RIGHT, TWICE, NEAR]) == RightHalfPlane((RIGHT, TWICE, NEAR))
+    # A little beyond the end, so that the path's corners meet no root.
+    assert side.counted_to == [pytest.approx(7 * 1.01)]
+
+
+def test_the_count_goes_as_far_as_the_last_factors_tail(searching):
+    side = Half(0, exponents=(1, -1, 2, 1))
+    assert searching(side, tails=(Tail(7.0), Tail(9.0), Tail(8.0))) == RightHalfPlane(())
+    assert side.counted_to == [pytest.approx(9 * 1.01)]
+
+
+@pytest.mark.parametrize(("reached", "radius"), [(0.0, 30.0), (40.0, 40.0)])
+def test_without_an_end_poles_are_counted_as_far_as_kernels_have_few_waves(searching, reached, radius):
+    side = Half(0)
+    found = searching(side, reached=reached, tails=ENDLESS)
+    assert found == RightHalfPlane((), up_to(radius, "poles have no end"))
+    assert side.counted_to == [pytest.approx(radius * 1.01)]
+
+
+def test_where_some_are_missing_the_half_disc_is_searched(searching):
+    again = Half(0, roots=(LEFT, RIGHT, TWICE), proof=Proof(3, 3))
+    assert searching(Half(3), [RIGHT], again=again) == RightHalfPlane((RIGHT, TWICE))
+    (region,) = again.searched
+    assert (region.re_low, region.re_high, region.im_low, region.im_high) == (0, 7, -7, 7)
+
+
+@pytest.mark.parametrize(
+    ("proof", "unproved"),
+    [(Proof(3, 1, "two were not found"), "two were not found"), (Proof(3, 1), NOT_COUNTED)],
+)
+def test_where_they_are_not_found_it_is_said_why(searching, proof, unproved):
+    again = Half(0, roots=(RIGHT,), proof=proof)
+    assert searching(Half(3), again=again) == RightHalfPlane((RIGHT,), unproved)
+
+
+@pytest.mark.parametrize(
+    ("reached", "said"), [(0.0, "poles have no end"), (40.0, up_to(40.0, "poles have no end"))]
+)
+def test_where_they_have_no_end_either_all_are_known_as_far_as_before(searching, reached, said):
+    again = Half(0, roots=(RIGHT,), proof=Proof(3, 1))
+    found = searching(Half(3), reached=reached, tails=ENDLESS, again=again)
+    assert found == RightHalfPlane((RIGHT,), said)
+
+
+@pytest.mark.parametrize(("proof", "unproved"), [(Proof(1, 1), ""), (Proof(2, 1), NOT_COUNTED)])
+def test_with_a_root_on_the_path_the_search_is_proved_by_itself(searching, proof, unproved):
+    again = Half(0, roots=(RIGHT, ON), proof=proof)
+    assert searching(Half(RootOnPathError()), again=again) == RightHalfPlane((RIGHT, ON), unproved)
+
+
+def test_a_budget_spent_by_the_count_is_said(searching):
+    assert searching(Half(SPENT), [RIGHT]) == RightHalfPlane((RIGHT,), "the budget is spent")
+    found = searching(Half(SPENT), [RIGHT], reached=50.0, tails=ENDLESS)
+    assert found == RightHalfPlane((RIGHT,), up_to(50.0, "poles have no end"))
+
+
+@pytest.mark.parametrize(
+    ("count", "said"),
+    [
+        (3, "3 are counted, and not all found: the budget is spent"),
+        (RootOnPathError(), "the budget is spent"),
+    ],
+)
+def test_a_budget_spent_by_the_search_is_said_with_what_was_counted(searching, count, said):
+    again = Half(0, roots=(RIGHT, TWICE), proof=SPENT)
+    assert searching(Half(count), [RIGHT], again=again) == RightHalfPlane((RIGHT,), said)
+
+
+def test_roots_that_mirror_each_other_are_not_counted_along_the_axis(searching):
+    side, again = Half(9, is_even=True), Half(0, roots=(RIGHT, ON, LEFT))
+    found = searching(side, [ON], reached=20.0, tails=ENDLESS, again=again)
+    assert found == RightHalfPlane((RIGHT, ON), up_to(20.0, "poles have no end"))
+    assert side.counted_to == []
+    assert again.searched
+
+
+def test_nor_beyond_what_was_asked_for_where_that_reaches_farther(searching):
+    found = searching(Half(9, is_even=True), [ON, LEFT], reached=31.0, tails=ENDLESS)
+    assert found == RightHalfPlane((ON, LEFT), up_to(31.0, "poles have no end"))
+
+
+def test_a_function_that_mirrors_and_ends_is_counted_like_any_other(searching):
+    assert searching(Half(1, is_even=True), [RIGHT]) == RightHalfPlane((RIGHT,))
+
+
+def test_a_budget_spent_beyond_what_was_asked_for_says_how_far_all_is_known(searching):
+    class Spent(Half):
+        def search(self, region):
+            raise SPENT
+
+    found = searching(Half(0, is_even=True), [ON], reached=20.0, tails=ENDLESS, again=Spent(0))
+    assert found == RightHalfPlane((ON,), up_to(20.0, "poles have no end"))
