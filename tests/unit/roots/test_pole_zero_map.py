@@ -5,15 +5,24 @@ from __future__ import annotations
 import json
 from fractions import Fraction
 
+import pytest
+from flint import arb
+
+from symflex.budget import Budget
+from symflex.errors import BudgetError, Diagnostic
 from symflex.roots import (
     ROOT_FINDERS,
     Band,
+    Mode,
     Modes,
     PolynomialInS,
     Rectangle,
     RootProblem,
     find_pole_zero_map,
 )
+from symflex.roots.pole_zero_map import Certificate, Exclusion, PoleZeroMap, right_beyond
+from symflex.roots.region import Everything
+from symflex.roots.root import Root
 from tests.unit.roots.polynomials import problem, with_root_of_two
 
 POLES = problem(0, 0, 9, 0, 1)  # s^2 (s^2 + 9)
@@ -89,3 +98,199 @@ def test_the_engine_is_named():
 
 def test_a_numerator_without_s_has_no_zeros():
     assert find_pole_zero_map("x/F", POLES, RootProblem(((PolynomialInS.from_integers([7]), 1),))).zeros == ()
+
+
+# ------------------------------------------------------- what is said of roots that a stand-in has found
+
+SPENT = Diagnostic("SF505", "too many steps")
+
+
+def real(*places, certified=True):
+    """Return roots on the real axis, of a width in the last place where that is not 0."""
+    return tuple(
+        Root(arb(place, width), arb(0), 1, on_imaginary_axis=False, is_real=True, certified=certified)
+        for place, width in ((p if isinstance(p, tuple) else (p, 0)) for p in places)
+    )
+
+
+class StandIn:
+    """A finder that returns, for one problem after the other, what it was given, or raises it."""
+
+    name = "stand-in"
+
+    def __init__(self, *answers):
+        self.answers = list(answers)
+        self.digits = []
+
+    def find(self, problem, region, digits, budget=None):
+        self.digits.append(digits)
+        answer = self.answers.pop(0)
+        if isinstance(answer, BudgetError):
+            raise answer
+        return answer
+
+
+def mapped(*answers, degrees=(2, 1), hidden=(), region=None, budget=None):
+    poles, zeros, *others = (problem(*([1] * (n + 1))) for n in (*degrees, *hidden))
+    finder = StandIn(*answers)
+    causes = [(each, f"cause {i}") for i, each in enumerate(others)]
+    shown = find_pole_zero_map("x/F", poles, zeros, region, 10, causes, finder, budget)
+    return shown, finder
+
+
+def test_all_found_and_apart_is_certified():
+    shown, _ = mapped(real(-1, 2), real(-3))
+    assert shown.certificate == Certificate("stand-in", True, 3, 3)
+    assert (shown.verdict.word, shown.verdict.right) == ("unstable", 1)
+
+
+@pytest.mark.parametrize("missing", [0, 1])
+def test_a_root_that_is_not_found_is_counted(missing):
+    answers = [real(-1, -2), real(-3)]
+    answers[missing] = answers[missing][1:]
+    shown, _ = mapped(*answers)
+    assert shown.certificate == Certificate("stand-in", False, 3, 2, "3 roots exist, 2 were found")
+    assert shown.verdict.reason == "3 roots exist, 2 were found"
+
+
+@pytest.mark.parametrize("blurred", [0, 1])
+def test_roots_that_are_not_apart_are_not_certified(blurred):
+    answers = [real(-1, -2), real(-3)]
+    answers[blurred] = real(*(root.re for root in answers[blurred]), certified=False)
+    certificate = mapped(*answers)[0].certificate
+    assert (certificate.certified, certificate.counted, certificate.found) == (False, 3, 3)
+    assert certificate.reason == "some roots could not be told apart; each such group is enclosed as one"
+
+
+def test_zeros_in_the_right_half_plane_make_nothing_unstable():
+    assert mapped(real(-1, -2), real(3))[0].verdict.word == "stable"
+
+
+def test_hidden_factors_have_their_causes_and_count_for_stability():
+    shown, _ = mapped(real(-1, -2), real(-3), real(-4), real(5, 6), hidden=(1, 2))
+    assert [(float(h.root.re), h.cause) for h in shown.hidden] == [
+        (-4, "cause 0"),
+        (5, "cause 1"),
+        (6, "cause 1"),
+    ]
+    assert (shown.verdict.right, shown.certificate.counted) == (2, 6)
+
+
+def test_of_a_band_hidden_modes_right_of_the_axis_are_shown_wherever_they_lie():
+    band = Band(Fraction(0), Fraction(1, 5))
+    shown, _ = mapped(real(-1, 3), real(-2), real(-1, 7, -8), region=band, hidden=(3,))
+    assert [float(h.root.re) for h in shown.hidden] == [-1, 7]
+    assert [float(r.re) for r in shown.poles] == [-1]
+    assert [float(r.re) for r in shown.unstable] == [3]
+    assert [float(r.re) for r in shown.all_poles] == [-1, 3]
+
+
+def test_roots_beyond_are_those_right_of_the_axis_that_are_not_shown():
+    roots = real(-1, 2, 3)
+    assert right_beyond(roots, roots[1:2]) == roots[2:]
+    assert right_beyond(roots, ()) == roots[1:]
+
+
+def test_digits_are_doubled_until_every_root_has_its_side():
+    band = Band(Fraction(0), Fraction(1))
+    edge = 2 * 3.141592653589793
+    wide, narrow = real((edge, 1e-3)), real((edge - 0.1, 1e-9))
+    shown, finder = mapped(wide, wide, narrow, (), degrees=(1, 0), region=band)
+    assert finder.digits == [10, 20, 40, 10]
+    assert [root.on_boundary for root in shown.poles] == [False]
+
+
+def test_a_root_whose_side_stays_unknown_is_on_the_boundary():
+    wide = real((2 * 3.141592653589793, 1e-3))
+    shown, finder = mapped(*[wide] * 4, (), degrees=(1, 0), region=Band(Fraction(0), Fraction(1)))
+    assert finder.digits == [10, 20, 40, 80, 10]
+    assert [root.on_boundary for root in shown.poles] == [True]
+
+
+def test_what_was_proved_until_the_budget_was_spent_is_shown_with_its_code():
+    failed = BudgetError(SPENT, found=real(-1))
+    shown, finder = mapped(failed, hidden=(1,))
+    assert [float(root.re) for root in shown.poles] == [-1]
+    assert (shown.zeros, shown.hidden, finder.digits) == ((), (), [10])
+    expected = Certificate("stand-in", False, 4, 1, "too many steps", is_exceeded=True, code="SF505")
+    assert shown.certificate == expected
+    assert shown.verdict.reason == "too many steps"
+
+
+def test_of_a_mode_by_its_number_nothing_is_shown_where_some_may_be_missing():
+    assert mapped(BudgetError(SPENT, found=real(-1)), region=Mode(1))[0].poles == ()
+    assert mapped(BudgetError(SPENT))[0].poles == ()
+
+
+def test_what_the_first_search_proved_outlasts_a_second_one():
+    wide = real((2 * 3.141592653589793, 1e-3))
+    band = Band(Fraction(0), Fraction(1))
+    shown, finder = mapped(wide, BudgetError(SPENT, found=()), degrees=(1, 0), region=band)
+    assert finder.digits == [10, 20]
+    assert [root.on_boundary for root in shown.poles] == [True]
+    assert shown.certificate.is_exceeded
+
+
+def test_progress_is_told_by_polynomials():
+    class Told:
+        def __init__(self):
+            self.said = []
+
+        def report(self, done, text):
+            self.said.append((done, text))
+
+    told = Told()
+    mapped(real(-1, -2), real(-3), real(-4), real(-5), hidden=(1, 1), budget=Budget(progress=told))
+    assert told.said == [(i / 4, f"polynomial {i + 1} of 4") for i in range(4)]
+
+
+def test_a_budget_without_time_is_spent_at_once():
+    clock = iter(range(100)).__next__
+    shown, _ = mapped(real(-1, -2), budget=Budget(seconds=0, clock=clock))
+    assert (shown.poles, shown.certificate.code) == ((), "SF506")
+
+
+@pytest.mark.parametrize(
+    ("reason", "code", "said", "coded"),
+    [("too many", "SF505", "too many", "SF505"), (None, None, "the budget was exceeded", "SF506")],
+)
+def test_an_exceeded_budget_is_an_error_that_holds_the_map(reason, code, said, coded):
+    certificate = Certificate("e", False, 3, 1, reason, is_exceeded=True, code=code)
+    shown = PoleZeroMap("x/F", Everything(), (), (), (), certificate)
+    with pytest.raises(BudgetError) as failed:
+        shown.complete()
+    (diagnostic,) = failed.value.diagnostics
+    assert (diagnostic.message, diagnostic.code) == (said, coded)
+    assert diagnostic.hint == "what was proved until then is in the attribute 'found' of this error"
+    assert failed.value.found is shown
+
+
+def test_all_of_a_map_is_in_its_data():
+    hole = Exclusion(-2.0, 0.0, 0.5, "poles accumulate")
+    certificate = Certificate("e", False, 3, 1, "too many", is_exceeded=True, code="SF505")
+    data = PoleZeroMap(
+        "x/F", Everything(), real(-1), real(-2), (), certificate, 5, (hole,), unstable=real(4)
+    ).to_json_dict()
+    assert data["excluded"] == [{"re": -2.0, "im": 0.0, "radius": 0.5, "reason": "poles accumulate"}]
+    assert data["certificate"] == {
+        "engine": "e",
+        "counted": 3,
+        "found": 1,
+        "reason": "too many",
+        "budget_exceeded": True,
+    }
+    shown = [[root["re"] for root in data[key]] for key in ("poles", "zeros", "right_half_plane")]
+    assert shown == [["-1.0000"], ["-2.0000"], ["4.0000"]]
+    assert data["poles"][0] == {
+        "re": "-1.0000",
+        "im": "0",
+        "radius": "0",
+        "multiplicity": 1,
+        "frequency_hz": pytest.approx(0.5 / 3.141592653589793),
+        "damping_ratio": 1.0,
+        "on_imaginary_axis": False,
+        "is_real": True,
+        "certified": True,
+        "boundary": False,
+    }
+    assert (data["hidden"], data["certified"], data["stability"]["verdict"]) == ([], False, "unknown")
