@@ -1,0 +1,210 @@
+"""Expressions evaluated: their values against numbers, and what they may not hold, with the place."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+
+from symflex import pipeline
+from symflex.elements import LinearForm, Variable
+from symflex.equations.evaluate import Evaluator, exact_root, extent
+from symflex.errors import BudgetError, ModelError, Source, Span, Text
+from symflex.expressions import Name, format_expression, names
+from symflex.expressions import parse as parse_text
+from symflex.kernels import PRIME, Factored, Ring, residue
+from symflex.model import scope_of
+
+MODEL = pipeline.loads(
+    """symflex = 1
+[parameters]
+k = {}
+m = {}
+[definitions]
+z = "k - k"
+w = "k/m"
+[blocks]
+G = { type = "tf", num = "k", den = "s + m" }
+[elements]
+mass = { type = "mass", at = "x", m = "m" }
+spring = { type = "spring", between = ["x", "ground"], k = "k" }
+[inputs]
+F = { force = "x" }
+u = {}
+[outputs]
+X = "x + sqrt(w)*u + sqrt(2)*u"
+"""
+)
+RING = Ring(("s", "k", "m", "z", "w", "pi", "sqrt(k/m)", "sqrt(2)"))
+POINT = {"s": 11, "k": 5, "m": 3, "z": 0, "w": 5 * pow(3, -1, PRIME), "pi": 7, "sqrt(k/m)": 13, "sqrt(2)": 17}
+S, K, M = (Factored.generator(RING, name) for name in "skm")
+SPRING = Variable("through", "spring", "f")
+
+
+def parse(text):
+    return parse_text(Text(text, Span(Source("model.toml", text), 0, len(text))))
+
+
+def evaluator(**more):
+    definitions = {d.name: d.expression for d in MODEL.definitions}
+    through = {SPRING: LinearForm.of((Variable("node", "x"), K))}
+    return Evaluator(RING, scope_of(MODEL), {"G": K / (S + M)}, through, definitions, POINT, **more)
+
+
+def in_field(value):
+    return value.numerator * pow(value.denominator, -1, PRIME) % PRIME
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("3/4", Fraction(3, 4)),
+        ("k + 2*m - s", Fraction(0)),
+        ("-(k - m)*s/4", Fraction(-11, 2)),
+        ("k^3 - m^-2", 125 - Fraction(1, 9)),
+        ("k^0", Fraction(1)),
+        ("G*m", Fraction(15, 14)),
+        ("1/G^2", Fraction(14, 5) ** 2),
+        ("w*pi + z", Fraction(35, 3)),
+        ("sqrt(9/4)*k", Fraction(15, 2)),
+        ("sqrt(w) - 1", Fraction(12)),
+        ("sqrt(k/m)*sqrt(2)", Fraction(13 * 17)),
+        ("exp(m - m) + cos(0) + cosh(0*k) + sin(0) + tan(0) + sinh(0) + tanh(k - k)", Fraction(3)),
+        ("k + m*(s - s)", Fraction(5)),
+    ],
+)
+def test_a_constant_has_the_value_of_its_numbers(text, value):
+    assert residue(evaluator().constant(parse(text)), POINT) == in_field(value)
+
+
+@pytest.mark.parametrize(
+    ("text", "terms"),
+    [
+        ("x", {"x": 1}),
+        ("3*x - u/2 + k*x", {"x": 8, "u": Fraction(-1, 2)}),
+        ("-(x - u)*G", {"x": Fraction(-5, 14), "u": Fraction(5, 14)}),
+        ("spring.f + m*x", {"x": 8}),
+        ("x^1*k", {"x": 5}),
+        ("u + x - u", {"x": 1}),
+        ("0", {}),
+        ("x*(k - k)", {}),
+        ("x + 0*m", {"x": 1}),
+    ],
+)
+def test_a_linear_form_has_the_coefficients_of_its_numbers(text, terms):
+    form = evaluator().linear(parse(text))
+    assert {str(v): residue(c, POINT) for v, c in form.terms} == {
+        n: in_field(Fraction(v)) for n, v in terms.items()
+    }
+
+
+@pytest.mark.parametrize(
+    ("method", "text", "code", "place", "message"),
+    [
+        ("constant", "k + x", "SF221", "k + x", "the sum has a term without an unknown"),
+        ("constant", "2*x", "SF212", "2*x", "'2*x' must be constant"),
+        ("constant", "k/x", "SF212", "x", "'x' must be constant"),
+        ("constant", "sqrt(x)", "SF212", "x", "'x' must be constant"),
+        ("linear", "k", "SF221", "k", "the expression has a term without an unknown"),
+        ("linear", "x*u", "SF222", "x*u", "a product of two unknowns is not linear"),
+        ("linear", "(x + u)^2", "SF222", "(x + u)^2", "a power of an unknown is not linear"),
+        ("constant", "k/(m - m)", "SF224", "m - m", "division by zero"),
+        ("constant", "k/z", "SF224", "z", "division by zero"),
+        ("constant", "1/(k - w*m)", "SF224", "k - w*m", "division by zero"),
+        ("constant", "z^-1", "SF224", "z^-1", "division by zero"),
+        ("constant", "sqrt(s)", "SF910", "sqrt(s)", "sqrt of an expression in s is not available yet"),
+        ("constant", "exp(G)", "SF910", "exp(G)", "exp of an expression in s is not available yet"),
+        ("constant", "exp(s - s)", "SF910", "exp(s - s)", "exp of an expression in s is not available yet"),
+    ],
+)
+def test_what_is_not_constant_or_not_linear_is_refused_at_its_place(method, text, code, place, message):
+    with pytest.raises(ModelError) as caught:
+        getattr(evaluator(), method)(parse(text))
+    (problem,) = caught.value.diagnostics
+    assert (problem.code, problem.message, problem.span.text) == (code, message, place)
+
+
+def test_zero_to_a_positive_power_is_zero():
+    assert evaluator().constant(parse("(k - k)^2")).is_zero
+
+
+def test_what_too_many_terms_would_come_of_is_refused_at_its_place():
+    names = tuple(f"a{i}" for i in range(12))
+    model = pipeline.loads(
+        'symflex = 1\ninputs.u = {}\noutputs.y = "u"\n[parameters]\n'
+        + "".join(f"{n} = {{}}\n" for n in names)
+    )
+    wide = Evaluator(Ring(("s", *names)), scope_of(model), {}, {}, {})
+    text = f"({' + '.join(names)})^40 + 1"
+    with pytest.raises(BudgetError) as caught:
+        wide.constant(parse(text))
+    (problem,) = caught.value.diagnostics
+    assert (problem.code, problem.span.text, problem.hint) == (
+        "SF501",
+        text,
+        "keep repeated sums in [definitions]",
+    )
+
+
+def chain(link, last):
+    """Definitions of which each is made of the one before, from ``d0 = k`` on."""
+    return {"d0": parse("k"), **{f"d{i}": parse(link.format(i - 1)) for i in range(1, last + 1)}}
+
+
+@pytest.mark.parametrize(
+    ("link", "accepted", "refused"),
+    # 200 levels, and there are n + 2; 1000 parts, and there are 2^n + 2: sums stay flat.
+    [("-d{}", 197, 199), ("d{0} + d{0}", 9, 10)],
+)
+def test_definitions_are_opened_in_a_function_up_to_a_size(link, accepted, refused):
+    for last, code in ((accepted, None), (refused, "SF103")):
+        opener = Evaluator(RING, scope_of(MODEL), {}, {}, chain(link, last)).opener
+        call = parse(f"sqrt(d{last})")
+        if code is None:
+            assert not {n.name for n in names(opener.open(call)) if isinstance(n, Name)} - {"k"}
+        else:
+            with pytest.raises(ModelError, match="the argument of sqrt is too large") as caught:
+                opener.open(call)
+            assert [(d.code, d.span.text) for d in caught.value.diagnostics] == [(code, f"sqrt(d{last})")]
+
+
+def test_definitions_opened_once_serve_the_next_call():
+    opener = Evaluator(RING, scope_of(MODEL), {}, {}, {"a": parse("k + 1"), "b": parse("a*m")}).opener
+    assert [format_expression(opener.open(parse(t))) for t in ("sqrt(b)", "exp(a - b)")] == [
+        "sqrt((k + 1)*m)", "exp(k + 1 - (k + 1)*m)"
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("text", "size"), [("k", (1, 1)), ("k + m*s - 2", (7, 3)), ("sqrt(k)", (2, 2)), ("(k + m)^2", (5, 3))]
+)
+def test_the_extent_of_a_tree_is_its_parts_and_levels(text, size):
+    assert extent(parse(text)) == size
+
+
+@pytest.mark.parametrize(
+    ("value", "root"),
+    [
+        (Fraction(0), Fraction(0)),
+        (Fraction(1, 4), Fraction(1, 2)),
+        (Fraction(49, 9), Fraction(7, 3)),
+        (Fraction(2), None),
+        (Fraction(4, 3), None),
+        (Fraction(3, 4), None),
+        (Fraction(-4), None),
+    ],
+)
+def test_a_square_root_of_a_number_is_exact_or_none(value, root):
+    assert exact_root(value) == root
+
+
+def test_a_point_of_a_field_is_asked_for():
+    asked = []
+
+    def at(call):
+        asked.append(call.name)
+        return LinearForm.of((Variable("field", "f", "w"), K))
+
+    found = evaluator(fields=("w",), field_value=at)
+    assert found.linear(parse("2*w(m)")).terms[0][1].unit == 2
+    assert asked == ["w"]
