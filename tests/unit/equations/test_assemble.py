@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import cmath
+from importlib import import_module
+from itertools import pairwise
+
 import pytest
 
 import symflex
 from symflex import pipeline
 from symflex.elements import Variable
 from symflex.equations.equations import Equations
-from symflex.errors import ModelError
+from symflex.errors import BudgetError, ModelError
 
+ROOM = import_module("symflex.equations.assemble")
 HEADER = "symflex = 1\n[parameters]\n"
 PENDULUM = (
     HEADER
@@ -170,3 +175,177 @@ def test_an_output_s_divisor_may_be_a_sum():
 def test_an_output_s_filter_is_no_unknown_of_the_others():
     text = PENDULUM.replace('X = "x"', 'X = "x"\nY = "x/(1 + m*s)"')
     assert [str(v) for v in assemble(text).unknowns] == ["x", "y"]
+
+
+# ------------------------------------------------------------------------------------- limits and problems
+
+
+@pytest.mark.parametrize(
+    ("limit", "largest", "text", "message", "hint"),
+    [
+        (
+            "GENERATOR_LIMIT",
+            5,
+            PENDULUM.replace("[elements]", '[definitions]\nc = "2*k"\n[elements]').replace(
+                '"k"', '"c*sqrt(k*m)"'
+            ),
+            "5 parameters, definitions and functions of them; at most 4 are carried",
+            "write numbers in place of parameters that need no name",
+        ),
+        ("UNKNOWN_LIMIT", 2, PENDULUM, "2 unknowns; at most 1 are solved for", "split the model"),
+    ],
+)
+def test_what_is_too_large_is_refused_with_the_way_round_it(monkeypatch, limit, largest, text, message, hint):
+    monkeypatch.setattr(ROOM, limit, largest)
+    assemble(text)
+    monkeypatch.setattr(ROOM, limit, largest - 1)
+    with pytest.raises(BudgetError) as caught:
+        assemble(text)
+    (problem,) = caught.value.diagnostics
+    assert (problem.code, problem.message) == ("SF502", f"the closed form is too large: {message}")
+    assert problem.hint == hint
+    assert len(pipeline.assemble_sparse(pipeline.loads(text)).rows) == 2
+
+
+def test_equations_of_many_names_have_a_limit_of_their_own(monkeypatch):
+    model = pipeline.loads(PENDULUM)
+    for largest, is_refused in ((3, False), (2, True), (1, True)):
+        monkeypatch.setattr(ROOM, "SPARSE_LIMIT", largest)
+        if is_refused:
+            with pytest.raises(BudgetError, match=f"at most {largest}"):
+                pipeline.assemble_sparse(model)
+        else:
+            pipeline.assemble_sparse(model)
+
+
+LARGE = f"({' + '.join(f'a{i}' for i in range(12))})^40 + 1"
+
+
+@pytest.mark.parametrize(
+    ("expressions", "error", "found"),
+    [
+        ((LARGE,), BudgetError, ["SF501"]),
+        ((LARGE, "1/(k - k)"), ModelError, ["SF501", "SF224"]),
+        (("1/(k - k)",), ModelError, ["SF224"]),
+    ],
+)
+def test_only_where_every_problem_is_one_of_size_is_it_a_matter_of_budget(expressions, error, found):
+    rows = "\n".join(f'e{i} = "({e})*U"' for i, e in enumerate(expressions))
+    names = "".join(f"{n} = {{}}\n" for n in ("k", *(f"a{i}" for i in range(12))))
+    text = f'{HEADER}{names}[signals]\n{rows}\n[inputs]\nU = {{}}\n[outputs]\nX = "e0"\n'
+    with pytest.raises(error) as caught:
+        assemble(text)
+    assert [d.code for d in caught.value.diagnostics] == found
+
+
+def test_a_block_that_divides_by_zero_is_reported_once_wherever_it_is_used():
+    blocks = 'A = { type = "tf", num = 1, den = "k - k" }\nB = { type = "tf", num = "A*m", den = "s + 1" }'
+    with pytest.raises(ModelError) as caught:
+        assemble(signal("A*B*U + U/A", "Z = 'A + 1'\nY = 'Z*k'", blocks))
+    assert [(d.code, d.message, d.span.text) for d in caught.value.diagnostics] == [
+        ("SF224", "block 'A' divides by zero", "A")
+    ]
+
+
+def test_a_block_that_divides_by_a_definition_of_zero_is_found():
+    blocks = 'A = { type = "tf", num = 1, den = "Z*s" }'
+    with pytest.raises(ModelError) as caught:
+        assemble(signal("A*U", "Z = 'k - k'", blocks))
+    assert [(d.code, d.message, d.span.text) for d in caught.value.diagnostics] == [
+        ("SF224", "block 'A' divides by zero", "A")
+    ]
+
+
+def test_a_definition_of_a_division_by_zero_is_reported_once():
+    assert codes(signal("U*Z + U*Y", "Z = '1/(k - k)'\nY = 'Z + k'")) == ["SF224"]
+
+
+def test_blocks_in_a_circle_are_named_in_the_order_they_refer_to_each_other():
+    blocks = 'A = { type = "tf", num = "B", den = 1 }\nB = { type = "tf", num = "C", den = 1 }\n'
+    with pytest.raises(ModelError) as caught:
+        assemble(signal("A*U", "C = '2*A'", blocks))
+    (problem,) = caught.value.diagnostics
+    message = "blocks refer to each other in a circle: "
+    assert (problem.code, problem.message.startswith(message)) == ("SF215", True)
+    circle = problem.message.removeprefix(message).split(" -> ")
+    assert (circle[0], set(circle), len(circle)) == (circle[-1], {"A", "B", "C"}, 4)
+    assert all({"A": "B", "B": "C", "C": "A"}[a] == b for a, b in pairwise(circle))
+    assert problem.span.text in "AB"
+
+
+# --------------------------------------------------------------------------------------------- blocks
+
+
+def response(text, s):
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    return pipeline.bind(tf)(s)
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2), (2, 1, 0), (1, 2, 0)])
+def test_blocks_may_be_made_of_delays_and_of_each_other_in_any_order(order):
+    rows = (
+        'D = { type = "delay", T = 0.25 }',
+        'G = { type = "tf", num = "3*D", den = "s + 2" }',
+        'H = { type = "tf", num = "G - D", den = 1 }',
+    )
+    text = signal("(H + w)*U", "w = 'G*D'", "\n".join(rows[i] for i in order))
+    text = text.replace("k = {}", "k = 1").replace("m = {}", "m = 1")
+    s = 1 + 3j
+    d = cmath.exp(-s / 4)
+    g = 3 * d / (s + 2)
+    assert response(text, s) == pytest.approx(g - d + g * d, rel=1e-13)
+
+
+def test_a_delay_of_no_time_is_one():
+    text = signal("D*U/(s + 1)", "", 'D = { type = "delay", T = "k - k" }')
+    assert response(text.replace("k = {}", "k = 1").replace("m = {}", "m = 1"), 2j) == pytest.approx(
+        1 / (1 + 2j)
+    )
+
+
+# ------------------------------------------------------------------------------ what else equations hold
+
+
+def test_equations_of_a_lumped_model_have_no_kernels_and_nothing_along_x():
+    equations = assemble(PENDULUM)
+    assert (equations.propagation, equations.cleared, equations.continua) == (None, None, ())
+    assert not equations.is_joined
+
+
+ALONG = """symflex = 1
+parameters = { E = 2, A = 3, rho = 5, l = 7, a = 1, k = 11 }
+elements.rod = { type = "rod", between = ["x", "ground"], E = "E", A = "A", rho = "rho", l = "l" }
+inputs = { F = { force = "x" }, p = {} }
+outputs = { X = "x", W = "w(a + l)" }
+[fields.string]
+unknowns = ["w"]
+domain = ["a", "a + l"]
+equation = "k*w'' = s^2*w + p"
+conditions = ["w(a)/(s + k) = x", "w'(a + l)/(k + 1)^2 = 0"]
+"""
+
+
+def test_what_goes_on_along_x_is_kept_with_where_it_starts_and_ends():
+    rod, string = sorted(assemble(ALONG).continua, key=lambda c: c.name)
+    assert (rod.name, rod.kind, str(rod.length), rod.start.is_zero, rod.loads) == (
+        "rod",
+        "rod",
+        "l",
+        True,
+        (),
+    )
+    assert [str(v) for v in rod.initial] == ["x", "rod.f_a"]
+    assert (string.name, string.kind, str(string.start), str(string.length)) == ("string", "field", "a", "l")
+    assert [v.owner for v in string.initial] == ["string", "string"]
+    assert [str(v) for v in string.loads] == ["p"]
+
+
+def test_what_rows_were_cleared_of_is_kept():
+    """One factor k + s and one (k + 1)^2 of the conditions, and what the rod's rows are divided by."""
+    equations = assemble(ALONG)
+    ring = equations.ring
+    k, s = (ring.generator(n) for n in "ks")
+    assert (equations.cleared.exponent_of(s + k), equations.cleared.exponent_of(k + 1)) == (1, 2)
+    for row in equations.rows:
+        for _, coefficient in row.form.terms:
+            coefficient.expand()
