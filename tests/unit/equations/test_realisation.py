@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from math import prod
+
 import pytest
 
 from symflex import pipeline
@@ -60,3 +62,26 @@ def test_what_does_not_cancel_hides_nothing():
     tf, found = hidden(signals='y = "A*r/(s + 5)^2"')
     assert tf.order == (1, 3)
     assert found == []
+
+
+@pytest.mark.parametrize(
+    ("expression", "order", "poles"),
+    [
+        ("(s - 1)^2*P^2*x", (0, 0), [1, 1]),
+        ("(s - 1)^3*P*P^2*x", (0, 0), [1, 1, 1]),
+        ("(s + 5)^-2*(s + 5)*x", (0, 1), [-5]),
+        ("(s + 5)^-2*(s + 5)^2*x", (0, 0), [-5, -5]),
+        ("C^-1*C*x", (0, 0), [-1, 1]),
+        ("(s + 5)*x/((s + 5)*(s + 6))", (0, 1), [-5]),
+        ("-(s + 2)*(A*x + A*B*x)", (2, 1), [-2]),
+        ("A*x - A*x + x", (0, 0), [-2]),
+        ("A^0*x", (0, 0), []),
+        ("3*x/4", (0, 0), []),
+    ],
+)
+def test_what_an_expression_divides_by_is_kept_where_it_cancels(expression, order, poles):
+    tf, _ = hidden(signals='x = "r"', expression=expression)
+    found = [h.polynomial for h in tf.hidden for _ in range(h.multiplicity)]
+    wanted = [tf.ratio.ring.generator("s") - pole for pole in poles]
+    assert tf.order == order
+    assert prod(found) == prod(wanted)
