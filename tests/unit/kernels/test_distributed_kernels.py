@@ -228,6 +228,7 @@ def test_a_product_of_half_angles_is_found_as_a_common_factor():
         (lambda c, s, co, si: s * si, 2),
         (lambda c, s, co, si: c * co - 1, 4),
         (lambda c, s, co, si: c * co, 0),
+        (lambda c, s, co, si: c**2 - s**2 + co**2 + si**2 - 2, None),
     ],
 )
 def test_the_order_at_a_zero_wavenumber_is_that_of_the_taylor_series(function, order):
@@ -289,6 +290,7 @@ def test_what_holds_other_multiples_is_not():
     c, s = ring.generator(angle.even.generator), ring.generator(angle.odd.generator)
     assert lift(ring, c**2 + s, angle, 2) is None
     assert lift(ring, c**2 + c, angle, 3) is None
+    assert lift(ring, s**2, angle, 1) is None
 
 
 @pytest.mark.parametrize("kind", list(KINDS))
