@@ -6,7 +6,7 @@ import pytest
 
 from symflex.errors import BudgetError
 from symflex.kernels import Ring, degree_in
-from symflex.kernels.ring import DEGREE_LIMIT, check_expansion
+from symflex.kernels.ring import DEGREE_LIMIT, check_expansion, expanded_length
 
 
 def test_a_generator_that_is_no_identifier_is_not_confused_with_a_parameter_of_any_name():
@@ -39,10 +39,54 @@ def test_compose_refuses_a_result_of_millions_of_terms():
     assert caught.value.diagnostics[0].code == "SF501"
 
 
+@pytest.mark.parametrize(
+    ("power", "terms"),
+    [(1, 3), (2, 6), (5, 21)],  # (x + y + z)^n has (n + 1) (n + 2)/2 terms
+)
+def test_a_power_of_a_sum_is_refused_for_one_term_more_than_the_limit(power, terms):
+    inner, outer = Ring(("s", "a")), Ring(("s", "x", "y", "z"))
+    s, x, y, z = outer.context.gens()
+    polynomial, images = inner.generator("a") ** power * inner.generator("s"), [s, x + y + z]
+    assert len(outer.compose(polynomial, images, term_limit=terms)) == terms
+    with pytest.raises(BudgetError, match=f"the expanded form would exceed {terms - 1} terms"):
+        outer.compose(polynomial, images, term_limit=terms - 1)
+
+
+def test_memory_limits_the_terms_too():
+    inner, outer = Ring(("s", "a")), Ring(("s", "x", "y", "z"))
+    s, x, y, z = outer.context.gens()
+    polynomial, images = inner.generator("a") ** 2 - inner.generator("s") * 20, [s, x + y + z]
+    # 7 terms of 4 names and a coefficient of 8 bytes.
+    assert len(outer.compose(polynomial, images, memory_limit=84)) == 7
+    with pytest.raises(BudgetError, match="would exceed 6 terms"):
+        outer.compose(polynomial, images, memory_limit=83)
+
+
+def test_terms_of_either_sign_are_counted_one_by_one():
+    ring = Ring(("s", "x", "y"))
+    s, x, y = ring.context.gens()
+    found = [expanded_length(p, (1, 2, 3)) for p in (s - 4, x * s - y, x**2 * y - x, (x * 17 + y), -x * y)]
+    # C(n + e - 1, e) per power of a sum of n terms.
+    assert found == [2, 5, 3 * 3 + 2, 5, 6]
+
+
+def test_many_large_coefficients_have_no_quick_bound(monkeypatch):
+    monkeypatch.setattr("symflex.kernels.ring.MANY", 1)
+    ring = Ring(("s", "x", "y"))
+    _, x, y = ring.context.gens()
+    assert [expanded_length(p, (1, 2, 3)) for p in (x + y * 16, x + y * 17, x - y, x**2 + y)] == [
+        50,
+        None,
+        None,
+        7,
+    ]
+
+
 def test_compose_refuses_a_degree_beyond_the_limit():
     ring = Ring(("s", "a"))
     high = ring.generator("s") ** (DEGREE_LIMIT // 10)
-    with pytest.raises(BudgetError):
+    check_expansion(ring, ring.generator("a") ** 10, [ring.generator("s"), high])
+    with pytest.raises(BudgetError, match=f"the expanded form would exceed degree {DEGREE_LIMIT}"):
         check_expansion(ring, ring.generator("a") ** 11, [ring.generator("s"), high])
 
 
