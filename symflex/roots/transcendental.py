@@ -7,7 +7,7 @@ numerical, which makes guesses, or proved, which leaves none out; every root fou
 from __future__ import annotations
 
 from cmath import exp, pi
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -23,7 +23,7 @@ from symflex.roots.root import Root, overlap
 from symflex.roots.winding import RING, Cell, RootOnPathError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Sequence
 
     from symflex.roots.argument_principle import CertifiedWinding
     from symflex.roots.winding import Winding
@@ -407,17 +407,3 @@ def _is_in(cell: Cell, root: Root) -> bool:
     point = complex(z.mid())
     turns = round((cell.centre.imag - point.imag) / (2 * pi))
     return cell.holds(point + 2j * pi * turns, CONVERGED)
-
-
-def mirrored(roots: Iterable[Root], *, even: bool) -> list[Root]:
-    """Return roots and their images in the real axis, for even functions in the imaginary axis too."""
-    result: list[Root] = []
-    for root in roots:
-        signs = [(1, 1)]
-        if not root.is_real:
-            signs += [(x, -y) for x, y in signs]
-        if even and not root.on_imaginary_axis:
-            signs += [(-x, y) for x, y in signs]
-        with precision(root.working_bits()):
-            result += [replace(root, re=x * root.re, im=y * root.im) for x, y in signs]
-    return result

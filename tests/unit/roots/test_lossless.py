@@ -17,7 +17,7 @@ from symflex.roots.precision import precision
 from symflex.roots.winding import RootOnPathError
 from tests.unit.roots.distributed import FREE, PINNED_IN_THE_MIDDLE, ROD, SLIDING_FREE, bound
 
-SAMPLES = 400_000
+SAMPLES = 60_000
 DIGITS = 30
 
 
