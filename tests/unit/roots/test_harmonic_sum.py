@@ -11,7 +11,7 @@ from mpmath import mp, mpc, mpf
 
 from symflex.roots import precision
 from symflex.roots.axis_function import IMAGINARY, REAL
-from symflex.roots.harmonic_sum import lossless_function
+from symflex.roots.harmonic_sum import LosslessFunction, lossless_function
 from symflex.roots.kernel_function import KernelFunction
 from tests.unit.roots.distributed import (
     DELAY_LOOP,
@@ -110,6 +110,30 @@ def test_nothing_grows_on_an_axis_and_something_does_not_decay(name, axis):
 def test_what_is_not_real_on_an_axis_is_none(sums, axis):
     # cosh((1 + j) t) + sin((1 + j) t), 1 + (1 + j) t, 1 + 2 j t^2, exp(j t^2), j + cosh(t)
     assert function_of((sums, 1)).on_axis(0, axis) is None
+
+
+def test_what_turns_one_way_only_is_not_real():
+    # exp(j x), with the smallest coefficient there is.
+    alone = LosslessFunction((({((0, 0, 1),): {(0, ()): (1, 0)}}, 1),), function_of().enclosures)
+    assert alone.on_axis(0, REAL) is None
+
+
+@pytest.mark.parametrize("fastest", [(1, "cosh"), (2, "cosh")])
+def test_the_fastest_exponential_is_taken_out_wherever_it_stands(fastest):
+    # cosh(0.75 x)^2 and cosh(x^2/2) grow faster than cosh(1.25 x).
+    sums = ((1, 0, 0, ((0, "cosh"),)), (1, 0, 0, (fastest, fastest)))
+    source = function_of((sums, 1)).on_axis(0, REAL)
+    with precision(64):
+        rates = [source.enclosures.rate(wave.growth) for wave in source.waves]
+        assert all(linear * 50 + square * 2500 <= 0 for linear, square in rates)
+
+
+@pytest.mark.parametrize(("argument", "turned"), [(0, 1.25 * 3 / sqrt(2)), (2, 0.5 * 9)])
+def test_a_growing_exponential_turns_forward(argument, turned):
+    # exp(1.25 x) at x = 3 exp(j pi/4), and exp(x^2/2)
+    growing = tuple((1, 0, 0, ((argument, name),)) for name in ("cosh", "sinh"))
+    function = function_of((growing, 1))
+    assert float(function.turn(log(9))) == pytest.approx(turned)
 
 
 def test_each_factor_stands_by_itself_on_an_axis():
