@@ -225,6 +225,6 @@ def _take_apart(
     if discs is None:
         return None
     smaller = groups(with_mirrors(discs) if middle.imag == 0 else discs)
-    if max(len(each) for each in smaller) == len(cluster):
+    if max(len(each) for each in smaller) >= len(cluster):
         return None
     return _resolve(level, goal, proposers, smaller, last=last)
