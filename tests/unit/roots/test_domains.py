@@ -197,7 +197,9 @@ def test_a_band_is_a_ring(is_even):
         ((-3, 6, 4, 8), 4, 10, atan2(4, 6), atan2(4, -3)),
         # with an edge on an axis
         ((0, 6, 4, 8), 4, 10, atan2(4, 6), pi / 2),
+        ((-6, 0, 4, 8), 4, 10, pi / 2, atan2(4, -6)),
         ((3, 6, 0, 8), 3, 10, 0.0, atan2(8, 3)),
+        ((3, 6, -8, 0), 3, 10, 0.0, atan2(8, 3)),
     ],
 )
 def test_a_rectangle_lies_between_its_nearest_point_and_its_corners(

@@ -121,9 +121,11 @@ class StandIn:
     def __init__(self, *answers):
         self.answers = list(answers)
         self.digits = []
+        self.budgets = []
 
     def find(self, problem, region, digits, budget=None):
         self.digits.append(digits)
+        self.budgets.append(budget)
         answer = self.answers.pop(0)
         if isinstance(answer, BudgetError):
             raise answer
@@ -179,7 +181,7 @@ def test_hidden_factors_have_their_causes_and_count_for_stability():
 def test_of_a_band_hidden_modes_right_of_the_axis_are_shown_wherever_they_lie():
     band = Band(Fraction(0), Fraction(1, 5))
     shown, _ = mapped(real(-1, 3), real(-2), real(-1, 7, -8), region=band, hidden=(3,))
-    assert [float(h.root.re) for h in shown.hidden] == [-1, 7]
+    assert [(float(h.root.re), h.cause) for h in shown.hidden] == [(-1, "cause 0"), (7, "cause 0")]
     assert [float(r.re) for r in shown.poles] == [-1]
     assert [float(r.re) for r in shown.unstable] == [3]
     assert [float(r.re) for r in shown.all_poles] == [-1, 3]
@@ -240,7 +242,9 @@ def test_progress_is_told_by_polynomials():
             self.said.append((done, text))
 
     told = Told()
-    mapped(real(-1, -2), real(-3), real(-4), real(-5), hidden=(1, 1), budget=Budget(progress=told))
+    budget = Budget(progress=told)
+    _, finder = mapped(real(-1, -2), real(-3), real(-4), real(-5), hidden=(1, 1), budget=budget)
+    assert finder.budgets == [budget] * 4
     assert told.said == [(i / 4, f"polynomial {i + 1} of 4") for i in range(4)]
 
 

@@ -176,6 +176,21 @@ def test_a_band_holds_the_modes_between_its_ends(engine):
     expected = [rod(n) for n in range(1, 9) if pi < rod(n) < 3 * pi]
     sizes = [float(r.im) for r in one.roots if r.im > 0]
     assert [x for x in sorted(sizes) if pi < x < 3 * pi] == pytest.approx(expected)
+    # The engine asked first proved it.
+    assert one.engine == engine
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_band_from_0_holds_all_modes_below_its_end(engine):
+    one = side(FREE, engines=(engine, SUBDIVISION))
+    region = Band(Fraction(0), Fraction(10))
+    one.search(region)
+    proof = one.prove(region)
+    # 22.4 and 61.7 rad/s (Blevins 1979), both signs, and two poles at 0
+    assert sorted(round(float(r.im), 1) for r in one.roots if 0 < r.im < 20 * pi) == [22.4, 61.7]
+    assert proof.is_complete
+    assert one.engine == engine
+    assert sum(r.multiplicity for r in one.roots if r.is_zero) == 2
 
 
 def test_a_free_beam_has_a_double_pole_at_0_that_is_counted():
@@ -221,8 +236,11 @@ def test_a_polynomial_has_all_its_roots_at_once():
 
 
 def test_too_many_modes_are_not_searched():
-    with pytest.raises(BudgetError, match="SF505"):
+    with pytest.raises(BudgetError, match="SF505") as failed:
         side(ROD).extend(MODES_LIMIT + 1)
+    (diagnostic,) = failed.value.diagnostics
+    assert diagnostic.hint == "ask for a band"
+    assert diagnostic.message.endswith(f"are searched, not {MODES_LIMIT + 1}")
 
 
 def test_what_no_engine_allowed_can_search_is_refused():

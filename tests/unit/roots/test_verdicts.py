@@ -7,7 +7,7 @@ from math import exp, pi
 from types import SimpleNamespace
 
 import pytest
-from flint import arb
+from flint import acb, arb
 
 from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic
@@ -156,7 +156,7 @@ class Half:
     def function(self):
         part = SimpleNamespace(factors=[(f"factor {i}", e) for i, e in enumerate(self.exponents)])
         return SimpleNamespace(
-            is_even=self.is_even, part=part, bound=None, frequency_of=lambda waves: 3 * waves
+            is_even=self.is_even, part=part, bound="bound", frequency_of=lambda waves: 3 * waves
         )
 
     def count_right(self, z):
@@ -182,10 +182,21 @@ def searching(monkeypatch):
     """Search right of the axis, given tails of the factors and what a search of the half plane finds."""
 
     def search(side, known=(), reached=0.0, tails=ENDING, again=None):
-        every = iter(tails)
-        monkeypatch.setattr(right_half_plane, "right_tail", lambda *given: next(every))
-        monkeypatch.setattr(right_half_plane, "Side", lambda *given: again)
-        return search_right(None, None, side, known, reached, 10, Budget())
+        every, budget = iter(tails), Budget()
+
+        def tail(bound, polynomials, numbers, start):
+            # Of one factor, whole, from where the largest argument of a kernel is 1.
+            assert (bound, len(polynomials), start) == ("bound", 1, 3.0)
+            assert numbers == (acb(1),)
+            return next(every)
+
+        def another(*given):
+            assert given == ("bound", "part", 10, budget)
+            return again
+
+        monkeypatch.setattr(right_half_plane, "right_tail", tail)
+        monkeypatch.setattr(right_half_plane, "Side", another)
+        return search_right("bound", "part", side, known, reached, 10, budget)
 
     return search
 
