@@ -74,6 +74,13 @@ def test_there_are_as_many_rows_as_unknowns_and_they_name_each_other():
     assert equations.inputs == (Variable("input", "F"),)
 
 
+def test_rows_say_what_they_are():
+    lever = 'T = { type = "transformer", from = "y", to = "z", ratio = 2 }\n[signals]\ne = "3*x"\n[inputs]\n'
+    text = PENDULUM.replace("[inputs]\n", lever + 'G = { displacement = "z" }\n')
+    roles = [row.role for row in assemble(text).rows]
+    assert sorted(roles) == ["balance"] * 3 + ["constraint"] * 2 + ["signal"]
+
+
 def test_rows_are_polynomial():
     text = PENDULUM.replace('k = "k"', 'k = "k*m/(b + m)/3"')
     for row in assemble(text).rows:

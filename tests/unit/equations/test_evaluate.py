@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
 
 from symflex import pipeline
 from symflex.elements import LinearForm, Variable
+from symflex.equations.coefficients import read_equation
 from symflex.equations.evaluate import Evaluator, exact_root, extent
 from symflex.errors import BudgetError, ModelError, Source, Span, Text
-from symflex.expressions import Name, format_expression, names
+from symflex.expressions import Name, format_expression, names, parse_equation
 from symflex.expressions import parse as parse_text
 from symflex.kernels import PRIME, Factored, Ring, residue
 from symflex.model import scope_of
@@ -120,6 +122,79 @@ def test_a_linear_form_has_the_coefficients_of_its_numbers(text, terms):
 def test_what_is_not_constant_or_not_linear_is_refused_at_its_place(method, text, code, place, message):
     with pytest.raises(ModelError) as caught:
         getattr(evaluator(), method)(parse(text))
+    (problem,) = caught.value.diagnostics
+    assert (problem.code, problem.message, problem.span.text) == (code, message, place)
+
+
+@pytest.mark.parametrize(
+    ("blocks", "text", "message", "hint"),
+    [
+        (
+            {"G": K}, "sqrt(s)", "sqrt of an expression in s is not available yet",
+            "a dead time is a block of type delay; waves come with rods, beams and [fields]",
+        ),
+        (
+            {"k": K}, "sqrt(k)", "sqrt of a block ('k') is not available yet",
+            "blocks may be added, multiplied, divided and raised to integer powers",
+        ),
+        (
+            {}, "G", "a delay (block 'G') inside a field's equation or a length is not available",
+            'a delayed load may come from a signal: [signals] load = "G*..."',
+        ),
+    ],
+)  # fmt: skip
+def test_what_is_not_available_is_said_with_what_is(blocks, text, message, hint):
+    with pytest.raises(ModelError) as caught:
+        Evaluator(RING, scope_of(MODEL), blocks, {}, {}, POINT).constant(parse(text))
+    (problem,) = caught.value.diagnostics
+    assert (problem.code, problem.message, problem.hint) == ("SF910", message, hint)
+    assert problem.span.text == text
+
+
+def coefficients(text):
+    """Read an equation of the field w."""
+    equation = parse_equation(Text(text, Span(Source("model.toml", text), 0, len(text))))
+    inside = replace(evaluator(), scope=scope_of(MODEL).within(["w"]))
+    return read_equation(equation, ["w"], inside)
+
+
+@pytest.mark.parametrize(
+    ("text", "terms", "loads"),
+    [
+        ("w'' + s*w = 3*w - w''", {2: 2, 0: 8}, {}),
+        (
+            "k*(w'' - u)/m = -(2*w'' - G*u + u)",
+            {2: Fraction(11, 3)},
+            {"u": Fraction(-2, 3) - Fraction(5, 14)},
+        ),
+        ("w' - w' + s^2*w = 0", {0: 121}, {}),
+        ("(w + w')*(k - k) = 2*w'*k - u", {1: -10}, {"u": 1}),
+        ("0 = w''''*pi/2 + 4*u*0 + 0*k", {4: Fraction(-7, 2)}, {}),
+    ],
+)
+def test_the_coefficients_of_an_equation_are_those_of_its_left_side_less_its_right(text, terms, loads):
+    found = coefficients(text)
+    for read, wanted in (
+        (found.terms, {("w", k): c for k, c in terms.items()}),
+        (found.named().loads, loads),
+    ):
+        assert {key: residue(c, POINT) for key, c in read.items()} == {
+            key: in_field(Fraction(c)) for key, c in wanted.items()
+        }
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "place", "message"),
+    [
+        ("w'' = 3*k", "SF221", "3*k", "the equation has a term without an unknown"),
+        ("w'' = k", "SF221", "k", "the expression has a term without an unknown"),
+        ("w''/(k - k) = w", "SF224", "k - k", "division by zero"),
+        ("w''/z = w", "SF224", "z", "division by zero"),
+    ],
+)
+def test_an_equation_with_a_constant_term_or_a_division_by_zero_is_refused(text, code, place, message):
+    with pytest.raises(ModelError) as caught:
+        coefficients(text)
     (problem,) = caught.value.diagnostics
     assert (problem.code, problem.message, problem.span.text) == (code, message, place)
 
