@@ -158,7 +158,7 @@ class Evaluator:
             return self.through[meaning.variable]
         if meaning.variable is not None:
             return LinearForm.of((meaning.variable, Factored.number(self.ring, 1)))
-        return Factored.generator(self.ring, LAPLACE if meaning.kind == "laplace" else meaning.name)
+        return Factored.generator(self.ring, meaning.name)
 
     def _block(self, expression: Name | Attribute, name: str) -> Factored:
         if name not in self.blocks:

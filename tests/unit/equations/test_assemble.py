@@ -254,6 +254,11 @@ def test_a_block_that_divides_by_zero_is_reported_once_wherever_it_is_used():
     ]
 
 
+def test_a_block_of_what_is_not_available_is_reported_once_wherever_it_is_used():
+    blocks = 'A = { type = "tf", num = "sqrt(Z)", den = 1 }\nB = { type = "tf", num = "A*m", den = "s + 1" }'
+    assert codes(signal("A*B*U + U/A", "Z = 's*k'", blocks)) == ["SF910"]
+
+
 def test_a_block_that_divides_by_a_definition_of_zero_is_found():
     blocks = 'A = { type = "tf", num = 1, den = "Z*s" }'
     with pytest.raises(ModelError) as caught:
