@@ -87,28 +87,26 @@ class Exponentials:
         target = self.coordinates
         degrees = dict(zip(self.ring.names, (int(d) for d in polynomial.degrees()), strict=True))
         scale = Factored.number(target, 1)
-        images: dict[str, tuple[fmpz_mpoly, int]] = {}
+        images: dict[str, fmpz_mpoly] = {}
         homogeneous: list[tuple[fmpz_mpoly, tuple[int, int], int]] = []
-        highest: list[int] = []
         for angle in self.angles:
             even, odd = self.ring.index[angle.even.generator], self.ring.index[angle.odd.generator]
             degree = 0
             if degrees[angle.even.generator] or degrees[angle.odd.generator]:
                 degree = max(int(m[even]) + int(m[odd]) for m in polynomial.monoms())
-            highest.append(degree)
             if angle.kind == "hyperbolic":
                 e = target.generator(angle.coordinates[0])
-                images[angle.even.generator] = (e * e + 1, 0)
-                images[angle.odd.generator] = (e * e - 1, 0)
+                images[angle.even.generator] = e * e + 1
+                images[angle.odd.generator] = e * e - 1
                 homogeneous.append((2 * e, (even, odd), degree))
                 scale = scale * (Factored.polynomial(target, 2 * e) ** -degree)
             else:
                 t, u = (target.generator(c) for c in angle.coordinates)
-                images[angle.even.generator] = (u * u - t * t, 0)
-                images[angle.odd.generator] = (2 * t * u, 0)
+                images[angle.even.generator] = u * u - t * t
+                images[angle.odd.generator] = 2 * t * u
                 homogeneous.append((t * t + u * u, (even, odd), degree))
-        if not any(highest):
-            plain = [images[n][0] if n in images else target.generator(n) for n in self.ring.names]
+        plain = [images[n] if n in images else target.generator(n) for n in self.ring.names]
+        if not any(degree for _, _, degree in homogeneous):
             return Factored.polynomial(target, polynomial.compose(*plain, ctx=target.context))
         # The missing degree of every term is made up by cosh^2 - sinh^2 and cos^2 + sin^2, which are one.
         parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
@@ -116,7 +114,6 @@ class Exponentials:
             exponents = tuple(int(e) for e in monomial)
             missing = tuple(d - exponents[p[0]] - exponents[p[1]] for _, p, d in homogeneous)
             parts.setdefault(missing, {})[exponents] = int(coefficient)
-        plain = [images[n][0] if n in images else target.generator(n) for n in self.ring.names]
         total = target.constant(0)
         for missing, terms in parts.items():
             part = self.ring.context.from_dict(terms).compose(*plain, ctx=target.context)

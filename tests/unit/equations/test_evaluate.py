@@ -282,4 +282,5 @@ def test_a_point_of_a_field_is_asked_for():
 
     found = evaluator(fields=("w",), field_value=at)
     assert found.linear(parse("2*w(m)")).terms[0][1].unit == 2
+    assert found.constant(parse("sqrt(9/4)")).unit == Fraction(3, 2)
     assert asked == ["w"]
