@@ -107,8 +107,7 @@ def _value(
 def _dot(left: Iterable[Factored], right: Iterable[Factored], zero: Factored) -> Factored:
     total = zero
     for a, b in zip(left, right, strict=True):
-        if not (a.is_zero or b.is_zero):
-            total = total + a * b
+        total = total + a * b
     return total
 
 
@@ -361,9 +360,7 @@ def _fundamental(
 
 
 def _monomial(x: Factored, power: int) -> Factored:
-    if power == 0:
-        return x * 0 + 1
-    return x * 0 if x.is_zero else x**power * Fraction(1, factorial(power))
+    return x**power * Fraction(1, factorial(power))
 
 
 def transfer_matrix(medium: Medium, length: Factored, propagation: Propagation) -> Matrix:
@@ -412,6 +409,5 @@ def _driven(medium: Medium, length: Factored, propagation: Propagation) -> list[
             for i, row in enumerate(part.states):
                 for k, matrix in enumerate(part.adjugate):
                     weight = _dot([propagation.embed(x) for x in matrix[i]], b, zero)
-                    if not weight.is_zero:
-                        column[row] = column[row] + integrals[k] * weight
+                    column[row] = column[row] + integrals[k] * weight
     return columns

@@ -51,9 +51,10 @@ def test_a_chain_taken_as_one_element_has_the_response_of_its_parts(kind):
     assert values(joined, pairs) == pytest.approx(values(apart, pairs), rel=1e-9)
 
 
-@pytest.mark.slow
-def test_three_elements_with_an_input_between_have_the_response_of_their_parts():
-    model = chain("beam", 0.2, 0.3, 0.1)
+@pytest.mark.parametrize("kind", ["rod", pytest.param("beam", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("lengths", [(0.2, 0.3, 0.1), (0.2, 0.3, 0.1, 0.15)])
+def test_elements_with_an_input_between_have_the_response_of_their_parts(kind, lengths):
+    model = chain(kind, *lengths)
     pairs = model.transfer_functions
     apart, joined = (assemble(model, is_joined=is_joined) for is_joined in (False, True))
     assert values(joined, pairs) == pytest.approx(values(apart, pairs), rel=1e-9)
@@ -64,6 +65,13 @@ def test_three_elements_with_an_input_between_have_the_response_of_their_parts()
     [
         chain("beam", 0.3, 0.5, more='m = { type = "mass", at = "n_1", m = 1 }'),
         chain("beam", 0.3, 0.5, turned=(1,)),
+        chain("rod", 0.3, 0.5, turned=(0,)),
+        pipeline.loads(
+            "symflex = 1\n[elements]\n"
+            f'a = {{ {KINDS["rod"]}, between = ["x", "ground"], l = 1 }}\n'
+            f'b = {{ {KINDS["rod"]}, between = ["ground", "y"], l = 1 }}\n'
+            '[inputs]\nF = { force = "x" }\n[outputs]\nX = "x"\n'
+        ),
         pipeline.loads(
             "symflex = 1\n[elements]\n"
             f'a = {{ {BEAM}, between = ["ground", "x"], l = 1 }}\n'
@@ -71,7 +79,7 @@ def test_three_elements_with_an_input_between_have_the_response_of_their_parts()
             '[inputs]\nF = { force = "x" }\n[outputs]\nY = "y"\n'
         ),
     ],
-    ids=["a mass between", "turned round", "another law"],
+    ids=["a mass between", "turned round", "the first turned round", "the ground", "another law"],
 )
 def test_elements_are_not_one_where_anything_parts_them(model):
     assert not assemble(model, is_joined=True).is_joined

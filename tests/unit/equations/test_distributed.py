@@ -140,4 +140,28 @@ Y = "{static}(1)"
 """
     with pytest.raises(ModelError, match=f"SF305.*no derivative of {static}") as caught:
         pipeline.derive_all(pipeline.loads(text))
-    assert caught.value.diagnostics[0].span is not None
+    (problem,) = caught.value.diagnostics
+    assert problem.span.text == "f"
+    assert problem.hint == "put what it equals in its place in the other equations and conditions"
+
+
+def test_equations_that_leave_a_highest_derivative_open_are_refused_at_their_field():
+    text = """
+symflex = 1
+[fields.f]
+unknowns = ["a", "b"]
+domain = ["0", "1"]
+equations = ["a' + b' = s*a", "a' + b' = s*b"]
+conditions = ["a(0) = u", "b(0) = 0"]
+[inputs]
+u = {}
+[outputs]
+Y = "a(1)"
+"""
+    with pytest.raises(ModelError) as caught:
+        pipeline.derive_all(pipeline.loads(text))
+    (problem,) = caught.value.diagnostics
+    assert problem.code == "SF305"
+    assert problem.message == "the equations of field 'f' do not determine the highest derivatives of a and b"
+    assert problem.hint == "eliminate an unknown by hand, or differentiate an equation"
+    assert problem.span.text == "f"

@@ -93,7 +93,9 @@ def test_nothing_is_substituted_in_a_sparse_ring():
     ring = Ring(NAMES, is_sparse=True)
     with pytest.raises(BudgetError) as caught:
         ring.compose(ring.generator("s"), [ring.generator(n) for n in NAMES])
-    assert caught.value.diagnostics[0].code == "SF502"
+    (problem,) = caught.value.diagnostics
+    assert (problem.code, problem.message) == ("SF502", "nothing is multiplied out with 4 names")
+    assert problem.hint == "ask for the nested form"
 
 
 def test_only_single_terms_divide_and_only_exactly():
