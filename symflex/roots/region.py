@@ -11,7 +11,7 @@ from flint import arb, fmpq
 from symflex.roots.precision import precision
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
     from fractions import Fraction
 
     from symflex.roots.root import Root
@@ -145,9 +145,7 @@ class Modes:
         """Return the position of every root; the roots are in order of natural frequency."""
         positions = [Position.INSIDE] * len(roots)
         before = 0
-        for indices in _by_frequency(roots):
-            leaders = [roots[i] for i in indices if not roots[i].im < 0]
-            after = before + sum(root.multiplicity for root in leaders)
+        for indices, leaders, after in _by_frequency(roots):
             if before >= self.count:
                 position = Position.OUTSIDE
             elif after <= self.count or len(leaders) == 1:
@@ -185,12 +183,12 @@ class Mode:
 
     def classify(self, roots: Sequence[Root]) -> tuple[Position, ...]:
         """Return the position of every root; the roots are in order of natural frequency."""
-        below = Modes(self.number - 1).classify(roots)
         upto = Modes(self.number).classify(roots)
-        return tuple(
-            Position.OUTSIDE if root.is_zero or before is Position.INSIDE else position
-            for root, before, position in zip(roots, below, upto, strict=True)
-        )
+        positions = [Position.OUTSIDE] * len(roots)
+        for indices, _, after in _by_frequency(roots):
+            for i in indices if after >= self.number else ():
+                positions[i] = upto[i]
+        return tuple(positions)
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the region as JSON data."""
@@ -200,8 +198,11 @@ class Mode:
 Region = Everything | Band | Rectangle | Modes | Mode
 
 
-def _by_frequency(roots: Sequence[Root]) -> list[list[int]]:
-    """Return the indices of the roots other than 0, grouped where their frequencies overlap."""
+def _by_frequency(roots: Sequence[Root]) -> Iterator[tuple[list[int], list[Root], int]]:
+    """Yield where the roots other than 0 stand, those together whose frequencies overlap.
+
+    With each group those of its roots that are not in the lower half plane, and the number of modes up to it.
+    """
     grouped: list[list[int]] = []
     reached: arb | None = None
     for i, root in enumerate(roots):
@@ -213,7 +214,11 @@ def _by_frequency(roots: Sequence[Root]) -> list[list[int]]:
         else:
             grouped.append([i])
         reached = frequency
-    return grouped
+    after = 0
+    for indices in grouped:
+        leaders = [roots[i] for i in indices if not roots[i].im < 0]
+        after += sum(root.multiplicity for root in leaders)
+        yield indices, leaders, after
 
 
 def _mirrored(a: Root, b: Root) -> bool:

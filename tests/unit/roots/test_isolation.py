@@ -41,7 +41,7 @@ def holds_each_once(discs, roots):
 @pytest.mark.parametrize("digits", [5, 20, 200])
 def test_each_disc_holds_one_root_to_the_digits_wanted(digits):
     propose, _ = proposing(1.01, -1.99, -3 + 3.9j)
-    discs = isolated(propose, digits=digits)[-1]
+    (discs,) = isolated(propose, digits=digits)
     assert len(discs) == 3
     assert holds_each_once(discs, ROOTS)
     assert all(disc.radius < arb(10) ** -digits and disc.count == 1 for disc in discs)

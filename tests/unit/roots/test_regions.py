@@ -5,14 +5,17 @@ from __future__ import annotations
 from fractions import Fraction
 
 import pytest
+from flint import arb
 
 from symflex.roots import (
     Band,
     Everything,
+    Mode,
     Modes,
     PolynomialInS,
     Position,
     Rectangle,
+    Root,
     RootProblem,
     find_pole_zero_map,
     find_polynomial_roots,
@@ -135,15 +138,71 @@ def test_modes_applies_to_zeros_as_well():
     assert [root.decimal(2).im for root in found.zeros] == ["2.0", "-2.0"]
 
 
+def axis_root(frequency, times=1):
+    return Root(arb(0), arb(frequency), times, on_imaginary_axis=True, is_real=frequency == 0)
+
+
+def classified(region, *roots):
+    return "".join(position.name[0] for position in region.classify(roots))
+
+
 @pytest.mark.parametrize(
-    "make",
+    ("number", "positions"), [(1, "OIIOOOO"), (2, "OOOIOOO"), (3, "OOOIOOO"), (4, "OOOOIIO"), (5, "OOOOOOI")]
+)
+def test_the_mode_of_one_number_is_inside_and_no_other(number, positions):
+    # Twice 0, a pair, a double root, a pair, a root.
+    roots = [axis_root(w) for w in (0, 1, -1)] + [axis_root(2, 2)] + [axis_root(w) for w in (3, -3, 4)]
+    assert classified(Mode(number), *roots) == positions
+
+
+def test_modes_are_inside_up_to_their_number():
+    roots = [axis_root(w) for w in (0, 1, -1)] + [axis_root(2, 2)] + [axis_root(w) for w in (3, -3)]
+    found = [classified(Modes(count), *roots) for count in range(6)]
+    assert found == ["IOOOOO", "IIIOOO", "IIIIOO", "IIIIOO", "IIIIII", "IIIIII"]
+
+
+def test_two_roots_of_one_frequency_across_the_limit_are_on_it_where_they_mirror_each_other():
+    pair = [Root(arb(re), arb(0), 1, on_imaginary_axis=False, is_real=True) for re in (-2, 2)]
+    assert classified(Modes(1), *pair) == "BB"
+    assert classified(Modes(2), *pair) == "II"
+    # Of the same frequency as far as is known, and not the same.
+    blurred = [
+        Root(arb(re, r), arb(0), 1, on_imaginary_axis=False, is_real=True) for re, r in ((-2, 0.1), (2, 0.2))
+    ]
+    assert classified(Modes(1), *blurred) == "UU"
+
+
+@pytest.mark.parametrize(
+    ("region", "data"),
     [
-        lambda: Band(Fraction(2), Fraction(1)),
-        lambda: Band(Fraction(-1), Fraction(1)),
-        lambda: rectangle(1, 0, 0, 1),
-        lambda: Modes(-1),
+        (Everything(), {"kind": "everything"}),
+        (Band(Fraction(1, 2), Fraction(3)), {"kind": "band", "low_hz": 0.5, "high_hz": 3.0}),
+        (rectangle(-1, 2, -3, 4), {"kind": "rectangle", "re": [-1.0, 2.0], "im": [-3.0, 4.0]}),
+        (Modes(7), {"kind": "modes", "count": 7}),
+        (Mode(9), {"kind": "mode", "number": 9}),
+    ],
+    ids=lambda each: type(each).__name__,
+)
+def test_regions_have_these_keys_as_data(region, data):
+    assert region.to_json_dict() == data
+
+
+def test_a_rectangle_may_be_a_line_or_a_point():
+    assert poles_in(rectangle(0, 0, -3, 3), axis_pairs(2, 5)) == [("0", "2.000", True), ("0", "-2.000", True)]
+    assert poles_in(rectangle(0, 0, 2, 2), axis_pairs(2, 5)) == [("0", "2.000", True)]
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Band(Fraction(2), Fraction(1)), "band"),
+        (lambda: Band(Fraction(-1), Fraction(1)), "band"),
+        (lambda: rectangle(1, 0, 0, 1), "^a rectangle is given as RE0 <= RE1, IM0 <= IM1$"),
+        (lambda: rectangle(0, 1, 1, 0), "^a rectangle is given as RE0 <= RE1, IM0 <= IM1$"),
+        (lambda: Modes(-1), "^the number of modes cannot be -1$"),
+        (lambda: Mode(0), "^modes are numbered from 1, not 0$"),
     ],
 )
-def test_impossible_regions_are_refused(make):
-    with pytest.raises(ValueError, match=r"band|rectangle|modes"):
+def test_impossible_regions_are_refused(make, message):
+    with pytest.raises(ValueError, match=message):
         make()

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from math import inf, log, pi
+from math import exp, inf, log, pi
 
 import mpmath
 import pytest
 from flint import arb
 
 from symflex.budget import Budget
-from symflex.errors import BudgetError
+from symflex.errors import BudgetError, UncertifiedError
+from symflex.kernels import Factored
+from symflex.kernels.origin import Origin
 from symflex.roots import Band, Modes, Rectangle
 from symflex.roots.root import Root
 from symflex.roots.side import (
@@ -312,3 +314,127 @@ def test_a_factor_without_kernels_is_a_polynomial_in_s():
     source = bound(ROD)
     s = source.ratio.ring.context.gen(0)
     assert polynomial_in_s(source, 3 * s**2 - 5).integers() == (-5, 0, 3)
+
+
+# ------------------------------------------------------------------- proofs that lack something, one by one
+
+
+def test_a_subdivision_that_lost_roots_says_how_many():
+    one = side(ROD, engines=(SUBDIVISION,))
+    one.extend(2)
+    one.missing = 3
+    assert one.prove(Modes(2)) == Proof(7, 4, "3 roots were counted but not found")
+    one.missing = 0
+    one._located.append(one._located[0])
+    assert one.prove(Modes(2)) == Proof(5, 5, TOUCHING)
+
+
+def test_a_subdivision_that_may_have_left_roots_inside_proves_nothing():
+    one = side(ROD, engines=(SUBDIVISION,))
+    one.extend(2)
+    assert one.prove(Modes(2)) == Proof(4, 4)
+    one._innermost = (log(rod(1)) + log(rod(2))) / 2
+    assert one.prove(Modes(2)) == Proof(4, 4, UNPROVED)
+    # As little as where the circle meets one of them.
+    one._innermost = log(rod(1))
+    assert one.prove(Modes(2)) == Proof(4, 4, UNPROVED)
+
+
+def test_inside_of_a_ring_no_roots_are_left_unseen():
+    one = side(ROD, engines=(GUESS_AND_PROVE,))
+    one.extend(3)
+    one._located = [r for r in one._located if abs(float(r.im)) > rod(1) + 0.1]
+    one._domain = Cell((log(rod(1)) + log(rod(2))) / 2, one._domain.high, 0.0, pi)
+    one._innermost = None
+    assert one._counted() == Proof(4, 4)
+    one._innermost = one._domain.low
+    assert one._counted() == Proof(4, 4, UNPROVED)
+
+
+def test_roots_of_a_polynomial_factor_are_those_of_the_polynomial():
+    # (s + 1)(s + 4)(s + 2 D)
+    text = """
+symflex = 1
+blocks.D = { type = "delay", T = 0.5 }
+inputs.u = {}
+outputs.y = "u/((s + 1)*(s + 4)*(s + 2*D))"
+"""
+    one = side(text, engines=(GUESS_AND_PROVE,))
+    one.extend(3)
+    assert sorted(float(r.re) for r in one.roots if r.re.is_exact()) == [-4, -1]
+    assert one.prove(Modes(3)).is_complete
+
+
+class Circles:
+    """Counts about 0, by how far below a radius of 1 they are."""
+
+    def __init__(self, *counts):
+        self.counts = list(counts)
+
+    def smallest(self, left, holes):
+        return 0.0
+
+    def count_within(self, z, left):
+        count = self.counts.pop(0)
+        if count is None:
+            raise RootOnPathError
+        return count
+
+
+@pytest.mark.parametrize(
+    ("counts", "power", "found"),
+    [
+        ((0,), 1, (-1.0, 0)),
+        ((2, 2, 2, 2), 1, (-64.0, 2)),
+        ((2, 1, None, None), 1, (-4.0, 1)),
+        ((None, 4, 4, 4), 2, (-64.0, 2)),
+        ((4, 3, 3, 3), 2, (-1.0, 2)),
+        ((2, 0), 1, (-4.0, 0)),
+    ],
+)
+def test_the_smallest_circle_that_could_be_counted_tells_the_roots_next_to_0(counts, power, found):
+    one = side(ROD)
+    one._winding = Circles(*counts)
+    assert one._turns_about_zero(power) == found
+
+
+def test_an_order_at_0_that_cannot_be_told_is_an_error():
+    one = side(ROD)
+    one._winding = Circles(None, 3, None, 5)
+    with pytest.raises(
+        UncertifiedError, match=r"SF404.*the order of the root of \S+ at s = 0 cannot be told"
+    ):
+        one._turns_about_zero(2)
+
+
+@pytest.mark.parametrize(
+    ("turns", "hidden", "expected"),
+    [
+        (0, False, []),
+        (1, False, [(1, True, True)]),
+        (2, False, [(2, False, True)]),
+        (2, True, []),
+    ],
+)
+def test_roots_next_to_0_of_functions_without_a_formula_are_in_a_small_box(
+    monkeypatch, turns, hidden, expected
+):
+    one = side(ROD)
+    monkeypatch.setattr(Origin, "order", lambda self, part: None)
+    monkeypatch.setattr(one, "_turns_about_zero", lambda power: (-5.0, turns))
+    roots, order = one._roots_at_zero(bound(ROD).den, is_hidden=hidden)
+    assert order == turns
+    assert [(r.multiplicity, r.certified, r.re.contains(0) and r.im.contains(0)) for r in roots] == expected
+    for each in roots:
+        assert (each.is_real, each.on_imaginary_axis) == (False, False)
+        assert exp(-5) <= float(each.re.rad()) == float(each.im.rad()) < 1.001 * exp(-5)
+
+
+def test_a_power_of_s_alone_is_a_root_at_0_whatever_lies_next_to_it(monkeypatch):
+    one = side(ROD)
+    monkeypatch.setattr(Origin, "order", lambda self, part: None)
+    monkeypatch.setattr(one, "_turns_about_zero", lambda power: (-5.0, 0))
+    part = bound(ROD).den
+    s = part.ring.context.gen(0)
+    ((zero,), order) = one._roots_at_zero(part * Factored.polynomial(part.ring, s**3), is_hidden=False)
+    assert (zero.is_zero, zero.multiplicity, zero.certified, order) == (True, 3, True, 0)
