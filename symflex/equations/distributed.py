@@ -345,7 +345,17 @@ def _solution(field: Field, evaluator: Evaluator, demands: _Demands) -> FieldSol
         hint = "put what it equals in its place in the other equations and conditions"
         raise ModelError(Diagnostic("SF305", message, field.span, hint))
     medium = demands.medium(field.name, system, field.span)
+    for part, number in medium.parts:
+        if number != POLYNOMIAL and part.coefficients[0].is_zero and _is_loaded(part, system):
+            message = (
+                f"field '{field.name}' has a solution constant in x; a uniform load on it is not available"
+            )
+            raise ModelError(Diagnostic("SF910", message, field.span, "let the load enter the conditions"))
     return FieldSolution(field, medium, inputs, evaluator.constant(field.start))
+
+
+def _is_loaded(part: Component, system: FieldSystem) -> bool:
+    return not all(load[i].is_zero for load in system.loads for i in part.states)
 
 
 def _fundamental(
@@ -390,14 +400,11 @@ def _driven(medium: Medium, length: Factored, propagation: Propagation) -> list[
     columns = [[zero] * len(medium.system.states) for _ in medium.system.loads]
     for part, number in medium.parts:
         n = len(part.states)
-        if all(load[i].is_zero for load in medium.system.loads for i in part.states):
+        if not _is_loaded(part, medium.system):
             continue
         h = _fundamental(part, number, length, propagation)
         if number == POLYNOMIAL:
             integral = _monomial(propagation.embed(length), n)
-        elif part.coefficients[0].is_zero:
-            message = "a uniform load on a field that has a solution constant in x is not available"
-            raise ModelError(Diagnostic("SF910", message, None, "let the load enter the conditions"))
         else:
             rest = one - h[n - 1]
             for k in range(1, n):

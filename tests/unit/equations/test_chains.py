@@ -6,6 +6,8 @@ import pytest
 
 from symflex import pipeline, transfer
 from symflex.equations import assemble
+from symflex.equations.chains import _links
+from symflex.kernels import Factored, Ring
 from tests.house.repository import slow_ones
 
 BEAM = 'type = "beam", E = 7e10, I = 1.2e-9, rho = 2700, A = 1.5e-4, k_f = 1e4, c_f = 3'
@@ -122,3 +124,14 @@ def test_three_thick_beams_of_other_lengths_on_a_foundation_have_a_closed_form()
     (other,) = pipeline.derive_all(swapped)
     one, two = transfer.bind(tf), transfer.bind(other)
     assert [one(s) for s in POINTS] == pytest.approx([two(s) for s in POINTS], rel=1e-12)
+
+
+def test_every_element_after_the_first_follows_from_the_start_of_the_chain():
+    ring = Ring(("s", "a", "b", "c"))
+    a, b, c = (Factored.generator(ring, n) for n in "abc")
+    found = _links(["A", "B", "C"], [a, b, c], [False, True, True])
+    read = [(k.name, k.first, str(k.length), [(x, y, str(d)) for x, y, d in k.entries]) for k in found]
+    assert read == [
+        ("C", "A", "(a + b + c)", [("A", "B", "(b + c)"), ("B", "C", "c")]),
+        ("B", "A", "(a + b)", [("A", "B", "b")]),
+    ]

@@ -7,6 +7,7 @@ import pytest
 
 from symflex import pipeline, transfer
 from symflex.equations import assemble
+from symflex.errors import ModelError
 
 S = complex(0.7, 1.9)
 START, LENGTH = 0.25, 1.5
@@ -116,3 +117,35 @@ def test_two_coupled_unknowns_are_those_of_a_leaking_line(source):
     else:  # v'' = v with v(0) = 0 and v'(l) = 1, so v = sinh(x)/cosh(l) and i = (1 - v')/2
         wanted = [(1 - 1 / mp.cosh(1.5)) / 2, mp.sinh(0.5) / mp.cosh(1.5), 1, -0.5]
     assert found == pytest.approx([float(x) for x in wanted], abs=1e-12)
+
+
+def test_without_names_every_dispersion_but_a_delay_s_is_a_general_one():
+    text = COUPLED.replace("[fields", 'blocks.D = { type = "delay", T = 2 }\n[fields').replace("= V", "= D*V")
+    model = pipeline.loads(text)
+    kinds = {
+        n: [d.kind for d in assemble(model, is_nameless=n).propagation.table.dispersions] for n in (0, 1)
+    }
+    assert kinds == {0: ["exponential", "wave"], 1: ["exponential", "general"]}
+
+
+def test_a_uniform_load_where_a_constant_solves_the_equation_is_refused():
+    with pytest.raises(ModelError) as caught:
+        assemble(read("w''' = s^2*w' + p", 3))
+    (problem,) = caught.value.diagnostics
+    message = "field 'w' has a solution constant in x; a uniform load on it is not available"
+    assert (problem.code, problem.message, problem.span.text) == ("SF910", message, "w")
+    assert problem.hint == "let the load enter the conditions"
+
+
+def test_a_line_without_stiffness_is_refused_at_its_place():
+    zero = "(k + m)^2 - k^2 - 2*k*m - m^2"
+    rod = f'{{ type = "rod", between = ["x", "ground"], E = "{zero}", A = 1, rho = 1, l = 1 }}'
+    text = (
+        f"symflex = 1\nparameters = {{ k = {{}}, m = {{}} }}\nelements.a = {rod}\n"
+        'inputs.F = { force = "x" }\noutputs.X = "x"\n'
+    )
+    with pytest.raises(ModelError) as caught:
+        assemble(pipeline.loads(text))
+    (problem,) = caught.value.diagnostics
+    assert (problem.code, problem.message) == ("SF224", "a stiffness of rod 'a' is zero")
+    assert problem.span.text == "a"
