@@ -352,8 +352,7 @@ def _polished(
         values, slopes, _ = source.sampled(t)
         left = np.signbit(values) == negative
         low, high = np.where(left, t, low), np.where(left, high, t)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            step = t - values / slopes
+        step = t - values / slopes
         last, t = t, np.where((step >= low) & (step <= high), step, (low + high) / 2)
         if (np.abs(t - last) <= CLOSER * t).all():
             break
@@ -361,8 +360,6 @@ def _polished(
 
 
 def lossless_search(function: KernelFunction, order: int, digits: int) -> LosslessSearch | None:
-    """Return a search for a function without losses, ``None`` for any other."""
-    if not function.is_even or function.power != 1:
-        return None
+    """Return a search for an even function of one value without losses, ``None`` for one with losses."""
     lossless = lossless_function(function, bits_of(digits))
     return None if lossless is None else LosslessSearch(lossless, order, digits)

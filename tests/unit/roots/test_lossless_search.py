@@ -73,6 +73,16 @@ def test_a_multiple_root_is_as_many_modes():
     assert clamped(2) < exp(reached) < clamped(3)
 
 
+def test_roots_of_one_frequency_are_found_together():
+    # No circle passes between the roots of two equal factors, nor between 3 and 3j.
+    roots, reached = search((CLAMPED, 1), (CLAMPED, 1), order=4).lowest(1)
+    assert [holds(root, clamped(1)) for root in roots] == [True, True]
+    assert clamped(1) < exp(reached) < clamped(2)
+    both, reached = search((REAL_PAIR, 1), (((1, 4, 0, ()), (9, 0, 0, ())), 1), (PAIR, 1)).lowest(2)
+    assert sorted((round(float(root.re)), round(float(root.im))) for root in both) == [(0, 2), (0, 3), (3, 0)]
+    assert exp(reached) > 3
+
+
 def test_roots_on_the_real_axis_are_modes_too():
     roots, _ = search((REAL_PAIR, 1), (ROD, 1)).lowest(2)
     (real, other) = sorted(roots, key=lambda root: not root.is_real)
