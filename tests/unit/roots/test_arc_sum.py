@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from cmath import exp, rect
 from math import cos, inf, pi, sin, sqrt
+from random import Random
 
 import pytest
 from flint import acb, arb
 
-from symflex.roots.arc_sum import ArcSum, Exponential, _most
+from symflex.roots.arc_sum import ArcSum, Exponential, _Arc, _most
 from symflex.roots.precision import precision
 from symflex.roots.winding import RootOnPathError
 
@@ -122,6 +123,47 @@ def test_the_turn_of_a_power_is_estimated_exactly():
     # A coefficient may have any size and sign: the one that is largest at the start counts there.
     both = ArcSum((term(1, 0, {0: 1}), term(0, 0, {2: -1e9})))
     assert both.estimate(5.0) == pytest.approx(pi / 2, abs=0.4)
+
+
+def weighed(terms, largest, power, x):
+    """Return what all others amount to, of one power of one exponential, at most if none cancels."""
+    sizes = {
+        (i, n): abs(c * x**n * exp(p * x + q * x * x))
+        for i, (p, q, powers) in enumerate(terms)
+        for n, c in powers.items()
+    }
+    own = sizes.pop((largest, power))
+    return sum(sizes.values()) / own
+
+
+def test_one_term_is_said_to_outweigh_the_others_only_where_it_does():
+    random, said = Random(3), []
+    for _ in range(300):
+        terms = [
+            (
+                complex(random.uniform(-2, 2), random.uniform(-2, 2)),
+                random.choice((0, random.uniform(-0.3, 0.3))),
+                {
+                    n: random.choice((1, 1e-3, 30)) * random.choice((1, -1j))
+                    for n in random.sample(range(3), 2)
+                },
+            )
+            for _ in range(random.randint(1, 3))
+        ]
+        radius, start = random.uniform(1, 9), random.uniform(0, 0.9)
+        end = min(1.0, start + random.choice((0.01, 0.1, 0.5)))
+        summed = ArcSum(tuple(term(*each) for each in terms))
+        arc = _Arc(summed.terms, summed._sizes, arb(radius))
+        largest = arc._largest_at((start + end) / 2)
+        power = max(terms[largest][2])
+        places = [radius * rect(1, pi / 4 * (start + (end - start) * k / 40)) for k in range(41)]
+        most = max(weighed(terms, largest, power, x) for x in places)
+        found = arc._outweighs(start, end, largest)
+        said.append(found)
+        assert not (found and most > 0.8)
+        # On a short arc it is told wherever it is clear.
+        assert found or most > 0.05 or end - start > 0.2
+    assert 30 < said.count(True) < 270
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.3, 1.2])
