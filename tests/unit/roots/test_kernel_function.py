@@ -51,7 +51,36 @@ def on_a_foundation(s):
     return 2 * s * s * mpmath.sinh(g) / g + mpmath.cosh(g)
 
 
+TWO_RODS = """
+symflex = 1
+[elements]
+a = {{ type = "rod", between = ["ground", "x"], E = "1 N/m^2", A = "1 m^2", rho = "1 kg/m^3", l = "1 m" }}
+b = {{ type = "rod", between = ["x", "y"], E = "{modulus} N/m^2", A = "1 m^2", rho = "1 kg/m^3", l = "3 m" }}
+[inputs]
+F = {{ force = "y" }}
+[outputs]
+Y = "y"
+"""
+TWO_DELAYS = """
+symflex = 1
+blocks.D = { type = "delay", T = 0.5 }
+blocks.L = { type = "delay", T = 2 }
+inputs.u = {}
+outputs.y = "u/(s + 2*D + 3*L)"
+"""
+
+
+def two_rods(speed):
+    """Return what vanishes where z coth(l s/c) of one and z tanh(l s/c) of the other add up to 0."""
+    return lambda s: (
+        mpmath.cosh(s) * mpmath.cosh(3 * s / speed) + speed * mpmath.sinh(s) * mpmath.sinh(3 * s / speed)
+    )
+
+
 CLOSED = {
+    "two lengths": (TWO_RODS.format(modulus=1), two_rods(1)),
+    "two speeds": (TWO_RODS.format(modulus=4), two_rods(2)),
+    "two delays": (TWO_DELAYS, lambda s: s + 2 * mpmath.exp(-s / 2) + 3 * mpmath.exp(-2 * s)),
     "rod": (ROD, lambda s: 2 * mpmath.cosh(s) + s * mpmath.sinh(s)),
     "delay": (DELAY_LOOP, lambda s: s + 2 * mpmath.exp(-s / 2)),
     "sliding and free": (SLIDING_FREE, sliding_free),
