@@ -77,6 +77,8 @@ def test_without_a_root_nothing_is_proved():
 def test_of_a_function_whose_power_is_counted_a_root_counts_once():
     found = together(beside(0), 2, power=2)
     assert (found.multiplicity, found.certified) == (1, True)
+    assert type(found.multiplicity) is int
+    assert type(together(beside(1e-6, -1e-6j), 4, power=2).multiplicity) is int
 
 
 def test_a_root_is_not_taken_with_one_ten_times_as_far_as_its_disc():
