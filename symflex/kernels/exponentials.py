@@ -85,14 +85,14 @@ class Exponentials:
     def transform(self, polynomial: fmpz_mpoly) -> Factored:
         """Return a polynomial in kernels over the coordinates."""
         target = self.coordinates
-        degrees = dict(zip(self.ring.names, (int(d) for d in polynomial.degrees()), strict=True))
+        degrees = [int(d) for d in polynomial.degrees()]
         scale = Factored.number(target, 1)
         images: dict[str, fmpz_mpoly] = {}
         homogeneous: list[tuple[fmpz_mpoly, tuple[int, int], int]] = []
         for angle in self.angles:
             even, odd = self.ring.index[angle.even.generator], self.ring.index[angle.odd.generator]
             degree = 0
-            if degrees[angle.even.generator] or degrees[angle.odd.generator]:
+            if degrees[even] or degrees[odd]:
                 degree = max(int(m[even]) + int(m[odd]) for m in polynomial.monoms())
             if angle.kind == "hyperbolic":
                 e = target.generator(angle.coordinates[0])

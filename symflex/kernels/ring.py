@@ -112,7 +112,7 @@ class Ring:
         if self.is_sparse:
             message = f"nothing is multiplied out with {len(self.names)} names"
             raise BudgetError(Diagnostic("SF502", message, None, "ask for the nested form"))
-        check_expansion(self, polynomial, images, min(term_limit, memory_limit // self.bytes_of(1)))
+        check_expansion(polynomial, images, min(term_limit, memory_limit // self.bytes_of(1)))
         return polynomial.compose(*images, ctx=self.context)
 
 
@@ -141,16 +141,14 @@ def expanded_length(polynomial: fmpz_mpoly, lengths: Sequence[int]) -> int | Non
     return int(polynomial(*lengths)) if is_quick else None
 
 
-def check_expansion(
-    ring: Ring, polynomial: fmpz_mpoly, images: Sequence[fmpz_mpoly], most: int | None = None
-) -> None:
-    """Refuse a substitution whose result in ``ring`` could be too large.
+def check_expansion(polynomial: fmpz_mpoly, images: Sequence[fmpz_mpoly], most: int) -> None:
+    """Refuse a substitution whose result could have more than so many terms.
 
     Parameters
     ----------
-    ring, polynomial, images
+    polynomial, images
         See :meth:`Ring.compose`.
-    most : int, optional
+    most : int
         Number of terms.
 
     Raises
@@ -163,8 +161,6 @@ def check_expansion(
     small_degree = polynomial.total_degree() * max(degrees, default=0) <= DEGREE_LIMIT
     if max(lengths, default=0) <= 1 and small_degree:
         return
-    if most is None:
-        most = min(TERM_LIMIT, MEMORY_LIMIT // ring.bytes_of(1))
     bound = expanded_length(polynomial, lengths) if small_degree else None
     if bound is not None and bound <= most:
         return
