@@ -465,6 +465,7 @@ def test_parity_is_that_of_the_degree_in_each_angle():
     _, change, _ = mixed("bending")
     e, t, u, f, v, _ = (change.coordinates.generator(c) for a in change.angles for c in a.coordinates)
     assert change.parity(e**3 * t * u + e * u**2) == (1, 0, 0, 0)
+    assert change.parity(change.coordinates.generator("s") * e**2 + e**3 + 1) == (1, 0, 0, 0)
     assert change.parity(e**2 * t + e * u) == (0, 1, 0, 0)
     assert change.parity(e**2 * f * v**3 + f) == (0, 0, 1, 1)
 
