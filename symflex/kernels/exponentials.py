@@ -107,7 +107,7 @@ class Exponentials:
                 homogeneous.append((t * t + u * u, (even, odd), degree))
         plain = [images[n] if n in images else target.generator(n) for n in self.ring.names]
         if not any(degree for _, _, degree in homogeneous):
-            return Factored.polynomial(target, polynomial.compose(*plain, ctx=target.context))
+            return Factored.polynomial(target, polynomial.compose(*plain))
         # The missing degree of every term is made up by cosh^2 - sinh^2 and cos^2 + sin^2, which are one.
         parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
         for monomial, coefficient in polynomial.terms():
@@ -116,7 +116,7 @@ class Exponentials:
             parts.setdefault(missing, {})[exponents] = int(coefficient)
         total = target.constant(0)
         for missing, terms in parts.items():
-            part = self.ring.context.from_dict(terms).compose(*plain, ctx=target.context)
+            part = self.ring.context.from_dict(terms).compose(*plain)
             for (one, _, _), power in zip(homogeneous, missing, strict=True):
                 if power:
                     part = part * one**power
@@ -137,10 +137,7 @@ class Exponentials:
             ``f`` and per hyperbolic angle ``n`` with ``polynomial = f * prod(E^n)``.
         """
         source = self.coordinates
-        center = [
-            int(polynomial.degrees()[source.index[a.coordinates[0]]]) // 2 if a.kind == "hyperbolic" else 0
-            for a in self.angles
-        ]
+        center = [int(polynomial.degrees()[source.index[a.coordinates[0]]]) // 2 for a in self.angles]
         places = [tuple(source.index[c] for c in a.coordinates) for a in self.angles]
         parts: dict[tuple[tuple[int, ...], ...], dict[tuple[int, ...], int]] = {}
         target_index = [self.ring.index[n] for n in self._kept]
@@ -184,10 +181,7 @@ class Exponentials:
         monomials = polynomial.monoms()
         # From the lowest to the highest power of E, so that a bare power of E leaves nothing behind.
         highest = [
-            sum(bound(int(m[place[0]]) for m in monomials) for bound in (min, max))
-            if a.kind == "hyperbolic"
-            else 0
-            for a, place in zip(self.angles, places, strict=True)
+            sum(bound(int(m[place[0]]) for m in monomials) for bound in (min, max)) for place in places
         ]
         kept = [(self.ring.index[n], source.index[n]) for n in self._kept]
         total = self.ring.constant(0)
