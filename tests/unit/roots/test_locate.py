@@ -1,0 +1,115 @@
+"""Poles, zeros and hidden modes of a whole transfer function, by what its formula says."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+from types import SimpleNamespace
+
+import pytest
+
+from symflex.budget import Budget
+from symflex.errors import BudgetError, ModelError
+from symflex.roots import Band, KernelProblem, Modes
+from symflex.roots.kernel_finder import KernelRootFinder
+from symflex.roots.locate import locate
+from symflex.roots.side import ENGINES
+from symflex.roots.vanishing import _value, without_lengths_of_zero
+from tests.unit.roots.distributed import DELAY_LOOP, ROD, bound
+
+
+def of(formula, *, signals=""):
+    return bound(f'symflex = 1\ninputs.u = {{}}\n{signals}outputs.y = "{formula}"\n')
+
+
+def places(roots):
+    return sorted((round(float(r.re), 9), round(float(r.im), 9), r.multiplicity) for r in roots)
+
+
+@pytest.mark.parametrize(
+    ("formula", "poles", "zeros"),
+    [
+        ("u*(s + 3)/((s + 1)*(s + 2)^2)", [(-2, 0, 2), (-1, 0, 1)], [(-3, 0, 1)]),
+        # f is 1 Hz, 2 pi rad/s
+        ("u*s^2/((s + f)*(s + 2))", [(-round(2 * pi, 9), 0, 1), (-2, 0, 1)], [(0, 0, 2)]),
+        ("u/(s^2 + 2)", [(0, -round(sqrt(2), 9), 1), (0, round(sqrt(2), 9), 1)], []),
+        ("7*u", [], []),
+    ],
+)
+def test_roots_are_those_of_the_formula(formula, poles, zeros):
+    found = locate(of(formula, signals='parameters.f = "1 Hz"\n' if "f" in formula else ""), digits=12)
+    assert places(found.poles) == poles
+    assert places(found.zeros) == zeros
+    assert (found.tf, found.certificate.certified, found.digits) == ("y/u", True, 12)
+
+
+def test_what_cancels_is_hidden_with_its_multiplicity():
+    found = locate(of("(s - 3)^2*x/(s + 1)", signals='signals.x = "u/(s - 3)^3"\n'))
+    assert [(float(h.root.re), h.root.multiplicity, h.cause) for h in found.hidden] == [(3, 2, "cancelled")]
+    assert places(found.poles) == [(-1, 0, 1), (3, 0, 1)]
+
+
+def test_a_region_and_a_budget_are_passed_on():
+    assert places(locate(of("u/((s + 1)*(s + 20))"), Modes(1)).poles) == [(-1, 0, 1)]
+    clock = iter(range(1000)).__next__
+    certificate = locate(of("u/((s + 1)*(s + 20))"), budget=Budget(seconds=0, clock=clock)).certificate
+    assert (certificate.is_exceeded, certificate.code) == (True, "SF506")
+
+
+def test_an_engine_heeds_its_budget():
+    clock = iter(range(10**6)).__next__
+    source = bound(DELAY_LOOP)
+    with pytest.raises(BudgetError, match="SF506"):
+        KernelRootFinder("guess-and-prove").find(
+            KernelProblem(source, source.den), Modes(3), 15, Budget(seconds=1, clock=clock)
+        )
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_an_engine_returns_what_lies_in_a_band(engine):
+    # x tan x = 2: 1.08, 3.64, 6.58 rad/s
+    source = bound(ROD)
+    found = KernelRootFinder(engine).find(KernelProblem(source, source.den), Band(0, 1), 15)
+    assert [round(abs(float(r.im)), 2) for r in found] == [1.08, 1.08, 3.64, 3.64]
+
+
+@pytest.mark.parametrize(
+    ("function", "order", "value"),
+    [
+        ("cosh", 0, 1),
+        ("cos", 0, 1),
+        ("exp", 0, 1),
+        ("sinh", 0, 0),
+        ("sin", 0, 0),
+        # of an equation of order 4, the solution with u''' = 1 and its derivatives
+        ("fundamental", 0, 0),
+        ("fundamental", 2, 0),
+        ("fundamental", 3, 1),
+        ("fundamental", 5, 0),
+    ],
+)
+def test_kernels_of_length_zero_are_numbers(function, order, value):
+    kernel = SimpleNamespace(function=function, order=order, dispersion=SimpleNamespace(order=4))
+    assert _value(kernel) == value
+
+
+WITHOUT_LENGTH = """
+symflex = 1
+parameters.T = {{ value = "0 s", assume = "nonnegative" }}
+blocks.D = {{ type = "delay", T = "T" }}
+inputs.u = {{}}
+outputs.y = "{formula}"
+"""
+
+
+def test_a_delay_of_no_time_is_none():
+    found = locate(bound(WITHOUT_LENGTH.format(formula="u*(s + 2*D)/((s + 3*D)*(s + 5))")))
+    assert places(found.poles) == [(-5, 0, 1), (-3, 0, 1)]
+    assert places(found.zeros) == [(-2, 0, 1)]
+
+
+def test_a_denominator_that_vanishes_without_a_length_is_refused():
+    with pytest.raises(ModelError, match="SF231") as failed:
+        without_lengths_of_zero(bound(WITHOUT_LENGTH.format(formula="u/(1 - D)")))
+    (diagnostic,) = failed.value.diagnostics
+    assert diagnostic.message == "the denominator of y/u is zero for these values"
+    assert diagnostic.hint == "without its length a part is none"
