@@ -53,9 +53,14 @@ def on_a_foundation(s):
 
 TWO_RODS = """
 symflex = 1
+[parameters]
+E = "1 N/m^2"
+A = "1 m^2"
+rho = "1 kg/m^3"
+l = "1 m"
 [elements]
-a = {{ type = "rod", between = ["ground", "x"], E = "1 N/m^2", A = "1 m^2", rho = "1 kg/m^3", l = "1 m" }}
-b = {{ type = "rod", between = ["x", "y"], E = "{modulus} N/m^2", A = "1 m^2", rho = "1 kg/m^3", l = "3 m" }}
+a = {{ type = "rod", between = ["ground", "x"], E = "E", A = "A", rho = "rho", l = "l" }}
+b = {{ type = "rod", between = ["x", "y"], E = "{modulus}*E", A = "A", rho = "rho", l = "pi*l" }}
 [inputs]
 F = {{ force = "y" }}
 [outputs]
@@ -73,7 +78,8 @@ outputs.y = "u/(s + 2*D + 3*L)"
 def two_rods(speed):
     """Return what vanishes where z coth(l s/c) of one and z tanh(l s/c) of the other add up to 0."""
     return lambda s: (
-        mpmath.cosh(s) * mpmath.cosh(3 * s / speed) + speed * mpmath.sinh(s) * mpmath.sinh(3 * s / speed)
+        mpmath.cosh(s) * mpmath.cosh(mp.pi * s / speed)
+        + speed * mpmath.sinh(s) * mpmath.sinh(mp.pi * s / speed)
     )
 
 
