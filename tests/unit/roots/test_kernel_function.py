@@ -11,6 +11,7 @@ from mpmath import mp, mpc
 
 from symflex.roots.kernel_function import (
     KernelFunction,
+    _KernelFactors,
     _parity,
     _spectral_size,
     has_kernels,
@@ -231,6 +232,37 @@ def test_the_largest_argument_of_a_kernel_is_known(text, s, reach):
 )
 def test_the_fastest_exponent_is_known_on_every_ray(text, z, fastest):
     assert function_of(text).fastest(z) == pytest.approx(fastest)
+
+
+def test_without_samples_in_doubles_the_largest_argument_of_a_kernel_stands_for_the_fastest():
+    class InBalls(KernelFunction):
+        in_doubles = None
+
+    source = bound(ROD)
+    assert InBalls(source, source.den).fastest(log(7) + 1j) == pytest.approx(7)
+
+
+@pytest.mark.parametrize("s", PLACES)
+def test_polynomials_in_kernels_are_evaluated_as_they_stand(s):
+    function = function_of(ROD)
+    with precision(BITS):
+        factors = [factor for factor, _ in function.part.factors]
+        plain = _KernelFactors(function._kernel_values(BITS), factors)
+        place = plain.at(acb(s))
+        for i, (value, _, _) in enumerate(function.enclosed(acb(s), BITS)):
+            assert (abs(plain.value(i, place)) - abs(value)).contains(0)
+            assert plain.value(i, place).rel_accuracy_bits() > 100
+
+
+def test_polynomials_in_kernels_keep_the_branch_of_a_place_nearby():
+    # sqrt(s^2) changes its sign on the imaginary axis.
+    function = function_of(ROD)
+    (name,) = function.bound.kernels.wavenumbers
+    with precision(BITS):
+        plain = _KernelFactors(function._kernel_values(BITS), [])
+        around = plain.at(acb(arb(0, 0.1), 3))
+        right, left = (plain.at(acb(re, 3), around).values[name] for re in (0.05, -0.05))
+        assert abs(abs(right - left) - 0.1) < 1e-15
 
 
 def test_laws_of_waves_have_poles_where_a_lossy_beam_no_longer_resists():

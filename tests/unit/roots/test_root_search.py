@@ -11,9 +11,11 @@ from flint import acb, arb
 from symflex.budget import Budget
 from symflex.errors import BudgetError
 from symflex.kernels import Factored
+from symflex.roots import transcendental
 from symflex.roots.argument_principle import CertifiedWinding
 from symflex.roots.kernel_function import KernelFunction
 from symflex.roots.precision import precision
+from symflex.roots.root import Root
 from symflex.roots.transcendental import RootSearch
 from symflex.roots.winding import Cell, RootOnPathError, Winding
 from tests.unit.roots.distributed import DELAY_LOOP, bound
@@ -241,3 +243,117 @@ def test_where_no_circle_passes_it_is_said_where():
     # A ring that was asked for has one that was not found.
     found = one.ring(log(1), log(2))
     assert (found.roots, found.missing, found.cell) == ((), 1, None)
+
+
+# ----------------------------------------------------------------- roots that cuts do not tell apart, by hand
+
+
+def cell_about(place, size):
+    z = log(place)
+    return Cell(z - size / 2, z + size / 2, -size / 2, size / 2)
+
+
+def shared(s):
+    # 2 is a root of both factors, and no other is near.
+    return [(s - 2, 1), (s**2 - 4, 1), (s**2 + s + 9, 1)]
+
+
+def close(apart):
+    return lambda s: [((apart * s - 2 * apart - 1) * (s - 2), 1), (s + 5, 1)]
+
+
+def contained(roots, *expected):
+    with precision(600):
+        return [sum(bool(root.enclosure().contains(acb(value))) for root in roots) for value in expected]
+
+
+@pytest.mark.parametrize("size", [1e-10, 9e-10])
+def test_in_a_small_cell_roots_are_told_apart_by_their_moments(size):
+    found = search(close(10**14))._cluster(cell_about(2, size), 2)
+    with precision(600):
+        assert contained(found, arb(2), 2 + arb(10) ** -14) == [1, 1]
+    assert [(root.multiplicity, root.certified) for root in found] == [(1, True), (1, True)]
+
+
+def test_a_cell_that_is_not_small_is_not_looked_at_closer():
+    assert search(close(10**14))._cluster(cell_about(2, 1.1e-9), 2) is None
+
+
+def test_what_is_no_multiple_of_the_power_counted_is_no_cluster():
+    one = search(close(10**14))
+    one.function.power = 2
+    assert one._cluster(cell_about(2, 1e-10), 3) is None
+
+
+def test_moments_that_do_not_tell_roots_apart_leave_them_together():
+    (found,) = search(shared)._cluster(cell_about(2, 1e-10), 2)
+    assert (found.multiplicity, found.certified) == (2, False)
+    assert contained([found], arb(2)) == [1]
+    assert found.re.rad() < 1e-13
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_another_number_than_the_cells_is_no_cluster(count):
+    assert search(shared)._cluster(cell_about(2, 1e-10), count) is None
+
+
+def together(size, times, place=2.0):
+    """Return so many roots as one that are not told apart."""
+    return Root(
+        arb(place, size), arb(0, size), times, on_imaginary_axis=False, is_real=False, certified=False
+    )
+
+
+def test_roots_that_agree_in_all_digits_are_told_apart_by_more():
+    found = search(close(10**25))._apart(together(1e-20, 2))
+    with precision(600):
+        assert contained(found, arb(2), 2 + arb(10) ** -25) == [1, 1]
+    assert all(root.certified for root in found)
+
+
+@pytest.mark.parametrize("times", [1, 3])
+def test_roots_of_another_number_are_not_told_apart(times):
+    assert search(close(10**25))._apart(together(1e-20, times)) is None
+
+
+def test_one_root_of_two_factors_stays_together():
+    assert search(shared)._apart(together(1e-20, 2)) is None
+
+
+def test_the_only_root_in_a_circle_is_found_from_beside_it():
+    (found,) = search(mixed)._about(acb(4 + 1e-9), 1)
+    assert contained([found], arb(4)) == [1]
+    assert (found.multiplicity, found.certified, found.is_real) == (1, True, True)
+    assert found.re.rad() < 1e-12
+
+
+@pytest.mark.parametrize("place", [3.9, 1.0])
+def test_where_there_is_no_root_none_is_found_about_it(place):
+    assert search(mixed)._about(acb(place), 1) is None
+
+
+@pytest.mark.parametrize(
+    ("size", "count", "found"), [(0.1, 1, 1), (0.1, 2, None), (0.01, 1, None), (0.05, 1, None)]
+)
+def test_a_disc_holds_as_many_as_are_counted_on_its_circle(size, count, found):
+    # 4 is 0.05 away: inside, outside, and on the circle.
+    roots = search(mixed)._in_disc(acb(4.05), arb(size), count)
+    assert (roots and roots[0].multiplicity) == found
+    if roots:
+        assert contained(roots, arb(4)) == [1]
+
+
+def test_without_a_series_the_smallest_disc_that_holds_a_cluster_is_taken(monkeypatch):
+    monkeypatch.setattr(transcendental, "prove_together", lambda *given, **more: None)
+    one = search(close(10))
+    (found,) = one._as_one(acb(2.06), arb(1), 2)
+    with precision(300):
+        assert contained([found], arb(2), arb("2.1")) == [1, 1]
+    assert (found.multiplicity, found.certified) == (2, False)
+    # Of discs of 2e-15 times a power of 100 the first that holds both.
+    assert float(found.re.rad()) == pytest.approx(0.205, rel=0.02)
+    assert one._as_one(acb(2.06), arb(1), 3) is None
+    assert one._as_one(acb(2.06), arb(0.1), 2) is None
+    (simple,) = search(mixed)._about(acb(4 + 1e-9), 1)
+    assert contained([simple], arb(4)) == [1]
+    assert float(simple.re.rad()) == pytest.approx(4e-4, rel=1e-3)
