@@ -9,6 +9,8 @@ import pytest
 from flint import acb, arb
 from mpmath import mp, mpc
 
+from symflex.errors import ModelError, UncertifiedError
+from symflex.kernels import Factored
 from symflex.roots.kernel_function import (
     KernelFunction,
     _KernelFactors,
@@ -263,6 +265,75 @@ def test_polynomials_in_kernels_keep_the_branch_of_a_place_nearby():
         around = plain.at(acb(arb(0, 0.1), 3))
         right, left = (plain.at(acb(re, 3), around).values[name] for re in (0.05, -0.05))
         assert abs(abs(right - left) - 0.1) < 1e-15
+
+
+def kernels_of(text):
+    """Return a function with kernels, what makes a product of a polynomial in these, and their names."""
+    source = bound(text)
+    ring = source.ratio.ring
+    names = {k.function: ring.generator(k.generator) for k in source.kernels.kernels}
+    return source, lambda polynomial: Factored.polynomial(ring, polynomial), names
+
+
+def test_what_is_0_everywhere_has_no_roots_to_look_for():
+    source, product, names = kernels_of(ROD)
+    with pytest.raises(ModelError) as failed:
+        KernelFunction(source, product(names["cosh"] ** 2 - names["sinh"] ** 2 - 1))
+    (diagnostic,) = failed.value.diagnostics
+    assert diagnostic.code == "SF231"
+    assert diagnostic.message == "a part of X/F is 0/0 or 0 at every s for these values"
+    assert diagnostic.hint == "a rigid or massless limit has its own equations"
+
+
+@pytest.mark.parametrize("text", [ROD, SLIDING_FREE])
+def test_what_depends_on_the_branch_of_a_wavenumber_is_no_function(text):
+    # cosh(x) + sinh(x), where x may be -x.
+    source, product, names = kernels_of(text)
+    with pytest.raises(UncertifiedError) as failed:
+        KernelFunction(source, product(names["cosh"] + names["sinh"]))
+    (diagnostic,) = failed.value.diagnostics
+    assert diagnostic.code == "SF404"
+    assert diagnostic.message == f"a part of {source.name} has no value of its own for every s"
+
+
+@pytest.mark.parametrize(
+    ("text", "make", "closed"),
+    [
+        (ROD, lambda cosh, sinh: sinh, lambda s: mpmath.sinh(s) / s),
+        (ROD, lambda cosh, sinh: cosh * sinh**3, lambda s: mpmath.cosh(s) * mpmath.sinh(s) ** 3 / s),
+        (ROD, lambda cosh, sinh: cosh * sinh**2, lambda s: mpmath.cosh(s) * mpmath.sinh(s) ** 2),
+        # of q = sqrt(s/2), which may be turned by 90 degrees
+        (
+            SLIDING_FREE,
+            lambda cosh, sinh, cos, sin: sinh * sin,
+            lambda s: mpmath.sinh(mpmath.sqrt(s / 2)) * mpmath.sin(mpmath.sqrt(s / 2)) / (s / 2),
+        ),
+        (
+            SLIDING_FREE,
+            lambda cosh, sinh, cos, sin: cosh * sin + sinh * cos,
+            lambda s: (
+                (
+                    mpmath.cosh(mpmath.sqrt(s / 2)) * mpmath.sin(mpmath.sqrt(s / 2))
+                    + mpmath.sinh(mpmath.sqrt(s / 2)) * mpmath.cos(mpmath.sqrt(s / 2))
+                )
+                / mpmath.sqrt(s / 2)
+            ),
+        ),
+        (
+            SLIDING_FREE,
+            lambda cosh, sinh, cos, sin: cosh * cos,
+            lambda s: mpmath.cosh(mpmath.sqrt(s / 2)) * mpmath.cos(mpmath.sqrt(s / 2)),
+        ),
+    ],
+)
+def test_powers_of_wavenumbers_that_change_with_the_branch_are_divided_by(text, make, closed):
+    source, product, names = kernels_of(text)
+    function = KernelFunction(source, product(make(**names)))
+    assert function.power == 1
+    with mp.workdps(50):
+        for s in PLACES:
+            expected = closed(mpmath.mpmathify(s))
+            assert abs(number(function.value(acb(s), BITS)) - expected) < 1e-25 * abs(expected)
 
 
 def test_laws_of_waves_have_poles_where_a_lossy_beam_no_longer_resists():

@@ -357,3 +357,11 @@ def test_without_a_series_the_smallest_disc_that_holds_a_cluster_is_taken(monkey
     (simple,) = search(mixed)._about(acb(4 + 1e-9), 1)
     assert contained([simple], arb(4)) == [1]
     assert float(simple.re.rad()) == pytest.approx(4e-4, rel=1e-3)
+
+
+@pytest.mark.parametrize(("count", "power", "lost"), [(-2, 1, 2), (-4, 2, 2), (-1, 2, 1)])
+def test_a_cell_with_fewer_roots_than_none_has_lost_some(count, power, lost):
+    # Where poles lie, which an entire function has not.
+    one = search(mixed)
+    one.function.power = power
+    assert one._separate(cell_about(4, 0.1), count) == ([], lost)
