@@ -95,6 +95,15 @@ def test_a_sector_holds_those_between_its_rays(right, left):
     assert (found.cell.right, found.cell.left) == pytest.approx((right - 0.03, left + 0.03))
 
 
+@pytest.mark.parametrize(("other", "on_axis"), [(lambda s: s**4 + 2, True), (lambda s: s + 1, False)])
+def test_of_an_even_function_roots_next_to_the_axis_lie_on_it(other, on_axis):
+    # j sqrt(10), of which no box about it tells more than that it is close to the axis.
+    found = search(lambda s: [(s**2 + 10, 1), (other(s), 1)]).ring(log(0.1), log(10))
+    (root,) = (root for root in found.roots if root.im > 3)
+    assert root.on_imaginary_axis is bool(root.re == 0) is on_axis
+    assert root.re.contains(0)
+
+
 def test_of_an_even_function_a_quarter_is_searched():
     one = search(even)
     assert (one.is_even, one.left) == (True, pi / 2)
