@@ -320,6 +320,26 @@ def test_roots_that_agree_in_all_digits_are_told_apart_by_more():
     assert all(root.certified for root in found)
 
 
+def test_roots_of_an_even_function_that_are_told_apart_lie_on_the_axis():
+    # j sqrt(10) and j sqrt(10 + 1e-25)
+    one = search(lambda s: [((s**2 + 10) * (10**25 * (s**2 + 10) + 1), 1)])
+    with precision(300):
+        place = arb(10).sqrt().mid()
+        both = Root(
+            arb(0, 1e-20), place + arb(0, 1e-20), 2, on_imaginary_axis=False, is_real=False, certified=False
+        )
+    found = one._apart(both)
+    assert [(root.on_imaginary_axis, root.certified) for root in found] == [(True, True)] * 2
+
+
+def test_of_a_power_that_is_counted_so_many_roots_are_told_apart_at_once():
+    one = search(close(10**9))
+    one.function.power = 2
+    found = one._together(cell_about(2, 1e-6), 4)
+    with precision(300):
+        assert contained(found, arb(2), 2 + arb(10) ** -9) == [1, 1]
+
+
 @pytest.mark.parametrize("times", [1, 3])
 def test_roots_of_another_number_are_not_told_apart(times):
     assert search(close(10**25))._apart(together(1e-20, times)) is None
