@@ -13,6 +13,7 @@ from symflex import pipeline
 from symflex.elements import Variable
 from symflex.equations.equations import Equations
 from symflex.errors import BudgetError, ModelError
+from symflex.kernels import Factored
 
 ROOM = import_module("symflex.equations.assemble")
 HEADER = "symflex = 1\n[parameters]\n"
@@ -361,3 +362,19 @@ def test_what_rows_were_cleared_of_is_kept():
     for row in equations.rows:
         for _, coefficient in row.form.terms:
             coefficient.expand()
+
+
+def test_a_block_of_another_model_has_the_value_found_for_it_over_the_ring_of_the_equations(tmp_path):
+    (tmp_path / "inner.toml").write_text(PENDULUM)
+    outer = signal("3*G*U", blocks='G = { type = "model", spec = "inner.toml", tf = "X/F" }')
+    (tmp_path / "outer.toml").write_text(outer)
+    asked = []
+
+    def nested(block, ring):
+        asked.append(block.name)
+        return Factored.generator(ring, "k") / (Factored.generator(ring, "s") + 5)
+
+    equations = ROOM.assemble(pipeline.load(tmp_path / "outer.toml"), nested)
+    assert set(asked) == {"G"}
+    (row,) = equations.rows
+    assert [(str(v), str(c)) for v, c in row.form.terms] == [("e", "-1*(s + 5)"), ("U", "3*k")]

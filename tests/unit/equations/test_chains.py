@@ -87,6 +87,10 @@ def test_elements_are_not_one_where_anything_parts_them(model):
     assert not assemble(model, is_joined=True).is_joined
 
 
+def test_elements_are_one_only_where_that_is_asked_for():
+    assert not assemble(chain("rod", 0.3, 0.5)).is_joined
+
+
 THICK = """
 symflex = 1
 parameters = { E = "70 GPa", G = "26 GPa", kappa = 0.85, I = "1.2e-9 m^4", rho = "2700 kg/m^3",

@@ -8,7 +8,7 @@ import pytest
 from flint import fmpz
 
 from symflex.kernels import Dispersion, Factored, Ring, propagate
-from symflex.kernels.origin import Origin
+from symflex.kernels.origin import Origin, find_point
 from symflex.kernels.taylor import BASE, TaylorField, primes
 from symflex.kernels.vanishing import Vanishing
 from symflex.transfer.distributed import embedded_table
@@ -185,6 +185,21 @@ def test_nothing_is_said_of_a_dispersion_without_names_or_where_nothing_is_linea
     assert Origin(ring, table).order(s) is None
     ring, table, (s, r, p, *_) = kernels_of("wave")
     assert Origin(ring, table, (s**2 + r**2 + p**2 - 5).expand()).order(s) is None
+
+
+def test_a_point_where_all_relations_hold_has_values_beside_dispersions_without_names():
+    laws = [Dispersion(kind, kind, LAWS[kind], ZERO) for kind in ("general", "wave", "pair")]
+    found = propagate(RING, [(law, [L, X]) for law in laws])
+    ring = found.kernel_ring
+    table = embedded_table(found.table, [(v, over(ring, v)) for v in found.table.values])
+    field, values = find_point(ring, table, 1, lambda values, field: True)
+    for even in (k for k in table.kernels if k.function == "cosh"):
+        c, s = (Factored.generator(ring, even.generator.replace("cosh", f)) for f in ("cosh", "sinh"))
+        assert field.order(field.rational(c**2 - s**2 - 1, ring.names, values)) is None
+    g, v, w = (Factored.generator(ring, n) ** 2 for n in table.wavenumbers)
+    _, wave, two = table.dispersions
+    for zero in (g + wave.characteristic[0], v * w - two.characteristic[0], v + w + two.characteristic[2]):
+        assert field.order(field.rational(zero, ring.names, values)) is None
 
 
 def pair():
