@@ -113,3 +113,30 @@ def test_a_denominator_that_vanishes_without_a_length_is_refused():
     (diagnostic,) = failed.value.diagnostics
     assert diagnostic.message == "the denominator of y/u is zero for these values"
     assert diagnostic.hint == "without its length a part is none"
+
+
+HIDING = """
+symflex = 1
+parameters.T = { value = "0 s", assume = "nonnegative" }
+blocks.D = { type = "delay", T = "T" }
+blocks.L = { type = "delay", T = 1 }
+inputs.u = {}
+signals.x = "u/(s - 3)^2"
+"""
+
+
+def test_what_cancels_stays_hidden_where_a_length_is_zero():
+    source = bound(HIDING + 'outputs.y = "(s - 3)^2*x*(s + 2*D)/((s + 3*D)*(s + 5))"')
+    found = locate(source)
+    assert [(float(h.root.re), h.root.multiplicity) for h in found.hidden] == [(3, 2)]
+    assert places(found.poles) == [(-5, 0, 1), (-3, 0, 1)]
+
+
+def test_what_cancels_stays_hidden_where_only_one_of_two_lengths_is_zero():
+    source = without_lengths_of_zero(bound(HIDING + 'outputs.y = "(s - 3)^2*x/((s + 3*D)*(s + 5*L))"'))
+    assert source.is_distributed
+    ((hidden, times),) = [(h.polynomial, h.multiplicity) for h in source.hidden]
+    assert times == 2
+    assert hidden == source.ratio.ring.context.gen(0) - 3
+    # The delay that is none is 1.
+    assert source.ratio.ring.context.gen(0) + 3 in [factor for factor, _ in source.den.factors]
