@@ -400,3 +400,41 @@ def test_factors_are_those_with_kernels_and_those_with_s_alone():
     assert [has_kernels(each, table) for each in (value, mixed, alone)] == [False, True, True]
     # Of a denominator there are no roots.
     assert not has_kernels(mixed**-1, table)
+
+
+# Pinned, E = I = rho = A = l = G = 1 and kappa = 1/2: 2 w^4 - (1 + 3 k^2) w^2 + k^4 = 0 with k = n pi.
+TIMOSHENKO = """
+symflex = 1
+[elements.arm]
+type = "beam"
+between = ["p", "q"]
+theory = "timoshenko"
+E = "1 N/m^2"
+I = "1 m^4"
+rho = "1 kg/m^3"
+A = "1 m^2"
+l = "1 m"
+G = "1 N/m^2"
+kappa = 0.5
+[elements]
+near = { type = "pin", at = "p" }
+far = { type = "pin", at = "q" }
+[inputs]
+M = { torque = "p.theta" }
+[outputs]
+angle = "p.theta"
+"""
+
+
+@pytest.mark.parametrize("n", [1, 2])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_of_two_wavenumbers_either_may_be_the_first(n, sign):
+    function = function_of(TIMOSHENKO)
+    k = n * mp.pi
+    with mp.workdps(40):
+        b = 1 + 3 * k**2
+        w = mpmath.sqrt((b + sign * mpmath.sqrt(b * b - 8 * k**4)) / 4)
+        here, beside = (
+            abs(number(function.value(acb(0, arb(mp.nstr(w * scale, 30))), 300))) for scale in (1, 1 + 1e-6)
+        )
+    assert here < 1e-6 * beside
