@@ -24,6 +24,7 @@ def test_the_table_has_every_model():
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row[0].strip("`"))
+@pytest.mark.slow
 def test_every_gain_and_frequency_of_the_table(row):
     name = row[0].strip("`")
     position = symflex.load(FOLDER / f"{name}_position.toml").stability("K")
@@ -43,6 +44,7 @@ def test_every_gain_and_frequency_of_the_table(row):
     assert position.bandwidth_hz == (pytest.approx(6.591, rel=1e-3) if "range" in row[1] else float("inf"))
 
 
+@pytest.mark.slow
 def test_the_beam_goes_to_its_zero_in_the_right_half_plane():
     from fractions import Fraction
 

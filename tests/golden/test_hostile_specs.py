@@ -251,6 +251,7 @@ MANY = {
 @pytest.mark.parametrize(
     "text", [pytest.param(t, marks=[pytest.mark.slow] if n in COSTLY else [], id=n) for n, t in MANY.items()]
 )
+@pytest.mark.slow
 def test_a_specification_of_many_parts_is_answered(text, tmp_path):
     check(tmp_path, text)
 

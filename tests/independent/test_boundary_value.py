@@ -177,6 +177,7 @@ def assert_printed_form_agrees(name, form):
 
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("name", [name for name in NAMES if name not in UNNAMED | LONG])
+@pytest.mark.slow
 def test_the_printed_form_agrees_with_the_boundary_value_problem(name, form):
     assert_printed_form_agrees(name, form)
 
@@ -231,6 +232,7 @@ def very_fast(name):
 
 
 @pytest.mark.parametrize("name", slow_ones(COLOCATED, lambda name: name not in FAR_EACH_TIME))
+@pytest.mark.slow
 def test_the_exact_evaluation_is_right_beyond_the_range_of_exponentials(name):
     points = very_fast(name)
     found = bound(name)(points)

@@ -34,6 +34,7 @@ def test_the_energies_of_two_masses_agree_with_shooting(position):
 
 
 @pytest.mark.parametrize("n", [2, 3, 4])
+@pytest.mark.slow
 def test_the_tip_of_a_chain_has_the_links_as_numerator(n):
     m, k, b = (symbols(f"{name}_1:{n + 1}") for name in "mkb")
     _, tip = eppinger1988.chain(m, k[:-1], b[:-1], s)

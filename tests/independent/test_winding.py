@@ -129,6 +129,7 @@ def damped_cantilever(s, load=True):
         pytest.param(-800 + 400j, -30 + 950j, marks=pytest.mark.slow),
     ],
 )
+@pytest.mark.slow
 def test_the_program_finds_as_many_poles_and_zeros_as_the_argument_turns(low, high):
     bound = symflex.loads(KELVIN_VOIGT).transfer_function("X", "F").bind()
     found = bound.pole_zero_map(digits=20, region=(low.real, high.real, low.imag, high.imag))

@@ -115,6 +115,7 @@ def fragments():
 
 @pytest.mark.needs_tool("pdftotext")
 @pytest.mark.parametrize("engine", engines("pdflatex"))
+@pytest.mark.slow
 def test_fragments_fit_the_columns_of_a_paper_with_other_packages(engine, fragments, tmp_path):
     for name, text in fragments.items():
         (tmp_path / name).write_text(text, encoding="ascii")

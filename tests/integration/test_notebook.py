@@ -63,6 +63,7 @@ def text(lines):
     return "".join(lines)
 
 
+@pytest.mark.slow
 def test_each_object_shows_in_its_own_way(outputs):
     kinds = [set(data) - {"text/plain"} for data in outputs]
     html, latex, svg, png = {"text/html"}, {"text/latex"}, {"image/svg+xml"}, {"image/png"}

@@ -64,6 +64,7 @@ def pictures():
 
 @pytest.mark.needs_tool("pdffonts")
 @pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.slow
 def test_pictures_are_as_wide_as_asked_for_and_take_the_font_of_the_paper(engine, pictures, tmp_path):
     body = []
     for name, text in pictures.items():
@@ -100,6 +101,7 @@ def test_the_files_of_every_model_compile_without_a_warning(engine, path, width,
     assert compiled(engine, tmp_path, DOCUMENT.removesuffix(".tex")) == []
 
 
+@pytest.mark.slow
 def test_a_picture_is_written_where_no_tex_is_installed(tmp_path):
     spec = DERIVATIONS / "eppinger1988" / "rigid_body.toml"
     command = [sys.executable, "-m", "symflex", "plot", spec, "fig5", "-o", tmp_path / "a.pgf"]

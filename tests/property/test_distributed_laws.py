@@ -106,6 +106,7 @@ def close(found, expected):
 @pytest.mark.parametrize("kind", tuple(KINDS))
 @given(data=st.data())
 @quiet(10)
+@pytest.mark.slow
 def test_a_force_at_one_end_moves_the_other_as_the_other_moves_it(kind, data):
     values = data.draw(numbers(kind))
     for s in POINTS:
@@ -126,6 +127,7 @@ def test_a_driving_point_takes_power_in(kind, tf, data):
 @pytest.mark.parametrize("kind", tuple(KINDS))
 @given(data=st.data())
 @quiet(6)
+@pytest.mark.slow
 def test_a_cut_changes_nothing(kind, tf, data):
     values = data.draw(numbers(kind))
     for s in POINTS:
@@ -136,6 +138,7 @@ def test_a_cut_changes_nothing(kind, tf, data):
 @pytest.mark.parametrize("kind", tuple(KINDS))
 @given(data=st.data())
 @quiet(6)
+@pytest.mark.slow
 def test_a_part_that_is_turned_round_is_the_same(kind, tf, data):
     # Of a beam, x and so every angle turn round too; displacements and forces do not.
     values = data.draw(numbers(kind))

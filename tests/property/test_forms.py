@@ -79,6 +79,7 @@ def assert_lowest_terms(tf):
 
 @given(network=networks())
 @quiet(40)
+@pytest.mark.slow
 def test_every_form_of_a_random_network_reads_back_to_the_derived_function(network):
     for tf in pipeline.derive_all(pipeline.loads(to_toml(network))):
         if is_short(tf):

@@ -35,6 +35,7 @@ def everything_kept(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("words", COMMANDS)
 @pytest.mark.parametrize("path", SPECIFICATIONS)
+@pytest.mark.slow
 def test_output_is_the_same_byte_by_byte(path, words, everything_kept, monkeypatch, capfd):
     def printed(*more):
         code = run([words[0], str(path), *words[1:], *more])
@@ -59,6 +60,7 @@ for name in ("classics/one_link_arm", "eppinger1988/robot_axis", "eppinger1988/s
 """
 
 
+@pytest.mark.slow
 def test_keys_are_the_same_in_every_process():
     def keys(seed):
         environment = os.environ | {"PYTHONHASHSEED": seed}
@@ -71,6 +73,7 @@ def test_keys_are_the_same_in_every_process():
     assert keys("0") == keys("1")
 
 
+@pytest.mark.slow
 def test_processes_that_derive_the_same_model_at_once_agree(tmp_path):
     code = (
         "import sys\n"

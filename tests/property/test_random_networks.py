@@ -87,6 +87,7 @@ def test_many_more_exported_functions_agree_with_the_dense_tableau(numpy_functio
 
 @given(network=networks())
 @quiet(100)
+@pytest.mark.slow
 def test_an_exported_function_broadcasts_over_s(numpy_functions, network):
     function = next(iter(numpy_functions(to_toml(network)).values()))
     one_by_one = np.array([function(at) for at in POINTS])
@@ -95,6 +96,7 @@ def test_an_exported_function_broadcasts_over_s(numpy_functions, network):
 
 @given(network=networks())
 @quiet(100)
+@pytest.mark.slow
 def test_the_bound_transfer_functions_agree_with_the_dense_tableau(network):
     model = symflex.loads(to_toml(network))
     for output, source in pairs(network):

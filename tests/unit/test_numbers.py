@@ -24,6 +24,7 @@ def roots(found):
 
 
 @pytest.mark.parametrize("path", MODELS, ids=lambda p: p.stem)
+@pytest.mark.slow
 def test_the_roots_are_those_of_the_symbolic_derivation(path):
     model = pipeline.load(path)
     symbolic = [pipeline.bind(tf) for tf in pipeline.derive_all(model)]

@@ -63,6 +63,7 @@ def test_the_report_fits_eighty_columns_and_shows_errors_and_phase_test(shell):
     assert "phase test: " in out
 
 
+@pytest.mark.slow
 def test_a_fit_that_fails_is_said_and_not_replaced_by_a_far_worse_one(shell):
     # Without the rigid body its two real poles are missing; a sixth resonance would need zeros at infinity.
     done = shell("fit", DATA)

@@ -90,6 +90,7 @@ def test_an_output_of_any_name_gives_a_plain_function_name(name, dialect):
 
 @pytest.mark.parametrize("dialect", DIALECTS)
 @pytest.mark.parametrize("name", [*MORE_NAMES, "inverse", "gamma", "e_1", "c_1", "t_1", "held", "z", "place"])
+@pytest.mark.slow
 def test_a_parameter_of_a_distributed_system_hides_nothing(name, dialect):
     tame, text = tame_rod(dialect), export(renamed(pipeline.loads(ROD), {"rho": name}), dialect)
     assert kinds(text) == kinds(tame)

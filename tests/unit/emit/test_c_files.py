@@ -478,6 +478,7 @@ def nameless(name):
 
 
 @pytest.mark.parametrize("name", [pytest.param("unsymmetric", marks=pytest.mark.slow), "pipe", "massless"])
+@pytest.mark.slow
 def test_functions_without_a_formula_for_their_wavenumbers_agree_with_balls(name, tmp_path):
     tf, files = nameless(name)
     allowed = NAMELESS_SPECS[name][1]

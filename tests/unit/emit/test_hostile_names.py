@@ -119,6 +119,7 @@ def structure(target, text):
 
 
 @pytest.mark.parametrize("target", slow_ones(WRITERS, lambda target: target not in EACH_TIME))
+@pytest.mark.slow
 def test_parameters_of_any_names_leave_the_structure_of_the_code_as_it_is(target):
     hostile, plain = (with_parameters(target, names) for names in (PARAMETERS, tuple(benign(COUNT))))
     assert COUNT >= 300
@@ -369,6 +370,7 @@ def test_c_takes_members_of_any_names(tmp_path):
 
 
 @pytest.mark.needs_tool("gcc")
+@pytest.mark.slow
 def test_c_takes_outputs_and_inputs_of_any_names(tmp_path):
     model, (tf,) = springs(("k_1",))
     tfs = with_names(tf, C, C[::-1])

@@ -48,6 +48,7 @@ def printed():
     return found
 
 
+@pytest.mark.slow
 def test_notebooks_hold_only_what_katex_and_mathjax_have_in_common(printed):
     latex = [notebook_latex(tf, form) for tf, form in printed]
     whole = "\n".join(line for line in latex if line is not None)

@@ -210,6 +210,7 @@ def relative_errors(function, expected, points=POINTS):
 
 
 @pytest.mark.parametrize("name", [n for n in SPECS if n != "sliding_free"])
+@pytest.mark.slow
 def test_an_exported_function_agrees_with_the_boundary_value_problem(name):
     made = module(specification(name), name)
     function = made.X_over_F

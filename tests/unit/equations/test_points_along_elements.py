@@ -108,6 +108,7 @@ THEORIES = {
 
 
 @pytest.mark.parametrize("theory", THEORIES.values(), ids=THEORIES)
+@pytest.mark.slow
 def test_at_a_point_a_beam_is_what_two_beams_are_where_they_meet(theory):
     names = ("y", "theta", "f", "tau")
     inside = "".join(f'{q} = "arm.{q}(x_s)"\n' for q in names)

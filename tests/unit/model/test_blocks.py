@@ -127,6 +127,7 @@ def test_python_is_allowed_a_folder_outside_by_name(place):
     assert symflex.load("outer.toml", allow_outside=["../beside"]).outputs == ("X",)
 
 
+@pytest.mark.slow
 def test_a_report_of_a_folder_lets_its_specifications_read_all_of_it(place, capsys):
     for name in ("one", "two"):
         (place / "work" / name).mkdir()

@@ -374,6 +374,7 @@ def test_given_values_take_the_place_of_declared_ones():
     ],
 )
 @pytest.mark.parametrize("mode", [1, 2, 3, 4])
+@pytest.mark.slow
 def test_near_a_pole_the_outputs_stand_in_the_ratio_of_the_shape(path, source, outputs, amplitudes, mode):
     model = symflex.load(ROOT / "derivations" / f"{path}.toml")
     first, second = (model.transfer_function(output, source).bind() for output in outputs)

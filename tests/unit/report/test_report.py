@@ -117,6 +117,7 @@ def test_names_that_would_collide_differ(tmp_path):
     assert "claims" not in found
 
 
+@pytest.mark.slow
 def test_reports_of_equal_models_are_equal(small, tmp_path):
     again = report_on(tmp_path, small=SMALL, symbolic=SYMBOLIC)
     assert report_page(again) == report_page(small)
@@ -183,6 +184,7 @@ gain = "K"
 """
 
 
+@pytest.mark.slow
 def test_the_stable_gains_of_a_loop_are_in_its_chapter_and_in_a_table_of_loops(tmp_path):
     # m s^3 + b s^2 + k s + K: Routh has 0 < K < b k/m = 12.
     report = report_on(tmp_path, loop=LOOP, small=SMALL)
@@ -209,6 +211,7 @@ def test_a_figure_that_cannot_be_drawn_is_told_in_its_place_and_on_the_terminal(
 HELD = SMALL.replace("loss = {", 'wall = { type = "spring", between = ["x", "ground"], k = "k" }\nloss = {')
 
 
+@pytest.mark.slow
 def test_modes_of_a_structure_that_a_spring_holds_to_ground_are_counted(tmp_path):
     # Two masses have four poles; rigid springs leave none of them, and nothing that moves.
     report = report_on(tmp_path, free=SMALL, held=HELD)

@@ -468,6 +468,7 @@ def test_what_is_found_is_what_there_is(case):
 
 
 @pytest.mark.parametrize("case", LARGE, ids=IDS)
+@pytest.mark.slow
 def test_certified_the_whole_region_is_proved(case):
     result = case.solve()
     assert result.certificate.certified

@@ -72,11 +72,13 @@ def sine_modes(e, c, most):
 
 
 @pytest.mark.parametrize("damping", [0.0, pytest.param(2.0, marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_pinned_coupled_bending_and_torsion_solves_a_quartic_per_mode(damping):
     found = upper(blade(PINNED, c=f"{damping} N*s/m^2"), Modes(6))
     assert found == pytest.approx(sine_modes(0.008, damping, 12)[:6], rel=1e-9, abs=1e-7)
 
 
+@pytest.mark.slow
 def test_undamped_poles_of_coupled_fields_lie_exactly_on_the_axis():
     poles = locate(bound(blade(CLAMPED, output="w(l)")), Modes(3)).poles
     assert all(root.on_imaginary_axis for root in poles)
@@ -94,6 +96,7 @@ def moments_and_force(s):
     return mpmath.det(mpmath.matrix([[grown[i, j] for j in (2, 3, 5)] for i in (2, 3, 5)]))
 
 
+@pytest.mark.slow
 def test_a_clamped_blade_against_shooting():
     found = upper(blade(CLAMPED, output="w(l)"), Modes(5))
     with mpmath.workdps(30):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import mpmath
+import pytest
 from flint import acb, acb_poly, arb, fmpz_poly
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -75,6 +76,7 @@ def test_conjugates_come_together(coefficients):
 
 @settings(max_examples=40, deadline=None)
 @given(COEFFICIENTS)
+@pytest.mark.slow
 def test_enclosures_contain_the_roots_mpmath_finds_at_higher_precision(coefficients):
     polynomial = fmpz_poly(coefficients)
     assume(polynomial.gcd(polynomial.derivative()).degree() == 0)
