@@ -438,3 +438,18 @@ def test_a_power_of_s_alone_is_a_root_at_0_whatever_lies_next_to_it(monkeypatch)
     s = part.ring.context.gen(0)
     ((zero,), order) = one._roots_at_zero(part * Factored.polynomial(part.ring, s**3), is_hidden=False)
     assert (zero.is_zero, zero.multiplicity, zero.certified, order) == (True, 3, True, 0)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_what_kernels_vanish_like_at_0_is_a_root_there(engine):
+    # cosh(s) - 1, with double roots at 0 and at every 2 pi j n.
+    source = bound(ROD)
+    ring = source.ratio.ring
+    (cosh,) = (ring.generator(k.generator) for k in source.kernels.kernels if k.function == "cosh")
+    one = Side(source, Factored.polynomial(ring, cosh - 1), 20, Budget(), engines=(engine,))
+    one.extend(4)
+    (zero,) = (r for r in one.roots if r.is_zero)
+    assert zero.multiplicity == 2
+    found = sorted((float(r.im), r.multiplicity) for r in one.roots if r.im > 0)[:2]
+    assert found == [(pytest.approx(2 * pi), 2), (pytest.approx(4 * pi), 2)]
+    assert one.prove(Modes(4)).is_complete

@@ -223,6 +223,9 @@ def test_as_many_as_are_counted_need_no_search(searching):
 
 
 def test_the_count_goes_as_far_as_the_last_factors_tail(searching):
+    side = Half(0)
+    searching(side, tails=(Tail(0.5),))
+    assert side.counted_to == [pytest.approx(0.5 * 1.01)]
     side = Half(0, exponents=(1, -1, 2, 1))
     assert searching(side, tails=(Tail(7.0), Tail(9.0), Tail(8.0))) == RightHalfPlane(())
     assert side.counted_to == [pytest.approx(9 * 1.01)]
