@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from cmath import exp, rect
-from math import cos, inf, pi, sin, sqrt
+from math import cos, inf, log, pi, sin, sqrt
 from random import Random
 
+import numpy as np
 import pytest
 from flint import acb, arb
 
@@ -175,3 +176,102 @@ def test_a_number_turned_by_up_to_an_angle_is_bounded(value, angle):
     # Where the part along the axis is negative it is the bound itself.
     largest = value.real if value.real > 0 else value.real * cos(angle)
     assert bound == pytest.approx(largest + abs(value.imag) * sin(angle), abs=1e-12)
+
+
+# ------------------------------------------------ compared with samples of the same sum, in numpy
+
+
+def drawn(seed, *, squares=0.4):
+    """Return some terms p, q, powers of x with their coefficients."""
+    random = Random(seed)
+    return [
+        (
+            complex(random.uniform(-2, 2), random.uniform(-2, 2)),
+            complex(random.uniform(-squares, squares), random.uniform(-squares, squares)),
+            {n: complex(random.uniform(-3, 3), random.uniform(-3, 3)) for n in random.sample(range(4), 2)},
+        )
+        for _ in range(random.randint(2, 4))
+    ]
+
+
+def logarithms(terms, radius, t):
+    """Return ln of the highest power of each term at shares t of the arc, its turns included."""
+    angle = pi / 4 * np.asarray(t, float)
+    x = radius * np.exp(1j * angle)
+    highest = [(p, q, max(powers), powers[max(powers)]) for p, q, powers in terms]
+    return np.array([p * x + q * x**2 + n * (log(radius) + 1j * angle) + np.log(c) for p, q, n, c in highest])
+
+
+def sampled_turn(terms, radius):
+    x = radius * np.exp(1j * pi / 4 * np.linspace(0, 1, 40_001))
+    exponents = [p * x + q * x**2 for p, q, _ in terms]
+    scale = np.max(np.real(exponents), axis=0)
+    total = sum(
+        np.exp(e - scale) * sum(c * x**n for n, c in powers.items())
+        for e, (_, _, powers) in zip(exponents, terms, strict=True)
+    )
+    angles = np.unwrap(np.angle(total))
+    return angles[-1] - angles[0]
+
+
+def arc_of(terms, radius):
+    summed = ArcSum(tuple(term(*each) for each in terms))
+    return _Arc(summed.terms, summed._sizes, arb(radius))
+
+
+@pytest.mark.parametrize("radius", [1.7, 8.3, 40.9])
+@pytest.mark.parametrize("seed", range(6))
+def test_any_sum_turns_as_samples_of_it_do(seed, radius):
+    terms = drawn(seed)
+    found = ArcSum(tuple(term(*each) for each in terms)).turn(arb(radius))
+    assert float(found) == pytest.approx(sampled_turn(terms, radius), abs=1e-6)
+    assert found.rad() < 1e-6
+
+
+@pytest.mark.parametrize("radius", [6.1, 30.5, 411.3])
+@pytest.mark.parametrize("terms", SUMS, ids=range(len(SUMS)))
+def test_sums_of_hyperbolic_functions_turn_as_samples_of_them_do(terms, radius):
+    listed = [(p, q, powers) for (p, q), powers in terms.items()]
+    found = ArcSum(tuple(term(*each) for each in listed)).turn(arb(radius))
+    assert float(found) == pytest.approx(sampled_turn(listed, radius), abs=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_an_estimate_is_the_turn_of_the_largest_terms_next_to_the_ends(seed):
+    terms, radius = drawn(seed), 5.0
+    aside = 0.3 / (1 + radius) / (pi / 4)
+    ends = [max(logarithms(terms, radius, t), key=lambda z: z.real).imag for t in (aside, 1 - aside)]
+    found = ArcSum(tuple(term(*each) for each in terms)).estimate(radius)
+    assert found == pytest.approx(ends[1] - ends[0], abs=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_the_largest_term_is_that_of_the_largest_size(seed):
+    terms = drawn(seed)
+    arc = arc_of(terms, 0.4)
+    for t in (0.0, 0.3, 0.8, 1.0):
+        assert arc._largest_at(t) == np.argmax(logarithms(terms, 0.4, t).real)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_layers_end_where_the_tangents_of_all_others_have_fallen_behind(seed):
+    terms, radius, start, end = drawn(seed), 30.0, 0.2, 0.9
+    arc = arc_of(terms, radius)
+    largest = arc._largest_at((start + end) / 2)
+
+    def behind(t):
+        sizes = logarithms(terms, radius, t).real
+        others = np.arange(len(terms)) != largest
+        return (sizes - sizes[largest])[others]
+
+    depths, tiny = [], 1e-5
+    for place, inward in ((start, 1), (end, -1)):
+        fall = -inward * (behind(place + tiny) - behind(place - tiny)) / (2 * tiny)
+        missing = log(4.0 * len(terms)) + behind(place)
+        wanted = [
+            (1.1 * m / f if f > 0 else end - start) for m, f in zip(missing, fall, strict=True) if m > 0
+        ]
+        depths.append(max(wanted, default=0.0))
+    assert arc._between_layers(start, end, largest) == pytest.approx(
+        (start + depths[0], end - depths[1]), rel=1e-5
+    )

@@ -136,6 +136,18 @@ def test_zeros_may_be_fewer_than_modes_asked_for():
     assert places(shared) == [(-1, 2, 1)]
 
 
+@pytest.mark.parametrize("modes", [3, 4])
+def test_modes_left_that_are_enough_are_not_asked_for_again(modes):
+    class Sharing(StandIn):
+        def extend(self, modes, radius=-inf):
+            super().extend(modes, radius)
+            self.roots = [root(-1, 2)]
+
+    sides = Sharing([], modes=modes), Sharing([], modes=modes)
+    assert places(_find(sides, Modes(3))) == [(-1, 2, 1)]
+    assert [asked for asked, _ in sides[0].asked] == [3, 0]
+
+
 def test_a_region_is_searched_once_on_both_sides():
     poles, zeros = StandIn([root(-1, 2)]), StandIn([root(-1, 2)])
     region = Band(Fraction(1), Fraction(2))
@@ -198,6 +210,8 @@ def test_a_neighbourhood_left_out_is_said_as_a_disc_about_its_point(point, re, i
     z = complex(log(abs(point)), phase(point))
     found = _exclusion(Cell(z.real - 0.05, z.real + 0.05, z.imag - 0.05, z.imag + 0.05))
     assert (found.re, found.im) == pytest.approx((re, im), abs=1e-12)
+    # What lies on an axis lies on it exactly.
+    assert all(x == y for x, y in ((found.re, re), (found.im, im)) if y == 0)
     assert found.reason == "infinitely many roots accumulate there"
     # All of the neighbourhood is in it, its farthest corner on its edge.
     farthest = abs(point) * abs(cexp(0.05 + 0.05j) - 1)

@@ -111,7 +111,7 @@ def world(monkeypatch):
 
     class World:
         def __init__(self):
-            self.made, self.judged = [], []
+            self.made, self.judged, self.budgets = [], [], []
             self.sides = {"poles": Known([]), "zeros": Known([]), "hidden": Known([], is_finite=True)}
             self.beyond = {"poles": RightHalfPlane(()), "hidden": RightHalfPlane(())}
 
@@ -123,6 +123,7 @@ def world(monkeypatch):
         def search_right(self, source, part, side, known, reached, digits, budget):
             name = "hidden" if side is self.sides["hidden"] else "poles"
             self.judged.append((name, places(known), reached, digits))
+            self.budgets.append(budget)
             result = self.beyond[name]
             if isinstance(result, Exception):
                 raise result
@@ -300,6 +301,11 @@ def test_after_a_search_repeated_with_proof_what_is_shared_is_taken_out_anew(wor
     assert shown.certificate.engine == "one, subdivision"
 
 
+def test_a_repeated_search_does_not_hide_what_is_not_proved(world):
+    world.sides["poles"] = Known([], engine_after="subdivision", proof=Proof(1, 0, "why"))
+    assert world.locate().certificate.reason == "why"
+
+
 @pytest.mark.parametrize(("modes", "reason"), [(1, True), (2, None)])
 def test_too_few_modes_left_after_a_repeated_search_are_said(world, modes, reason):
     world.sides["poles"] = Known([], modes=modes, engine_after="subdivision")
@@ -320,6 +326,15 @@ def test_a_mode_by_its_number_is_asked_of_poles_and_zeros(world):
     assert world.sides["hidden"].asked == []
     assert [name for name, *_ in world.judged] == ["poles", "hidden"]
     assert shown.certificate.certified
+
+
+def test_whether_what_cancelled_is_stable_is_searched_as_all_else(world):
+    source, budget = bound(DELAY_LOOP), Budget()
+    s = source.ratio.ring.context.gen(0)
+    world.locate(replace(source, hidden=(HiddenFactor(s + 1, 2),)), Mode(3), budget)
+    name, part, digits, given = world.made[-1]
+    assert (name, part.factors, digits) == ("hidden", ((s + 1, 2),), 15)
+    assert all(each is budget for each in (given, *world.budgets))
 
 
 def test_the_number_of_a_lossless_mode_needs_no_other_proof(world):
@@ -399,6 +414,29 @@ def test_where_wavenumbers_vanish_a_root_counts_only_if_the_other_side_was_searc
     shown = world.locate(ON_A_FOUNDATION)
     assert ((0, 1, 1) in places(shown.poles)) is kept
     assert {(0, 3, 1), (0, 0, 1)} <= set(places(shown.poles))
+
+
+@pytest.mark.parametrize(("reached", "kept"), [(-1.0, False), (0.5, True)])
+def test_so_does_a_zero(world, reached, kept):
+    mine = [*pair(0, 1), *pair(0, 3)]
+    world.sides["poles"] = Known(pair(0, 5), restored=pair(0, 5), proof=OVER, reached=reached)
+    world.sides["zeros"] = Known(mine, restored=mine, reached=9.0)
+    assert ((0, 1, 1) in places(world.locate(ON_A_FOUNDATION).zeros)) is kept
+
+
+def test_all_that_was_exceeded_is_said(world):
+    both = BudgetError(*OVER.diagnostics, Diagnostic("SF504", "the memory is used up"))
+    world.sides["poles"] = Known(pair(-1, 9), fails=both)
+    told = world.locate().certificate
+    assert (told.reason, told.code) == ("the time given is over; the memory is used up", "SF506")
+
+
+def test_an_unstable_pole_of_a_search_broken_off_is_no_hidden_mode(world):
+    world.sides["poles"] = Known([root(2, 0)], proof=OVER)
+    shown = world.locate()
+    assert (places(shown.poles), shown.hidden, shown.unstable) == ([(2, 0, 1)], (), ())
+    assert (shown.verdict.word, shown.verdict.right, shown.verdict.found) == ("unstable", None, 1)
+    assert world.judged == []
 
 
 def test_of_a_mode_by_its_number_nothing_is_put_back(world):
@@ -541,6 +579,26 @@ def test_hidden_modes_known_are_not_told_again_for_being_unstable(world):
 def test_where_both_conditions_of_a_line_vanish_wavenumbers_do():
     # gamma^2 = (s + 1)(s + 3)
     assert sorted(places(_degenerate_points(bound(LINE)))) == [(-3, 0, 1), (-1, 0, 1)]
+
+
+def test_wavenumbers_of_two_waves_vanish_alone_or_meet():
+    # q^4 - (s + 5) q^2 + s + 4: none at -4, opposite at -5, and both the same where (s + 3)^2 = 0.
+    text = """
+symflex = 1
+[fields.w]
+domain = ["0", "l"]
+equation = "l^4*w'''' = (s*T + 5)*l^2*w'' - (s*T + 4)*w"
+conditions = ["w(0) = 0", "w''(0) = 0", "w(l) = 0", "w'(l) = u"]
+[parameters]
+T = "1 s"
+l = "1 m"
+[inputs]
+u = { }
+[outputs]
+y = "w(l/2)"
+"""
+    found = [(round(re), im, times) for re, im, times in places(_degenerate_points(bound(text)))]
+    assert sorted(found) == [(-5, 0, 1), (-4, 0, 1), (-3, 0, 2)]
 
 
 def test_before_a_search_it_came_nowhere():
