@@ -1,0 +1,226 @@
+"""Scans of a ray, step by step: of known functions of ln(s), with and without two roots in one step."""
+
+from __future__ import annotations
+
+from cmath import log as clog
+from itertools import pairwise
+from math import exp, log, pi
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from symflex.roots.axis_scan import (
+    LONGEST,
+    MOST,
+    _changes_sign,
+    _crossing,
+    _dips,
+    _pieces,
+    _secants,
+    _step_by_step,
+    sign_changes,
+)
+from symflex.roots.winding import RootOnPathError
+
+
+class Ray:
+    """Stands for the winding of a real function of place = ln(abs(s)), given with its derivative."""
+
+    def __init__(self, value, slope, fastest=0.0, power=1):
+        self.value, self.slope, self.speed, self.power = value, slope, fastest, power
+        self.places, self.spent, self.angles = [], 0, set()
+        self.function = self
+        self.in_doubles = None
+
+    def spend(self):
+        self.spent += 1
+
+    def fastest(self, z):
+        self.angles.add(z.imag)
+        return self.speed(z.real) if callable(self.speed) else self.speed
+
+    def at_logarithm(self, z, *, is_simple):
+        assert is_simple
+        self.places.append(z.real)
+        self.angles.add(z.imag)
+        value = self.value(z.real)
+        if value == 0:
+            return None
+        return SimpleNamespace(
+            log=self.power * clog(complex(value)), slope=complex(self.power * self.slope(z.real) / value)
+        )
+
+    def sample(self, place):
+        return self.at_logarithm(complex(place, 0.0), is_simple=True)
+
+    def pieces(self, start, end):
+        one, other = self.sample(start), self.sample(end)
+        self.places.clear()
+        return [(a, b) for a, _, b, _ in _pieces(self, start, one, end, other, 0.0)]
+
+
+def parabola(*roots):
+    """Return the function that is zero at two places, and its derivative."""
+    a, b = roots
+    return Ray(lambda x: (x - a) * (x - b), lambda x: 2 * x - a - b)
+
+
+def sine(rate):
+    return Ray(lambda x: np.sin(rate * x), lambda x: rate * np.cos(rate * x), fastest=rate)
+
+
+@pytest.mark.parametrize("rate", [1.0, 5.0, 40.0])
+def test_every_change_of_sign_is_met_once_in_order(rate):
+    ray = sine(rate)
+    found = list(_step_by_step(ray, 0.01, 4.0, 0.3))
+    assert found == pytest.approx([n * pi / rate for n in range(1, int(4 * rate / pi) + 1)], abs=0.2 / rate)
+    assert found == sorted(found)
+    assert ray.angles == {0.3}
+
+
+@pytest.mark.parametrize(("fastest", "step"), [(0.0, LONGEST), (1.0, LONGEST), (50.0, 0.02)])
+def test_steps_are_as_long_as_an_exponent_allows(fastest, step):
+    ray = Ray(lambda x: 1.0, lambda x: 0.0, fastest=fastest)
+    assert list(_step_by_step(ray, 1.0, 2.0, 0.0)) == []
+    assert np.diff(ray.places)[:-1] == pytest.approx([step] * (len(ray.places) - 2))
+    assert (ray.places[0], ray.places[-1]) == (1.0, 2.0)
+    # The work is told, one sample at a time.
+    assert ray.spent == len(ray.places)
+
+
+def test_a_sample_that_is_a_root_is_refused():
+    with pytest.raises(RootOnPathError):
+        list(_step_by_step(parabola(1.0, 9.0), 1.0, 2.0, 0.0))
+
+
+def test_the_place_of_a_change_is_between_its_ends_by_their_sizes():
+    # A straight line is met exactly.
+    for a, b in ((-1.0, 3.0), (-3.0, 1.0), (-2.0, 2.0)):
+        assert float(_crossing(10.0, log(abs(a)), 14.0, log(abs(b)))) == pytest.approx(
+            10.0 + 4 * abs(a) / (abs(a) + abs(b))
+        )
+
+
+@pytest.mark.parametrize(("above", "place"), [(2 * MOST, 1.0), (-2 * MOST, 2.0)])
+def test_sizes_beyond_doubles_put_it_at_an_end(above, place):
+    assert float(_crossing(1.0, 0.0, 2.0, above)) == pytest.approx(place)
+
+
+@pytest.mark.parametrize(
+    ("roots", "count"),
+    [((0.4, 0.6), 2), ((0.8, 0.9), 2), ((0.3, 0.4), 2), ((0.4, 3.0), 1), ((-2.0, 3.0), 0)],
+)
+def test_two_roots_in_one_step_are_met_by_its_slopes(roots, count):
+    ray = parabola(*roots)
+    ray.speed = 0.0
+    found = [
+        (a, b)
+        for a, first, b, last in _pieces(ray, 0.0, ray.sample(0.0), 1.0, ray.sample(1.0), 0.0)
+        if _changes_sign(ray, first, last)
+    ]
+    assert len(found) == count
+    assert all(any(a < r < b for r in roots) for a, b in found)
+
+
+def test_a_step_that_need_not_be_cut_is_one_piece():
+    # A root; falling at both ends; rising; away from zero at both ends.
+    assert parabola(0.4, 3.0).pieces(0.0, 1.0) == [(0.0, 1.0)]
+    for value, slope in (
+        (lambda x: 3 - x, lambda x: -1.0),
+        (lambda x: 3 + x, lambda x: 1.0),
+        (lambda x: 3 + x - x * x, lambda x: 1 - 2 * x),
+    ):
+        ray = Ray(value, slope)
+        assert ray.pieces(0.0, 1.0) == [(0.0, 1.0)]
+        assert ray.places == []
+
+
+@pytest.mark.parametrize(
+    ("lowest", "cuts"), [(0.3, [0.5, 0.25, 0.375]), (0.9, [0.5, 0.75, 0.875]), (0.45, [0.5, 0.25, 0.375])]
+)
+def test_a_step_towards_zero_is_halved_three_times_on_the_side_of_the_dip(lowest, cuts):
+    # A dip that does not reach zero.
+    ray = Ray(lambda x: (x - lowest) ** 2 + 1e-4, lambda x: 2 * (x - lowest))
+    pieces = ray.pieces(0.0, 1.0)
+    assert ray.places == cuts
+    ends = sorted([0.0, 1.0, *cuts])
+    assert pieces == list(pairwise(ends))
+
+
+@pytest.mark.parametrize(
+    ("turns", "power", "changes"),
+    [
+        (1, 1, True),
+        (-1, 1, True),
+        (0, 1, False),
+        (2, 1, False),
+        (3, 1, True),
+        (0.98, 1, True),
+        (0.96, 1, False),
+        (1.04, 1, False),
+        (2, 2, True),
+        (1, 2, False),
+        (4, 2, False),
+    ],
+)
+def test_a_sign_changes_where_the_argument_turns_by_an_odd_number_of_half_turns(turns, power, changes):
+    first, last = SimpleNamespace(log=2 + 0.4j), SimpleNamespace(log=5 + 0.4j + 1j * pi * turns)
+    assert _changes_sign(SimpleNamespace(function=SimpleNamespace(power=power)), first, last) is changes
+
+
+@pytest.mark.parametrize(
+    ("size", "signs", "dips"),
+    [
+        ([3, 2, 1, 2, 3], [1, 1, 1, 1, 1], [2]),
+        ([3, 2, 1, 2, 3], [1, 1, 1, -1, -1], []),
+        ([3, 2, 1, 2, 3], [1, 1, -1, -1, -1], []),
+        ([3, 2, 1, 1, 3], [1, 1, 1, 1, 1], [2]),
+        ([1, 2, 3, 2, 1], [1, 1, 1, 1, 1], []),
+        ([3, 1, 3, 1, 3], [1, 1, 1, 1, 1], [1, 3]),
+        ([3, 1, 3, 1, 3], [-1, 1, 1, 1, 1], [3]),
+        ([1, 1, 1, 1, 1], [1, 1, 1, 1, 1], []),
+    ],
+)
+def test_dips_are_lowest_places_without_a_change_of_sign(size, signs, dips):
+    changes = np.diff(signs) != 0
+    assert _dips(np.array(size, float), changes) == dips
+
+
+@pytest.mark.parametrize(
+    ("value", "low", "high", "root"),
+    [
+        (lambda x: x * x - 2, 1.0, 2.0, 2**0.5),
+        (lambda x: 2 - x * x, 1.0, 2.0, 2**0.5),
+        (lambda x: np.exp(3 * x) - 5, 0.0, 1.0, log(5) / 3),
+        (np.cos, 1.0, 2.5, pi / 2),
+    ],
+)
+def test_secants_close_in_on_a_change_of_sign(value, low, high, root):
+    asked = []
+
+    def sampled(places, turned, numbers):
+        asked.append((turned, numbers))
+        values = value(np.asarray(places, float))
+        return [SimpleNamespace(size=np.log(np.abs(values)), phase=np.angle(values + 0j) + 0.7)]
+
+    def end(place):
+        (sample,) = sampled([place], 0.3, [4])
+        return np.array([place]), sample.size, sample.phase
+
+    ends = [end(low), end(high)]
+    (found,) = _secants(SimpleNamespace(sampled=sampled), 4, ends, 0.3)
+    assert found == pytest.approx(root, abs=3e-3 * (high - low))
+    assert asked == [(0.3, [4])] * (2 + 4)
+
+
+def test_without_sums_in_doubles_a_ray_is_searched_step_by_step():
+    ray = sine(7.0)
+    found = sign_changes(ray, 0.1, 1.0, pi / 2)
+    assert [z.real for z in found] == pytest.approx([pi / 7, 2 * pi / 7], abs=0.03)
+    assert {z.imag for z in found} == {pi / 2}
+    # A hair beside the imaginary axis, and on the real one.
+    assert ray.angles == {pi / 2 - 1e-13}
+    ray = sine(7.0)
+    assert {z.imag for z in sign_changes(ray, 0.1, 1.0, 0.0)} == ray.angles == {0.0}
+    assert exp(found[0].real) > 1
