@@ -21,11 +21,15 @@ from symflex.spec.limits import (
     number_problem,
 )
 
+# A group that may fail halfway through a repeat is not possessive: before 3.11.5, Python does not go back to
+# where the repeat began (cpython#106052).
 KEY_PART = r"""(?:[A-Za-z0-9_\-]++|"(?:[^"\\\n]|\\[^\n])*+"|'[^'\n]*+')"""
-KEY = rf"{KEY_PART}(?:[ \t]*+\.[ \t]*+{KEY_PART})*+"
+KEY = rf"{KEY_PART}(?:[ \t]*+\.[ \t]*+{KEY_PART})*"
 
 _LINE_STRING = r""" (?!\"{3}|'{3}) (?: "(?:[^"\\\n]|\\[^\n])*+" | '[^'\n]*+' ) """
-_BLOCK_STRING = r""" \"{3}(?:[^"\\]|\\.|"(?!""))*+\"{3,5}+ | '{3}(?:[^']|'(?!''))*+'{3,5}+ | """
+_BLOCK_STRING = r"""
+    \"{3}[^"\\]*+(?:(?:\\.|"(?!""))[^"\\]*+)*\"{3,5}+ | '{3}[^']*+(?:'(?!'')[^']*+)*'{3,5}+ |
+"""
 
 
 def _token(strings: str) -> re.Pattern[str]:
