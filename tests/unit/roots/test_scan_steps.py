@@ -224,3 +224,65 @@ def test_without_sums_in_doubles_a_ray_is_searched_step_by_step():
     ray = sine(7.0)
     assert {z.imag for z in sign_changes(ray, 0.1, 1.0, 0.0)} == ray.angles == {0.0}
     assert exp(found[0].real) > 1
+
+
+class Grid(Ray):
+    """The same, sampled in doubles too, as one of the factors of a product."""
+
+    def __init__(self, value, slope, fastest=0.0, *, exponents=(1,), share=1.0, noise=0.0):
+        super().__init__(value, slope, fastest)
+        self.part = SimpleNamespace(factors=[(None, exponent) for exponent in exponents])
+        self.in_doubles = SimpleNamespace(fastest=self.fastest, sampled=self.sampled)
+        self.share, self.noise, self.numbers, self.grids = share, noise, set(), []
+
+    def sampled(self, places, turned, numbers):
+        self.numbers.add(tuple(numbers))
+        self.angles.add(turned)
+        self.grids.append(places)
+        values = self.value(np.asarray(places, float))
+        phase = np.angle(values + 0j) + self.noise * (np.arange(len(values)) == 1)
+        share = np.where(np.arange(len(values)) == 1, self.share, 1.0)
+        return [SimpleNamespace(size=np.log(np.abs(values)), phase=phase, share=share) for _ in numbers]
+
+
+def on_grid(ray, low=0.1, high=3.0):
+    return [z.real for z in sign_changes(ray, low, high, pi / 2)]
+
+
+@pytest.mark.parametrize("rate", [1.0, 9.0, 70.0, 9000.0])
+def test_on_grids_every_change_of_sign_is_met_once_and_closely(rate):
+    ray = Grid(lambda x: np.sin(rate * x), lambda x: rate * np.cos(rate * x), fastest=rate)
+    expected = [n * pi / rate for n in range(1, int(3 * rate / pi) + 1) if n * pi / rate > 0.1]
+    assert on_grid(ray) == pytest.approx(expected, abs=1e-3 / rate)
+    assert ray.places == []
+    assert ray.angles == {pi / 2 - 1e-13}
+    # Neighbours are as close as an exponent allows, and what is sampled at once is bounded.
+    assert np.diff(ray.grids[0]).max() <= min(LONGEST, 1 / rate) * (1 + 1e-9)
+    assert max(len(grid) for grid in ray.grids) <= 4096 + 3
+
+
+def test_factors_of_the_denominator_are_not_sampled():
+    ray = Grid(np.sin, np.cos, fastest=1.0, exponents=(-1, 2, 1))
+    assert on_grid(ray, 2.0, 4.0) == pytest.approx([pi, pi], abs=1e-3)
+    assert ray.numbers == {(1, 2), (1,), (2,)}
+
+
+@pytest.mark.parametrize(
+    ("share", "noise", "in_balls"),
+    [(1.0, 0.0, False), (0.9e-10, 0.0, True), (1.1e-10, 0.0, False), (1.0, 0.09, False), (1.0, 0.11, True)],
+)
+def test_where_doubles_do_not_tell_balls_are_asked(share, noise, in_balls):
+    ray = Grid(np.sin, np.cos, fastest=1.0, share=share, noise=noise)
+    assert on_grid(ray, 2.0, 4.0) == pytest.approx([pi], abs=0.05)
+    assert bool(ray.places) is in_balls
+
+
+def test_a_dip_between_points_of_a_grid_is_looked_at_step_by_step():
+    # Two roots in less than a step.
+    ray = Grid(lambda x: (x - 1.05) * (x - 1.07), lambda x: 2 * x - 2.12)
+    assert on_grid(ray, 0.5, 1.5) == pytest.approx([1.05, 1.07], abs=0.02)
+    assert ray.places
+    assert max(ray.places) - min(ray.places) < 2.1 * LONGEST
+    assert ray.angles == {pi / 2 - 1e-13}
+    # One that does not reach zero.
+    assert on_grid(Grid(lambda x: (x - 1.03) ** 2 + 1e-3, lambda x: 2 * x - 2.06), 0.5, 1.5) == []
