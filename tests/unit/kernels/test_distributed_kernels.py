@@ -458,10 +458,10 @@ def test_what_is_restored_in_half_the_length_has_the_value(kind):
 def test_what_is_free_of_kernels_is_split_off():
     found = propagate(BASE, [(Dispersion("w", "wave", KINDS["wave"], R), [L])])
     change = Exponentials(found.kernel_ring, found.table)
-    s, l, gamma, decay, e = (  # noqa: E741
+    s, length, gamma, decay, e = (
         change.coordinates.generator(n) for n in ("s", "l", "gamma[0]", "exp[0,0]", "E[gamma[0],0]")
     )
-    free, rest = (s + gamma) * l, (e**2 + 1) * decay + s
+    free, rest = (s + gamma) * length, (e**2 + 1) * decay + s
     assert change.split(free * rest) == (free, rest)
 
 

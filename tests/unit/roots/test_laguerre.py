@@ -90,7 +90,11 @@ def test_one_guess_comes_after_the_other():
 
 def test_the_time_is_heeded_before_each_step():
     asked = []
-    clock = lambda: asked.append(None) or 0.0  # noqa: E731
+
+    def clock():
+        asked.append(None)
+        return 0.0
+
     list(guess_by_laguerre(made_of(1.0, 100.0, 1e4), Budget(seconds=1, clock=clock)))
     # A start, and at least two steps for each of three roots.
     assert len(asked) > 6

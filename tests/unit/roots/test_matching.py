@@ -9,7 +9,6 @@ from fractions import Fraction
 from math import inf, log
 
 import pytest
-from flint import arb
 
 from symflex import pipeline
 from symflex.errors import BudgetError
@@ -24,24 +23,9 @@ from symflex.roots.distributed import (
     _match,
     default_region,
 )
-from symflex.roots.root import Root
 from symflex.roots.winding import Cell
 from tests.unit.roots.distributed import KELVIN_VOIGT, ON_A_FOUNDATION, ROD, SLIDING_FREE, bound
-
-
-def root(re, im, times=1, size=0.0, *, certified=True):
-    return Root(
-        arb(re, size),
-        arb(im, size),
-        times,
-        on_imaginary_axis=re == 0 and not size,
-        is_real=im == 0 and not size,
-        certified=certified,
-    )
-
-
-def places(roots):
-    return [(float(r.re), float(r.im), r.multiplicity) for r in roots]
+from tests.unit.roots.stand_ins import places, root
 
 
 @dataclass

@@ -10,16 +10,7 @@ from flint import arb
 
 from symflex.roots import Root, precision
 from symflex.roots.root import FLOAT_BITS, decimals, mirror_images, overlap
-
-
-def root(re, im, size=0.0, times=1):
-    return Root(
-        arb(re, size),
-        arb(im, size),
-        times,
-        on_imaginary_axis=re == 0 and not size,
-        is_real=im == 0 and not size,
-    )
+from tests.unit.roots.stand_ins import root
 
 
 @pytest.mark.parametrize(
@@ -31,8 +22,8 @@ def root(re, im, size=0.0, times=1):
         (root(-2, 0), 1 / pi, 1.0),
         (root(0, 0), 0.0, None),
         # not told from the axis, and not told from 0
-        (root(0, 7, 0.5), 7 / (2 * pi), 0.0),
-        (root(0, 0, 0.5), 0.0, None),
+        (root(0, 7, size=0.5), 7 / (2 * pi), 0.0),
+        (root(0, 0, size=0.5), 0.0, None),
     ],
 )
 def test_a_root_has_a_frequency_and_a_damping_ratio(given, hertz, zeta):
@@ -82,7 +73,7 @@ def test_roots_come_with_their_mirror_images(given, even, images):
 
 
 def test_a_mirror_image_is_as_certain_as_the_root():
-    given = replace(root(-3, 4, 0.1, times=2), certified=False, on_boundary=True)
+    given = replace(root(-3, 4, 2, 0.1), certified=False, on_boundary=True)
     for image in mirror_images([given, root(5, 6)], even=True)[:4]:
         assert (image.multiplicity, image.certified, image.on_boundary) == (2, False, True)
         assert float(image.re.rad()) == pytest.approx(0.1)
@@ -92,7 +83,7 @@ def test_a_mirror_image_is_as_certain_as_the_root():
 
 @pytest.mark.parametrize(("re", "im", "same"), [(0.15, 0.15, True), (0.25, 0, False), (0, 0.25, False)])
 def test_roots_may_be_the_same_where_both_parts_may(re, im, same):
-    assert overlap(root(1, 1, 0.1), root(1 + re, 1 + im, 0.1)) is same
+    assert overlap(root(1, 1, size=0.1), root(1 + re, 1 + im, size=0.1)) is same
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,6 @@ from fractions import Fraction
 from math import exp, inf, log, pi
 
 import pytest
-from flint import arb
 
 from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError
@@ -17,35 +16,19 @@ from symflex.roots.distributed import _degenerate_points, _Searched, locate_dist
 from symflex.roots.pole_zero_map import HiddenRoot
 from symflex.roots.polynomial import POLYNOMIAL
 from symflex.roots.right_half_plane import DEGENERATE, PASSIVE, RightHalfPlane
-from symflex.roots.root import Root
 from symflex.roots.side import LOSSLESS, Proof
 from symflex.roots.transcendental import HIGHEST
 from symflex.roots.winding import Cell
 from symflex.transfer import HiddenFactor
 from tests.unit.roots.distributed import DELAY_LOOP, LINE, ON_A_FOUNDATION, ROD, bound
+from tests.unit.roots.stand_ins import OVER, places, root
 
 ALL_THERE = Proof(0, 0)
 BAND = Band(Fraction(0), Fraction(5))
-OVER = BudgetError(Diagnostic("SF506", "the time given is over"))
-
-
-def root(re, im, times=1, size=0.0, *, certified=True):
-    return Root(
-        arb(re, size),
-        arb(im, size),
-        times,
-        on_imaginary_axis=re == 0 and not size,
-        is_real=im == 0 and not size,
-        certified=certified,
-    )
 
 
 def pair(re, im, times=1):
     return [root(re, im, times), root(re, -im, times)]
-
-
-def places(roots):
-    return [(float(r.re), float(r.im), r.multiplicity) for r in roots]
 
 
 @dataclass

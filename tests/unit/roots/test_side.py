@@ -7,14 +7,12 @@ from math import exp, inf, log, pi
 
 import mpmath
 import pytest
-from flint import arb
 
 from symflex.budget import Budget
 from symflex.errors import BudgetError, UncertifiedError
 from symflex.kernels import Factored
 from symflex.kernels.origin import Origin
 from symflex.roots import Band, Modes, Rectangle
-from symflex.roots.root import Root
 from symflex.roots.side import (
     GUESS_AND_PROVE,
     LOSSLESS,
@@ -32,28 +30,13 @@ from symflex.roots.side import (
 from symflex.roots.transcendental import MODES_LIMIT
 from symflex.roots.winding import Cell, RootOnPathError
 from tests.unit.roots.distributed import DELAY_LOOP, FREE, KELVIN_VOIGT, ROD, bound
+from tests.unit.roots.stand_ins import root, side
 
 LUMPED = """
 symflex = 1
 inputs.u = {}
 outputs.y = "u*(s + 7)/((s + 1)*(s + 2)^2*((s - 1/2)^2 + 100))"
 """
-
-
-def side(text, **options):
-    source = bound(text, 0)
-    return Side(source, source.den, 20, Budget(), **options)
-
-
-def root(re, im, times=1, size=0.0, *, certified=True):
-    return Root(
-        arb(re, size),
-        arb(im, size),
-        times,
-        on_imaginary_axis=re == 0 and not size,
-        is_real=im == 0 and not size,
-        certified=certified,
-    )
 
 
 def rod(n):

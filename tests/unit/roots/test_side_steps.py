@@ -6,38 +6,18 @@ from fractions import Fraction
 from math import inf, log, pi
 
 import pytest
-from flint import arb
 
-from symflex.budget import Budget
-from symflex.errors import BudgetError, Diagnostic
+from symflex.errors import BudgetError
 from symflex.roots import Band, Modes, Rectangle
 from symflex.roots import side as side_module
 from symflex.roots.argument_principle import CertifiedWinding
 from symflex.roots.domains import WIDER
 from symflex.roots.lossless import LosslessSearch
-from symflex.roots.root import Root
-from symflex.roots.side import FEW, GUESS_AND_PROVE, LOSSLESS, SUBDIVISION, Proof, Side
+from symflex.roots.side import FEW, GUESS_AND_PROVE, LOSSLESS, SUBDIVISION, Proof
 from symflex.roots.transcendental import HIGHEST, Found, RootSearch
 from symflex.roots.winding import Cell, RootOnPathError, Winding
-from tests.unit.roots.distributed import DELAY_LOOP, KELVIN_VOIGT, ROD, bound
-
-OVER = BudgetError(Diagnostic("SF506", "the time given is over"))
-
-
-def side(text=ROD, **options):
-    source = bound(text, 0)
-    return Side(source, source.den, 20, Budget(), **options)
-
-
-def root(re, im, times=1, size=0.0, *, certified=True):
-    return Root(
-        arb(re, size),
-        arb(im, size),
-        times,
-        on_imaginary_axis=re == 0 and not size,
-        is_real=im == 0 and not size,
-        certified=certified,
-    )
+from tests.unit.roots.distributed import DELAY_LOOP, KELVIN_VOIGT
+from tests.unit.roots.stand_ins import OVER, root, side
 
 
 def places(roots):

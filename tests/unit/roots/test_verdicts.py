@@ -7,7 +7,7 @@ from math import exp, pi
 from types import SimpleNamespace
 
 import pytest
-from flint import acb, arb
+from flint import acb
 
 from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic
@@ -22,21 +22,10 @@ from symflex.roots.right_half_plane import (
     judge,
     search_right,
 )
-from symflex.roots.root import Root
 from symflex.roots.side import Proof
 from symflex.roots.tail import Tail
 from symflex.roots.winding import RootOnPathError
-
-
-def pole(re, im=0.0, times=1, size=0.0):
-    return Root(
-        arb(re, size),
-        arb(im, size),
-        times,
-        on_imaginary_axis=re == 0 and not size,
-        is_real=im == 0 and not size,
-    )
-
+from tests.unit.roots.stand_ins import root as pole
 
 LEFT, RIGHT, TWICE = pole(-1), pole(2, 3), pole(1, times=2)
 ON, ZERO, DOUBLE_ZERO, NEAR = pole(0, 5), pole(0), pole(0, times=2), pole(0, 5, size=0.1)

@@ -1,0 +1,35 @@
+"""Roots and sides of transfer functions as tests of searches make them up, and the end of a budget."""
+
+from __future__ import annotations
+
+from flint import arb
+
+from symflex.budget import Budget
+from symflex.errors import BudgetError, Diagnostic
+from symflex.roots.root import Root
+from symflex.roots.side import Side
+from tests.unit.roots.distributed import ROD, bound
+
+OVER = BudgetError(Diagnostic("SF506", "the time given is over"))
+
+
+def root(re, im=0.0, times=1, size=0.0, *, certified=True):
+    """Return a root; where it has a size, nothing is known of the axes."""
+    return Root(
+        arb(re, size),
+        arb(im, size),
+        times,
+        on_imaginary_axis=re == 0 and not size,
+        is_real=im == 0 and not size,
+        certified=certified,
+    )
+
+
+def places(roots):
+    return [(float(r.re), float(r.im), r.multiplicity) for r in roots]
+
+
+def side(text=ROD, **options):
+    """Return the denominator's side of a specification's first transfer function."""
+    source = bound(text, 0)
+    return Side(source, source.den, 20, Budget(), **options)
