@@ -11,7 +11,7 @@ from flint import arb, fmpq
 from symflex.roots.precision import precision
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Sequence
     from fractions import Fraction
 
     from symflex.roots.root import Root
@@ -143,21 +143,7 @@ class Modes:
 
     def classify(self, roots: Sequence[Root]) -> tuple[Position, ...]:
         """Return the position of every root; the roots are in order of natural frequency."""
-        positions = [Position.INSIDE] * len(roots)
-        before = 0
-        for indices, leaders, after in _by_frequency(roots):
-            if before >= self.count:
-                position = Position.OUTSIDE
-            elif after <= self.count or len(leaders) == 1:
-                position = Position.INSIDE
-            elif all(_mirrored(leaders[0], root) for root in leaders):
-                position = Position.BOUNDARY
-            else:
-                position = Position.UNDECIDED
-            for i in indices:
-                positions[i] = position
-            before = after
-        return tuple(positions)
+        return _numbered(roots, 0, self.count, at_zero=Position.INSIDE)
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the region as JSON data."""
@@ -183,12 +169,7 @@ class Mode:
 
     def classify(self, roots: Sequence[Root]) -> tuple[Position, ...]:
         """Return the position of every root; the roots are in order of natural frequency."""
-        upto = Modes(self.number).classify(roots)
-        positions = [Position.OUTSIDE] * len(roots)
-        for indices, _, after in _by_frequency(roots):
-            for i in indices if after >= self.number else ():
-                positions[i] = upto[i]
-        return tuple(positions)
+        return _numbered(roots, self.number, self.number, at_zero=Position.OUTSIDE)
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the region as JSON data."""
@@ -198,11 +179,29 @@ class Mode:
 Region = Everything | Band | Rectangle | Modes | Mode
 
 
-def _by_frequency(roots: Sequence[Root]) -> Iterator[tuple[list[int], list[Root], int]]:
-    """Yield where the roots other than 0 stand, those together whose frequencies overlap.
+def _numbered(roots: Sequence[Root], first: int, last: int, *, at_zero: Position) -> tuple[Position, ...]:
+    """Return where roots stand of which the modes ``first`` to ``last`` are asked for, all up to it for 0."""
+    positions = [at_zero] * len(roots)
+    before = 0
+    for indices in _by_frequency(roots):
+        leaders = [roots[i] for i in indices if not roots[i].im < 0]
+        after = before + sum(root.multiplicity for root in leaders)
+        if before >= last or after < first:
+            position = Position.OUTSIDE
+        elif after <= last or len(leaders) == 1:
+            position = Position.INSIDE
+        elif all(_mirrored(leaders[0], root) for root in leaders):
+            position = Position.BOUNDARY
+        else:
+            position = Position.UNDECIDED
+        for i in indices:
+            positions[i] = position
+        before = after
+    return tuple(positions)
 
-    With each group those of its roots that are not in the lower half plane, and the number of modes up to it.
-    """
+
+def _by_frequency(roots: Sequence[Root]) -> list[list[int]]:
+    """Return the indices of the roots other than 0, grouped where their frequencies overlap."""
     grouped: list[list[int]] = []
     reached: arb | None = None
     for i, root in enumerate(roots):
@@ -214,11 +213,7 @@ def _by_frequency(roots: Sequence[Root]) -> Iterator[tuple[list[int], list[Root]
         else:
             grouped.append([i])
         reached = frequency
-    after = 0
-    for indices in grouped:
-        leaders = [roots[i] for i in indices if not roots[i].im < 0]
-        after += sum(root.multiplicity for root in leaders)
-        yield indices, leaders, after
+    return grouped
 
 
 def _mirrored(a: Root, b: Root) -> bool:
