@@ -10,10 +10,9 @@ from benchmarks.measure import Claim, Measurement, time_commands
 
 REPEATS = 21
 HELP_CEILING = 2.0
-CEILINGS = {"check": 1.2, "derive": 1.2, "derive, warm cache": 1.2, "roots": 1.8}
+CEILINGS = {"check": 1.2, "derive": 1.2, "roots": 1.8}
 SMALL = "derivations/eppinger1988/rigid_body.toml"
 DISTRIBUTED = "derivations/classics/timoshenko_cantilever.toml"
-SETTINGS = {"PYTHONDONTWRITEBYTECODE", "SYMFLEX_NO_CACHE"}
 
 HELP = {
     "symflex --help": ("-m", "symflex", "--help"),
@@ -23,11 +22,9 @@ HELP = {
 COMMANDS = {
     'python -c "import sympy"': ("-c", "import sympy"),
     "check": ("-m", "symflex", "check", SMALL),
-    "derive": ("-m", "symflex", "derive", SMALL, "--no-cache"),
-    "derive, warm cache": ("-m", "symflex", "derive", SMALL),
-    "roots": ("-m", "symflex", "roots", SMALL, "--no-cache"),
-    "derive of a Timoshenko beam": ("-m", "symflex", "derive", DISTRIBUTED, "--no-cache"),
-    "derive of a Timoshenko beam, warm cache": ("-m", "symflex", "derive", DISTRIBUTED),
+    "derive": ("-m", "symflex", "derive", SMALL),
+    "roots": ("-m", "symflex", "roots", SMALL),
+    "derive of a Timoshenko beam": ("-m", "symflex", "derive", DISTRIBUTED),
 }
 
 
@@ -35,11 +32,11 @@ def measure() -> tuple[list[Measurement], list[Claim]]:
     """Measure each command and compare it with the import that stands first.
 
     Times are processor times, medians of runs that take turns. All modules are compiled by a round that does
-    not count, as they are when a package is installed, and the cache is a folder that is empty before it.
+    not count, as they are when a package is installed.
     """
     with tempfile.TemporaryDirectory() as folder:
-        environment = {k: v for k, v in os.environ.items() if k not in SETTINGS}
-        environment |= {"SYMFLEX_CACHE_DIR": f"{folder}/cache", "PYTHONPYCACHEPREFIX": f"{folder}/compiled"}
+        environment = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
+        environment["PYTHONPYCACHEPREFIX"] = f"{folder}/compiled"
         found = _time("start-up", HELP, environment)
         compared = _time("start-up of commands", COMMANDS, environment)
     ours, click, _ = found

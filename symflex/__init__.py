@@ -49,7 +49,6 @@ if TYPE_CHECKING:
         write_report,
     )
     from symflex.budget import Budget
-    from symflex.cache import derivation_cache
     from symflex.errors import SymflexError
     from symflex.measurement import MeasuredResponse, read_measurement
 
@@ -72,7 +71,6 @@ _HOME = {
     "SymflexError": "symflex.errors",
     "TransferFunction": "symflex.api",
     "WrittenReport": "symflex.api",
-    "derivation_cache": "symflex.cache",
     "fit": "symflex.api",
     "load": "symflex.api",
     "loads": "symflex.api",
@@ -98,7 +96,6 @@ __all__ = [
     "TransferFunction",
     "WrittenReport",
     "__version__",
-    "derivation_cache",
     "fit",
     "load",
     "loads",
@@ -117,4 +114,6 @@ def __getattr__(name: str) -> object:
     if name in _HOME:
         return getattr(import_module(_HOME[name]), name)
     message = f"module 'symflex' has no attribute '{name}'"
+    if name == "derivation_cache":
+        message += ": derivations are quick and no longer kept on disk, leave it out"
     raise AttributeError(message)

@@ -22,7 +22,6 @@ from symflex import equations as equations_room
 from symflex import spec as spec_room
 from symflex import transfer as transfer_room
 from symflex.budget import spend
-from symflex.cache import entered_cache
 from symflex.elimination import eliminate, expanded_terms, explain_singular, is_singular, unreached
 from symflex.errors import BudgetError, Diagnostic, FitError, Source, SpecError, SymflexError, UsageError
 from symflex.errors.diagnostic import nearest
@@ -176,7 +175,7 @@ def derive_all(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> 
     """
     wanted = model.transfer_functions if pairs is None else tuple(pairs)
     try:
-        found = _derive_all(assemble(model), wanted)
+        found = transfer_room.derive_all(assemble(model), wanted)
     except BudgetError as error:
         if error.diagnostics[0].code not in ("SF501", "SF502") or not model.is_distributed:
             raise
@@ -184,23 +183,13 @@ def derive_all(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> 
         joined = equations_room.assemble(model, transfer_room.nested_transfer, is_joined=True)
         if not joined.is_joined:
             raise
-        found = _derive_all(joined, wanted)
+        found = transfer_room.derive_all(joined, wanted)
     mixed = [i for i, tf in enumerate(found) if tf.is_mixed]
     if not mixed:
         return found
     nameless = equations_room.assemble(model, transfer_room.nested_transfer, is_nameless=True)
-    again = dict(zip(mixed, _derive_all(nameless, [wanted[i] for i in mixed]), strict=True))
+    again = dict(zip(mixed, transfer_room.derive_all(nameless, [wanted[i] for i in mixed]), strict=True))
     return tuple(again.get(i, tf) for i, tf in enumerate(found))
-
-
-def _derive_all(equations: Equations, pairs: Sequence[tuple[str, str]]) -> tuple[TransferFunction, ...]:
-    """Return the transfer functions from the cache that is entered, if one is and it has them."""
-    store = entered_cache()
-    if store is None or (equations.propagation is None and len(equations.unknowns) < store.unknowns):
-        return transfer_room.derive_all(equations, pairs)
-    from symflex.cache.remember import derive_or_recall  # most derivations are over before it is imported
-
-    return derive_or_recall(equations, pairs, store)
 
 
 def assemble_sparse(model: Model) -> Equations:

@@ -14,9 +14,6 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 REQUIRE_TOOLS = "SYMFLEX_REQUIRE_TOOLS"
 REASON = "which is not installed"
 
-# No test reads what another run, or the user, has kept; those of the cache name a folder of their own.
-os.environ["SYMFLEX_NO_CACHE"] = "1"
-
 
 def pytest_runtest_setup(item):
     for marker in item.iter_markers("needs_tool"):

@@ -31,7 +31,6 @@ import symflex.emit.sweep_files
 import symflex.fitting
 import symflex.report  # noqa: F401
 from symflex.cli import run
-from tests.house.repository import ROOT
 
 SPEC = """
 symflex = 1
@@ -59,7 +58,6 @@ COMMANDS = {
         ("measured.csv",),
     ),
     "plot": ("plot a.toml bode -o a.svg", ("a.svg",)),
-    "cache": ("derive beam.toml", ()),
 }
 OLD = b"as it was\n"
 UNPRIVILEGED = 65534
@@ -87,7 +85,6 @@ def prepare(folder, *, has_old):
     """Fill a folder with what the commands read, and perhaps with older outputs."""
     folder.mkdir(parents=True)
     (folder / "a.toml").write_text(SPEC)
-    shutil.copy(ROOT / "derivations" / "classics" / "timoshenko_cantilever.toml", folder / "beam.toml")
     lines = [(f, 1 / (100 - f * f + 0.4j * f + 0.1)) for f in range(1, 30)]
     table = "".join(f"{f},{h.real!r},{h.imag!r}\n" for f, h in lines)
     (folder / "data.csv").write_text("frequency_hz,re,im\n" + table)
@@ -97,13 +94,11 @@ def prepare(folder, *, has_old):
 
 
 def files_of(folder):
-    """Return the content of all files, without what is there only for a while, journals and the cache."""
+    """Return the content of all files, without what is there only for a while, and journals."""
     found = {}
     for path in sorted(folder.rglob("*")):
         name = path.relative_to(folder).as_posix()
-        is_own = (
-            not name.endswith(TRANSIENT) and ".part/" not in name and not name.startswith(("cache/", "said"))
-        )
+        is_own = not name.endswith(TRANSIENT) and ".part/" not in name and not name.startswith("said")
         if path.is_file() and is_own:
             found[name] = path.read_bytes()
     return found
@@ -138,8 +133,6 @@ def start(folder, words, fault=None, operations=0):
         os.dup2(writing, 2)
         # Whoever captures the parent's output keeps these in files of his own.
         sys.stdout, sys.stderr = (open(number, "w", closefd=False) for number in (1, 2))
-        os.environ.pop("SYMFLEX_NO_CACHE", None)
-        os.environ["SYMFLEX_CACHE_DIR"] = str(folder / "cache")
         if fault is not None:
             inject(fault, operations)
         code = run(words.split())
@@ -182,7 +175,7 @@ def concerns(event, arguments):
     """Tell whether an operation writes, or has to do with what is written."""
     path = str(arguments[0])
     if event == "open":
-        return any(part in path for part in (".symflex-", ".part", ".lock", "cache")) and ".py" not in path
+        return any(part in path for part in (".symflex-", ".part", ".lock")) and ".py" not in path
     return "site-packages" not in path and "__pycache__" not in path and "/lib/python" not in path
 
 
@@ -221,8 +214,6 @@ def one(name, fault, reference, scratch):
     expected = reference.files[name]
     if "Traceback" in said or any(code not in (0, 2, -signal.SIGKILL) for code in codes):
         wrong.append(f"exit codes {codes}: {said[-1500:]}")
-    if name == "cache" and fault.kind in ("failing", "full") and codes != (0,):
-        wrong.append(f"a cache that cannot be written ends the command: {codes} {said[-500:]}")
     wrong += [
         f"{path} is torn: {len(content)} bytes"
         for path, content in files_of(folder).items()

@@ -30,9 +30,13 @@ COMMANDS: dict[str, str] = {
     "measure": "Write a synthetic measurement of a model.",
     "report": "Write a report: a page, a PDF, figures, code, data.",
     "new": "Write a specification to start from.",
-    "cache": "Show or clear the cache of derivations.",
     "elements": "List the element and block library.",
 }
+
+
+NO_CACHE = "--no-cache"
+GONE = "Derivations are quick and no longer kept on disk: leave it out."
+"""The hint for NO_CACHE and the command ``cache``, which earlier versions had."""
 
 
 class LazyGroup(click.Group):
@@ -68,7 +72,7 @@ class LazyGroup(click.Group):
         if name not in COMMANDS and not name.startswith("-"):
             from symflex.errors.diagnostic import nearest  # difflib is not needed to start
 
-            hint = nearest(name, COMMANDS)
+            hint = GONE if name == "cache" else nearest(name, COMMANDS)
             ctx.fail(f"No such command '{name}'." + (f" {hint[0].upper()}{hint[1:]}" if hint else ""))
         return super().resolve_command(ctx, args)
 
@@ -132,6 +136,8 @@ def run(arguments: list[str] | None = None, *, is_program: bool = False) -> int:
     except click.ClickException as problem:
         from symflex.cli.reporting import say  # most commands go well
 
+        if isinstance(problem, click.NoSuchOption) and problem.option_name == NO_CACHE:
+            problem = click.NoSuchOption(NO_CACHE, f"{problem.message} {GONE}", ctx=problem.ctx)
         shown = StringIO()
         problem.show(shown)
         say(shown.getvalue(), nl=False, err=True)

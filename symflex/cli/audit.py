@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.cli.budgeting import budgeted
-from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, load, note, outside, reporting, say, setting, terminal_width
 
 if TYPE_CHECKING:
@@ -23,7 +22,6 @@ if TYPE_CHECKING:
 @click.option("--strict", is_flag=True, help="Exit with code 4 unless every formula is proved equal.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @budgeted
-@caching
 @reporting
 @setting
 def command(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import click
 
 from symflex.cli.budgeting import budgeted
-from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, load, outside, reporting, say, setting
 from symflex.errors import Diagnostic, UsageError
 
@@ -22,7 +21,6 @@ from symflex.errors import Diagnostic, UsageError
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @budgeted
-@caching
 @reporting
 @setting
 def command(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import click
 
 from symflex.cli.budgeting import budgeted
-from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, load, note, outside, reporting, say, setting, terminal_width
 from symflex.errors import Diagnostic, UsageError
 
@@ -59,7 +58,6 @@ def chosen_representation(representation: str, form: str | None) -> str:
 @click.option("--json", "as_json", is_flag=True, help="The same as --format json.")
 @click.option("--digits", type=click.IntRange(1, 1000), default=6, show_default=True, help="Digits of zpk.")
 @budgeted
-@caching
 @reporting
 @setting
 def command(

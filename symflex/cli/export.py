@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.cli.budgeting import budgeted
-from symflex.cli.caching import caching
 from symflex.cli.derive import chosen_representation
 from symflex.cli.reporting import load, note, outside, reporting, say, setting
 from symflex.errors import Diagnostic, UsageError
@@ -55,7 +54,6 @@ class ExportCommand(click.Command):
 @click.option("--minimal", "is_minimal", is_flag=True, help="state-space: without hidden states.")
 @click.option("--strict", is_flag=True, help="Exit with 4 when the verified accuracy falls short.")
 @budgeted
-@caching
 @reporting
 @setting
 def command(

@@ -7,7 +7,6 @@ from pathlib import Path
 import click
 
 from symflex.cli.budgeting import budgeted
-from symflex.cli.caching import caching
 from symflex.cli.reporting import check_place, emit_json, load, note, outside, reporting, say, terminal_width
 from symflex.errors import Diagnostic, FitError, SymflexError, UsageError
 
@@ -64,7 +63,6 @@ SUFFIXES = (".pdf", ".png", ".svg")
 @click.option("--strict", is_flag=True, help="A fit that is poor is exit code 4, and nothing is written.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @budgeted
-@caching
 @reporting
 def command(
     data: tuple[str, ...],

@@ -7,7 +7,6 @@ from pathlib import Path
 import click
 
 from symflex.cli.budgeting import budgeted
-from symflex.cli.caching import caching
 from symflex.cli.reporting import check_place, load, note, outside, reporting, setting
 from symflex.errors import Diagnostic, UsageError
 
@@ -38,7 +37,6 @@ from symflex.errors import Diagnostic, UsageError
 )
 @click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the random numbers.")
 @budgeted
-@caching
 @reporting
 @setting
 def command(

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.cli.budgeting import budgeted
-from symflex.cli.caching import caching
 from symflex.cli.reporting import load, note, outside, reporting, setting
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
@@ -46,7 +45,6 @@ S_PLANES = ("locus", "poles_zeros")
 @click.option("--width", metavar="ieee|a4|MM", help="Width of the figure: 88.5, 170 or so many mm.")
 @click.option("--font", metavar="FONT", help="times (the default), latex or sans.")
 @budgeted
-@caching
 @reporting
 @setting
 def command(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import click
 
 from symflex.cli.budgeting import budgeted
-from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, load, note, outside, reporting, say, setting
 
 
@@ -25,7 +24,6 @@ from symflex.cli.reporting import emit_json, load, note, outside, reporting, say
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @budgeted
-@caching
 @reporting
 @setting
 def command(

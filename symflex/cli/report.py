@@ -10,7 +10,6 @@ from pathlib import Path
 import click
 
 from symflex.cli.budgeting import budgeted
-from symflex.cli.caching import caching
 from symflex.cli.reporting import note, outside, reporting, say
 from symflex.errors import Diagnostic, UsageError
 
@@ -35,7 +34,6 @@ EPOCH_VARIABLE = "SOURCE_DATE_EPOCH"
     help="Models computed at once; as many as there are processors.",
 )
 @budgeted
-@caching
 @reporting
 def command(
     specs: tuple[str, ...],

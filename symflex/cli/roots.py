@@ -10,7 +10,6 @@ import click
 
 from symflex.budget import entered_budget
 from symflex.cli.budgeting import budgeted
-from symflex.cli.caching import caching
 from symflex.cli.reporting import (
     emit_json,
     load,
@@ -60,7 +59,6 @@ DERIVING = 0.5
 @click.option("--strict", is_flag=True, help="Exit with code 4 also when a part of the region is left out.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @budgeted
-@caching
 @reporting
 @setting
 def command(

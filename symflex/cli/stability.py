@@ -9,7 +9,6 @@ import click
 
 from symflex.budget import entered_budget
 from symflex.cli.budgeting import budgeted
-from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, load, outside, reporting, say, setting
 from symflex.errors import Diagnostic, UsageError
 
@@ -44,7 +43,6 @@ UNBOUNDED = ("inf", "-inf", "+inf")
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @budgeted
-@caching
 @reporting
 @setting
 def command(

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.cli.budgeting import budgeted
-from symflex.cli.caching import caching
 from symflex.cli.reporting import emit_json, load, note, outside, reporting, say, setting, terminal_width
 from symflex.cli.roots import region_of
 from symflex.errors import Diagnostic, UsageError
@@ -58,7 +57,6 @@ BUDGET_CODE = "SF5"
 @click.option("--scheduler", metavar="tcp://HOST:PORT", help="Work on a dask.distributed cluster.")
 @click.option("--json", "as_json", is_flag=True, help="Print a summary as JSON.")
 @budgeted
-@caching
 @reporting
 @setting
 def command(

@@ -7,7 +7,6 @@ import platform
 import re
 from collections.abc import Mapping
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, ProcessPoolExecutor, wait
-from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
 from importlib import metadata
@@ -16,7 +15,6 @@ from time import monotonic
 from typing import TYPE_CHECKING, Final
 
 from symflex.budget import TIME_OVER, Budget, entered_budget
-from symflex.cache import derivation_cache, entered_cache
 from symflex.errors import (
     BudgetError,
     Diagnostic,
@@ -41,7 +39,6 @@ if TYPE_CHECKING:
     from concurrent.futures import Future
     from pathlib import Path
 
-    from symflex.cache.store import Store
     from symflex.measurement import MeasuredResponse
     from symflex.report.claims import Finding, Publication
     from symflex.report.document import Block, Cell
@@ -277,7 +274,6 @@ def _in_processes(
 ) -> dict[str, Chapter]:
     """Return the chapters of models whose processes came to an end of their own."""
     # A new interpreter in each process: what this one has open or threaded is not copied.
-    store = entered_cache()
     spawning = get_context("spawn")
     count = min(processes, len(named))
     done: dict[str, Chapter] = {}
@@ -285,7 +281,7 @@ def _in_processes(
     with ProcessPoolExecutor(count, mp_context=spawning, initializer=end_with_parent) as pool:
         waiting = {
             pool.submit(
-                _chapter_in, store, path, stem, measured, allow_outside, chapters.deadline, chapters.memory
+                _chapter_in, path, stem, measured, allow_outside, chapters.deadline, chapters.memory
             ): stem
             for stem, path in named.items()
         }
@@ -334,7 +330,6 @@ def _outcome(
 
 
 def _chapter_in(
-    store: Store | None,
     path: Path,
     stem: str,
     measured: tuple[MeasuredResponse, ...],
@@ -342,11 +337,10 @@ def _chapter_in(
     deadline: float | None,
     memory: int | None,
 ) -> Chapter:
-    """Return a chapter, with the cache and the budget of the process that asks for it."""
+    """Return a chapter, with the budget of the process that asks for it."""
     # The clock of all processes began when the computer did.
     seconds = None if deadline is None else deadline - monotonic()
-    cache = nullcontext() if store is None else derivation_cache(store.folder, store.seconds)
-    with Budget(seconds, memory=memory).entered(), cache:
+    with Budget(seconds, memory=memory).entered():
         return chapter_of(path, stem, measured, allow_outside)
 
 

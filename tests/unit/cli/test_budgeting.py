@@ -11,7 +11,7 @@ import pytest
 from symflex.cli import COMMANDS
 from symflex.cli.budgeting import Memory
 
-FREE_OF_WORK = {"new", "cache", "elements"}
+FREE_OF_WORK = {"new", "elements"}
 ENDLESS = "while True: pass"
 SELF = """
 import sys, os
@@ -155,7 +155,7 @@ FULL = pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no f
 
 
 @FULL
-@pytest.mark.parametrize("arguments", [("--help",), ("elements",), ("new",), ("check", "x.toml"), ("cache",)])
+@pytest.mark.parametrize("arguments", [("--help",), ("elements",), ("new",), ("check", "x.toml")])
 def test_what_cannot_be_printed_is_an_error_with_a_code(arguments, shell):
     with open("/dev/full", "w") as full:
         done = subprocess.run(

@@ -56,6 +56,15 @@ def test_a_model_that_cannot_be_solved_ends_with_code_3(shell, command):
     assert shell(*with_spec(command, "floating.toml")).code == 3
 
 
+@pytest.mark.parametrize(
+    "words", [("cache",), ("cache", "--clear"), ("derive", "two_mass.toml", "--no-cache")]
+)
+def test_what_kept_derivations_is_refused_with_a_hint(shell, words):
+    done = shell(*words)
+    assert (done.code, done.out) == (2, "")
+    assert "no longer kept on disk: leave it out" in done.err
+
+
 def test_an_exceeded_budget_ends_with_code_5(shell, monkeypatch):
     def too_large(*_):
         raise BudgetError(Diagnostic("SF501", "too large, for this test"))
