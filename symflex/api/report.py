@@ -79,10 +79,11 @@ def write_report(
     paths = [Path(one) for one in ([specs] if isinstance(specs, str | Path) else specs)]
     target = Path(folder)
     named = report.name_specifications(report.find_specifications(paths, target))
+    publications = report.find_claims(named.values())
     measured, left_out = report.find_measurements(paths, target)
     report.check_folder(target)
     chapters = report.write_chapters(named, jobs if jobs > 1 else 0, Silent(), measured)
-    composed = report.compose(chapters, "" if day is None else day.isoformat())
+    composed = report.compose(chapters, "" if day is None else day.isoformat(), publications)
     published = report.publish(composed, target, Silent(), pdf=pdf)
     problems = (published.problem,) if published.problem else ()
     warnings = (*left_out, *composed.warnings, *problems)

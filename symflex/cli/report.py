@@ -63,6 +63,7 @@ def command(
     from symflex.report import (
         check_folder,
         compose,
+        find_claims,
         find_measurements,
         find_specifications,
         name_specifications,
@@ -76,12 +77,13 @@ def command(
     paths = [Path(spec) for spec in specs]
     folders = (*map(Path, allow_outside), *(path for path in paths if path.is_dir()))
     named = name_specifications(find_specifications(paths, folder, folders))
+    publications = find_claims(named.values(), folders)
     measured, left_out = find_measurements(paths, folder, folders)
     data = f", {len(measured)} measured response{'s' if len(measured) > 1 else ''}" if measured else ""
     note(f"{len(named)} model{'s' if len(named) > 1 else ''}{data}")
     with ProgressBar() as bar:
         chapters = write_chapters(named, jobs or os.cpu_count() or 1, bar, measured, folders)
-        report = compose(chapters, shown)
+        report = compose(chapters, shown, publications)
         published = publish(report, folder, bar, pdf=pdf)
     if published.problem:
         note(published.problem)

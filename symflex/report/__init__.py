@@ -4,8 +4,8 @@ Input: specifications.
 Output: a :class:`Report`, which :func:`report_page` and :func:`report_article` print.
 
 What a report says about each model is in :data:`symflex.report.sections.SECTIONS`, how models are compared in
-:data:`symflex.report.comparison.COLUMNS`, and what publications claim in
-:data:`symflex.report.claims.PUBLICATIONS`.
+:data:`symflex.report.comparison.COLUMNS`, and what can be claimed of them in
+:data:`symflex.report.claims.PREDICATES`.
 """
 
 from symflex.emit.write import check_folder
@@ -17,6 +17,7 @@ from symflex.report.published import PublishedReport, publish
 from symflex.report.report import (
     Report,
     compose,
+    find_claims,
     find_measurements,
     find_specifications,
     name_specifications,
@@ -29,6 +30,7 @@ __all__ = [
     "check_folder",
     "compile_pdf",
     "compose",
+    "find_claims",
     "find_measurements",
     "find_specifications",
     "has_compiler",

@@ -25,7 +25,7 @@ from symflex.errors import (
 )
 from symflex.errors.diagnostic import printable
 from symflex.report.chapter import Chapter, chapter_of, failed_chapter
-from symflex.report.claims import PUBLICATIONS, claim_section, publication_of
+from symflex.report.claims import CLAIMS, claim_section, is_claims, publication_of, read_claims
 from symflex.report.claims.section import claims_json, judge_all
 from symflex.report.comparison import comparison_section
 from symflex.report.document import Code, Link, Mark, Section, Table, columns, text
@@ -35,7 +35,7 @@ from symflex.report.study import Study, attempt
 from symflex.sweep.executors import end_with_parent
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
     from concurrent.futures import Future
     from pathlib import Path
 
@@ -106,7 +106,7 @@ def find_specifications(
     found: list[Path] = []
     for path in paths:
         if path.is_dir():
-            inside = _inside(path, frozenset((".toml",)), output)
+            inside = [p for p in _inside(path, frozenset((".toml",)), output) if not is_claims(p)]
             for file in inside:
                 if _leads_out(file, (path, *allow_outside)):
                     message = f"'{file}' is a link that leads out of the folder"
@@ -156,6 +156,23 @@ def name_specifications(paths: Sequence[Path]) -> dict[str, Path]:
         taken.add(stem.lower())
         named[stem] = path
     return named
+
+
+def find_claims(
+    specifications: Iterable[Path], allow_outside: Sequence[Path] = ()
+) -> tuple[Publication, ...]:
+    """Return what publications claim of specifications, by files ``claims.toml`` in the same folders.
+
+    Raises
+    ------
+    UsageError, SpecError
+        See :func:`symflex.report.claims.read_claims`.
+    """
+    folders = dict.fromkeys(path.parent for path in specifications)
+    files = [
+        folder / CLAIMS for folder in folders if not _leads_out(folder / CLAIMS, (folder, *allow_outside))
+    ]
+    return tuple(read_claims(file) for file in files if is_claims(file))
 
 
 def find_measurements(
@@ -344,7 +361,7 @@ def _chapter_in(
         return chapter_of(path, stem, measured, allow_outside)
 
 
-def compose(chapters: Sequence[Chapter], date: str) -> Report:
+def compose(chapters: Sequence[Chapter], date: str, publications: Sequence[Publication] = ()) -> Report:
     """Return the report of chapters.
 
     Parameters
@@ -353,8 +370,10 @@ def compose(chapters: Sequence[Chapter], date: str) -> Report:
         At least one.
     date : str
         As shown; empty for none.
+    publications : sequence of Publication
+        Claims of the first that is a source of a model are judged.
     """
-    publication = publication_of((c.facts.source for c in chapters), PUBLICATIONS)
+    publication = publication_of((c.facts.source for c in chapters), publications)
     ordered = _ordered(chapters, publication)
     facts = [c.facts for c in ordered]
     findings = judge_all(publication, facts) if publication else ()

@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 
 import symflex
+from tests.house.repository import specifications
 
 FOLDER = Path(__file__).parents[2] / "derivations"
-PATHS = sorted(FOLDER.rglob("*.toml"))
+PATHS = specifications(FOLDER, "**/*.toml")
 
 
 def cases():

@@ -12,14 +12,23 @@ from pathlib import Path
 import pytest
 
 from symflex.budget import Silent
-from symflex.report import compose, find_specifications, name_specifications, report_page, write_chapters
-from symflex.report.claims.eppinger1988 import EPPINGER_1988
+from symflex.report import (
+    compose,
+    find_claims,
+    find_specifications,
+    name_specifications,
+    report_page,
+    write_chapters,
+)
+from symflex.report.claims import read_claims
 from symflex.report.facts import DataFact, ModelFacts
+from tests.house.repository import specifications
 from tests.independent import eppinger1988
 from tests.unit.report.pages import Page
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "derivations" / "eppinger1988"
+PUBLICATION = read_claims(FOLDER / "claims.toml")
 
 # Read off the paper: counts where it gives them, and figures by their numbers.
 FIGURES = {
@@ -43,7 +52,7 @@ pytestmark = pytest.mark.slow
 @pytest.fixture(scope="module")
 def report():
     named = name_specifications(find_specifications([FOLDER]))
-    return compose(write_chapters(named, 2, Silent()), "2001-02-03")
+    return compose(write_chapters(named, 2, Silent()), "2001-02-03", find_claims(named.values()))
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +63,7 @@ def claims(report):
 @pytest.fixture(scope="module")
 def facts(report):
     found = {}
-    for path in FOLDER.glob("*.toml"):
+    for path in specifications(FOLDER, "*.toml"):
         document = json.loads(report.files[f"data/{path.stem}_facts.json"])
         found[path.stem] = {f["tf"]: f for f in document["transfer_functions"]}
     return found
@@ -152,7 +161,7 @@ def told(stem, decibels, *, is_synthetic=False):
 
 @pytest.mark.parametrize("key", ["rigid-matches", "only-fit"])
 def test_claims_about_the_experiment_are_not_judged_by_the_synthetic_stand_in(key):
-    (claim,) = [c for c in EPPINGER_1988.claims if c.key == key]
+    (claim,) = [c for c in PUBLICATION.claims if c.key == key]
     models = [told(stem, 0.1, is_synthetic=True) for stem in ("polynomial_resonance", "rigid_body")]
     found = claim.judge({m.stem: m for m in models})
     assert found.verdict == "not examined"
@@ -160,7 +169,7 @@ def test_claims_about_the_experiment_are_not_judged_by_the_synthetic_stand_in(ke
 
 
 def test_only_the_model_fitted_by_hand_is_said_to_match_measured_data():
-    (claim,) = [c for c in EPPINGER_1988.claims if c.key == "only-fit"]
+    (claim,) = [c for c in PUBLICATION.claims if c.key == "only-fit"]
     good, bad = told("polynomial_resonance", 1.0), told("rigid_body", 9.0)
     assert claim.judge({m.stem: m for m in (good, bad)}).verdict == "holds"
     assert claim.judge({m.stem: m for m in (good, told("rigid_body", 1.0))}).verdict == "does not hold"
@@ -193,7 +202,7 @@ def test_stable_gains_are_those_of_the_loops_readme(report):
 
 
 def test_quotations_are_short_and_keys_unique():
-    keys = [claim.key for claim in EPPINGER_1988.claims]
+    keys = [claim.key for claim in PUBLICATION.claims]
     assert len(keys) == len(set(keys))
     assert all(re.fullmatch(r"[a-z-]+", key) for key in keys)
 
@@ -203,7 +212,7 @@ def test_a_claim_is_refuted_where_the_model_is_another(tmp_path):
     text = (FOLDER / "lumped_bending_beam.toml").read_text("utf-8")
     (tmp_path / "lumped_bending_beam.toml").write_text(text.replace('"150 mm"', '"1 mm"'), encoding="utf-8")
     named = name_specifications([tmp_path / "lumped_bending_beam.toml"])
-    files = compose(write_chapters(named, 1, Silent()), "").files
+    files = compose(write_chapters(named, 1, Silent()), "", [PUBLICATION]).files
     judged = {c["key"]: c["verdict"] for c in json.loads(files["data/claims.json"])["claims"]}
     assert judged["lumped-noncolocated"] == "does not hold"
     assert judged["lumped-pair"] == "does not hold"

@@ -16,7 +16,7 @@ from symflex.emit.text import roots_text
 from symflex.errors import SymflexError
 from symflex.roots import Budget
 from symflex.spec import write
-from tests.house.repository import ROOT
+from tests.house.repository import ROOT, specifications
 
 ROOMS = ("symflex.model", "symflex.equations", "symflex.elimination")
 SECONDS = 1
@@ -84,7 +84,7 @@ def models():
     files = [
         p
         for place in ("derivations/classics", "symflex/templates")
-        for p in sorted((ROOT / place).glob("*.toml"))
+        for p in specifications(ROOT / place, "*.toml")
     ]
     files += [
         ROOT / "derivations" / "eppinger1988" / f"{n}.toml"

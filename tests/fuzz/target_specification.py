@@ -6,7 +6,7 @@ from contextlib import suppress
 
 from symflex import pipeline
 from symflex.errors import SymflexError
-from tests.house.repository import ROOT
+from tests.house.repository import ROOT, specifications
 
 ROOMS = ("symflex.spec", "symflex.model", "symflex.equations")
 
@@ -14,7 +14,7 @@ ROOMS = ("symflex.spec", "symflex.model", "symflex.equations")
 def seeds():
     """Return worked models and specifications with mistakes."""
     places = ("derivations/classics", "derivations/eppinger1988", "tests/golden/broken", "symflex/templates")
-    files = [path for place in places for path in sorted((ROOT / place).glob("*.toml"))]
+    files = [path for place in places for path in specifications(ROOT / place, "*.toml")]
     return [data for path in files if len(data := path.read_bytes()) < 4_000]
 
 

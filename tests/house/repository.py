@@ -32,6 +32,11 @@ class Block:
         return f"{self.page.relative_to(ROOT)}:{self.line}"
 
 
+def specifications(folder: Path, pattern: str) -> list[Path]:
+    """Return the specifications of a folder that a pattern matches; files of claims are none."""
+    return sorted(path for path in folder.glob(pattern) if path.name != "claims.toml")
+
+
 def tracked_files() -> list[Path]:
     """Return every file that is, or would be, under version control."""
     command = [

@@ -8,9 +8,9 @@ import sys
 
 import pytest
 
-from tests.house.repository import ROOT, slow_ones
+from tests.house.repository import ROOT, slow_ones, specifications
 
-SPECIFICATIONS = sorted((ROOT / "derivations").rglob("*.toml"))
+SPECIFICATIONS = specifications(ROOT / "derivations", "**/*.toml")
 EACH_TIME = {"two_mass_force", "sliding_free_beam", "rod_tip_mass"}
 """A network, a loop and fields, of models that take seconds; the others with -m slow."""
 COMMANDS = (

@@ -18,13 +18,13 @@ from flint import acb
 from symflex import pipeline
 from symflex.emit.array_module import ARRAY_API, JAX, array_module
 from symflex.emit.numpy_module import numpy_module
-from tests.house.repository import slow_ones
+from tests.house.repository import slow_ones, specifications
 from tests.unit.emit.against_balls import axis_points, worst_errors
 from tests.unit.emit.exportable import MASSLESS, PIPE
 from tests.unit.emit.test_numpy_distributed import beam, clamped_end_compliance, specification
 
 ROOT = Path(__file__).parents[2]
-SPECS = {path.stem: path for path in sorted((ROOT / "derivations").glob("*/*.toml"))}
+SPECS = {path.stem: path for path in specifications(ROOT / "derivations", "*/*.toml")}
 
 needs_strict = pytest.mark.needs_module("array_api_strict")
 needs_jax = pytest.mark.needs_module("jax")

@@ -18,6 +18,7 @@ from symflex.emit.forms.usage import forms_of
 from symflex.emit.latex import inline_latex, notebook_latex, transfer_function_latex
 from symflex.errors import SymflexError
 from tests.conftest import REASON
+from tests.house.repository import specifications
 from tests.integration.test_latex_compiles import LABELS
 
 DERIVATIONS = Path(__file__).parents[2] / "derivations"
@@ -85,7 +86,7 @@ def test_katex_sets_the_equations_of_a_few_models(refused):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("path", sorted(DERIVATIONS.rglob("*.toml")), ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", specifications(DERIVATIONS, "**/*.toml"), ids=lambda p: p.stem)
 def test_katex_sets_the_equations_of_every_model(refused, path):
     if path.stem == "six_mass":
         items = [item for item in mathematics_of(path) if " None " in item[0]]

@@ -33,16 +33,17 @@ from symflex.model import load_model
 from symflex.roots.locate import locate
 from symflex.spec import read
 from symflex.transfer import bind, derive, derive_all
+from tests.house.repository import specifications
 from tests.unit.emit.models_with_kernels import derived as of_case
 
 pytestmark = pytest.mark.needs_tool("pdflatex")
 
 DERIVATIONS = Path(__file__).parents[2] / "derivations"
 WITH_KERNELS = ("sliding_free_beam", "robot_axis")
-MODELS = [p for p in sorted((DERIVATIONS / "eppinger1988").glob("*.toml")) if p.stem not in WITH_KERNELS]
+MODELS = [p for p in specifications(DERIVATIONS / "eppinger1988", "*.toml") if p.stem not in WITH_KERNELS]
 DISTRIBUTED = [
     *(DERIVATIONS / "eppinger1988" / f"{name}.toml" for name in WITH_KERNELS),
-    *sorted((DERIVATIONS / "classics").glob("*.toml")),
+    *specifications(DERIVATIONS / "classics", "*.toml"),
 ]
 COMPLAINT = re.compile(r"^(?:!|.*Warning:|Overfull|Underfull|Missing character).*$", re.MULTILINE)
 SAFE = ["-interaction=nonstopmode", "-halt-on-error", "-no-shell-escape"]

@@ -15,6 +15,7 @@ from symflex import pipeline
 from symflex.emit.figures import draw, render
 from symflex.emit.latex import DOCUMENT
 from symflex.emit.targets.latex import LatexExporter
+from tests.house.repository import specifications
 from tests.integration.test_latex_compiles import HOSTILE, LABELS
 from tests.integration.test_latex_engines import compiled
 
@@ -89,7 +90,7 @@ def test_pictures_are_as_wide_as_asked_for_and_take_the_font_of_the_paper(engine
 
 @pytest.mark.slow
 @pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize("path", sorted(DERIVATIONS.rglob("*.toml")), ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", specifications(DERIVATIONS, "**/*.toml"), ids=lambda p: p.stem)
 @pytest.mark.parametrize("width", [WIDTH_MM, 170.0])
 def test_the_files_of_every_model_compile_without_a_warning(engine, path, width, tmp_path):
     model = pipeline.load(path)

@@ -23,14 +23,14 @@ from symflex.expressions import (
     sum_of,
 )
 from tests.contract.exact import read
-from tests.house.repository import EACH_TIME, slow_ones
+from tests.house.repository import EACH_TIME, slow_ones, specifications
 
 LONGEST = 20_000
 LARGE = {"six_mass", "fitted_resonances", "polynomial_resonance"}
 """Their prints take seconds to read back."""
 FOLDER = Path(__file__).parents[2] / "derivations"
 PATHS = slow_ones(
-    sorted(FOLDER.rglob("*.toml")),
+    specifications(FOLDER, "**/*.toml"),
     lambda path: path.stem in LARGE or (path.parent.name != "eppinger1988" and path.stem not in EACH_TIME),
 )
 QUIET = settings(max_examples=200, deadline=None, database=None, derandomize=True)

@@ -9,8 +9,9 @@ import pytest
 
 from symflex import pipeline
 from symflex.errors import ModelError, UsageError
+from tests.house.repository import specifications
 
-MODELS = sorted(Path(__file__).parents[2].glob("derivations/*/*.toml"))
+MODELS = specifications(Path(__file__).parents[2], "derivations/*/*.toml")
 
 
 def place(root):

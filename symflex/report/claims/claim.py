@@ -1,10 +1,10 @@
-"""A statement of a publication with the computation that judges it."""
+"""A statement of a publication with the checks that judge it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final, Protocol
 
 from symflex.report.facts import ModelFacts
 
@@ -13,6 +13,9 @@ if TYPE_CHECKING:
 
 Models = Mapping[str, ModelFacts]
 """Facts by the name of the model's file, without suffix."""
+
+WORST: Final[tuple[Verdict, ...]] = ("not examined", "does not hold", "holds with a condition", "holds")
+"""Verdicts; of several checks the first one here counts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +34,50 @@ class Finding:
     evidence: tuple[Run, ...]
 
 
+class Predicate(Protocol):
+    """What may be checked; :mod:`symflex.report.claims.predicates` has those there are."""
+
+    @property
+    def of(self) -> tuple[str, ...]:
+        """What is checked: ``"model: OUT/IN"``, or the name of a model's file without suffix."""
+
+    def judge(self, models: Models) -> Finding:
+        """Return what the facts about these models say.
+
+        Raises
+        ------
+        KeyError
+            With what the models lack, in words.
+        """
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """A predicate with what its author adds to the evidence.
+
+    Parameters
+    ----------
+    predicate : Predicate
+        What is checked.
+    note, condition : str
+        Sentences; with a condition, what holds does so under it.
+    """
+
+    predicate: Predicate
+    note: str = ""
+    condition: str = ""
+
+    def judge(self, models: Models) -> Finding:
+        """Return the finding with what was added."""
+        found = self.predicate.judge(models)
+        condition = self.condition and f"Condition: {self.condition}"
+        added = [f" {text}" for text in (self.note, condition) if text]
+        is_conditional = self.condition and found.verdict == "holds"
+        return Finding(
+            "holds with a condition" if is_conditional else found.verdict, (*found.evidence, *added)
+        )
+
+
 @dataclass(frozen=True, slots=True)
 class Claim:
     """A statement of a publication.
@@ -43,10 +90,8 @@ class Claim:
         The section it stands in.
     quote : str
         Its words.
-    needs : tuple of str
-        Names of the models that the check reads.
-    check : callable
-        Judges it from the facts about these models.
+    checks : tuple of Check
+        All of them have to hold.
     is_quotation : bool
         The words are the publication's own.
     """
@@ -54,24 +99,28 @@ class Claim:
     key: str
     place: str
     quote: str
-    needs: tuple[str, ...]
-    check: Callable[[Models], Finding]
+    checks: tuple[Check, ...]
     is_quotation: bool = True
 
     def judge(self, models: Models) -> Finding:
         """Return the finding; what needs a model that is not there is not examined."""
-        missing = [name for name in self.needs if name not in models]
+        needs = dict.fromkeys(model_of(name) for check in self.checks for name in check.predicate.of)
+        missing = [name for name in needs if name not in models]
         if missing:
             return Finding("not examined", (f"the report does not hold {', '.join(missing)}",))
         try:
-            return self.check(models)
+            found = [check.judge(models) for check in self.checks]
         except KeyError as lacking:
             return Finding("not examined", (f"the models have no {lacking.args[0]} with numbers",))
+        lines: list[Run] = []
+        for one in found:
+            lines += ["\n", *one.evidence]
+        return Finding(min((one.verdict for one in found), key=WORST.index), tuple(lines[1:]))
 
 
 @dataclass(frozen=True, slots=True)
 class Publication:
-    """A publication whose models and claims are known.
+    """A publication and what it claims of its models.
 
     Parameters
     ----------
@@ -89,6 +138,11 @@ class Publication:
     title: str
     models: tuple[str, ...]
     claims: tuple[Claim, ...]
+
+
+def model_of(name: str) -> str:
+    """Return the model that ``"model: OUT/IN"`` or ``"model"`` names."""
+    return name.partition(":")[0]
 
 
 def judged(is_true: bool, *evidence: Run, condition: bool = False) -> Finding:

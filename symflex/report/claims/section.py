@@ -9,7 +9,7 @@ from symflex.report.document import Aside, Mark, Section, Table, columns, text
 from symflex.report.numerals import counted
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Sequence
 
     from symflex.report.claims.claim import Finding, Publication
     from symflex.report.facts import ModelFacts
@@ -30,13 +30,9 @@ PLURALS: Final = {
 SCHEMA: Final = "symflex.report-claims/1"
 
 
-def publication_of(sources: Iterable[str], known: Mapping[str, Publication]) -> Publication | None:
+def publication_of(sources: Iterable[str], known: Iterable[Publication]) -> Publication | None:
     """Return the publication that any of the sources names, None without one."""
-    for source in sources:
-        for name, publication in known.items():
-            if is_of(source, name):
-                return publication
-    return None
+    return next((p for source in sources for p in known if is_of(source, p.name)), None)
 
 
 def is_of(source: str, name: str) -> bool:

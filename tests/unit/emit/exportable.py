@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from symflex import pipeline
+from tests.house.repository import specifications
 
-DERIVATIONS = {p.stem: p for p in sorted((Path(__file__).parents[3] / "derivations").rglob("*.toml"))}
+DERIVATIONS = {p.stem: p for p in specifications(Path(__file__).parents[3] / "derivations", "**/*.toml")}
 
 BAR = 'E = "70 GPa"\nI = "1e-8 m^4"\nrho = "2700 kg/m^3"\nA = "1e-4 m^2"\nl = "1 m"\n'
 BEAM = 'type = "beam", E = "E", I = "I", rho = "rho", A = "A"'

@@ -22,14 +22,14 @@ from symflex.emit.exporters import EXPORTERS
 from symflex.emit.program import verify
 from symflex.errors import UsageError
 from symflex.transfer import bind
-from tests.house.repository import ROOT, blocks, slow_ones
+from tests.house.repository import ROOT, blocks, slow_ones, specifications
 from tests.unit.emit.against_balls import axis_points, worst_errors
 from tests.unit.emit.exportable import MASSLESS, PIPE
 from tests.unit.emit.test_numpy_distributed import BAR, COMPRESSED, DELAY, SENSOR, specification
 
 pytestmark = pytest.mark.needs_tool("gcc")
 
-SPECS = sorted((ROOT / "derivations").glob("*/*.toml"))
+SPECS = specifications(ROOT / "derivations", "*/*.toml")
 STRICT = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic"]
 FEW = ("two_mass", "six_mass", "rigid_body", "sliding_free_beam", "rod_tip_mass", "two_mass_force")
 """Models whose values are compared in every run; the others with -m slow."""

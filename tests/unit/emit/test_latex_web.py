@@ -15,6 +15,7 @@ from symflex.emit.latex.equation import LONGEST_IN_NOTEBOOK
 from symflex.errors import SymflexError
 from symflex.kernels import FUNCTIONS
 from symflex.model.labels import ALLOWED_COMMANDS
+from tests.house.repository import specifications
 from tests.independent.web_mathematics import COMMANDS, ENVIRONMENTS
 
 DERIVATIONS = Path(__file__).parents[3] / "derivations"
@@ -36,7 +37,7 @@ def environments(latex):
 def printed():
     """Every transfer function of the repository in each of its forms."""
     found = []
-    for path in sorted(DERIVATIONS.rglob("*.toml")):
+    for path in specifications(DERIVATIONS, "**/*.toml"):
         tfs = pipeline.derive_all(pipeline.load(path))
         # What differs between the functions of a model is not their commands, and expanded forms can be long.
         for tf in tfs[:2]:

@@ -35,13 +35,14 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.model.labels import ACCENTS, FONTS, GREEK, LABEL_LIMIT, SYMBOLS
+from tests.house.repository import specifications
 from tests.independent.spec_expressions import evaluate
 
 ROOT = Path(__file__).parents[3]
 LONG = ("polynomial_resonance", "robot_axis", "six_mass")
 DERIVATIONS = [
     pytest.param(path, marks=[pytest.mark.slow] if path.stem in LONG else [], id=path.stem)
-    for path in sorted((ROOT / "derivations" / "eppinger1988").glob("*.toml"))
+    for path in specifications(ROOT / "derivations" / "eppinger1988", "*.toml")
 ]
 CORE = frozenset(
     "math mrow mi mn mo mtext mspace mfrac msqrt msub msup msubsup mover munder".split()

@@ -22,10 +22,11 @@ from symflex import pipeline
 from symflex.emit.numpy_module import numpy_module
 from symflex.emit.program import build_program, choose_program, evaluate
 from symflex.errors import ModelError
+from tests.house.repository import specifications
 
 ROOT = Path(__file__).parents[3]
 DERIVATIONS = ROOT / "derivations" / "eppinger1988"
-SPECS = sorted(DERIVATIONS.glob("*.toml"))
+SPECS = specifications(DERIVATIONS, "*.toml")
 
 SYMBOLIC = """
 symflex = 1

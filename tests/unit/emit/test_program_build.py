@@ -23,6 +23,7 @@ from symflex.emit.program import (
     nearest_double,
 )
 from symflex.errors import BudgetError, ModelError
+from tests.house.repository import specifications
 
 MASSES = [Fraction(11 + i, 2) for i in range(8)]
 SPRINGS = [Fraction(100_000 + 7_000 * i) for i in range(7)]
@@ -202,7 +203,7 @@ def test_zero_is_the_constant_zero():
     assert evaluate(build_program(tfs["y/u"]), np.ones((2, 3)), {}).tolist() == [[3] * 3] * 2
 
 
-@pytest.mark.parametrize("spec", sorted(DERIVATIONS.glob("*.toml")), ids=lambda p: p.stem)
+@pytest.mark.parametrize("spec", specifications(DERIVATIONS, "*.toml"), ids=lambda p: p.stem)
 def test_every_form_of_every_derivation_agrees_with_ball_arithmetic_off_the_axis(spec):
     s = np.array([0.1 - 3j, 5 + 70j, -30 + 400j, 1e4 - 2e3j, 17.0, -0.2])
     for tf in pipeline.derive_all(pipeline.load(spec)):

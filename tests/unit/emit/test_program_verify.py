@@ -20,6 +20,7 @@ from symflex.emit.program import (
     choose_program,
 )
 from symflex.emit.program.verify import DEFAULT_BAND, Verification, _roots, frequency_text, sample_frequencies
+from tests.house.repository import specifications
 
 DERIVATIONS = Path(__file__).parents[3] / "derivations" / "eppinger1988"
 BAND = (Fraction(1, 10), Fraction(1000))
@@ -42,14 +43,14 @@ MANY_DECIMALS = ("fitted_resonances",)
 """Rounding one by one of some twenty parameters with nine digits each shows."""
 
 
-@pytest.mark.parametrize("spec", sorted(DERIVATIONS.glob("*.toml")), ids=lambda p: p.stem)
+@pytest.mark.parametrize("spec", specifications(DERIVATIONS, "*.toml"), ids=lambda p: p.stem)
 def test_the_error_of_every_derivation_is_of_the_size_of_rounding(spec):
     for tf in pipeline.derive_all(pipeline.load(spec)):
         _, verification = choose_program(tf)
         assert 0 < verification.error < (2e-15 if spec.stem in MANY_DECIMALS else 1e-15)
 
 
-@pytest.mark.parametrize("spec", sorted(DERIVATIONS.glob("*.toml")), ids=lambda p: p.stem)
+@pytest.mark.parametrize("spec", specifications(DERIVATIONS, "*.toml"), ids=lambda p: p.stem)
 def test_the_error_of_every_form_of_every_derivation_is_below_1e_minus_13(spec):
     for tf in pipeline.derive_all(pipeline.load(spec)):
         for form in available_forms(tf):

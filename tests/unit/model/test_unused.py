@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from symflex import pipeline
-from tests.house.repository import ROOT
+from tests.house.repository import ROOT, specifications
 
 PLAIN = """symflex = 1
 [parameters]
@@ -154,7 +154,7 @@ def test_the_warnings_of_a_model_block_are_those_of_its_file(tmp_path):
 
 
 SHIPPED = [
-    *sorted((ROOT / "derivations").rglob("*.toml")),
+    *specifications(ROOT / "derivations", "**/*.toml"),
     *sorted((ROOT / "symflex/templates").glob("*.toml")),
 ]
 
