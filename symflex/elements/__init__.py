@@ -1,11 +1,11 @@
 """The element library. A new element is one file and one line in ``ELEMENTS``."""
 
+from symflex.elements.axial import Rod, Shaft, String
 from symflex.elements.beam import Beam
-from symflex.elements.capacitor import Capacitor
 from symflex.elements.constraint import Fixed, Pin, Slider
 from symflex.elements.coupling import Gyrator, Transformer
-from symflex.elements.damper import Damper
 from symflex.elements.dc_motor import DcMotor
+from symflex.elements.electrical import Capacitor, Inductor, Resistor
 from symflex.elements.element import (
     ACROSS_UNIT,
     COMPONENT_UNIT,
@@ -27,20 +27,13 @@ from symflex.elements.element import (
     Terminal,
     Variable,
 )
-from symflex.elements.impedance import Inductor, Resistor
-from symflex.elements.inertia import Inertia
 from symflex.elements.line import LineElement
-from symflex.elements.mass import Mass
 from symflex.elements.massless_beam import MasslessBeam
 from symflex.elements.piezo import Piezo
 from symflex.elements.rigid import RigidBody, RigidLink
-from symflex.elements.rod import Rod
-from symflex.elements.rotary_damper import RotaryDamper
-from symflex.elements.shaft import Shaft
+from symflex.elements.rotation import Inertia, RotaryDamper, TorsionSpring
 from symflex.elements.source import CurrentSource, ForceSource, TorqueSource, VoltageSource
-from symflex.elements.spring import Spring
-from symflex.elements.string import String
-from symflex.elements.torsion_spring import TorsionSpring
+from symflex.elements.translation import Damper, Mass, Spring
 
 ELEMENTS: dict[str, Element] = {
     element.type_name: element

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from typing import TYPE_CHECKING, ClassVar
 
 from symflex.elements.element import Element, ElementUse, Injection, LinearForm, Row, Stamp
@@ -43,9 +42,10 @@ class LineElement(Element):
         across = {"planar": (("y",), ("theta",)), "rotation": (("theta",),)}.get(domain, (("u", "y"),))
         return (*across, *((quantity,) for quantity in self.through))
 
-    @abstractmethod
     def theory(self, choices: Mapping[str, str]) -> str:
-        """Return the name of the field theory, a key of the registry of theories."""
+        """Return the name of the field theory, a key of the registry of theories: the element's own."""
+        del choices
+        return self.type_name.replace("_", "-")
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute what is delivered at both ends and one row per state, ``z(l) = T*z(0)``.

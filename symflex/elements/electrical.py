@@ -1,4 +1,4 @@
-"""Electrical branches given by their impedance: the current is an unknown, so no division is needed."""
+"""Electrical branches: resistors, inductors and capacitors."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from symflex.elements.element import (
     Port,
     Row,
     Stamp,
+    two_terminal,
 )
 
 if TYPE_CHECKING:
@@ -20,7 +21,10 @@ if TYPE_CHECKING:
 
 
 def _impedance(use: ElementUse, impedance: Factored) -> Stamp:
-    """Return the stamp of ``impedance * i = v_a - v_b``; i [A] flows from a to b."""
+    """Return the stamp of ``impedance * i = v_a - v_b``; i [A] flows from a to b.
+
+    The current is an unknown, so that nothing is divided by an impedance.
+    """
     a, b = use.across("between")
     current = use.unknown("i")
     denominator = impedance.denominator()
@@ -60,3 +64,17 @@ class Inductor(Element):
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute the current and its row ``L*s*i = v_a - v_b``."""
         return _impedance(use, use.values["L"] * use.s)
+
+
+class Capacitor(Element):
+    """A capacitor C [F]; the current ``i`` [A] flows from the first node to the second."""
+
+    type_name = "capacitor"
+    summary = "Capacitor"
+    ports = (Port("between", 2, "electrical", "the two terminals"),)
+    parameters = (ParameterPort("C", "F", "a capacitance"),)
+    through = ("i",)
+
+    def stamp(self, use: ElementUse) -> Stamp:
+        """Contribute one branch, ``i = C*s*(v_a - v_b)``."""
+        return two_terminal(use, "between", "i", use.values["C"] * use.s)
