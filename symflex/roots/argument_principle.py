@@ -29,6 +29,8 @@ FIRST_STEP = 0.2
 """Of the first step [in z]."""
 SMALLEST = 1e-12
 SMALLEST_TURN = 1e-6
+LOSSY = 0.01
+"""Share of its bound below which a turn says that the bound is poor: nearly equal exponentials cancel."""
 
 
 class Path(Protocol):
@@ -113,7 +115,8 @@ class CertifiedWinding(Winding):
         Spent by every step.
     tries_series : bool
         Where steps are too long for sums of exponentials, power series are tried before shorter steps: next
-        to points where wavenumbers meet these would have to be very short.
+        to points where wavenumbers meet these would have to be very short. They are tried anyway on a path
+        where a step turned far less than it might have.
     """
 
     def __init__(self, function: KernelFunction, budget: Budget, *, tries_series: bool = False) -> None:
@@ -190,12 +193,14 @@ class CertifiedWinding(Winding):
 
     def _follow(self, path: Path, length: float, smallest: float, bits: int) -> tuple[arb, int]:
         """Return the change of the argument along a path, and the precision that it took."""
+        tries_series = self._tries_series
 
         def change(start: float, end: float) -> tuple[float, arb]:
-            nonlocal bits
+            nonlocal bits, tries_series
             self.spend()
             with precision(bits):
-                off, turn = self._change(path, start, end, bits)
+                off, turn = self._change(path, start, end, bits, tries_series=tries_series)
+            tries_series = tries_series or (off <= ROOM and _is_lossy(off, turn))
             if off == inf:
                 # Perhaps it is not the step that is too long, but the precision that is too low.
                 bits = self._sufficient(path.point((start + end) / 2), bits)
@@ -204,13 +209,15 @@ class CertifiedWinding(Winding):
         turn = total_turn(change, FIRST_STEP / length, smallest)
         return turn, bits
 
-    def _change(self, path: Path, start: float, end: float, bits: int) -> tuple[float, arb]:
+    def _change(
+        self, path: Path, start: float, end: float, bits: int, *, tries_series: bool = False
+    ) -> tuple[float, arb]:
         """Return a bound on how far arg F may turn on a step, and how far it turns from end to end."""
         ball, centre, reach = path.step(start, end)
         here, there = path.point(start), path.point(end)
         by_exponentials = self.function.turn_of_exponentials(ball, here, there, bits)
         if by_exponentials is not None:
-            if by_exponentials[0] > ROOM and self._tries_series:
+            if tries_series and (by_exponentials[0] > ROOM or _is_lossy(*by_exponentials)):
                 by_series = self._series.change(centre, reach, here, there, bits)
                 return min(by_series, by_exponentials, key=lambda found: found[0])
             return by_exponentials
@@ -258,6 +265,10 @@ def _angle(value: float) -> arb:
         if abs(value) == known:
             return exact if value > 0 else -exact
     return arb(value)
+
+
+def _is_lossy(off: float, turn: arb) -> bool:
+    return bool(abs(turn) < LOSSY * off)
 
 
 def _principal(difference: arb) -> arb:
