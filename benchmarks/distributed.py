@@ -20,7 +20,7 @@ import symflex
 from benchmarks.generated import imported
 from benchmarks.measure import Claim, Measurement, taking_turns, typical_ratio
 from symflex import pipeline
-from symflex.emit.numpy_module import numpy_module
+from symflex.codegen.numpy.module import numpy_module
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -24,9 +24,9 @@ import symflex
 from benchmarks.generated import FLAGS, imported, loaded, pointer
 from benchmarks.measure import Claim, Measurement, fastest
 from symflex import pipeline
-from symflex.emit.c import c_files
-from symflex.emit.numpy_module import numpy_module
-from symflex.emit.program import measure_values
+from symflex.codegen.c import c_files
+from symflex.codegen.numpy.module import numpy_module
+from symflex.codegen.program import measure_values
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symflex.elements import ELEMENTS
 from symflex.expressions import Name
+from symflex.library.elements import ELEMENTS
 from symflex.model import Model
 from symflex.model.model import Input, Node, NodeReference, Output, Parameter, PlacedElement
 

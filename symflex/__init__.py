@@ -49,8 +49,8 @@ if TYPE_CHECKING:
         write_report,
     )
     from symflex.budget import Budget
+    from symflex.data.measurement import MeasuredResponse, read_measurement
     from symflex.errors import SymflexError
-    from symflex.measurement import MeasuredResponse, read_measurement
 
 __version__ = "0.1.0"
 
@@ -59,7 +59,7 @@ _HOME = {
     "Budget": "symflex.budget",
     "Fit": "symflex.api",
     "Form": "symflex.api",
-    "MeasuredResponse": "symflex.measurement",
+    "MeasuredResponse": "symflex.data.measurement",
     "ModeShape": "symflex.api",
     "Model": "symflex.api",
     "NestedTransferFunction": "symflex.api",
@@ -74,7 +74,7 @@ _HOME = {
     "fit": "symflex.api",
     "load": "symflex.api",
     "loads": "symflex.api",
-    "read_measurement": "symflex.measurement",
+    "read_measurement": "symflex.data.measurement",
     "write_report": "symflex.api",
 }
 

@@ -4,7 +4,7 @@ text --parse--> Spec --resolve--> Model --assemble--> Equations --derive--> Tran
                                                                                | bind(values)
    PoleZeroMap <--roots--  FrequencyResponse <--response--  RationalApproximation <--rational--
                                                                                |
-                                                 emit: text, JSON, LaTeX, numpy, figure
+                                                 print, codegen: text, JSON, LaTeX, numpy, figure
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symflex import equations as equations_room
-from symflex import spec as spec_room
 from symflex import transfer as transfer_room
+from symflex.algebra import uncollected
 from symflex.budget import spend
-from symflex.elimination import eliminate, expanded_terms, explain_singular, is_singular, unreached
+from symflex.equations.elimination import eliminate, expanded_terms, explain_singular, is_singular, unreached
 from symflex.errors import BudgetError, Diagnostic, FitError, Source, SpecError, SymflexError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import Sum
-from symflex.kernels import uncollected
 from symflex.model import Model, load_with, with_numbers
+from symflex.model import spec as spec_room
 from symflex.model.unused import unnamed_definitions, unused_name
 
 if TYPE_CHECKING:
@@ -37,18 +37,18 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
+    from symflex.analysis.explanation import ZeroExplanation
+    from symflex.analysis.rational import RationalApproximation, Residue
+    from symflex.analysis.sensitivity import Sensitivity
     from symflex.audit import Audit
+    from symflex.data.fitting import Fit
+    from symflex.data.measurement import MeasuredResponse, MeasurementPlan
     from symflex.equations import Equations
-    from symflex.explanation import ZeroExplanation
-    from symflex.fitting import Fit
-    from symflex.measurement import MeasuredResponse, MeasurementPlan
+    from symflex.loops import DynamicColocation, Loop, StabilityMap
     from symflex.model import Setting
     from symflex.model.model import Published
-    from symflex.rational import RationalApproximation, Residue
+    from symflex.model.spec import Spec
     from symflex.roots import Budget, PoleZeroMap, Progress, Region
-    from symflex.sensitivity import Sensitivity
-    from symflex.spec import Spec
-    from symflex.stability import DynamicColocation, Loop, StabilityMap
     from symflex.state_space import StateSpace
     from symflex.sweep import Design, Sweep, Task
     from symflex.transfer import (
@@ -156,7 +156,7 @@ def _unused_definitions(model: Model) -> Iterator[Diagnostic]:
     sums = [d for d in unnamed if isinstance(d.expression, Sum)]
     shown = {d.name for d in sums}
     if sums and not model.is_distributed and len(model.elements) <= NEVER_LARGE:
-        from symflex.emit.forms import print_forms  # hardly ever needed
+        from symflex.print.forms import print_forms  # hardly ever needed
 
         printed, _ = print_forms(derive_all(model), "definitions")
         shown = {name for form in printed for name, _ in form.where}
@@ -314,8 +314,8 @@ def residues(
     digits: int = 15,
     budget: Budget | None = None,
 ) -> tuple[Residue, ...]:
-    """Return the principal parts at the poles; see :func:`symflex.rational.find_residues`."""
-    from symflex import rational as rational_room  # imports numpy
+    """Return the principal parts at the poles; see :func:`symflex.analysis.rational.find_residues`."""
+    from symflex.analysis import rational as rational_room  # imports numpy
 
     return rational_room.find_residues(bound, region, digits, budget)
 
@@ -326,8 +326,8 @@ def rational(
     form: str = "product",
     band: tuple[float, float] | None = None,
 ) -> RationalApproximation:
-    """Return a rational approximation with its error; see :func:`symflex.rational.approximate`."""
-    from symflex import rational as rational_room  # imports numpy
+    """Return a rational approximation with its error; see :func:`symflex.analysis.rational.approximate`."""
+    from symflex.analysis import rational as rational_room  # imports numpy
 
     return rational_room.approximate(bound, modes, form, band)
 
@@ -352,7 +352,7 @@ def sensitivities(
     names: Sequence[str] = (),
     digits: int = 15,
 ) -> tuple[Sensitivity, ...]:
-    """Return how poles and zeros move with parameters; see :func:`symflex.sensitivity.differentiate`.
+    """Return how poles and zeros move with parameters; see :func:`.sensitivity.differentiate`.
 
     Parameters
     ----------
@@ -370,7 +370,7 @@ def sensitivities(
     UsageError
         SF902 for a parameter the model does not have.
     """
-    from symflex.sensitivity import differentiate  # imports numpy
+    from symflex.analysis.sensitivity import differentiate  # imports numpy
 
     declared = {p.name: p for p in model.parameters}
     for name in names:
@@ -401,7 +401,7 @@ def stability(
     budget: Budget | None = None,
     up_to: float | None = None,
 ) -> StabilityMap:
-    """Return for which values of a gain the model is stable; see :func:`symflex.stability.find_stable_gains`.
+    """Return for which values of a gain the model is stable; see :func:`symflex.loops.find_stable_gains`.
 
     Parameters
     ----------
@@ -412,7 +412,7 @@ def stability(
     values : mapping of str to number or quantity, optional
         In place of declared values.
     limits, digits, budget, up_to
-        See :func:`symflex.stability.find_stable_gains`.
+        See :func:`symflex.loops.find_stable_gains`.
 
     Raises
     ------
@@ -421,7 +421,7 @@ def stability(
     ModelError
         SF801 when no pole depends on it.
     """
-    from symflex import stability as stability_room  # most commands need none of it
+    from symflex import loops as stability_room  # most commands need none of it
 
     return stability_room.find_stable_gains(
         characteristic_loop(model, gain, values), limits, digits, budget, up_to
@@ -435,9 +435,9 @@ def characteristic_loop(
 ) -> Loop:
     """Return the characteristic function of a model as a polynomial in a gain.
 
-    See :func:`symflex.stability.characteristic_loop`.
+    See :func:`symflex.loops.characteristic_loop`.
     """
-    from symflex import stability as stability_room  # most commands need none of it
+    from symflex import loops as stability_room  # most commands need none of it
 
     parameter = stability_room.pick_gain(model.parameters, gain)
     given = dict(values or {})
@@ -464,9 +464,9 @@ def colocation(
 ) -> DynamicColocation:
     """Return up to which frequency one output moves with another; both are named "OUT/IN".
 
-    See :func:`symflex.stability.dynamic_colocation`.
+    See :func:`symflex.loops.dynamic_colocation`.
     """
-    from symflex import stability as stability_room  # most commands need none of it
+    from symflex import loops as stability_room  # most commands need none of it
 
     pairs = pick_pairs(model, [name, reference])
     tip, joint = derive_bound(model, pairs)
@@ -474,8 +474,8 @@ def colocation(
 
 
 def explain_zeros(model: Model, bound: BoundTransferFunction, found: PoleZeroMap) -> ZeroExplanation:
-    """Return what the zeros are the poles of; see :func:`symflex.explanation.explain_zeros`."""
-    from symflex import explanation as explanation_room  # imports numpy
+    """Return what the zeros are the poles of; see :func:`symflex.analysis.explanation.explain_zeros`."""
+    from symflex.analysis import explanation as explanation_room  # imports numpy
 
     return explanation_room.explain_zeros(model, bound, found, transfer_room.nested_transfer)
 
@@ -532,7 +532,7 @@ def fit(
     slope: int | None = None,
     allow_outside: Sequence[str | Path] = (),
 ) -> Fit:
-    """Fit resonances to measured responses; see :func:`symflex.fitting.fit_resonances`.
+    """Fit resonances to measured responses; see :func:`symflex.data.fitting.fit_resonances`.
 
     Parameters
     ----------
@@ -552,8 +552,8 @@ def fit(
     UsageError
         SF902 for a name the base does not have, or more or fewer of them than responses.
     """
-    from symflex import fitting  # imports numpy and scipy
-    from symflex.response import respond
+    from symflex.analysis.response import respond
+    from symflex.data import fitting  # imports numpy and scipy
 
     if base is None:
         return fitting.fit_resonances(
@@ -603,14 +603,14 @@ def fit_specification(found: Fit, folder: str | Path) -> str:
 
     It has been read, resolved and assembled as ``symflex check`` does. A base that a ``model`` block can
     stand for is referred to; any other, and one that does not stand at or below the folder, is copied. See
-    :func:`symflex.fitting.specification.fit_specification`.
+    :func:`symflex.data.fitting.specification.fit_specification`.
 
     Raises
     ------
     FitError
         SF617 where neither way gives a specification that is accepted.
     """
-    from symflex.fitting.specification import fit_specification as written
+    from symflex.data.fitting.specification import fit_specification as written
 
     bases = tuple(dict.fromkeys(Path(base.path) for base in found.bases if base.path))
     allowed = tuple(place for base in found.bases for place in base.folders)
@@ -638,15 +638,15 @@ def fit_specification(found: Fit, folder: str | Path) -> str:
 
 
 def measure(model: Model, pair: tuple[str, str], plan: MeasurementPlan) -> MeasuredResponse:
-    """Return a synthetic measurement of one transfer function; see :func:`symflex.measurement.synthesise`.
+    """Return a synthetic measurement of one transfer function; see :func:`.measurement.synthesise`.
 
     Raises
     ------
     UsageError
         SF902 when a pole is undamped, which has no stationary response, or the plan cannot be meant.
     """
-    from symflex.measurement import synthesise  # imports numpy
-    from symflex.response import respond
+    from symflex.analysis.response import respond
+    from symflex.data.measurement import synthesise  # imports numpy
     from symflex.roots import Band
     from symflex.roots.locate import locate
 
@@ -680,7 +680,7 @@ def sweep_task(
         or delay has a sign it cannot have.
     """
     from symflex import sweep as sweep_room  # most commands need none of it
-    from symflex.stability import pick_gain
+    from symflex.loops import pick_gain
 
     if of == "margins":
         pick_gain(model.parameters, gain)
@@ -714,9 +714,10 @@ def sweep(
         Discard what an earlier run kept.
     """
     from symflex import sweep as sweep_room  # most commands need none of it
-    from symflex.emit import sweep_files, sweep_journal
-    from symflex.emit.lock import held
-    from symflex.emit.write import write_atomically
+    from symflex.files.lock import held
+    from symflex.files.write import write_atomically
+    from symflex.sweep import files as sweep_files
+    from symflex.sweep import journal as sweep_journal
 
     # The package imports api, which stands above: its version is read without importing it.
     version = str(vars(sys.modules["symflex"])["__version__"])

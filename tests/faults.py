@@ -25,11 +25,6 @@ import traceback
 from dataclasses import dataclass
 from pathlib import Path
 
-import symflex.api
-import symflex.emit.figures
-import symflex.emit.sweep_files
-import symflex.fitting
-import symflex.report  # noqa: F401
 from symflex.cli import run
 
 SPEC = """

@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING
 
 import click
 
-from symflex.blocks import BLOCKS
 from symflex.cli import group
-from symflex.elements import ELEMENTS
+from symflex.library.blocks import BLOCKS
+from symflex.library.elements import ELEMENTS
 from symflex.quantities.units import PLAIN_UNITS, PREFIXABLE_UNITS, PREFIXES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from symflex.blocks import Block, BlockParameter
-    from symflex.elements import Choice, Element, ParameterPort, Port
+    from symflex.library.blocks import Block, BlockParameter
+    from symflex.library.elements import Choice, Element, ParameterPort, Port
 
 PLACE = re.compile(r"^<!-- reference: (\w+) -->$", re.MULTILINE)
 

@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     import sympy
     from numpy.typing import ArrayLike, NDArray
 
-    from symflex import rational as rational_room
     from symflex import transfer as transfer_room
+    from symflex.analysis import rational as rational_room
+    from symflex.analysis.explanation import ZeroExplanation
     from symflex.api.frequency_response import FrequencyResponse
-    from symflex.explanation import ZeroExplanation
     from symflex.state_space.numeric import BoundStateSpace
 
 
@@ -51,7 +51,7 @@ class BoundTransferFunction:
         return f"<BoundTransferFunction {self.name}>"
 
     def _repr_html_(self) -> str:
-        from symflex.emit.html import bound_html  # only notebooks ask
+        from symflex.print.html import bound_html  # only notebooks ask
 
         return bound_html(self.bound)
 
@@ -67,8 +67,8 @@ class BoundTransferFunction:
 
     def frequency_response(self, omega: ArrayLike) -> FrequencyResponse:
         """Return the response at real angular frequencies [rad/s]."""
+        from symflex.analysis.response import respond
         from symflex.api.frequency_response import FrequencyResponse
-        from symflex.response import respond
 
         return FrequencyResponse.of(respond(self.bound, omega))
 
@@ -358,7 +358,7 @@ class BoundTransferFunction:
         UncertifiedError
             SF406 when the equations cannot be solved at the pole.
         """
-        from symflex.modes import mode_shape
+        from symflex.analysis.modes import mode_shape
 
         return ModeShape(mode_shape(self.bound, plain_mode(mode), digits))
 
@@ -368,7 +368,7 @@ class BoundTransferFunction:
         Several are a basis: in each, one of as many places is at 1 and the others are at rest, before the
         largest displacement is made 1. See :meth:`mode_shape`.
         """
-        from symflex.modes import mode_shapes
+        from symflex.analysis.modes import mode_shapes
 
         return tuple(ModeShape(shape) for shape in mode_shapes(self.bound, plain_mode(mode), digits))
 
@@ -388,7 +388,7 @@ class BoundTransferFunction:
         ModelError
             SF235 for beams, rods and delays, SF236 when the function grows with s.
         """
-        from symflex.rational.toolboxes import ExactFunction
+        from symflex.analysis.rational.toolboxes import ExactFunction
 
         return ExactFunction(self.bound, is_minimal=minimal).state_space()
 
@@ -417,7 +417,7 @@ class BoundTransferFunction:
         UsageError
             SF902 when python-control is not installed, and for an unknown form.
         """
-        from symflex.rational.toolboxes import ExactFunction
+        from symflex.analysis.rational.toolboxes import ExactFunction
 
         return ExactFunction(self.bound, is_minimal=minimal).to_control(form)
 
@@ -434,7 +434,7 @@ class BoundTransferFunction:
         UsageError
             SF902 when python-control is not installed, for other frequencies, and at a pole.
         """
-        from symflex.rational.toolboxes import end_units, frequency_response_data
+        from symflex.analysis.rational.toolboxes import end_units, frequency_response_data
 
         source = self.bound.source
         label = f"{source.output.name}_over_{source.input.name}"
@@ -461,7 +461,7 @@ class BoundTransferFunction:
         ModelError, UsageError
             As :meth:`to_control`.
         """
-        from symflex.rational.toolboxes import ExactFunction
+        from symflex.analysis.rational.toolboxes import ExactFunction
 
         return ExactFunction(self.bound, is_minimal=minimal).to_scipy(form)
 
@@ -473,7 +473,7 @@ class BoundTransferFunction:
         ModelError
             SF235 for beams, rods and delays.
         """
-        from symflex.emit.sympy_system import sympy_system
+        from symflex.print.sympy.system import sympy_system
 
         return sympy_system(self.bound)
 

@@ -11,13 +11,13 @@ import numpy as np
 
 from symflex import pipeline
 from symflex.api.model import Model, loads
-from symflex.measurement import MeasuredResponse, prepared, read_measurement
+from symflex.data.measurement import MeasuredResponse, prepared, read_measurement
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from symflex import fitting
-    from symflex.fitting.resonances import Resonances
+    from symflex.data import fitting
+    from symflex.data.fitting.resonances import Resonances
 
     Real = npt.NDArray[np.float64]
     Complex = npt.NDArray[np.complex128]
@@ -31,7 +31,7 @@ class Fit:
 
     Parameters
     ----------
-    found : symflex.fitting.Fit
+    found : symflex.data.fitting.Fit
         The fit in full: data, start, residuals, covariance.
     """
 
@@ -86,12 +86,12 @@ class Fit:
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the result in the schema ``symflex.fit/1``."""
-        from symflex.emit.fit_report import fit_json
+        from symflex.data.fitting.text import fit_json
 
         return fit_json(self.found)
 
     def __str__(self) -> str:
-        from symflex.emit.fit_report import fit_text
+        from symflex.data.fitting.text import fit_text
 
         return fit_text(self.found)
 

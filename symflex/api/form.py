@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from symflex.emit.forms import PrintedForm
-from symflex.emit.sympy_expression import symbols_of, to_sympy
-from symflex.emit.text import form_text
 from symflex.expressions import Expression, Name
+from symflex.print.forms import PrintedForm
+from symflex.print.sympy.expression import symbols_of, to_sympy
+from symflex.print.text import form_text
 
 if TYPE_CHECKING:
     import sympy
@@ -66,7 +66,7 @@ class Form:
 
     def latex(self) -> str:
         """Return the equation in LaTeX."""
-        from symflex.emit.latex import inline_latex
+        from symflex.print.latex import inline_latex
 
         return inline_latex(self.source, self.printed)
 
@@ -75,7 +75,7 @@ class Form:
 
     def _repr_latex_(self) -> str | None:
         """Return the equation for a notebook, in lines where one would be too long; None for a huge one."""
-        from symflex.emit.latex import notebook_latex
+        from symflex.print.latex import notebook_latex
 
         latex = notebook_latex(self.source, self.printed)
         return None if latex is None else f"$\\displaystyle {latex}$"

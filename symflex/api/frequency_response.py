@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from symflex import response as response_room
+from symflex.analysis import response as response_room
 
 LARGEST_DRAWING = 4000
 """Frequencies up to which the picture is a drawing, which grows with their number, and beyond a raster."""
@@ -14,7 +14,7 @@ LARGEST_DRAWING = 4000
 class FrequencyResponse(response_room.FrequencyResponse):
     """Values on the imaginary axis; in a notebook, a Bode plot.
 
-    See :class:`symflex.response.FrequencyResponse`.
+    See :class:`symflex.analysis.response.FrequencyResponse`.
     """
 
     @staticmethod
@@ -39,7 +39,7 @@ class FrequencyResponse(response_room.FrequencyResponse):
         return self._picture("png") if len(self.omega) > LARGEST_DRAWING else None
 
     def _picture(self, format: str) -> bytes | None:
-        from symflex.emit.figures import draw_response, render  # imports matplotlib
+        from symflex.figures import draw_response, render  # imports matplotlib
 
         figure = draw_response(self)
         return None if figure is None else render(figure, format)

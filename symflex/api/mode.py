@@ -10,7 +10,7 @@ Mode = int | Root | CertifiedRoot | HiddenRoot
 
 
 def plain_mode(mode: Mode) -> int | CertifiedRoot:
-    """Return a mode as :mod:`symflex.modes` takes it: its number, or its root.
+    """Return a mode as :mod:`symflex.analysis.modes` takes it: its number, or its root.
 
     Examples
     --------

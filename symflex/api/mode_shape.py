@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from flint import acb
     from numpy.typing import ArrayLike, NDArray
 
-    from symflex import modes as modes_room
+    from symflex.analysis import modes as modes_room
 
 END_TOLERANCE = 1e-12
 """Relative distance by which rounding may put a place beyond the end of a beam."""
@@ -35,7 +35,7 @@ class ModeShape:
 
     Parameters
     ----------
-    enclosed : symflex.modes.ModeShape
+    enclosed : symflex.analysis.modes.ModeShape
         With a ball around every amplitude.
 
     Examples

@@ -16,16 +16,16 @@ from symflex.api.nested import NestedTransferFunction
 from symflex.api.stability import Stability
 from symflex.api.state_space import StateSpace
 from symflex.api.transfer_function import Number, TransferFunction
-from symflex.spec import write
+from symflex.model.spec import write
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     from symflex import model as model_room
+    from symflex.data.measurement import MeasuredResponse
     from symflex.errors import Diagnostic
-    from symflex.measurement import MeasuredResponse
+    from symflex.loops import DynamicColocation
     from symflex.model import Setting
-    from symflex.stability import DynamicColocation
     from symflex.sweep import Sweep
 
 Table = Mapping[str, object]
@@ -110,7 +110,7 @@ class Model:
         return f"<Model {self.title or 'without title'}: {names}{more}>"
 
     def _repr_html_(self) -> str:
-        from symflex.emit.html import model_html  # only notebooks ask
+        from symflex.print.html import model_html  # only notebooks ask
 
         return model_html(self.resolved)
 
@@ -382,7 +382,7 @@ class Model:
         >>> symflex.fit(data, modes=1, slope=2)
         <Fit to synthetic data: 10.1 Hz>
         """
-        from symflex.measurement import MeasurementPlan  # imports numpy
+        from symflex.data.measurement import MeasurementPlan  # imports numpy
 
         (pair,) = pipeline.pick_pairs(self.resolved, [f"{output}/{input}"])
         plan = MeasurementPlan(band[0], band[1], spacing, averages, noise, rolloff, seed)
@@ -527,7 +527,7 @@ class Model:
         return self._export("latex")
 
     def _export(self, target: str, name: str = "") -> str:
-        from symflex.emit.exporters import EXPORTERS  # the numeric exporters import numpy
+        from symflex.codegen.exporters import EXPORTERS  # the numeric exporters import numpy
 
         return EXPORTERS[target].export(self.resolved, pipeline.derive_all(self.resolved), name).text
 

@@ -7,8 +7,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symflex.api.form import Form
-from symflex.emit.forms import print_form
-from symflex.emit.json_format import derive_json
+from symflex.print.forms import print_form
+from symflex.print.json_format import derive_json
 from symflex.transfer import bind_nested
 
 if TYPE_CHECKING:

@@ -17,6 +17,6 @@ class PoleZeroMap(roots_room.PoleZeroMap):
         return PoleZeroMap(*(getattr(found, field.name) for field in fields(found)))
 
     def _repr_html_(self) -> str:
-        from symflex.emit.html import roots_html  # only notebooks ask
+        from symflex.print.html import roots_html  # only notebooks ask
 
         return roots_html(self)

@@ -12,7 +12,7 @@ from symflex.api.root import SHOWN_DIGITS, Root
 from symflex.roots.multiprecision import to_complex_mpmath
 
 if TYPE_CHECKING:
-    from symflex import rational as rational_room
+    from symflex.analysis import rational as rational_room
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Residue:
 
     Parameters
     ----------
-    principal : symflex.rational.Residue
+    principal : symflex.analysis.rational.Residue
         The enclosures.
     """
 

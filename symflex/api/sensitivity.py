@@ -13,7 +13,7 @@ from symflex.roots import decimals
 from symflex.roots.multiprecision import to_complex_mpmath, to_mpmath
 
 if TYPE_CHECKING:
-    from symflex import sensitivity as sensitivity_room
+    from symflex.analysis import sensitivity as sensitivity_room
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Sensitivity:
 
     Parameters
     ----------
-    moved : symflex.sensitivity.Sensitivity
+    moved : symflex.analysis.sensitivity.Sensitivity
         The enclosures.
     """
 

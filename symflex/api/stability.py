@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import mpmath
 
+from symflex.loops import degrees, hertz
 from symflex.roots.multiprecision import to_mpmath
-from symflex.stability import degrees, hertz
 
 if TYPE_CHECKING:
     from flint import arb
 
-    from symflex import stability as stability_room
+    from symflex import loops as stability_room
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Stability:
 
     Parameters
     ----------
-    proved : symflex.stability.StabilityMap
+    proved : symflex.loops.StabilityMap
         The enclosures and counts.
     """
 
@@ -122,11 +122,11 @@ class Stability:
         return float(hertz(found.frequency).mid())
 
     def to_json_dict(self) -> dict[str, object]:
-        """Return the result in the schema ``symflex.stability/1``."""
+        """Return the result in the schema ``symflex.loops/1``."""
         return self.proved.to_json_dict()
 
     def __str__(self) -> str:
-        from symflex.emit.stability import stability_text
+        from symflex.loops.text import stability_text
 
         return stability_text(self.proved)
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from symflex.emit.state_equations import StateEquations
-from symflex.emit.sympy_expression import symbols_of, to_sympy
+from symflex.codegen.state_space.equations import StateEquations
+from symflex.print.sympy.expression import symbols_of, to_sympy
 from symflex.transfer.bind import read_values
 
 if TYPE_CHECKING:

@@ -12,12 +12,12 @@ from symflex import pipeline
 from symflex.api.bound import BoundTransferFunction
 from symflex.api.form import Form
 from symflex.api.state_space import StateSpace
-from symflex.emit.forms import counts_of, hidden_expressions, print_form
-from symflex.emit.json_format import derive_json
-from symflex.emit.sympy_expression import symbols_of, to_sympy
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import Name
+from symflex.print.forms import counts_of, hidden_expressions, print_form
+from symflex.print.json_format import derive_json
+from symflex.print.sympy.expression import symbols_of, to_sympy
 
 if TYPE_CHECKING:
     import sympy
@@ -150,7 +150,7 @@ class TransferFunction:
         BudgetError
             SF501 when numerator or denominator are too large to be multiplied out.
         """
-        from symflex.emit.sympy_system import sympy_system
+        from symflex.print.sympy.system import sympy_system
 
         return sympy_system(self.exact)
 
@@ -173,7 +173,7 @@ class TransferFunction:
         UsageError
             SF902 for an unknown parameter, or where wavenumbers have no formula.
         """
-        from symflex.emit.sensitivity_formula import sensitivity_formula  # needs all of SymPy
+        from symflex.analysis.sensitivity.formula import sensitivity_formula  # needs all of SymPy
 
         symbols = symbols_of(self.exact.model)
         if parameter not in symbols or of not in ("pole", "zero"):

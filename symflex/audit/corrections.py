@@ -13,6 +13,8 @@ from fractions import Fraction
 from itertools import chain
 from typing import TYPE_CHECKING
 
+from symflex.algebra import Factored
+from symflex.algebra.normal_form import split
 from symflex.audit.field import GrowError, UnreadError
 from symflex.audit.notation import in_symbols, monomial_expression, solve_linear, symbols_of
 from symflex.audit.reading import Formula, Reading, read
@@ -34,8 +36,6 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
-from symflex.kernels import Factored
-from symflex.kernels.normal_form import split
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from symflex.algebra import LAPLACE, Factored, Ring, irreducible_factors
 from symflex.audit.field import UNIT
-from symflex.kernels import LAPLACE, Factored, Ring, irreducible_factors
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly

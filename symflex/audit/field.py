@@ -19,9 +19,9 @@ from functools import cached_property
 from math import gcd
 from typing import TYPE_CHECKING, NoReturn
 
+from symflex.algebra import LAPLACE, Factored, Ring, irreducible_factors
+from symflex.algebra.normal_form import split
 from symflex.errors import BudgetError, Diagnostic
-from symflex.kernels import LAPLACE, Factored, Ring, irreducible_factors
-from symflex.kernels.normal_form import split
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly

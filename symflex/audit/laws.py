@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Literal
 
 from flint import acb, arb, ctx
 
+from symflex.algebra import LAPLACE, Factored
 from symflex.audit.factors import LowestTerms, full_angles, lowest_terms
 from symflex.audit.limits import behaviour_at_zero
 from symflex.audit.notation import factor_expression, monomial_expression, polynomial_expression
@@ -23,7 +24,6 @@ from symflex.expressions import (
     format_expression,
     quotient,
 )
-from symflex.kernels import LAPLACE, Factored
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

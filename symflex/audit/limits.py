@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
-from symflex.kernels import LAPLACE, Factored
+from symflex.algebra import LAPLACE, Factored
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

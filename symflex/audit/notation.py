@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from flint import fmpq, fmpq_mat
 
+from symflex.algebra import Factored
 from symflex.audit.factors import full_angles, lowest_terms
 from symflex.audit.field import HOLE, UNIT
 from symflex.expressions import (
@@ -26,7 +27,6 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
-from symflex.kernels import Factored
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb, ctx
 
+from symflex.algebra import LAPLACE
 from symflex.expressions import Call, Expression, Name, Negative, Number, Power, Product, Quotient, Sum
-from symflex.kernels import LAPLACE
 from symflex.model import ExactValue
 from symflex.transfer import bind
 from symflex.transfer.balls import ball, rational_value

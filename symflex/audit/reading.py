@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from symflex.algebra import LAPLACE, Factored
 from symflex.audit.field import Field, GrowError, UnreadError, ground_of
 from symflex.errors import BudgetError, Diagnostic, SpecError
 from symflex.errors.diagnostic import nearest
@@ -24,15 +25,14 @@ from symflex.expressions import (
     Sum,
     names,
 )
-from symflex.kernels import LAPLACE, Factored
 from symflex.transfer.balls import rational_value
 from symflex.transfer.compose import compose_rational
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from symflex.algebra import Dispersion, Kernel
     from symflex.audit.field import Ground
-    from symflex.kernels import Dispersion, Kernel
     from symflex.model import Model, Published
     from symflex.transfer import TransferFunction
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symflex.emit.forms import print_form
-from symflex.emit.text import WIDTH, wrapped
 from symflex.expressions import Expression, format_expression, quotient
+from symflex.print.forms import print_form
+from symflex.print.text import WIDTH, wrapped
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

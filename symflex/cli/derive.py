@@ -78,13 +78,13 @@ def command(
     All of them by default. JSON strings are in the specification's own expression grammar.
     """
     from symflex import pipeline
-    from symflex.emit.forms import print_forms, terms_to_print
+    from symflex.print.forms import print_forms, terms_to_print
 
     if width is not None and (as_json or format_ != "latex"):
         raise UsageError(Diagnostic("SF902", "--width is for --format latex"))
     column = None
     if width is not None:
-        from symflex.emit.latex import column_width
+        from symflex.print.latex import column_width
 
         column = column_width(width)
     model = load(spec, allow_outside, settings)
@@ -102,17 +102,17 @@ def command(
     entries = list(zip(derived, forms, strict=True))
     # Each format is imported where it is printed, so that a terminal does not wait for LaTeX.
     if as_json or format_ == "json":
-        from symflex.emit.json_format import derive_document
+        from symflex.print.json_format import derive_document
 
         emit_json(derive_document(entries))
     elif format_ == "latex":
-        from symflex.emit.latex import transfer_function_latex
+        from symflex.print.latex import transfer_function_latex
 
         verdicts = (f"% {printed.stability.headline}\n" if printed.stability else "" for printed in forms)
         equations = (transfer_function_latex(tf, printed, width_mm=column) for tf, printed in entries)
         say("\n\n".join(map(str.__add__, verdicts, equations)))
     else:
-        from symflex.emit.text import derive_text
+        from symflex.print.text import derive_text
 
         room = terminal_width()
         say("\n".join(derive_text(tf, printed, room) for tf, printed in entries).rstrip("\n"))

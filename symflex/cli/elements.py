@@ -14,8 +14,8 @@ from symflex.errors.diagnostic import nearest
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.blocks import Block, BlockParameter
-    from symflex.elements import Element, ParameterPort
+    from symflex.library.blocks import Block, BlockParameter
+    from symflex.library.elements import Element, ParameterPort
 
 MODEL_BLOCK = "model"
 MODEL_SIGNATURE = "model(spec, tf)"
@@ -34,8 +34,8 @@ DOMAIN_WORDS = {"any": "any domain", "whole": "planar or not"}
 @reporting
 def command(name: str | None, *, as_json: bool) -> int:
     """List the element and block library, or describe one entry NAME."""
-    from symflex.blocks import BLOCKS
-    from symflex.elements import ELEMENTS
+    from symflex.library.blocks import BLOCKS
+    from symflex.library.elements import ELEMENTS
 
     if name is not None and name not in (*ELEMENTS, *BLOCKS, MODEL_BLOCK):
         hint = nearest(name, (*ELEMENTS, *BLOCKS, MODEL_BLOCK)) or "symflex elements lists them"
@@ -45,7 +45,7 @@ def command(name: str | None, *, as_json: bool) -> int:
     if as_json:
         emit_json(
             {
-                "schema": "symflex.elements/1",
+                "schema": "symflex.library.elements/1",
                 "elements": [_element_json(e) for e in elements],
                 "blocks": [_block_json(b) for b in blocks],
             }

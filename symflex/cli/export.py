@@ -18,8 +18,8 @@ from symflex.errors.diagnostic import nearest
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.emit.export import Exporter
-    from symflex.emit.targets.latex import LatexExporter
+    from symflex.codegen.export import Exporter
+    from symflex.codegen.targets.latex import LatexExporter
     from symflex.model import Model
     from symflex.transfer import AnyTransferFunction
 
@@ -29,7 +29,7 @@ class ExportCommand(click.Command):
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the targets and what they are."""
-        from symflex.emit.exporters import EXPORTERS
+        from symflex.codegen.exporters import EXPORTERS
 
         with formatter.section("Targets"):
             formatter.write_dl([(name, exporter.summary) for name, exporter in EXPORTERS.items()])
@@ -85,10 +85,10 @@ def command(
     infinitely many states, and what has more zeros than poles has no output equation.
     """
     from symflex import pipeline
-    from symflex.emit.exporters import EXPORTERS
-    from symflex.emit.program import identifiers
-    from symflex.emit.targets.latex import LatexExporter
-    from symflex.emit.write import check_folder, check_writable, write_atomically
+    from symflex.codegen.exporters import EXPORTERS
+    from symflex.codegen.program import identifiers
+    from symflex.codegen.targets.latex import LatexExporter
+    from symflex.files.write import check_folder, check_writable, write_atomically
 
     if target not in EXPORTERS:
         hint = nearest(target, EXPORTERS) or "targets: " + ", ".join(EXPORTERS)
@@ -128,9 +128,9 @@ def _chosen(
     exporter: Exporter, form: str | None, width: str | None, *, no_figures: bool, is_minimal: bool
 ) -> Exporter:
     """Return an exporter with the options that are its own."""
-    from symflex.emit.latex import column_width
-    from symflex.emit.targets.latex import LatexExporter
-    from symflex.emit.targets.state_space import StateSpaceExporter
+    from symflex.codegen.targets.latex import LatexExporter
+    from symflex.codegen.targets.state_space import StateSpaceExporter
+    from symflex.print.latex import column_width
 
     if isinstance(exporter, LatexExporter):
         column = column_width(width or "a4")
@@ -156,7 +156,7 @@ def _write_fragments(
     *,
     strict: bool,
 ) -> int:
-    from symflex.emit.write import write_folder
+    from symflex.files.write import write_folder
 
     files, warnings = exporter.export_files(model, derived)
     for warning in warnings:

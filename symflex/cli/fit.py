@@ -99,10 +99,10 @@ def command(
     that no fit came of them, or with --strict a poor one.
     """
     from symflex import pipeline
-    from symflex.emit.fit_report import fit_json, fit_text
-    from symflex.emit.write import write_atomically
-    from symflex.fitting import mode_shapes
-    from symflex.measurement import prepared, read_measurement
+    from symflex.data.fitting import mode_shapes
+    from symflex.data.fitting.text import fit_json, fit_text
+    from symflex.data.measurement import prepared, read_measurement
+    from symflex.files.write import write_atomically
 
     if tfs and base is None:
         raise UsageError(Diagnostic("SF902", "--tf names a transfer function of --base"))
@@ -156,7 +156,7 @@ def command(
     else:
         say(fit_text(found, terminal_width(), shapes))
     if figure:
-        from symflex.emit.figures import draw_fit, save
+        from symflex.figures import draw_fit, save
 
         for r in range(len(measured)):
             place = Path(figure)

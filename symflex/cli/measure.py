@@ -60,8 +60,8 @@ def command(
     the same file.
     """
     from symflex import pipeline
-    from symflex.emit.write import write_atomically
-    from symflex.measurement import WRITERS, MeasurementPlan, measurement_bytes
+    from symflex.data.measurement import WRITERS, MeasurementPlan, measurement_bytes
+    from symflex.files.write import write_atomically
 
     check_place(output, WRITERS)
     model = load(spec, allow_outside, settings)

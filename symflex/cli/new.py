@@ -50,7 +50,7 @@ def command(template: str | None, *, output: str | None, is_list: bool) -> int:
         raise UsageError(
             Diagnostic("SF903", f"'{output}' exists and is not overwritten", None, "choose another name")
         )
-    from symflex.emit.write import write_atomically
+    from symflex.files.write import write_atomically
 
     write_atomically(Path(output), text.encode())
     note(f"wrote {output}; try: symflex derive {output}, and what its head says")

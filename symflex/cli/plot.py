@@ -17,7 +17,7 @@ from symflex.errors.diagnostic import nearest
 if TYPE_CHECKING:
     from fractions import Fraction
 
-    from symflex.emit.figures import AxisLimits
+    from symflex.figures import AxisLimits
     from symflex.model import Model
     from symflex.model.model import Figure
 
@@ -87,9 +87,9 @@ def command(
     """
     from symflex import pipeline
     from symflex.cli.stability import gain_limit
-    from symflex.emit.figures import DEFAULT_FONT, LOOP_FIGURES, draw, draw_loop, save
-    from symflex.emit.latex import column_width
-    from symflex.stability import pick_gain
+    from symflex.figures import DEFAULT_FONT, LOOP_FIGURES, draw, draw_loop, save
+    from symflex.loops import pick_gain
+    from symflex.print.latex import column_width
 
     if SWEEP in (spec, kind):
         options = bool(settings or tfs or gain or limits or band or xlim or ylim or phase)
@@ -169,10 +169,10 @@ def _plot_sweep(
     if is_more:
         message = "--set, --tf, --gain, --range, --band and ends of axes are not for a sweep"
         raise UsageError(Diagnostic("SF902", message))
-    from symflex.emit.figures import DEFAULT_FONT, draw_sweep, save
-    from symflex.emit.figures.pgf import MM_PER_INCH
-    from symflex.emit.latex import column_width
-    from symflex.emit.sweep_files import read_sweep
+    from symflex.figures import DEFAULT_FONT, draw_sweep, save
+    from symflex.figures.pgf import MM_PER_INCH
+    from symflex.print.latex import column_width
+    from symflex.sweep.files import read_sweep
 
     path = _checked_path(output or f"{Path(file).stem}_{SWEEP}.pdf")
     chosen = _checked_font(font or ("latex" if path.suffix == ".pgf" else DEFAULT_FONT))
@@ -190,7 +190,7 @@ def _named(model: Model, kind: str) -> tuple[Figure | None, str]:
     UsageError
         SF902 when there is none of that name; SF911 when its kind is not available yet.
     """
-    from symflex.emit.figures import FIGURES, LOOP_FIGURES, unavailable
+    from symflex.figures import FIGURES, LOOP_FIGURES, unavailable
     from symflex.model.analysis import FIGURE_KINDS
 
     figure = next((f for f in model.figures if f.name == kind), None)
@@ -215,7 +215,7 @@ def _part_shown(
         SF902 for limits that are none, and for two of the frequencies of a Bode plot.
     """
     from symflex.cli.roots import band_limits
-    from symflex.emit.figures import AxisLimits
+    from symflex.figures import AxisLimits
 
     if xlim and kind == "bode":
         if band:
@@ -263,7 +263,7 @@ def _checked_path(name: str) -> Path:
     UsageError
         SF902 when it ends in nothing a figure is written as; SF903 when it could not be written.
     """
-    from symflex.emit.write import check_writable
+    from symflex.files.write import check_writable
 
     path = Path(name)
     if path.suffix not in SUFFIXES:
@@ -280,7 +280,7 @@ def _checked_font(font: str) -> str:
     UsageError
         SF902 when there is no such font.
     """
-    from symflex.emit.figures import FONTS
+    from symflex.figures import FONTS
 
     if font not in FONTS:
         hint = nearest(font, FONTS) or "fonts: " + ", ".join(FONTS)

@@ -44,7 +44,7 @@ def command(
     approximation.
     """
     from symflex import pipeline
-    from symflex.emit.rational_format import rational_json, rational_text
+    from symflex.analysis.rational.text import rational_json, rational_text
 
     model = load(spec, allow_outside, settings)
     pairs = pipeline.pick_pairs(model, [tf] if tf else [])

@@ -112,7 +112,7 @@ def load(spec: str, allow_outside: tuple[str, ...] = (), settings: Mapping[str, 
 
 def check_place(name: str, endings: Collection[str]) -> None:
     """Refuse a file that has none of some endings, or cannot be written."""
-    from symflex.emit.write import check_writable
+    from symflex.files.write import check_writable
 
     path = Path(name)
     if path.suffix.lower() not in endings:

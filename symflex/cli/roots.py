@@ -24,9 +24,9 @@ from symflex.cli.reporting import (
 from symflex.errors import BudgetError, Diagnostic, UsageError
 
 if TYPE_CHECKING:
-    from symflex.explanation import ZeroExplanation
+    from symflex.analysis.explanation import ZeroExplanation
+    from symflex.analysis.sensitivity import Sensitivity
     from symflex.roots import Region
-    from symflex.sensitivity import Sensitivity
 
 DIGITS_LIMIT = 10_000
 DERIVING = 0.5
@@ -89,7 +89,7 @@ def command(
     """
     from symflex import pipeline
     from symflex.cli.progress import ProgressBar
-    from symflex.emit.text import roots_text
+    from symflex.print.text import roots_text
 
     chosen = region_of(modes, mode, band, region)
     # However short the time is, what is sought is told, and how many roots there are.
@@ -119,18 +119,18 @@ def command(
         if wanted:
             more["sensitivity"] = [m.to_json_dict(shown) for m in moved]
         if explained is not None:
-            from symflex.explanation import explanation_json  # most calls need none of it
+            from symflex.analysis.explanation import explanation_json  # most calls need none of it
 
             more["explanation"] = explanation_json(explained)
         emit_json({**found.to_json_dict(), **more})
     else:
         say(roots_text(found, shown, terminal_width()))
         if wanted:
-            from symflex.emit.sensitivity import sensitivity_text  # most calls need none of it
+            from symflex.analysis.sensitivity.text import sensitivity_text  # most calls need none of it
 
             say(sensitivity_text(moved, terminal_width()))
         if explained is not None:
-            from symflex.explanation import explanation_text
+            from symflex.analysis.explanation import explanation_text
 
             say("\n" + explanation_text(explained, terminal_width()))
     if is_over:

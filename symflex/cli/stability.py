@@ -67,8 +67,8 @@ def command(
     """
     from symflex import pipeline
     from symflex.cli.progress import ProgressBar
-    from symflex.emit.stability import stability_text
-    from symflex.stability import pick_gain
+    from symflex.loops import pick_gain
+    from symflex.loops.text import stability_text
 
     model = load(spec, allow_outside, settings)
     parameter = pick_gain(model.parameters, gain)

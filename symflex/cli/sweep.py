@@ -92,10 +92,10 @@ def command(
     """
     from symflex import pipeline
     from symflex.cli.progress import ProgressBar
-    from symflex.emit.sweep_files import check_writable
-    from symflex.emit.sweep_text import sweep_json, sweep_text
     from symflex.sweep import read_design
     from symflex.sweep.executors import open_executor
+    from symflex.sweep.files import check_writable
+    from symflex.sweep.text import sweep_json, sweep_text
 
     if workers and scheduler:
         raise UsageError(Diagnostic("SF902", "give only one of --workers and --scheduler"))

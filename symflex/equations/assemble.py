@@ -10,16 +10,7 @@ from dataclasses import dataclass, field, replace
 from graphlib import CycleError, TopologicalSorter
 from typing import TYPE_CHECKING
 
-from symflex.budget import spend
-from symflex.elements import ElementUse, LinearForm, Stamp, Terminal, Variable
-from symflex.elements.line import LineElement
-from symflex.equations.distributed import survey, transfer_matrix
-from symflex.equations.equations import ConstantFunction, Continuum, EquationRow, Equations, OutputRow
-from symflex.equations.evaluate import Evaluator, Opener
-from symflex.equations.realisation import written_denominator
-from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
-from symflex.expressions import Call, Expression, Name, format_expression, names
-from symflex.kernels import (
+from symflex.algebra import (
     FUNCTIONS,
     LAPLACE,
     Factored,
@@ -29,6 +20,15 @@ from symflex.kernels import (
     random_point,
     residue,
 )
+from symflex.budget import spend
+from symflex.equations.distributed import survey, transfer_matrix
+from symflex.equations.equations import ConstantFunction, Continuum, EquationRow, Equations, OutputRow
+from symflex.equations.evaluate import Evaluator, Opener
+from symflex.equations.realisation import written_denominator
+from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
+from symflex.expressions import Call, Expression, Name, format_expression, names
+from symflex.library.elements import ElementUse, LinearForm, Stamp, Terminal, Variable
+from symflex.library.elements.line import LineElement
 from symflex.model import scope_of
 from symflex.model.input_kinds import INPUT_KINDS
 from symflex.model.nodes import variable_of
@@ -36,8 +36,8 @@ from symflex.model.nodes import variable_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from symflex.elements import Branch, Injection, Placing
     from symflex.equations.distributed import Distributed, FieldSolution
+    from symflex.library.elements import Branch, Injection, Placing
     from symflex.model import Model, Node, NodeReference, PlacedBlock, PlacedElement
 
 PI = "pi"

@@ -10,13 +10,13 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from symflex.elements.line import LineElement
+from symflex.library.elements.line import LineElement
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from symflex.fields import FieldSystem
-    from symflex.kernels import Factored
+    from symflex.algebra import Factored
+    from symflex.library.fields import FieldSystem
     from symflex.model import Model, PlacedElement
 
 

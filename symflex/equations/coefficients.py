@@ -5,17 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from symflex.elements import Variable
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import Derivative, Expression, Name, Negative, Product, Quotient, Sum
-from symflex.fields import FieldEquation
+from symflex.library.elements import Variable
+from symflex.library.fields import FieldEquation
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
+    from symflex.algebra import Factored
     from symflex.equations.evaluate import Evaluator
     from symflex.expressions import Equation
-    from symflex.kernels import Factored
 
 Key = tuple[str, int] | Variable
 Terms = dict[Key, "Factored"]

@@ -11,23 +11,23 @@ from fractions import Fraction
 from math import factorial
 from typing import TYPE_CHECKING
 
+from symflex.algebra import Dispersion, Factored, propagate
 from symflex.budget import spend
-from symflex.elements import LinearForm, Variable
-from symflex.elements.line import LineElement
 from symflex.equations.chains import Link, find_links
 from symflex.equations.coefficients import read_equation
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
 from symflex.expressions import Call, Expression, names
-from symflex.fields import FIELDS, Component, FieldSystem, components, first_order
-from symflex.kernels import Dispersion, Factored, propagate
+from symflex.library.elements import LinearForm, Variable
+from symflex.library.elements.line import LineElement
+from symflex.library.fields import FIELDS, Component, FieldSystem, components, first_order
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
+    from symflex.algebra import Propagation
     from symflex.equations.evaluate import Evaluator
     from symflex.errors import Span
-    from symflex.fields import Matrix
-    from symflex.kernels import Propagation
+    from symflex.library.fields import Matrix
     from symflex.model import Field, Model, PlacedElement
 
 POLYNOMIAL = -1

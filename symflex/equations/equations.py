@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
-    from symflex.elements import LinearForm, Variable
+    from symflex.algebra import Factored, Propagation, Ring
     from symflex.expressions import Call
-    from symflex.fields import FieldSystem
-    from symflex.kernels import Factored, Propagation, Ring
+    from symflex.library.elements import LinearForm, Variable
+    from symflex.library.fields import FieldSystem
     from symflex.model import Model
 
 Role = Literal["balance", "law", "constraint", "signal", "condition"]

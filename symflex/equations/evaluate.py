@@ -8,7 +8,7 @@ from functools import cached_property
 from math import isqrt
 from typing import TYPE_CHECKING
 
-from symflex.elements import LinearForm, Variable
+from symflex.algebra import LAPLACE, Factored, Ring, residue
 from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.expressions import (
     Attribute,
@@ -25,7 +25,7 @@ from symflex.expressions import (
     names,
     substitute,
 )
-from symflex.kernels import LAPLACE, Factored, Ring, residue
+from symflex.library.elements import LinearForm, Variable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping

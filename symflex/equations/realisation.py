@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from symflex.algebra import LAPLACE, Factored, degree_in, least_common_multiple
 from symflex.expressions import Expression, Name, Negative, Power, Product, Quotient, Sum
-from symflex.kernels import LAPLACE, Factored, degree_in, least_common_multiple
 
 if TYPE_CHECKING:
     from symflex.equations.evaluate import Evaluator

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from symflex.errors.diagnostic import nearest
 from symflex.model.model import Analysis, Figure, Published
 from symflex.model.scope import COMPARED_NAMES, LISTED_NAMES, RESERVED
+from symflex.model.spec import ArrayValue, BooleanValue, NumberValue, TableValue
 from symflex.quantities import unit_of
-from symflex.spec import ArrayValue, BooleanValue, NumberValue, TableValue
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from symflex.expressions import Expression
     from symflex.model.model import Model
     from symflex.model.reading import Reader
+    from symflex.model.spec import Entry, Value
     from symflex.quantities import Quantity
-    from symflex.spec import Entry, Value
 
 FIGURE_KINDS = ("bode", "poles_zeros", "nyquist", "locus", "modes", "step")
 OF_A_LOOP = ("nyquist", "locus")

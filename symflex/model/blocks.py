@@ -7,29 +7,29 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from symflex.blocks import BLOCKS, MODEL_BLOCK
+from symflex.algebra import LAPLACE
 from symflex.budget import spend
 from symflex.errors import SymflexError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import Expression, Name, Number, power, product_of, sum_of
-from symflex.kernels import LAPLACE
+from symflex.library.blocks import BLOCKS, MODEL_BLOCK
 from symflex.model.analysis import named_pairs, pick_tf
 from symflex.model.linearity import EXPONENT_LIMIT
 from symflex.model.model import PlacedBlock
 from symflex.model.reading import signed_number
 from symflex.model.scope import RESERVED
+from symflex.model.spec import ArrayValue, parse_with_recovery, read
 from symflex.model.units import lower
-from symflex.spec import ArrayValue, parse_with_recovery, read
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from symflex.blocks import Block
     from symflex.errors import Source, Text
+    from symflex.library.blocks import Block
     from symflex.model.model import Model
     from symflex.model.reading import Reader
     from symflex.model.settings import Setting
-    from symflex.spec import Entry, TableValue, Value
+    from symflex.model.spec import Entry, TableValue, Value
 
 NESTING_LIMIT = 8
 DECLARATION = "symflex"

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symflex.elements import LineElement
+from symflex.algebra import LAPLACE
 from symflex.expressions import (
     Call,
     Derivative,
@@ -23,7 +23,7 @@ from symflex.expressions import (
     measured,
     names,
 )
-from symflex.kernels import LAPLACE
+from symflex.library.elements import LineElement
 from symflex.model.independence import RandomPoint, repetitions
 from symflex.model.linearity import check_equation, check_expression
 from symflex.model.reading import QuantityLiteral

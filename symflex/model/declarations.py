@@ -13,14 +13,14 @@ from symflex.model.labels import check_label
 from symflex.model.model import ONE, Assumption, Definition, ExactValue, Parameter
 from symflex.model.reading import Reader
 from symflex.model.scope import RESERVED
+from symflex.model.spec import NumberValue, StringValue, TableValue
 from symflex.quantities import DIMENSIONLESS, Quantity, parse_unit, unit_of
-from symflex.spec import NumberValue, StringValue, TableValue
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symflex.errors import Span
-    from symflex.spec import Entry
+    from symflex.model.spec import Entry
 
 SHOWN_CIRCLE = 8
 ASSUMPTIONS = ("positive", "nonnegative", "real")

@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symflex.elements import Variable
+from symflex.algebra import FUNCTIONS, LAPLACE
 from symflex.errors import Diagnostic
 from symflex.expressions import (
     Attribute,
@@ -47,7 +47,7 @@ from symflex.expressions import (
     quotient,
     substitute,
 )
-from symflex.kernels import FUNCTIONS, LAPLACE
+from symflex.library.elements import Variable
 from symflex.model.declarations import Reading
 from symflex.model.linearity import integer_exponent
 from symflex.model.reading import QuantityLiteral

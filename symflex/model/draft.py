@@ -18,12 +18,12 @@ from symflex.model.model import (
     Signal,
 )
 from symflex.model.network import DraftElement, DraftInput
-from symflex.spec import ArrayValue, StringValue, TableValue
+from symflex.model.spec import ArrayValue, StringValue, TableValue
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from symflex.spec import Entry
+    from symflex.model.spec import Entry
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,13 +10,13 @@ from symflex.model.declarations import read_label
 from symflex.model.model import Field
 from symflex.model.reading import NAME
 from symflex.model.scope import RESERVED
-from symflex.spec import ArrayValue
+from symflex.model.spec import ArrayValue
 
 if TYPE_CHECKING:
     from collections.abc import Collection
 
     from symflex.model.reading import Reader
-    from symflex.spec import Entry, TableValue
+    from symflex.model.spec import Entry, TableValue
 
 FIELD_LIMIT = 100
 UNKNOWN_LIMIT = 12

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from random import Random
 from typing import TYPE_CHECKING
 
+from symflex.algebra import PRIME
 from symflex.errors import SpecError
 from symflex.expressions import (
     Attribute,
@@ -26,7 +27,6 @@ from symflex.expressions import (
     Quotient,
     Sum,
 )
-from symflex.kernels import PRIME
 from symflex.model.linearity import integer_exponent
 from symflex.model.scope import CONSTANT_KINDS, Scope
 from symflex.model.units import lower
@@ -34,7 +34,7 @@ from symflex.model.units import lower
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from symflex.elements import Variable
+    from symflex.library.elements import Variable
 
 Place = tuple[str, int, int]
 """An unknown, its point modulo the prime (zero along x), and the order of the derivative."""

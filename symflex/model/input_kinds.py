@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from symflex.elements import THROUGH_NAME, Variable
+from symflex.library.elements import THROUGH_NAME, Variable
 
 if TYPE_CHECKING:
-    from symflex.elements import Domain
+    from symflex.library.elements import Domain
 
 
 @dataclass(frozen=True, slots=True)

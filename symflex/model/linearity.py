@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Literal
 
+from symflex.algebra import FUNCTIONS, LAPLACE
 from symflex.errors import Diagnostic, SpecError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import (
@@ -23,7 +24,6 @@ from symflex.expressions import (
     is_number,
     names,
 )
-from symflex.kernels import FUNCTIONS, LAPLACE
 from symflex.model.scope import outside, without_point
 
 if TYPE_CHECKING:

@@ -9,16 +9,16 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Final, Literal
 
-from symflex.elements import LineElement
+from symflex.library.elements import LineElement
 from symflex.quantities import Dimension
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from symflex.blocks import Block as BlockType
-    from symflex.elements import Element, Placing, Variable
     from symflex.errors import Diagnostic, Span
     from symflex.expressions import Equation, Expression
+    from symflex.library.blocks import Block as BlockType
+    from symflex.library.elements import Element, Placing, Variable
 
 Assumption = Literal["positive", "nonnegative", "real"]
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symflex.elements import ELEMENTS, Element, Port
 from symflex.errors import SpecError
 from symflex.errors.diagnostic import nearest
+from symflex.library.elements import ELEMENTS, Element, Port
 from symflex.model.declarations import read_label
 from symflex.model.input_kinds import INPUT_KINDS
 from symflex.model.model import Input, NodeReference
@@ -20,11 +20,11 @@ from symflex.quantities import parse_unit, unit_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from symflex.elements.element import PortDomain
     from symflex.errors import Span, Text
     from symflex.expressions import Expression
+    from symflex.library.elements.element import PortDomain
+    from symflex.model.spec import Entry, TableValue
     from symflex.quantities import Dimension
-    from symflex.spec import Entry, TableValue
 
 TYPES_HINT = "'symflex elements' lists the types"
 

@@ -6,16 +6,16 @@ from dataclasses import dataclass
 from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
-from symflex.elements import Variable
 from symflex.errors import Diagnostic
+from symflex.library.elements import Variable
 from symflex.model.model import Node
 from symflex.quantities import unit_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.elements import Domain, Element
-    from symflex.elements.element import PortDomain
+    from symflex.library.elements import Domain, Element
+    from symflex.library.elements.element import PortDomain
     from symflex.model.model import NodeReference
     from symflex.quantities import Dimension
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from symflex.algebra import LAPLACE
 from symflex.errors import Diagnostic
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import FUNCTIONS, Attribute, Call, Derivative, Expression, Name, Power, names
-from symflex.kernels import LAPLACE
 from symflex.model.points import Line
 
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from symflex.elements import LineElement
 from symflex.errors import Diagnostic, UsageError
+from symflex.library.elements import LineElement
 from symflex.model.analysis import PI_NEARLY
 from symflex.model.points import Line
 from symflex.model.reading import literal_value
@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
     from fractions import Fraction
 
-    from symflex.elements import Sign
     from symflex.errors import Span
     from symflex.expressions import Expression
+    from symflex.library.elements import Sign
     from symflex.model.draft import Draft
     from symflex.model.model import ExactValue, Model
     from symflex.model.reading import Reader

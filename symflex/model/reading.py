@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 from symflex.errors import Diagnostic, SpecError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import Expression, Negative, Number, parse
+from symflex.model.spec import ArrayValue, BooleanValue, NumberValue, OtherValue, StringValue, TableValue
 from symflex.quantities import Quantity, looks_like_quantity, parse_quantity
-from symflex.spec import ArrayValue, BooleanValue, NumberValue, OtherValue, StringValue, TableValue
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from symflex.errors import Span, Text
-    from symflex.spec import Entry, Value
+    from symflex.model.spec import Entry, Value
 
 SHOWN = 40
 MAX_PROBLEMS = 100

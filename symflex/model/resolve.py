@@ -1,6 +1,6 @@
 """From a specification to a model.
 
-Input: a parsed :class:`symflex.spec.Spec`.
+Input: a parsed :class:`symflex.model.spec.Spec`.
 Output: a :class:`Model`, or one :class:`SpecError` with every problem of the text.
 """
 
@@ -10,9 +10,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from symflex.elements import LineElement, Placing
 from symflex.errors import Diagnostic, Span, SpecError, UsageError
 from symflex.expressions import Equation, Expression, substitute
+from symflex.library.elements import LineElement, Placing
 from symflex.model.analysis import PI_NEARLY, read_analysis, read_figures, read_published
 from symflex.model.blocks import Loads, Origin, read_blocks
 from symflex.model.boundary import (
@@ -46,6 +46,7 @@ from symflex.model.reading import QuantityLiteral, Reader, describe
 from symflex.model.scope import Scope, build_scope
 from symflex.model.settings import check_names, settled
 from symflex.model.signals import read_outputs, read_signals
+from symflex.model.spec import ArrayValue, TableValue, parse_with_recovery
 from symflex.model.units import (
     block_unit,
     check_units,
@@ -60,14 +61,13 @@ from symflex.model.units import (
     quotients,
 )
 from symflex.model.unused import unused
-from symflex.spec import ArrayValue, TableValue, parse_with_recovery
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from symflex.errors import Source
     from symflex.model.settings import Setting
-    from symflex.spec import Spec
+    from symflex.model.spec import Spec
 
 FORMAT_VERSION = 1
 SECTIONS = (

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
-from symflex.elements import LineElement, Variable
+from symflex.algebra import LAPLACE
 from symflex.errors import Diagnostic, SpecError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import Attribute, Name
-from symflex.kernels import LAPLACE
+from symflex.library.elements import LineElement, Variable
 from symflex.model.input_kinds import INPUT_KINDS
 
 if TYPE_CHECKING:

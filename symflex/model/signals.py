@@ -13,10 +13,10 @@ from symflex.model.model import (
 )
 from symflex.model.reading import Reader
 from symflex.model.scope import RESERVED
-from symflex.spec import TableValue
+from symflex.model.spec import TableValue
 
 if TYPE_CHECKING:
-    from symflex.spec import Entry
+    from symflex.model.spec import Entry
 
 
 def read_signals(reader: Reader, section: TableValue | None) -> tuple[Signal, ...]:

@@ -6,9 +6,9 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symflex.elements import ACROSS_UNIT, THROUGH_UNIT, LineElement, Variable
 from symflex.errors import Span
 from symflex.expressions import Expression, Name, names, power, product_of, substitute
+from symflex.library.elements import ACROSS_UNIT, THROUGH_UNIT, LineElement, Variable
 from symflex.model.declarations import DeclaredParameter, Reading
 from symflex.model.dimensions import DimensionSystem, Measure
 from symflex.model.input_kinds import INPUT_KINDS

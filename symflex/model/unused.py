@@ -5,10 +5,10 @@ from __future__ import annotations
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
-from symflex.elements import LineElement
 from symflex.errors import Diagnostic
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import Attribute, names
+from symflex.library.elements import LineElement
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

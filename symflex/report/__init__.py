@@ -8,7 +8,7 @@ What a report says about each model is in :data:`symflex.report.sections.SECTION
 :data:`symflex.report.claims.PREDICATES`.
 """
 
-from symflex.emit.write import check_folder
+from symflex.files.write import check_folder
 from symflex.report.article import report_article
 from symflex.report.folder import write_tree
 from symflex.report.page import report_page

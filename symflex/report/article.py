@@ -1,6 +1,6 @@
 r"""A report as LaTeX, with its figures from files; it compiles with pdflatex and lualatex without warnings.
 
-It needs, besides what every document of :mod:`symflex.emit.latex` needs, graphicx and longtable, which come
+It needs, besides what every document of :mod:`symflex.print.latex` needs, graphicx and longtable, which come
 with every distribution.
 """
 
@@ -9,10 +9,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Final, assert_never
 
-from symflex.emit.latex import TEXT_WIDTH_MM, escape_text
-from symflex.emit.latex.preamble import preamble
-from symflex.emit.latex.text import text_width
-from symflex.emit.latex.width import EM_MM
+from symflex.print.latex import TEXT_WIDTH_MM, escape_text
+from symflex.print.latex.preamble import preamble
+from symflex.print.latex.text import text_width
+from symflex.print.latex.width import EM_MM
 from symflex.report.document import (
     Aside,
     Code,

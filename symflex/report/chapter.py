@@ -17,7 +17,7 @@ from symflex.report.sections import SECTIONS
 from symflex.report.study import Study, attempt, said
 
 if TYPE_CHECKING:
-    from symflex.measurement import MeasuredResponse
+    from symflex.data.measurement import MeasuredResponse
     from symflex.report.document import Block
     from symflex.roots import Progress
 

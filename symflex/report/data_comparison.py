@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from symflex.response import respond
+from symflex.analysis.response import respond
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from symflex.measurement import MeasuredResponse
+    from symflex.data.measurement import MeasuredResponse
     from symflex.transfer import BoundTransferFunction
 
 

@@ -1,7 +1,7 @@
 """What a report is made of: blocks that say nothing of the page or paper they end up on.
 
 Text in blocks is plain: the printers (:mod:`symflex.report.page`, :mod:`symflex.report.article`) escape all
-of it. Mathematics comes from the printers of :mod:`symflex.emit`, in both languages, and is sound in them.
+of it. Mathematics comes from the printers of :mod:`symflex.print`, in both languages, and is sound in them.
 """
 
 from __future__ import annotations
@@ -9,15 +9,15 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
-from symflex.emit.latex import latex_expression, model_labels
-from symflex.emit.mathml import mathml_expression
+from symflex.print.latex import latex_expression, model_labels
+from symflex.print.mathml import mathml_expression
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from symflex.emit.mathml import Row
     from symflex.expressions import Expression
     from symflex.model import Model
+    from symflex.print.mathml import Row
 
 Verdict: TypeAlias = Literal["holds", "holds with a condition", "does not hold", "not examined"]
 Tone: TypeAlias = Literal["good", "fair", "bad", "quiet"]

@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from flint import arb
 
     from symflex.audit import Audit
+    from symflex.loops import AllowedBandwidth, DynamicColocation, StabilityMap
     from symflex.model import Model
     from symflex.report.structure import Compliance
     from symflex.report.study import Study
     from symflex.roots import PoleZeroMap, Root
-    from symflex.stability import AllowedBandwidth, DynamicColocation, StabilityMap
     from symflex.transfer import TransferFunction
 
 Place = Literal["origin", "imaginary axis", "real axis", "plane"]
@@ -112,7 +112,7 @@ class TransferFacts:
     colocated : bool or None
         The output is taken where the input acts; None where one of them has no place.
     explained : str
-        What its zeros are the poles of: a kind of :class:`~symflex.explanation.ZeroExplanation`.
+        What its zeros are the poles of: a kind of :class:`~symflex.analysis.explanation.ZeroExplanation`.
     condition, reason : str
         When it is minimum phase; see :class:`~symflex.report.minimum_phase.PhaseCondition`.
     bracket : str

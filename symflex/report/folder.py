@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
-from symflex.emit.write import write_atomically
 from symflex.errors import Diagnostic, UsageError
+from symflex.files.write import write_atomically
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -12,8 +12,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from symflex import pipeline
+from symflex.algebra import LAPLACE
 from symflex.expressions import Name, product_of
-from symflex.kernels import LAPLACE
 from symflex.model import Parameter, with_numbers
 from symflex.report.structure import STIFFNESS
 
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
+    from symflex.algebra import Factored, Ring
     from symflex.expressions import Expression
-    from symflex.kernels import Factored, Ring
     from symflex.model import Model, PlacedBlock, PlacedElement
 
 Values = tuple[tuple[str, "Expression"], ...]

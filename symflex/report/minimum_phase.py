@@ -11,17 +11,17 @@ import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
 
-from symflex.emit.forms import Arranger
-from symflex.emit.forms.arrange import coefficients
-from symflex.kernels import LAPLACE, irreducible_factors
+from symflex.algebra import LAPLACE, irreducible_factors
 from symflex.model import Model
+from symflex.print.forms import Arranger
+from symflex.print.forms.arrange import coefficients
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
-    from symflex.explanation import ZeroExplanation
+    from symflex.algebra import Ring
+    from symflex.analysis.explanation import ZeroExplanation
     from symflex.expressions import Expression
-    from symflex.kernels import Ring
     from symflex.transfer import TransferFunction
 
 Kind = Literal["always", "never", "if positive", "as given", "unknown"]
@@ -78,7 +78,7 @@ def minimum_phase(tf: TransferFunction, explained: ZeroExplanation) -> PhaseCond
     ... outputs.y = "k*x - g*s^2*x"
     ... ''')
     >>> (tf,) = pipeline.derive_all(model)
-    >>> from symflex.explanation import ZeroExplanation
+    >>> from symflex.analysis.explanation import ZeroExplanation
     >>> minimum_phase(tf, ZeroExplanation("y/F", "noncolocated", "proved", "y", "F")).kind
     'never'
     """

@@ -10,8 +10,8 @@ import html
 import re
 from typing import TYPE_CHECKING, Final, assert_never
 
-from symflex.emit.mathml import math_element
-from symflex.emit.mathml.element import EQUALS
+from symflex.print.mathml import math_element
+from symflex.print.mathml.element import EQUALS
 from symflex.report.document import (
     Aside,
     Code,

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
-from symflex.emit.figures import render
 from symflex.errors import UncertifiedError
+from symflex.figures import render
 from symflex.report.document import Picture
 
 if TYPE_CHECKING:

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Future
     from pathlib import Path
 
-    from symflex.measurement import MeasuredResponse
+    from symflex.data.measurement import MeasuredResponse
     from symflex.report.claims import Finding, Publication
     from symflex.report.document import Block, Cell
     from symflex.roots import Progress
@@ -183,7 +183,7 @@ def find_measurements(
     What stands in ``output``, the folder that reports are written into, is no measurement. A link that leads
     out of its folder, and not to one of ``allow_outside``, is not followed.
     """
-    from symflex.measurement import read_measurement
+    from symflex.data.measurement import read_measurement
 
     found: list[MeasuredResponse] = []
     warnings: list[str] = []

@@ -7,32 +7,32 @@ from functools import cached_property, partial
 from typing import TYPE_CHECKING, Final, TypeVar
 
 from symflex import pipeline
+from symflex.analysis.response import adaptive_grid, default_band, respond
 from symflex.budget import entered_budget
-from symflex.emit.forms import print_forms
 from symflex.errors import BudgetError, Diagnostic, SymflexError
+from symflex.loops import find_stable_gains
 from symflex.model import with_numbers
+from symflex.print.forms import print_forms
 from symflex.report.data_comparison import compared
 from symflex.report.facts import facts_of
 from symflex.report.limits import rigid_counts, undamped_counts
-from symflex.response import adaptive_grid, default_band, respond
-from symflex.stability import find_stable_gains
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from pathlib import Path
 
+    from symflex.analysis.explanation import ZeroExplanation
+    from symflex.analysis.rational import RationalApproximation
+    from symflex.analysis.response import FrequencyResponse
     from symflex.audit import Audit
-    from symflex.emit.forms import PrintedForm
-    from symflex.explanation import ZeroExplanation
-    from symflex.measurement import MeasuredResponse
+    from symflex.data.measurement import MeasuredResponse
+    from symflex.loops import DynamicColocation, Loop, StabilityMap
     from symflex.model import Model
-    from symflex.rational import RationalApproximation
+    from symflex.print.forms import PrintedForm
     from symflex.report.data_comparison import DataComparison
     from symflex.report.facts import ModelFacts
     from symflex.report.limits import Counts, RigidCounts
-    from symflex.response import FrequencyResponse
     from symflex.roots import PoleZeroMap
-    from symflex.stability import DynamicColocation, Loop, StabilityMap
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
 MOST_FUNCTIONS: Final = 24

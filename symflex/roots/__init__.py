@@ -4,12 +4,12 @@ A new engine is one file and one line in :data:`ROOT_FINDERS`.
 """
 
 from symflex.budget import Budget, Progress
-from symflex.roots.durand_kerner import propose_by_durand_kerner
 from symflex.roots.finder import RootFinder
 from symflex.roots.kernel_finder import KernelRootFinder
-from symflex.roots.laguerre import propose_by_laguerre
 from symflex.roots.pole_zero_map import Certificate, HiddenRoot, PoleZeroMap, find_pole_zero_map
-from symflex.roots.polynomial import POLYNOMIAL, PolynomialRootFinder, find_polynomial_roots
+from symflex.roots.polynomials.durand_kerner import propose_by_durand_kerner
+from symflex.roots.polynomials.laguerre import propose_by_laguerre
+from symflex.roots.polynomials.polynomial import POLYNOMIAL, PolynomialRootFinder, find_polynomial_roots
 from symflex.roots.precision import precision
 from symflex.roots.problem import Constant, KernelProblem, PolynomialInS, Problem, RootProblem
 from symflex.roots.region import Band, Everything, Mode, Modes, Position, Rectangle, Region

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symflex.budget import Budget, entered_budget
+from symflex.roots.distributed.side import ENGINES, LOSSLESS, NoEngineError, Side
 from symflex.roots.problem import KernelProblem
 from symflex.roots.region import Everything, Mode, Position
-from symflex.roots.side import ENGINES, LOSSLESS, NoEngineError, Side
 
 if TYPE_CHECKING:
     from symflex.roots.problem import Problem

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from flint import fmpz_mpoly_ctx
 
 from symflex.budget import Budget, entered_budget
-from symflex.roots.distributed import locate_distributed
+from symflex.roots.distributed.distributed import locate_distributed
+from symflex.roots.distributed.vanishing import without_lengths_of_zero
 from symflex.roots.pole_zero_map import PoleZeroMap, find_pole_zero_map
 from symflex.roots.problem import Constant, PolynomialInS, RootProblem
-from symflex.roots.vanishing import without_lengths_of_zero
 from symflex.transfer import BoundTransferFunction, coefficients_in_s
 
 if TYPE_CHECKING:

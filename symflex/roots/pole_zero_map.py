@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Self
 
 from symflex.errors import BudgetError, Diagnostic
-from symflex.roots.polynomial import POLYNOMIAL
+from symflex.roots.counting.right_half_plane import NOT_EXAMINED, StabilityVerdict, is_right, judge
+from symflex.roots.polynomials.polynomial import POLYNOMIAL
 from symflex.roots.region import Everything, Mode, Modes, Position, Region
-from symflex.roots.right_half_plane import NOT_EXAMINED, StabilityVerdict, is_right, judge
 from symflex.roots.root import Root, overlap
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from fractions import Fraction
 
-    from symflex.kernels import Factored
+    from symflex.algebra import Factored
     from symflex.transfer import BoundTransferFunction
 
 ZERO_TEST_BITS = (64, 256, 1024, 4096)

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, TypeGuard
 
+from symflex.algebra import LAPLACE
 from symflex.errors import BudgetError, Diagnostic
 from symflex.expressions import (
     Attribute,
@@ -25,7 +26,6 @@ from symflex.expressions import (
     substitute,
     sum_of,
 )
-from symflex.kernels import LAPLACE
 from symflex.model import Signal
 
 if TYPE_CHECKING:

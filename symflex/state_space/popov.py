@@ -108,7 +108,7 @@ def solve(rows: Sequence[Row], weights: Sequence[tuple[int, int]]) -> SolvedRows
 
     Examples
     --------
-    >>> from symflex.kernels import Ring
+    >>> from symflex.algebra import Ring
     >>> from symflex.state_space.quotients import FieldElement
     >>> ring = Ring(("s",))
     >>> one, two = (FieldElement.number(ring, n) for n in (1, 2))

@@ -1,6 +1,6 @@
 """Quotients of polynomials in lowest terms: the field in which state equations are solved.
 
-Input: polynomials of a :class:`symflex.kernels.Ring` free of s. Output: :class:`FieldElement`.
+Input: polynomials of a :class:`symflex.algebra.Ring` free of s. Output: :class:`FieldElement`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
-    from symflex.kernels import Ring
+    from symflex.algebra import Ring
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -27,7 +27,7 @@ class FieldElement:
 
     Examples
     --------
-    >>> from symflex.kernels import Ring
+    >>> from symflex.algebra import Ring
     >>> ring = Ring(("s", "k", "m"))
     >>> k, m = (FieldElement.of(ring.generator(n), ring.constant(1)) for n in "km")
     >>> print(k / m + k / m)

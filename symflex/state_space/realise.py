@@ -13,14 +13,14 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from symflex.elements import Variable
-from symflex.elements.element import ACROSS_UNIT, COMPONENT_UNIT
-from symflex.elimination import explain_singular
+from symflex.algebra import LAPLACE
 from symflex.equations import assemble
+from symflex.equations.elimination import explain_singular
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import Attribute, Name, names, product_of
 from symflex.expressions import power as power_of
-from symflex.kernels import LAPLACE
+from symflex.library.elements import Variable
+from symflex.library.elements.element import ACROSS_UNIT, COMPONENT_UNIT
 from symflex.quantities import unit_of
 from symflex.state_space.opened import opened, with_filters_apart
 from symflex.state_space.popov import Row, SolvedRows, add_term, solve
@@ -31,10 +31,10 @@ from symflex.transfer.nested import nested_transfer
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symflex.elements import LinearForm
+    from symflex.algebra import Factored, Ring
     from symflex.equations import ConstantFunction, Equations
     from symflex.expressions import Expression
-    from symflex.kernels import Factored, Ring
+    from symflex.library.elements import LinearForm
     from symflex.model import Model
 
 DISPLACEMENT, FLOW, VOLTAGE, SIGNAL = 0, 5, 6, 7

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 
 from flint import nmod_mat
 
+from symflex.algebra import PRIME, Factored, random_point, residue
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
-from symflex.kernels import PRIME, Factored, random_point, residue
 from symflex.state_space.quotients import FieldElement, Vector, applied, combined, transposed
 from symflex.state_space.state_space import State
 

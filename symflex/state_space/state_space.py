@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from symflex.state_space.quotients import FieldElement, Vector
 
 if TYPE_CHECKING:
+    from symflex.algebra import Ring
     from symflex.equations import ConstantFunction
     from symflex.expressions import Expression
-    from symflex.kernels import Ring
     from symflex.model import Model
 
 Combination = tuple[tuple["Expression", FieldElement], ...]

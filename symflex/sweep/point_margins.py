@@ -9,8 +9,8 @@ import numpy as np
 
 from symflex.budget import spend
 from symflex.errors import SymflexError
-from symflex.stability import characteristic_loop, find_stable_gains, pick_gain
-from symflex.stability.stability_map import degrees, hertz
+from symflex.loops import characteristic_loop, find_stable_gains, pick_gain
+from symflex.loops.stability_map import degrees, hertz
 from symflex.sweep.point_roots import PointStatus
 from symflex.sweep.rounding import rounded
 from symflex.sweep.task import codes_of, derived
@@ -18,7 +18,7 @@ from symflex.sweep.task import codes_of, derived
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.stability import StabilityMap
+    from symflex.loops import StabilityMap
     from symflex.sweep.design import Point
     from symflex.sweep.task import Rows, Solver, Task
 

@@ -13,8 +13,8 @@ from flint import arb
 from symflex.budget import spend
 from symflex.errors import SymflexError
 from symflex.roots import Everything, Modes, precision
+from symflex.roots.distributed.vanishing import without_lengths_of_zero
 from symflex.roots.locate import locate
-from symflex.roots.vanishing import without_lengths_of_zero
 from symflex.sweep.rounding import Doubles, doubles
 from symflex.sweep.similarity import Similarities
 from symflex.sweep.task import codes_of, derived

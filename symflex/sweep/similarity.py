@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING
 
 from flint import fmpq
 
-from symflex.kernels import degree_in
+from symflex.algebra import degree_in
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from flint import fmpz_mpoly
 
-    from symflex.kernels import Factored
+    from symflex.algebra import Factored
     from symflex.model import ExactValue
     from symflex.transfer import TransferFunction
 

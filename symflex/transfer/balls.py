@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from flint import arb, fmpq
 
+from symflex.algebra import FUNCTIONS
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import (
     Call,
@@ -21,7 +22,6 @@ from symflex.expressions import (
     Sum,
     format_expression,
 )
-from symflex.kernels import FUNCTIONS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -15,11 +15,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, acb_series, arb, ctx
 
-from symflex.budget import spend
-from symflex.equations import assemble
-from symflex.errors import Diagnostic, ModelError, Source, Span, Text, UsageError
-from symflex.errors.diagnostic import nearest
-from symflex.kernels import (
+from symflex.algebra import (
     LAPLACE,
     NO_KERNELS,
     Factored,
@@ -29,6 +25,10 @@ from symflex.kernels import (
     Ring,
     degree_in,
 )
+from symflex.budget import spend
+from symflex.equations import assemble
+from symflex.errors import Diagnostic, ModelError, Source, Span, Text, UsageError
+from symflex.errors.diagnostic import nearest
 from symflex.model import ExactValue, with_numbers
 from symflex.quantities import parse_quantity, unit_of
 from symflex.transfer.balls import ball, enclosure, later, rational_value

@@ -5,8 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from symflex.algebra import Factored
 from symflex.budget import spend
-from symflex.kernels import Factored
 from symflex.transfer.coprimality import Images
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symflex.kernels import Factored, Ring
+from symflex.algebra import Factored, Ring
 
 SMALL = 100_000
 """Number of terms up to which the engine composes at once."""

@@ -7,7 +7,7 @@ from functools import cached_property
 from random import Random
 from typing import TYPE_CHECKING
 
-from symflex.kernels import LAPLACE, PolynomialMemo, Ring, degree_in
+from symflex.algebra import LAPLACE, PolynomialMemo, Ring, degree_in
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly

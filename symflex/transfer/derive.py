@@ -9,8 +9,8 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from symflex.elimination import Determinants, explain_singular
-from symflex.kernels import LAPLACE, NO_KERNELS, Factored, KernelTable, degree_in
+from symflex.algebra import LAPLACE, NO_KERNELS, Factored, KernelTable, degree_in
+from symflex.equations.elimination import Determinants, explain_singular
 from symflex.transfer.cancel import cancel
 from symflex.transfer.coprimality import Images
 from symflex.transfer.distributed import KernelReduction, embedded_table
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     from flint import fmpz, fmpz_mpoly
 
+    from symflex.algebra import Propagation
     from symflex.equations import Equations, OutputRow
-    from symflex.kernels import Propagation
     from symflex.model import Input, Output
 
 

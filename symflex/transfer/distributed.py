@@ -11,9 +11,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from symflex.budget import spend
-from symflex.errors import BudgetError, Diagnostic
-from symflex.kernels import (
+from symflex.algebra import (
     LAPLACE,
     MEMORY_LIMIT,
     Dispersion,
@@ -23,11 +21,13 @@ from symflex.kernels import (
     degree_in,
     irreducible_factors,
 )
-from symflex.kernels.exponentials import Exponentials, split_content
-from symflex.kernels.multiple_angles import lift
-from symflex.kernels.normal_form import NormalForm, split
-from symflex.kernels.origin import Origin
-from symflex.kernels.vanishing import Vanishing
+from symflex.algebra.exponentials import Exponentials, split_content
+from symflex.algebra.multiple_angles import lift
+from symflex.algebra.normal_form import NormalForm, split
+from symflex.algebra.origin import Origin
+from symflex.algebra.vanishing import Vanishing
+from symflex.budget import spend
+from symflex.errors import BudgetError, Diagnostic
 from symflex.transfer.cancel import cancel
 from symflex.transfer.kernel_images import KernelImages
 
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
-    from symflex.kernels.exponentials import Angle
+    from symflex.algebra.exponentials import Angle
 
     Split = Callable[[fmpz_mpoly], tuple[fmpz_mpoly, fmpz_mpoly]]
 

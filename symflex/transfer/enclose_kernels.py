@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat, acb_series, arb
 
-from symflex.kernels import ModalSums, modal_amplitudes, mode_values
+from symflex.algebra import ModalSums, modal_amplitudes, mode_values
 from symflex.transfer.balls import ball
 from symflex.transfer.characteristic_roots import characteristic_roots
 from symflex.transfer.monomials import Value
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
-    from symflex.kernels import Dispersion, Factored, Kernel, KernelTable, PolynomialMemo
+    from symflex.algebra import Dispersion, Factored, Kernel, KernelTable, PolynomialMemo
     from symflex.transfer.monomials import Plan
 
 SIGNS = (1, -1)

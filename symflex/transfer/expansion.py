@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from symflex.algebra import LAPLACE, Factored, Ring
 from symflex.errors import Diagnostic, ModelError
-from symflex.kernels import LAPLACE, Factored, Ring
 from symflex.transfer.compose import compose_rational
 
 if TYPE_CHECKING:
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
-    from symflex.elimination import Closure
     from symflex.equations import Equations
+    from symflex.equations.elimination import Closure
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING
 
 from flint import nmod_poly
 
-from symflex.kernels import PRIME, PolynomialMemo, random_point
+from symflex.algebra import PRIME, PolynomialMemo, random_point
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from flint import fmpz_mpoly
 
-    from symflex.kernels import Ring
-    from symflex.kernels.exponentials import Angle
+    from symflex.algebra import Ring
+    from symflex.algebra.exponentials import Angle
 
 Image = nmod_poly | None
 """A polynomial in an angle's exponential, or half-angle tangent; ``None`` when its degree is too low."""

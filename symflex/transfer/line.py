@@ -12,8 +12,8 @@ from __future__ import annotations
 from random import Random
 from typing import TYPE_CHECKING
 
-from symflex.elimination.minors import DegreeBounds, Minors
-from symflex.kernels import LAPLACE
+from symflex.algebra import LAPLACE
+from symflex.equations.elimination.minors import DegreeBounds, Minors
 from symflex.transfer.coprimality import LINE
 
 if TYPE_CHECKING:
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
-    from symflex.elimination import Determinants
-    from symflex.kernels import Factored, Ring
+    from symflex.algebra import Factored, Ring
+    from symflex.equations.elimination import Determinants
 
 Image = tuple["fmpz_mpoly", int]
 """A polynomial in the parameter of the line, and the degree it can have at most."""

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from symflex.algebra import Factored
 from symflex.equations import assemble
 from symflex.errors import Diagnostic, ModelError
-from symflex.kernels import Factored
 from symflex.transfer.derive import derive
 
 if TYPE_CHECKING:
-    from symflex.kernels import Ring
+    from symflex.algebra import Ring
     from symflex.model import PlacedBlock
 
 

@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any
 
 from flint import acb, arb, ctx
 
+from symflex.algebra import LAPLACE
 from symflex.budget import spend
-from symflex.elimination import Step, StraightLine, eliminate
+from symflex.equations.elimination import Step, StraightLine, eliminate
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import Name, names
-from symflex.kernels import LAPLACE
 from symflex.transfer.balls import ball, enclosure, later
 from symflex.transfer.bind import read_values
 from symflex.transfer.double_value import FIRST_BITS, double_value

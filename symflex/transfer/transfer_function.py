@@ -6,17 +6,17 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from symflex.algebra import LAPLACE, NO_KERNELS, KernelTable, ModalSums, degree_in
 from symflex.expressions import Name, names
-from symflex.kernels import LAPLACE, NO_KERNELS, KernelTable, ModalSums, degree_in
 
 if TYPE_CHECKING:
     from collections.abc import Sequence, Set
 
     from flint import fmpz_mpoly
 
-    from symflex.elimination import Closure
+    from symflex.algebra import Factored, Ring
     from symflex.equations import ConstantFunction
-    from symflex.kernels import Factored, Ring
+    from symflex.equations.elimination import Closure
     from symflex.model import Input, Model, Output, Parameter
     from symflex.transfer.expansion import Opening
 

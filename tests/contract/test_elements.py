@@ -9,8 +9,9 @@ from itertools import product
 import pytest
 
 from symflex import pipeline
+from symflex.algebra import Factored, Ring
 from symflex.cli import run
-from symflex.elements import (
+from symflex.library.elements import (
     ACROSS_UNIT,
     ELEMENTS,
     THROUGH_NAME,
@@ -21,8 +22,7 @@ from symflex.elements import (
     Terminal,
     Variable,
 )
-from symflex.fields import FIELDS
-from symflex.kernels import Factored, Ring
+from symflex.library.fields import FIELDS
 from symflex.quantities import unit_of
 from tests.contract.smallest import MODELS, element_model
 

@@ -10,13 +10,13 @@ import pytest
 from flint import arb, ctx
 
 from symflex import pipeline
-from symflex.blocks import BLOCKS, MODEL_BLOCK
+from symflex.algebra import FUNCTIONS, Factored, Ring
 from symflex.cli import run
-from symflex.emit.exporters import EXPORTERS
-from symflex.emit.forms import CANDIDATES, FORMS, print_form
+from symflex.codegen.exporters import EXPORTERS
 from symflex.errors import UsageError
 from symflex.expressions import PROGRAM_LIMITS, format_expression
-from symflex.kernels import FUNCTIONS, Factored, Ring
+from symflex.library.blocks import BLOCKS, MODEL_BLOCK
+from symflex.print.forms import CANDIDATES, FORMS, print_form
 from symflex.quantities import unit_of
 from symflex.roots import ROOT_FINDERS
 from tests.contract.exact import read

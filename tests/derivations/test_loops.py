@@ -49,7 +49,7 @@ def test_the_beam_goes_to_its_zero_in_the_right_half_plane():
     from fractions import Fraction
 
     from symflex import pipeline
-    from symflex.stability import trace_locus
+    from symflex.loops import trace_locus
 
     model = symflex.load(FOLDER / "sliding_free_beam_force.toml").resolved
     locus = trace_locus(pipeline.characteristic_loop(model, "K"), (Fraction(0), Fraction(10**5)), modes=2)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from symflex.data.measurement import MeasuredResponse
 from symflex.errors import SymflexError
-from symflex.measurement import MeasuredResponse
 
 FREQUENCY = np.arange(1.0, 7.0)
 RESPONSE = MeasuredResponse(

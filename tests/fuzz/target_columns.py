@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from symflex.measurement.comma_separated import read_columns
-from symflex.measurement.write import csv_bytes
+from symflex.data.measurement.comma_separated import read_columns
+from symflex.data.measurement.write import csv_bytes
 from tests.fuzz.measured import RESPONSE, answered
 
-ROOMS = ("symflex.measurement",)
+ROOMS = ("symflex.data.measurement",)
 
 
 def seeds():

@@ -11,14 +11,14 @@ from contextlib import suppress
 from functools import cache
 
 from symflex import pipeline
-from symflex.emit.exporters import EXPORTERS
-from symflex.emit.text import roots_text
+from symflex.codegen.exporters import EXPORTERS
 from symflex.errors import SymflexError
+from symflex.model.spec import write
+from symflex.print.text import roots_text
 from symflex.roots import Budget
-from symflex.spec import write
 from tests.house.repository import ROOT, specifications
 
-ROOMS = ("symflex.model", "symflex.equations", "symflex.elimination")
+ROOMS = ("symflex.model", "symflex.equations", "symflex.equations.elimination")
 SECONDS = 1
 SMALL_ELEMENTS = 8
 NUMBERS = (

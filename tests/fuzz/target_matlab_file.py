@@ -7,10 +7,10 @@ import io
 import numpy as np
 import scipy.io
 
-from symflex.measurement.arrays import read_mat
+from symflex.data.measurement.arrays import read_mat
 from tests.fuzz.measured import RESPONSE, answered
 
-ROOMS = ("symflex.measurement",)
+ROOMS = ("symflex.data.measurement",)
 
 
 def seeds():

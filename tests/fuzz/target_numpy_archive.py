@@ -6,11 +6,11 @@ import io
 import struct
 import zipfile
 
-from symflex.measurement.arrays import read_npz
-from symflex.measurement.write import npz_bytes
+from symflex.data.measurement.arrays import read_npz
+from symflex.data.measurement.write import npz_bytes
 from tests.fuzz.measured import RESPONSE, answered
 
-ROOMS = ("symflex.measurement", "zipfile")
+ROOMS = ("symflex.data.measurement", "zipfile")
 AS_IT_IS = b"PK"
 
 

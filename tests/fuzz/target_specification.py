@@ -8,7 +8,7 @@ from symflex import pipeline
 from symflex.errors import SymflexError
 from tests.house.repository import ROOT, specifications
 
-ROOMS = ("symflex.spec", "symflex.model", "symflex.equations")
+ROOMS = ("symflex.model.spec", "symflex.model", "symflex.equations")
 
 
 def seeds():

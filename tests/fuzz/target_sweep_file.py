@@ -8,13 +8,13 @@ from functools import cache
 from pathlib import Path
 
 from symflex import pipeline
-from symflex.emit.sweep_files import netcdf_bytes, npz_bytes, read_sweep
-from symflex.emit.sweep_text import sweep_json, sweep_text
 from symflex.errors import SymflexError
 from symflex.sweep import read_design
+from symflex.sweep.files import netcdf_bytes, npz_bytes, read_sweep
+from symflex.sweep.text import sweep_json, sweep_text
 from tests.fuzz.target_numpy_archive import packed, unpacked
 
-ROOMS = ("symflex.measurement", "symflex.emit.sweep_files", "symflex.emit.sweep_text", "symflex.sweep")
+ROOMS = ("symflex.data.measurement", "symflex.sweep.files", "symflex.sweep.text", "symflex.sweep")
 MODEL = """
 symflex = 1
 parameters = { m = "1 kg", c = "1 N*s/m", k = "4 N/m", K = "1 N/m" }

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from symflex.measurement.universal_file import read_universal_file
-from symflex.measurement.write import universal_bytes
+from symflex.data.measurement.universal_file import read_universal_file
+from symflex.data.measurement.write import universal_bytes
 from tests.fuzz.measured import RESPONSE, answered
 
-ROOMS = ("symflex.measurement", "pyuff")
+ROOMS = ("symflex.data.measurement", "pyuff")
 
 
 def seeds():

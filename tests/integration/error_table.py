@@ -16,15 +16,15 @@ from types import SimpleNamespace
 import numpy as np
 from flint import acb, acb_mat, ctx
 
-from symflex.emit.exporters import EXPORTERS
-from symflex.emit.program.verify import doubles
+from symflex.codegen.exporters import EXPORTERS
+from symflex.codegen.program.verify import doubles
 from symflex.errors import ModelError
 from symflex.transfer import bind
 from tests.integration.julia_in_python import functions_of
 from tests.integration.octave import Octave
-from tests.unit.emit.against_balls import BITS, axis_points, worst_errors
-from tests.unit.emit.exportable import DERIVATIONS, derived, public_name
-from tests.unit.emit.test_c_files import compiled, response, value_at
+from tests.unit.codegen.against_balls import BITS, axis_points, worst_errors
+from tests.unit.codegen.exportable import DERIVATIONS, derived, public_name
+from tests.unit.codegen.test_c_files import compiled, response, value_at
 
 
 @cache

@@ -16,12 +16,12 @@ import sympy
 from flint import acb
 
 from symflex import pipeline
-from symflex.emit.array_module import ARRAY_API, JAX, array_module
-from symflex.emit.numpy_module import numpy_module
+from symflex.codegen.array.module import ARRAY_API, JAX, array_module
+from symflex.codegen.numpy.module import numpy_module
 from tests.house.repository import slow_ones, specifications
-from tests.unit.emit.against_balls import axis_points, worst_errors
-from tests.unit.emit.exportable import MASSLESS, PIPE
-from tests.unit.emit.test_numpy_distributed import beam, clamped_end_compliance, specification
+from tests.unit.codegen.against_balls import axis_points, worst_errors
+from tests.unit.codegen.exportable import MASSLESS, PIPE
+from tests.unit.codegen.test_numpy_distributed import beam, clamped_end_compliance, specification
 
 ROOT = Path(__file__).parents[2]
 SPECS = {path.stem: path for path in specifications(ROOT / "derivations", "*/*.toml")}

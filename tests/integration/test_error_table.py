@@ -8,7 +8,7 @@ import pytest
 
 from tests.house.repository import ROOT
 from tests.integration.error_table import WAYS, worst
-from tests.unit.emit.exportable import DERIVATIONS
+from tests.unit.codegen.exportable import DERIVATIONS
 
 pytestmark = [
     pytest.mark.slow,

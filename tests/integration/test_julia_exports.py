@@ -8,14 +8,14 @@ import shutil
 import numpy as np
 import pytest
 
-from symflex.emit.julia import julia_module
-from symflex.emit.program.verify import doubles
+from symflex.codegen.julia import julia_module
+from symflex.codegen.program.verify import doubles
 from symflex.transfer import bind
 from tests.house.repository import slow_ones
 from tests.integration.julia import Julia
 from tests.integration.julia_in_python import functions_of
-from tests.unit.emit.against_balls import axis_points, worst_errors
-from tests.unit.emit.exportable import DERIVATIONS, SPECS, derived, public_name
+from tests.unit.codegen.against_balls import axis_points, worst_errors
+from tests.unit.codegen.exportable import DERIVATIONS, SPECS, derived, public_name
 
 ACCURACY = 1e-13
 COSTLY = ("robot_axis", "two_beams", "pipe_with_flow")

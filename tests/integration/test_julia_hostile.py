@@ -9,10 +9,10 @@ from dataclasses import replace
 import pytest
 
 from symflex import pipeline
-from symflex.emit.julia import julia_module, module_name
+from symflex.codegen.julia import julia_module, module_name
 from tests.integration.julia import Julia
 from tests.integration.julia_in_python import functions_of
-from tests.unit.emit.test_numpy_hostile import HOSTILE, NAMES, SPEC, model_of, renamed, ring_takes
+from tests.unit.codegen.test_numpy_hostile import HOSTILE, NAMES, SPEC, model_of, renamed, ring_takes
 
 JULIA = [
     "$(run(`ls`))",

@@ -13,10 +13,10 @@ from pathlib import Path
 import pytest
 
 from symflex import pipeline
-from symflex.emit.forms import print_form
-from symflex.emit.forms.usage import forms_of
-from symflex.emit.latex import inline_latex, notebook_latex, transfer_function_latex
 from symflex.errors import SymflexError
+from symflex.print.forms import print_form
+from symflex.print.forms.usage import forms_of
+from symflex.print.latex import inline_latex, notebook_latex, transfer_function_latex
 from tests.conftest import REASON
 from tests.house.repository import specifications
 from tests.integration.test_latex_compiles import LABELS
@@ -97,7 +97,7 @@ def test_katex_sets_the_equations_of_every_model(refused, path):
 
 
 def test_katex_sets_labels_of_every_kind(refused):
-    from symflex.emit.latex.label import read_label
+    from symflex.print.latex.label import read_label
 
     sound = [label for label in LABELS if read_label(label) is not None]
     assert sound

@@ -12,10 +12,6 @@ from types import SimpleNamespace
 
 import pytest
 
-from symflex.emit.forms import PrintedForm, print_form
-from symflex.emit.forms.usage import forms_of
-from symflex.emit.latex import latex_document, latex_expression, latex_fragment
-from symflex.emit.latex.expression import Writer
 from symflex.equations import assemble
 from symflex.expressions import (
     FUNCTIONS,
@@ -30,11 +26,15 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.model import load_model
+from symflex.model.spec import read
+from symflex.print.forms import PrintedForm, print_form
+from symflex.print.forms.usage import forms_of
+from symflex.print.latex import latex_document, latex_expression, latex_fragment
+from symflex.print.latex.expression import Writer
 from symflex.roots.locate import locate
-from symflex.spec import read
 from symflex.transfer import bind, derive, derive_all
 from tests.house.repository import specifications
-from tests.unit.emit.models_with_kernels import derived as of_case
+from tests.unit.codegen.models_with_kernels import derived as of_case
 
 pytestmark = pytest.mark.needs_tool("pdflatex")
 

@@ -14,10 +14,10 @@ from pathlib import Path
 import pytest
 
 from symflex import pipeline
-from symflex.emit.latex import DOCUMENT
-from symflex.emit.targets.latex import LatexExporter
+from symflex.codegen.targets.latex import LatexExporter
+from symflex.print.latex import DOCUMENT
 from tests.integration.test_latex_compiles import COMPLAINT, HOSTILE, LABELS, SAFE, UNITS
-from tests.unit.emit.test_numpy_hostile import HOSTILE as TEXTS
+from tests.unit.codegen.test_numpy_hostile import HOSTILE as TEXTS
 
 DERIVATIONS = Path(__file__).parents[2] / "derivations"
 POINTS_PER_MM = 72 / 25.4

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from symflex import pipeline
-from symflex.emit.matlab import matlab_function_file
+from symflex.codegen.matlab import matlab_function_file
 from symflex.transfer import bind
 from tests.integration.octave import Octave
-from tests.unit.emit.against_balls import axis_points, worst_errors
-from tests.unit.emit.exportable import SPECS, derived, public_name
+from tests.unit.codegen.against_balls import axis_points, worst_errors
+from tests.unit.codegen.exportable import SPECS, derived, public_name
 
 pytestmark = pytest.mark.needs_tool("octave")
 

@@ -8,9 +8,9 @@ from dataclasses import replace
 import pytest
 
 from symflex import pipeline
-from symflex.emit.matlab import main_name, matlab_function_file
+from symflex.codegen.matlab import main_name, matlab_function_file
 from tests.integration.octave import Octave
-from tests.unit.emit.test_numpy_hostile import HOSTILE, NAMES, SPEC, model_of, renamed, ring_takes
+from tests.unit.codegen.test_numpy_hostile import HOSTILE, NAMES, SPEC, model_of, renamed, ring_takes
 
 MATLAB = [
     "%{",

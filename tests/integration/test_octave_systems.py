@@ -9,7 +9,7 @@ from __future__ import annotations
 import pytest
 
 from symflex import pipeline
-from symflex.emit.matlab import matlab_function_file
+from symflex.codegen.matlab import matlab_function_file
 from tests.integration.octave import Octave
 
 pytestmark = pytest.mark.needs_tool("octave")

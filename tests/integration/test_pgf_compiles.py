@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 from symflex import pipeline
-from symflex.emit.figures import draw, render
-from symflex.emit.latex import DOCUMENT
-from symflex.emit.targets.latex import LatexExporter
+from symflex.codegen.targets.latex import LatexExporter
+from symflex.figures import draw, render
+from symflex.print.latex import DOCUMENT
 from tests.house.repository import specifications
 from tests.integration.test_latex_compiles import HOSTILE, LABELS
 from tests.integration.test_latex_engines import compiled

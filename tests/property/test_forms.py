@@ -6,10 +6,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from symflex import pipeline
-from symflex.emit.forms import hidden_expressions, print_form
-from symflex.emit.forms.usage import RATIONAL
+from symflex.algebra import degree_in
 from symflex.expressions import format_expression
-from symflex.kernels import degree_in
+from symflex.print.forms import hidden_expressions, print_form
+from symflex.print.forms.usage import RATIONAL
 from tests.contract.exact import Point, read, value_of
 from tests.property.networks import networks, to_toml
 

@@ -9,9 +9,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from symflex import pipeline
-from symflex.emit.forms import hidden_expressions, print_form
-from symflex.emit.forms.usage import forms_of
-from symflex.emit.json_format import derive_json
 from symflex.expressions import (
     Name,
     format_expression,
@@ -22,6 +19,9 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
+from symflex.print.forms import hidden_expressions, print_form
+from symflex.print.forms.usage import forms_of
+from symflex.print.json_format import derive_json
 from tests.contract.exact import read
 from tests.house.repository import EACH_TIME, slow_ones, specifications
 

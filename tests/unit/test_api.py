@@ -13,9 +13,10 @@ import sympy
 
 import symflex
 from symflex.api import budget as api_budget
-from symflex.emit.forms.usage import RATIONAL
 from symflex.errors import BudgetError, UsageError
-from symflex.roots import Budget, winding
+from symflex.print.forms.usage import RATIONAL
+from symflex.roots import Budget
+from symflex.roots.counting import winding
 from tests.unit.roots.distributed import DELAY_LOOP, ROD, SLIDING_FREE
 
 TABLES = {

@@ -24,13 +24,13 @@ from typing import TYPE_CHECKING, Final
 from symflex.errors import SpecError, SymflexError
 from symflex.errors.diagnostic import nearest
 from symflex.model.reading import Reader
+from symflex.model.spec import ArrayValue, BooleanValue, NumberValue, TableValue, parse, read
 from symflex.report.claims.claim import Check, Claim, Publication
 from symflex.report.claims.predicates import PREDICATES
-from symflex.spec import ArrayValue, BooleanValue, NumberValue, TableValue, parse, read
 
 if TYPE_CHECKING:
     from symflex.errors import Span
-    from symflex.spec import Entry
+    from symflex.model.spec import Entry
 
 CLAIMS: Final = "claims.toml"
 VERSION: Final = "symflex-claims"

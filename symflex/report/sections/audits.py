@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.audit.json_format import audit_document
 from symflex.audit.text import VERDICTS
-from symflex.emit.latex import TEXT_WIDTH_MM, formula_latex, model_labels, ratio_latex
-from symflex.emit.latex.label import labels_of
-from symflex.emit.mathml import WIDEST_FRACTION, MathmlWriter, Row, ratio_mathml
+from symflex.print.latex import TEXT_WIDTH_MM, formula_latex, model_labels, ratio_latex
+from symflex.print.latex.label import labels_of
+from symflex.print.mathml import WIDEST_FRACTION, MathmlWriter, Row, ratio_mathml
 from symflex.report.document import (
     Formula,
     Mark,
@@ -115,7 +115,7 @@ def _labels(audit: Audit) -> dict[str, str]:
 
 
 def _mathematics(audit: Audit, expression: Expression) -> Mathematics:
-    from symflex.emit.latex import latex_expression
+    from symflex.print.latex import latex_expression
 
     labels = _labels(audit)
     return Mathematics(MathmlWriter(labels).markup(expression).mathml, latex_expression(expression, labels))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symflex.emit.figures import draw_measured
+from symflex.figures import draw_measured
 from symflex.report.document import Code, text
 from symflex.report.part import Part, picture
 

@@ -5,17 +5,17 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Final
 
-from symflex.emit.forms import counts_of, with_hidden
-from symflex.emit.json_format import derive_document
-from symflex.emit.latex import TEXT_WIDTH_MM, form_labels, ratio_latex, transfer_function_latex
-from symflex.emit.mathml import ratio_mathml, transfer_function_mathml
+from symflex.print.forms import counts_of, with_hidden
+from symflex.print.json_format import derive_document
+from symflex.print.latex import TEXT_WIDTH_MM, form_labels, ratio_latex, transfer_function_latex
+from symflex.print.mathml import ratio_mathml, transfer_function_mathml
 from symflex.report.document import Code, Formula, Mathematics, Notice, Section, labelled, text
 from symflex.report.numerals import counted, unit_text
 from symflex.report.part import Part
 from symflex.report.study import MOST_FUNCTIONS
 
 if TYPE_CHECKING:
-    from symflex.emit.forms import PrintedForm
+    from symflex.print.forms import PrintedForm
     from symflex.report.document import Block, Run
     from symflex.report.study import Study
     from symflex.transfer import TransferFunction

@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from symflex.emit.exporters import EXPORTERS
+from symflex.codegen.exporters import EXPORTERS
 from symflex.errors import SymflexError
 from symflex.report.document import Code, Link, Notice, Table, columns, text
 from symflex.report.part import Part, code_of
 from symflex.report.study import attempt, said
 
 if TYPE_CHECKING:
+    from symflex.analysis.response import FrequencyResponse
     from symflex.report.document import Block, Cell
     from symflex.report.study import Study
-    from symflex.response import FrequencyResponse
 
 TARGETS: Final = ("numpy", "c")
 """Keys of ``EXPORTERS`` that a report writes."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from symflex.emit.figures import FIGURES, LOOP_FIGURES, draw, draw_loop, draw_measured, unavailable
 from symflex.errors import Diagnostic, SymflexError, UncertifiedError
+from symflex.figures import FIGURES, LOOP_FIGURES, draw, draw_loop, draw_measured, unavailable
 from symflex.model import Figure
 from symflex.report.document import Notice
 from symflex.report.part import Part, code_of, picture

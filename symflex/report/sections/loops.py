@@ -6,19 +6,19 @@ import json
 from math import tau
 from typing import TYPE_CHECKING, Final
 
-from symflex.emit.stability import bandwidth_text, nominal_text
 from symflex.errors import SymflexError, UncertifiedError
+from symflex.loops import degrees
+from symflex.loops.text import bandwidth_text, nominal_text
 from symflex.report.document import Code, Mark, Notice, Section, Table, columns, text
 from symflex.report.part import Part, code_of
 from symflex.report.sections.roots import stability_mark
-from symflex.stability import degrees
 
 if TYPE_CHECKING:
     from flint import arb
 
+    from symflex.loops import DynamicColocation, StabilityMap
     from symflex.report.document import Block, Cell
     from symflex.report.study import Study
-    from symflex.stability import DynamicColocation, StabilityMap
 
 DIGITS: Final = 10
 HEADS: Final = columns(

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symflex.emit.latex import model_labels, parameter_table
-from symflex.emit.latex.table import decimal_text
-from symflex.emit.mathml import label_mathml
+from symflex.print.latex import model_labels, parameter_table
+from symflex.print.latex.table import decimal_text
+from symflex.print.mathml import label_mathml
 from symflex.report.document import Code, Mathematics, Table, columns
 from symflex.report.numerals import exponents, unit_text
 from symflex.report.part import Part

@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Final
 
-from symflex.emit.latex import ratio_latex, root_table
-from symflex.emit.latex.table import KINDS, damping_text, frequency_text, one_of_each_pair, roots_of
-from symflex.emit.text import region_text
+from symflex.analysis.explanation import explanation_paragraphs
 from symflex.errors import SymflexError
-from symflex.explanation import explanation_paragraphs
+from symflex.print.latex import ratio_latex, root_table
+from symflex.print.latex.table import KINDS, damping_text, frequency_text, one_of_each_pair, roots_of
+from symflex.print.text import region_text
 from symflex.report.document import Mark, Mathematics, Notice, Section, Table, columns, text
 from symflex.report.numerals import exponents
 from symflex.report.part import Part, code_of
@@ -17,8 +17,8 @@ from symflex.report.sections.equations import ratio_line
 from symflex.report.study import attempt, said
 
 if TYPE_CHECKING:
-    from symflex.emit.latex.table import Entry
-    from symflex.explanation import ZeroExplanation
+    from symflex.analysis.explanation import ZeroExplanation
+    from symflex.print.latex.table import Entry
     from symflex.report.document import Block, Cell, Tone
     from symflex.report.study import Study
     from symflex.roots import PoleZeroMap

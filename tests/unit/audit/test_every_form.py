@@ -10,10 +10,10 @@ import pytest
 
 from symflex import pipeline
 from symflex.audit import judge
-from symflex.emit.forms import FORMS, print_form
 from symflex.errors import UsageError
 from symflex.expressions import quotient
 from symflex.model import Published
+from symflex.print.forms import FORMS, print_form
 from tests.house.repository import ROOT, in_turns
 
 CLASSICS = sorted((ROOT / "derivations" / "classics").glob("*.toml"))

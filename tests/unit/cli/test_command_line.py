@@ -14,8 +14,8 @@ import pytest
 from symflex import __version__, pipeline
 from symflex.cli import COMMANDS
 from symflex.cli.reporting import listed
-from symflex.elements import ELEMENTS
 from symflex.errors import BudgetError, Diagnostic
+from symflex.library.elements import ELEMENTS
 from tests.house.repository import in_turns
 from tests.unit.cli.commands import DERIVATIONS, ROOT, TWO_MASS
 

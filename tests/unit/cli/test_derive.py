@@ -5,11 +5,11 @@ from math import gcd
 import pytest
 
 from symflex import pipeline
-from symflex.emit.forms.usage import RATIONAL, forms_of
+from symflex.print.forms.usage import RATIONAL, forms_of
 from tests.contract.exact import read
 from tests.house.repository import in_turns
 from tests.unit.cli.commands import DERIVATIONS, TWO_MASS
-from tests.unit.emit.residues import point_for
+from tests.unit.print.residues import point_for
 
 LONG = {"six_mass", "fitted_resonances", "polynomial_resonance"}
 """Their forms take seconds to print and to read."""

@@ -6,7 +6,7 @@ from importlib.resources import files
 import pytest
 
 from symflex.cli.new import TEMPLATES
-from symflex.emit.exporters import EXPORTERS
+from symflex.codegen.exporters import EXPORTERS
 
 
 @pytest.mark.parametrize(

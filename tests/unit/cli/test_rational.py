@@ -2,8 +2,8 @@ from __future__ import annotations
 
 import pytest
 
+from tests.unit.analysis.rods import CLAMPED_ROD
 from tests.unit.cli.commands import ROOT
-from tests.unit.rational.rods import CLAMPED_ROD
 
 KEYS = {
     "schema", "tf", "quantity", "unit", "form", "modes", "exact", "certified", "gain", "num", "den", "poles",
@@ -24,7 +24,7 @@ def test_json_has_the_documented_keys(rod, form):
     assert (done.code, done.err) == (0, "")
     assert set(done.json) == KEYS
     page = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
-    section = page.partition("### `symflex.rational/1`")[2].partition("\n#")[0]
+    section = page.partition("### `symflex.analysis.rational/1`")[2].partition("\n#")[0]
     assert all(f"`{key}`" in section for key in KEYS - {"schema"})
 
 

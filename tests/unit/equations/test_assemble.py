@@ -10,10 +10,10 @@ import pytest
 
 import symflex
 from symflex import pipeline
-from symflex.elements import Variable
+from symflex.algebra import Factored
 from symflex.equations.equations import Equations
 from symflex.errors import BudgetError, ModelError
-from symflex.kernels import Factored
+from symflex.library.elements import Variable
 
 ROOM = import_module("symflex.equations.assemble")
 HEADER = "symflex = 1\n[parameters]\n"

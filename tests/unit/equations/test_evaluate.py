@@ -8,13 +8,13 @@ from fractions import Fraction
 import pytest
 
 from symflex import pipeline
-from symflex.elements import LinearForm, Variable
+from symflex.algebra import PRIME, Factored, Ring, residue
 from symflex.equations.coefficients import read_equation
 from symflex.equations.evaluate import Evaluator, exact_root, extent
 from symflex.errors import BudgetError, ModelError, Source, Span, Text
 from symflex.expressions import Name, format_expression, names, parse_equation
 from symflex.expressions import parse as parse_text
-from symflex.kernels import PRIME, Factored, Ring, residue
+from symflex.library.elements import LinearForm, Variable
 from symflex.model import scope_of
 
 MODEL = pipeline.loads(

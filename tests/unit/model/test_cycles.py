@@ -10,10 +10,10 @@ import sympy
 
 import symflex
 from symflex import pipeline
-from symflex.emit.exporters import EXPORTERS
-from symflex.emit.mathml.equation import transfer_function_mathml
+from symflex.codegen.exporters import EXPORTERS
 from symflex.errors import SpecError
 from symflex.model import ExactValue
+from symflex.print.mathml.equation import transfer_function_mathml
 
 POINT = 3 + 40j
 LOW_PASS = """symflex = 1

@@ -6,9 +6,9 @@ from fractions import Fraction
 
 import pytest
 
-from symflex.elements import Variable
 from symflex.errors import Source, SpecError
 from symflex.expressions import Call, Derivative, Name, Number, format_expression, names
+from symflex.library.elements import Variable
 from symflex.model import load_model, scope_of, with_numbers
 from symflex.quantities import unit_of
 

@@ -7,8 +7,8 @@ from itertools import product
 from flint import arb
 from mpmath import mpc
 
-from symflex.roots.axis_function import Enclosures
-from symflex.roots.harmonic_sum import LosslessFunction
+from symflex.roots.axes.axis_function import Enclosures
+from symflex.roots.axes.harmonic_sum import LosslessFunction
 
 RATES, DEGREES = (1.25, 0.75, 0.5), (1, 1, 2)
 """Of three arguments, of x twice and of x^2."""

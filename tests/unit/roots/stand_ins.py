@@ -6,8 +6,8 @@ from flint import arb
 
 from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic
+from symflex.roots.distributed.side import Side
 from symflex.roots.root import Root
-from symflex.roots.side import Side
 from tests.unit.roots.distributed import ROD, bound
 
 OVER = BudgetError(Diagnostic("SF506", "the time given is over"))

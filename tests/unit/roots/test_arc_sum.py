@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from flint import acb, arb
 
-from symflex.roots.arc_sum import ArcSum, Exponential, _Arc, _most
+from symflex.roots.counting.arc_sum import ArcSum, Exponential, _Arc, _most
+from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.precision import precision
-from symflex.roots.winding import RootOnPathError
 
 
 @pytest.fixture(autouse=True)

@@ -8,7 +8,7 @@ import pytest
 from flint import arb
 from mpmath import mp, mpf
 
-from symflex.roots.axis_function import (
+from symflex.roots.axes.axis_function import (
     FLOAT_BITS,
     IMAGINARY,
     REAL,
@@ -17,7 +17,7 @@ from symflex.roots.axis_function import (
     Wave,
     _products,
 )
-from symflex.roots.axis_root import CLOSE, AxisRoots, bits_of, bracketed, changes_sign
+from symflex.roots.axes.axis_root import CLOSE, AxisRoots, bits_of, bracketed, changes_sign
 from symflex.roots.precision import precision
 
 BITS = 300

@@ -11,9 +11,9 @@ from mpmath import cos, findroot, mp, mpf, sin, sinh, sqrt, tan, tanh
 
 from symflex.budget import Budget
 from symflex.roots import ROOT_FINDERS, KernelProblem, Modes
-from symflex.roots.axis_scan import sign_changes
-from symflex.roots.kernel_function import KernelFunction
-from symflex.roots.winding import Winding
+from symflex.roots.axes.axis_scan import sign_changes
+from symflex.roots.counting.winding import Winding
+from symflex.roots.distributed.kernel_function import KernelFunction
 from tests.unit.roots.distributed import ROD, SLIDING_FREE, bound
 
 CLOSE = 1e-6

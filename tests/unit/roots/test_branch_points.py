@@ -9,10 +9,10 @@ from flint import acb, arb
 
 from symflex.budget import Budget
 from symflex.roots import Modes
-from symflex.roots.local_series import local_series
+from symflex.roots.counting.local_series import local_series
+from symflex.roots.distributed.side import Side
 from symflex.roots.locate import locate
 from symflex.roots.precision import precision
-from symflex.roots.side import Side
 from tests.unit.roots.distributed import bound
 
 STEEL = 'E = "200 GPa", I = "4000 mm^4", rho = "8000 kg/m^3", A = "500 mm^2", l = "1 m"'

@@ -10,9 +10,9 @@ from mpmath import cos, findroot, mpf, pi, sin
 from symflex import pipeline
 from symflex.errors import BudgetError
 from symflex.roots import Budget, Modes, precision
+from symflex.roots.distributed.side import Proof, Side
 from symflex.roots.locate import locate
 from symflex.roots.root import overlap
-from symflex.roots.side import Proof, Side
 
 # Rods of equal travel time between ground and a mass: that they swing against each other while it rests is
 # hidden, at n pi.

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from symflex import pipeline
+from symflex.analysis.response import respond
 from symflex.errors import BudgetError, ModelError
-from symflex.response import respond
 from symflex.roots import Modes
 from symflex.roots.locate import locate
 from tests.unit.roots.distributed import BEAM, PARAMETERS, bound

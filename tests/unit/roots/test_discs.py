@@ -11,7 +11,7 @@ from flint import acb, acb_poly, arb
 
 from symflex.budget import Budget
 from symflex.roots import precision
-from symflex.roots.discs import (
+from symflex.roots.polynomials.discs import (
     CENTRE_STEPS,
     NEWTON_STEPS,
     Disc,

@@ -13,7 +13,8 @@ from mpmath import cos, cosh, findroot, mp, mpc, mpf, pi, sin, sinh, sqrt, tan
 
 from symflex import pipeline
 from symflex.errors import BudgetError
-from symflex.roots import Band, Budget, Everything, Modes, Rectangle, winding
+from symflex.roots import Band, Budget, Everything, Modes, Rectangle
+from symflex.roots.counting import winding
 from symflex.roots.locate import locate
 from tests.unit.roots.distributed import (
     DELAY_LOOP,

@@ -10,7 +10,8 @@ import pytest
 from flint import arb
 
 from symflex.roots import Band, Modes, Rectangle
-from symflex.roots.domains import (
+from symflex.roots.counting.winding import Cell
+from symflex.roots.distributed.domains import (
     NEIGHBOURHOOD,
     WIDER,
     decider,
@@ -20,7 +21,6 @@ from symflex.roots.domains import (
     parts,
 )
 from symflex.roots.root import Root
-from symflex.roots.winding import Cell
 
 E = NEIGHBOURHOOD
 

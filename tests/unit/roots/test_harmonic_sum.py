@@ -10,9 +10,9 @@ from flint import arb
 from mpmath import mp, mpc, mpf
 
 from symflex.roots import precision
-from symflex.roots.axis_function import IMAGINARY, REAL
-from symflex.roots.harmonic_sum import LosslessFunction, lossless_function
-from symflex.roots.kernel_function import KernelFunction
+from symflex.roots.axes.axis_function import IMAGINARY, REAL
+from symflex.roots.axes.harmonic_sum import LosslessFunction, lossless_function
+from symflex.roots.distributed.kernel_function import KernelFunction
 from tests.unit.roots.distributed import (
     DELAY_LOOP,
     KELVIN_VOIGT,

@@ -8,7 +8,7 @@ from flint import acb, acb_poly, arb
 from symflex.budget import Budget
 from symflex.errors import BudgetError, UncertifiedError
 from symflex.roots import PolynomialInS, precision
-from symflex.roots.isolation import first_bits, goal_of, isolations
+from symflex.roots.polynomials.isolation import first_bits, goal_of, isolations
 from tests.unit.roots.polynomials import with_pi
 
 # (s - 1)(s + 2)((s + 3)^2 + 16), and the roots in the closed upper half plane

@@ -9,9 +9,9 @@ import pytest
 from flint import acb, arb
 from mpmath import mp, mpc
 
+from symflex.algebra import Factored
 from symflex.errors import ModelError, UncertifiedError
-from symflex.kernels import Factored
-from symflex.roots.kernel_function import (
+from symflex.roots.distributed.kernel_function import (
     KernelFunction,
     _KernelFactors,
     _parity,

@@ -10,10 +10,10 @@ import pytest
 from symflex.budget import Budget
 from symflex.errors import BudgetError, ModelError
 from symflex.roots import Band, KernelProblem, Modes
+from symflex.roots.distributed.side import ENGINES
+from symflex.roots.distributed.vanishing import _value, without_lengths_of_zero
 from symflex.roots.kernel_finder import KernelRootFinder
 from symflex.roots.locate import locate
-from symflex.roots.side import ENGINES
-from symflex.roots.vanishing import _value, without_lengths_of_zero
 from tests.unit.roots.distributed import DELAY_LOOP, ROD, bound
 
 

@@ -10,11 +10,11 @@ from flint import acb, arb, ctx
 from mpmath import exp, findroot, mp, mpf, sin
 
 from symflex.roots import ROOT_FINDERS, KernelProblem, Mode, Modes
-from symflex.roots.arc_sum import ArcSum, Exponential
-from symflex.roots.axis_function import IMAGINARY, REAL, AxisFunction, Enclosures, Wave
-from symflex.roots.axis_root import AxisRoots, bits_of, bracketed, changes_sign
+from symflex.roots.axes.axis_function import IMAGINARY, REAL, AxisFunction, Enclosures, Wave
+from symflex.roots.axes.axis_root import AxisRoots, bits_of, bracketed, changes_sign
+from symflex.roots.counting.arc_sum import ArcSum, Exponential
+from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.precision import precision
-from symflex.roots.winding import RootOnPathError
 from tests.unit.roots.distributed import FREE, PINNED_IN_THE_MIDDLE, ROD, SLIDING_FREE, bound
 
 SAMPLES = 60_000

@@ -11,9 +11,9 @@ from flint import acb, arb
 from mpmath import mp, mpf
 
 from symflex.roots import precision
-from symflex.roots.axis_function import IMAGINARY, REAL
-from symflex.roots.lossless import LosslessSearch
-from symflex.roots.winding import RootOnPathError
+from symflex.roots.axes.axis_function import IMAGINARY, REAL
+from symflex.roots.axes.lossless import LosslessSearch
+from symflex.roots.counting.winding import RootOnPathError
 from tests.unit.roots.lossless_functions import RATES, function_of
 
 DIGITS = 20

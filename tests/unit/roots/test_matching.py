@@ -13,7 +13,8 @@ import pytest
 from symflex import pipeline
 from symflex.errors import BudgetError
 from symflex.roots import Band, Mode, Modes, Rectangle
-from symflex.roots.distributed import (
+from symflex.roots.counting.winding import Cell
+from symflex.roots.distributed.distributed import (
     MATCHING_ROUNDS,
     _chosen,
     _degenerate_points,
@@ -23,7 +24,6 @@ from symflex.roots.distributed import (
     _match,
     default_region,
 )
-from symflex.roots.winding import Cell
 from tests.unit.roots.distributed import KELVIN_VOIGT, ON_A_FOUNDATION, ROD, SLIDING_FREE, bound
 from tests.unit.roots.stand_ins import places, root
 

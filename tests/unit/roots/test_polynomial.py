@@ -11,9 +11,9 @@ from flint import acb, arb, fmpq
 
 from symflex.budget import Budget
 from symflex.roots import POLYNOMIAL, Everything, PolynomialInS, Root, RootProblem, precision
-from symflex.roots.discs import Disc
-from symflex.roots.durand_kerner import propose_by_durand_kerner
-from symflex.roots.polynomial import (
+from symflex.roots.polynomials.discs import Disc
+from symflex.roots.polynomials.durand_kerner import propose_by_durand_kerner
+from symflex.roots.polynomials.polynomial import (
     PolynomialRootFinder,
     _by_degree,
     _conjugates,
@@ -27,7 +27,7 @@ from symflex.roots.polynomial import (
     find_polynomial_roots,
     in_order,
 )
-from symflex.roots.squarefree import Part, Splitting
+from symflex.roots.polynomials.squarefree import Part, Splitting
 
 CORNERS = [(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]
 

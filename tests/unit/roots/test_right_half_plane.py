@@ -6,10 +6,10 @@ import mpmath
 import pytest
 
 from symflex import pipeline
-from symflex.emit.text import roots_text
+from symflex.print.text import roots_text
 from symflex.roots import Band, Everything, Mode, Modes, PoleZeroMap, Rectangle
-from symflex.roots.right_half_plane import StabilityVerdict
-from symflex.roots.tail import Tail
+from symflex.roots.counting.right_half_plane import StabilityVerdict
+from symflex.roots.counting.tail import Tail
 
 HAYES = """
 symflex = 1

@@ -8,16 +8,16 @@ from math import exp, inf, log, pi
 import pytest
 from flint import acb, arb
 
+from symflex.algebra import Factored
 from symflex.budget import Budget
 from symflex.errors import BudgetError
-from symflex.kernels import Factored
-from symflex.roots import transcendental
-from symflex.roots.argument_principle import CertifiedWinding
-from symflex.roots.kernel_function import KernelFunction
+from symflex.roots.counting.argument_principle import CertifiedWinding
+from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
+from symflex.roots.distributed.distributed import transcendental
+from symflex.roots.distributed.kernel_function import KernelFunction
+from symflex.roots.distributed.transcendental import RootSearch
 from symflex.roots.precision import precision
 from symflex.roots.root import Root
-from symflex.roots.transcendental import RootSearch
-from symflex.roots.winding import Cell, RootOnPathError, Winding
 from tests.unit.roots.distributed import DELAY_LOOP, bound
 
 DIGITS = 15

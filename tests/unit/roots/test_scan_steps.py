@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from symflex.roots.axis_scan import (
+from symflex.roots.axes.axis_scan import (
     LONGEST,
     MOST,
     _changes_sign,
@@ -21,7 +21,7 @@ from symflex.roots.axis_scan import (
     _step_by_step,
     sign_changes,
 )
-from symflex.roots.winding import RootOnPathError
+from symflex.roots.counting.winding import RootOnPathError
 
 
 class Ray:

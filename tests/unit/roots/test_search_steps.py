@@ -9,10 +9,10 @@ from types import SimpleNamespace
 import pytest
 from flint import acb, arb
 
-from symflex.roots import transcendental
+from symflex.roots.counting.winding import Cell, RootOnPathError
+from symflex.roots.distributed.distributed import transcendental
+from symflex.roots.distributed.transcendental import NEAR, RIGHT_HALF, SHARES, RootSearch, _is_in
 from symflex.roots.root import Root
-from symflex.roots.transcendental import NEAR, RIGHT_HALF, SHARES, RootSearch, _is_in
-from symflex.roots.winding import Cell, RootOnPathError
 
 DIGITS = 17
 PLACE = 0.7 + 1.9j

@@ -8,17 +8,22 @@ from math import exp, inf, log, pi
 
 import pytest
 
+from symflex.algebra import Factored
 from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError
-from symflex.kernels import Factored
-from symflex.roots import Band, Everything, Mode, Modes, Rectangle, distributed
-from symflex.roots.distributed import _degenerate_points, _Searched, locate_distributed
+from symflex.roots import Band, Everything, Mode, Modes, Rectangle
+from symflex.roots.counting.right_half_plane import DEGENERATE, PASSIVE, RightHalfPlane
+from symflex.roots.counting.winding import Cell
+from symflex.roots.distributed.distributed import (
+    _degenerate_points,
+    _Searched,
+    distributed,
+    locate_distributed,
+)
+from symflex.roots.distributed.side import LOSSLESS, Proof
+from symflex.roots.distributed.transcendental import HIGHEST
 from symflex.roots.pole_zero_map import HiddenRoot
-from symflex.roots.polynomial import POLYNOMIAL
-from symflex.roots.right_half_plane import DEGENERATE, PASSIVE, RightHalfPlane
-from symflex.roots.side import LOSSLESS, Proof
-from symflex.roots.transcendental import HIGHEST
-from symflex.roots.winding import Cell
+from symflex.roots.polynomials.polynomial import POLYNOMIAL
 from symflex.transfer import HiddenFactor
 from tests.unit.roots.distributed import DELAY_LOOP, LINE, ON_A_FOUNDATION, ROD, bound
 from tests.unit.roots.stand_ins import OVER, places, root

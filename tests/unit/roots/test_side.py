@@ -8,12 +8,13 @@ from math import exp, inf, log, pi
 import mpmath
 import pytest
 
+from symflex.algebra import Factored
+from symflex.algebra.origin import Origin
 from symflex.budget import Budget
 from symflex.errors import BudgetError, UncertifiedError
-from symflex.kernels import Factored
-from symflex.kernels.origin import Origin
 from symflex.roots import Band, Modes, Rectangle
-from symflex.roots.side import (
+from symflex.roots.counting.winding import Cell, RootOnPathError
+from symflex.roots.distributed.side import (
     GUESS_AND_PROVE,
     LOSSLESS,
     SUBDIVISION,
@@ -27,8 +28,7 @@ from symflex.roots.side import (
     groups,
     polynomial_in_s,
 )
-from symflex.roots.transcendental import MODES_LIMIT
-from symflex.roots.winding import Cell, RootOnPathError
+from symflex.roots.distributed.transcendental import MODES_LIMIT
 from tests.unit.roots.distributed import DELAY_LOOP, FREE, KELVIN_VOIGT, ROD, bound
 from tests.unit.roots.stand_ins import root, side
 

@@ -9,10 +9,11 @@ from flint import acb, acb_poly, arb, arb_poly, fmpz_poly
 
 from symflex.budget import Budget
 from symflex.errors import BudgetError
-from symflex.roots import precision, singly
-from symflex.roots.discs import LevelPolynomial
+from symflex.roots import precision
+from symflex.roots.polynomials import singly
+from symflex.roots.polynomials.discs import LevelPolynomial
+from symflex.roots.polynomials.singly import _holds_one, _single, differs_from_zero, prove_singly
 from symflex.roots.problem import PolynomialInS
-from symflex.roots.singly import _holds_one, _single, differs_from_zero, prove_singly
 
 
 def with_roots(*factors):

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 from flint import acb
 
-from symflex.kernels import Factored
-from symflex.roots import square_free_kernels
+from symflex.algebra import Factored
+from symflex.roots.distributed.distributed import square_free_kernels
+from symflex.roots.distributed.square_free_kernels import without_squares
 from symflex.roots.precision import precision
-from symflex.roots.square_free_kernels import without_squares
 from tests.unit.roots.distributed import DELAY_LOOP, ROD, SLIDING_FREE, bound
 
 PLACES = [0.7, 2 + 3j, 1 + 8j]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symflex.roots import PolynomialInS, RootProblem
-from symflex.roots.squarefree import split
+from symflex.roots.polynomials.squarefree import split
 from tests.unit.roots.polynomials import from_roots, problem, with_pi, with_root_of_two
 
 

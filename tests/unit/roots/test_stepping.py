@@ -13,7 +13,7 @@ from flint import acb, arb
 from symflex.budget import Budget
 from symflex.errors import BudgetError
 from symflex.roots import precision
-from symflex.roots.argument_principle import (
+from symflex.roots.counting.argument_principle import (
     CertifiedWinding,
     Circle,
     Line,
@@ -22,11 +22,11 @@ from symflex.roots.argument_principle import (
     _principal,
     _whole,
 )
-from symflex.roots.kernel_function import Sample
-from symflex.roots.local_series import LocalSeries
-from symflex.roots.series_steps import BLURRED, MOST, SeriesSteps, _followed
-from symflex.roots.stepping import FORGETTING, GOAL, NEARER, ROOM, angle, deviation, total_turn
-from symflex.roots.winding import Cell, RootOnPathError, Winding, continuous_step
+from symflex.roots.counting.local_series import LocalSeries
+from symflex.roots.counting.series_steps import BLURRED, MOST, SeriesSteps, _followed
+from symflex.roots.counting.stepping import FORGETTING, GOAL, NEARER, ROOM, angle, deviation, total_turn
+from symflex.roots.counting.winding import Cell, RootOnPathError, Winding, continuous_step
+from symflex.roots.distributed.kernel_function import Sample
 from tests.unit.roots.known_functions import KnownFunction, exact
 
 

@@ -12,8 +12,7 @@ from flint import acb, arb
 
 from symflex import pipeline
 from symflex.roots import precision
-from symflex.roots.exponential_sum import MOST_EXPONENTIALS
-from symflex.roots.tail import (
+from symflex.roots.counting.tail import (
     ADVANCED,
     EVERY_DELAYED,
     NARROW,
@@ -30,6 +29,7 @@ from symflex.roots.tail import (
     _turned,
     right_tail,
 )
+from symflex.roots.distributed.exponential_sum import MOST_EXPONENTIALS
 
 
 def bound(text):
@@ -139,7 +139,7 @@ def test_all_sectors_of_the_quadrant_are_asked(monkeypatch):
         asked.add(sector)
         return _turned(arguments, sector)
 
-    monkeypatch.setattr("symflex.roots.tail._turned", turned)
+    monkeypatch.setattr("symflex.roots.counting.tail._turned", turned)
     assert tail(delayed("s + 10*D"), 20.0).radius == 20
     assert asked == set(range(SECTORS))
 

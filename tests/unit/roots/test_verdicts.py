@@ -11,8 +11,8 @@ from flint import acb
 
 from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic
-from symflex.roots import right_half_plane
-from symflex.roots.right_half_plane import (
+from symflex.roots.counting import right_half_plane
+from symflex.roots.counting.right_half_plane import (
     ACCUMULATING,
     NOT_COUNTED,
     NOT_EXAMINED,
@@ -22,9 +22,9 @@ from symflex.roots.right_half_plane import (
     judge,
     search_right,
 )
-from symflex.roots.side import Proof
-from symflex.roots.tail import Tail
-from symflex.roots.winding import RootOnPathError
+from symflex.roots.counting.tail import Tail
+from symflex.roots.counting.winding import RootOnPathError
+from symflex.roots.distributed.side import Proof
 from tests.unit.roots.stand_ins import root as pole
 
 LEFT, RIGHT, TWICE = pole(-1), pole(2, 3), pole(1, times=2)

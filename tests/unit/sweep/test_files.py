@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from symflex.cli import run
-from symflex.emit.figures import draw_sweep, render
-from symflex.emit.sweep_files import WRITERS, netcdf_bytes, npz_bytes, read_sweep, sweep_bytes
 from symflex.errors import DataError, UsageError
+from symflex.figures import draw_sweep, render
+from symflex.sweep.files import WRITERS, netcdf_bytes, npz_bytes, read_sweep, sweep_bytes
 from tests.unit.sweep.models import ALGEBRAIC, LOOP, OSCILLATOR, SLIDING_FREE, oscillator
 
 

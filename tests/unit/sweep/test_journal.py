@@ -10,10 +10,10 @@ import sys
 import numpy as np
 import pytest
 
-from symflex.emit.lock import held
-from symflex.emit.sweep_files import archive, npz_bytes, read_sweep
-from symflex.emit.sweep_journal import MAGIC, open_journal
 from symflex.errors import SymflexError, UsageError
+from symflex.files.lock import held
+from symflex.sweep.files import archive, npz_bytes, read_sweep
+from symflex.sweep.journal import MAGIC, open_journal
 from symflex.sweep.run import run_sweep
 from tests.unit.sweep.test_run import task_and_design
 
@@ -127,7 +127,7 @@ def test_what_held_an_output_is_gone_afterwards(tmp_path):
 
 def test_the_lock_of_a_process_that_was_killed_holds_nothing(tmp_path):
     script = (
-        "import os, signal, sys; from pathlib import Path; from symflex.emit.lock import held\n"
+        "import os, signal, sys; from pathlib import Path; from symflex.files.lock import held\n"
         "with held(Path(sys.argv[1])): os.kill(os.getpid(), signal.SIGKILL)"
     )
     done = subprocess.run([sys.executable, "-c", script, str(tmp_path / "a.nc")], check=False)

@@ -13,10 +13,10 @@ import pytest
 
 import symflex
 from symflex import pipeline
-from symflex.emit.sweep_files import npz_bytes
-from symflex.emit.sweep_journal import open_journal
 from symflex.errors import BudgetError, UsageError
 from symflex.sweep import chunk_size, read_design, run_sweep, sweep_key
+from symflex.sweep.files import npz_bytes
+from symflex.sweep.journal import open_journal
 from tests.house.repository import ROOT
 from tests.unit.sweep.models import LOOP, SLIDING_FREE, oscillator
 

@@ -8,7 +8,7 @@ from random import Random
 import pytest
 import sympy
 
-from symflex.kernels import Factored, Ring
+from symflex.algebra import Factored, Ring
 from symflex.transfer.cancel import cancel
 
 RING = Ring(("s", "k", "b"))

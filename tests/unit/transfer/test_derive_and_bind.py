@@ -12,8 +12,8 @@ import pytest
 from flint import acb, arb, ctx
 
 from symflex import pipeline
+from symflex.algebra import Factored, Ring
 from symflex.errors import ModelError, SpecError, UsageError
-from symflex.kernels import Factored, Ring
 from symflex.transfer.cancel import cancel
 
 HEADER = "symflex = 1\n[parameters]\n"

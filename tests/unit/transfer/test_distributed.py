@@ -7,9 +7,9 @@ import pytest
 from flint import acb, ctx
 
 from symflex import pipeline
+from symflex.algebra import degree_in
+from symflex.algebra.origin import Origin
 from symflex.errors import ModelError
-from symflex.kernels import degree_in
-from symflex.kernels.origin import Origin
 from symflex.transfer import bind
 
 HEAD = """

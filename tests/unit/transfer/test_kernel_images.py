@@ -6,8 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from symflex.kernels import Dispersion, Factored, Ring, propagate
-from symflex.kernels.exponentials import Exponentials
+from symflex.algebra import Dispersion, Factored, Ring, propagate
+from symflex.algebra.exponentials import Exponentials
 from symflex.transfer.kernel_images import KernelImages
 
 BASE = Ring(("s", "k", "l"))

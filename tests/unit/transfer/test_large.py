@@ -10,9 +10,9 @@ from flint import acb, ctx
 
 from benchmarks.chains import specification
 from symflex import pipeline
-from symflex.elimination import Determinants
-from symflex.emit.forms import print_form
+from symflex.equations.elimination import Determinants
 from symflex.errors import BudgetError
+from symflex.print.forms import print_form
 from symflex.transfer.expansion import Expansion
 from symflex.transfer.line import DeterminantsOnLine
 

@@ -6,8 +6,6 @@ from flint import acb
 from hypothesis import given
 
 from symflex import pipeline
-from symflex.emit.forms import nested_form
-from symflex.emit.json_format import derive_json
 from symflex.errors import ModelError, Source, Span, Text, UsageError
 from symflex.expressions import (
     Call,
@@ -20,6 +18,8 @@ from symflex.expressions import (
     Sum,
     parse,
 )
+from symflex.print.forms import nested_form
+from symflex.print.json_format import derive_json
 from symflex.transfer import bind, bind_nested
 from tests.property.networks import networks, reciprocal_networks, to_toml
 from tests.property.test_random_networks import POINTS, assert_close, pairs, quiet, reference

@@ -1,0 +1,136 @@
+"""Dispersion relations, wavenumbers and the kernels made of them: what a transfer function holds besides s.
+
+A distributed element's field equations ``z' = A(s) z`` have a characteristic polynomial in the spatial
+exponent lambda. Its roots are the wavenumbers; hyperbolic and circular functions of a wavenumber times a
+length are the kernels. Both are generators of the ring, with exact definitions kept here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from collections.abc import Container
+
+    from symflex.algebra.factored import Factored
+
+DispersionKind = Literal["exponential", "wave", "bending", "pair", "general"]
+KernelFunction = Literal["cosh", "sinh", "cos", "sin", "exp", "fundamental"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Dispersion:
+    """The characteristic polynomial of a set of field equations, and what its roots are called.
+
+    Parameters
+    ----------
+    name : str
+        The field, element or block it was first needed for.
+    kind : str
+        ``exponential``: no roots but the shift; ``wave``: ``gamma^2 = -c_0``; ``bending``: ``4 mu^4 = c_0``,
+        the four roots ``mu*(+-1 +-j)``; ``pair``: ``lambda^4 + c_2 lambda^2 + c_0`` with roots
+        ``+-lambda_1``, ``+-lambda_2``; ``general``: any order, roots without a name.
+    characteristic : tuple of Factored
+        ``c_0, ..., c_(n-1)`` of the monic polynomial whose roots are the exponents plus ``shift``; rational
+        in s and the parameters. Empty for ``exponential``.
+    shift : Factored
+        Every solution is ``exp(-shift*x)`` times one of the polynomial above; zero for most.
+    wavenumbers : tuple of str
+        Generator names: none, ``(gamma,)``, ``(mu,)`` or ``(lambda_1, lambda_2)``.
+    """
+
+    name: str
+    kind: DispersionKind
+    characteristic: tuple[Factored, ...]
+    shift: Factored
+    wavenumbers: tuple[str, ...] = ()
+
+    @property
+    def order(self) -> int:
+        """Order of the scalar differential equation in x."""
+        return max(len(self.characteristic), 1)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Kernel:
+    """A generator that is a transcendental function of s.
+
+    Parameters
+    ----------
+    generator : str
+        Its name in the ring.
+    function : str
+        ``cosh``, ``sinh``, ``cos``, ``sin`` of wavenumber times length; ``exp`` for ``exp(-shift*length)``;
+        ``fundamental`` for the derivative of the given order, at x = length, of the solution h of the
+        characteristic equation with ``h(0) = ... = h^(n-2)(0) = 0`` and ``h^(n-1)(0) = 1``.
+    dispersion : Dispersion
+        Whose wavenumber it is a function of.
+    wavenumber : str
+        Generator of the wavenumber; empty for ``exp`` and ``fundamental``.
+    length : Factored
+        [m]; of the parameters alone. For a delay, a time [s].
+    order : int
+        Of the derivative, for ``fundamental``.
+    """
+
+    generator: str
+    function: KernelFunction
+    dispersion: Dispersion
+    wavenumber: str
+    length: Factored
+    order: int = 0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class KernelTable:
+    """All dispersions and kernels of one ring, in the order of their generators.
+
+    The wavenumbers' generators stand before the kernels' in the ring, both after everything else.
+    """
+
+    dispersions: tuple[Dispersion, ...] = ()
+    kernels: tuple[Kernel, ...] = ()
+
+    def __bool__(self) -> bool:
+        return bool(self.dispersions)
+
+    @property
+    def wavenumbers(self) -> tuple[str, ...]:
+        """Generators of the wavenumbers."""
+        return tuple(w for d in self.dispersions for w in d.wavenumbers)
+
+    @property
+    def generators(self) -> tuple[str, ...]:
+        """Generators of wavenumbers and then of kernels."""
+        return (*self.wavenumbers, *(k.generator for k in self.kernels))
+
+    @property
+    def coefficients(self) -> tuple[Factored, ...]:
+        """The coefficients of all characteristic polynomials, and shifts."""
+        return tuple(v for d in self.dispersions for v in (*d.characteristic, d.shift))
+
+    @property
+    def values(self) -> tuple[Factored, ...]:
+        """All that wavenumbers and kernels are made of: coefficients and lengths."""
+        return (*self.coefficients, *(k.length for k in self.kernels))
+
+    def restricted(self, names: Container[str]) -> KernelTable:
+        """Return the table of the dispersions of which some generator is among the names."""
+        kept = {
+            id(d)
+            for d in self.dispersions
+            if any(n in names for n in (*d.wavenumbers, *(k.generator for k in self.kernels_of(d))))
+        }
+        return KernelTable(
+            tuple(d for d in self.dispersions if id(d) in kept),
+            tuple(k for k in self.kernels if id(k.dispersion) in kept),
+        )
+
+    def kernels_of(self, dispersion: Dispersion) -> tuple[Kernel, ...]:
+        """Return the kernels of one dispersion, in order."""
+        return tuple(k for k in self.kernels if k.dispersion is dispersion)
+
+
+NO_KERNELS = KernelTable()
+"""The table of a lumped system."""

@@ -1,0 +1,253 @@
+"""Kernels as exponentials and half-angle sines: coordinates in which common factors can be found.
+
+In ``E = exp(w x)``, ``t = sin(mu x/2)`` and ``u = cos(mu x/2)`` every polynomial in kernels is a polynomial
+over the integers, homogeneous in t and u, up to a power of E; and polynomials have greatest common divisors.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
+
+from symflex.algebra.dispersion import Kernel, KernelTable
+from symflex.algebra.factored import Factored
+from symflex.algebra.ring import Ring
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from flint import fmpz_mpoly
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Angle:
+    """A pair of kernels of one argument.
+
+    Parameters
+    ----------
+    kind : str
+        ``hyperbolic`` or ``circular``.
+    even, odd : Kernel
+        cosh and sinh, or cos and sin.
+    coordinates : tuple of str
+        ``(E,)``, or ``(t, u)``.
+    """
+
+    kind: Literal["hyperbolic", "circular"]
+    even: Kernel
+    odd: Kernel
+    coordinates: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Exponentials:
+    """The change of coordinates for one table.
+
+    Parameters
+    ----------
+    ring : Ring
+        With the table's kernels.
+    table : KernelTable
+        Wavenumbers and kernels.
+    """
+
+    ring: Ring
+    table: KernelTable
+
+    @cached_property
+    def angles(self) -> tuple[Angle, ...]:
+        """The pairs of kernels."""
+        found = []
+        kernels = {(k.function, k.wavenumber, id(k.length)): k for k in self.table.kernels}
+        for kernel in self.table.kernels:
+            if kernel.function in ("cosh", "cos"):
+                odd_function = "sinh" if kernel.function == "cosh" else "sin"
+                odd = kernels[odd_function, kernel.wavenumber, id(kernel.length)]  # type: ignore[index]
+                tail = kernel.generator.partition("[")[2]
+                if kernel.function == "cosh":
+                    found.append(Angle("hyperbolic", kernel, odd, (f"E[{tail}",)))
+                else:
+                    found.append(Angle("circular", kernel, odd, (f"t[{tail}", f"u[{tail}")))
+        return tuple(found)
+
+    @cached_property
+    def _kept(self) -> tuple[str, ...]:
+        replaced = {k.generator for a in self.angles for k in (a.even, a.odd)}
+        return tuple(n for n in self.ring.names if n not in replaced)
+
+    @cached_property
+    def coordinates(self) -> Ring:
+        """The ring with exponentials and half-angle functions in place of kernels."""
+        return Ring((*self._kept, *(c for a in self.angles for c in a.coordinates)))
+
+    def transform(self, polynomial: fmpz_mpoly) -> Factored:
+        """Return a polynomial in kernels over the coordinates."""
+        target = self.coordinates
+        degrees = [int(d) for d in polynomial.degrees()]
+        scale = Factored.number(target, 1)
+        images: dict[str, fmpz_mpoly] = {}
+        homogeneous: list[tuple[fmpz_mpoly, tuple[int, int], int]] = []
+        for angle in self.angles:
+            even, odd = self.ring.index[angle.even.generator], self.ring.index[angle.odd.generator]
+            degree = 0
+            if degrees[even] or degrees[odd]:
+                degree = max(int(m[even]) + int(m[odd]) for m in polynomial.monoms())
+            if angle.kind == "hyperbolic":
+                e = target.generator(angle.coordinates[0])
+                images[angle.even.generator] = e * e + 1
+                images[angle.odd.generator] = e * e - 1
+                homogeneous.append((2 * e, (even, odd), degree))
+                scale = scale * (Factored.polynomial(target, 2 * e) ** -degree)
+            else:
+                t, u = (target.generator(c) for c in angle.coordinates)
+                images[angle.even.generator] = u * u - t * t
+                images[angle.odd.generator] = 2 * t * u
+                homogeneous.append((t * t + u * u, (even, odd), degree))
+        plain = [images[n] if n in images else target.generator(n) for n in self.ring.names]
+        if not any(degree for _, _, degree in homogeneous):
+            return Factored.polynomial(target, polynomial.compose(*plain))
+        # The missing degree of every term is made up by cosh^2 - sinh^2 and cos^2 + sin^2, which are one.
+        parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
+        for monomial, coefficient in polynomial.terms():
+            exponents = tuple(int(e) for e in monomial)
+            missing = tuple(d - exponents[p[0]] - exponents[p[1]] for _, p, d in homogeneous)
+            parts.setdefault(missing, {})[exponents] = int(coefficient)
+        total = target.constant(0)
+        for missing, terms in parts.items():
+            part = self.ring.context.from_dict(terms).compose(*plain)
+            for (one, _, _), power in zip(homogeneous, missing, strict=True):
+                if power:
+                    part = part * one**power
+            total = total + part
+        return Factored.polynomial(target, total) * scale
+
+    def restore(self, polynomial: fmpz_mpoly) -> tuple[Factored, tuple[int, ...]]:
+        """Return a polynomial over the coordinates in kernels, and the powers of E that were divided out.
+
+        Parameters
+        ----------
+        polynomial : fmpz_mpoly
+            Of even degree in every angle (see :meth:`parity`), not divisible by any E.
+
+        Returns
+        -------
+        tuple
+            ``f`` and per hyperbolic angle ``n`` with ``polynomial = f * prod(E^n)``.
+        """
+        source = self.coordinates
+        center = [int(polynomial.degrees()[source.index[a.coordinates[0]]]) // 2 for a in self.angles]
+        places = [tuple(source.index[c] for c in a.coordinates) for a in self.angles]
+        parts: dict[tuple[tuple[int, ...], ...], dict[tuple[int, ...], int]] = {}
+        target_index = [self.ring.index[n] for n in self._kept]
+        halves = 0
+        for monomial, coefficient in polynomial.terms():
+            key = tuple(tuple(int(monomial[i]) for i in place) for place in places)
+            exponents = [0] * len(self.ring.names)
+            for i, target in enumerate(target_index):
+                exponents[target] = int(monomial[i])
+            parts.setdefault(key, {})[tuple(exponents)] = int(coefficient)
+        total = self.ring.constant(0)
+        for key, terms in parts.items():
+            part = self.ring.context.from_dict(terms)
+            halves_here = 0
+            for angle, powers, middle in zip(self.angles, key, center, strict=True):
+                c, s = self.ring.generator(angle.even.generator), self.ring.generator(angle.odd.generator)
+                if angle.kind == "hyperbolic":
+                    n = powers[0] - middle
+                    part = part * ((c + s) ** n if n >= 0 else (c - s) ** -n)
+                else:
+                    a, b = powers
+                    halves_here += (a + b) // 2
+                    part = part * (1 - c) ** (a // 2) * (1 + c) ** (b // 2) * s ** (a % 2)
+            halves = halves_here
+            total = total + part
+        return Factored.polynomial(self.ring, total) * Fraction(1, 2**halves), tuple(
+            n for n, a in zip(center, self.angles, strict=True) if a.kind == "hyperbolic"
+        )
+
+    def restore_halved(self, polynomial: fmpz_mpoly) -> tuple[fmpz_mpoly, tuple[int, ...]]:
+        """Return a polynomial over the coordinates in kernels of half the length, of whatever parity it is.
+
+        Returns
+        -------
+        tuple
+            ``f`` over the ring, whose kernels now stand for half their length, and per hyperbolic angle
+            ``n`` with ``polynomial = f * prod(E^(n/2))``.
+        """
+        source = self.coordinates
+        places = [tuple(source.index[c] for c in a.coordinates) for a in self.angles]
+        monomials = polynomial.monoms()
+        # From the lowest to the highest power of E, so that a bare power of E leaves nothing behind.
+        highest = [
+            sum(bound(int(m[place[0]]) for m in monomials) for bound in (min, max)) for place in places
+        ]
+        kept = [(self.ring.index[n], source.index[n]) for n in self._kept]
+        total = self.ring.constant(0)
+        powers: dict[tuple[int, int], fmpz_mpoly] = {}
+        for monomial, coefficient in polynomial.terms():
+            exponents = [0] * len(self.ring.names)
+            for target, i in kept:
+                exponents[target] = int(monomial[i])
+            term = self.ring.context.from_dict({tuple(exponents): int(coefficient)})
+            for number, (angle, place, n) in enumerate(zip(self.angles, places, highest, strict=True)):
+                c, s = self.ring.generator(angle.even.generator), self.ring.generator(angle.odd.generator)
+                if angle.kind == "hyperbolic":
+                    k = 2 * int(monomial[place[0]]) - n
+                    if (number, k) not in powers:
+                        powers[number, k] = (c + s) ** k if k >= 0 else (c - s) ** -k
+                    term = term * powers[number, k]
+                else:
+                    a, b = (int(monomial[i]) for i in place)
+                    term = term * s**a * c**b
+            total = total + term
+        return total, tuple(n for n, a in zip(highest, self.angles, strict=True) if a.kind == "hyperbolic")
+
+    def split(self, polynomial: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly]:
+        """Return a polynomial over the coordinates as one free of kernels times the rest."""
+        return split_content(self.coordinates, polynomial, len(self._kept) - len(self._plain_kernels))
+
+    @property
+    def _plain_kernels(self) -> tuple[str, ...]:
+        """The kernels that are coordinates themselves; they stand last among the generators that are kept."""
+        kernels = {k.generator for k in self.table.kernels}
+        return tuple(n for n in self._kept if n in kernels)
+
+    def parity(self, polynomial: fmpz_mpoly) -> tuple[int, ...]:
+        """Return per angle whether the degree is odd: then only half the angle's kernels can express it."""
+        source = self.coordinates
+        monomial = polynomial.monomial(0)
+        degrees = polynomial.degrees()
+        return tuple(
+            int(degrees[source.index[a.coordinates[0]]]) % 2
+            if a.kind == "hyperbolic"
+            else sum(int(monomial[source.index[c]]) for c in a.coordinates) % 2
+            for a in self.angles
+        )
+
+    def halved(self, kernels: Sequence[Kernel]) -> KernelTable:
+        """Return the table with the lengths of the given kernels' angles divided by two."""
+        lengths = {id(k.length): k.length / 2 for k in kernels}
+        return KernelTable(
+            self.table.dispersions,
+            tuple(
+                replace(k, length=lengths[id(k.length)]) if id(k.length) in lengths else k
+                for k in self.table.kernels
+            ),
+        )
+
+
+def split_content(ring: Ring, polynomial: fmpz_mpoly, free: int) -> tuple[fmpz_mpoly, fmpz_mpoly]:
+    """Return a polynomial as one in the first so many generators times the rest."""
+    parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
+    for monomial, coefficient in polynomial.terms():
+        exponents = tuple(int(e) for e in monomial)
+        key = exponents[free:]
+        parts.setdefault(key, {})[(*exponents[:free], *(0 for _ in key))] = int(coefficient)
+    content = ring.constant(0)
+    for terms in parts.values():
+        content = content.gcd(ring.context.from_dict(terms))
+        if content.is_one():
+            break
+    return content, polynomial / content

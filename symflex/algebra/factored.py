@@ -1,0 +1,263 @@
+"""Rational functions kept as a product of powers, so that what a user grouped stays grouped."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import comb, lcm
+from typing import TYPE_CHECKING
+
+from flint import fmpz
+
+from symflex.algebra.ring import (
+    DEGREE_LIMIT,
+    MEMORY_LIMIT,
+    TERM_LIMIT,
+    Ring,
+    degree_in,
+    highest_degree,
+    terms_of,
+)
+from symflex.errors import BudgetError, Diagnostic
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from flint import fmpz_mpoly
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Factored:
+    """``unit * product(factor ** exponent)`` over a :class:`Ring`.
+
+    Every factor is a generator, or a primitive polynomial of two or more terms with positive
+    leading coefficient and no monomial factor. Exponents are nonzero integers; negative ones
+    form the denominator. Products and powers never expand; sums expand only what differs.
+
+    Parameters
+    ----------
+    ring : Ring
+        Where the factors live.
+    unit : Fraction
+        The rational number in front; zero makes the whole value zero.
+    factors : tuple of (fmpz_mpoly, int)
+        Pairwise different, in order of appearance.
+
+    Examples
+    --------
+    >>> ring = Ring(("s", "k", "b"))
+    >>> k, b, s = (Factored.generator(ring, n) for n in "kbs")
+    >>> impedance = k + b * s
+    >>> str(impedance * impedance / k)
+    '(s*b + k)^2*k^-1'
+    """
+
+    ring: Ring
+    unit: Fraction
+    factors: tuple[tuple[fmpz_mpoly, int], ...] = ()
+
+    @staticmethod
+    def number(ring: Ring, value: Fraction | int) -> Factored:
+        """Return a rational constant."""
+        return Factored(ring, Fraction(value))
+
+    @staticmethod
+    def generator(ring: Ring, name: str) -> Factored:
+        """Return a generator of the ring."""
+        return Factored(ring, Fraction(1), ((ring.generator(name), 1),))
+
+    @staticmethod
+    def polynomial(ring: Ring, value: fmpz_mpoly) -> Factored:
+        """Return a polynomial with its numeric and monomial content pulled out."""
+        if value.is_zero():
+            return Factored(ring, Fraction(0))
+        content = value.term_content()
+        rest = value if content.is_one() else value / content
+        unit = int(content.leading_coefficient())
+        if int(rest.leading_coefficient()) < 0:
+            rest, unit = -rest, -unit
+        ((monomial, _),) = terms_of(content)
+        factors = [(ring.context.gen(i), e) for i, e in monomial]
+        if not rest.is_constant():
+            factors.append((rest, 1))
+        return Factored(ring, Fraction(unit), tuple(factors))
+
+    @property
+    def is_zero(self) -> bool:
+        """True for the zero function."""
+        return self.unit == 0
+
+    @property
+    def is_one(self) -> bool:
+        """True for the constant one."""
+        return self.unit == 1 and not self.factors
+
+    @property
+    def is_constant(self) -> bool:
+        """True for a rational number."""
+        return not self.factors
+
+    def __mul__(self, other: Factored | int | Fraction) -> Factored:
+        other = self._coerce(other)
+        unit = self.unit * other.unit
+        if unit == 0:
+            return Factored(self.ring, unit)
+        return Factored(self.ring, unit, _merge(self.factors, other.factors))
+
+    __rmul__ = __mul__
+
+    def __pow__(self, exponent: int) -> Factored:
+        if exponent == 0:
+            return Factored.number(self.ring, 1)
+        return Factored(self.ring, self.unit**exponent, tuple((f, e * exponent) for f, e in self.factors))
+
+    def __truediv__(self, other: Factored | int | Fraction) -> Factored:
+        return self * self._coerce(other) ** -1
+
+    def __rtruediv__(self, other: int | Fraction) -> Factored:
+        return self._coerce(other) / self
+
+    def __neg__(self) -> Factored:
+        return Factored(self.ring, -self.unit, self.factors)
+
+    def __add__(self, other: Factored | int | Fraction) -> Factored:
+        other = self._coerce(other)
+        if self.is_zero:
+            return other
+        if other.is_zero:
+            return self
+        common = self._common(other)
+        left, right = self / common, other / common
+        scale = fmpz(left.unit.denominator).lcm(fmpz(right.unit.denominator))
+        total = left._expand_scaled(int(scale)) + right._expand_scaled(int(scale))
+        return common * Factored.polynomial(self.ring, total) * Fraction(1, int(scale))
+
+    __radd__ = __add__
+
+    def __sub__(self, other: Factored | int | Fraction) -> Factored:
+        return self + (-self._coerce(other))
+
+    def __rsub__(self, other: int | Fraction) -> Factored:
+        return self._coerce(other) - self
+
+    def numerator(self) -> Factored:
+        """Return the factors with positive exponents and the unit's numerator."""
+        return Factored(
+            self.ring, Fraction(self.unit.numerator), tuple((f, e) for f, e in self.factors if e > 0)
+        )
+
+    def denominator(self) -> Factored:
+        """Return the factors with negative exponents, inverted, and the unit's denominator."""
+        return Factored(
+            self.ring, Fraction(self.unit.denominator), tuple((f, -e) for f, e in self.factors if e < 0)
+        )
+
+    def expand(self) -> fmpz_mpoly:
+        """Return the product multiplied out.
+
+        Raises
+        ------
+        ValueError
+            When the unit is not an integer or an exponent is negative.
+        BudgetError
+            SF501 when the product could exceed the size limit.
+        """
+        return self._expand_scaled(1)
+
+    def exponent_of(self, factor: fmpz_mpoly) -> int:
+        """Return the exponent of one of the factors, zero when it is none of them."""
+        return next((e for f, e in self.factors if f == factor), 0)
+
+    def filter(self, keep: Callable[[fmpz_mpoly], bool]) -> Factored:
+        """Return the product of the factors that ``keep`` accepts, with unit one."""
+        return Factored(self.ring, Fraction(1), tuple((f, e) for f, e in self.factors if keep(f)))
+
+    def depends_on(self, name: str) -> bool:
+        """Tell whether a factor contains the generator called ``name``."""
+        i = self.ring.index[name]
+        return any(degree_in(f, i) for f, _ in self.factors)
+
+    def map_factors(self, ring: Ring, image: Callable[[fmpz_mpoly], Factored]) -> Factored:
+        """Return the value with every factor replaced by its image in ``ring``."""
+        result = Factored.number(ring, self.unit)
+        for factor, exponent in self.factors:
+            result = result * image(factor) ** exponent
+        return result
+
+    def __str__(self) -> str:
+        parts = [str(self.unit)] if self.unit != 1 or not self.factors else []
+        for factor, exponent in self.factors:
+            text = f"({factor})" if len(factor) > 1 else str(factor)
+            parts.append(text if exponent == 1 else f"{text}^{exponent}")
+        return "*".join(parts)
+
+    def _coerce(self, other: Factored | int | Fraction) -> Factored:
+        return other if isinstance(other, Factored) else Factored.number(self.ring, other)
+
+    def _common(self, other: Factored) -> Factored:
+        """Return the product of shared factors with the smaller exponent of each."""
+        common = [(f, min(e, other.exponent_of(f))) for f, e in self.factors]
+        common += [(f, min(e, 0)) for f, e in other.factors if self.exponent_of(f) == 0]
+        return Factored(self.ring, Fraction(1), tuple((f, e) for f, e in common if e))
+
+    def _expand_scaled(self, scale: int) -> fmpz_mpoly:
+        unit = self.unit * scale
+        if unit.denominator != 1 or any(e < 0 for _, e in self.factors):
+            message = "only a polynomial with integer coefficients can be expanded"
+            raise ValueError(message)
+        terms, most = 1, min(TERM_LIMIT, MEMORY_LIMIT // self.ring.bytes_of(1))
+        for factor, exponent in self.factors:
+            terms *= comb(len(factor) + exponent - 1, exponent) if len(factor) > 1 else 1
+            degree = exponent * highest_degree(factor)
+            if terms > most or degree > DEGREE_LIMIT:
+                raise BudgetError(
+                    Diagnostic(
+                        "SF501",
+                        f"an expanded product would exceed {most} terms or degree {DEGREE_LIMIT}",
+                        None,
+                        "keep repeated sums in [definitions]",
+                    )
+                )
+        result = self.ring.constant(int(unit))
+        for factor, exponent in self.factors:
+            result = result * factor**exponent
+        return result
+
+
+def least_common_multiple(start: Factored, values: Iterable[Factored]) -> Factored:
+    """Return the least multiple of ``start`` with the factors of every value, whose numbers are ignored."""
+    result = start
+    for value in values:
+        for factor, exponent in value.factors:
+            missing = exponent - result.exponent_of(factor)
+            if missing > 0:
+                result = result * Factored(start.ring, Fraction(1), ((factor, missing),))
+    return result
+
+
+def common_denominator(ring: Ring, values: Sequence[Factored]) -> Factored:
+    """Return the least common multiple of the values' denominators, numbers included.
+
+    Examples
+    --------
+    >>> ring = Ring(("s", "k"))
+    >>> k = Factored.generator(ring, "k")
+    >>> str(common_denominator(ring, [k / 6, k**-2 / 4, k**-1]))
+    '12*k^2'
+    """
+    numbers = Factored.number(ring, lcm(*(v.unit.denominator for v in values)))
+    return least_common_multiple(numbers, (v.denominator() for v in values))
+
+
+def _merge(
+    left: tuple[tuple[fmpz_mpoly, int], ...], right: tuple[tuple[fmpz_mpoly, int], ...]
+) -> tuple[tuple[fmpz_mpoly, int], ...]:
+    merged = list(left)
+    for factor, exponent in right:
+        for i, (known, power) in enumerate(merged):
+            if known == factor:
+                merged[i] = (known, power + exponent)
+                break
+        else:
+            merged.append((factor, exponent))
+    return tuple((f, e) for f, e in merged if e)

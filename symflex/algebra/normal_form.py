@@ -1,0 +1,190 @@
+"""Normal form of polynomials in wavenumbers and kernels: equal functions become equal polynomials.
+
+The relations ``sinh^2 = cosh^2 - 1``, ``sin^2 = 1 - cos^2`` and the dispersion relations of the wavenumbers
+have coprime leading monomials, so replacing these leaves one form of every residue class (Cox, Little &
+O'Shea 2015, chapter 2, sections 6 and 9).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from flint import Ordering, fmpz_mpoly_ctx
+
+from symflex.algebra.factored import Factored, common_denominator
+from symflex.budget import spend
+from symflex.errors import BudgetError, Diagnostic
+
+if TYPE_CHECKING:
+    from flint import fmpz_mpoly
+
+    from symflex.algebra.dispersion import Dispersion, KernelTable
+    from symflex.algebra.ring import Ring
+
+
+PAIR_TERMS = 60_000
+"""Terms up to which powers of a pair of wavenumbers are replaced: some seconds."""
+
+
+def split(ring: Ring, polynomial: fmpz_mpoly, index: int) -> dict[int, fmpz_mpoly]:
+    """Return the coefficient of every power of one generator, over the same ring."""
+    parts: dict[int, dict[tuple[int, ...], int]] = {}
+    for monomial, coefficient in polynomial.to_dict().items():
+        own = parts.setdefault(int(monomial[index]), {})
+        own[(*monomial[:index], 0, *monomial[index + 1 :])] = int(coefficient)
+    return {power: ring.context.from_dict(terms) for power, terms in parts.items()}
+
+
+@dataclass(frozen=True, eq=False)
+class NormalForm:
+    """Reduces modulo the relations of one table.
+
+    Parameters
+    ----------
+    ring : Ring
+        Where the table's generators and the dispersions' coefficients live.
+    table : KernelTable
+        Wavenumbers and kernels.
+    """
+
+    ring: Ring
+    table: KernelTable
+
+    @cached_property
+    def _squares(self) -> tuple[tuple[int, fmpz_mpoly], ...]:
+        """Positions of sinh and sin with what their squares are."""
+        found = []
+        by_key = {(k.function, k.wavenumber, id(k.length)): k for k in self.table.kernels}
+        for kernel in self.table.kernels:
+            partner = {"sinh": "cosh", "sin": "cos"}.get(kernel.function)
+            if partner is None:
+                continue
+            even = by_key[partner, kernel.wavenumber, id(kernel.length)]  # type: ignore[index]
+            c = self.ring.generator(even.generator)
+            square = c * c - 1 if partner == "cosh" else 1 - c * c
+            found.append((self.ring.index[kernel.generator], square))
+        return tuple(found)
+
+    def reduce(self, polynomial: fmpz_mpoly, *, pairs: bool = True) -> Factored:
+        """Return a polynomial in normal form; its denominators come from the dispersion relations.
+
+        Without ``pairs``, the relations between two wavenumbers of one dispersion are left unused.
+        """
+        polynomial = self.without_odd_squares(polynomial)
+        result = Factored.number(self.ring, 1)
+        for dispersion in self.table.dispersions:
+            if dispersion.kind == "pair" and not pairs:
+                continue
+            polynomial, below = self._disperse(polynomial, dispersion)
+            result = result / below
+        return Factored.polynomial(self.ring, polynomial) * result
+
+    def reduce_factored(self, value: Factored, *, pairs: bool = True) -> Factored:
+        """Return a product with every factor, and its powers of wavenumbers, in normal form."""
+        result = Factored.number(self.ring, value.unit)
+        for factor, exponent in value.factors:
+            result = result * self.reduce(factor, pairs=pairs) ** exponent
+        return self.balance(result)
+
+    def balance(self, value: Factored) -> Factored:
+        """Return a product with the powers of single wavenumbers between 0 and their relation's degree."""
+        for dispersion in self.table.dispersions:
+            degree = {"wave": 2, "bending": 4}.get(dispersion.kind)
+            if degree is None:
+                continue
+            (name,) = dispersion.wavenumbers
+            times = value.exponent_of(self.ring.generator(name)) // degree
+            if times:
+                power = Factored.generator(self.ring, name) ** (-degree * times)
+                value = value * power * self.power_of(dispersion) ** times
+        return value
+
+    def power_of(self, dispersion: Dispersion) -> Factored:
+        """Return ``gamma^2`` or ``mu^4`` as a rational function of s."""
+        c0 = dispersion.characteristic[0]
+        return -c0 if dispersion.kind == "wave" else c0 / 4
+
+    @cached_property
+    def _odd_first(self) -> tuple[fmpz_mpoly_ctx, tuple[tuple[int, fmpz_mpoly], ...]]:
+        """The ring with sinh and sin before all else, and the relation of each such kernel."""
+        names = self.ring.context.names()
+        odd = [names[i] for i, _ in self._squares]
+        context = fmpz_mpoly_ctx.get([*odd, *(n for n in names if n not in odd)], Ordering.lex)
+        relations = [
+            (i, context.gen(k) ** 2 - square.project_to_context(context))
+            for k, (i, square) in enumerate(self._squares)
+        ]
+        return context, tuple(relations)
+
+    def without_odd_squares(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
+        """Return the polynomial without squares of sinh and sin, by division with these leading."""
+        degrees = polynomial.degrees()
+        context, relations = self._odd_first
+        needed = [relation for i, relation in relations if int(degrees[i]) > 1]
+        if not needed:
+            return polynomial
+        moved = polynomial.project_to_context(context)
+        for relation in needed:
+            spend()
+            _, moved = divmod(moved, relation)
+        return moved.project_to_context(self.ring.context)
+
+    def _disperse(self, polynomial: fmpz_mpoly, dispersion: Dispersion) -> tuple[fmpz_mpoly, Factored]:
+        """Return a multiple of the polynomial in normal form, and the factor it was multiplied by."""
+        one = Factored.number(self.ring, 1)
+        match dispersion.kind:
+            case "wave" | "bending":
+                degree = 2 if dispersion.kind == "wave" else 4
+                index = self.ring.index[dispersion.wavenumbers[0]]
+                return self._rational_powers(polynomial, index, degree, self.power_of(dispersion))
+            case "pair":
+                return self._pair(polynomial, dispersion)
+        return polynomial, one
+
+    def _rational_powers(
+        self, polynomial: fmpz_mpoly, index: int, degree: int, image: Factored
+    ) -> tuple[fmpz_mpoly, Factored]:
+        highest = int(polynomial.degrees()[index]) // degree
+        if not highest:
+            return polynomial, Factored.number(self.ring, 1)
+        above, below = image.numerator().expand(), image.denominator().expand()
+        x = self.ring.context.gen(index)
+        total = self.ring.constant(0)
+        for power, part in split(self.ring, polynomial, index).items():
+            times = power // degree
+            total = total + part * x ** (power % degree) * above**times * below ** (highest - times)
+        return total, image.denominator() ** highest
+
+    def _pair(self, polynomial: fmpz_mpoly, dispersion: Dispersion) -> tuple[fmpz_mpoly, Factored]:
+        """Use ``lambda_1^2 = -c_2 - lambda_2^2``, then ``lambda_2^4 = -c_2 lambda_2^2 - c_0``."""
+        c0, c2 = dispersion.characteristic[0], dispersion.characteristic[2]
+        below = common_denominator(self.ring, (c0, c2))
+        d = below.expand()
+        n0, n2 = (c0 * below).expand(), (c2 * below).expand()
+        first, second = (self.ring.index[w] for w in dispersion.wavenumbers)
+        y = self.ring.context.gen(second)
+        scale = Factored.number(self.ring, 1)
+        highest = int(polynomial.degrees()[first]) // 2
+        if highest:
+            x = self.ring.context.gen(first)
+            image = -n2 - d * y * y
+            total = self.ring.constant(0)
+            for power, part in split(self.ring, polynomial, first).items():
+                total = total + part * x ** (power % 2) * image ** (power // 2) * d ** (highest - power // 2)
+            polynomial, scale = total, scale * below**highest
+        while (degree := int(polynomial.degrees()[second])) >= 4:  # noqa: PLR2004
+            spend()
+            if len(polynomial) > PAIR_TERMS:
+                message = "the closed form is too large: two wavenumbers depend on too many symbols"
+                hint = "give some parameters numbers, or leave out losses, loads or lengths"
+                raise BudgetError(Diagnostic("SF502", message, None, hint))
+            total = self.ring.constant(0)
+            for power, part in split(self.ring, polynomial, second).items():
+                if power == degree:
+                    total = total - part * (n2 * y ** (power - 2) + n0 * y ** (power - 4))
+                else:
+                    total = total + part * y**power * d
+            polynomial, scale = total, scale * below
+        return polynomial, scale

@@ -1,0 +1,288 @@
+"""Propagators: the generators that stand for fundamental functions until an elimination is done.
+
+Elimination multiplies entries of transfer matrices. One generator per fundamental function keeps those
+entries monomials; afterwards each is replaced by its polynomial in hyperbolic and circular kernels of base
+lengths.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import comb
+from typing import TYPE_CHECKING
+
+from symflex.algebra.dispersion import Dispersion, Kernel, KernelTable
+from symflex.algebra.factored import Factored
+from symflex.algebra.lengths import length_base
+from symflex.algebra.ring import Ring
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from flint import fmpz_mpoly
+
+MULTIPLE_LIMIT = 12
+"""Lengths that are longer sums of base lengths keep kernels of their own."""
+EXPONENTIAL = -1
+"""The order under which ``exp(-shift*length)`` is listed."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Propagator:
+    """One generator of the equations.
+
+    For ``wave``, ``bending`` and ``pair`` it is the numerator of ``h^(order)(length)`` over a monomial in the
+    wavenumbers and ``lambda_1^2 - lambda_2^2``; for ``general`` it is ``h^(order)(length)`` itself.
+
+    Parameters
+    ----------
+    generator : str
+        Its name.
+    dispersion : int
+        Position of its dispersion.
+    length : int
+        Position of its length among those of the dispersion.
+    order : int
+        Of the derivative, or ``EXPONENTIAL``.
+    image : fmpz_mpoly
+        What it is over the kernels' ring.
+    """
+
+    generator: str
+    dispersion: int
+    length: int
+    order: int
+    image: fmpz_mpoly
+
+
+@dataclass(frozen=True, eq=False)
+class Propagation:
+    """The rings before and after propagators are opened, and the way from one to the other.
+
+    Parameters
+    ----------
+    base : Ring
+        Without wavenumbers, propagators and kernels.
+    ring : Ring
+        ``base``, wavenumbers, propagators.
+    kernel_ring : Ring
+        ``base``, wavenumbers, kernels.
+    table : KernelTable
+        What the wavenumbers and kernels are; its values are over ``base``.
+    lengths : tuple of tuple of Factored
+        Per dispersion, the lengths asked for.
+    propagators : tuple of Propagator
+        In the order of their generators.
+    coordinates : tuple of tuple of tuple of int
+        Per dispersion and length, its multiples of the kernels' base lengths.
+    """
+
+    base: Ring
+    ring: Ring
+    kernel_ring: Ring
+    table: KernelTable
+    lengths: tuple[tuple[Factored, ...], ...]
+    propagators: tuple[Propagator, ...]
+    coordinates: tuple[tuple[tuple[int, ...], ...], ...] = ()
+
+    def embed(self, value: Factored) -> Factored:
+        """Return a value of the base ring over ``ring``."""
+        if value.ring == self.ring:
+            return value
+        images = self.ring.context.gens()[: len(self.base.names)]
+        context = self.ring.context
+        factors = tuple((f.compose(*images, ctx=context), e) for f, e in value.factors)
+        return Factored(self.ring, value.unit, factors)
+
+    @cached_property
+    def _known(self) -> Mapping[tuple[int, int, int], Factored]:
+        return {
+            (p.dispersion, p.length, p.order): Factored.generator(self.ring, p.generator)
+            for p in self.propagators
+        }
+
+    def fundamental(self, dispersion: int, length: Factored) -> tuple[Factored, ...]:
+        """Return ``h, h', ..., h^(n-1)`` of a dispersion at a length, over ``ring``."""
+        law = self.table.dispersions[dispersion]
+        one = Factored.number(self.ring, 1)
+        n = law.order
+        if length.is_zero:
+            return tuple(one if k == n - 1 else one * 0 for k in range(n))
+        position = _position(self.lengths[dispersion], length)
+        if law.kind == "exponential":
+            return (self._known[dispersion, position, EXPONENTIAL],)
+        below = _denominators(law, self.ring)
+        plain = [self._known[dispersion, position, k] / below[k] for k in range(n)]
+        if law.shift.is_zero:
+            return tuple(plain)
+        minus = -self.embed(law.shift)
+        decay = self._known[dispersion, position, EXPONENTIAL]
+        found = []
+        for k in range(n):
+            total = one * 0
+            for j in range(k + 1):
+                total = total + plain[j] * minus ** (k - j) * comb(k, j)
+            found.append(total * decay)
+        return tuple(found)
+
+
+def _position(lengths: Sequence[Factored], length: Factored) -> int:
+    return next(i for i, known in enumerate(lengths) if (known - length).is_zero)
+
+
+def distinct(lengths: Sequence[Factored]) -> tuple[Factored, ...]:
+    """Return the lengths that differ and are not zero, in order."""
+    found: list[Factored] = []
+    for length in lengths:
+        if not length.is_zero and not any((known - length).is_zero for known in found):
+            found.append(length)
+    return tuple(found)
+
+
+def _denominators(law: Dispersion, ring: Ring) -> tuple[Factored, ...]:
+    """Return what the numerators of ``h, h', ...`` are divided by."""
+    one = Factored.number(ring, 1)
+    w = [Factored.generator(ring, name) for name in law.wavenumbers]
+    match law.kind:
+        case "wave":
+            return (w[0], one)
+        case "bending":
+            return (w[0] ** 3 * 4, w[0] ** 2 * 2, w[0] * 2, one)
+        case "pair":
+            split = w[0] ** 2 - w[1] ** 2
+            return (w[0] * w[1] * split, split, split, split)
+    return (one,) * law.order
+
+
+WAVENUMBER_NAMES = {"wave": ("gamma",), "bending": ("mu",), "pair": ("lambda_1", "lambda_2")}
+
+
+def propagate(base: Ring, demands: Sequence[tuple[Dispersion, Sequence[Factored]]]) -> Propagation:
+    """Return generators for the fundamental functions of every dispersion at every length.
+
+    Parameters
+    ----------
+    base : Ring
+        Where the dispersions' coefficients and the lengths live.
+    demands : sequence of (Dispersion, sequence of Factored)
+        Each dispersion once, without wavenumber names, with the lengths it is needed at.
+    """
+    dispersions: list[Dispersion] = []
+    kernels: list[Kernel] = []
+    shapes: list[_Shape] = []
+    for i, (given, wanted) in enumerate(demands):
+        names = WAVENUMBER_NAMES.get(given.kind, ())
+        law = replace(given, wavenumbers=tuple(f"{n}[{i}]" for n in names))
+        dispersions.append(law)
+        lengths = distinct(wanted)
+        shape = _Shape(law, i, lengths)
+        shapes.append(shape)
+        kernels += shape.kernels
+    table = KernelTable(tuple(dispersions), tuple(kernels))
+    kernel_ring = Ring((*base.names, *table.generators))
+    propagators = tuple(p for shape in shapes for p in shape.propagators(kernel_ring))
+    ring = Ring((*base.names, *table.wavenumbers, *(p.generator for p in propagators)))
+    return Propagation(
+        base,
+        ring,
+        kernel_ring,
+        table,
+        tuple(s.lengths for s in shapes),
+        propagators,
+        tuple(s.coordinates for s in shapes),
+    )
+
+
+class _Shape:
+    """The kernels of one dispersion, and its propagators in terms of them."""
+
+    def __init__(self, law: Dispersion, number: int, lengths: tuple[Factored, ...]) -> None:
+        self.law = law
+        self.number = number
+        self.lengths = lengths
+        # Powers of a decaying exponential must not be negative; for the others either base will do.
+        decays = law.kind == "exponential" or not law.shift.is_zero
+        self.base = lengths
+        self.coordinates = tuple(tuple(int(i == j) for j in range(len(lengths))) for i in range(len(lengths)))
+        if law.kind != "general" and lengths:
+            found = length_base(lengths, positive=decays)
+            if max(sum(map(abs, c)) for c in found.coordinates) <= MULTIPLE_LIMIT:
+                self.base, self.coordinates = found.base, found.coordinates
+        self.kernels = [k for i, length in enumerate(self.base) for k in self._kernels(i, length)]
+
+    def _kernels(self, i: int, length: Factored) -> list[Kernel]:
+        law, found = self.law, []
+        if law.kind == "general":
+            for k in range(law.order):
+                name = f"h{k}[{self.number},{i}]"
+                found.append(Kernel(name, "fundamental", law, "", length, k))
+        functions = ("cosh", "sinh", "cos", "sin") if law.kind == "bending" else ("cosh", "sinh")
+        for wavenumber in law.wavenumbers:
+            for function in functions:
+                name = f"{function}[{wavenumber},{i}]"
+                found.append(Kernel(name, function, law, wavenumber, length))  # type: ignore[arg-type]
+        if law.kind == "exponential" or not law.shift.is_zero:
+            found.append(Kernel(f"exp[{self.number},{i}]", "exp", law, "", length))
+        return found
+
+    def propagators(self, ring: Ring) -> list[Propagator]:
+        """Return the propagators at every length."""
+        found = []
+        for position, coordinates in enumerate(self.coordinates):
+            for order, image in self._images(ring, position, coordinates):
+                name = f"H{order}[{self.number},{position}]" if order >= 0 else f"D[{self.number},{position}]"
+                found.append(Propagator(name, self.number, position, order, image))
+        return found
+
+    def _images(self, ring: Ring, position: int, multiples: tuple[int, ...]) -> list[tuple[int, fmpz_mpoly]]:
+        law = self.law
+        found: list[tuple[int, fmpz_mpoly]] = []
+        if law.kind == "general":
+            found += [(k, ring.generator(f"h{k}[{self.number},{position}]")) for k in range(law.order)]
+        elif law.kind == "wave":
+            c, s = self._hyperbolic(ring, law.wavenumbers[0], multiples)
+            found += [(0, s), (1, c)]
+        elif law.kind == "bending":
+            ch, sh = self._hyperbolic(ring, law.wavenumbers[0], multiples)
+            co, si = self._circular(ring, law.wavenumbers[0], multiples)
+            found += [(0, ch * si - sh * co), (1, sh * si), (2, ch * si + sh * co), (3, ch * co)]
+        elif law.kind == "pair":
+            c1, s1 = self._hyperbolic(ring, law.wavenumbers[0], multiples)
+            c2, s2 = self._hyperbolic(ring, law.wavenumbers[1], multiples)
+            w1, w2 = (ring.generator(w) for w in law.wavenumbers)
+            found += [
+                (0, w2 * s1 - w1 * s2),
+                (1, c1 - c2),
+                (2, w1 * s1 - w2 * s2),
+                (3, w1 * w1 * c1 - w2 * w2 * c2),
+            ]
+        if law.kind == "exponential" or not law.shift.is_zero:
+            found.append((EXPONENTIAL, self._decay(ring, multiples)))
+        return found
+
+    def _decay(self, ring: Ring, multiples: tuple[int, ...]) -> fmpz_mpoly:
+        product = ring.constant(1)
+        for i, n in enumerate(multiples):
+            product = product * ring.generator(f"exp[{self.number},{i}]") ** n
+        return product
+
+    def _hyperbolic(self, ring: Ring, w: str, multiples: tuple[int, ...]) -> tuple[fmpz_mpoly, fmpz_mpoly]:
+        """Return cosh and sinh of a wavenumber times a combination of base lengths."""
+        return self._added(ring, ("cosh", "sinh"), w, multiples, 1)
+
+    def _circular(self, ring: Ring, w: str, multiples: tuple[int, ...]) -> tuple[fmpz_mpoly, fmpz_mpoly]:
+        return self._added(ring, ("cos", "sin"), w, multiples, -1)
+
+    @staticmethod
+    def _added(
+        ring: Ring, functions: tuple[str, str], w: str, multiples: tuple[int, ...], sign: int
+    ) -> tuple[fmpz_mpoly, fmpz_mpoly]:
+        even, odd = ring.constant(1), ring.constant(0)
+        for i, n in enumerate(multiples):
+            c, s = (ring.generator(f"{f}[{w},{i}]") for f in functions)
+            if n < 0:
+                s = -s
+            for _ in range(abs(n)):
+                even, odd = even * c + sign * (odd * s), odd * c + even * s
+        return even, odd

@@ -1,0 +1,220 @@
+"""The exact ring: integer polynomials in s, the parameters, closed definitions and constants.
+
+Input: an ordered tuple of generator names.
+Output: a :class:`Ring` whose elements are python-flint ``fmpz_mpoly``, or sparse polynomials of the same
+interface, as far as assembling needs it, where there are too many names for these.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import comb, prod
+from typing import TYPE_CHECKING, cast
+
+from flint import Ordering, fmpz_mpoly, fmpz_mpoly_ctx
+
+from symflex.algebra.sparse import SparseContext, SparsePolynomial
+from symflex.errors import BudgetError, Diagnostic
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from symflex.algebra.sparse import Monomial
+
+LAPLACE = "s"
+TERM_LIMIT = 3_000_000
+DEGREE_LIMIT = 20_000
+MEMORY_LIMIT = 100_000_000
+"""Bytes an expansion or elimination may take."""
+COEFFICIENT_BYTES = 8
+FEW = 16
+"""How large coefficients may be that do not spoil a count of terms much."""
+MANY = 5_000
+"""Terms that are not counted one by one."""
+SPARSE_BYTES = 1_000
+"""What a term of a sparse polynomial counts for: it takes less memory, but its products take long."""
+
+
+@dataclass(frozen=True)
+class Ring:
+    """Integer polynomials in named generators, lexicographic order, ``s`` first.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Generator names in order; the first one is ``s``.
+    is_sparse : bool
+        True for :class:`~symflex.algebra.sparse.SparsePolynomial` in place of ``fmpz_mpoly``: any number of
+        names, but no substitution and no common divisors.
+
+    Examples
+    --------
+    >>> ring = Ring(("s", "m", "b"))
+    >>> ring.generator("m") * ring.generator("s") + ring.generator("b")
+    s*m + b
+    """
+
+    names: tuple[str, ...]
+    is_sparse: bool = False
+    context: fmpz_mpoly_ctx = field(init=False, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        if self.is_sparse:
+            object.__setattr__(self, "context", cast("fmpz_mpoly_ctx", SparseContext(self.names)))
+            return
+        internal = [
+            name if name.isascii() and name.isidentifier() else f"_{i}" for i, name in enumerate(self.names)
+        ]
+        object.__setattr__(self, "context", fmpz_mpoly_ctx.get(internal, Ordering.lex))
+
+    @cached_property
+    def index(self) -> Mapping[str, int]:
+        """Position of each generator."""
+        return {name: i for i, name in enumerate(self.names)}
+
+    def generator(self, name: str) -> fmpz_mpoly:
+        """Return the generator called ``name``."""
+        return self.context.gen(self.index[name])
+
+    def used_in(self, polynomials: Iterable[fmpz_mpoly]) -> frozenset[str]:
+        """Return the names of the generators that occur."""
+        used: set[str] = set()
+        for polynomial in polynomials:
+            if (sparse := _sparse(polynomial)) is not None:
+                used |= {self.names[i] for m in sparse.parts for i, _ in m}
+            elif len(polynomial):
+                used |= {n for n, d in zip(self.names, polynomial.degrees(), strict=True) if int(d)}
+        return frozenset(used)
+
+    def bytes_of(self, terms: int) -> int:
+        """Return about how much memory a polynomial takes: a byte per exponent, and its coefficients."""
+        return terms * ((SPARSE_BYTES if self.is_sparse else len(self.names)) + COEFFICIENT_BYTES)
+
+    def constant(self, value: int) -> fmpz_mpoly:
+        """Return an integer as a polynomial."""
+        return self.context.constant(value)
+
+    def compose(
+        self,
+        polynomial: fmpz_mpoly,
+        images: Sequence[fmpz_mpoly],
+        term_limit: int = TERM_LIMIT,
+        memory_limit: int = MEMORY_LIMIT,
+    ) -> fmpz_mpoly:
+        """Replace every generator of ``polynomial``'s ring by its image in this ring.
+
+        Raises
+        ------
+        BudgetError
+            SF501 when the result could exceed the limits, terms and bytes; SF502 in a sparse ring.
+        """
+        if self.is_sparse:
+            message = f"nothing is multiplied out with {len(self.names)} names"
+            raise BudgetError(Diagnostic("SF502", message, None, "ask for the nested form"))
+        check_expansion(polynomial, images, min(term_limit, memory_limit // self.bytes_of(1)))
+        return polynomial.compose(*images, ctx=self.context)
+
+
+def expanded_length(polynomial: fmpz_mpoly, lengths: Sequence[int]) -> int | None:
+    """Return a bound on the terms of a polynomial whose generators are sums of some lengths.
+
+    ``None`` when there is no quick one: many coefficients of both signs, or large ones.
+
+    Examples
+    --------
+    >>> ring = Ring(("s", "x", "y"))
+    >>> s, x, y = ring.context.gens()
+    >>> expanded_length(s * x + x * y, (1, 2, 3)), expanded_length(x**60, (1, 2, 3))
+    (8, 61)
+    """
+    highest = max((int(d) for n, d in zip(lengths, polynomial.degrees(), strict=True) if n > 1), default=0)
+    if highest < 1:
+        return len(polynomial)
+    values = polynomial.coeffs()
+    # Every monomial counts at least once, as its coefficient is at least one.
+    is_quick = min(values) >= 1 and max(values) <= FEW
+    if len(polynomial) <= MANY and not (is_quick and highest == 1):
+        # A power of a sum has as many terms as one can choose from its own, some more than once.
+        powers = (zip(lengths, map(int, m), strict=True) for m in polynomial.monoms())
+        return sum(prod(comb(n + e - 1, e) for n, e in each if e) for each in powers)
+    return int(polynomial(*lengths)) if is_quick else None
+
+
+def check_expansion(polynomial: fmpz_mpoly, images: Sequence[fmpz_mpoly], most: int) -> None:
+    """Refuse a substitution whose result could have more than so many terms.
+
+    Parameters
+    ----------
+    polynomial, images
+        See :meth:`Ring.compose`.
+    most : int
+        Number of terms.
+
+    Raises
+    ------
+    BudgetError
+        SF501, before any work is done.
+    """
+    lengths = [len(image) for image in images]
+    degrees = [int(image.total_degree()) if len(image) else 0 for image in images]
+    small_degree = polynomial.total_degree() * max(degrees, default=0) <= DEGREE_LIMIT
+    if max(lengths, default=0) <= 1 and small_degree:
+        return
+    bound = expanded_length(polynomial, lengths) if small_degree else None
+    if bound is not None and bound <= most:
+        return
+    terms = 0
+    for position in range(len(polynomial)):
+        monomial = polynomial.monomial(position)  # one by one: most refusals come early
+        product, degree = 1, 0
+        for i, exponent in enumerate(monomial):
+            if exponent:
+                length, image_degree = lengths[i], degrees[i]
+                degree += exponent * image_degree
+                if length > 1:
+                    product *= comb(length + exponent - 1, exponent)
+        terms += product
+        if terms > most or degree > DEGREE_LIMIT:
+            message = (
+                f"the expanded form would exceed {most} terms"
+                if terms > most
+                else f"the expanded form would exceed degree {DEGREE_LIMIT}"
+            )
+            raise BudgetError(Diagnostic("SF501", message, None, "keep repeated sums in [definitions]"))
+
+
+def degree_in(polynomial: fmpz_mpoly, generator: int) -> int:
+    """Return the degree of ``polynomial`` in the generator at position ``generator``; 0 for zero."""
+    if (sparse := _sparse(polynomial)) is not None:
+        return max((dict(m).get(generator, 0) for m in sparse.parts), default=0)
+    return int(polynomial.degrees()[generator]) if len(polynomial) else 0
+
+
+def _sparse(polynomial: object) -> SparsePolynomial | None:
+    """Return what passes for an ``fmpz_mpoly`` as what it is."""
+    return polynomial if isinstance(polynomial, SparsePolynomial) else None
+
+
+def highest_degree(polynomial: fmpz_mpoly) -> int:
+    """Return the largest degree of a nonzero polynomial in any one generator."""
+    if (sparse := _sparse(polynomial)) is not None:
+        return max((e for m in sparse.parts for _, e in m), default=0)
+    return max(map(int, polynomial.degrees()))
+
+
+def terms_of(polynomial: fmpz_mpoly) -> Iterator[tuple[Monomial, int]]:
+    """Yield the terms in lexicographic order: positions of generators with exponents, and the coefficient.
+
+    Examples
+    --------
+    >>> ring = Ring(("s", "m", "b"))
+    >>> s, m, b = (ring.generator(n) for n in ring.names)
+    >>> list(terms_of(m * s**2 - 3 * b))
+    [(((0, 2), (1, 1)), 1), (((2, 1),), -3)]
+    """
+    if (sparse := _sparse(polynomial)) is not None:
+        yield from sparse.terms()
+        return
+    for monomial, coefficient in polynomial.terms():
+        yield tuple((i, int(e)) for i, e in enumerate(monomial) if e), int(coefficient)

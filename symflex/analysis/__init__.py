@@ -1,0 +1,1 @@
+"""What is asked of a derived transfer function: responses, modes, sensitivities, approximations."""

@@ -1,0 +1,16 @@
+"""Why zeros are where they are: the constrained systems whose poles they are, with proof."""
+
+from symflex.analysis.explanation.parts import Part
+from symflex.analysis.explanation.text import explanation_json, explanation_paragraphs, explanation_text
+from symflex.analysis.explanation.zeros import EndChange, RealZero, ZeroExplanation, explain_zeros
+
+__all__ = [
+    "EndChange",
+    "Part",
+    "RealZero",
+    "ZeroExplanation",
+    "explain_zeros",
+    "explanation_json",
+    "explanation_paragraphs",
+    "explanation_text",
+]

@@ -1,0 +1,257 @@
+"""The constrained models whose poles are the zeros: a coordinate held, a source opened, a condition replaced.
+
+Input: a model. Output: a :class:`Constraint`, the same model with one constraint more.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from symflex.analysis.explanation.coordinates import driven_source
+from symflex.expressions import Attribute, Call, Derivative, Equation, Name, Number, format_expression, names
+from symflex.library.elements import ELEMENTS
+from symflex.model import NodeReference, PlacedElement
+from symflex.model.input_kinds import INPUT_KINDS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.analysis.explanation.coordinates import Coordinates
+    from symflex.expressions import Expression
+    from symflex.library.elements import Placing, Variable
+    from symflex.model import Field, Input, Model
+
+HOLD = "hold"
+PAIR = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Constraint:
+    """A model with one constraint more.
+
+    Parameters
+    ----------
+    model : Model
+        The constrained model.
+    held : str
+        What is zero in it: ``x_act = 0``.
+    words : str
+        The same in words: ``node x_act held``.
+    spec : str
+        The line that constrains the specification; empty when it takes more than a line.
+    """
+
+    model: Model
+    held: str
+    words: str
+    spec: str
+
+
+def hold(model: Model, coordinates: Coordinates) -> Constraint:
+    """Return a model with one coordinate held, or with two locked to each other.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> from symflex.library.elements import Variable
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... elements.body = { type = "mass", at = "x", m = 1 }
+    ... elements.mount = { type = "spring", between = ["x", "ground"], k = 1 }
+    ... inputs.F = { force = "x" }
+    ... outputs.X = "x"
+    ... ''')
+    >>> hold(model, ((Variable("node", "x"), 1),)).spec
+    'hold = { type = "fixed", at = "x" }'
+    """
+    name = _free_name(model)
+    nodes = {n.name: n for n in model.nodes}
+    if len(coordinates) == PAIR:
+        (first, _), (second, _) = coordinates
+        references = {"from": _reference(first), "to": _reference(second)}
+        placed = PlacedElement(
+            name,
+            ELEMENTS["transformer"],
+            tuple((port, (r,)) for port, r in references.items()),
+            tuple((port, _domain(model, v)) for port, v in (("from", first), ("to", second))),
+            (("ratio", Number(Fraction(1))),),
+        )
+        spec = f'{name} = {{ type = "transformer", from = "{first}", to = "{second}", ratio = 1 }}'
+        words = f"{first} and {second} locked to each other"
+        return Constraint(_with(model, placed), f"{first} - {second} = 0", words, spec)
+    ((variable, _),) = coordinates
+    kind = {"y": "pin", "theta": "slider", "": "fixed"}[variable.component]
+    domain = nodes[variable.owner].domain
+    reference = NodeReference(variable.owner)
+    placed = PlacedElement(name, ELEMENTS[kind], (("at", (reference,)),), (("at", domain),), ())
+    words = f"node {variable} short-circuited" if domain == "electrical" else f"{variable} held"
+    spec = f'{name} = {{ type = "{kind}", at = "{variable.owner}" }}'
+    return Constraint(_with(model, placed), f"{variable} = 0", words, spec)
+
+
+def _with(model: Model, placed: PlacedElement) -> Model:
+    return replace(model, elements=(*model.elements, placed))
+
+
+def _free_name(model: Model) -> str:
+    taken = {use.name for use in model.elements}
+    return next(n for n in (HOLD, *(f"{HOLD}_{i}" for i in range(2, len(taken) + 3))) if n not in taken)
+
+
+def _reference(variable: Variable) -> NodeReference:
+    return NodeReference(variable.owner, variable.component)
+
+
+def _domain(model: Model, variable: Variable) -> Placing:
+    domain = next(n.domain for n in model.nodes if n.name == variable.owner)
+    if domain != "planar":
+        return domain
+    return "rotation" if variable.component == "theta" else "translation"
+
+
+def open_circuit(model: Model, source: Input) -> Constraint | None:
+    """Return a model in which a voltage or a motion is not imposed, ``None`` when the input imposes none."""
+    words = f"the terminals of {source.name} open"
+    kind = INPUT_KINDS.get(source.kind)
+    if kind is not None and kind.is_imposed:
+        if _is_read(model, source.name):
+            return None
+        inputs = tuple(
+            replace(i, kind=kind.effort) if i.name == source.name else i  # of an effort, none is delivered
+            for i in model.inputs
+        )
+        # What is left out is named by outputs only, and those do not make the determinant.
+        free = replace(model, inputs=inputs, outputs=())
+        if kind.domain == "electrical":
+            return Constraint(free, f"the current of {source.name} = 0", words, "")
+        return Constraint(
+            free, f"{source.name}.{kind.quantity} = 0", f"what {source.name} moves left free", ""
+        )
+    use = driven_source(model, source)
+    if use is None or use.element.type_name != "voltage_source":
+        return None
+    if _is_read(model, use.name):
+        return None
+    # What is left out is named by outputs only, and those do not make the determinant.
+    elements = tuple(e for e in model.elements if e is not use)
+    without = replace(model, elements=elements, outputs=())
+    return Constraint(without, f"{use.name}.i = 0", words, "")
+
+
+def _is_read(model: Model, owner: str) -> bool:
+    """Tell whether a quantity of an element or input is read by anything but an output."""
+    found = [
+        *(signal.expression for signal in model.signals),
+        *(e for use in model.elements for _, e in use.values),
+        *(c for field in model.fields for c in field.conditions),
+    ]
+    return any(isinstance(n, Attribute) and n.owner == owner for e in found for n in names(e))
+
+
+@dataclass(frozen=True, slots=True)
+class ReplacedCondition:
+    """A field's condition that gives way to one that keeps an output at zero.
+
+    Parameters
+    ----------
+    field : Field
+        As it was.
+    number : int
+        Which condition holds the input.
+    measured : Call
+        The value of the field that the output shows.
+    constraint : Constraint
+        The model with the condition replaced.
+    """
+
+    field: Field
+    number: int
+    measured: Call
+    constraint: Constraint
+
+    @property
+    def loaded(self) -> Equation:
+        """The condition that holds the input."""
+        return self.field.conditions[self.number]
+
+    @property
+    def is_dual(self) -> bool:
+        """Whether the input is the force, or moment, dual to what is measured.
+
+        Of an unknown with highest derivative n, the derivatives k and n - 1 - k at one point are dual by
+        Lagrange's identity: deflection and shear force, slope and moment, displacement and axial force.
+        """
+        order = max(
+            n.order
+            for e in self.field.equations
+            for n in (*names(e), Derivative(self.measured.name, 0))
+            if isinstance(n, Derivative) and n.name == self.measured.name
+        )
+        calls = [n for n in names(self.loaded) if isinstance(n, Call) and n.name in self.field.unknowns]
+        own = [n.order for n in calls if n.name == self.measured.name]
+        place = format_expression(self.measured.argument)
+        return (
+            bool(own)
+            and max(own) + self.measured.order == order - 1
+            and all(format_expression(c.argument) == place for c in calls)
+        )
+
+
+def replace_condition(model: Model, source: Input, output: Expression) -> ReplacedCondition | None:
+    """Return the model in which what an output shows is zero, instead of the condition that holds the input.
+
+    Parameters
+    ----------
+    model : Model
+        With fields.
+    source : Input
+        A free signal.
+    output : Expression
+        What is measured.
+
+    Returns
+    -------
+    ReplacedCondition or None
+        ``None`` unless the input stands in one condition and nowhere else, and the output is a multiple of
+        one value of a field.
+    """
+    unknowns = {u for f in model.fields for u in f.unknowns}
+    calls = [*{n: None for n in names(output) if isinstance(n, Call) and n.name in unknowns}]
+    constants = {p.name for p in model.parameters} | {d.name for d in model.definitions} | {"s", "pi"}
+    rest = [n for n in names(output) if not isinstance(n, Call)]
+    if len(calls) != 1 or any(not isinstance(n, Name) or n.name not in constants for n in rest):
+        return None
+    places = [
+        (field, i)
+        for field in model.fields
+        for i, condition in enumerate(field.conditions)
+        if holds(condition, source.name)
+    ]
+    if len(places) != 1 or _is_elsewhere(model, source.name):
+        return None
+    ((field, number),) = places
+    zero = Equation(calls[0], Number(Fraction(0)))
+    conditions = tuple(zero if i == number else c for i, c in enumerate(field.conditions))
+    changed = replace(field, conditions=conditions)
+    fields = tuple(changed if f is field else f for f in model.fields)
+    held = format_expression(zero)
+    words = f"{held} in place of {format_expression(field.conditions[number])}"
+    constraint = Constraint(replace(model, fields=fields), held, words, f'"{held}"')
+    return ReplacedCondition(field, number, calls[0], constraint)
+
+
+def holds(expression: Expression, name: str) -> bool:
+    """Tell whether a name stands in an expression."""
+    return any(isinstance(n, Name) and n.name == name for n in names(expression))
+
+
+def _is_elsewhere(model: Model, name: str) -> bool:
+    found: Sequence[Expression] = [
+        *(e for use in model.elements for _, e in use.values),
+        *(signal.expression for signal in model.signals),
+        *(output.expression for output in model.outputs),
+        *(e for field in model.fields for e in field.equations),
+    ]
+    return any(holds(e, name) for e in found)

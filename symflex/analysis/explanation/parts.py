@@ -1,0 +1,219 @@
+"""What a constrained system falls apart into.
+
+Input: its equations. Output: a :class:`Separation`: coordinates that are at rest, and parts that share no
+unknown, so that the system's poles are those of the parts together.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from symflex.algebra import LAPLACE, degree_in
+from symflex.analysis.explanation.comparison import opened, varying
+from symflex.equations.elimination import Determinants
+from symflex.library.elements import LinearForm, Variable
+from symflex.library.elements.constraint import Fixed, Pin, Slider
+from symflex.model.nodes import variable_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symflex.algebra import Factored
+    from symflex.equations import EquationRow, Equations
+    from symflex.model import Model, PlacedElement
+
+SUPPORTS = (Fixed, Pin, Slider)
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A part of a constrained system that moves by itself.
+
+    Parameters
+    ----------
+    elements, fields, signals : tuple of str
+        Names of what it is made of, supports left out.
+    order : int or None
+        Number of its poles; ``None`` when they are infinitely many.
+    has_input : bool
+        Whether the input drives it.
+    determinant : Factored
+        The factors in s of its determinant, over the equations' ring.
+    """
+
+    elements: tuple[str, ...]
+    fields: tuple[str, ...]
+    signals: tuple[str, ...]
+    order: int | None
+    has_input: bool
+    determinant: Factored = field(compare=False, repr=False)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All it is made of."""
+        return (*self.fields, *self.elements, *self.signals)
+
+
+@dataclass(frozen=True, slots=True)
+class Separation:
+    """The parts, and the variables that are at rest."""
+
+    parts: tuple[Part, ...]
+    resting: frozenset[Variable]
+
+
+@dataclass
+class _Matrix:
+    """Rows by variable, and what is left of them while trivial ones are taken out."""
+
+    equations: Equations
+    rows: dict[int, dict[Variable, Factored]]
+    driven: set[int]
+    resting: set[Variable]
+
+    @staticmethod
+    def of(equations: Equations, source: str) -> _Matrix:
+        """Return the rows, with those that an input enters."""
+        unknowns = set(equations.unknowns)
+        rows, driven = {}, set()
+        for i, row in enumerate(equations.rows):
+            collected: dict[Variable, Factored] = {}
+            for variable, coefficient in row.form.terms:
+                if variable.kind == "input" and variable.owner == source:
+                    driven.add(i)
+                if variable in unknowns:
+                    known = collected.get(variable)
+                    collected[variable] = coefficient if known is None else known + coefficient
+            rows[i] = {v: c for v, c in collected.items() if not c.is_zero}
+        return _Matrix(equations, rows, driven, set())
+
+    def settle(self) -> None:
+        """Take out unknowns that a row of their own keeps at zero, and rows that only fix a reaction."""
+        while self._settle_row() or self._settle_column():
+            pass
+
+    def _settle_row(self) -> bool:
+        for i, row in self.rows.items():
+            if len(row) == 1 and self._is_static(next(iter(row.values()))):
+                (variable,) = row
+                self._take_out(i, variable)
+                self.resting.add(variable)
+                return True
+        return False
+
+    def _settle_column(self) -> bool:
+        users: dict[Variable, list[int]] = {}
+        for i, row in self.rows.items():
+            for variable in row:
+                users.setdefault(variable, []).append(i)
+        for variable, found in users.items():
+            if len(found) == 1 and len(self.rows[found[0]]) > 1:
+                (i,) = found
+                if self._is_static(self.rows[i][variable]):
+                    del self.rows[i]
+                    return True
+        return False
+
+    def _take_out(self, row: int, variable: Variable) -> None:
+        is_driven = row in self.driven
+        del self.rows[row]
+        for i, other in self.rows.items():
+            if other.pop(variable, None) is not None and is_driven:
+                self.driven.add(i)
+
+    def _is_static(self, coefficient: Factored) -> bool:
+        return varying(self.equations, opened(self.equations, coefficient)).is_constant
+
+    def components(self) -> Iterator[tuple[list[int], set[Variable]]]:
+        """Yield rows and unknowns that hang together."""
+        left = dict(self.rows)
+        while left:
+            first = next(iter(left))
+            rows, variables = [first], set(left.pop(first))
+            grown = True
+            while grown:
+                joined = [i for i, row in left.items() if not variables.isdisjoint(row)]
+                grown = bool(joined)
+                for i in joined:
+                    rows.append(i)
+                    variables |= set(left.pop(i))
+            yield sorted(rows), variables
+
+
+def separate(equations: Equations, source: str, model: Model | None = None) -> Separation:
+    """Return the parts of a system, those without poles left out.
+
+    Parameters
+    ----------
+    equations : Equations
+        Of the constrained system.
+    source : str
+        Name of the input whose parts are marked.
+    model : Model, optional
+        Whose elements are named; by default all those of the equations.
+    """
+    named = equations.model if model is None else model
+    matrix = _Matrix.of(equations, source)
+    matrix.settle()
+    parts = []
+    for rows, variables in matrix.components():
+        determinant = _determinant(equations, matrix, rows, variables)
+        if determinant.is_constant:
+            continue
+        order = _order(equations, determinant)
+        owners = {v.owner for v in variables if v.kind == "field"}
+        fields = tuple(f.name for f in equations.model.fields if f.name in owners)
+        elements = tuple(u.name for u in named.elements if _is_in(named, u, variables))
+        signals = tuple(x.name for x in equations.model.signals if Variable("signal", x.name) in variables)
+        has_input = any(i in matrix.driven for i in rows)
+        parts.append(Part(elements, fields, signals, order, has_input, determinant))
+    return Separation(tuple(parts), frozenset(matrix.resting))
+
+
+def _determinant(
+    equations: Equations, matrix: _Matrix, rows: list[int], variables: set[Variable]
+) -> Factored:
+    """Return the factors in s of a part's determinant."""
+    forms: list[EquationRow] = [
+        replace(equations.rows[i], form=LinearForm(tuple(matrix.rows[i].items()))) for i in rows
+    ]
+    unknowns = tuple(v for v in equations.unknowns if v in variables)
+    part = replace(equations, unknowns=unknowns, inputs=(), rows=tuple(forms), outputs=())
+    found = Determinants.of(part)
+    return varying(equations, opened(equations, found.opened(found.den)))
+
+
+def _order(equations: Equations, determinant: Factored) -> int | None:
+    """Return the degree in s, ``None`` of what holds waves."""
+    ring, waves = equations.ring, equations.propagation
+    names = [] if waves is None else [*waves.table.wavenumbers, *(p.generator for p in waves.propagators)]
+    if any(determinant.depends_on(name) for name in names):
+        return None
+    s = ring.index[LAPLACE]
+    return sum(degree_in(f, s) * e for f, e in determinant.factors)
+
+
+def _is_in(model: Model, use: PlacedElement, variables: set[Variable]) -> bool:
+    """Tell whether an element takes part in the motion of some variables; supports do not move."""
+    if isinstance(use.element, SUPPORTS):
+        return False
+    through = any(v.kind in ("through", "value") and v.owner == use.name for v in variables)
+    return through or any(v in variables for v in coordinates_of(model, use))
+
+
+def coordinates_of(model: Model, use: PlacedElement) -> tuple[Variable, ...]:
+    """Return the coordinates of nodes that an element acts on."""
+    nodes = {n.name: n for n in model.nodes}
+    domains: Mapping[str, str] = dict(use.domains)
+    found: list[Variable] = []
+    for port, references in use.nodes:
+        for reference in references:
+            if reference.is_ground:
+                continue
+            node = nodes[reference.node]
+            if domains[port] == "planar":
+                found += [Variable("node", node.name, c) for c in node.components]
+            else:
+                found.append(variable_of(reference, node, domains[port]))  # type: ignore[arg-type]
+    return tuple(found)

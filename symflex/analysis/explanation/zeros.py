@@ -1,0 +1,433 @@
+"""Why the zeros of a transfer function are where they are.
+
+Input: a transfer function with numbers, its poles and zeros, and the model they come of.
+Output: a :class:`ZeroExplanation`: the constrained system whose poles the zeros are, whether that is proved,
+what the system separates into, and what zeros off the imaginary axis mean.
+
+The zeros are the poles of the system in which the output is kept at zero by whatever the input takes: the
+numerator is the determinant bordered by the output's row and the input's column (Cramer). Where the input
+acts on the coordinate that the output shows, keeping the output at zero is holding that coordinate (Miu 1991,
+"Physical interpretation of transfer function zeros for simple control systems with mechanical flexibilities",
+ASME J. Dyn. Sys. Meas. Control 113).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal
+
+from symflex.algebra import LAPLACE, Factored, degree_in
+from symflex.analysis.explanation.bending import bending_between
+from symflex.analysis.explanation.comparison import Relation, agree, relate, varying
+from symflex.analysis.explanation.constraints import Constraint, hold, open_circuit, replace_condition
+from symflex.analysis.explanation.coordinates import acting, measured
+from symflex.analysis.explanation.ends import ends_of_element, ends_of_field, is_line
+from symflex.analysis.explanation.joints import in_one_way, seen_at_the_input
+from symflex.analysis.explanation.parts import Part, Separation, separate
+from symflex.analysis.explanation.text import explanation_json, explanation_text
+from symflex.equations import assemble
+from symflex.equations.elimination import Determinants
+from symflex.errors import ModelError
+from symflex.expressions import format_expression, power, product_of
+from symflex.model import with_numbers
+from symflex.print.forms.arrange import Arranger
+from symflex.roots.locate import locate
+from symflex.transfer import bind, derive_all
+from symflex.transfer.cancel import cancel
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from symflex.algebra import Ring
+    from symflex.analysis.explanation.bending import Bending
+    from symflex.equations import Equations
+    from symflex.model import Input, Model, Output, PlacedBlock
+    from symflex.roots import PoleZeroMap, Root
+    from symflex.transfer import BoundTransferFunction
+
+    Nested = Callable[[PlacedBlock, Ring], Factored]
+
+Kind = Literal["colocated", "beyond", "partly", "noncolocated", "open circuit", "free", "zero"]
+Status = Literal["proved", "compared", "not shown"]
+
+SYMBOLIC_ELEMENTS = 12
+"""Lumped models up to this size keep their symbols, so that factors print in them."""
+LONGEST = 100
+
+
+@dataclass(frozen=True, slots=True)
+class EndChange:
+    """How the ends of a beam, rod, shaft, string or field are held in the system and when constrained."""
+
+    name: str
+    before: str
+    after: str
+
+
+@dataclass(frozen=True, slots=True)
+class RealZero:
+    """A real zero in the right half plane, and whether its mirror image is a zero too."""
+
+    root: Root
+    is_paired: bool
+
+
+@dataclass(frozen=True, slots=True)
+class ZeroExplanation:
+    """What the zeros of a transfer function are the poles of.
+
+    Parameters
+    ----------
+    tf : str
+        ``"OUT/IN"``.
+    kind : str
+        ``colocated``: the zeros are the poles of the system with one coordinate held, on which the input
+        acts, or acts in effect. ``beyond``: the input acts elsewhere; the zeros are the poles of those
+        parts of the held system that it does not drive. ``partly``: such poles, and others.
+        ``noncolocated``: the poles of no held system. ``open circuit``: of the system with the terminals
+        open. ``free``: of the system in which nothing imposes the motion. ``zero``: the function is
+        identically zero.
+    status : str
+        ``proved`` in the exact ring of the equations; ``compared``: certified or located roots agree in the
+        region shown; ``not shown``.
+    output, input : str
+        Their names.
+    is_direct : bool
+        The input acts on the very coordinate that the output shows.
+    held, words, spec : str
+        What is zero in the constrained system, in words, and the line that makes it of the specification.
+    order : int
+        Power of s by which the output multiplies its coordinate: zeros at 0 that hold nothing.
+    filtered, extra, transmission : str
+        Factors in s: of the output itself; whose roots are poles of the constrained system and no zeros;
+        whose roots are zeros and no poles of it. Empty without such, ``...`` when too long to print.
+    is_delayed : bool
+        The numerator holds exponentials of s besides, which have no zeros.
+    has_hidden : bool
+        There are hidden modes: together with the zeros they are the poles of the constrained system, but
+        cancel with poles of the system itself.
+    parts : tuple of Part
+        What the constrained system separates into.
+    ends : tuple of EndChange
+        Of line elements and fields, where the constraint changes them.
+    right_half_plane : int
+        Zeros with a positive real part in the region shown, with multiplicity.
+    real_zeros : tuple of RealZero
+        The real ones of them.
+    on_axis : int
+        Zeros in the region shown that are proved to lie on the imaginary axis, 0 left out.
+    bending : Bending or None
+        The beam that lies between input and output.
+    has_zeros : bool
+        Whether the function has zeros at all.
+    """
+
+    tf: str
+    kind: Kind
+    status: Status
+    output: str
+    input: str
+    is_direct: bool = False
+    held: str = ""
+    words: str = ""
+    spec: str = ""
+    order: int = 0
+    filtered: str = ""
+    extra: str = ""
+    transmission: str = ""
+    is_delayed: bool = False
+    has_hidden: bool = False
+    parts: tuple[Part, ...] = ()
+    ends: tuple[EndChange, ...] = ()
+    right_half_plane: int = 0
+    real_zeros: tuple[RealZero, ...] = ()
+    on_axis: int = 0
+    bending: Bending | None = None
+    has_zeros: bool = True
+
+    def __str__(self) -> str:
+        return explanation_text(self)
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return the explanation as JSON data, as ``symflex roots --explain --json`` holds it."""
+        return explanation_json(self)
+
+
+@dataclass(frozen=True, eq=False)
+class _Case:
+    """One transfer function with its equations and determinants."""
+
+    model: Model
+    pair: tuple[str, str]
+    nested: Nested | None
+    equations: Equations
+    whole: Determinants
+
+    @property
+    def output(self) -> Output:
+        return next(o for o in self.model.outputs if o.name == self.pair[0])
+
+    @property
+    def input(self) -> Input:
+        return next(i for i in self.model.inputs if i.name == self.pair[1])
+
+    def constrained(self, constraint: Constraint) -> Determinants | None:
+        """Return the determinants of a constrained model, ``None`` when the constraint repeats another."""
+        try:
+            return Determinants.of(assemble(constraint.model, self.nested))
+        except ModelError:
+            return None
+
+
+def explain_zeros(
+    model: Model, bound: BoundTransferFunction, found: PoleZeroMap, nested: Nested | None = None
+) -> ZeroExplanation:
+    """Explain the zeros of a transfer function.
+
+    Parameters
+    ----------
+    model : Model
+        Resolved; the numbers are those of ``bound``.
+    bound : BoundTransferFunction
+        With numbers.
+    found : PoleZeroMap
+        Its poles and zeros.
+    nested : callable, optional
+        Returns the transfer function of a ``model`` block over a given ring.
+
+    Raises
+    ------
+    BudgetError
+        SF50x when a determinant would be too large.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... elements.body = { type = "mass", at = "x", m = 2 }
+    ... elements.tail = { type = "mass", at = "y", m = 3 }
+    ... elements.link = { type = "spring", between = ["x", "y"], k = 12 }
+    ... inputs.F = { force = "x" }
+    ... outputs.X = "x"
+    ... ''')
+    >>> (bound,) = pipeline.derive_bound(model, [("X", "F")])
+    >>> told = explain_zeros(model, bound, pipeline.roots(bound))
+    >>> told.kind, told.status, told.held, told.parts[0].elements
+    ('colocated', 'proved', 'x = 0', ('tail', 'link'))
+    """
+    values = dict(bound.values)
+    parameters = tuple(replace(p, value=values.get(p.name, p.value)) for p in model.parameters)
+    given = replace(model, parameters=parameters)
+    if len(model.elements) > SYMBOLIC_ELEMENTS:
+        given = with_numbers(given)
+    pair = (bound.source.output.name, bound.source.input.name)
+    given = seen_at_the_input(in_one_way(given), pair[0], bound.source.input)
+    if bound.ratio.is_zero:
+        return ZeroExplanation(bound.name, "zero", "proved", *pair)
+    equations = assemble(given, nested)
+    case = _Case(given, pair, nested, equations, Determinants.of(equations))
+    explained = _by_coordinate(case, found) or _by_condition(case, found) or _by_terminals(case)
+    plain = ZeroExplanation(bound.name, "noncolocated", "proved", *pair)
+    complete = replace(explained or plain, has_zeros=_has_zeros(bound), has_hidden=bool(bound.hidden))
+    return _with_roots(case, complete, found)
+
+
+def _has_zeros(bound: BoundTransferFunction) -> bool:
+    return bound.is_distributed or any(e > 0 and degree_in(f, 0) for f, e in bound.ratio.factors)
+
+
+# ------------------------------------------------------------------------------ what the zeros are poles of
+
+
+def _by_coordinate(case: _Case, found: PoleZeroMap) -> ZeroExplanation | None:
+    """Hold the coordinate that the output shows."""
+    motion = measured(case.equations, case.pair[0])
+    if motion is None:
+        return None
+    constraint = hold(case.model, motion.coordinates)
+    held = case.constrained(constraint)
+    if held is None:
+        return None
+    is_direct = acting(case.model, case.input) == motion.coordinates
+    relation = relate(case.whole, case.pair, motion.factor, held)
+    if relation is None:
+        return _compared(case, constraint, found) if is_direct else None
+    separation = separate(held.equations, case.pair[1], case.model)
+    kind, rest = _kind(case, relation, separation)
+    explained = ZeroExplanation(
+        found.tf,
+        kind,
+        "proved",
+        *case.pair,
+        is_direct,
+        constraint.held,
+        constraint.words,
+        constraint.spec,
+        relation.order,
+        _text(case.equations, relation.filtered),
+        "" if kind in ("noncolocated", "partly") else _text(case.equations, relation.apart),
+        "" if kind == "noncolocated" else _text(case.equations, rest),
+        relation.is_delayed,
+        parts=separation.parts,
+        ends=_end_changes(case, separation),
+    )
+    if kind != "noncolocated":
+        return explained
+    return replace(explained, spec="", words="", parts=(), ends=())
+
+
+def _kind(case: _Case, relation: Relation, separation: Separation) -> tuple[Kind, Factored]:
+    """Return what kind of pair it is, and the factor of the numerator that no undriven part accounts for."""
+    one = Factored.number(case.equations.ring, 1)
+    if relation.is_equality:
+        return "colocated", one
+    if not relation.has_zeros:
+        return "noncolocated", one
+    driven = one
+    for part in separation.parts:
+        if part.has_input:
+            driven = driven * part.determinant
+    rest, _ = cancel(relation.transmission * driven, relation.apart)
+    rest = varying(case.equations, rest)
+    if any(exponent < 0 for _, exponent in rest.factors):
+        return "noncolocated", one
+    if rest.is_constant:
+        return "beyond", one
+    undriven = any(not part.has_input for part in separation.parts)
+    return ("partly", rest) if undriven else ("noncolocated", one)
+
+
+def _compared(case: _Case, constraint: Constraint, found: PoleZeroMap) -> ZeroExplanation:
+    """Compare the zeros with the poles of the held system, root by root, in the region shown."""
+    (zero,) = derive_all(assemble(constraint.model, case.nested), [case.pair])
+    # Its output is at rest, so that every mode is hidden: the list of hidden modes is that of the poles.
+    poles = [h.root for h in locate(bind(zero), found.region, found.digits).hidden]
+    zeros = [*found.zeros, *(h.root for h in found.hidden)]
+    status: Status = "compared" if agree(zeros, poles) else "not shown"
+    return ZeroExplanation(
+        found.tf, "colocated", status, *case.pair, True, constraint.held, constraint.words, constraint.spec
+    )
+
+
+def _by_condition(case: _Case, found: PoleZeroMap) -> ZeroExplanation | None:
+    """Let a field's condition that holds the input give way to one that keeps the output at zero."""
+    replaced = replace_condition(case.model, case.input, case.output.expression)
+    if replaced is None:
+        return None
+    constraint = replaced.constraint
+    held = case.constrained(constraint)
+    if held is None:
+        return None
+    # What cleared the denominators of the condition with the input is no part of the numerator.
+    scale = _coefficient(case.equations, case.pair[1])
+    relation = relate(case.whole, case.pair, scale, held)
+    if relation is None and replaced.is_dual:
+        return _compared(case, constraint, found)
+    if relation is None or not relation.apart.is_constant:
+        return None
+    # What the output does to the value it shows is all that is left of the numerator.
+    s = case.equations.ring.generator(LAPLACE)
+    order = relation.transmission.exponent_of(s)
+    filtered = relation.transmission / Factored.generator(case.equations.ring, LAPLACE) ** order
+    after = next(f for f in constraint.model.fields if f.name == replaced.field.name)
+    ends = (ends_of_field(replaced.field), ends_of_field(after))
+    kind: Kind = "colocated" if replaced.is_dual else "noncolocated"
+    return ZeroExplanation(
+        found.tf,
+        kind,
+        "proved",
+        *case.pair,
+        replaced.is_dual,
+        constraint.held,
+        constraint.words,
+        constraint.spec,
+        order,
+        _text(case.equations, filtered),
+        parts=separate(held.equations, case.pair[1], case.model).parts,
+        ends=(EndChange(replaced.field.name, *ends),) if all(ends) else (),
+    )
+
+
+def _coefficient(equations: Equations, source: str) -> Factored:
+    """Return what multiplies an input in the one row that holds it."""
+    terms = [term for row in equations.rows for term in row.form.terms]
+    return next(c for v, c in terms if v.kind == "input" and v.owner == source)
+
+
+def _by_terminals(case: _Case) -> ZeroExplanation | None:
+    """Open the terminals of a voltage input whose current the output shows; free what an input moves."""
+    constraint = open_circuit(case.model, case.input)
+    held = None if constraint is None else case.constrained(constraint)
+    if constraint is None or held is None:
+        return None
+    one = Factored.number(case.equations.ring, 1)
+    relation = relate(case.whole, case.pair, one, held)
+    if relation is None or not relation.apart.is_constant:
+        return None
+    order = relation.transmission.exponent_of(case.equations.ring.generator(LAPLACE))
+    if relation.transmission.filter(lambda f: f != case.equations.ring.generator(LAPLACE)).factors:
+        return None
+    name = "/".join(case.pair)
+    return ZeroExplanation(
+        name,
+        "free" if case.input.kind not in ("voltage", "signal") else "open circuit",
+        "proved",
+        *case.pair,
+        True,
+        constraint.held,
+        constraint.words,
+        constraint.spec,
+        order,
+        parts=separate(held.equations, case.pair[1], case.model).parts,
+    )
+
+
+# --------------------------------------------------------------------------------------------- in words
+
+
+def _text(equations: Equations, value: Factored) -> str:
+    """Return a product of factors in s in the spec language; ``...`` when it is long or holds waves."""
+    if value.is_constant:
+        return ""
+    names = {c.generator: c.expression for c in equations.constants}
+    arranger = Arranger.plain(equations.ring, names)
+    waves = equations.propagation
+    hidden = () if waves is None else (*waves.table.wavenumbers, *(p.generator for p in waves.propagators))
+    if any(value.depends_on(name) for name in hidden):
+        return "..."
+    factors = [power(arranger.collected(f), e) for f, e in value.factors]
+    text = format_expression(product_of(factors))
+    return text if len(text) <= LONGEST else "..."
+
+
+def _end_changes(case: _Case, separation: Separation) -> tuple[EndChange, ...]:
+    """Return the line elements whose ends the constraint changes, parts with the input left out."""
+    before = separate(case.equations, case.pair[1]).resting
+    driven = {name for part in separation.parts if part.has_input for name in part.elements}
+    found = []
+    for use in case.model.elements:
+        if is_line(use) and use.name not in driven:
+            ends = [ends_of_element(case.model, use, resting) for resting in (before, separation.resting)]
+            if ends[0] != ends[1]:
+                found.append(EndChange(use.name, *ends))
+    return tuple(found)
+
+
+def _with_roots(case: _Case, explained: ZeroExplanation, found: PoleZeroMap) -> ZeroExplanation:
+    """Return the explanation with what there is to say about the zeros in the region shown."""
+    right = [root for root in found.zeros if root.re > 0]
+    real = [root for root in right if root.is_real]
+    negative = [root for root in found.zeros if root.is_real and root.re < 0]
+    pairs = tuple(
+        RealZero(root, any(bool((-other.re).overlaps(root.re)) for other in negative)) for root in real
+    )
+    return replace(
+        explained,
+        right_half_plane=sum(root.multiplicity for root in right),
+        real_zeros=pairs,
+        on_axis=sum(r.multiplicity for r in found.zeros if r.on_imaginary_axis and not r.is_zero),
+        bending=bending_between(case.model, case.equations, case.output, case.input)
+        if explained.kind in ("noncolocated", "partly", "beyond")
+        else None,
+    )

@@ -1,0 +1,385 @@
+"""From a pole of a bound transfer function to its mode shapes.
+
+Input: :class:`symflex.transfer.BoundTransferFunction` and the number of a mode, or a root. Output:
+:class:`ModeShape`, from the null space of the equations on the pole's enclosure.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+from typing import TYPE_CHECKING
+
+from flint import acb, acb_mat
+
+from symflex.analysis.modes.bound_equations import BoundEquations
+from symflex.analysis.modes.normalise import normalised
+from symflex.analysis.modes.null_space import null_space
+from symflex.analysis.modes.shape import ModeShape, Motion
+from symflex.budget import spend
+from symflex.equations import assemble
+from symflex.errors import BudgetError, Diagnostic, UncertifiedError, UsageError
+from symflex.library.elements.element import ACROSS_UNIT, COMPONENT_UNIT
+from symflex.roots import Band, Modes, precision
+from symflex.roots.locate import locate
+from symflex.transfer import nested_transfer
+from symflex.transfer.bind import read_values
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from symflex.analysis.modes.bound_equations import SystemAt
+    from symflex.library.elements import Variable
+    from symflex.roots import PoleZeroMap, Region, Root
+    from symflex.roots.counting.right_half_plane import StabilityVerdict
+    from symflex.transfer import BoundTransferFunction
+
+DIGITS = 15
+SPARE_DIGITS = 15
+ROUNDS = 6
+"""How often the digits of the pole are doubled until those of the shape suffice."""
+SPARE_BITS = 64
+BESIDE = acb(1.0625, 0.03125)
+"""Times a pole it is a point where nothing vanishes because of the pole."""
+DIMENSIONS = 6
+"""Shapes of one pole that are sought at most."""
+NEAR = 1e-8
+"""Relative distance within which two estimates are the same root."""
+NEIGHBOURHOOD = Fraction(1, 4)
+WIDER = 2**8
+"""Times the radius within which an estimated pole is taken to lie."""
+
+
+@dataclass(frozen=True, slots=True)
+class NumberedShape:
+    """A mode shape among the lowest of a model.
+
+    Parameters
+    ----------
+    shape : ModeShape
+        The shape.
+    is_hidden : bool
+        The input does not reach it, or the output does not see it.
+    """
+
+    shape: ModeShape
+    is_hidden: bool
+
+
+def mode_shape(bound: BoundTransferFunction, which: int | Root, digits: int = DIGITS) -> ModeShape:
+    """Return the shape of one mode.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        Whose poles are counted.
+    which : int or Root
+        The number of the mode: 1 is the lowest pole other than 0, a conjugate pair or a real pole is one
+        mode, and one of multiplicity m counts as m. 0 is the rigid-body motion, at s = 0. Or a root: a pole,
+        or a hidden mode.
+    digits : int
+        Correct digits of displacements, relative to the largest.
+
+    Returns
+    -------
+    ModeShape
+        Of the member of a pair with positive imaginary part.
+
+    Raises
+    ------
+    UsageError
+        SF902 when there is no such mode, or the root is no pole; SF904 when the root, or 0, has several
+        shapes, or a multiple pole fewer shapes than its multiplicity.
+    UncertifiedError
+        SF406 when the equations cannot be told to be singular at the pole.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... elements.a = { type = "mass", at = "x", m = "1 kg" }
+    ... elements.b = { type = "mass", at = "y", m = "2 kg" }
+    ... elements.k = { type = "spring", between = ["x", "y"], k = "6 N/m" }
+    ... inputs.F = { force = "x" }
+    ... outputs.X = "x"
+    ... ''')
+    >>> bound, = pipeline.derive_bound(model, model.transfer_functions)
+    >>> shape = mode_shape(bound, 1)
+    >>> float(shape.motion("x").value.real.mid()), float(shape.motion("y").value.real.mid())
+    (1.0, -0.5)
+    """
+    shapes, place = _shapes(bound, which, digits)
+    is_counted = isinstance(which, int) and which > 0 and len(shapes) <= shapes[0].pole.multiplicity
+    if is_counted and place < len(shapes):
+        return shapes[place]
+    if len(shapes) > 1 and not is_counted:
+        message = f"the pole {_printed(shapes[0].pole)} has {len(shapes)} independent shapes"
+        raise UsageError(Diagnostic("SF904", message, None, "mode_shapes() returns all of them"))
+    if place:
+        message = f"mode {which} has no shape of its own: its pole has more modes than shapes"
+        raise UsageError(Diagnostic("SF904", message))
+    return shapes[0]
+
+
+def mode_shapes(
+    bound: BoundTransferFunction, which: int | Root, digits: int = DIGITS
+) -> tuple[ModeShape, ...]:
+    """Return all independent shapes of the pole that a mode belongs to; see :func:`mode_shape`.
+
+    More than one are a basis: in each, one of as many places is 1 and the others are at rest.
+    """
+    return _shapes(bound, which, digits)[0]
+
+
+def lowest_modes(
+    bound: BoundTransferFunction, count: int, band: Band | None = None
+) -> tuple[tuple[NumberedShape, ...], StabilityVerdict]:
+    """Return the shapes of the lowest modes, or of those in a band, other than at 0; hidden ones among them.
+
+    Those of poles in the right half plane follow, wherever they lie. Whether the model is stable comes with
+    them.
+    """
+    search = _Search(bound)
+    found = search.map(band or Modes(count), DIGITS + SPARE_DIGITS)
+    candidates = [(root, False) for root in found.all_poles] + [(h.root, True) for h in found.hidden]
+    chosen = [(root, hidden) for root, hidden in candidates if not root.is_zero and not root.im < 0]
+    chosen.sort(key=lambda pair: float(pair[0].natural_frequency().mid()))
+    shapes: list[NumberedShape] = []
+    for root, is_hidden in chosen:
+        spend()
+        if len(shapes) >= count and not root.re > 0:
+            continue
+        if any(_is_same(s.shape.pole, root) for s in shapes):
+            continue
+        try:
+            found_here = search.shapes(partial(search.again, root), DIGITS)
+        except UsageError:
+            continue  # a common factor that is no mode of the model
+        shapes += [NumberedShape(shape, is_hidden) for shape in found_here]
+    kept = tuple(s for i, s in enumerate(shapes) if i < count or s.shape.pole.re > 0)
+    return kept, found.verdict
+
+
+def _shapes(
+    bound: BoundTransferFunction, which: int | Root, digits: int
+) -> tuple[tuple[ModeShape, ...], int]:
+    """Return the shapes of a pole, and the place of the mode asked for among them."""
+    search = _Search(bound)
+    if not isinstance(which, int):
+        return search.shapes(partial(search.again, which), digits), 0
+    place = search.numbered(which, digits)[1]
+    return search.shapes(lambda more: search.numbered(which, more)[0], digits), place
+
+
+class _Search:
+    """Finds poles of one bound transfer function to more and more digits, and solves for their shapes."""
+
+    def __init__(self, bound: BoundTransferFunction) -> None:
+        self.bound = bound
+        self._maps: dict[tuple[Region | None, int], PoleZeroMap] = {}
+        model = bound.source.model
+        equations = assemble(model, nested_transfer, is_nameless=True)
+        given = dict(bound.values)
+        missing = tuple(p for p in model.parameters if p.name not in given)
+        self.equations = BoundEquations(equations, (*bound.values, *read_values(missing, {})))
+        domains = {n.name: n.domain for n in model.nodes}
+        self._units = {v: _unit(v, domains.get(v.owner, "")) for v in equations.unknowns}
+
+    def map(self, region: Region | None, digits: int) -> PoleZeroMap:
+        key = (region, digits)
+        if key not in self._maps:
+            self._maps[key] = locate(self.bound, region, digits)
+        return self._maps[key]
+
+    def numbered(self, number: int, digits: int) -> tuple[Root, int]:
+        """Return the pole of a mode, and which of its modes it is."""
+        if number < 0:
+            raise UsageError(Diagnostic("SF902", f"modes count from 1, and 0 is at s = 0; found {number}"))
+        found = self.map(Modes(max(number, 1)), digits)
+        poles = found.poles
+        if number == 0:
+            hidden = (h.root for h in found.hidden)
+            rigid = next((p for p in (*poles, *hidden) if p.is_zero), None)
+            if rigid is None:
+                message = "the model has no pole at 0, so no rigid-body motion"
+                raise UsageError(Diagnostic("SF902", message, None, "modes count from 1"))
+            return rigid, 0
+        before = 0
+        for root in poles:
+            if root.is_zero or root.im < 0:
+                continue
+            if number <= before + root.multiplicity:
+                return root, number - before - 1
+            before += root.multiplicity
+        count = f"{before} mode" + ("" if before == 1 else "s")
+        message = f"{self.bound.name} has {count} other than at 0, not {number}"
+        raise UsageError(Diagnostic("SF902", message))
+
+    def again(self, root: Root, digits: int) -> Root:
+        """Return a root known already, to more digits where it is found again."""
+        if root.is_zero:
+            return root
+        region: Region | None = None
+        if self.bound.is_distributed:
+            frequency = Fraction(root.frequency_hz())
+            region = Band(frequency * (1 - NEIGHBOURHOOD), frequency * (1 + NEIGHBOURHOOD))
+        try:
+            found = self.map(region, digits)
+        except (BudgetError, UncertifiedError):
+            spend()
+            return root
+        candidates = [*found.all_poles, *(h.root for h in found.hidden)]
+        nearest = min(candidates, key=lambda r: _distance(r, root), default=root)
+        return nearest if _is_same(nearest, root) else root
+
+    def shapes(self, pole: Callable[[int], Root], digits: int) -> tuple[ModeShape, ...]:
+        """Return the shapes of a pole that can be found to any number of digits."""
+        working = digits + SPARE_DIGITS
+        best: tuple[ModeShape, ...] = ()
+        for _ in range(ROUNDS):
+            try:
+                root = pole(working)
+            except (BudgetError, UncertifiedError):
+                if best:
+                    break
+                raise
+            found = self._at(root, digits)
+            best = found or best
+            if found and all(_is_accurate(shape, digits) for shape in found):
+                break
+            working *= 2
+        if not best:
+            message = f"the equations cannot be solved for the shape of the pole near {_printed(root)}"
+            raise UncertifiedError(Diagnostic("SF406", message, None, "the pole is not known well enough"))
+        return best
+
+    def _at(self, root: Root, digits: int) -> tuple[ModeShape, ...]:
+        """Return the shapes at a pole, none when its enclosure is too wide."""
+        bits = root.working_bits() + SPARE_BITS
+        with precision(bits):
+            s = acb(root.re, root.im)
+            system = self.equations.at(s)
+            typical = self.equations.at(s.mid() * BESIDE if s.mid() != 0 else acb(1)).matrix
+            for dimension in range(1, DIMENSIONS + 1):
+                space = null_space(system.matrix, dimension, typical)
+                if space is None:
+                    continue
+                if not space.is_refuted:
+                    basis = _tidied(space.basis, system.unknowns, self._units)
+                    is_proved = dimension == 1 and root.certified
+                    raw = [self._shape(root, system, values, bits, is_proved) for values in basis]
+                    scaled = [normalised(shape, digits) for shape in raw]
+                    return tuple(x for x in scaled if x is not None) if None not in scaled else ()
+                if dimension == 1:
+                    # With more dimensions it may be that the balls are too wide for fewer.
+                    message = f"s = {_printed(root)} is no pole of the model's equations"
+                    hint = "zeros have no shape, nor have the poles of a filter in an output"
+                    raise UsageError(Diagnostic("SF902", message, None, hint))
+                return ()
+        return ()
+
+    def _shape(
+        self, root: Root, system: SystemAt, values: Sequence[acb], bits: int, is_proved: bool
+    ) -> ModeShape:
+        known = dict(zip(system.unknowns, values, strict=True))
+        starts = {part.name: float(part.start.mid()) for part in system.continua}
+        motions = tuple(
+            Motion(_name(variable, starts), variable, value, self._units[variable])
+            for variable, value in known.items()
+            if variable.kind != "value"
+        )
+        distributed = tuple(part.shape(known, bits) for part in system.continua)
+        return ModeShape(root, motions, distributed, "", is_proved)
+
+
+def _name(variable: Variable, starts: Mapping[str, float]) -> str:
+    if variable.kind == "field":
+        return f"{variable.component}({starts[variable.owner]:.6g})"
+    return str(variable)
+
+
+def _unit(variable: Variable, domain: str) -> str:
+    if variable.kind == "node":
+        if variable.component:
+            return "m" if variable.component == "y" else "rad"
+        return ACROSS_UNIT.get(domain, "")
+    if variable.kind == "through":
+        return COMPONENT_UNIT.get(variable.component.removesuffix("_a"), "")
+    return ""
+
+
+def _distance(a: Root, b: Root) -> float:
+    with precision(64):
+        return float(abs(acb(a.re.mid() - b.re.mid(), a.im.mid() - b.im.mid())).mid())
+
+
+def _is_same(a: Root, b: Root) -> bool:
+    if a.re.overlaps(b.re) and a.im.overlaps(b.im):
+        return True
+    return _distance(a, b) <= NEAR * float(b.natural_frequency().mid())
+
+
+def _printed(root: Root) -> str:
+    decimals = root.decimal(6)
+    return f"{decimals.re} + {decimals.im} j"
+
+
+def _tidied(
+    basis: tuple[tuple[acb, ...], ...], unknowns: Sequence[Variable], units: dict[Variable, str]
+) -> tuple[tuple[acb, ...], ...]:
+    """Return a basis in which each vector alone moves one of as many places."""
+    count = len(basis)
+    if count == 1:
+        return basis
+    places = _independent(basis, [j for j, v in enumerate(unknowns) if units[v] in ("m", "rad", "V")])
+    if len(places) < count:
+        places = _independent(basis, range(len(unknowns)))
+    square = acb_mat([[basis[k][j] for k in range(count)] for j in places])
+    try:
+        mixing = square.inv()
+    except ZeroDivisionError:
+        return basis
+    whole = acb_mat([[basis[k][j] for k in range(count)] for j in range(len(unknowns))]) * mixing
+    return tuple(
+        tuple(acb(int(places[k] == j)) if j in places else whole[j, k] for j in range(len(unknowns)))
+        for k in range(count)
+    )
+
+
+def _independent(basis: tuple[tuple[acb, ...], ...], places: Sequence[int]) -> list[int]:
+    """Return as many places as vectors where these are independent, the largest amplitudes first."""
+    rows = {j: [complex(vector[j].mid()) for vector in basis] for j in places}
+    chosen: list[int] = []
+    while rows and len(chosen) < len(basis):
+        place = max(rows, key=lambda j: sum(abs(x) ** 2 for x in rows[j]))
+        pivot = rows.pop(place)
+        size = sum(abs(x) ** 2 for x in pivot)
+        if size == 0:
+            break
+        chosen.append(place)
+        for j, row in rows.items():
+            share = sum(x * y.conjugate() for x, y in zip(row, pivot, strict=True)) / size
+            rows[j] = [x - share * y for x, y in zip(row, pivot, strict=True)]
+    return sorted(chosen)
+
+
+def _is_accurate(shape: ModeShape, digits: int) -> bool:
+    """Tell whether motions, also at the far ends of distributed parts, have the digits asked for."""
+    groups: dict[tuple[str, str], list[acb]] = {}
+    for motion in shape.motions:
+        groups.setdefault((motion.unit, motion.variable.kind), []).append(motion.value)
+    for part in shape.distributed:
+        middle, end = (part.state_at_share(Fraction(1, n)) for n in (2, 1))
+        for name, *values in zip(part.states, part.initial, middle, end, strict=True):
+            groups.setdefault((part.name, name), []).extend(values)
+    sizes = [
+        (max(float(abs(v.mid())) for v in values), max(float(v.rad()) for v in values))
+        for values in groups.values()
+    ]
+    overall = max((largest for largest, radius in sizes if largest > radius), default=0.0)
+    # What vanishes altogether has no size of its own to be measured by.
+    return all(
+        radius <= 10.0**-digits * (largest if largest > radius else overall) for largest, radius in sizes
+    )

@@ -1,0 +1,374 @@
+"""Laurent series of a bound transfer function, at a pole and at s = 0, in balls.
+
+Numerator and denominator are expanded as power series; how many of their first coefficients are zero is known
+from the pole's multiplicity, at s = 0 from series over a prime field, so a quotient of balls is enough.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+from typing import TYPE_CHECKING
+
+from flint import acb, acb_series, arb, ctx
+
+from symflex.algebra import Factored
+from symflex.algebra.origin import Origin
+from symflex.analysis.rational.local_values import BRANCHES, local_values, series_length
+from symflex.errors import Diagnostic, UncertifiedError
+from symflex.roots import precision
+from symflex.roots.counting.local_series import (
+    BITS_A_POINT,
+    REACH,
+    SERIES_BITS,
+    SERIES_POINTS,
+    TERMS,
+    LocalSeries,
+    local_series,
+)
+from symflex.roots.distributed.kernel_function import KernelFunction
+from symflex.roots.precision import bits_for_digits
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.roots import Root
+    from symflex.transfer import BoundTransferFunction
+    from symflex.transfer.enclose_kernels import KernelValues
+
+Taylor = Callable[[acb, int], list[acb] | None]
+"""The Taylor coefficients of a function at a point, as many as are wanted."""
+
+FIRST_BITS = 192
+LAST_BITS = 12288
+DETECTION_BITS = 768
+"""From which a coefficient of a series whose ball holds zero counts as zero where nothing proves it."""
+SLACK = 16
+"""Terms that roots of vanishing coefficients may cost."""
+LONGEST = 160
+NEWTON_STEPS = 16
+COINCIDENT = 2
+"""Zeros on top of a pole that are looked for."""
+
+
+@dataclass(frozen=True, slots=True)
+class LaurentSeries:
+    """The first terms of ``G(s) = (s - p)^order * (coefficients[0] + coefficients[1]*(s - p) + ...)``.
+
+    Parameters
+    ----------
+    order : int
+        Of the zero at p; negative of a pole.
+    coefficients : tuple of acb
+        Enclosures; the first differs from zero.
+    is_estimate : bool
+        The order, or the pole, was found numerically: nothing is proved.
+    """
+
+    order: int
+    coefficients: tuple[acb, ...]
+    is_estimate: bool = False
+
+    def coefficient(self, power: int) -> acb:
+        """Return the coefficient of ``(s - p)^power``, zero below the order.
+
+        Raises
+        ------
+        IndexError
+            When the series was not computed that far.
+        """
+        return acb(0) if power < self.order else self.coefficients[power - self.order]
+
+    @property
+    def principal_part(self) -> tuple[acb, ...]:
+        """The coefficients of ``1/(s - p)``, ``1/(s - p)^2``, ... up to the pole's order."""
+        return tuple(self.coefficient(-power) for power in range(1, 1 - self.order))
+
+
+def expand_at_zero(bound: BoundTransferFunction, last: int, digits: int) -> LaurentSeries:
+    """Return the Laurent series at s = 0.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        Not identically zero.
+    last : int
+        The highest power of s wanted; the leading term is always there.
+    digits : int
+        Significant digits of every coefficient that is not zero.
+
+    Raises
+    ------
+    UncertifiedError
+        SF405 when the coefficients cannot be told.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... elements.rod = { type = "rod", between = ["x", "y"], E = 2, A = 1, rho = 1, l = 3 }
+    ... inputs.F = { force = "x" }
+    ... outputs.Y = "y"
+    ... ''')
+    >>> series = expand_at_zero(pipeline.derive_bound(model, [("Y", "F")])[0], 0, 15)
+    >>> series.order, [round(float(c.real.mid()), 12) for c in series.coefficients]
+    (-2, [0.333333333333, 0.0, -0.25])
+    """
+    named = any(law.wavenumbers for law in bound.kernels.dispersions)
+    branches = BRANCHES if named else 1
+    origin = Origin(bound.ratio.ring, bound.kernels)
+    # Origin counts in quarters, where there are branches.
+    orders = [
+        origin.order(Factored(bound.ratio.ring, Fraction(1), ((f, branches),)))
+        for f, _ in bound.ratio.factors
+    ]
+    bits = max(FIRST_BITS, 2 * bits_for_digits(digits))
+    terms = max((o for o in orders if o is not None), default=0) + branches * (max(last, 0) + 4) + SLACK
+    while bits <= LAST_BITS:
+        with precision(bits), series_length(terms):
+            evaluator = _evaluator(bound)
+            values = local_values(evaluator, acb(0), terms, branches)
+            found = None
+            if values is not None:
+                series = [_coefficients(evaluator.polynomial(f, values)) for f, _ in bound.ratio.factors]
+                found = _quotient(bound.ratio, series, orders, branches, last, terms)
+        if isinstance(found, LaurentSeries) and _is_accurate(found.coefficients, digits, bits):
+            return found
+        if found == "longer" and terms < LONGEST:
+            terms *= 2
+        else:
+            bits *= 2
+            if found == "unproved":
+                orders = [None] * len(orders)
+    message = f"the behaviour of {bound.name} near s = 0 cannot be told"
+    raise UncertifiedError(Diagnostic("SF405", message))
+
+
+def _quotient(
+    ratio: Factored,
+    series: Sequence[list[acb]],
+    orders: Sequence[int | None],
+    branches: int,
+    last: int,
+    terms: int,
+) -> LaurentSeries | str:
+    """Return the product of the factors' powers; or ``longer``, ``unproved``, ``finer``: what it lacks."""
+    firsts: list[int] = []
+    for coefficients, known in zip(series, orders, strict=True):
+        apart = next((i for i, c in enumerate(coefficients) if not c.contains(0)), None)
+        if known is None:
+            if apart is None:
+                return "longer"
+            if any(c != 0 for c in coefficients[:apart]) and ctx.prec < DETECTION_BITS:
+                return "finer"
+            firsts.append(apart)
+            continue
+        if known >= len(coefficients):
+            return "longer"
+        if apart is not None and apart < known:
+            return "unproved"
+        if coefficients[known].contains(0):
+            return "finer" if ctx.prec < DETECTION_BITS else "unproved"
+        firsts.append(known)
+    total_order = sum(e * first for (_, e), first in zip(ratio.factors, firsts, strict=True))
+    if total_order % branches:
+        return "finer"
+    order = total_order // branches
+    count = max(last - order, 0) + 1
+    wanted = branches * (count - 1) + 1
+    with series_length(terms):
+        total = acb_series([acb(_fraction(ratio))], terms)
+        for coefficients, first, (_, exponent) in zip(series, firsts, ratio.factors, strict=True):
+            rest = acb_series(coefficients[first:], len(coefficients) - first)
+            for _ in range(abs(exponent)):
+                total = total * rest if exponent > 0 else total / rest
+    if total.prec < wanted:
+        return "longer"
+    found = tuple(total[branches * i] for i in range(count))
+    return LaurentSeries(order, tuple(acb(about_zero(c.real)) for c in found), any(o is None for o in orders))
+
+
+def expand_at_pole(bound: BoundTransferFunction, root: Root, digits: int) -> tuple[acb, LaurentSeries]:
+    """Return a pole other than 0, refined, and the principal part there.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        The function.
+    root : Root
+        One of its poles, told apart from the others.
+    digits : int
+        Significant digits of every coefficient that is not zero.
+
+    Raises
+    ------
+    UncertifiedError
+        SF405 when the poles cannot be told apart, or the coefficients cannot be told.
+    """
+    multiplicity, ratio = root.multiplicity, bound.ratio
+    if not root.certified:
+        message = f"poles of {bound.name} that cannot be told apart have no residues of their own"
+        raise UncertifiedError(Diagnostic("SF405", message, None, "more digits may tell them apart"))
+    bits = max(FIRST_BITS, 2 * bits_for_digits(digits), root.working_bits())
+    while bits <= LAST_BITS:
+        with precision(bits):
+            evaluator = _evaluator(bound)
+            above, below = (partial(_part, evaluator, v) for v in (ratio.numerator(), ratio.denominator()))
+            known = _expanded(above, below, root)
+            if known is None and (smooth := _smooth_sides(bound, root, bits)) is not None:
+                known = _expanded(*smooth, root)
+            if known is not None:
+                pole, found, extra = known
+                if root.is_real:
+                    found = [acb(c.real) for c in found]
+                if _is_accurate(found, digits, bits):
+                    found = [acb(about_zero(c.real), about_zero(c.imag)) for c in found]
+                    is_estimate = extra > 0
+                    return pole, LaurentSeries(-multiplicity, tuple(found), is_estimate)
+        bits *= 2
+    re, im = float(root.re.mid()), float(root.im.mid())
+    message = f"the residue of {bound.name} at {re:g} {im:+g} j rad/s cannot be told"
+    raise UncertifiedError(Diagnostic("SF405", message))
+
+
+def _expanded(above: Taylor, below: Taylor, root: Root) -> tuple[acb, list[acb], int] | None:
+    """Return a refined pole, its principal part, and how many zeros lie on top of it."""
+    for extra in range(COINCIDENT + 1):
+        pole = _refined(below, root, root.multiplicity + extra)
+        found = None if pole is None else _principal(above, below, pole, root.multiplicity, extra)
+        if pole is not None and found is not None:
+            return pole, found, extra
+    return None
+
+
+def _refined(below: Taylor, root: Root, order: int) -> acb | None:
+    """Return a smaller ball around a root of the denominator, by interval Newton steps (Moore 1966).
+
+    At a root of order k the Taylor coefficient number k - 1, as a function of s, has a simple one.
+    """
+    ball = _on_axis(root, root.enclosure())
+    for _ in range(NEWTON_STEPS):
+        if ball.rad() == 0:
+            break
+        middle = ball.mid()
+        value, slope = below(middle, order + 1), below(ball, order + 1)
+        if value is None or slope is None or slope[order].contains(0):
+            return None
+        step = _on_axis(root, middle - value[order - 1] / (order * slope[order]))
+        if not step.is_finite() or not step.rad() < ball.rad() / 2:
+            break
+        ball = step
+    return ball
+
+
+def _on_axis(root: Root, ball: acb) -> acb:
+    if root.is_real:
+        return acb(ball.real)
+    return acb(arb(0), ball.imag) if root.on_imaginary_axis else ball
+
+
+def _principal(above: Taylor, below: Taylor, pole: acb, multiplicity: int, extra: int) -> list[acb] | None:
+    """Return the coefficients from ``(s - p)^-multiplicity`` to ``(s - p)^-1``."""
+    count = 2 * multiplicity + extra
+    num, den = above(pole, count), below(pole, count)
+    if num is None or den is None:
+        return None
+    first = multiplicity + extra
+    if den[first].contains(0) or not all(c.contains(0) for c in (*den[:first], *num[:extra])):
+        return None
+    with series_length(multiplicity):
+        rest = acb_series(den[first:], multiplicity)
+        quotient = acb_series(num[extra : extra + multiplicity], multiplicity) / rest
+    found = [quotient[i] for i in range(multiplicity)]
+    return found if all(c.is_finite() for c in found) else None
+
+
+def _part(evaluator: KernelValues, part: Factored, centre: acb, terms: int) -> list[acb] | None:
+    """Return the Taylor coefficients of a product of factors at a point where wavenumbers are regular."""
+    values = local_values(evaluator, centre, terms)
+    if values is None:
+        return None
+    with series_length(terms):
+        total = acb_series([acb(_fraction(part))], terms)
+        for factor, exponent in part.factors:
+            series = acb_series(_coefficients(evaluator.polynomial(factor, values)), terms)
+            if exponent < 0 and series[0].contains(0):
+                return None
+            for _ in range(abs(exponent)):
+                total = total * series if exponent > 0 else total / series
+    return [total[i] for i in range(terms)]
+
+
+def _smooth_sides(bound: BoundTransferFunction, root: Root, bits: int) -> tuple[Taylor, Taylor] | None:
+    """Return the Taylor coefficients of both sides next to a pole where wavenumbers vanish or meet.
+
+    Numerator and denominator are as smooth in s there as anywhere: values on a circle tell them.
+    """
+    if not bound.is_distributed:
+        return None
+    sides = [KernelFunction(bound, value) for value in (bound.num, bound.den)]
+    above, below = (side.part for side in sides)
+    if any(side.power != 1 for side in sides) or not (above / below / bound.ratio).is_one:
+        return None
+    centre = root.enclosure().mid()
+    reach = (centre.abs_upper() * REACH).mid()
+    points = SERIES_POINTS + bits // BITS_A_POINT
+    found = [local_series(side, centre, reach, bits + SERIES_BITS, points) for side in sides]
+    if found[0] is None or found[1] is None:
+        return None
+    # The series are of the factors, without the numbers in front.
+    return partial(_of_series, found[0], _fraction(above)), partial(_of_series, found[1], _fraction(below))
+
+
+def _of_series(series: LocalSeries, unit: arb, centre: acb, terms: int) -> list[acb] | None:
+    """Return the Taylor coefficients at a point close to where a series was found."""
+    off = (centre - series.centre).abs_upper()
+    radius = (2 * off).max(series.reach * arb(2) ** -(ctx.prec // TERMS)).upper()
+    found = series.around(centre, radius)
+    if found is None or terms > len(found[0]):
+        return None
+    coefficients, missing = found
+    # What is missed is analytic, and no larger than that on the circle: Cauchy's estimate.
+    errors = [(missing / radius**k).upper() for k in range(terms)]
+    return [unit * (c + acb(arb(0, e), arb(0, e))) for c, e in zip(coefficients, errors, strict=False)]
+
+
+def about_zero(ball: arb) -> arb:
+    """Return a ball that holds zero with its centre there, any other as it is.
+
+    Examples
+    --------
+    >>> about_zero(arb(0.5, 1)).mid(), about_zero(arb(2, 1)).mid()
+    (0, 2.00000000000000)
+    """
+    return arb(0, ball.abs_upper()) if ball.contains(0) else ball
+
+
+def _coefficients(value: acb | acb_series) -> list[acb]:
+    """Return as many coefficients as are known, trailing zeros among them."""
+    if isinstance(value, acb_series):
+        return [value[i] for i in range(value.prec)]
+    return [value, *[acb(0)] * (LONGEST - 1)]
+
+
+def _evaluator(bound: BoundTransferFunction) -> KernelValues:
+    return bound.kernel_values({name: evaluate() for name, evaluate in bound.constants})
+
+
+def _fraction(value: Factored) -> arb:
+    return arb(value.unit.numerator) / arb(value.unit.denominator)
+
+
+def _is_accurate(coefficients: Sequence[acb], digits: int, bits: int) -> bool:
+    """Tell whether every coefficient has its digits, or is next to nothing beside the largest."""
+    wanted = bits_for_digits(digits)
+    if not all(c.is_finite() for c in coefficients):
+        return False
+    largest = arb(0)
+    for c in coefficients:
+        largest = largest.max(abs(c).mid())
+    nothing = largest * arb(2) ** (-(bits // 3))
+    return all(c.rel_accuracy_bits() >= wanted or c.rad() < nothing for c in coefficients)

@@ -1,0 +1,206 @@
+"""Rational approximations as text for a terminal and as JSON data."""
+
+from __future__ import annotations
+
+from math import isfinite, pi
+from typing import TYPE_CHECKING
+
+import mpmath
+
+from symflex.analysis.rational.toolboxes import PERCENTS
+from symflex.roots.multiprecision import to_complex_mpmath
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.analysis.rational import RationalApproximation
+    from symflex.roots import Root
+
+SCHEMA = "symflex.analysis.rational/1"
+INDENT = "  "
+DIGITS = 10
+JSON_DIGITS = 17
+
+Row = tuple[str, ...]
+
+
+def rational_text(found: RationalApproximation) -> str:
+    r"""Return an approximation as tables, with the frequencies up to which it is valid, in 80 columns.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> model = pipeline.loads('symflex = 1\ninputs.u = {}\noutputs.y = "3*u/(s + 2)"')
+    >>> print(rational_text(pipeline.rational(pipeline.derive_bound(model, [("y", "u")])[0])))
+    y/u   transfer function [s], product form, 1 mode; stable
+    <BLANKLINE>
+      exact: nothing is left out of this rational function
+      gain: 3
+      static gain: 1.5
+    <BLANKLINE>
+      poles: 1
+        Re [rad/s]  Im [rad/s]   f [Hz]  zeta
+                -2           0  0.31831     1
+    <BLANKLINE>
+      zeros: none
+    """
+    source = found.bound.source
+    quantity = source.quantity + (f" [{source.unit}]" if source.unit else "")
+    modes = "1 mode" if found.modes == 1 else f"{found.modes} modes"
+    lines = [f"{found.tf}   {quantity}, {found.form} form, {modes}; {found.stability.headline}", ""]
+    lines += [INDENT + line for line in _validity(found)]
+    lines.append(f"{INDENT}gain: {_decimal(found.gain)}")
+    leading = f"{found.leading_coefficient:.{DIGITS}g}"
+    order = found.order_at_zero
+    lines.append(f"{INDENT}{f'near s = 0: {leading}*s^{order}' if order else f'static gain: {leading}'}")
+    for i, constant in enumerate(found.correction):
+        name = "static correction" if i == 0 else f"and of s^{i}"
+        lines.append(f"{INDENT}{name}: {_decimal(constant)}")
+    if found.residues:
+        lines += ["", _counted("poles and residues", found.poles), *_residue_table(found)]
+    else:
+        lines += ["", _counted("poles", found.poles), *_root_table(found.poles)]
+    lines += ["", _counted("zeros", found.zeros), *_root_table(found.zeros)]
+    if found.is_estimate:
+        lines += ["", f"{INDENT}some poles or zeros could not be told apart, or are not proved"]
+    return "\n".join(lines)
+
+
+def _validity(found: RationalApproximation) -> list[str]:
+    if found.is_exact:
+        return ["exact: nothing is left out of this rational function"]
+    lines = []
+    for percent in PERCENTS:
+        limit = found.valid_to(percent / 100)
+        if not limit:
+            lines.append(f"off by more than {percent} % at {found.scan.low_hz:.4g} Hz already")
+        else:
+            least = "at least " if limit == found.scan.high_hz else ""
+            lines.append(f"within {percent} % of the exact function up to {least}{limit:.6g} Hz")
+    error, scan = found.error, found.scan
+    band = f"{error.low_hz:.4g} to {error.high_hz:.4g} Hz"
+    lines.append(f"worst error from {band}: {100 * error.worst:.3g} %, at {error.worst_at_hz:.6g} Hz")
+    sampled = f"{len(scan.error)} samples from {scan.low_hz:.4g} to {scan.high_hz:.6g} Hz"
+    lines.append(f"these are of {sampled}, not proved")
+    if found.omitted_hz is not None:
+        lines.append(f"the first pole left out is at {found.omitted_hz:.6g} Hz")
+    return lines
+
+
+def _decimal(number: mpmath.mpf, digits: int = DIGITS) -> str:
+    if number == 0:
+        return "0"
+    text = str(mpmath.nstr(number, digits, min_fixed=-4, max_fixed=digits))
+    return text.removesuffix(".0")
+
+
+def _counted(title: str, roots: Sequence[mpmath.mpc]) -> str:
+    return f"{INDENT}{title}: {len(roots) or 'none'}"
+
+
+def _unique(roots: Sequence[mpmath.mpc]) -> list[tuple[mpmath.mpc, int, bool]]:
+    """Return the roots of the upper half plane, how often each occurs, and whether it is one of a pair."""
+    counts: dict[mpmath.mpc, int] = {}
+    for root in roots:
+        counts[root] = counts.get(root, 0) + 1
+    return [(root, n, root.imag != 0) for root, n in counts.items() if root.imag >= 0]
+
+
+def _root_table(roots: Sequence[mpmath.mpc]) -> list[str]:
+    if not roots:
+        return []
+    rows = [("", "Re [rad/s]", "Im [rad/s]", "f [Hz]", "zeta")]
+    for root, count, paired in _unique(roots):
+        size = abs(complex(root))
+        times = f"x{count}" if count > 1 else ""
+        im = ("+-" if paired else "") + _decimal(root.imag)
+        zeta = f"{-float(root.real) / size + 0:.6g}" if size else ""
+        rows.append((times, _decimal(root.real), im, f"{size / (2 * pi):.6g}", zeta))
+    return _aligned(rows)
+
+
+def _residue_table(found: RationalApproximation) -> list[str]:
+    highest = max(len(residue.coefficients) for residue in found.residues)
+    rows: list[Row] = [
+        ("Re [rad/s]", "Im [rad/s]", "power" if highest > 1 else "", "Re residue", "Im residue")
+    ]
+    for residue in found.residues:
+        if residue.root.im < 0:
+            continue
+        pole = _middle(residue.root)
+        for power, coefficient in enumerate(residue.coefficients, 1):
+            value = to_complex_mpmath(coefficient)
+            re = "0" if coefficient.real.contains(0) else _decimal(value.real)
+            im = "0" if coefficient.imag.contains(0) else _decimal(value.imag)
+            pair = ("+-", "-+" if im.startswith("-") else "+-") if pole.imag != 0 else ("", "")
+            imaginary = im if im == "0" else pair[1] + im.removeprefix("-") if pair[1] else im
+            place = (_decimal(pole.real), pair[0] + _decimal(pole.imag)) if power == 1 else ("", "")
+            rows.append((*place, f"{-power}" if highest > 1 else "", re, imaginary))
+    return _aligned(rows)
+
+
+def _middle(root: Root) -> mpmath.mpc:
+    return to_complex_mpmath(root.enclosure())
+
+
+def _aligned(rows: Sequence[Row]) -> list[str]:
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    return [
+        2 * INDENT + "  ".join(c.rjust(w) for c, w in zip(row, widths, strict=True) if w).rstrip()
+        for row in rows
+    ]
+
+
+def rational_json(found: RationalApproximation) -> dict[str, object]:
+    """Return an approximation in the schema ``symflex.analysis.rational/1``, ready for :func:`json.dumps`."""
+    error, scan = found.error, found.scan
+    return {
+        "schema": SCHEMA,
+        "tf": found.tf,
+        "quantity": found.bound.source.quantity,
+        "unit": found.bound.source.unit,
+        "form": found.form,
+        "modes": found.modes,
+        "stability": found.stability.to_json_dict(),
+        "exact": found.is_exact,
+        "certified": not found.is_estimate,
+        "gain": _exact(found.gain),
+        "num": [_exact(c) for c in found.num],
+        "den": [_exact(c) for c in found.den],
+        "poles": [_complex(root) for root in found.poles],
+        "zeros": [_complex(root) for root in found.zeros],
+        "residues": [
+            {
+                "pole": _complex(_middle(residue.root)),
+                "coefficients": [
+                    {**_complex(to_complex_mpmath(c)), "radius": f"{float(c.rad()):.2g}"}
+                    for c in residue.coefficients
+                ],
+            }
+            for residue in found.residues
+        ],
+        "correction": [_exact(c) for c in found.correction],
+        "order_at_zero": found.order_at_zero,
+        "leading_coefficient": found.leading_coefficient,
+        "valid_to_hz": {f"{percent} %": _finite(found.valid_to(percent / 100)) for percent in PERCENTS},
+        "error": {
+            "band_hz": [error.low_hz, error.high_hz],
+            "worst": _finite(error.worst),
+            "worst_at_hz": error.worst_at_hz,
+            "rigorous": error.is_rigorous,
+        },
+        "sampled": {"low_hz": scan.low_hz, "high_hz": scan.high_hz, "samples": len(scan.error)},
+        "omitted_hz": found.omitted_hz,
+    }
+
+
+def _exact(number: mpmath.mpf) -> str:
+    return str(mpmath.nstr(number, JSON_DIGITS))
+
+
+def _complex(number: mpmath.mpc) -> dict[str, str]:
+    return {"re": _exact(number.real), "im": _exact(number.imag)}
+
+
+def _finite(number: float) -> float | None:
+    return number if isfinite(number) else None

@@ -1,0 +1,415 @@
+"""Handing a rational function of s to python-control and scipy.
+
+Input: a bound transfer function, or an approximation of one. Output: what these programs call a system.
+"""
+
+from __future__ import annotations
+
+import warnings
+from abc import ABC, abstractmethod
+from functools import cached_property
+from math import tau
+from typing import TYPE_CHECKING
+
+import numpy as np
+from flint import acb
+
+from symflex.errors import Diagnostic, ModelError, UsageError
+from symflex.errors.diagnostic import nearest
+from symflex.model import with_numbers
+from symflex.roots.locate import locate
+from symflex.roots.multiprecision import to_complex_mpmath
+from symflex.state_space import Signal, minimal, not_rational, realise, realise_quotient
+from symflex.state_space.cascade import cascade
+from symflex.state_space.numeric import BoundState, BoundStateSpace, bound_state_space, not_installed
+from symflex.state_space.quotients import FieldElement
+from symflex.state_space.rounding import Rounding
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    import mpmath
+    import numpy.typing as npt
+    from flint import fmpz_mpoly
+
+    from symflex.algebra import Ring
+    from symflex.analysis.rational.approximation import RationalApproximation
+    from symflex.transfer import BoundTransferFunction, TransferFunction
+    from symflex.transfer.bind import Enclosed
+
+TRANSFER_FUNCTION, STATE_SPACE, ZEROS_POLES_GAIN = "transfer-function", "state-space", "zeros-poles-gain"
+CONTROL_FORMS = (TRANSFER_FUNCTION, STATE_SPACE)
+SCIPY_FORMS = (ZEROS_POLES_GAIN, TRANSFER_FUNCTION, STATE_SPACE)
+
+PERCENTS = (1, 5)
+"""What the validity of an approximation is stated for."""
+
+SCIPY_ZERO = 1e-14
+"""Leading coefficients of a numerator that ``scipy.signal.normalize`` takes away."""
+
+DEFAULT_BAND_HZ = (0.1, 1e4)
+SAMPLES = 200
+DIGITS = 30
+BITS = 384
+
+Coefficients = tuple["npt.NDArray[np.float64]", "npt.NDArray[np.float64]"]
+"""Numerator and denominator in descending powers of s; the denominator begins with 1."""
+
+ZerosPolesGain = tuple[list[complex], list[complex], float]
+
+
+class RationalFunction(ABC):
+    """A rational function of s that programs for control design can take over."""
+
+    @property
+    @abstractmethod
+    def source(self) -> TransferFunction:
+        """What it is of, with the names and units of its ends."""
+
+    @abstractmethod
+    def label(self) -> str:
+        """Return a name of letters, digits and underscores."""
+
+    @abstractmethod
+    def facts(self) -> dict[str, object]:
+        """Return what else is known: the band where it holds, whether it is proved."""
+
+    @abstractmethod
+    def coefficients(self) -> Coefficients:
+        """Return the nearest doubles to the coefficients."""
+
+    @abstractmethod
+    def zeros_poles_gain(self) -> ZerosPolesGain:
+        """Return the nearest doubles to zeros and poles [rad/s] and gain."""
+
+    @abstractmethod
+    def state_space(self) -> BoundStateSpace:
+        """Return state equations."""
+
+    @abstractmethod
+    def value(self, s: complex) -> tuple[complex, complex]:
+        """Return the value at s [rad/s] and ``G'(s)/G(s)``."""
+
+    @abstractmethod
+    def __call__(self, s: complex) -> complex:
+        """Return the value at s [rad/s]."""
+
+    def metadata(self) -> dict[str, object]:
+        """Return quantity and units, and :meth:`facts`."""
+        return {**end_units(self.source), **self.facts()}
+
+    def to_control(self, form: str) -> object:
+        """Return a ``control.TransferFunction`` or ``control.StateSpace``."""
+        _check(form, CONTROL_FORMS)
+        try:
+            import control
+        except ImportError:
+            raise not_installed("control") from None
+        if form == STATE_SPACE:
+            return self.state_space().to_control(self.metadata())
+        names = {"inputs": [self.source.input.name], "outputs": [self.source.output.name]}
+        num, den = self.coefficients()
+        system = control.TransferFunction(num, den, 0, name=self.label(), **names)
+        system.metadata = {**self.metadata(), **self.loss_of_digits()}
+        return system
+
+    def to_frd(self, omega: npt.ArrayLike) -> object:
+        """Return a ``control.FrequencyResponseData``."""
+        return frequency_response_data(self.source, self, omega, self.label(), self.metadata())
+
+    def to_scipy(self, form: str) -> object:
+        """Return a ``scipy.signal.ZerosPolesGain``, ``TransferFunction`` or ``StateSpace``."""
+        _check(form, SCIPY_FORMS)
+        try:
+            from scipy.signal import TransferFunction as Polynomials
+            from scipy.signal import ZerosPolesGain as Roots
+        except ImportError:
+            raise not_installed("scipy") from None
+        if form == STATE_SPACE:
+            return self.state_space().to_scipy(self.metadata())
+        more: dict[str, object] = {}
+        if form == TRANSFER_FUNCTION:
+            num, den = self.coefficients()
+            if num[0] and abs(num[0]) <= SCIPY_ZERO:
+                message = f"scipy takes the first coefficient of {self.source.name}, {num[0]:.3g}, for zero"
+                raise ModelError(Diagnostic("SF233", message, None, "zeros-poles-gain keeps it"))
+            with warnings.catch_warnings():
+                if not num.any():
+                    # It finds nothing but zeros suspicious.
+                    warnings.simplefilter("ignore")
+                system, more = Polynomials(num, den), self.loss_of_digits()
+        else:
+            system = Roots(*self.zeros_poles_gain())
+        system.metadata = {"name": self.label(), **self.metadata(), **more}
+        return system
+
+    def loss_of_digits(self) -> dict[str, object]:
+        """Return what rounding coefficients, and evaluating powers of s, does to the function.
+
+        The worst ``|dG| / (|G| (1 + |s G'/G|))`` on the imaginary axis over the band of ``[analysis]``, else
+        0.1 Hz to 10 kHz, by samples.
+        """
+        num, den = self.coefficients()
+        band = self.source.model.analysis.band
+        low, high = DEFAULT_BAND_HZ if band is None else (float(f) for f in band)
+        worst = 0.0
+        for omega in tau * np.geomspace(low, high, SAMPLES):
+            exact, slope = self.value(1j * omega)
+            if not (np.isfinite(exact) and np.isfinite(slope) and exact):
+                continue
+            with np.errstate(all="ignore"):
+                found = np.polyval(num, 1j * omega) / np.polyval(den, 1j * omega)
+            error = abs(found - exact) / (abs(exact) * (1 + abs(omega * slope)))
+            worst = max(worst, float(error)) if np.isfinite(error) else np.inf
+        return {"coefficients_error": worst, "coefficients_error_band_hz": (low, high)}
+
+
+class ExactFunction(RationalFunction):
+    """A bound transfer function that is rational.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        With numbers.
+    is_minimal : bool
+        Leave uncontrollable and unobservable states out of state equations.
+
+    Raises
+    ------
+    ModelError
+        SF235 when it is not rational.
+    """
+
+    def __init__(self, bound: BoundTransferFunction, *, is_minimal: bool = False) -> None:
+        if bound.is_distributed:
+            raise not_rational(bound.name)
+        self._bound = bound
+        self._is_minimal = is_minimal
+
+    @property
+    def source(self) -> TransferFunction:
+        """What it is of."""
+        return self._bound.source
+
+    def label(self) -> str:
+        """Return ``OUT_over_IN``."""
+        return f"{self.source.output.name}_over_{self.source.input.name}"
+
+    def facts(self) -> dict[str, object]:
+        """Return that it is exact."""
+        return {"exact": True}
+
+    def coefficients(self) -> Coefficients:
+        """Return the nearest doubles to the coefficients.
+
+        Raises
+        ------
+        ModelError
+            SF233 when one is too large or too small for double precision.
+        """
+        above, below = self._parts
+        return self._rounded(above), self._rounded(below)
+
+    @cached_property
+    def _enclosed(self) -> Enclosed:
+        return self._bound.enclosed(BITS)
+
+    @cached_property
+    def _parts(self) -> tuple[list[fmpz_mpoly], list[fmpz_mpoly]]:
+        """Numerator and denominator, polynomials free of s in descending powers of s."""
+        ratio = self._bound.ratio
+        return _descending(ratio.numerator().expand(), ratio.ring), _descending(
+            ratio.denominator().expand(), ratio.ring
+        )
+
+    def _rounded(self, numerators: Sequence[fmpz_mpoly]) -> npt.NDArray[np.float64]:
+        """Return coefficients over the denominator's first one as doubles."""
+        lead = self._parts[1][0]
+        rounding = Rounding(self._bound.ratio.ring.names, dict(self._bound.constants))
+        what = f"a coefficient of {self._bound.name}"
+        return np.array([rounding.nearest(FieldElement.of(c, lead), what) for c in numerators])
+
+    def zeros_poles_gain(self) -> ZerosPolesGain:
+        """Return the nearest doubles to zeros, poles and gain."""
+        if self._bound.ratio.is_zero:
+            return [], [], 0.0
+        found = locate(self._bound, None, DIGITS)
+        zeros, poles = (
+            [complex(to_complex_mpmath(r.enclosure())) for r in roots for _ in range(r.multiplicity)]
+            for roots in (found.zeros, found.poles)
+        )
+        (gain,) = self._rounded(self._parts[0][:1])
+        return zeros, poles, float(gain)
+
+    def state_space(self) -> BoundStateSpace:
+        """Return the state equations of the model's network; see :func:`symflex.state_space.realise`."""
+        source = self.source
+        model = with_numbers(source.model, (), dict(self._bound.values))
+        pair = (source.output.name, source.input.name)
+        if model.is_distributed:
+            system = realise_quotient(self._bound.ratio, source.constants, model, pair)
+        else:
+            system = realise(model, [pair])
+        return bound_state_space(minimal(system) if self._is_minimal else system, dict(self._bound.values))
+
+    def value(self, s: complex) -> tuple[complex, complex]:
+        """Return value and ``G'/G`` at s [rad/s]."""
+        slope = self._enclosed.logarithmic_derivative(acb(s.real, s.imag))
+        return self._bound(s), complex(slope.mid()) if slope.is_finite() else complex("nan")
+
+    def __call__(self, s: complex) -> complex:
+        """Return the value at s [rad/s]."""
+        return self._bound(s)
+
+
+class ApproximateFunction(RationalFunction):
+    """A rational approximation.
+
+    Parameters
+    ----------
+    found : RationalApproximation
+        In either form.
+    """
+
+    def __init__(self, found: RationalApproximation) -> None:
+        self._found = found
+
+    @property
+    def source(self) -> TransferFunction:
+        """What it approximates."""
+        return self._found.bound.source
+
+    def label(self) -> str:
+        """Return a name that says where it is valid."""
+        return self._found.label()
+
+    def facts(self) -> dict[str, object]:
+        """Return the form, the modes and the frequencies up to which it is within 1 % and 5 %."""
+        found = self._found
+        valid = {f"{percent} %": found.valid_to(percent / 100) for percent in PERCENTS}
+        return {
+            "exact": found.is_exact,
+            "form": found.form,
+            "modes": found.modes,
+            "valid_to_hz": valid,
+            "valid_to_is_proved": found.is_exact,
+        }
+
+    def coefficients(self) -> Coefficients:
+        """Return the nearest doubles to the coefficients."""
+        return self._found.coefficients()
+
+    def zeros_poles_gain(self) -> ZerosPolesGain:
+        """Return the nearest doubles to zeros, poles and gain."""
+        zeros, poles = ([complex(x) for x in roots] for roots in (self._found.zeros, self._found.poles))
+        return zeros, poles, float(doubles((self._found.gain,), self._found.tf)[0])
+
+    def state_space(self) -> BoundStateSpace:
+        """Return sections of second order in series, one per pair of poles."""
+        found, source = self._found, self.source
+        arrays = cascade(found.zeros, found.poles, found.gain, found.tf)
+        states = tuple(BoundState(f"z_{i + 1}", (), "") for i in range(len(arrays.a)))
+        units = end_units(source)
+        inputs = (Signal(source.input.name, str(units["input_unit"])),)
+        outputs = (Signal(source.output.name, str(units["output_unit"])),)
+        return BoundStateSpace(self.label(), arrays, states, inputs, outputs, is_minimal=True)
+
+    def value(self, s: complex) -> tuple[complex, complex]:
+        """Return value and ``R'/R`` at s [rad/s]."""
+        with np.errstate(all="ignore"):
+            zeros, poles = (np.array([complex(x) for x in r]) for r in (self._found.zeros, self._found.poles))
+            slope = complex(np.sum(1 / (s - zeros)) - np.sum(1 / (s - poles)))
+        return self(s), slope
+
+    def __call__(self, s: complex) -> complex:
+        """Return the value at s [rad/s]."""
+        return complex(self._found.evaluator(np.asarray(s, dtype=np.complex128)))
+
+
+def frequency_response_data(
+    source: TransferFunction,
+    value: Callable[[complex], complex],
+    omega: npt.ArrayLike,
+    label: str,
+    metadata: dict[str, object],
+) -> object:
+    """Return a ``control.FrequencyResponseData`` of values at s = j omega.
+
+    Parameters
+    ----------
+    source : TransferFunction
+        The names of its ends.
+    value : callable
+        The function of s [rad/s].
+    omega : array_like of float, shape (n,)
+        Angular frequencies [rad/s], none of them negative, each larger than the one before.
+    label : str
+        A name of letters, digits and underscores.
+    metadata : dict
+        For the attribute of this name.
+
+    Raises
+    ------
+    UsageError
+        SF902 when python-control is not installed, for other frequencies, and at a pole.
+    """
+    try:
+        import control
+    except ImportError:
+        raise not_installed("control") from None
+    grid = np.atleast_1d(np.array(omega, dtype=np.float64))
+    is_increasing = grid.ndim == 1 and bool(np.all(np.diff(grid) > 0))
+    if not (is_increasing and grid.size and np.isfinite(grid).all() and grid[0] >= 0):
+        message = "omega must be an increasing array of finite numbers that are not negative [rad/s]"
+        raise UsageError(Diagnostic("SF902", message))
+    values = np.array([value(complex(0.0, w)) for w in grid.tolist()], dtype=np.complex128)
+    if not np.isfinite(values).all():
+        place = float(grid[~np.isfinite(values)][0])
+        message = f"{source.name} has a pole at omega = {place:g} rad/s"
+        raise UsageError(Diagnostic("SF902", message, None, "leave this frequency out"))
+    names = {"inputs": [source.input.name], "outputs": [source.output.name]}
+    data = control.FrequencyResponseData(values, grid, name=label, **names)
+    data.metadata = metadata
+    return data
+
+
+def doubles(numbers: Sequence[mpmath.mpf], name: str) -> npt.NDArray[np.float64]:
+    """Return the nearest doubles.
+
+    Raises
+    ------
+    ModelError
+        SF233 when a number is too large or too small for double precision.
+    """
+    values = np.array([float(number) for number in numbers])
+    if not np.isfinite(values).all() or any(n != 0 and v == 0 for n, v in zip(numbers, values, strict=True)):
+        message = f"a coefficient of the approximation of {name} does not fit into double precision"
+        raise ModelError(Diagnostic("SF233", message, None, "poles, zeros and gain may; or take fewer modes"))
+    return values
+
+
+def end_units(source: TransferFunction) -> dict[str, object]:
+    """Return name, quantity and units of a transfer function."""
+    return {
+        "transfer_function": source.name,
+        "quantity": source.quantity,
+        "unit": source.unit,
+        "input_unit": source.input.unit or str(source.input.dimension or ""),
+        "output_unit": source.output.unit,
+    }
+
+
+def _descending(polynomial: fmpz_mpoly, ring: Ring) -> list[fmpz_mpoly]:
+    """Return the coefficients of descending powers of s."""
+    parts: dict[int, dict[tuple[int, ...], int]] = {}
+    for monomial, coefficient in polynomial.terms():
+        rest = (0, *(int(e) for e in monomial[1:]))
+        parts.setdefault(int(monomial[0]), {})[rest] = int(coefficient)
+    powers = range(max(parts, default=0), -1, -1)
+    return [ring.context.from_dict(parts.get(power, {})) for power in powers]
+
+
+def _check(form: str, forms: Sequence[str]) -> None:
+    if form not in forms:
+        hint = nearest(form, forms) or "forms: " + ", ".join(forms)
+        raise UsageError(Diagnostic("SF902", f"there is no form '{form[:64]}'", None, hint))

@@ -1,0 +1,138 @@
+"""The derivatives of poles and zeros with respect to parameters, by implicit differentiation.
+
+Input: a transfer function with the parameters as symbols, their values, and the roots found with numbers.
+Output: a :class:`Sensitivity` per root and parameter.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from flint import acb
+
+from symflex.algebra.origin import Origin
+from symflex.analysis.sensitivity.branch import Branch, find_branch
+from symflex.analysis.sensitivity.sensitivity import Sensitivity
+from symflex.analysis.sensitivity.tangents import Tangents
+from symflex.budget import spend
+from symflex.roots.precision import bits_for_digits, precision
+from symflex.roots.root import exact_fraction
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from fractions import Fraction
+
+    from symflex.algebra import Factored
+    from symflex.analysis.sensitivity.branch import Obstacle
+    from symflex.analysis.sensitivity.sensitivity import Kind, Status
+    from symflex.model import ExactValue, Parameter
+    from symflex.roots import PoleZeroMap, Root
+    from symflex.transfer import TransferFunction
+
+ROUNDS = 4
+"""Doublings of the precision before a derivative that is nearly zero is taken as it is."""
+
+
+def differentiate(
+    tf: TransferFunction,
+    values: Mapping[str, ExactValue],
+    found: PoleZeroMap,
+    parameters: Sequence[Parameter] | None = None,
+    digits: int = 15,
+) -> tuple[Sensitivity, ...]:
+    """Return how poles and zeros move with parameters.
+
+    Parameters
+    ----------
+    tf : TransferFunction
+        With the parameters as symbols.
+    values : mapping of str to ExactValue
+        Of all parameters that occur in it.
+    found : PoleZeroMap
+        Its poles and zeros with these values.
+    parameters : sequence of Parameter, optional
+        All that occur by default; those that do not are left out.
+    digits : int
+        Significant digits wanted in each derivative; fewer are certified where that takes too long.
+
+    Returns
+    -------
+    tuple of Sensitivity
+        Poles first, each with all parameters. A root at 0 that is there for all values of the parameters has
+        the derivative 0, exactly.
+    """
+    used = [p for p in tf.parameters if parameters is None or p in parameters]
+    if tf.ratio.is_zero:
+        return ()
+    tangents = Tangents(tf, values)
+    sides: tuple[tuple[Kind, Factored, Sequence[Root]], ...] = (
+        ("pole", tf.den, found.poles),
+        ("zero", tf.num, found.zeros),
+    )
+    moved: list[Sensitivity] = []
+    for kind, part, roots in sides:
+        side = _Side(tangents, part, digits, {})
+        for i, root in enumerate(roots):
+            for parameter in used:
+                spend()
+                status, place, derivative = side.moved(root, parameter.name)
+                value = values[parameter.name]
+                moved.append(Sensitivity(kind, i, root, parameter, value, status, place, derivative))
+    return tuple(moved)
+
+
+Movement = tuple["Status", acb, "acb | None"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Side:
+    """A numerator or denominator; what is known of its roots is kept, the upper of each pair."""
+
+    tangents: Tangents
+    part: Factored
+    digits: int
+    branches: dict[tuple[Fraction, Fraction], Branch | Obstacle]
+
+    def moved(self, root: Root, parameter: str) -> Movement:
+        """Return the status, the place and the derivative of a root."""
+        if root.im < 0:
+            with precision(root.working_bits()):
+                upper = replace(root, im=-root.im)
+            status, place, derivative = self.moved(upper, parameter)
+            return status, _conjugate(place), None if derivative is None else _conjugate(derivative)
+        if root.is_zero and self._is_fixed_at_zero(root):
+            return "certified", acb(0), acb(0)
+        key = (exact_fraction(root.re), exact_fraction(root.im))
+        if key not in self.branches:
+            self.branches[key] = find_branch(self.tangents, self.part, root)
+        branch = self.branches[key]
+        if not isinstance(branch, Branch):
+            return branch, root.enclosure(), None
+        wanted = bits_for_digits(self.digits)
+        bits = max(root.working_bits(), 2 * wanted)
+        derivative = None
+        for _ in range(ROUNDS):
+            closer = branch.refined(bits)
+            if closer is None:
+                return "undecided", root.enclosure(), None
+            branch = self.branches[key] = closer
+            derivative = branch.derivative(parameter, bits)
+            if derivative.is_finite() and derivative.rel_accuracy_bits() >= wanted:
+                break
+            bits *= 2
+        if derivative is None or not derivative.is_finite():
+            return "undecided", branch.root, None
+        return "certified", branch.root, derivative
+
+    def _is_fixed_at_zero(self, root: Root) -> bool:
+        """Tell whether for all values of the parameters as many roots are at 0 as for these."""
+        ring, table = self.tangents.tf.ratio.ring, self.tangents.tf.kernels
+        if not table:
+            return self.part.exponent_of(ring.context.gen(0)) == root.multiplicity
+        return Origin(ring, table).order(self.part) == root.multiplicity
+
+
+def _conjugate(value: acb) -> acb:
+    with precision(max(2, value.bits())):
+        return value.conjugate()

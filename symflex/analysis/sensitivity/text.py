@@ -1,0 +1,127 @@
+"""Sensitivities of poles and zeros as tables for a terminal."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+from flint import arb
+
+from symflex.roots.precision import precision
+from symflex.roots.root import decimals
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.analysis.sensitivity import Sensitivity
+    from symflex.roots import Root
+
+WIDTH = 80
+DIGITS = 6
+INDENT = "    "
+HEAD = ("Re [rad/s]", "Im [rad/s]", "p", "(p/f) df/dp", "p dzeta/dp")
+TITLES = {"pole": "  sensitivity of poles", "zero": "  sensitivity of zeros"}
+OBSTACLES = {
+    "multiple": "no derivative: multiple roots part",
+    "undecided": "not decided",
+}
+
+
+def sensitivity_text(moved: Sequence[Sensitivity], width: int = WIDTH) -> str:
+    """Return how natural frequencies and damping ratios change, a line per pair of roots and parameter.
+
+    Parameters
+    ----------
+    moved : sequence of Sensitivity
+        Of poles, then of zeros; each root with all parameters in the same order.
+    width : int
+        Columns available; names that do not fit stand on lines of their own.
+    """
+    lines: list[str] = []
+    for kind, group in groupby(moved, key=lambda m: m.kind):
+        lines += ["", TITLES[kind], *_table(list(group), width)]
+    if not lines:
+        return "\n  no root depends on a parameter"
+    lines += ["", "  f = abs(s)/(2 pi), zeta = -Re(s)/abs(s); changes are per relative change of p"]
+    zeros = sorted({f"{m.parameter.name}{_per(m)}" for m in moved if _is_zero(m)})
+    if zeros:
+        lines.append(f"  * the parameter is 0: (1/f) df/dp and dzeta/dp, per unit: {', '.join(zeros)}")
+    if any(m.derivative is not None for m in moved):
+        lines.append("  every digit is proved, but for the rounding of the last one")
+    return "\n".join(lines)
+
+
+def _table(moved: Sequence[Sensitivity], width: int) -> list[str]:
+    rows: list[tuple[str, ...]] = [HEAD]
+    roots = {m.index: m.root for m in moved}
+    printed = {i: decimals(r.re, r.im, DIGITS) for i, r in roots.items()}
+    places = {(p.re, p.im) for p in printed.values()}
+    for index, group in groupby(moved, key=lambda m: m.index):
+        re, im = printed[index].re, printed[index].im
+        mirrored = im != "0" and (re, _negated(im)) in places
+        if mirrored and im.startswith("-"):
+            continue
+        place = (re, f"+-{im}" if mirrored else im)
+        for n, found in enumerate(_rows(roots[index], list(group))):
+            rows.append((*(place if n == 0 else ("", "")), *found))
+    numbers = [row for row in rows if len(row) == len(HEAD)]
+    columns = [max(len(row[i]) for row in numbers) for i in range(len(HEAD))]
+    places_width = [max(len(row[i]) for row in rows) for i in (0, 1)]
+    columns[:2] = places_width
+    spare = width - len(INDENT) - 2 * (len(HEAD) - 1) - sum(columns[:2]) - sum(columns[3:])
+    columns[2] = max(1, min(columns[2], spare))
+    return [line for row in rows for line in _laid_out(row, columns)]
+
+
+def _laid_out(row: Sequence[str], columns: Sequence[int]) -> list[str]:
+    re, im, name, *rest = row
+    start = f"{INDENT}{re.rjust(columns[0])}  {im.rjust(columns[1])}  "
+    end = "  ".join(text.rjust(w) for text, w in zip(rest, columns[3:], strict=False))
+    if not rest:
+        return [start + name]
+    if len(name) <= columns[2]:
+        return [f"{start}{name.ljust(columns[2])}  {end}".rstrip()]
+    return [start + name, f"{' ' * (len(start) + columns[2])}  {end}".rstrip()]
+
+
+def _rows(root: Root, moved: Sequence[Sensitivity]) -> list[tuple[str, ...]]:
+    """Return what stands to the right of one root."""
+    if all(m.status in OBSTACLES for m in moved):
+        return [(OBSTACLES[status],) for status in sorted({m.status for m in moved})]
+    if root.is_zero and all(m.derivative is not None and m.derivative.is_zero() for m in moved):
+        return [("stays at 0",)]
+    return [_row(m) for m in moved]
+
+
+def _row(found: Sensitivity) -> tuple[str, ...]:
+    name = found.parameter.name
+    if found.derivative is None:
+        return (f"{name}: {OBSTACLES[found.status]}",)
+    relative, damping = found.relative, found.damping_ratio
+    if relative is None:
+        slope = decimals(found.derivative.real, found.derivative.imag, DIGITS)
+        shown = slope.re if slope.im == "0" else f"{slope.re} + ({slope.im}) j"
+        return (f"{name}: ds/dp = {shown}",)
+    if _is_zero(found):
+        return (f"{name}*", _number(relative.real), "" if damping is None else _number(damping))
+    with precision(max(relative.bits(), 1) + 64):
+        value = found.exact_value()
+        change = relative.real * value
+        turned = None if damping is None else damping * value
+    return (name, _number(change), "" if turned is None else _number(turned))
+
+
+def _number(value: arb) -> str:
+    return decimals(value, arb(0), DIGITS).re
+
+
+def _negated(text: str) -> str:
+    return text.removeprefix("-") if text.startswith("-") else f"-{text}"
+
+
+def _is_zero(found: Sensitivity) -> bool:
+    return found.value.rational == 0
+
+
+def _per(found: Sensitivity) -> str:
+    return f" [{found.parameter.unit}]" if found.parameter.unit else ""

@@ -1,0 +1,1 @@
+"""Generated code: one program tree, and what prints it in each language."""

@@ -1,0 +1,1 @@
+"""Modules over any library of arrays, and over jax."""

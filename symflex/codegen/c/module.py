@@ -1,0 +1,342 @@
+"""Transfer functions as a C99 source file and its header.
+
+Input: transfer functions and the model they come from.
+Output: a :class:`CExport`, the texts of both files and how well each function agrees with ball arithmetic.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from symflex.codegen.c.functions import Functions
+from symflex.codegen.c.names import KEYWORDS, RESERVED
+from symflex.codegen.c.support import support
+from symflex.codegen.module_text import (
+    COST,
+    ITERATED,
+    default_value,
+    formula_lines,
+    origin_lines,
+    value_as_written,
+)
+from symflex.codegen.program import Piecewise, Verification, choose_programs, identifiers, inert, wrapped
+from symflex.codegen.program.calls import RuntimeCalls
+from symflex.errors import Diagnostic, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from fractions import Fraction
+
+    from symflex.model import Model
+    from symflex.transfer import AnyTransferFunction
+
+WIDTH = 88
+
+_FILE_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")
+
+COMPLEX_OF = """\
+#ifndef __STDC_NO_COMPLEX__
+static double complex complex_of(cx z)
+{
+    union { double part[2]; double complex whole; } value;
+    value.part[0] = z.re;
+    value.part[1] = z.im;
+    return value.whole;
+}
+#endif
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class CExport:
+    """Generated files.
+
+    Parameters
+    ----------
+    source, header : str
+        Their texts. Without a file name the header is empty, and the source holds its declarations.
+    verified : tuple of Verification
+        One per transfer function, in the order of the files, then one per frequency response in real
+        arithmetic.
+    """
+
+    source: str
+    header: str
+    verified: tuple[Verification, ...]
+
+
+def c_files(
+    tfs: Sequence[AnyTransferFunction],
+    model: Model,
+    band_hz: tuple[Fraction, Fraction] | None = None,
+    *,
+    name: str | None = None,
+    samples: int = 400,
+    digits: int = 2,
+) -> CExport:
+    """Return C99 files with two functions per transfer function: of s, and of arrays of frequencies.
+
+    Parameters
+    ----------
+    tfs : sequence of TransferFunction
+        Of ``model``; a transfer function given twice is written once.
+    model : Model
+        Title, source and parameters.
+    band_hz : tuple of Fraction, optional
+        Where the error is measured [Hz]; by default the model's ``[analysis]`` band, else 0.1 Hz to 10 kHz.
+    name : str, optional
+        Of the files, without suffix; all public names begin with it. Without one they begin with ``model``,
+        and everything is one file.
+    samples : int
+        Number of frequencies at which the error is measured, besides those around poles and zeros.
+    digits : int
+        Significant digits of the printed error.
+
+    Returns
+    -------
+    CExport
+        The same texts on every run. Names that cannot be C's are altered; text of the model stands in them
+        only in comments, where it is inert.
+
+    Raises
+    ------
+    BudgetError
+        SF503 when a function's text would be too long.
+    ModelError
+        SF233 when a number does not fit in double precision.
+    UsageError
+        SF902 when ``name`` cannot stand in an include directive.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... parameters = {m = "2 kg", b = "3 N*s/m"}
+    ... elements.body = {type = "mass", at = "x", m = "m"}
+    ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
+    ... inputs.F = {force = "x"}
+    ... outputs.V = "s*x"
+    ... ''')
+    >>> files = c_files(pipeline.derive_all(model), model, name="cart")
+    >>> "double complex cart_V_over_F(double complex s, const cart_parameters *p);" in files.header
+    True
+    """
+    if name is not None and not _FILE_NAME.fullmatch(name):
+        message = f"'{inert(name)[:64]}' cannot be the name of a C header"
+        hint = "letters, digits and _ . + - of ASCII can stand in an include directive everywhere"
+        raise UsageError(Diagnostic("SF902", message, None, hint))
+    return _Files(tfs, model, band_hz, name, samples, digits).made()
+
+
+def _prefix(name: str | None) -> str:
+    """Return what all public names begin with."""
+    found = identifiers({"": name or "model"}, KEYWORDS)[""]
+    # Private functions are called value_of_... and piece_0_of_...
+    return f"{found}_" if found.endswith("_of") else found
+
+
+def _function_names(wanted: Mapping[str, str]) -> dict[str, str]:
+    """Return different identifiers that stay so when ``_freq`` is appended to some of them."""
+    found: dict[str, str] = {}
+    taken: set[str] = set()
+    for key, text in identifiers(wanted, RESERVED).items():
+        name = text
+        while name in taken or f"{name}_freq" in taken:
+            name += "_"
+        found[key] = name
+        taken |= {name, f"{name}_freq"}
+    return found
+
+
+def comment(lines: Sequence[str]) -> list[str]:
+    r"""Return lines as a block comment that nothing in them can end.
+
+    Examples
+    --------
+    >>> comment(["a */ b ??/", "c\\"])
+    ['/* a * / b ? ?/', ' * c\\.', ' */']
+    """
+    texts = [_harmless(line) for line in lines]
+    if len(texts) == 1:
+        return [f"/* {texts[0]} */"]
+    return [f"/* {texts[0]}", *(f" * {text}".rstrip() for text in texts[1:]), " */"]
+
+
+def _harmless(line: str) -> str:
+    text = line.rstrip()
+    for mark in ("*/", "/*", "??"):
+        while mark in text:
+            text = text.replace(mark, f"{mark[0]} {mark[1]}")
+    # A backslash at the end would join this line with the next one.
+    return f"{text}." if text.endswith("\\") else text
+
+
+class _Files:
+    def __init__(
+        self,
+        tfs: Sequence[AnyTransferFunction],
+        model: Model,
+        band_hz: tuple[Fraction, Fraction] | None,
+        name: str | None,
+        samples: int,
+        digits: int,
+    ) -> None:
+        self.model = model
+        self.name = name
+        self.digits = digits
+        self.prefix = _prefix(name)
+        self.structure = f"{self.prefix}_parameters"
+        self.members = identifiers({p.name: p.name for p in model.parameters}, RESERVED)
+        self.tfs = {tf.name: tf for tf in tfs}
+        self.chosen = {key: choose_programs(tf, band_hz, samples) for key, tf in self.tfs.items()}
+        names = _function_names({k: f"{tf.output.name}_over_{tf.input.name}" for k, tf in self.tfs.items()})
+        self.functions = {key: self._functions(key, names[key]) for key in self.tfs}
+
+    def _functions(self, key: str, name: str) -> Functions:
+        (program, _), axis = self.chosen[key]
+        real = None if axis is None else axis[0]
+        return Functions(name, self.prefix, self.structure, self.members, program, real)
+
+    def made(self) -> CExport:
+        verified = [verification for (_, verification), _ in self.chosen.values()]
+        verified += [axis[1] for _, axis in self.chosen.values() if axis is not None]
+        header, body = self._header(), self._source()
+        if self.name is None:
+            return CExport(f"{header}\n{body}", "", tuple(verified))
+        first = "\n".join(comment([f"{self.name}.c: the functions that {self.name}.h declares."]))
+        return CExport(f'{first}\n\n#include "{self.name}.h"\n\n{body}', header, tuple(verified))
+
+    # ---------------------------------------------------------------------------------------- the header
+
+    def _header(self) -> str:
+        guard = f"{self.prefix.upper()}_H"
+        opening = [
+            *comment(self._introduction()),
+            f"#ifndef {guard}",
+            f"#define {guard}",
+            "",
+            "#include <stddef.h>",
+            "#if !defined(__cplusplus) && !defined(__STDC_NO_COMPLEX__)",
+            "#include <complex.h>",
+            "#endif",
+            "",
+            "#ifdef __cplusplus",
+            'extern "C" {',
+            "#endif",
+            "",
+        ]
+        declared = []
+        for key, functions in self.functions.items():
+            declared += [*comment(self._described(key)), f"{functions.freq_prototype};", ""]
+        complex_ones = [f"{f.value_prototype};" for f in self.functions.values()]
+        closing = [
+            "#if !defined(__cplusplus) && !defined(__STDC_NO_COMPLEX__)",
+            *comment(["Values at any complex s [rad/s]."]),
+            *complex_ones,
+            "#endif",
+            "",
+            "#ifdef __cplusplus",
+            "}",
+            "#endif",
+            "",
+            "#endif",
+        ]
+        return "\n".join([*opening, *self._parameters(), *declared, *closing]) + "\n"
+
+    def _introduction(self) -> list[str]:
+        files = f"{self.name}.h" if self.name else "C99"
+        public = [f"{self.prefix}_{f.name}" for f in self.functions.values()]
+        example = public[0] if public and len(public[0]) < WIDTH // 2 else f"{self.prefix}_OUT_over_IN"
+        paragraphs = [
+            f"Written by symflex. For every transfer function OUT/IN there are {example}(s, p), its value at "
+            f"the Laplace variable s, and {example}_freq(omega, real, imag, n, p), which writes the real and "
+            "imaginary parts of the values at s = j omega[i] for all i < n. omega is an angular frequency "
+            "[rad/s]: 2 pi times the frequency in Hz. It may be negative. One of real and imag may be the "
+            "array omega.",
+            "Nothing is allocated and nothing is kept between calls: all functions are reentrant. Values at "
+            "poles are not finite. Parameters are real numbers in SI units; p may be "
+            f"&{self.prefix}_defaults, or point to a changed copy of it. Link with the mathematical library, "
+            "and compile without -ffast-math.",
+            "Errors named below were measured with these operations in IEEE double precision; the library's "
+            "own errors in exp, sin and the like come on top.",
+        ]
+        origin = origin_lines(self.model, WIDTH - 3)
+        gap = [""] if origin else []
+        lines = [f"{files}: transfer functions of a linear system.", "", *origin, *gap]
+        for paragraph in paragraphs:
+            lines += [*wrapped(paragraph, WIDTH - 3), ""]
+        return lines[:-1]
+
+    def _parameters(self) -> list[str]:
+        lines = [*comment(["Parameters, in SI units."]), f"typedef struct {self.structure} {{"]
+        for parameter in self.model.parameters:
+            member = self.members[parameter.name]
+            words = [inert(parameter.doc).rstrip(".")] if parameter.doc.strip() else []
+            words += [f"'{inert(parameter.name)}' in the model"] if member != parameter.name else []
+            words += [] if default_value(parameter) else ["no value in the model"]
+            unit = f"[{inert(parameter.unit)}]" if parameter.unit else ""
+            text = " ".join(x for x in (", ".join(words), unit) if x)
+            declaration = f"    double {member};"
+            if not text:
+                lines.append(declaration)
+            elif len(one := f"{declaration:<24}/* {_harmless(text)} */") <= WIDTH:
+                lines.append(one)
+            else:
+                lines += [f"    {line}" for line in comment(wrapped(text, WIDTH - 7))]
+                lines.append(declaration)
+        if not self.model.parameters:
+            lines.append("    char none;    /* C has no empty structures */")
+        missing = [p for p in self.model.parameters if not default_value(p)]
+        what = "The values of the model" + ("; those it does not have are NAN." if missing else ".")
+        return [
+            *lines,
+            f"}} {self.structure};",
+            "",
+            *comment([what]),
+            f"extern const {self.structure} {self.prefix}_defaults;",
+            "",
+        ]
+
+    def _described(self, key: str) -> list[str]:
+        tf = self.tfs[key]
+        unit = f" [{tf.unit}]" if tf.unit else ""
+        lines = [inert(f"{tf.quantity[:1].upper()}{tf.quantity[1:]} {tf.name}{unit}."), ""]
+        lines += [f"  {line}" if line else "" for line in formula_lines(tf, WIDTH - 5)]
+        (program, verification), axis = self.chosen[key]
+        sentences = [f"At s = j omega, {verification.text(self.digits)}."]
+        if axis is not None:
+            sentences = [f"Of s, {verification.text(self.digits)}."]
+            sentences.append(f"At s = j omega, in real arithmetic, {axis[1].text(self.digits)}.")
+        if isinstance(program, Piecewise) and program.solves:
+            sentences.append(ITERATED if RuntimeCalls.of([program]).roots else COST)
+        lines.append("")
+        for sentence in sentences:
+            lines += wrapped(inert(sentence), WIDTH - 3)
+        return lines
+
+    # ---------------------------------------------------------------------------------------- the source
+
+    def _source(self) -> str:
+        printed = {key: functions.text() for key, functions in self.functions.items()}
+        # Comments tell nothing about which functions are called.
+        called = "\n".join(text for text, _ in printed.values())
+        helpers = support(called, self.structure, max((order for _, order in printed.values()), default=1))
+        code = "\n".join("\n".join([*comment([inert(key)]), "", text]) for key, (text, _) in printed.items())
+        conversion = COMPLEX_OF if self.functions else ""
+        signs = {"float": "FLT_EVAL_METHOD", "math": "", "stdint": "uint64_t", "string": "memcpy("}
+        includes = "".join(f"#include <{name}.h>\n" for name, sign in signs.items() if sign in helpers)
+        parts = [includes, self._defaults(), helpers, conversion, code]
+        return "\n".join(part for part in parts if part)
+
+    def _defaults(self) -> str:
+        lines = [f"const {self.structure} {self.prefix}_defaults = {{"]
+        for parameter in self.model.parameters:
+            entry = f"    .{self.members[parameter.name]} = {default_value(parameter) or 'NAN'},"
+            written = value_as_written(parameter)
+            lines.append(f"{entry} /* {_harmless(inert(written))} */" if written else entry)
+        if not self.model.parameters:
+            lines.append("    0")
+        return "\n".join([*lines, "};"]) + "\n"

@@ -1,0 +1,211 @@
+"""Expressions of a program tree as infix text; what a language writes in its own way is overridden."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from textwrap import TextWrapper
+from typing import TYPE_CHECKING, ClassVar
+
+from symflex.codegen.program import (
+    Add,
+    Apply,
+    ComplexNumber,
+    Constant,
+    Divide,
+    InverseLaplace,
+    Item,
+    Laplace,
+    ModalValue,
+    ModeValues,
+    Multiply,
+    Negate,
+    Node,
+    Power,
+    Reference,
+    Roots,
+    Solutions,
+    nearest_double,
+)
+from symflex.codegen.program import Parameter as ParameterNode
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from symflex.codegen.program import Condition, Piecewise
+    from symflex.codegen.program.nodes import Frames
+
+_SUM, _PRODUCT, _SIGN, _POWER, _LEAF = range(5)
+
+_GLUE = "\N{NO-BREAK SPACE}"
+
+
+@dataclass(frozen=True)
+class InfixPrinter(ABC):
+    """Prints expressions that are evaluated in the order of the tree.
+
+    Parameters
+    ----------
+    parameters, locals : mapping of str to str
+        Identifiers of parameters and of intermediate values.
+    variable : str
+        Identifier of s, or of what takes its place.
+    inverse : str
+        Identifier of 1/s; only far branches have it.
+    """
+
+    parameters: Mapping[str, str]
+    locals: Mapping[str, str]
+    variable: str
+    inverse: str = ""
+
+    times: ClassVar[str] = "*"
+    over: ClassVar[str] = "/"
+
+    def print(self, node: Node) -> str:
+        """Return the text of an expression."""
+        return self._print(node)[0]
+
+    def quotient(self, numerator: Node, denominator: Node) -> str:
+        """Return the text of a quotient."""
+        return f"{self.within(numerator, _PRODUCT)} {self.over} {self.within(denominator, _SIGN)}"
+
+    def within(self, node: Node, tightest: int) -> str:
+        """Return the text of an operand, in parentheses when it binds less tightly."""
+        text, binding = self._print(node)
+        return text if binding >= tightest else f"({text})"
+
+    @property
+    def pi(self) -> str:
+        """The number pi."""
+        return "pi"
+
+    def applied(self, function: str, argument: Node) -> str:
+        """Return the text of an elementary function's value."""
+        return f"{'exp' if function == 'complex_exp' else function}({self.print(argument)})"
+
+    def piece_number(self, program: Piecewise) -> str:
+        """Return the sum of ``2**i`` over the tests that hold; empty without tests."""
+        terms = []
+        for i, condition in enumerate(program.conditions):
+            test = self._holds(condition, is_real=program.is_real)
+            terms.append(f"{2**i} {self.times} ({test})" if i else f"({test})")
+        return " + ".join(terms)
+
+    def _holds(self, condition: Condition, *, is_real: bool) -> str:
+        if not condition.limit:
+            return f"real({self.print(Multiply((condition.scale, condition.quantity)))}) < 0.0"
+        quantity, scale = self.print(condition.quantity), self.print(condition.scale)
+        is_positive = is_real and isinstance(condition.quantity, Laplace)
+        below = "" if scale == "1.0" else f" {self.over} abs({scale})"
+        return f"{quantity if is_positive else f'abs({quantity})'} < {condition.limit!r}{below}"
+
+    # --------------------------------------------------------------------- what languages write differently
+
+    @abstractmethod
+    def complex_number(self, real: float, imaginary: float) -> str:
+        """Return a number as text that needs no parentheses."""
+
+    @abstractmethod
+    def power(self, base: str, exponent: int) -> str:
+        """Return a power of text that needs no parentheses."""
+
+    @abstractmethod
+    def listed(self, texts: Iterable[str]) -> str:
+        """Return a list."""
+
+    @abstractmethod
+    def item(self, values: str, position: int) -> str:
+        """Return one value of a list, counted from 0."""
+
+    @abstractmethod
+    def call(self, function: str, arguments: Sequence[str]) -> str:
+        """Return a call of a run-time function, named as in :mod:`symflex.codegen.program.runtime`."""
+
+    @abstractmethod
+    def frames(self, frames: Frames) -> str:
+        """Return the frames of a sum of exponentials."""
+
+    # -------------------------------------------------------------------------------------------- the tree
+
+    def _print(self, node: Node) -> tuple[str, int]:
+        """Return the text and how tightly it binds."""
+        match node:
+            case Constant(value, pi_power):
+                is_pi = value == 1 and pi_power == 1
+                return self.pi if is_pi else repr(nearest_double(value, pi_power)), _LEAF
+            case ComplexNumber(real, imaginary):
+                return self.complex_number(nearest_double(real), nearest_double(imaginary)), _LEAF
+            case ParameterNode(name):
+                return self.parameters[name], _LEAF
+            case Reference(name):
+                return self.locals[name], _LEAF
+            case Laplace():
+                return self.variable, _LEAF
+            case InverseLaplace():
+                return self.inverse, _LEAF
+            case Add(terms):
+                return self._sum(terms), _SUM
+            case Multiply(factors):
+                texts = [self.within(factors[0], _PRODUCT), *(self.within(f, _SIGN) for f in factors[1:])]
+                return f" {self.times} ".join(texts), _PRODUCT
+            case Divide(numerator, denominator):
+                return self.quotient(numerator, denominator), _PRODUCT
+            case Power(base, exponent):
+                return self.power(self.within(base, _LEAF), exponent), _POWER
+            case Negate(operand):
+                return f"-{self.within(operand, _POWER)}", _SIGN
+            case Apply(function, argument):
+                return self.applied(function, argument), _LEAF
+        return self._with_lists(node), _LEAF
+
+    def _with_lists(self, node: Node) -> str:
+        """Return the text of what takes lists or gives them."""
+        match node:
+            case Solutions(coefficients, terms):
+                given = self._listed(coefficients)
+                return (
+                    self.call("series_solutions", [given, str(terms)])
+                    if terms
+                    else self.call("propagated", [given])
+                )
+            case Roots(coefficients):
+                return self.call("characteristic_roots", [self._listed(coefficients)])
+            case ModeValues(roots, length):
+                return self.call("mode_values", [self.print(roots), self.print(length)])
+            case ModalValue(modes, coefficients, frames):
+                lists = [self._listed(modes), self._listed(coefficients)]
+                return self.call("modal_value", [*lists, self.frames(frames)])
+            case Item(values, position):
+                return self.item(self.within(values, _LEAF), position)
+        message = f"no text for {type(node).__name__}"
+        raise TypeError(message)
+
+    def _listed(self, nodes: Iterable[Node]) -> str:
+        return self.listed(self.print(n) for n in nodes)
+
+    def _sum(self, terms: Sequence[Node]) -> str:
+        text = self.within(terms[0], _PRODUCT)
+        for term in terms[1:]:
+            if isinstance(term, Negate):
+                text += f" - {self.within(term.operand, _PRODUCT)}"
+            else:
+                text += f" + {self.within(term, _PRODUCT)}"
+        return text
+
+
+def in_lines(text: str, width: int) -> list[str]:
+    """Return code as lines that end after an operator or a comma.
+
+    Only blanks are broken at, so a name longer than a line stays whole.
+
+    Examples
+    --------
+    >>> in_lines("a * (b + c) / d", 10)
+    ['a * (b +', 'c) / d']
+    """
+    glued = text
+    for operator in ("+", "-", "*", "/", ".*", "./", "<"):
+        glued = glued.replace(f" {operator} ", f"{_GLUE}{operator} ")
+    wrapper = TextWrapper(width=width, break_long_words=False, break_on_hyphens=False)
+    return [line.replace(_GLUE, " ") for line in wrapper.wrap(glued)]

@@ -1,0 +1,274 @@
+"""Transfer functions as a Julia module without dependencies.
+
+Input: transfer functions and the model they come from.
+Output: a :class:`JuliaExport`, the module's text and how well each function agrees with ball arithmetic.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from symflex.codegen.infix import in_lines
+from symflex.codegen.julia.expression import WIDTH
+from symflex.codegen.julia.pieces import PrivateFunctions, support_of
+from symflex.codegen.members import Member, members_of, verifications
+from symflex.codegen.module_text import (
+    COST,
+    default_value,
+    described,
+    formula_lines,
+    headline,
+    origin_lines,
+)
+from symflex.codegen.program import Piecewise, Verification, identifiers, inert, wrapped
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from fractions import Fraction
+
+    from symflex.model import Model
+    from symflex.transfer import AnyTransferFunction
+
+LAST_OF_FOUR_DIGITS = 0xFFFF
+"""The last character that ``\\u`` names."""
+
+KEYWORDS = frozenset(
+    "abstract as baremodule begin break catch const continue do else elseif end export false finally for "
+    "function global if import in isa let local macro module mutable outer primitive public quote return "
+    "struct true try type using where while".split()
+)
+
+NAMES = frozenset(
+    "pi im e Inf NaN Inf64 NaN64 nothing missing exp log sqrt sin cos tan sinh cosh tanh abs abs2 real imag "
+    "conj complex float signbit cis zero one zeros length eltype iszero isfinite all max min maximum ceil "
+    "log2 fill push findfirst zip Base Core Main LinearAlgebra Number Real Complex ComplexF64 Float64 Int "
+    "Tuple Vector Vararg Dict String NamedTuple eval include PARAMETERS TRANSFER_FUNCTIONS "
+    "FREQUENCY_RESPONSES".split()
+)
+"""What generated code uses, and names that a reader or the module itself would miss."""
+
+RESERVED = KEYWORDS | NAMES | {"s"}
+
+WORDS_OF_TITLE = 4
+
+
+@dataclass(frozen=True, slots=True)
+class JuliaExport:
+    """A generated module.
+
+    Parameters
+    ----------
+    text : str
+        The module's source.
+    name : str
+        Of the module.
+    verified : tuple of Verification
+        One per transfer function, in order, then one per frequency response.
+    """
+
+    text: str
+    name: str
+    verified: tuple[Verification, ...]
+
+
+def julia_module(
+    tfs: Sequence[AnyTransferFunction],
+    model: Model,
+    name: str = "",
+    band_hz: tuple[Fraction, Fraction] | None = None,
+    *,
+    samples: int = 400,
+    digits: int = 2,
+) -> JuliaExport:
+    """Return a module with one function ``OUT_over_IN(s; parameter = default, ...)`` per transfer function.
+
+    Lossless distributed systems get a second one each, ``OUT_over_IN_at(omega; ...)``: the frequency response
+    in real arithmetic.
+
+    Parameters
+    ----------
+    tfs : sequence of TransferFunction
+        Of ``model``; a transfer function given twice is written once.
+    model : Model
+        Title, source and parameters.
+    name : str
+        From which the module's name is made, as a rule the file's name without suffix. By default the title.
+    band_hz : tuple of Fraction, optional
+        Where the error is measured [Hz]; by default the model's ``[analysis]`` band, else 0.1 Hz to 10 kHz.
+    samples : int
+        Number of frequencies at which it is measured, besides those around poles and zeros.
+    digits : int
+        Significant digits of the printed error.
+
+    Returns
+    -------
+    JuliaExport
+        The same text on every run. Names that cannot be Julia's are altered; text of the model stands in it
+        only as inert strings.
+
+    Raises
+    ------
+    BudgetError
+        SF503 when a function's text would be too long.
+    ModelError
+        SF233 when a number does not fit in double precision.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... parameters = {m = "2 kg", b = "3 N*s/m"}
+    ... elements.body = {type = "mass", at = "x", m = "m"}
+    ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
+    ... inputs.F = {force = "x"}
+    ... outputs.V = "s*x"
+    ... ''')
+    >>> export = julia_module(pipeline.derive_all(model), model, "sliding_mass")
+    >>> export.name
+    'SlidingMass'
+    >>> "function V_over_F(s::Number; m::Number = 2.0, b::Number = 3.0)" in export.text
+    True
+    """
+    members = members_of(tfs, band_hz, samples)
+    main = module_name(name or model.title)
+    taken = RESERVED | {main}
+    public = identifiers({m.key: m.wanted for m in members}, taken)
+    taken |= set(public.values())
+    parameters = identifiers({p.name: p.name for p in model.parameters}, taken)
+    blocks = [_parameter_table(model, parameters)]
+    for m in members:
+        functions = PrivateFunctions(m.program, public[m.key], parameters, taken - {"s"})
+        blocks += [_public(m, functions, digits), *functions.blocks()]
+    called = support_of([m.program for m in members])
+    blocks += called
+    for table, is_real in (("TRANSFER_FUNCTIONS", False), ("FREQUENCY_RESPONSES", True)):
+        blocks.append(_function_table(table, [m for m in members if m.program.is_real == is_real], public))
+    header = [*_docstring(_header(model, members, digits)), f"module {main}", ""]
+    if any("LinearAlgebra." in text for text in called):
+        header += ["import LinearAlgebra", ""]
+    if public:
+        header += [*_exported(list(public.values())), ""]
+    text = "\n".join([*header, "\n".join(blocks), f"end # module {main}", ""])
+    return JuliaExport(text, main, verifications(members))
+
+
+def module_name(text: str) -> str:
+    """Return a text as the name of a module, capitals for the first letters of words.
+
+    Examples
+    --------
+    >>> module_name("six_mass"), module_name("Main"), module_name("2 masses, joined"), module_name("")
+    ('SixMass', 'Main_', 'P2MassesJoined', 'TransferFunctions')
+    """
+    words = re.findall(r"[A-Za-z0-9]+", text)[:WORDS_OF_TITLE]
+    joined = "".join(word[:1].upper() + word[1:] for word in words) or "TransferFunctions"
+    plain = joined if joined[0].isalpha() else f"P{joined}"
+    return identifiers({"main": plain}, RESERVED)["main"]
+
+
+# -------------------------------------------------------------------------------------------------- text
+
+
+def _disarmed(text: str) -> str:
+    """Return inert text in which no Markdown fence begins, for these may hold code to be run."""
+    return text.replace("`", "'").replace("~~~", "~ ~ ~")
+
+
+def _docstring(lines: Sequence[str]) -> list[str]:
+    """Return lines, which hold no double quote, as a docstring."""
+    escaped = (line.rstrip().replace("\\", "\\\\").replace("$", "\\$") for line in lines)
+    return ['"""', *escaped, '"""']
+
+
+def _string(text: str) -> str:
+    """Return a string literal that holds only printable characters."""
+    return '"' + "".join(_character(c) for c in text) + '"'
+
+
+def _character(c: str) -> str:
+    if c in '"\\$':
+        return f"\\{c}"
+    if c.isprintable():
+        return c
+    return f"\\u{ord(c):04x}" if ord(c) <= LAST_OF_FOUR_DIGITS else f"\\U{ord(c):08x}"
+
+
+def _header(model: Model, members: Sequence[Member], digits: int) -> list[str]:
+    lines = ["Transfer functions of a linear system.", ""]
+    if origin := origin_lines(model, WIDTH):
+        lines += [*(_disarmed(line) for line in origin), ""]
+    lines += wrapped(
+        "Written by symflex. Each function evaluates OUT/IN at the Laplace variable s [rad/s], a number; "
+        "with a dot, as in OUT_over_IN.(s), it takes arrays.",
+        WIDTH,
+    )
+    own = [m for m in members if not m.program.is_real]
+    for m in own:
+        text = _disarmed(inert(f"{m.tf.name}: {m.verification.text(digits)}"))
+        lines += ["", *wrapped(text, WIDTH)]
+    return lines
+
+
+def _parameter_table(model: Model, names: Mapping[str, str]) -> str:
+    lines = ['"""', "Values in SI units, units and descriptions of the model's parameters.", '"""']
+    if not model.parameters:
+        return "\n".join([*lines, "const PARAMETERS = NamedTuple()", ""])
+    lines.append("const PARAMETERS = (")
+    for p in model.parameters:
+        value = default_value(p) or "nothing"
+        entries = f"value = {value}, unit = {_string(p.unit)}, doc = {_string(p.doc)}"
+        lines.append(f"    {names[p.name]} = ({entries}),")
+    return "\n".join([*lines, ")", ""])
+
+
+def _function_table(table: str, members: Sequence[Member], public: Mapping[str, str]) -> str:
+    lines = [f"    {_string(m.tf.name)} => {public[m.key]}," for m in members]
+    opening = f"const {table} = Dict{{String, Function}}("
+    return "\n".join([opening, *lines, ")", ""] if lines else [f"{opening})", ""])
+
+
+def _exported(names: Sequence[str]) -> list[str]:
+    first, *others = in_lines(", ".join(names), WIDTH - len("export "))
+    return [f"export {first}", *(f"    {line}" for line in others)]
+
+
+def _public(member: Member, functions: PrivateFunctions, digits: int) -> str:
+    """Return the function that a user calls."""
+    tf, variable = member.tf, functions.variable
+    kind = "Real" if member.program.is_real else "Number"
+    parameters = [(p, functions.parameters[p.name]) for p in tf.parameters]
+    signature, arguments = (
+        [],
+        [f"float({variable})" if member.program.is_real else f"complex(float({variable}))"],
+    )
+    for p, name in parameters:
+        default = default_value(p)
+        signature.append(f"{name}::{kind}{f' = {default}' if default else ''}")
+        arguments.append(f"float({name})")
+    opening = f"{functions.name}({variable}::{kind}"
+    lines = [f"    {functions.name}({variable}{'; ...' if parameters else ''})", ""]
+    lines += [_disarmed(headline(tf, is_real=member.program.is_real)), ""]
+    lines += [f"    {_disarmed(line)}" for line in formula_lines(tf, WIDTH - 4)]
+    what = "angular frequency" if member.program.is_real else "Laplace variable"
+    lines += ["", "# Arguments", f"- {variable}: {what} [rad/s]."]
+    for p, name in parameters:
+        value = default_value(p)
+        text = f"- {name}{f' = {value}' if value else ''}: {_disarmed(described(p, name))}"
+        lines += wrapped(text, WIDTH, "", "  ")
+    lines += ["", *wrapped(_disarmed(inert(f"{member.verification.text(digits)}.")), WIDTH)]
+    lines.append("Not finite at poles.")
+    if isinstance(member.program, Piecewise) and member.program.solves:
+        lines += wrapped(COST, WIDTH)
+    whole = f"{opening}{'; ' if signature else ''}{', '.join(signature)})"
+    first = [f"function {whole}"]
+    if len(first[0]) > WIDTH:
+        first = [f"function {opening};", *(f"    {x}," for x in signature[:-1]), f"    {signature[-1]})"]
+    call = f"complex(_value_of_{functions.name}({', '.join(arguments)}))"
+    body = f"    return {call}"
+    if len(body) > WIDTH:
+        inside = [f"        {a}," for a in arguments[:-1]] + [f"        {arguments[-1]}))"]
+        body = "\n".join([f"    return complex(_value_of_{functions.name}(", *inside])
+    return "\n".join([*_docstring(lines), *first, body, "end", ""])

@@ -1,0 +1,185 @@
+"""The local functions behind one transfer function, in MATLAB."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from symflex.codegen.matlab import support
+from symflex.codegen.matlab.expression import MatlabPrinter, continued, statement
+from symflex.codegen.program import Assignment, Piece, Piecewise, Program, identifiers
+from symflex.codegen.program.calls import RuntimeCalls
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping, Sequence
+
+LONGEST = 63
+"""Characters that MATLAB tells identifiers apart by."""
+
+
+def roles_of(program: Program | Piecewise) -> list[str]:
+    """Return what the local functions behind a program are for; their names end so."""
+    if isinstance(program, Program):
+        return ["value"]
+    roles = ["number"]
+    for i, piece in enumerate(program.code):
+        roles += [f"{i}_parts", str(i)] if piece.circle else [str(i)]
+    return roles
+
+
+@dataclass(frozen=True)
+class LocalFunctions:
+    """Prints the local functions that compute with columns.
+
+    Parameters
+    ----------
+    program : Program or Piecewise
+        What they compute.
+    names : mapping of str to str
+        Identifiers of these functions, by their roles.
+    parameters : mapping of str to str
+        Identifiers of the parameters.
+    reserved : collection of str
+        Identifiers that intermediate values cannot have.
+    """
+
+    program: Program | Piecewise
+    names: Mapping[str, str]
+    parameters: Mapping[str, str]
+    reserved: Collection[str]
+
+    @property
+    def variable(self) -> str:
+        """The first argument's name."""
+        return "omega" if self.program.is_real else "s"
+
+    def call(self) -> list[str]:
+        """Return the statement that computes the value of ``s``, or ``omega``, and ``given``."""
+        if isinstance(self.program, Program):
+            return statement("value", f"everywhere(@{self.names['value']}, s, given)")
+        pieces = ", ".join(f"@{self.names[str(i)]}" for i in self.program.pieces)
+        arguments = f"@{self.names['number']}, {{{pieces}}}, {self.variable}, given"
+        if not self.program.is_real:
+            return statement("value", f"in_pieces({arguments})")
+        return statement("value", f"in_real_pieces({arguments}, {'true' if self.program.turn else 'false'})")
+
+    def blocks(self) -> list[str]:
+        """Return the functions, each as text that ends with a line end."""
+        if isinstance(self.program, Program):
+            return [self._lumped(self.program)]
+        blocks = [self._number(self.program)]
+        for i, piece in enumerate(self.program.code):
+            blocks += self._piece(i, piece)
+        return blocks
+
+    # ------------------------------------------------------------------------------------------- functions
+
+    def _function(self, outputs: str, role: str, variable: str, body: Sequence[str]) -> str:
+        given = [variable, *(self.parameters[p] for p in self.program.parameters)]
+        head = continued(f"function {outputs} = {self.names[role]}({', '.join(given)})", "")
+        return "\n".join([*head, *body, "end", ""])
+
+    def _scope(self, assignments: Sequence[Assignment], *words: str) -> tuple[MatlabPrinter, list[str]]:
+        """Return a printer, and identifiers for the code's own words, the first one s or its like."""
+        own = {f"{word} of the code": word for word in words}
+        taken = {*self.reserved, *self.parameters.values()}
+        names = identifiers({**own, **{a.name: a.name for a in assignments}}, taken, LONGEST)
+        found = [names[key] for key in own]
+        printer = MatlabPrinter(self.parameters, names, found[0], found[-1])
+        return printer, found
+
+    def _lumped(self, program: Program) -> str:
+        early = (*program.constants, *program.near.assignments)
+        if program.far is None:
+            printer, (s, value) = self._scope(early, "s", "value")
+            lines = [*_assigned(early, printer), *statement(value, printer.print(program.near.value))]
+            return self._function(value, "value", s, lines)
+        late = program.far.assignments
+        words = ("s", "value", "limit", "is_far", "far_value", "inverse")
+        printer, (s, value, limit, is_far, far_value, inverse) = self._scope((*early, *late), *words)
+        lines = [
+            *_assigned(early, printer),
+            *statement(value, printer.print(program.near.value)),
+            *statement(limit, repr(program.limit)),
+            *statement(is_far, f"abs({s}) > {limit}"),
+            f"  if any({is_far})",
+            *statement(inverse, f"1.0 ./ {s}", "    "),
+            *_assigned(late, printer, "    "),
+            *statement(far_value, printer.print(program.far.value), "    "),
+            *statement(f"{value}({is_far})", f"{far_value}({is_far})", "    "),
+            "  end",
+        ]
+        return self._function(value, "value", s, lines)
+
+    def _number(self, program: Piecewise) -> str:
+        """Return the function that tells which piece serves."""
+        assignments = (*program.tests.constants, *program.tests.assignments)
+        printer, (variable, number) = self._scope(assignments, self.variable, "number")
+        lines = [*_assigned(assignments, printer), *statement(number, printer.piece_number(program) or "0")]
+        return self._function(number, "number", variable, lines)
+
+    def _piece(self, number: int, piece: Piece) -> list[str]:
+        assignments = (*piece.code.constants, *piece.code.assignments)
+        if piece.circle:
+            words = (self.variable, "num", "den", "growth", "radius")
+            printer, (variable, *results) = self._scope(assignments, *words)
+            lines = _assigned(assignments, printer)
+            for name, node in zip(results, piece.code.values, strict=True):
+                lines += statement(name, printer.print(node))
+            parts = self._function(f"[{', '.join(results)}]", f"{number}_parts", variable, lines)
+            return [parts, self._mean(number, piece.circle)]
+        wanted = [self.variable, "value", "num", "den", *(["s"] if piece.is_complex else [])]
+        printer, (variable, value, num, den, *place) = self._scope(assignments, *wanted)
+        lines = []
+        for s in place:
+            printer = replace(printer, variable=s)
+            lines += statement(s, f"1i .* {variable}")
+        lines += _assigned(assignments, printer)
+        above, below = piece.code.values
+        if not self.program.is_real:
+            lines += statement(value, printer.quotient(above, below))
+            return [self._function(value, str(number), variable, lines)]
+        text = printer.print(above)
+        if piece.is_complex and isinstance(self.program, Piecewise) and self.program.turn:
+            # The factor that the real pieces leave out comes after.
+            text = f"(-1.0i) .* ({text})"
+        lines += [*statement(num, text), *statement(den, printer.print(below))]
+        return [self._function(f"[{num}, {den}]", str(number), variable, lines)]
+
+    def _mean(self, number: int, points: int) -> str:
+        _, (variable, value, z) = self._scope((), self.variable, "value", "z")
+        given = ", ".join([z, *(self.parameters[p] for p in self.program.parameters)])
+        whole = f"mean_over_circle(@({z}) {self.names[f'{number}_parts']}({given}), {variable}, {points})"
+        return self._function(value, str(number), variable, statement(value, whole))
+
+
+def _assigned(assignments: Sequence[Assignment], printer: MatlabPrinter, indent: str = "  ") -> list[str]:
+    lines: list[str] = []
+    for assignment in assignments:
+        lines += statement(printer.locals[assignment.name], printer.print(assignment.value), indent)
+    return lines
+
+
+def support_of(programs: Sequence[Program | Piecewise]) -> list[str]:
+    """Return the functions that the others call, those in use only."""
+    blocks = [support.NUMBERS, support.COLUMNS]
+    if any(isinstance(p, Program) for p in programs):
+        blocks.append(support.EVERYWHERE)
+    piecewise = [p for p in programs if isinstance(p, Piecewise)]
+    if not piecewise:
+        return blocks
+    if any(not p.is_real for p in piecewise):
+        blocks.append(support.IN_PIECES)
+    if any(p.is_real for p in piecewise):
+        blocks.append(support.IN_REAL_PIECES)
+    blocks.append(support.CHOSEN)
+    calls = RuntimeCalls.of(piecewise)
+    wanted = (
+        (calls.means, support.MEAN_OVER_CIRCLE),
+        (calls.series, support.SERIES_SOLUTIONS),
+        (calls.propagation or calls.roots, support.ROWS),
+        (calls.propagation, support.PROPAGATED),
+        (calls.roots, support.CHARACTERISTIC_ROOTS),
+        (calls.modes, support.MODAL),
+    )
+    return [*blocks, *(text for is_called, text in wanted if is_called)]

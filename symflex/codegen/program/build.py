@@ -1,0 +1,276 @@
+"""From a transfer function to the programs that compute it.
+
+Input: a :class:`symflex.transfer.TransferFunction`.
+Output: a :class:`Program` per way of evaluating it. ``closed``, ``closed in s`` and ``nested`` keep sums such
+as k + b*s and definitions as intermediates: the first in recurrences over the elements, the second in
+recurrences that part powers of s too, the third by powers of s; ``factors`` multiplies out every factor by
+powers of s.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from math import inf
+from typing import TYPE_CHECKING
+
+from symflex.algebra import LAPLACE, Factored
+from symflex.budget import spend
+from symflex.codegen.program.forge import Forge
+from symflex.codegen.program.polynomials import Images, degree_of, evaluate_polynomial
+from symflex.codegen.program.recurrence import express, plan_recurrences
+from symflex.codegen.program.schedule import schedule
+from symflex.errors import BudgetError, Diagnostic
+from symflex.expressions import Call, Expression, Name, Negative, Number, Power, Product, Quotient, Sum
+from symflex.model.linearity import integer_exponent
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.algebra import Ring
+    from symflex.codegen.program.nodes import Program
+    from symflex.model import Model
+    from symflex.transfer import ClosedForm, TransferFunction
+
+TERM_LIMIT = 20_000
+"""Terms a program may be made of; beyond that its text would be megabytes."""
+
+HEADROOM = 180
+"""Decades a power of s may reach in double precision (308 in all); the rest is left to the coefficients."""
+
+FAR_FROM = 1e15
+"""A far branch is made when powers of s could overflow below this abs(s) [rad/s]."""
+
+PI = "pi"
+
+
+def build_program(tf: TransferFunction, form: str | None = None) -> Program:
+    """Return the program of one form, ``closed`` or ``factors``; by default the first there is.
+
+    Raises
+    ------
+    BudgetError
+        SF503 when the program would be too large.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> G = pipeline.derive_all(pipeline.loads('''
+    ... symflex = 1
+    ... parameters = {m = "2 kg", b = "3 N*s/m"}
+    ... elements.body = {type = "mass", at = "x", m = "m"}
+    ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
+    ... inputs.F = {force = "x"}
+    ... outputs.V = "s*x"
+    ... '''))[0]
+    >>> build_program(G, "factors").parameters
+    ('m', 'b')
+    """
+    forms = available_forms(tf)
+    if not forms:
+        message = f"a program for {tf.name} would have more than {TERM_LIMIT} terms"
+        raise BudgetError(Diagnostic("SF503", message, None, "keep repeated sums in [definitions]"))
+    parameters = tuple(p.name for p in tf.parameters)
+    forge = Forge()
+    if tf.is_zero:
+        return schedule(forge, parameters, forge.constant(0), None, inf)
+    make = _maker(tf, form or forms[0])
+    near, degree = make(Generators(forge, tf, is_far=False))
+    limit = 10.0 ** (HEADROOM // degree) if degree else inf
+    if limit >= FAR_FROM:
+        return schedule(forge, parameters, near, None, inf)
+    far, _ = make(Generators(forge, tf, is_far=True))
+    return schedule(forge, parameters, near, far, limit)
+
+
+def available_forms(tf: TransferFunction) -> tuple[str, ...]:
+    """Return the forms a lumped transfer function can be evaluated in, the preferred one first."""
+    forms: list[str] = []
+    if tf.is_distributed:
+        return ()
+    if tf.closed is not None and not tf.is_zero and _closes_polynomially(tf):
+        closed = tf.closed
+        terms = [len(closed.num), len(closed.den), *(len(p) for _, p in closed.closure.sums)]
+        if sum(terms) <= TERM_LIMIT:
+            forms += ["closed", "closed in s", "nested"]
+    if tf.length <= TERM_LIMIT:
+        forms.append("factors")
+    return tuple(forms)
+
+
+def _closes_polynomially(tf: TransferFunction) -> bool:
+    """Tell whether no definition in use has poles, which the closed form would divide away at run time."""
+    used = _used_definitions(tf)
+    return not any(value.is_zero or value.denominator().depends_on(LAPLACE) for _, value in used)
+
+
+def _used_definitions(tf: TransferFunction) -> Iterator[tuple[str, Factored]]:
+    if tf.closed is None:
+        return
+    yield from ((name, value) for name, value in tf.definitions if name in tf.closed.generators)
+
+
+@dataclass
+class Generators:
+    """Makes an expression for every generator, in powers of s or of 1/s."""
+
+    forge: Forge
+    tf: TransferFunction
+    is_far: bool
+    _known: dict[str, tuple[int, int]] = field(default_factory=dict)
+
+    def polynomial(self, ring: Ring, polynomial: fmpz_mpoly) -> tuple[int, int]:
+        """Return an expression and its degree in s; in the far branch of ``polynomial / s**degree``."""
+        images = self.images(ring, (polynomial,))
+        return evaluate_polynomial(self.forge, polynomial, images), degree_of(polynomial, images.degrees)
+
+    def images(self, ring: Ring, polynomials: Iterable[fmpz_mpoly]) -> Images:
+        """Return what stands for a ring's generators, for those in use."""
+        spend()
+        used = ring.used_in(polynomials)
+        pairs = [self._generator(n) if n in used or n == LAPLACE else (0, 0) for n in ring.names]
+        return Images(tuple(v for v, _ in pairs), tuple(d for _, d in pairs), ring.index[PI], self.is_far)
+
+    def product(self, value: Factored) -> tuple[int, int]:
+        """Return a product of powers of polynomials, its unit left out, and its degree in s."""
+        parts: list[int] = []
+        total = 0
+        for factor, exponent in value.factors:
+            part, degree = self.polynomial(value.ring, factor)
+            parts.append(self.forge.power(part, exponent))
+            total += degree * exponent
+        return self.forge.multiply(parts), total
+
+    def balance(self, above: tuple[int, int], below: tuple[int, int]) -> int:
+        """Return the quotient, with the power of s that the far branch divided out."""
+        (num, num_degree), (den, den_degree) = above, below
+        if self.is_far:
+            base = self.forge.s if num_degree > den_degree else self.forge.inverse
+            num = self.forge.multiply([num, self.forge.power(base, abs(num_degree - den_degree))])
+        suffix = "_far" if self.is_far else ""
+        for part, label in ((num, "num"), (den, "den")):
+            size = self.forge.signed(part)[1]
+            if self.forge.depends[size]:
+                self.forge.label(size, label + suffix)
+        return self.forge.divide(num, den)
+
+    def _generator(self, name: str) -> tuple[int, int]:
+        if name not in self._known:
+            self._known[name] = self._make(name)
+        return self._known[name]
+
+    def _make(self, name: str) -> tuple[int, int]:
+        forge, tf = self.forge, self.tf
+        if name == LAPLACE:
+            return (forge.inverse if self.is_far else forge.s), 1
+        if name == PI:
+            return forge.constant(1, 1), 0
+        if any(p.name == name for p in tf.model.parameters):
+            return forge.parameter(name), 0
+        for definition, value in tf.definitions:
+            if definition == name:
+                return self._definition(name, value)
+        for constant in tf.constants:
+            if constant.generator == name:
+                return constant_of(self.forge, self.tf.model, constant.expression), 0
+        if tf.closed is not None:
+            for label, polynomial in tf.closed.closure.sums:
+                if label == name:
+                    total, degree = self.polynomial(tf.closed.closure.base, polynomial)
+                    return self._labelled(total, label), degree
+        raise KeyError(name)
+
+    def _definition(self, name: str, value: Factored) -> tuple[int, int]:
+        above, degree = self.product(value.numerator())
+        below, _ = self.product(value.denominator())
+        unit = self.forge.divide(
+            self.forge.constant(value.unit.numerator), self.forge.constant(value.unit.denominator)
+        )
+        return self._labelled(self.forge.divide(self.forge.multiply([unit, above]), below), name), degree
+
+    def _labelled(self, value: int, name: str) -> int:
+        suffix = "_far" if self.is_far and self.forge.depends[value] else ""
+        return self.forge.label(value, name + suffix)
+
+
+def constant_of(forge: Forge, model: Model, expression: Expression) -> int:
+    """Return an expression of constants as the model writes it."""
+
+    def made(inner: Expression) -> int:
+        return constant_of(forge, model, inner)
+
+    match expression:
+        case Number(value):
+            return forge.constant(value)
+        case Name(name):
+            if name == PI:
+                return forge.constant(1, 1)
+            inner = next((e for n, e in _every_definition(model) if n == name), None)
+            if inner is None or any(p.name == name for p in model.parameters):
+                return forge.parameter(name)
+            return forge.label(made(inner), name)
+        case Negative(operand):
+            return forge.negate(made(operand))
+        case Sum(terms):
+            return forge.add([made(t) for t in terms])
+        case Product(factors):
+            return forge.multiply([made(f) for f in factors])
+        case Quotient(numerator, denominator):
+            return forge.divide(made(numerator), made(denominator))
+        case Power(base, exponent):
+            power = integer_exponent(exponent) or 0
+            raised = forge.power(made(base), abs(power))
+            return raised if power >= 0 else forge.divide(forge.constant(1), raised)
+        case Call(name, argument):
+            return forge.apply(name, made(argument))
+    message = f"unexpected expression {type(expression).__name__}"
+    raise TypeError(message)
+
+
+def _every_definition(model: Model) -> Iterator[tuple[str, Expression]]:
+    """Yield the definitions of a model and then those of the models inside its blocks."""
+    yield from ((d.name, d.expression) for d in model.definitions)
+    for block in model.blocks:
+        if block.submodel is not None:
+            yield from _every_definition(block.submodel)
+
+
+def _maker(tf: TransferFunction, form: str) -> Callable[[Generators], tuple[int, int]]:
+    """Return what makes the value of a form, and the highest power of s in it, for either branch."""
+    if form == "factors":
+        return _factors
+    closed = _closed_form(tf)
+    ring, polynomials = closed.closure.ring, (closed.num, closed.den)
+    if form == "nested":
+        return lambda g: _quotient(g, [g.polynomial(ring, p) for p in polynomials])
+    plan = plan_recurrences(ring, polynomials, splits_s=form == "closed in s")
+    return lambda g: _quotient(g, express(g.forge, plan, g.images(ring, polynomials)))
+
+
+def _quotient(generators: Generators, parts: Sequence[tuple[int, int]]) -> tuple[int, int]:
+    above, below = parts
+    return generators.balance(above, below), max(above[1], below[1])
+
+
+def _closed_form(tf: TransferFunction) -> ClosedForm:
+    if tf.closed is None:
+        message = f"{tf.name} has no closed form"
+        raise ValueError(message)
+    return tf.closed
+
+
+def _factors(generators: Generators) -> tuple[int, int]:
+    """Return the product of factors and the highest power of s in it."""
+    ratio, forge = generators.tf.ratio, generators.forge
+    varying = Factored(ratio.ring, Fraction(1), tuple(f for f in ratio.factors if int(f[0].degrees()[0])))
+    fixed = Factored(ratio.ring, Fraction(1), tuple(f for f in ratio.factors if not int(f[0].degrees()[0])))
+    gain = forge.divide(
+        forge.multiply([forge.constant(ratio.unit.numerator), generators.product(fixed.numerator())[0]]),
+        forge.multiply([forge.constant(ratio.unit.denominator), generators.product(fixed.denominator())[0]]),
+    )
+    num, num_degree = generators.product(varying.numerator())
+    den, den_degree = generators.product(varying.denominator())
+    above, below = (forge.multiply([gain, num]), num_degree), (den, den_degree)
+    return _quotient(generators, (above, below))

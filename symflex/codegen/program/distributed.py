@@ -1,0 +1,771 @@
+"""From the transfer function of a distributed system to a program in pieces.
+
+Input: a :class:`symflex.transfer.TransferFunction` with kernels.
+Output: a :class:`Piecewise` program. Where arguments of kernels are large, numerator and denominator are
+sums of exponentials divided by the largest. Where they are small, each is a combination of the solutions of
+one linear differential equation in the length, with coefficients from its exact Taylor series, so that
+kernels that cancel each other do so before anything is rounded.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import product
+from math import gcd
+from operator import mul
+from typing import TYPE_CHECKING
+
+from symflex.algebra import LAPLACE, Factored, degree_in
+from symflex.algebra.normal_form import NormalForm
+from symflex.budget import spend
+from symflex.codegen.program.build import TERM_LIMIT
+from symflex.codegen.program.exponents import ExponentialSum, derivative_at_zero, expand, families_of
+from symflex.codegen.program.forge import Forge
+from symflex.codegen.program.local_basis import (
+    SERIES_ERROR,
+    LocalBasis,
+    bending_basis,
+    pair_basis,
+    taylor_term,
+    wave_basis,
+)
+from symflex.codegen.program.modal import CIRCLE, MODAL_REACHES, build_modal, declared_length
+from symflex.codegen.program.nodes import Condition, Piece, Piecewise
+from symflex.codegen.program.real_axis import RealAxis
+from symflex.codegen.program.schedule import straight
+from symflex.codegen.program.site import Site
+from symflex.errors import BudgetError, Diagnostic
+from symflex.transfer.cancel import cancel
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.algebra import Dispersion, Ring
+    from symflex.codegen.program.exponents import Key
+    from symflex.codegen.program.site import Scales
+    from symflex.transfer import TransferFunction
+
+REACHES = (3.0, 2.0, 4.5)
+"""Sizes of the largest exponent below which series are used; which serves best is measured."""
+
+CHOOSING = 3
+"""Base lengths up to which every one has series or exponentials by itself; more have series together only."""
+
+CUTS = 12
+"""How often one base length is cut by another; two spans and a sensor need one or two."""
+
+LOCAL_TERMS = 30_000
+"""Terms looked at while series for small arguments are made free of wavenumbers: some ten seconds."""
+
+REAL_TERMS = 1000
+"""Terms of numerator and denominator up to which a program in real arithmetic is made besides."""
+
+SIGNING = 2
+"""Dispersions up to which a piece is made for every choice of signs of their wavenumbers."""
+
+CONFLUENT = 2.0
+"""Twice the squared distance of a pair's arguments below which means over a circle are taken."""
+
+LONE = 0.25
+"""Part of the series' reach up to which the smaller of a pair's arguments has a series by itself."""
+
+BASES: dict[str, Callable[[Iterable[Sequence[tuple[int, int]]]], LocalBasis]] = {
+    "wave": wave_basis,
+    "bending": bending_basis,
+    "pair": pair_basis,
+}
+
+
+def reaches_of(tf: TransferFunction) -> tuple[float, ...]:
+    """Return the reaches of series that are worth trying, the usual one first."""
+    return MODAL_REACHES if tf.is_nameless else REACHES
+
+
+def build_piecewise(tf: TransferFunction, reach: float | None = None) -> Piecewise:
+    """Return the program for complex s.
+
+    Parameters
+    ----------
+    tf : TransferFunction
+        With kernels.
+    reach : float
+        Size of the largest exponent below which series are used; by default the first of
+        :func:`reaches_of`.
+
+    Raises
+    ------
+    BudgetError
+        SF503 when the program would be too large.
+    """
+    if tf.length > TERM_LIMIT:
+        message = f"a program for {tf.name} would have more than {TERM_LIMIT} terms"
+        raise BudgetError(Diagnostic("SF503", message, None, "keep repeated sums in [definitions]"))
+    chosen = reaches_of(tf)[0] if reach is None else reach
+    return build_modal(tf, chosen) if tf.is_nameless else _Workshop(tf, chosen).program()
+
+
+def build_real(tf: TransferFunction, reach: float = REACHES[0]) -> Piecewise | None:
+    """Return the program of the response at an angular frequency in real arithmetic.
+
+    ``None`` with losses, and where it would be very long.
+
+    Parameters
+    ----------
+    tf : TransferFunction
+        With kernels of waves and bending.
+    reach : float
+        As for :func:`build_piecewise`.
+    """
+    if tf.length > REAL_TERMS:
+        return None
+    positive = tuple(p.name for p in tf.parameters if p.assume == "positive")
+    axis = RealAxis(tf.ratio.ring, tf.kernels, positive)
+    return _Workshop(tf, reach).real_program(axis) if axis.is_real else None
+
+
+_Test = tuple[int, float, int]
+"""Expression, limit and scale of a condition."""
+
+
+_Choice = tuple[tuple[bool, ...], tuple[bool, ...], tuple[int, ...], bool, tuple[int, ...]]
+"""What makes a piece: groups near zero, delays that grow, dispersions mirrored, meeting pairs, lone ones."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Group:
+    """The families of one dispersion at one length, whose arguments are small together."""
+
+    dispersion: Dispersion
+    length: Factored
+    position: int
+    families: tuple[int, ...]
+    basis: LocalBasis
+    spread: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Lone:
+    """The smaller wavenumber of a pair at one length, whose argument is small while the other's is not."""
+
+    dispersion: Dispersion
+    length: Factored
+    position: int
+    families: tuple[int, ...]
+    basis: LocalBasis
+
+
+@dataclass(frozen=True, eq=False)
+class _Half:
+    """A numerator or denominator: powers of wavenumbers times a sum of exponentials.
+
+    ``far`` is the sum in the form :meth:`Site.exponential_sum` wants, without its common number; ``unit`` is
+    that.
+    """
+
+    terms: Mapping[Key, fmpz_mpoly]
+    waves: Factored
+    far: Mapping[Key, fmpz_mpoly]
+    unit: Fraction
+
+
+class _Workshop:
+    def __init__(self, tf: TransferFunction, reach: float) -> None:
+        self.tf = tf
+        self.reach = reach
+        self.ring: Ring = tf.ratio.ring
+        self.table = tf.kernels
+        self.normal = NormalForm(self.ring, self.table)
+        self.work = 0
+        self.families = families_of(self.ring, self.table)
+        self.waves = {self.ring.index[w] for w in self.table.wavenumbers}
+        self.kernels = {self.ring.index[k.generator] for k in self.table.kernels}
+        self.plain, self.halves = self._halves()
+        self.groups = tuple(self._groups())
+        self.delays = tuple(i for i, f in enumerate(self.families) if not f.wavenumber)
+
+    # -------------------------------------------------------------------------------- what is computed
+
+    def _holds(self, polynomial: fmpz_mpoly, positions: Iterable[int]) -> bool:
+        return any(degree_in(polynomial, i) for i in positions)
+
+    def _halves(self) -> tuple[Factored, tuple[_Half, _Half]]:
+        """Return the factor without wavenumbers and kernels, and numerator and denominator of the rest."""
+        one = Factored.number(self.ring, 1)
+        kernels, waves, plain = [one, one], [one, one], one
+        for side, value in enumerate((self.tf.num, self.tf.den)):
+            sign = -1 if side else 1
+            plain = plain * value.unit**sign
+            for factor, exponent in value.factors:
+                piece = Factored(self.ring, Fraction(1), ((factor, exponent),))
+                if self._holds(factor, self.kernels):
+                    at = side if exponent > 0 else 1 - side
+                    kernels[at] = kernels[at] * (piece if exponent > 0 else piece**-1)
+                elif self._holds(factor, self.waves):
+                    waves[side] = waves[side] * piece
+                else:
+                    plain = plain * piece**sign
+        for side, product_of_waves in enumerate(waves):
+            symmetric, remaining = self._symmetric(product_of_waves)
+            waves[side] = remaining
+            plain = plain * symmetric ** (-1 if side else 1)
+        sums = [expand(self.ring, k.expand(), self.families) for k in kernels]
+        sums = self._in_segments(sums)
+        halves = []
+        for side, (own, found) in enumerate(zip(waves, sums, strict=True)):
+            rest, content = found.without_content()
+            # A common factor without wavenumbers leaves the half; wavenumbers stay, to balance its own.
+            common = Factored.polynomial(self.ring, content) * rest.unit
+            free = common.filter(lambda f: not self._holds(f, self.waves | self.kernels)) * common.unit
+            plain = plain * free ** (-1 if side else 1)
+            halves.append(self._half(rest, own * (common / free)))
+        return plain, (halves[0], halves[1])
+
+    def _symmetric(self, value: Factored) -> tuple[Factored, Factored]:
+        """Split off the factors whose product has no wavenumbers once their relations are used.
+
+        Such factors may cancel within themselves: ``rho*s^2 - E*lambda^2`` does at high frequencies.
+        """
+        one = Factored.number(self.ring, 1)
+        splits = [
+            f
+            for d in self.table.dispersions
+            if d.kind == "pair"
+            for f, _ in (
+                Factored.generator(self.ring, d.wavenumbers[0]) ** 2
+                - Factored.generator(self.ring, d.wavenumbers[1]) ** 2
+            ).factors
+        ]
+        sums = one
+        for factor, exponent in value.factors:
+            if len(factor) > 1 and exponent > 0 and factor not in splits:
+                sums = sums * Factored(self.ring, Fraction(1), ((factor, exponent),))
+        if sums.is_one:
+            return one, value
+        reduced = self.normal.reduce(sums.expand())
+        if any(self._holds(f, self.waves) for f, _ in reduced.factors):
+            return one, value
+        return reduced, value / sums
+
+    def _in_segments(self, sums: list[ExponentialSum]) -> list[ExponentialSum]:
+        """Return the sums in base lengths in each of which the denominator's largest term is largest.
+
+        Then nothing else can overflow. Differences of successive lengths, by their declared values, mostly
+        are such; where they are not, a few of them are cut as Euclid does.
+        """
+        changes = []
+        families = list(self.families)
+        for i, family in enumerate(families):
+            count = len(family.lengths)
+            identity = [[int(j == k) for k in range(count)] for j in range(count)]
+            same = [k for k, f in enumerate(self.families) if f.dispersion is family.dispersion]
+            if (
+                count == 1
+                or not family.wavenumber
+                or all(_has_corner(sums, k) for k in same if self.families[k].wavenumber)
+            ):
+                changes.append(identity)
+                continue
+            values = [declared_length(self.tf, x) for x in family.lengths]
+            order = sorted(range(count), key=lambda j, v=values: v[j])  # type: ignore[misc]
+            matrix = [[0] * count for _ in range(count)]
+            for rank, j in enumerate(order):
+                for k in range(rank + 1):
+                    matrix[j][k] = 1
+            sorted_lengths = [family.lengths[j] for j in order]
+            new = [x if not k else x - sorted_lengths[k - 1] for k, x in enumerate(sorted_lengths)]
+            found = [declared_length(self.tf, x) for x in new]
+            for _ in range(CUTS):
+                pair = _longer_and_shorter(sums, same, matrix, found)
+                if pair is None:
+                    break
+                # exp(a x + b y) = exp(a (x - y)) exp((a + b) y): the shorter one bears both.
+                longer, shorter = pair
+                for row in matrix:
+                    row[shorter] += row[longer]
+                new[longer] = new[longer] - new[shorter]
+                found[longer] = found[longer] - found[shorter]
+            changes.append(matrix)
+            families[i] = replace(family, lengths=tuple(new))
+        self.families = tuple(families)
+        return [s.in_lengths(changes) for s in sums]
+
+    def _half(self, found: ExponentialSum, waves: Factored) -> _Half:
+        doubled = {key: p * 2 ** self._still(key) for key, p in found.terms.items()}
+        common = gcd(*(int(c) for p in doubled.values() for c in p.coeffs()))
+        far = {key: p / self.ring.constant(common) for key, p in doubled.items()}
+        return _Half(found.terms, waves, far, Fraction(common))
+
+    def _still(self, key: Key) -> int:
+        """Return how many circular families do not oscillate in a product."""
+        return sum(
+            f.is_circular and not any(b for _, b in pairs)
+            for f, (pairs, _) in zip(self.families, key, strict=True)
+        )
+
+    def _groups(self) -> Iterator[_Group]:
+        found: dict[int, list[int]] = {}
+        for i, family in enumerate(self.families):
+            if family.wavenumber:
+                found.setdefault(id(family.dispersion), []).append(i)
+        for ids in found.values():
+            family = self.families[ids[0]]
+            for position, length in enumerate(family.lengths):
+                exponents = sorted(
+                    {tuple(k[i][0][position] for i in ids) for h in self.halves for k in h.terms}
+                )
+                spread = max(sum(abs(a) + abs(b) for a, b in pairs) for pairs in exponents)
+                if spread:
+                    basis = BASES[family.dispersion.kind](exponents)
+                    yield _Group(family.dispersion, length, position, tuple(ids), basis, spread)
+
+    def _lone(self, group: _Group) -> _Lone | None:
+        """Return the smaller wavenumber of a pair at a length, ``None`` if no kernel has it there."""
+        smaller = group.dispersion.wavenumbers[1]
+        for i in group.families:
+            if self.families[i].wavenumber == smaller:
+                exponents = sorted({k[i][0][group.position][0] for h in self.halves for k in h.terms})
+                basis = wave_basis([((a, 0),) for a in exponents])
+                return _Lone(group.dispersion, group.length, group.position, (i,), basis)
+        return None
+
+    # -------------------------------------------------------------------------------- complex arithmetic
+
+    def _sizes(self, site: Site) -> tuple[list[_Test], list[int]]:
+        """Return the tests for small arguments, and how many each group has."""
+        tests: list[_Test] = []
+        counts = []
+        for group in self.groups:
+            limit = self.reach / group.spread
+            own = [(x, limit**power, c) for x, c, power in site.sizes(group.dispersion, group.length)]
+            tests += own
+            counts.append(len(own))
+        return tests, counts
+
+    @property
+    def _is_signed(self) -> bool:
+        return len(self.table.dispersions) <= SIGNING
+
+    def _near(self, bits: Sequence[bool], counts: Sequence[int]) -> tuple[bool, ...]:
+        """Return which groups are taken to be small."""
+        near, at = [], 0
+        for count in counts:
+            near.append(all(bits[at : at + count]))
+            at += count
+        return tuple(near) if len(near) <= CHOOSING or all(near) else (False,) * len(near)
+
+    def program(self) -> Piecewise:
+        """Return the program for complex s."""
+        forge = Forge()
+        site = Site(forge, self.tf, self.families, is_signed=self._is_signed)
+        tests, counts = self._sizes(site)
+        first, one = len(tests), forge.constant(1)
+        tests += [(site.exponent(self.families[i], 0), 0.0, one) for i in self.delays]
+        roots = [(id(d), parts) for d in self.table.dispersions if (parts := site.plain_parts(d)) is not None]
+        third = len(tests)
+        tests += [(s, 0.0, scale) for _, (scale, s) in roots]
+        second = len(tests)
+        pairs = [i for i, g in enumerate(self.groups) if g.dispersion.kind == "pair"]
+        tests += [
+            (site.distance(self.groups[i].dispersion, self.groups[i].length), CONFLUENT, one) for i in pairs
+        ]
+        fourth = len(tests)
+        laws = [d for d in self.table.dispersions if any(self.groups[i].dispersion is d for i in pairs)]
+        tests += [self._lone_test(site, d) for d in laws]
+        fifth = len(tests)
+        code: list[Piece] = []
+        known: dict[_Choice, int] = {}
+        numbers: list[int] = []
+        for number in range(2 ** len(tests)):
+            bits = [bool(number >> i & 1) for i in range(len(tests))]
+            near = self._near(bits, counts)
+            grows = tuple(bits[first:third])
+            small = [id(g.dispersion) for g, n in zip(self.groups, near, strict=True) if n]
+            mirrored = tuple(
+                d
+                for (d, _), b in zip(roots, bits[third:second], strict=True)
+                if b and small.count(d) < sum(id(g.dispersion) == d for g in self.groups)
+            )
+            far = {id(self.groups[i].dispersion) for i in pairs if not near[i]}
+            lone = tuple(
+                id(d)
+                for d, b in zip(laws, bits[fourth:fifth], strict=True)
+                if b and id(d) in far and not all(near)
+            )
+            meets = any(
+                bits[second + j] and not near[i] and id(self.groups[i].dispersion) not in lone
+                for j, i in enumerate(pairs)
+            )
+            key = (near, grows, mirrored, meets, lone)
+            if key not in known:
+                known[key] = len(code)
+                code.append(self._piece(*key))
+            numbers.append(known[key])
+        return self._assembled(forge, tests, numbers, code, None)
+
+    def _lone_test(self, site: Site, dispersion: Dispersion) -> _Test:
+        """Return the test that the smaller of a pair's arguments is small at every length."""
+        forge = site.forge
+        reaches = [
+            forge.multiply([forge.constant(g.spread), site.length(g.length)])
+            for g in self.groups
+            if g.dispersion is dispersion
+        ]
+        scale = forge.multiply([forge.constant(2), forge.power(forge.add(reaches), 2)])
+        return site.quotient(dispersion), (LONE * self.reach) ** 2, scale
+
+    def _assembled(
+        self, forge: Forge, tests: Sequence[_Test], numbers: list[int], code: list[Piece], turn: int | None
+    ) -> Piecewise:
+        head = straight(forge, [*(x for x, _, _ in tests), *(c for _, _, c in tests)] or [forge.constant(1)])
+        nodes = zip(head.values, tests, head.values[len(tests) :], strict=False)
+        conditions = tuple(Condition(n, limit, scale) for n, (_, limit, _), scale in nodes)
+        parameters = tuple(p.name for p in self.tf.parameters)
+        return Piecewise(parameters, head, conditions, tuple(numbers), tuple(code), turn)
+
+    def _piece(
+        self,
+        near: tuple[bool, ...],
+        grows: tuple[bool, ...] = (),
+        mirrored: tuple[int, ...] = (),
+        meets: bool = False,
+        lone: tuple[int, ...] = (),
+        *,
+        is_complex: bool = False,
+    ) -> Piece:
+        forge = Forge()
+        site = Site(
+            forge,
+            self.tf,
+            self.families,
+            dict(zip(self.delays, grows, strict=True)),
+            self._exponents(),
+            mirrored,
+            self._is_signed,
+        )
+        groups: list[_Group | _Lone] = [g for g, n in zip(self.groups, near, strict=True) if n]
+        for group, is_near in zip(self.groups, near, strict=True):
+            if not is_near and id(group.dispersion) in lone and (own := self._lone(group)) is not None:
+                groups.append(own)
+        scales = self._scales(groups, site.grows)
+        values, gain = [], self.plain
+        for half, sign in zip(self.halves, (1, -1), strict=True):
+            value, taken = self._value(half, groups, site, scales)
+            if meets:
+                # On a circle each half has to be analytic by itself, its powers of wavenumbers included.
+                value, taken = forge.multiply([site.value(taken), value]), taken**0
+            values.append(value)
+            gain = gain * taken**sign
+        num = forge.multiply([site.value(gain.numerator()), values[0]])
+        den = forge.multiply([site.value(gain.denominator()), values[1]])
+        if not meets:
+            return Piece(straight(forge, [num, den]), 0, is_complex)
+        growth = forge.add([forge.multiply([forge.constant(d), site.angle(*at)]) for at, d in scales.items()])
+        size = forge.add([forge.constant(2), *(site.angle(*at) for at in scales)])
+        radius = forge.divide(forge.apply("abs", forge.s), size)
+        return Piece(straight(forge, [num, den, growth, radius]), CIRCLE)
+
+    def _exponents(self) -> dict[tuple[int, int], list[tuple[int, int]]]:
+        keys = [key for h in self.halves for key in h.terms]
+        return {
+            (i, j): sorted({key[i][0][j] for key in keys})
+            for i, family in enumerate(self.families)
+            for j in range(len(family.lengths))
+        }
+
+    def _scales(self, near: Sequence[_Group | _Lone], grows: Mapping[int, bool]) -> Scales:
+        """Return per family, and length that is not small, the largest exponent that occurs."""
+        small = {(i, g.position) for g in near for i in g.families}
+        keys = [key for h in self.halves for key in h.terms]
+        return {
+            (i, j): max((-1 if grows.get(i) else 1) * key[i][0][j][0] + abs(key[i][0][j][1]) for key in keys)
+            for i, family in enumerate(self.families)
+            for j in range(len(family.lengths))
+            if (i, j) not in small
+        }
+
+    def _value(
+        self, half: _Half, near: Sequence[_Group | _Lone], site: Site, scales: Scales
+    ) -> tuple[int, Factored]:
+        """Return the expression of a half, and the factor that was taken out of it."""
+        forge = site.forge
+        if not near:
+            total = site.exponential_sum(half.far, scales)
+            return total, half.waves * half.unit
+        parts = self._local_parts(half, near)
+        taken = Factored.number(self.ring, 1)
+        if len(near) == len(self.groups) or any(isinstance(g, _Lone) for g in near):
+            taken = self._power_of_s(v for rest in parts.values() for v in rest.values())
+        summands = []
+        for orders, rest in parts.items():
+            leaves = {key: site.value(v / taken) for key, v in rest.items()}
+            inner = site.sum_of_leaves(leaves, scales)
+            summands.append(forge.multiply([inner, *self._solutions(site, near, orders)]))
+        return forge.add(summands), taken
+
+    def _solutions(self, site: Site, near: Sequence[_Group | _Lone], orders: Sequence[int]) -> list[int]:
+        return [
+            site.local(g.basis, g.dispersion, g.length, k, self.reach)
+            if isinstance(g, _Group)
+            else site.local_of_smaller(g.basis, g.dispersion, g.length, k, LONE * self.reach)
+            for g, k in zip(near, orders, strict=True)
+        ]
+
+    def _power_of_s(self, values: Iterable[Factored]) -> Factored:
+        """Return the power of s that all values share."""
+        s = self.ring.context.gen(0)
+        power = min(v.exponent_of(s) for v in values)
+        return Factored.generator(self.ring, LAPLACE) ** power
+
+    def _local_parts(
+        self, half: _Half, near: Sequence[_Group | _Lone]
+    ) -> dict[tuple[int, ...], dict[Key, Factored]]:
+        """Return, per order of the derivatives in the small lengths, the coefficients of what remains."""
+        found: dict[tuple[int, ...], dict[Key, Factored]] = {}
+        for orders in product(*(range(g.basis.order) for g in near)):
+            spend()
+            if len(near) == 1 and self._is_negligible(orders[0], found):
+                break
+            terms: dict[Key, fmpz_mpoly] = dict(half.terms)
+            for group, order in zip(near, orders, strict=True):
+                terms = self._derivative(terms, group, order)
+            lone = [g.dispersion for g in near if isinstance(g, _Lone)]
+            values = {
+                k: self._reduced(Factored.polynomial(self.ring, p * 2 ** self._still(k)) * half.waves, lone)
+                for k, p in terms.items()
+                if len(p)
+            }
+            if values := {k: v for k, v in values.items() if not v.is_zero}:
+                found[orders] = values
+        return found
+
+    def _is_negligible(self, order: int, found: Iterable[tuple[int, ...]]) -> bool:
+        """Tell whether a derivative in a small length, and all that follow, add nothing to those found."""
+        if not (lower := [k for (k,) in found]) or order <= self.reach:
+            return False
+        largest = max(taylor_term(self.reach, m) for m in range(lower[0], order))
+        return taylor_term(self.reach, order) < SERIES_ERROR + largest
+
+    def _derivative(
+        self, terms: Mapping[Key, fmpz_mpoly], group: _Group | _Lone, order: int
+    ) -> dict[Key, fmpz_mpoly]:
+        """Return the derivative of a sum with respect to a length at zero."""
+        gens = [self.ring.generator(self.families[i].wavenumber) for i in group.families]
+        found: dict[Key, fmpz_mpoly] = {}
+        for key, polynomial in terms.items():
+            if len(gens) == 1:
+                (i,) = group.families
+                images = derivative_at_zero(key[i], group.position, order)
+                moved = [((*key[:i], t, *key[i + 1 :]), gens[0] ** order * n) for t, n in images]
+            else:
+                pairs = [key[i][0] for i in group.families]
+                (a, _), (b, _) = (p[group.position] for p in pairs)
+                rest = list(key)
+                for i, p in zip(group.families, pairs, strict=True):
+                    rest[i] = ((*p[: group.position], (0, 0), *p[group.position + 1 :]), 0)
+                moved = [(tuple(rest), (gens[0] * a + gens[1] * b) ** order)]
+            for k, factor in moved:
+                found[k] = found.get(k, self.ring.constant(0)) + polynomial * factor
+        return found
+
+    def _reduced(self, value: Factored, lone: Sequence[Dispersion]) -> Factored:
+        """Return a value in normal form, free of wavenumbers where it is symmetric in them.
+
+        Values of pairs whose smaller wavenumber alone is expanded are made free of its negative powers.
+        """
+        for dispersion in self.table.dispersions:
+            if dispersion.kind == "pair" and not value.is_zero:
+                is_lone = any(d is dispersion for d in lone)
+                reduce = self._without_smaller if is_lone else self._without_pair
+                value = reduce(value, dispersion)
+        # Powers of a lone wavenumber are small; the relations would make differences of large terms of them.
+        return value if lone else self.normal.reduce_factored(value)
+
+    def _normal_form(self, polynomial: fmpz_mpoly) -> Factored:
+        self.work += len(polynomial)
+        if self.work > LOCAL_TERMS:
+            message = f"the series of {self.tf.name} for small arguments would take too long to find"
+            hint = "give some parameters numbers, or leave out losses, loads or lengths"
+            raise BudgetError(Diagnostic("SF503", message, None, hint))
+        return self.normal.reduce(polynomial)
+
+    def _without_smaller(self, value: Factored, dispersion: Dispersion) -> Factored:
+        """Return a value that is finite where the smaller wavenumber is zero without negative powers of it.
+
+        With ``lambda_1^2 lambda_2^2 = c_0``, such a power becomes one of c_0, and that divides what is in
+        normal form: 1 and lambda_2^2 generate what is finite at both roots of ``x^2 + c_2 x``.
+        """
+        large, small = (Factored.generator(self.ring, w) for w in dispersion.wavenumbers)
+        (first, _), (second, _) = large.factors[0], small.factors[0]
+        power = value.exponent_of(second)
+        if power >= 0:
+            return value
+        even = -power + power % 2
+        outside = value.exponent_of(first)
+        # Powers of the larger one stay outside, where they are harmless; even ones are all there is of it.
+        whole = value / large**outside * (large * small) ** even
+        numerator = self._normal_form(whole.numerator().expand()) / whole.denominator()
+        if numerator.is_zero:
+            return numerator
+        reduced, _ = cancel(numerator, dispersion.characteristic[0] ** (even // 2))
+        return reduced * large**outside
+
+    def _without_pair(self, value: Factored, dispersion: Dispersion) -> Factored:
+        """Return a value that is symmetric in two wavenumbers without them."""
+        one, other = (Factored.generator(self.ring, w) for w in dispersion.wavenumbers)
+        split = one**2 - other**2
+        singles = [f for w in (one, other) for f, _ in w.factors]
+        ((difference, _),) = split.factors
+        lowest = min([0, *(e for f, e in value.factors if f in singles)])
+        meeting = min([0, *(e for f, e in value.factors if f == difference)])
+        even, twice = -lowest + lowest % 2, -meeting + meeting % 2
+        c0, c2 = dispersion.characteristic[0], dispersion.characteristic[2]
+        whole = value * (one * other) ** even * split**twice
+        numerator = self._normal_form(whole.numerator().expand()) / whole.denominator()
+        if numerator.is_zero:
+            return numerator
+        reduced, _ = cancel(numerator, c0 ** (even // 2) * (c2**2 - c0 * 4) ** (twice // 2))
+        return reduced
+
+    # ----------------------------------------------------------------------------------- real arithmetic
+
+    def real_program(self, axis: RealAxis) -> Piecewise | None:
+        """Return the program for angular frequencies, ``None`` unless they are real up to a power of j."""
+        forge = Forge()
+        site = Site(forge, self.tf, self.families, axis=axis)
+        tests, counts = self._sizes(site)
+        first = len(tests)
+        signed = [d for d in self.table.dispersions if axis.sign(d) is None]
+        tests += [(site.coefficient(d), 0.0, forge.constant(1)) for d in signed]
+        code: list[Piece] = []
+        known: dict[tuple[tuple[bool, ...], tuple[bool, ...]], int] = {}
+        numbers: list[int] = []
+        first_turn: int | None = None
+        for number in range(2 ** len(tests)):
+            bits = [bool(number >> i & 1) for i in range(len(tests))]
+            near, negative = self._near(bits, counts), tuple(bits[first:])
+            if all(near):
+                negative = (False,) * len(negative)
+            key = (near, negative)
+            if key not in known:
+                known[key] = len(code)
+                if any(near) and not all(near):
+                    code.append(self._piece(near, is_complex=True))
+                else:
+                    signs = dict(zip(map(id, signed), negative, strict=True))
+                    made = self._real_piece(axis.where(signs), first_turn, is_near=all(near))
+                    if made is None:
+                        return None
+                    piece, first_turn = made
+                    code.append(piece)
+            numbers.append(known[key])
+        return self._assembled(forge, tests, numbers, code, first_turn)
+
+    def _real_piece(self, axis: RealAxis, wanted: int | None, *, is_near: bool) -> tuple[Piece, int] | None:
+        """Return a piece and the power of j it leaves out, which is the wanted one if there is one."""
+        forge = Forge()
+        site = Site(forge, self.tf, self.families, axis=axis)
+        gain, values, turn = self.plain, [], 0
+        waves = Factored.number(self.ring, 1)
+        if is_near:
+            for half, sign in zip(self.halves, (1, -1), strict=True):
+                near = self._real_near(site, axis, half)
+                if near is None:
+                    return None
+                value, own, taken = near
+                values.append(value)
+                gain = gain * taken**sign
+                turn += sign * own
+        else:
+            sums = [axis.real_sum(h.terms, h.waves, self.families) for h in self.halves]
+            above, below = sums
+            if above is None or below is None:
+                return None
+            values = list(site.real_sums([above, below]))
+            turn = above.turn - below.turn
+            waves = above.waves / below.waves
+        found = axis.real(gain)
+        if found is None:
+            return None
+        real, own = found[0] * waves, found[1]
+        turn = (turn + own) % 4
+        if wanted is not None and (turn - wanted) % 2:
+            return None
+        if wanted is not None and turn != wanted:
+            real, turn = -real, wanted
+        num = forge.multiply([site.value(real.numerator()), values[0]])
+        den = forge.multiply([site.value(real.denominator()), values[1]])
+        return Piece(straight(forge, [num, den])), turn
+
+    def _real_near(self, site: Site, axis: RealAxis, half: _Half) -> tuple[int, int, Factored] | None:
+        """Return a half where all arguments are small, its power of j, and the factor taken out."""
+        forge = site.forge
+        parts = self._local_parts(half, self.groups)
+        values = {orders: next(iter(rest.values())) for orders, rest in parts.items()}
+        taken = self._power_of_s(values.values())
+        first: int | None = None
+        summands = []
+        for orders, value in values.items():
+            found = axis.real(value / taken)
+            if found is None:
+                return None
+            real, turn = found
+            first = turn if first is None else first
+            if (turn - first) % 2:
+                return None
+            summand = forge.multiply([site.value(real), *self._solutions(site, self.groups, orders)])
+            summands.append(forge.negate(summand) if (turn - first) % 4 else summand)
+        return forge.add(summands), first or 0, taken
+
+
+def _longer_and_shorter(
+    sums: Sequence[ExponentialSum],
+    families: Sequence[int],
+    matrix: Sequence[Sequence[int]],
+    values: Sequence[float],
+) -> tuple[int, int] | None:
+    """Return which length is to be cut by which, ``None`` where the denominator's largest term is largest.
+
+    Parameters
+    ----------
+    sums : sequence of ExponentialSum
+        Numerator and denominator.
+    families : sequence of int
+        Those that share the lengths.
+    matrix : sequence of sequence of int
+        The sums' lengths in multiples of these.
+    values : sequence of float
+        The declared values of these.
+    """
+    count = range(len(values))
+    for i in families:
+        terms = [[_in_lengths(key[i][0], matrix) for key in s.terms] for s in sums]
+        highest = [max(a[k] + abs(b[k]) for side in terms for a, b in side) for k in count]
+        largest = max(
+            ([x + sign * y for x, y in zip(a, b, strict=True)] for a, b in terms[1] for sign in (1, -1)),
+            key=lambda growth: sum(map(mul, growth, values)),
+        )
+        for short in (k for k in count if largest[k] < highest[k]):
+            others = sorted((k for k in count if k != short and largest[k]), key=lambda k: -largest[k])
+            longer = [k for k in others if values[k] > values[short]]
+            if others:
+                return (longer[0], short) if longer else (short, others[0])
+    return None
+
+
+def _in_lengths(
+    pairs: Sequence[tuple[int, int]], matrix: Sequence[Sequence[int]]
+) -> tuple[list[int], list[int]]:
+    """Return what a term's ``a`` and ``b`` are in other lengths."""
+    a, b = zip(*pairs, strict=True)
+    columns = list(zip(*matrix, strict=True))
+    return [sum(map(mul, a, column)) for column in columns], [sum(map(mul, b, column)) for column in columns]
+
+
+def _has_corner(sums: Sequence[ExponentialSum], i: int) -> bool:
+    """Tell whether one term of the denominator has the largest exponents of a family at every length."""
+    pairs = [key[i][0] for s in sums for key in s.terms]
+    most = tuple(max(abs(p[j][0]) + abs(p[j][1]) for p in pairs) for j in range(len(pairs[0])))
+    return any(tuple(a for a, _ in key[i][0]) == most for key in sums[1].terms)

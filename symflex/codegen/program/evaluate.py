@@ -1,0 +1,303 @@
+"""Running a program in double precision, with the operations of generated code in the same order."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import isfinite
+from sys import float_info
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from flint import arb, ctx, fmpq
+
+from symflex.algebra import mode_values
+from symflex.codegen.program.nodes import (
+    Add,
+    Apply,
+    Assignment,
+    Branch,
+    ComplexNumber,
+    Constant,
+    Divide,
+    InverseLaplace,
+    Item,
+    Laplace,
+    ModalValue,
+    ModeValues,
+    Multiply,
+    Negate,
+    Node,
+    Parameter,
+    Piece,
+    Piecewise,
+    Power,
+    Program,
+    Reference,
+    Roots,
+    Solutions,
+)
+from symflex.codegen.program.runtime import (
+    characteristic_roots,
+    complex_exp,
+    mean_over_circle,
+    modal_value,
+    propagated,
+    series_solutions,
+)
+from symflex.errors import Diagnostic, ModelError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike, NDArray
+
+CONSTANT_BITS = 256
+
+NUMPY_FUNCTIONS = {
+    name: name for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh", "abs")
+}
+"""What numpy calls each of the elementary functions, and the magnitude."""
+
+
+def nearest_double(value: Fraction, pi_power: int = 0) -> float:
+    """Return the double nearest to ``value * pi**pi_power``.
+
+    Raises
+    ------
+    ModelError
+        SF233 when it is too large or too small for double precision.
+
+    Examples
+    --------
+    >>> from fractions import Fraction
+    >>> nearest_double(Fraction(1, 10)), nearest_double(Fraction(1), 1)
+    (0.1, 3.141592653589793)
+    """
+    if value == 0:
+        return 0.0
+    try:
+        if pi_power == 0:
+            result = float(value)
+        else:
+            with ctx.workprec(CONSTANT_BITS):
+                result = float((arb(fmpq(value.numerator, value.denominator)) * arb.pi() ** pi_power).mid())
+    except OverflowError:
+        result = float("inf")
+    if not isfinite(result) or abs(result) < float_info.min:
+        size = "large" if abs(result) > 1 else "small"
+        message = f"a number of this model is too {size} for double precision"
+        hint = "choose units in which values lie nearer to 1, such as mm and t; exact commands keep it"
+        raise ModelError(Diagnostic("SF233", message, None, hint))
+    return result
+
+
+def evaluate(
+    program: Program | Piecewise, s: ArrayLike, values: Mapping[str, ArrayLike]
+) -> NDArray[np.complex128]:
+    """Return the values of a program, exactly those that the generated code returns.
+
+    Parameters
+    ----------
+    program : Program or Piecewise
+        Of one transfer function.
+    s : array_like of complex
+        Laplace variable [rad/s]; the angular frequency for a program in real arithmetic.
+    values : mapping of str to array_like
+        Every parameter, by its name in the model; broadcast against ``s``.
+
+    Returns
+    -------
+    ndarray of complex
+        Of the shape that ``s`` and the parameters broadcast to. Poles and overflows are inf or nan.
+    """
+    is_real = isinstance(program, Piecewise) and program.turn is not None
+    point = np.asarray(s, dtype=float if is_real else complex)[()]
+    given = {name: _number(values[name]) for name in program.parameters}
+    if isinstance(program, Piecewise):
+        return _piecewise(program, point, given)
+    run = _Run(point, given)
+    with np.errstate(all="ignore"):
+        run.assign(program.constants)
+        value = run.branch(program.near)
+        if program.far is not None:
+            is_far = np.abs(point) > program.limit
+            if np.any(is_far):
+                value = np.where(is_far, run.branch(program.far), value)
+    shape = np.broadcast_shapes(np.shape(point), *(np.shape(v) for v in given.values()))
+    return np.array(np.broadcast_to(value, shape), dtype=complex)
+
+
+def _piecewise(
+    program: Piecewise,
+    point: Any,  # noqa: ANN401
+    given: Mapping[str, Any],
+) -> NDArray[np.complex128]:
+    shape = np.broadcast_shapes(np.shape(point), *(np.shape(v) for v in given.values()))
+    columns = [np.broadcast_to(v, shape).reshape(-1) if np.ndim(v) else v for v in (point, *given.values())]
+    turn = 1 if program.turn is None else (1, 1j, -1, -1j)[program.turn % 4]
+    with np.errstate(all="ignore"):
+        number = numbers_of_pieces(program, columns[0], dict(zip(given, columns[1:], strict=True)))
+        number = np.broadcast_to(number, (np.prod(shape, dtype=int),))
+        result = np.empty(number.shape, dtype=complex)
+        for n in np.unique(number):
+            where = number == n
+            chosen = [
+                np.broadcast_to(c, number.shape)[where] if i == 0 or np.ndim(c) else c
+                for i, c in enumerate(columns)
+            ]
+            piece = program.code[program.pieces[int(n)]]
+            place = 1j * chosen[0] if piece.is_complex else chosen[0]
+            found = value_of_piece(piece, place, dict(zip(given, chosen[1:], strict=True)))
+            result[where] = found if piece.is_complex else turn * found
+    return result.reshape(shape)
+
+
+def numbers_of_pieces(program: Piecewise, point: Any, given: Mapping[str, Any]) -> NDArray[np.int64]:  # noqa: ANN401
+    """Return, for every value of s, the number that the conditions make of it.
+
+    Parameters
+    ----------
+    program : Piecewise
+        The program.
+    point, given
+        Its argument, and the parameters by name: numbers or arrays that broadcast.
+    """
+    run = _Run(point, given)
+    run.assign(program.tests.constants)
+    run.assign(program.tests.assignments)
+    number = np.zeros(np.shape(point), dtype=int)
+    for i, condition in enumerate(program.conditions):
+        tested = run.value(condition.quantity)
+        scale = run.value(condition.scale)
+        is_small = np.abs(tested) < condition.limit / np.abs(scale)
+        number = number + 2**i * (is_small if condition.limit else np.real(scale * tested) < 0.0)
+    return number
+
+
+def value_of_piece(piece: Piece, point: Any, given: Mapping[str, Any]) -> Any:  # noqa: ANN401
+    """Return the quotient that a piece computes, wherever its argument lies.
+
+    Parameters
+    ----------
+    piece : Piece
+        Of a program.
+    point, given
+        As for :func:`numbers_of_pieces`.
+    """
+
+    def parts(s: Any) -> tuple[Any, ...]:  # noqa: ANN401
+        run = _Run(s, given)
+        run.assign(piece.code.constants)
+        run.assign(piece.code.assignments)
+        return tuple(run.value(node) for node in piece.code.values)
+
+    if piece.circle:
+        return mean_over_circle(parts, point, piece.circle)
+    num, den = parts(point)
+    return num / den
+
+
+def number_of(node: Node, known: Mapping[str, Any]) -> Any:  # noqa: ANN401
+    """Return the value of an expression that depends on no argument, ``None`` for one that does.
+
+    Parameters
+    ----------
+    node : Node
+        The expression.
+    known : mapping of str to number
+        Values of assignments that depend on no argument either.
+
+    Examples
+    --------
+    >>> number_of(Add((Constant(Fraction(1)), Reference("c_1"))), {"c_1": 2.0})
+    3.0
+    >>> number_of(Parameter("m"), {}) is None
+    True
+    """
+    pending = [node]
+    while pending:
+        part = pending.pop()
+        if isinstance(part, (Parameter, Laplace, InverseLaplace)):
+            return None
+        if isinstance(part, Reference) and part.name not in known:
+            return None
+        pending += part.children
+    run = _Run(None, {})
+    run.assigned.update(known)
+    return run.value(node)
+
+
+def _number(value: ArrayLike) -> Any:  # noqa: ANN401
+    array = np.asarray(value)
+    return array.astype(complex if array.dtype.kind == "c" else float)[()]
+
+
+class _Run:
+    """The values computed so far."""
+
+    def __init__(self, s: Any, parameters: Mapping[str, Any]) -> None:  # noqa: ANN401
+        self._s = s
+        self._parameters = parameters
+        self.assigned: dict[str, Any] = {}
+
+    def assign(self, assignments: tuple[Assignment, ...]) -> None:
+        for assignment in assignments:
+            self.assigned[assignment.name] = self.value(assignment.value)
+
+    def branch(self, branch: Branch) -> Any:  # noqa: ANN401
+        self.assign(branch.assignments)
+        return self.value(branch.value)
+
+    def value(self, node: Node) -> Any:  # noqa: ANN401, PLR0912
+        """Return the value of an expression: a number, an array, or a list of these."""
+        match node:
+            case Constant(value, pi_power):
+                return nearest_double(value, pi_power)
+            case ComplexNumber(real, imaginary):
+                return complex(nearest_double(real), nearest_double(imaginary))
+            case Parameter(name):
+                return self._parameters[name]
+            case Reference(name):
+                return self.assigned[name]
+            case Laplace():
+                return self._s
+            case InverseLaplace():
+                return 1.0 / self._s
+            case Add(terms):
+                total = self.value(terms[0])
+                for term in terms[1:]:
+                    if isinstance(term, Negate):
+                        total = total - self.value(term.operand)
+                    else:
+                        total = total + self.value(term)
+                return total
+            case Multiply(factors):
+                product = self.value(factors[0])
+                for factor in factors[1:]:
+                    product = product * self.value(factor)
+                return product
+            case Divide(numerator, denominator):
+                return self.value(numerator) / self.value(denominator)
+            case Power(base, exponent):
+                return self.value(base) ** exponent
+            case Negate(operand):
+                return -self.value(operand)
+            case Apply("complex_exp", argument):
+                return complex_exp(np.asarray(self.value(argument), dtype=complex)[()])
+            case Apply(function, argument):
+                return getattr(np, NUMPY_FUNCTIONS[function])(self.value(argument))
+            case Solutions(coefficients, terms):
+                given = [self.value(c) for c in coefficients]
+                return series_solutions(given, terms) if terms else propagated(given)
+            case Roots(coefficients):
+                return characteristic_roots([self.value(c) for c in coefficients])
+            case ModeValues(roots, length):
+                return mode_values(self.value(roots)[:-1], self.value(length))
+            case ModalValue(modes, coefficients, frames):
+                return modal_value(
+                    [self.value(m) for m in modes], [self.value(c) for c in coefficients], frames
+                )
+            case Item(values, position):
+                return self.value(values)[position]
+        message = f"no value for {type(node).__name__}"
+        raise TypeError(message)

@@ -1,0 +1,213 @@
+"""The workbench on which programs are made: every expression exists once, so that shared parts are shared.
+
+Expressions are numbers of rows in a table whose operands stand before them; nothing here recurs, however deep
+a polynomial nests.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import IntFlag
+from fractions import Fraction
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from symflex.codegen.program.nodes import Frames
+
+Kind = Literal[
+    "constant",
+    "complex",
+    "parameter",
+    "s",
+    "inverse",
+    "add",
+    "multiply",
+    "divide",
+    "power",
+    "negate",
+    "apply",
+    "solutions",
+    "roots",
+    "modes",
+    "modal",
+    "item",
+]
+
+
+class Depends(IntFlag):
+    """What a value varies with, besides parameters."""
+
+    PARAMETERS = 0
+    S = 1
+    INVERSE = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One expression: its kind, its operands, a number, name or exponent, and what a sum is made of."""
+
+    kind: Kind
+    operands: tuple[int, ...] = ()
+    payload: Fraction | str | int = 0
+    pi_power: int = 0
+    imaginary: Fraction | int = 0
+    frames: Frames = ()
+
+
+@dataclass
+class Forge:
+    """Makes expressions; equal ones get the same number."""
+
+    rows: list[Row] = field(default_factory=list)
+    depends: list[Depends] = field(default_factory=list)
+    labels: dict[int, str] = field(default_factory=dict)
+    _numbers: dict[Row, int] = field(default_factory=dict)
+
+    def _make(self, row: Row) -> int:
+        known = self._numbers.get(row)
+        if known is not None:
+            return known
+        depends = {"s": Depends.S, "inverse": Depends.INVERSE}.get(row.kind, Depends.PARAMETERS)
+        for operand in row.operands:
+            depends |= self.depends[operand]
+        self.rows.append(row)
+        self.depends.append(depends)
+        self._numbers[row] = len(self.rows) - 1
+        return len(self.rows) - 1
+
+    def constant(self, value: Fraction | int, pi_power: int = 0) -> int:
+        """Return ``value * pi**pi_power``."""
+        exact = Fraction(value)
+        if exact == 0:
+            pi_power = 0
+        number = self._make(Row("constant", (), abs(exact), pi_power))
+        return self.negate(number) if exact < 0 else number
+
+    def complex_number(self, real: Fraction | int, imaginary: Fraction | int) -> int:
+        """Return ``real + 1j*imaginary``."""
+        return self._make(Row("complex", (), Fraction(real), 0, Fraction(imaginary)))
+
+    def parameter(self, name: str) -> int:
+        """Return a parameter."""
+        return self._make(Row("parameter", (), name))
+
+    @property
+    def s(self) -> int:
+        """The Laplace variable."""
+        return self._make(Row("s"))
+
+    @property
+    def inverse(self) -> int:
+        """The quotient 1/s."""
+        return self._make(Row("inverse"))
+
+    def is_number(self, x: int, value: int) -> bool:
+        """Tell whether ``x`` is the given non-negative integer."""
+        row = self.rows[x]
+        return row.kind == "constant" and row.payload == value and row.pi_power == 0
+
+    def signed(self, x: int) -> tuple[bool, int]:
+        """Return whether ``x`` is minus something, and that."""
+        row = self.rows[x]
+        return (True, row.operands[0]) if row.kind == "negate" else (False, x)
+
+    def negate(self, x: int) -> int:
+        """Return minus ``x``."""
+        is_negative, inner = self.signed(x)
+        if is_negative or self.is_number(inner, 0):
+            return inner
+        return self._make(Row("negate", (x,)))
+
+    def add(self, terms: Iterable[int]) -> int:
+        """Return a sum; a term without minus sign comes first when there is one."""
+        kept = [t for t in terms if not self.is_number(t, 0)]
+        if not kept:
+            return self.constant(0)
+        first = next((i for i, t in enumerate(kept) if not self.signed(t)[0]), None)
+        if first is None:
+            return self.negate(self.add([self.negate(t) for t in kept]))
+        kept.insert(0, kept.pop(first))
+        return kept[0] if len(kept) == 1 else self._make(Row("add", tuple(kept)))
+
+    def multiply(self, factors: Sequence[int]) -> int:
+        """Return a product, its parameters multiplied first, so that they are multiplied once per call."""
+        is_negative = False
+        free: list[int] = []
+        bound: list[int] = []
+        for factor in factors:
+            minus, size = self.signed(factor)
+            is_negative ^= minus
+            if self.is_number(size, 0):
+                return size
+            if not self.is_number(size, 1):
+                (bound if self.depends[size] else free).append(size)
+        parts = ([self._product(free)] if free else []) + bound
+        product = self._product(parts) if parts else self.constant(1)
+        return self.negate(product) if is_negative else product
+
+    def _product(self, factors: Sequence[int]) -> int:
+        return factors[0] if len(factors) == 1 else self._make(Row("multiply", tuple(factors)))
+
+    def divide(self, above: int, below: int) -> int:
+        """Return a quotient."""
+        minus_above, numerator = self.signed(above)
+        minus_below, denominator = self.signed(below)
+        whole = numerator
+        if not self.is_number(denominator, 1) and not self.is_number(numerator, 0):
+            whole = self._make(Row("divide", (numerator, denominator)))
+        return whole if minus_above == minus_below else self.negate(whole)
+
+    def power(self, base: int, exponent: int) -> int:
+        """Return a non-negative integer power; what depends on s is multiplied out, squares first."""
+        if exponent == 0:
+            return self.constant(1)
+        if exponent == 1 or self.is_number(base, 1):
+            return base
+        is_negative, size = self.signed(base)
+        if is_negative:
+            power = self.power(size, exponent)
+            return self.negate(power) if exponent % 2 else power
+        if not self.depends[base]:
+            return self._make(Row("power", (base,), exponent))
+        if exponent % 2:
+            return self._product([self.power(base, exponent - 1), base])
+        half = self.power(base, exponent // 2)
+        return self._product([half, half])
+
+    def apply(self, function: str, argument: int) -> int:
+        """Return an elementary function."""
+        return self._make(Row("apply", (argument,), function))
+
+    def solutions(self, coefficients: Sequence[int], terms: int) -> tuple[int, ...]:
+        """Return a differential equation's solutions at 1; see :class:`nodes.Solutions`."""
+        row = self.label(self._make(Row("solutions", tuple(coefficients), terms)), "solutions")
+        return tuple(self.item(row, k) for k in range(len(coefficients)))
+
+    def roots(self, coefficients: Sequence[int]) -> int:
+        """Return the list of a polynomial's roots; see :class:`nodes.Roots`."""
+        return self.label(self._make(Row("roots", tuple(coefficients))), "x")
+
+    def mode_values(self, roots: int, length: int) -> int:
+        """Return what a sum needs of roots at a length; see :class:`nodes.ModeValues`."""
+        return self.label(self._make(Row("modes", (roots, length))), "modes")
+
+    def modal_value(
+        self, modes: Sequence[int], coefficients: Sequence[int], frames: Frames
+    ) -> tuple[int, int]:
+        """Return a sum over its largest exponential, and the logarithm of that."""
+        row = self.label(
+            self._make(Row("modal", (*modes, *coefficients), len(modes), frames=frames)), "total"
+        )
+        return self.item(row, 0), self.item(row, 1)
+
+    def item(self, values: int, position: int) -> int:
+        """Return one value of a list."""
+        return self._make(Row("item", (values,), position))
+
+    def label(self, x: int, name: str) -> int:
+        """Ask for an assignment of ``x``; the first name given stays."""
+        if self.rows[x].operands:
+            self.labels.setdefault(x, name)
+        return x

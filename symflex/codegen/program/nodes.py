@@ -1,0 +1,417 @@
+"""The language-neutral program tree: what generated code computes, before any language prints it.
+
+A :class:`Program` is straight-line code: assignments that need parameters only, then one or two branches that
+depend on s. Sums and products are n-ary and are evaluated from left to right, so that every language computes
+the same floating-point numbers in the same order.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from fractions import Fraction
+
+Frames = tuple[
+    tuple[tuple[int, ...], tuple[tuple[tuple[int, ...], int], ...], tuple[tuple[tuple[int, ...], int], ...]],
+    ...,
+]
+"""Slots, terms and keys of the frames of a :class:`symflex.algebra.ModalSum`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """Base of all nodes."""
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The operands, from left to right; empty for a leaf."""
+        return ()
+
+
+@dataclass(frozen=True, slots=True)
+class Constant(Node):
+    """The non-negative number ``value * pi**pi_power``."""
+
+    value: Fraction
+    pi_power: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class ComplexNumber(Node):
+    """The number ``real + 1j*imaginary``."""
+
+    real: Fraction
+    imaginary: Fraction
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter(Node):
+    """A parameter, by its name in the model."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Laplace(Node):
+    """The Laplace variable s."""
+
+
+@dataclass(frozen=True, slots=True)
+class InverseLaplace(Node):
+    """The quotient 1/s."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reference(Node):
+    """The value of an earlier assignment."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Add(Node):
+    """A sum, evaluated from left to right."""
+
+    terms: tuple[Node, ...]
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The operands, from left to right."""
+        return self.terms
+
+
+@dataclass(frozen=True, slots=True)
+class Multiply(Node):
+    """A product, evaluated from left to right."""
+
+    factors: tuple[Node, ...]
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The operands, from left to right."""
+        return self.factors
+
+
+@dataclass(frozen=True, slots=True)
+class Divide(Node):
+    """A quotient."""
+
+    numerator: Node
+    denominator: Node
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The operands, from left to right."""
+        return (self.numerator, self.denominator)
+
+
+@dataclass(frozen=True, slots=True)
+class Power(Node):
+    """An expression free of s raised to an integer of at least two."""
+
+    base: Node
+    exponent: int
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The operands, from left to right."""
+        return (self.base,)
+
+
+@dataclass(frozen=True, slots=True)
+class Negate(Node):
+    """Minus its operand."""
+
+    operand: Node
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The operands, from left to right."""
+        return (self.operand,)
+
+
+@dataclass(frozen=True, slots=True)
+class Apply(Node):
+    """An elementary function; ``function`` is a key of ``kernels.FUNCTIONS``, ``abs`` or ``complex_exp``."""
+
+    function: str
+    argument: Node
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The operands, from left to right."""
+        return (self.argument,)
+
+
+@dataclass(frozen=True, slots=True)
+class Solutions(Node):
+    """The values at x = 1 of the solutions of ``y^(n) + c_(n-1) y^(n-1) + ... + c_0 y = 0``, as a list.
+
+    Solution k starts from ``y^(i)(0) = 1`` for i = k and 0 for the other i below n.
+
+    Parameters
+    ----------
+    coefficients : tuple of Node
+        ``c_0, ..., c_(n-1)``.
+    terms : int
+        Length of their Taylor series; 0 asks for a method that serves coefficients of any size.
+    """
+
+    coefficients: tuple[Node, ...]
+    terms: int
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The operands, from left to right."""
+        return self.coefficients
+
+
+@dataclass(frozen=True, slots=True)
+class Roots(Node):
+    """The roots of ``x^n + c_(n-1) x^(n-1) + ... + c_0``, and last the least distance of two, as a list.
+
+    Parameters
+    ----------
+    coefficients : tuple of Node
+        ``c_0, ..., c_(n-1)``.
+    """
+
+    coefficients: tuple[Node, ...]
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The operands, from left to right."""
+        return self.coefficients
+
+
+@dataclass(frozen=True, slots=True)
+class ModeValues(Node):
+    """What a sum needs of all roots at one length; see :func:`symflex.algebra.mode_values`.
+
+    Parameters
+    ----------
+    roots : Node
+        A list as :class:`Roots` gives.
+    length : Node
+        What they are multiplied by.
+    """
+
+    roots: Node
+    length: Node
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The operands, from left to right."""
+        return (self.roots, self.length)
+
+
+@dataclass(frozen=True, slots=True)
+class ModalValue(Node):
+    """A sum of exponentials, over the largest one, and the logarithm of that, as a list.
+
+    Parameters
+    ----------
+    modes : tuple of ModeValues or Reference
+        One per mode.
+    coefficients : tuple of Node
+        As in :class:`symflex.algebra.ModalSum`.
+    frames : tuple
+        Slots, terms and keys of every frame.
+    """
+
+    modes: tuple[Node, ...]
+    coefficients: tuple[Node, ...]
+    frames: Frames
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The operands, from left to right."""
+        return (*self.modes, *self.coefficients)
+
+
+@dataclass(frozen=True, slots=True)
+class Item(Node):
+    """One value of a list."""
+
+    values: Node
+    position: int
+
+    @property
+    def children(self) -> tuple[Node, ...]:
+        """The list."""
+        return (self.values,)
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """A named intermediate value; the name is unique in its program, and not yet an identifier."""
+
+    name: str
+    value: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Branch:
+    """Assignments in order, and the value they lead to."""
+
+    assignments: tuple[Assignment, ...]
+    value: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """How to compute one transfer function.
+
+    Parameters
+    ----------
+    parameters : tuple of str
+        Names of the parameters it takes, as in the model.
+    constants : tuple of Assignment
+        Intermediates that do not depend on s.
+    near : Branch
+        Valid where ``abs(s) <= limit``.
+    far : Branch or None
+        The same function in powers of 1/s, for larger ``abs(s)``, where powers of s would overflow.
+        It may refer to assignments of ``near``. ``None`` when ``near`` serves everywhere.
+    limit : float
+        Infinite when there is no far branch.
+    """
+
+    parameters: tuple[str, ...]
+    constants: tuple[Assignment, ...]
+    near: Branch
+    far: Branch | None
+    limit: float
+
+    @property
+    def is_real(self) -> bool:
+        """False: it takes complex s."""
+        return False
+
+    @property
+    def varies(self) -> bool:
+        """False when the value does not depend on s."""
+        return bool(self.near.assignments) or _contains_laplace(self.near.value)
+
+    @property
+    def size(self) -> int:
+        """The number of operations that depend on s: what an array of frequencies pays for, per element."""
+        roots = [*(a.value for a in self.near.assignments), self.near.value]
+        return sum(_operations(root) for root in roots)
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """A test made for every value of s.
+
+    Parameters
+    ----------
+    quantity : Node
+        What is tested.
+    limit : float
+        The condition holds where ``abs(quantity) < limit/abs(scale)``; if it is zero, where the real part of
+        ``scale*quantity`` is negative.
+    scale : Node
+        Free of s.
+    """
+
+    quantity: Node
+    limit: float
+    scale: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Straight:
+    """Assignments in order, those of parameters alone first, and the values they lead to."""
+
+    constants: tuple[Assignment, ...]
+    assignments: tuple[Assignment, ...]
+    values: tuple[Node, ...]
+
+    def nodes(self) -> Iterator[Node]:
+        """Yield all expressions, parts included, in no particular order."""
+        pending = [*self.values, *(a.value for a in (*self.constants, *self.assignments))]
+        while pending:
+            node = pending.pop()
+            yield node
+            pending += node.children
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """One way of computing a quotient.
+
+    Parameters
+    ----------
+    code : Straight
+        Its values are numerator and denominator; with a circle also the logarithm of the factor that both
+        were divided by, and the radius of the circle.
+    circle : int
+        Number of points on a circle around s over which numerator and denominator are averaged, because
+        the formula itself is singular near s though they are not; 0 for none.
+    is_complex: bool
+        True for a piece of complex s in a program of the angular frequency.
+    """
+
+    code: Straight
+    circle: int = 0
+    is_complex: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Piecewise:
+    """How to compute a transfer function of a distributed system.
+
+    Parameters
+    ----------
+    parameters : tuple of str
+        Names of the parameters it takes, as in the model.
+    tests : Straight
+        Makes the quantities of the conditions, in order.
+    conditions : tuple of Condition
+        Condition i adds ``2**i`` to the number of the piece that serves.
+    pieces : tuple of int
+        For every such number, which of ``code`` it is.
+    code : tuple of Piece
+        The pieces.
+    turn : int or None
+        None for a function of complex s. For a function of angular frequency in real arithmetic, which the
+        leaf :class:`Laplace` then stands for: its value times ``1j**turn`` is the transfer function.
+    solves : bool
+        True when fundamental functions of any size are computed from matrices.
+    """
+
+    parameters: tuple[str, ...]
+    tests: Straight
+    conditions: tuple[Condition, ...]
+    pieces: tuple[int, ...]
+    code: tuple[Piece, ...]
+    turn: int | None = None
+    solves: bool = False
+
+    @property
+    def is_real(self) -> bool:
+        """True for a function of angular frequency in real arithmetic."""
+        return self.turn is not None
+
+
+def _contains_laplace(root: Node) -> bool:
+    pending = [root]
+    while pending:
+        node = pending.pop()
+        if isinstance(node, Laplace):
+            return True
+        pending += node.children
+    return False
+
+
+def _operations(root: Node) -> int:
+    total, pending = 0, [root]
+    while pending:
+        node = pending.pop()
+        total += max(len(node.children) - 1, 0)
+        pending += node.children
+    return total

@@ -1,0 +1,666 @@
+"""Sums of exponentials on the imaginary axis of a lossless system: real functions of the angular frequency.
+
+There every wavenumber is real, imaginary, or on the diagonal, and a transfer function is real up to a power
+of j.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from math import comb, gcd, lcm
+from typing import TYPE_CHECKING
+
+from symflex.algebra import Factored
+from symflex.codegen.program.nodes import (
+    Add,
+    Apply,
+    Assignment,
+    Constant,
+    Divide,
+    Item,
+    Laplace,
+    ModalValue,
+    ModeValues,
+    Multiply,
+    Negate,
+    Node,
+    Parameter,
+    Piece,
+    Piecewise,
+    Power,
+    Reference,
+    Roots,
+    Solutions,
+    Straight,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.algebra import Dispersion, KernelTable, Ring
+    from symflex.codegen.program.exponents import Family, Key, Term
+
+Gaussian = tuple[Fraction, Fraction]
+
+RealTerm = tuple[tuple[tuple[Fraction, Fraction], ...], int]
+"""As :data:`symflex.codegen.program.exponents.Term`, with the magnitudes of wavenumbers times lengths."""
+
+RealKey = tuple[RealTerm, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class RealSum:
+    """``j^turn * waves * sum(coefficient * product of terms)``, everything but the turn real.
+
+    Parameters
+    ----------
+    terms : mapping of RealKey to fmpz_mpoly
+        Coefficients in the angular frequency, which takes the place of s, and magnitudes of wavenumbers.
+    waves : Factored
+        A product of powers of such magnitudes, with a rational number in front.
+    turn : int
+        The power of j, from 0 to 3.
+    """
+
+    terms: Mapping[RealKey, fmpz_mpoly]
+    waves: Factored
+    turn: int
+
+
+@dataclass(frozen=True, eq=False)
+class RealAxis:
+    """Turns functions of ``s = j omega`` into real ones.
+
+    Parameters
+    ----------
+    ring : Ring
+        With wavenumbers and kernels.
+    table : KernelTable
+        Over the same ring.
+    positive : tuple of str
+        Parameters known to be positive.
+    signs : mapping of int to bool
+        By identity of a dispersion, whether its ``c_0`` is taken to be negative.
+    """
+
+    ring: Ring
+    table: KernelTable
+    positive: tuple[str, ...]
+    signs: Mapping[int, bool] = field(default_factory=dict)
+
+    @property
+    def is_real(self) -> bool:
+        """True when all dispersions are waves or bending without loss."""
+        for d in self.table.dispersions:
+            if d.kind not in ("wave", "bending") or not d.shift.is_zero:
+                return False
+            found = self.real(d.characteristic[0])
+            if found is None or found[1] % 2:
+                return False
+        return True
+
+    def where(self, signs: Mapping[int, bool]) -> RealAxis:
+        """Return the same for given signs of ``c_0``."""
+        return replace(self, signs=signs)
+
+    def sign(self, dispersion: Dispersion) -> bool | None:
+        """Return whether ``c_0`` is negative, ``None`` when it depends on values."""
+        if id(dispersion) in self.signs:
+            return self.signs[id(dispersion)]
+        value = self.coefficient(dispersion)
+        known = {self.ring.index[n] for n in (*self.positive, "pi")} | {0}
+        for factor, _ in value.factors:
+            for monomial, coefficient in factor.terms():
+                if int(coefficient) < 0 or any(e and i not in known for i, e in enumerate(monomial)):
+                    return None
+        return bool(value.unit < 0)
+
+    def coefficient(self, dispersion: Dispersion) -> Factored:
+        """Return ``c_0``, with the angular frequency in place of s."""
+        found = self.real(dispersion.characteristic[0])
+        if found is None:
+            message = f"{dispersion.name} has losses"
+            raise ValueError(message)
+        value, turn = found
+        return -value if turn % 4 else value
+
+    def real(self, value: Factored) -> tuple[Factored, int] | None:
+        """Return a value without wavenumbers over a power of j, and the power; ``None`` if it is complex."""
+        result, turn = Factored.number(self.ring, value.unit), 0
+        for factor, exponent in value.factors:
+            terms: dict[tuple[int, ...], int] = {}
+            degrees = [int(m[0]) for m in factor.monoms()]
+            lowest = min(degrees)
+            if any((d - lowest) % 2 for d in degrees):
+                return None
+            for monomial, coefficient in factor.terms():
+                sign = -1 if (int(monomial[0]) - lowest) % 4 else 1
+                terms[tuple(int(e) for e in monomial)] = int(coefficient) * sign
+            real = Factored.polynomial(self.ring, self.ring.context.from_dict(terms))
+            result = result * real**exponent
+            turn += lowest * exponent
+        return result, turn % 4
+
+    def real_sum(
+        self, terms: Mapping[Key, fmpz_mpoly], waves: Factored, families: Sequence[Family]
+    ) -> RealSum | None:
+        """Return a sum of exponentials in real terms; ``None`` when it is not real up to a power of j.
+
+        Parameters
+        ----------
+        terms : mapping of Key to fmpz_mpoly
+            As in :class:`ExponentialSum`.
+        waves : Factored
+            A product of powers of wavenumbers in front.
+        families : sequence of Family
+            What the keys refer to.
+        """
+        powers = {}
+        for factor, exponent in waves.factors:
+            if len(factor) > 1:
+                return None
+            powers[str(factor)] = exponent
+        by_name = {d.wavenumbers[0]: d for d in self.table.dispersions}
+        places = [
+            (self.ring.index[n], d, powers.get(str(self.ring.generator(n)), 0)) for n, d in by_name.items()
+        ]
+        collected: dict[RealKey, dict[tuple[int, ...], Gaussian]] = {}
+        for key, polynomial in terms.items():
+            images = [self._image(t, f.dispersion) for t, f in zip(key, families, strict=True)]
+            for monomial, coefficient in polynomial.terms():
+                exponents = tuple(int(e) for e in monomial)
+                number = _times((Fraction(int(coefficient)), Fraction(0)), _turned(exponents[0]))
+                for i, dispersion, extra in places:
+                    number = _times(number, _power(self._direction(dispersion), exponents[i] + extra))
+                products: list[tuple[RealKey, Gaussian]] = [((), number)]
+                for image in images:
+                    products = [((*k, t), _times(x, y)) for k, x in products for t, y in image]
+                for k, x in products:
+                    own = collected.setdefault(k, {})
+                    have = own.get(exponents, (Fraction(0), Fraction(0)))
+                    own[exponents] = (have[0] + x[0], have[1] + x[1])
+        return self._gathered(collected, waves)
+
+    def _gathered(
+        self, collected: Mapping[RealKey, Mapping[tuple[int, ...], Gaussian]], waves: Factored
+    ) -> RealSum | None:
+        is_real = all(not y for own in collected.values() for _, y in own.values())
+        is_imaginary = all(not x for own in collected.values() for x, _ in own.values())
+        if not (is_real or is_imaginary):
+            return None
+        part = 0 if is_real else 1
+        numbers = [x[part] for own in collected.values() for x in own.values() if x[part]]
+        scale = Fraction(lcm(*(x.denominator for x in numbers)), gcd(*(x.numerator for x in numbers)))
+        terms = {}
+        for key, own in collected.items():
+            whole = {m: int(x[part] * scale) for m, x in own.items() if x[part]}
+            if whole:
+                terms[key] = self.ring.context.from_dict(whole)
+        return RealSum(terms, waves / scale, part)
+
+    def _direction(self, dispersion: Dispersion) -> Gaussian:
+        """Return the wavenumber over its real magnitude."""
+        if dispersion.kind == "bending":
+            return (Fraction(1, 2), Fraction(1, 2)) if self.sign(dispersion) else (Fraction(1), Fraction(0))
+        return (Fraction(1), Fraction(0)) if self.sign(dispersion) else (Fraction(0), Fraction(1))
+
+    def _image(self, term: Term, dispersion: Dispersion) -> list[tuple[RealTerm, Gaussian]]:
+        """Return a term in functions of the real magnitude."""
+        pairs = tuple((Fraction(a), Fraction(b)) for a, b in term[0])
+        parity, one = term[1], (Fraction(1), Fraction(0))
+        negative = self.sign(dispersion)
+        if dispersion.kind == "wave" and not negative:
+            return _oscillation(tuple((Fraction(0), a) for a, _ in pairs), one)
+        if dispersion.kind == "wave" or not negative:
+            return [((pairs, parity), one)]
+        # exp((a + j b)(1 + j) x/2) and exp((a - j b)(1 + j) x/2)
+        up = tuple(((a - b) / 2, (a + b) / 2) for a, b in pairs)
+        down = tuple(((a + b) / 2, (a - b) / 2) for a, b in pairs)
+        half = (Fraction(1, 2), Fraction(0)) if parity == 0 else (Fraction(0), Fraction(-1, 2))
+        other = half if parity == 0 else (Fraction(0), Fraction(1, 2))
+        return [*_oscillation(up, half), *_oscillation(down, other)]
+
+
+def _oscillation(
+    pairs: tuple[tuple[Fraction, Fraction], ...], number: Gaussian
+) -> list[tuple[RealTerm, Gaussian]]:
+    """Return ``number * exp(sum((a_i + j b_i) x_i))``."""
+    first = next((b for _, b in pairs if b), Fraction(0))
+    if not first:
+        return [((pairs, 0), number)]
+    sign = 1 if first > 0 else -1
+    same = tuple((a, sign * b) for a, b in pairs)
+    return [((same, 0), number), ((same, 1), _times(number, (Fraction(0), Fraction(sign))))]
+
+
+def _times(left: Gaussian, right: Gaussian) -> Gaussian:
+    return left[0] * right[0] - left[1] * right[1], left[0] * right[1] + left[1] * right[0]
+
+
+def _power(base: Gaussian, exponent: int) -> Gaussian:
+    size = base[0] ** 2 + base[1] ** 2
+    step = base if exponent >= 0 else (base[0] / size, -base[1] / size)
+    result = (Fraction(1), Fraction(0))
+    for _ in range(abs(exponent)):
+        result = _times(result, step)
+    return result
+
+
+def _turned(power: int) -> Gaussian:
+    return _power((Fraction(0), Fraction(1)), power % 4)
+
+
+# -------------------------------------------------------------------------------- programs for omega > 0
+
+
+def for_positive(program: Piecewise) -> Piecewise:
+    """Return a program of the angular frequency as one for positive ones, with no power of j above one.
+
+    Values stay the same to the last bit; signs and doublings go where they cost nothing.
+    """
+    tests = _each(program.tests, _positive)
+    conditions = tuple(replace(c, quantity=_everywhere(c.quantity, _positive)) for c in program.conditions)
+    turn, is_negative = (program.turn or 0) % 2, (program.turn or 0) > 1
+    code = []
+    for piece in program.code:
+        if piece.is_complex:
+            code.append(piece)
+            continue
+        own = _each(piece.code, _positive)
+        if is_negative:
+            num, den = own.values
+            own = replace(own, values=_negated(num, den, {a.name for a in own.constants}))
+        code.append(replace(piece, code=own))
+    return replace(program, tests=tests, conditions=conditions, code=tuple(code), turn=turn)
+
+
+def in_half_angles(program: Piecewise) -> Piecewise | None:
+    """Return a program for positive frequencies in tangents of half angles, circular and hyperbolic.
+
+    With ``t = tan(x/2)`` and ``h = tanh(x/2)`` sums of ``exp(-x)``, cosines and sines of one argument are
+    polynomials, and short ones. ``None`` unless a piece of one bending wavenumber and one length gets
+    shorter.
+    """
+    found = [None if p.circle or p.is_complex else _half_angles(p) for p in program.code]
+    if not any(found):
+        return None
+    code = tuple(new[0] if new else old for new, old in zip(found, program.code, strict=True))
+    conditions = program.conditions
+    first = found[program.pieces[0]]
+    if len(conditions) == 1 and conditions[0].limit and first is not None and first[1]:
+        # Nothing cancels at small arguments: series serve next to zero only, where quotients are limits.
+        conditions = (replace(conditions[0], limit=conditions[0].limit * NEXT_TO_ZERO),)
+    return replace(program, code=code, conditions=conditions)
+
+
+def needed(code: Straight, values: Sequence[Node]) -> Straight:
+    """Return the assignments that some values need, and these values."""
+    names: set[str] = set()
+    kept: dict[bool, list[Assignment]] = {True: [], False: []}
+    pending = list(values)
+    fixed = {a.name for a in code.constants}
+    for assignment in (None, *reversed((*code.constants, *code.assignments))):
+        if assignment is not None and assignment.name in names:
+            kept[assignment.name in fixed].append(assignment)
+            pending.append(assignment.value)
+        while pending:
+            node = pending.pop()
+            if isinstance(node, Reference):
+                names.add(node.name)
+            pending += node.children
+    return Straight(tuple(reversed(kept[True])), tuple(reversed(kept[False])), tuple(values))
+
+
+def _each(code: Straight, change: Callable[[Node], Node]) -> Straight:
+    return Straight(
+        tuple(Assignment(a.name, _everywhere(a.value, change)) for a in code.constants),
+        tuple(Assignment(a.name, _everywhere(a.value, change)) for a in code.assignments),
+        tuple(_everywhere(v, change) for v in code.values),
+    )
+
+
+def _everywhere(node: Node, change: Callable[[Node], Node]) -> Node:
+    """Return an expression changed from the leaves up."""
+    parts = tuple(_everywhere(c, change) for c in node.children)
+    match node:
+        case Add():
+            node = Add(parts)
+        case Multiply():
+            node = Multiply(parts)
+        case Divide():
+            node = Divide(*parts)
+        case Power(_, exponent):
+            node = Power(parts[0], exponent)
+        case Negate():
+            node = Negate(parts[0])
+        case Apply(function, _):
+            node = Apply(function, parts[0])
+        case Solutions(_, terms):
+            node = Solutions(parts, terms)
+        case Roots():
+            node = Roots(parts)
+        case ModeValues():
+            node = ModeValues(*parts)
+        case ModalValue(modes, _, frames):
+            node = ModalValue(parts[: len(modes)], parts[len(modes) :], frames)
+        case Item(_, position):
+            node = Item(parts[0], position)
+    return change(node)
+
+
+def _positive(node: Node) -> Node:
+    match node:
+        case Apply("abs", Laplace()):
+            return Laplace()
+        case Multiply((Constant(value, 0), Reference() as x)) if value == 2:  # noqa: PLR2004
+            return Add((x, x))
+        case Apply(function, Negate(Multiply((Constant() | Parameter() as first, *rest)))):
+            return Apply(function, Multiply((Negate(first), *rest)))
+    return node
+
+
+def _negated(num: Node, den: Node, constants: set[str]) -> tuple[Node, Node]:
+    """Return numerator and denominator of minus a quotient; the sign goes to a number if there is one."""
+    if (above := _signed(num, constants)) is not None:
+        return above, den
+    if (below := _signed(den, constants)) is not None:
+        return num, below
+    return Negate(num), den
+
+
+def _signed(node: Node, constants: set[str]) -> Node | None:
+    """Return minus a product whose first factor is a number, ``None`` if it is no such product."""
+    match node:
+        case Constant() | Parameter():
+            return Negate(node)
+        case Reference(name) if name in constants:
+            return Negate(node)
+        case Multiply((first, *rest)) if (changed := _signed(first, constants)) is not None:
+            return Multiply((changed, *rest))
+    return None
+
+
+# ------------------------------------------------------------------------------------- half angles
+
+NEXT_TO_ZERO = 1e-6
+"""Of the square of an argument below which series are used, the part that is left to them."""
+
+_Monomial = tuple[Fraction, dict[Node, int]]
+_Polynomial = dict[tuple[int, int], Fraction]
+
+
+def _half_angles(piece: Piece) -> tuple[Piece, bool] | None:
+    """Return a piece in tangents of half angles, and whether nothing cancels where its argument is small.
+
+    ``None`` when it is not of that kind or not shorter.
+    """
+    reader = _Reader({a.name: a.value for a in (*piece.code.constants, *piece.code.assignments)})
+    found = reader.found()
+    if found is None:
+        return None
+    law, half = found
+    sides = [reader.split(v) for v in piece.code.values]
+    if any(s is None for s in sides):
+        return None
+    (front, above), (back, below) = (s for s in sides if s is not None)
+    if not all(any(not d for _, d in p) for p in (above, below)):
+        # What decays with the length would be a difference of numbers near one.
+        return None
+    degree = max(d for p in (above, below) for _, d in p)
+    unit, (above, below) = _primitive([_hyperbolic(p, degree) for p in (above, below)])
+    gain = _product((unit, {}), _product(front, back, -1))
+    # omega and mu by x/2 = sqrt(half^2 * law * omega) = half * mu
+    omega, mu = gain[1].pop(Laplace(), 0), gain[1].pop(reader.mu, 0)
+    power = mu + 2 * omega
+    gain = _product(gain, law, -omega)
+    gain = _product(gain, half, -power)
+    square = _fraction(_product(_product(half, half), law))
+    names = [Reference(n) for n in ("x_half", "t_half", "h_half", "t_h")]
+    x, t, h, both = names
+    constants = [Assignment("c_square", square)]
+    values = [_sum(p, t, h, both) for p in (above, below)]
+    size = _product((Fraction(1), {}), gain, 1 if power >= 0 else -1)
+    constants.append(Assignment("c_gain", _fraction(size)))
+    side = 0 if power >= 0 else 1
+    values[side] = Multiply((Reference("c_gain"), *[x] * abs(power), values[side]))
+    assignments = [
+        Assignment("x_half", Apply("sqrt", Multiply((Reference("c_square"), Laplace())))),
+        Assignment("t_half", Apply("tan", x)),
+        Assignment("h_half", Apply("tanh", x)),
+        Assignment("t_h", Multiply((t, h))),
+    ]
+    whole = Straight((*piece.code.constants, *constants), tuple(assignments), ())
+    code = needed(whole, values)
+    if _cost(code) >= _cost(piece.code):
+        return None
+    return replace(piece, code=code), _is_regular(above) and _is_regular(below)
+
+
+def _is_regular(polynomial: _Polynomial) -> bool:
+    """Tell whether the terms of lowest degree do not cancel where t and h are equal."""
+    lowest = min(i + j for i, j in polynomial)
+    signs = {v > 0 for (i, j), v in polynomial.items() if i + j == lowest}
+    return len(signs) == 1
+
+
+def _all(root: Node) -> list[Node]:
+    found, pending = [], [root]
+    while pending:
+        node = pending.pop()
+        found.append(node)
+        pending += node.children
+    return found
+
+
+def _cost(code: Straight) -> int:
+    roots = [*(a.value for a in code.assignments), *code.values]
+    return sum(max(len(n.children) - 1, 0) + isinstance(n, Apply) for r in roots for n in _all(r))
+
+
+@dataclass(frozen=True)
+class _Reader:
+    """Reads a piece's expressions as products of powers and polynomials of ``t_half`` and ``decay``."""
+
+    values: Mapping[str, Node]
+
+    @property
+    def mu(self) -> Node:
+        return Reference("mu")
+
+    def found(self) -> tuple[_Monomial, _Monomial] | None:
+        """Return mu^2/omega and half the argument over mu, if there is one of each."""
+        applied = [n for v in self.values.values() for n in _all(v) if isinstance(n, Apply)]
+        functions = [n.function for n in applied if any(self._varies(c) for c in n.children)]
+        match self.values.get("mu"), self.values.get("t_half"), self.values.get("decay"):
+            case Apply("sqrt", square), Apply("tan", angle), Apply("exp", exponent):
+                pass
+            case _:
+                return None
+        law, half, whole = (self.monomial(n) for n in (square, angle, exponent))
+        if sorted(functions) != ["exp", "sqrt", "tan"] or law is None or half is None or whole is None:
+            return None
+        if _product(whole, half, -1) != (Fraction(-2), dict[Node, int]()) or half[1].pop(self.mu, 0) != 1:
+            return None
+        if law[1].pop(Laplace(), 0) != 1 or any(self._varies(n) for n in (*law[1], *half[1])):
+            return None
+        return law, half
+
+    def _varies(self, node: Node) -> bool:
+        return any(
+            isinstance(n, Laplace) or (isinstance(n, Reference) and self._varies(self.values[n.name]))
+            for n in _all(node)
+        )
+
+    def monomial(self, node: Node) -> _Monomial | None:
+        """Return an expression as a product of powers; sums and functions free of s count as symbols."""
+        match node:
+            case Constant(value, 0):
+                return value, {}
+            case Negate(operand):
+                inner = self.monomial(operand)
+                return None if inner is None else (-inner[0], inner[1])
+            case Multiply(factors):
+                result: _Monomial | None = (Fraction(1), {})
+                for factor in factors:
+                    own = self.monomial(factor)
+                    result = None if result is None or own is None else _product(result, own)
+                return result
+            case Divide(above, below):
+                left, right = self.monomial(above), self.monomial(below)
+                return None if left is None or right is None else _product(left, right, -1)
+            case Power(base, exponent):
+                inner = self.monomial(base)
+                return None if inner is None else _product((Fraction(1), {}), inner, exponent)
+            case Reference(name) if name not in ("mu", "t_half", "decay"):
+                named = self.values[name]
+                is_symbol = isinstance(named, Apply | Add) and not self._varies(named)
+                return (Fraction(1), {node: 1}) if is_symbol else self.monomial(named)
+            case Reference("mu") | Parameter() | Constant() | Laplace():
+                return Fraction(1), {node: 1}
+        return None if self._varies(node) else (Fraction(1), {node: 1})
+
+    def split(self, node: Node) -> tuple[_Monomial, _Polynomial] | None:
+        """Return an expression as a product of powers times a polynomial with numbers for coefficients."""
+        if isinstance(node, Negate):
+            inner = self.split(node.operand)
+            return None if inner is None else (_product((Fraction(-1), {}), inner[0]), inner[1])
+        factors = node.factors if isinstance(node, Multiply) else (node,)
+        front: _Monomial = (Fraction(1), {})
+        rest: _Polynomial = {(0, 0): Fraction(1)}
+        for factor in factors:
+            polynomial = self.polynomial(factor)
+            if polynomial is not None:
+                rest = _convolved(rest, polynomial)
+                continue
+            if isinstance(factor, Multiply):
+                inner = self.split(factor)
+                if inner is None:
+                    return None
+                front, rest = _product(front, inner[0]), _convolved(rest, inner[1])
+                continue
+            own = self.monomial(factor)
+            if own is None:
+                return None
+            front = _product(front, own)
+        return front, rest
+
+    def polynomial(self, node: Node) -> _Polynomial | None:
+        """Return a polynomial in ``t_half`` and ``decay``."""
+        match node:
+            case Constant(value, 0):
+                return {(0, 0): value}
+            case Reference("t_half"):
+                return {(1, 0): Fraction(1)}
+            case Reference("decay"):
+                return {(0, 1): Fraction(1)}
+            case Reference("mu"):
+                return None
+            case Reference(name):
+                return self.polynomial(self.values[name])
+            case Negate(operand):
+                inner = self.polynomial(operand)
+                return None if inner is None else {k: -v for k, v in inner.items()}
+            case Add(parts) | Multiply(parts):
+                polynomials = [p for x in parts if (p := self.polynomial(x)) is not None]
+                if len(polynomials) < len(parts):
+                    return None
+                result = polynomials[0]
+                for p in polynomials[1:]:
+                    result = _convolved(result, p) if isinstance(node, Multiply) else _added(result, p)
+                return result
+        return None
+
+
+def _product(left: _Monomial, right: _Monomial, power: int = 1) -> _Monomial:
+    """Return ``left * right**power``."""
+    symbols = dict(left[1])
+    for node, exponent in right[1].items():
+        symbols[node] = symbols.get(node, 0) + exponent * power
+    return left[0] * right[0] ** power, {n: e for n, e in symbols.items() if e}
+
+
+def _fraction(value: _Monomial) -> Node:
+    """Return a product of powers as an expression."""
+    number, symbols = value
+    sides: list[list[Node]] = [[], []]
+    for side, whole in enumerate((abs(number.numerator), number.denominator)):
+        if whole != 1:
+            sides[side].append(Constant(Fraction(whole)))
+    for node, exponent in symbols.items():
+        sides[exponent < 0].append(node if abs(exponent) == 1 else Power(node, abs(exponent)))
+    above, below = (
+        own[0] if len(own) == 1 else Multiply(tuple(own)) if own else Constant(Fraction(1)) for own in sides
+    )
+    whole_node = Divide(above, below) if sides[1] else above
+    return Negate(whole_node) if number < 0 else whole_node
+
+
+def _added(left: _Polynomial, right: _Polynomial) -> _Polynomial:
+    keys = dict.fromkeys((*left, *right))
+    zero = Fraction(0)
+    return {k: v for k in keys if (v := left.get(k, zero) + right.get(k, zero))}
+
+
+def _convolved(left: _Polynomial, right: _Polynomial) -> _Polynomial:
+    result: _Polynomial = {}
+    for (a, b), x in left.items():
+        result = _added(result, {(a + c, b + d): x * y for (c, d), y in right.items()})
+    return result
+
+
+def _hyperbolic(polynomial: _Polynomial, degree: int) -> _Polynomial:
+    """Return ``(1 + h)**degree`` times a polynomial in t and ``d = (1 - h)/(1 + h)``, in t and h."""
+    result: _Polynomial = {}
+    for (i, j), number in polynomial.items():
+        falling = {(0, k): Fraction(comb(j, k) * (-1) ** k) for k in range(j + 1)}
+        rising = {(0, k): Fraction(comb(degree - j, k)) for k in range(degree - j + 1)}
+        result = _added(result, _convolved({(i, 0): number}, _convolved(falling, rising)))
+    return result
+
+
+def _primitive(polynomials: Sequence[_Polynomial]) -> tuple[Fraction, list[_Polynomial]]:
+    """Return the quotient of the contents, and polynomials with whole coefficients that share nothing."""
+    unit, found = Fraction(1), []
+    for side, polynomial in enumerate(polynomials):
+        numbers = list(polynomial.values())
+        size = Fraction(gcd(*(x.numerator for x in numbers)), lcm(*(x.denominator for x in numbers)))
+        unit *= size ** (-1 if side else 1)
+        found.append({k: v / size for k, v in polynomial.items()})
+    return unit, found
+
+
+def _sum(polynomial: _Polynomial, t: Node, h: Node, both: Node) -> Node:
+    """Return a polynomial in t and h by powers of their product."""
+    groups: dict[int, list[Node]] = {}
+    for (i, j), number in sorted(polynomial.items()):
+        shared = min(i, j)
+        factors = [*([t] * (i - shared)), *([h] * (j - shared))]
+        if abs(number) != 1 or not factors:
+            factors.insert(0, Constant(abs(number)))
+        term: Node = factors[0] if len(factors) == 1 else Multiply(tuple(factors))
+        groups.setdefault(shared, []).append(term if number > 0 else Negate(term))
+    summands: list[Node] = []
+    for shared, terms in sorted(groups.items()):
+        inner = _total(terms)
+        minus = isinstance(inner, Negate)
+        size = inner.operand if isinstance(inner, Negate) else inner
+        factors = [both] * shared
+        if not (shared and size == Constant(Fraction(1))):
+            factors.append(size)
+        product: Node = factors[0] if len(factors) == 1 else Multiply(tuple(factors))
+        summands.append(Negate(product) if minus else product)
+    return _total(summands)
+
+
+def _total(terms: Sequence[Node]) -> Node:
+    """Return a sum; a term without minus sign comes first when there is one."""
+    if len(terms) == 1:
+        return terms[0]
+    first = next((t for t in terms if not isinstance(t, Negate)), None)
+    if first is None:
+        return Negate(_total([t.operand for t in terms if isinstance(t, Negate)]))
+    rest = [t for t in terms if t is not first]
+    return Add((first, *rest))

@@ -1,0 +1,180 @@
+"""From expressions to straight-line code: which values get a name, and in which order they are computed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from symflex.codegen.program.forge import Depends
+from symflex.codegen.program.nodes import (
+    Add,
+    Apply,
+    Assignment,
+    Branch,
+    ComplexNumber,
+    Constant,
+    Divide,
+    InverseLaplace,
+    Item,
+    Laplace,
+    ModalValue,
+    ModeValues,
+    Multiply,
+    Negate,
+    Node,
+    Parameter,
+    Power,
+    Program,
+    Reference,
+    Roots,
+    Solutions,
+    Straight,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.codegen.program.forge import Forge, Row
+
+DEEPEST = 8
+"""Nesting from which an intermediate value gets a name, for the reader's sake and the parser's."""
+
+
+def schedule(forge: Forge, parameters: tuple[str, ...], near: int, far: int | None, limit: float) -> Program:
+    """Return the program that computes ``near``, or ``far`` where ``abs(s)`` exceeds ``limit``."""
+    return _Schedule(forge, near, far).program(parameters, limit)
+
+
+def straight(forge: Forge, values: Sequence[int]) -> Straight:
+    """Return the code that computes several values."""
+    run = _Schedule(forge, values[0], None)
+    constants, assignments, _ = run.sections(list(values), set(), shared=True)
+    return Straight(constants, assignments, tuple(run.nodes[v] for v in values))
+
+
+@dataclass
+class _Schedule:
+    forge: Forge
+    near: int
+    far: int | None
+    nodes: dict[int, Node] = field(default_factory=dict)
+    depth: dict[int, int] = field(default_factory=dict)
+    taken: dict[str, int] = field(default_factory=dict)
+
+    def program(self, parameters: tuple[str, ...], limit: float) -> Program:
+        roots = [x for x in (self.near, self.far) if x is not None]
+        late = set() if self.far is None else self._reached([self.far]) - self._reached([self.near])
+        constants, at_near, at_far = self.sections(roots, late)
+        far = None if self.far is None else Branch(at_far, self.nodes[self.far])
+        return Program(parameters, constants, Branch(at_near, self.nodes[self.near]), far, limit)
+
+    def sections(
+        self, roots: list[int], late: set[int], *, shared: bool = False
+    ) -> tuple[tuple[Assignment, ...], tuple[Assignment, ...], tuple[Assignment, ...]]:
+        """Return assignments free of s, those with s, and those in ``late``; expressions go to ``nodes``.
+
+        With ``shared``, a root that others are made of is assigned as well.
+        """
+        reached = self._reached(roots)
+        uses = self._uses(reached)
+        sections: tuple[list[Assignment], list[Assignment], list[Assignment]] = ([], [], [])
+        for x in sorted(reached):
+            node, deep = self._node(x)
+            is_inner = x not in roots or (shared and uses[x][0] > 0)
+            if is_inner and self._deserves_name(x, (uses[x][0] + (x in roots), uses[x][1]), deep):
+                section = 0 if not self.forge.depends[x] else 2 if x in late else 1
+                name = self._name(x)
+                sections[section].append(Assignment(name, node))
+                node, deep = Reference(name), 0
+            self.nodes[x], self.depth[x] = node, deep
+        constants, early, after = (tuple(section) for section in sections)
+        return constants, early, after
+
+    def _reached(self, roots: list[int]) -> set[int]:
+        found: set[int] = set()
+        pending = list(roots)
+        while pending:
+            x = pending.pop()
+            if x not in found:
+                found.add(x)
+                pending += self.forge.rows[x].operands
+        return found
+
+    def _uses(self, reached: set[int]) -> dict[int, tuple[int, bool]]:
+        """Return how often each expression is used, and whether something that depends on s uses it."""
+        counts = dict.fromkeys(reached, (0, False))
+        for x in reached:
+            for operand in self.forge.rows[x].operands:
+                count, hoisted = counts[operand]
+                counts[operand] = (count + 1, hoisted or bool(self.forge.depends[x]))
+        return counts
+
+    def _deserves_name(self, x: int, uses: tuple[int, bool], deep: int) -> bool:
+        row = self.forge.rows[x]
+        if not row.operands or (row.kind == "negate" and not self.forge.rows[row.operands[0]].operands):
+            return False
+        count, used_with_s = uses
+        is_free = self.forge.depends[x] == Depends.PARAMETERS
+        is_hoisted = is_free and used_with_s and row.kind != "negate"
+        return x in self.forge.labels or count > 1 or is_hoisted or deep > DEEPEST
+
+    def _name(self, x: int) -> str:
+        wanted = self.forge.labels.get(x)
+        if wanted is not None and wanted not in self.taken:
+            self.taken[wanted] = 1
+            return wanted
+        stem = "c" if not self.forge.depends[x] else "t"
+        while True:
+            count = self.taken[stem] = self.taken.get(stem, 0) + 1
+            if (name := f"{stem}_{count}") not in self.taken:
+                self.taken[name] = 1
+                return name
+
+    def _node(self, x: int) -> tuple[Node, int]:
+        row = self.forge.rows[x]
+        deep = 1 + max(self.depth[o] for o in row.operands) if row.operands else 0
+        return _node_of(row, tuple(self.nodes[o] for o in row.operands)), deep
+
+
+def _node_of(row: Row, operands: tuple[Node, ...]) -> Node:
+    match row.kind:
+        case "constant":
+            return Constant(Fraction(row.payload), row.pi_power)
+        case "complex":
+            return ComplexNumber(Fraction(row.payload), Fraction(row.imaginary))
+        case "parameter":
+            return Parameter(str(row.payload))
+        case "s":
+            return Laplace()
+        case "inverse":
+            return InverseLaplace()
+        case "add":
+            return Add(operands)
+        case "multiply":
+            return Multiply(operands)
+        case "divide":
+            return Divide(*operands)
+        case "power":
+            return Power(operands[0], int(row.payload))
+        case "negate":
+            return Negate(operands[0])
+        case "apply":
+            return Apply(str(row.payload), operands[0])
+        case "item":
+            return Item(operands[0], int(row.payload))
+        case "solutions" | "roots" | "modes" | "modal":
+            return _list_of(row, operands)
+
+
+def _list_of(row: Row, operands: tuple[Node, ...]) -> Node:
+    """Return a node whose value is a list."""
+    match row.kind:
+        case "roots":
+            return Roots(operands)
+        case "modes":
+            return ModeValues(*operands)
+        case "modal":
+            count = int(row.payload)
+            return ModalValue(operands[:count], operands[count:], row.frames)
+    return Solutions(operands, int(row.payload))

@@ -1,0 +1,496 @@
+"""Expressions of wavenumbers, exponentials and local solutions on one forge."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from math import gcd, lcm
+from typing import TYPE_CHECKING, Any
+
+from symflex.algebra import LAPLACE
+from symflex.codegen.program.build import Generators
+from symflex.codegen.program.local_basis import series_length
+from symflex.codegen.program.polynomials import evaluate_polynomial
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.algebra import Dispersion, Factored, Kernel
+    from symflex.codegen.program.exponents import Family, Key, Term
+    from symflex.codegen.program.forge import Forge
+    from symflex.codegen.program.local_basis import LocalBasis
+    from symflex.codegen.program.real_axis import RealAxis, RealKey, RealSum, RealTerm
+    from symflex.transfer import TransferFunction
+
+MINUS_J = (0, -1)
+
+LEAST = Fraction(1, 2**60)
+"""Part of the root of c_0 below which c_2 does not count."""
+
+Scales = dict[tuple[int, int], int]
+"""Per family and length, the exponent that is divided out of a sum."""
+
+
+@dataclass
+class Site:
+    """Makes the parts of one piece.
+
+    Parameters
+    ----------
+    forge : Forge
+        Where expressions are made.
+    tf : TransferFunction
+        With kernels.
+    families : tuple of Family
+        Of its kernels.
+    grows : mapping of int to bool
+        Families of delays whose exponential is greater than one; they are written by its inverse.
+    exponents : mapping of (int, int) to sequence of (int, int)
+        Per family and length, the pairs ``(a, b)`` that occur.
+    mirrored : sequence of int
+        Identities of dispersions whose wavenumbers are even in s and here computed from ``-s``.
+    is_signed : bool
+        True when ``mirrored`` tells the sign of roots of squares; otherwise these are computed as such.
+    axis : RealAxis, optional
+        Given for real arithmetic: the leaf of s is then the angular frequency, wavenumbers are magnitudes.
+    """
+
+    forge: Forge
+    tf: TransferFunction
+    families: tuple[Family, ...]
+    grows: Mapping[int, bool] = field(default_factory=dict)
+    exponents: Mapping[tuple[int, int], Sequence[tuple[int, int]]] = field(default_factory=dict)
+    mirrored: Sequence[int] = ()
+    is_signed: bool = True
+    axis: RealAxis | None = None
+
+    def __post_init__(self) -> None:
+        self.ring = self.tf.ratio.ring
+        self.waves = {w: d for d in self.tf.kernels.dispersions for w in d.wavenumbers}
+        self.kernels = {
+            k.generator: k for k in self.tf.kernels.kernels if k.function in ("fundamental", "exp")
+        }
+        self._generators = _KernelGenerators(self.forge, self.tf, False, site=self)
+        self._varying = {0, *(self.ring.index[n] for n in (*self.waves, *self.kernels))}
+
+    # ------------------------------------------------------------------------------- rational functions
+
+    def polynomial(self, polynomial: fmpz_mpoly) -> int:
+        """Return a polynomial in s, parameters and wavenumbers."""
+        images = self._generators.images(self.ring, (polynomial,))
+        return evaluate_polynomial(self.forge, polynomial, images)
+
+    def value(self, value: Factored) -> int:
+        """Return a rational function; what needs parameters only is divided once."""
+        forge = self.forge
+        fixed: dict[bool, list[int]] = {True: [], False: []}
+        moving: dict[bool, list[int]] = {True: [], False: []}
+        for factor, exponent in value.factors:
+            part = forge.power(self.polynomial(factor), abs(exponent))
+            (moving if forge.depends[part] else fixed)[exponent > 0].append(part)
+        gain = forge.divide(
+            forge.multiply([forge.constant(value.unit.numerator), *fixed[True]]),
+            forge.multiply([forge.constant(value.unit.denominator), *fixed[False]]),
+        )
+        return forge.divide(forge.multiply([gain, *moving[True]]), forge.multiply(moving[False]))
+
+    # -------------------------------------------------------------------------------------- wavenumbers
+
+    def coefficient(self, dispersion: Dispersion, i: int = 0) -> int:
+        """Return ``c_i`` of a dispersion relation."""
+        if self.axis is not None:
+            return self.value(self.axis.coefficient(dispersion))
+        return self.value(dispersion.characteristic[i])
+
+    def wavenumber(self, name: str) -> int:
+        """Return a wavenumber with nonnegative real part; in real arithmetic its magnitude."""
+        forge, law = self.forge, self.waves[name]
+        if law.kind == "pair":
+            first, second = self._pair(law)
+            return first if name == law.wavenumbers[0] else second
+        c0 = self.coefficient(law)
+        negative = self.axis.sign(law) if self.axis is not None else None
+        if (root := self.plain_root(law)) is not None:
+            if self.axis is None and id(law) in self.mirrored:
+                root = forge.negate(root)
+            return (
+                self._labelled(root, "gamma")
+                if law.kind == "wave"
+                else self._labelled(self._root(root), "mu")
+            )
+        if law.kind == "wave":
+            square = c0 if negative is False else forge.negate(c0)
+            return self._labelled(self._root(square), "gamma")
+        quarter = forge.negate(c0) if negative else forge.multiply([forge.constant(Fraction(1, 4)), c0])
+        return self._labelled(self._root(self._root(quarter)), "mu")
+
+    def plain_root(self, law: Dispersion) -> int | None:
+        """Return the root of ``-c_0`` (waves) or ``c_0/4`` (bending) where that is proportional to ``s^2``.
+
+        In real arithmetic it is the root of the magnitude, without the factor 1/4 for a negative ``c_0``.
+        """
+        parts = self.plain_parts(law)
+        return None if parts is None else self.forge.multiply(parts)
+
+    def plain_parts(self, law: Dispersion) -> tuple[int, int] | None:
+        """Return the factor free of s of :meth:`plain_root`, and s or its magnitude."""
+        if law.kind not in ("wave", "bending") or not (self.is_signed or self.axis is not None):
+            return None
+        c0, s = law.characteristic[0], self.ring.context.gen(0)
+        power = c0.exponent_of(s)
+        rest = c0.filter(lambda f: f != s) * c0.unit
+        if power != 2 or rest.depends_on(LAPLACE):  # noqa: PLR2004
+            return None
+        if self.axis is None:
+            square = -rest if law.kind == "wave" else rest / 4
+            return self._root(self.value(square)), self.forge.s
+        # Here c_0 has the sign opposite to that of rest.
+        negative = self.axis.sign(law)
+        square = rest if negative else -rest
+        if law.kind == "bending" and not negative:
+            square = square / 4
+        return self._root(self.value(square)), self.forge.apply("abs", self.forge.s)
+
+    def _pair(self, law: Dispersion) -> tuple[int, int]:
+        """Return the square roots of the roots of ``x^2 + c_2 x + c_0``, without cancellation."""
+        forge = self.forge
+        c0 = self.coefficient(law)
+        # Less than a rounding of the result, and not zero where c_2 is.
+        least = forge.multiply([forge.constant(LEAST), forge.apply("sqrt", forge.apply("abs", c0))])
+        middle = forge.add(
+            [forge.multiply([forge.constant(Fraction(-1, 2)), self.coefficient(law, 2)]), least]
+        )
+        inside = forge.add(
+            [forge.constant(1), forge.negate(forge.divide(c0, forge.multiply([middle, middle])))]
+        )
+        large = forge.multiply([middle, forge.add([forge.constant(1), self._root(inside)])])
+        first, second = self._root(large), self._root(forge.divide(c0, large))
+        return self._labelled(first, "lambda_1"), self._labelled(second, "lambda_2")
+
+    def _root(self, x: int) -> int:
+        """Return the principal square root, of a complex number also where it is free of s."""
+        if not self.forge.depends[x] and self.axis is None:
+            x = self.forge.multiply([self.forge.complex_number(1, 0), x])
+        return self.forge.apply("sqrt", x)
+
+    def _labelled(self, x: int, name: str) -> int:
+        return self.forge.label(x, name)
+
+    def length(self, value: Factored) -> int:
+        """Return a base length."""
+        return self.value(value)
+
+    def angle(self, i: int, j: int, factor: int | None = None) -> int:
+        """Return a wavenumber times a length, or what a delay's exponential decays with, times a factor."""
+        forge, family = self.forge, self.families[i]
+        factor = forge.constant(1) if factor is None else factor
+        if family.wavenumber:
+            wavenumber = self._generators.generator(family.wavenumber)
+            return forge.multiply([factor, self.length(family.lengths[j]), wavenumber])
+        exponent = self.exponent(family, j)
+        return forge.multiply([factor, forge.negate(exponent) if self.grows.get(i) else exponent])
+
+    def exponent(self, family: Family, j: int) -> int:
+        """Return the exponent of a delay, with a minus sign."""
+        return self.forge.multiply([self.length(family.lengths[j]), self.value(family.dispersion.shift)])
+
+    def sizes(self, dispersion: Dispersion, length: Factored) -> tuple[tuple[int, int, int], ...]:
+        """Return pairs whose products go like powers of wavenumber times length, and these powers.
+
+        The first of a pair depends on s, the second does not.
+        """
+        forge, x = self.forge, self.length(length)
+        negative = self.axis.sign(dispersion) if self.axis is not None else False
+        if negative is not None and (parts := self.plain_parts(dispersion)) is not None:
+            power = 1 if dispersion.kind == "wave" else 2
+            # In real arithmetic the root of a negative c_0 lacks the factor 1/2 of bending.
+            half = forge.constant(Fraction(1, 2) if negative and dispersion.kind == "bending" else 1)
+            return ((forge.s, forge.multiply([half, forge.power(x, power), parts[0]]), power),)
+        one = forge.constant(1)
+        if dispersion.kind in ("wave", "bending"):
+            return ((self._argument(dispersion, length), one, 2 if dispersion.kind == "wave" else 4),)
+        c0 = self.coefficient(dispersion)
+        c2 = self.coefficient(dispersion, 2)
+        # Each root of x^2 + c_2 x + c_0 is less than 1.62 times a bound of abs(c_2) and sqrt(abs(c_0)).
+        return (
+            (c2, forge.multiply([forge.constant(Fraction(13, 8)), forge.power(x, 2)]), 2),
+            (c0, forge.multiply([forge.constant(Fraction(169, 64)), forge.power(x, 4)]), 4),
+        )
+
+    def _argument(self, dispersion: Dispersion, length: Factored) -> int:
+        """Return the square of a wave's argument, up to the sign, or the fourth power of one of bending."""
+        forge, x, c0 = self.forge, self.length(length), self.coefficient(dispersion)
+        if dispersion.kind == "wave":
+            return forge.multiply([forge.power(x, 2), c0])
+        return forge.multiply([forge.constant(Fraction(1, 4)), forge.power(x, 4), c0])
+
+    def distance(self, dispersion: Dispersion, length: Factored) -> int:
+        """Return twice the square of the difference of a pair's arguments where these nearly meet."""
+        forge = self.forge
+        c0, c2 = self.coefficient(dispersion), self.coefficient(dispersion, 2)
+        quotient = forge.divide(forge.multiply([forge.constant(4), c0]), c2)
+        return forge.multiply([forge.power(self.length(length), 2), forge.add([c2, forge.negate(quotient)])])
+
+    def quotient(self, dispersion: Dispersion) -> int:
+        """Return ``c_0/c_2`` of a pair: at least half the square of the smaller wavenumber in size."""
+        return self.forge.divide(self.coefficient(dispersion), self.coefficient(dispersion, 2))
+
+    def fundamental(self, kernel: Kernel) -> int:
+        """Return the derivative of a fundamental function at its length, or a decay."""
+        forge, law = self.forge, kernel.dispersion
+        x, n = self.length(kernel.length), law.order
+        if kernel.function == "exp":
+            return forge.apply("complex_exp", forge.negate(forge.multiply([x, self.value(law.shift)])))
+        scaled = [forge.multiply([forge.power(x, n - i), self.coefficient(law, i)]) for i in range(n)]
+        values = forge.solutions(scaled, 0)
+        return forge.multiply([forge.power(x, n - 1 - kernel.order), values[kernel.order]])
+
+    # ------------------------------------------------------------------------------------ local solutions
+
+    def local(self, basis: LocalBasis, dispersion: Dispersion, length: Factored, k: int, size: float) -> int:
+        """Return solution k of an equation in a length; see :class:`LocalBasis`.
+
+        Parameters
+        ----------
+        basis : LocalBasis
+            The equation.
+        dispersion : Dispersion
+            Whose wavenumbers it is made of.
+        length : Factored
+            Where it is evaluated.
+        k : int
+            Number of the solution.
+        size : float
+            Largest exponent.
+        """
+        forge, x = self.forge, self.length(length)
+        if basis.step > 1:
+            argument = self._argument(dispersion, length)
+            if dispersion.kind == "wave":
+                argument = forge.negate(argument)
+            return self._series(basis, argument, x, k, size)
+        e, f = forge.negate(self.coefficient(dispersion, 2)), self.coefficient(dispersion)
+        coefficients = []
+        for i, polynomial in enumerate(basis.coefficients):
+            terms = [
+                forge.multiply([forge.constant(number), forge.power(e, p), forge.power(f, q)])
+                for (p, q), number in sorted(polynomial.items())
+            ]
+            coefficients.append(forge.multiply([forge.power(x, basis.order - i), forge.add(terms)]))
+        return forge.multiply([forge.power(x, k), forge.solutions(coefficients, series_length(size))[k]])
+
+    def local_of_smaller(
+        self, basis: LocalBasis, dispersion: Dispersion, length: Factored, k: int, size: float
+    ) -> int:
+        """Return solution k of an equation in a length, of the smaller wavenumber of a pair alone.
+
+        Parameters
+        ----------
+        basis, dispersion, length, k, size
+            As for :meth:`local`; the basis is that of a wave.
+        """
+        forge, x = self.forge, self.length(length)
+        wavenumber = self._generators.generator(dispersion.wavenumbers[1])
+        argument = forge.multiply([forge.power(x, 2), wavenumber, wavenumber])
+        return self._series(basis, argument, x, k, size)
+
+    def _series(self, basis: LocalBasis, argument: int, x: int, k: int, size: float) -> int:
+        forge = self.forge
+        self._labelled(argument, "z")
+        series = basis.series(k, size)
+        total = forge.constant(series[-1])
+        for number in reversed(series[:-1]):
+            total = forge.add([forge.multiply([total, argument]), forge.constant(number)])
+        return forge.multiply([forge.power(x, k), total])
+
+    # ---------------------------------------------------------------------------------- sums of exponentials
+
+    def exponential_sum(self, terms: Mapping[Key, fmpz_mpoly], scales: Scales) -> int:
+        """Return a sum over the largest exponential.
+
+        Parameters
+        ----------
+        terms : mapping of Key to fmpz_mpoly
+            As in :class:`ExponentialSum`, but for half of every circular term that oscillates.
+        scales : mapping of (int, int) to int
+            What is divided out.
+        """
+        return self.sum_of_leaves({key: self.polynomial(p) for key, p in terms.items()}, scales)
+
+    def sum_of_leaves(self, leaves: Mapping[Key, int], scales: Scales) -> int:
+        """Return a sum as :meth:`exponential_sum` does, from the expressions of its coefficients."""
+        used = sorted({i for i, _ in scales})
+        images = [(lambda t, i=i: self._term(i, t, scales)) for i in used]
+        return self._sum({tuple(k[i] for i in used): v for k, v in leaves.items()}, images)
+
+    def _sum(self, terms: Mapping[tuple[Any, ...], int], images: Sequence[Callable[[Any], int]]) -> int:
+        """Return the sum over the first family of terms times what follows; equal ones are added first."""
+        if not images:
+            return next(iter(terms.values()), self.forge.constant(0))
+        inner: dict[Any, dict[tuple[Any, ...], int]] = {}
+        for key, value in terms.items():
+            inner.setdefault(key[0], {})[key[1:]] = value
+        groups: dict[int, list[int]] = {}
+        for first, rest in inner.items():
+            minus, value = self.forge.signed(self._sum(rest, images[1:]))
+            image = images[0](first)
+            groups.setdefault(value, []).append(self.forge.negate(image) if minus else image)
+        return self.forge.add([self.forge.multiply([v, self.forge.add(ts)]) for v, ts in groups.items()])
+
+    def _term(self, i: int, term: Term, scales: Scales) -> int:
+        """Return ``exp(sum((a - scale) q)) cos(sum(b q))``, or the sine; twice that for what oscillates."""
+        forge, family = self.forge, self.families[i]
+        pairs, parity = term
+        shared: list[int] = []
+        rising: list[int] = []
+        falling: list[int] = []
+        for j, (a, b) in enumerate(pairs):
+            if (i, j) not in scales:
+                continue
+            left = scales[i, j] - (-a if self.grows.get(i) else a)
+            if not family.is_circular:
+                shared.append(forge.power(self._decay(i, j), left))
+                continue
+            # exp((-left + j b) q) from exp((-1 + j) q/2) and exp((-1 - j) q/2), or from those of q.
+            step = 1 if self._is_even(i, j, scales) else 2
+            up, down = self._spirals(i, j, step)
+            common = (left - abs(b)) * step // 2
+            shared.append(forge.power(forge.multiply([up, down]), common))
+            one, other = (up, down) if b >= 0 else (down, up)
+            rising.append(forge.power(one, abs(b) * step))
+            falling.append(forge.power(other, abs(b) * step))
+        product = forge.multiply(shared)
+        if not any(b for _, b in pairs):
+            return product
+        first, second = forge.multiply(rising), forge.multiply(falling)
+        if parity == 0:
+            return forge.multiply([forge.add([first, second]), product])
+        difference = forge.add([first, forge.negate(second)])
+        return forge.multiply([forge.complex_number(*MINUS_J), difference, product])
+
+    def _is_even(self, i: int, j: int, scales: Scales) -> bool:
+        """Tell whether all exponents that are left are even combinations: no half angles are needed then."""
+        return all((scales[i, j] - a + b) % 2 == 0 for a, b in self.exponents.get((i, j), ()))
+
+    def _decay(self, i: int, j: int, step: Fraction = Fraction(1)) -> int:
+        forge = self.forge
+        exponent = self.angle(i, j, forge.constant(-step))
+        function = "exp"
+        if self.axis is None:
+            function = "complex_exp"
+            if not forge.depends[exponent]:
+                exponent = forge.multiply([forge.complex_number(1, 0), exponent])
+        return self._labelled(forge.apply(function, exponent), "decay")
+
+    def _spirals(self, i: int, j: int, step: int) -> tuple[int, int]:
+        """Return ``exp((-1 + j) q/step)`` and ``exp((-1 - j) q/step)``."""
+        # The direction comes last: on the imaginary axis a lossless exponent then stays real or imaginary.
+        forge, x, part = self.forge, self.angle(i, j), Fraction(1, step)
+        up, down = (
+            forge.apply("complex_exp", forge.multiply([forge.complex_number(-part, sign * part), x]))
+            for sign in (1, -1)
+        )
+        return self._labelled(up, "e_1"), self._labelled(down, "e_2")
+
+    # --------------------------------------------------------------------------------------- real arithmetic
+
+    def real_sums(self, sums: Sequence[RealSum]) -> tuple[int, ...]:
+        """Return sums of real terms, all over the same exponentials, without the factors in front."""
+        keys: list[RealKey] = [key for s in sums for key in s.terms]
+        scales: dict[tuple[int, int], tuple[Fraction, Fraction, int]] = {}
+        for i, family in enumerate(self.families):
+            for j in range(len(family.lengths)):
+                pairs = [key[i][0][j] for key in keys]
+                most = max(a for a, _ in pairs)
+                step = _common_step({abs(b) for _, b in pairs} | {most - a for a, _ in pairs})
+                scales[i, j] = (most, step, int(max(abs(b) for _, b in pairs) / step))
+        images = [(lambda t, i=i: self._real_term(i, t, scales)) for i in range(len(self.families))]
+        found = []
+        for s in sums:
+            leaves = {key: self.polynomial(p) for key, p in s.terms.items()}
+            found.append(self._sum(leaves, images))
+        return tuple(found)
+
+    def _real_term(
+        self, i: int, term: RealTerm, scales: Mapping[tuple[int, int], tuple[Fraction, Fraction, int]]
+    ) -> int:
+        """Return ``exp(sum((a - scale) x)) cos(sum(b x))``, or the sine, with x real.
+
+        Times a power of ``1 + tan(x/2)^2`` that is the same for all terms: so nothing is divided by it.
+        """
+        forge = self.forge
+        pairs, parity = term
+        factors: list[int] = []
+        wave: tuple[int, int] | None = None
+        for j, (a, b) in enumerate(pairs):
+            most, step, highest = scales[i, j]
+            if a != most:
+                factors.append(forge.power(self._decay(i, j, step), int((most - a) / step)))
+            if b:
+                even, odd = self._oscillation(i, j, step, int(abs(b) / step))
+                own = (even, odd if b > 0 else forge.negate(odd))
+                wave = own if wave is None else self._turned(wave, own)
+            if missing := highest - int(abs(b) / step):
+                factors.append(forge.power(self._half_angle(i, j, step)[2], missing))
+        if wave is not None:
+            factors.append(wave[parity])
+        return forge.multiply(factors)
+
+    def _turned(self, left: tuple[int, int], right: tuple[int, int]) -> tuple[int, int]:
+        """Return cosine and sine of the sum of two angles."""
+        forge = self.forge
+        (c, s), (x, y) = left, right
+        return (
+            forge.add([forge.multiply([c, x]), forge.negate(forge.multiply([s, y]))]),
+            forge.add([forge.multiply([s, x]), forge.multiply([c, y])]),
+        )
+
+    def _half_angle(self, i: int, j: int, step: Fraction) -> tuple[int, int, int]:
+        """Return cosine, sine and one, all times one plus the square of the tangent of half the angle."""
+        forge = self.forge
+        one, two = forge.constant(1), forge.constant(2)
+        t = self._labelled(forge.apply("tan", self.angle(i, j, forge.constant(step / 2))), "t_half")
+        square = forge.multiply([t, t])
+        return (
+            forge.add([one, forge.negate(square)]),
+            forge.multiply([two, t]),
+            forge.add([one, square]),
+        )
+
+    def _oscillation(self, i: int, j: int, step: Fraction, multiple: int) -> tuple[int, int]:
+        """Return cosine and sine of a multiple of an angle, times that power of the same factor."""
+        even, odd, _ = self._half_angle(i, j, step)
+        found = first = (even, odd)
+        for _ in range(multiple - 1):
+            found = self._turned(found, first)
+        return found
+
+
+def _common_step(values: set[Fraction]) -> Fraction:
+    """Return the largest number of which all are multiples; 1 when all are zero."""
+    present = [v for v in values if v]
+    if not present:
+        return Fraction(1)
+    below = lcm(*(v.denominator for v in present))
+    return Fraction(gcd(*(int(v * below) for v in present)), below)
+
+
+@dataclass
+class _KernelGenerators(Generators):
+    """Generators with wavenumbers and fundamental functions among them."""
+
+    site: Site | None = None
+
+    def generator(self, name: str) -> int:
+        """Return the expression of a generator."""
+        return self._generator(name)[0]
+
+    def _make(self, name: str) -> tuple[int, int]:
+        site = self.site
+        if site is not None and name in site.waves:
+            return site.wavenumber(name), 1
+        if site is not None and name in site.kernels:
+            return site.fundamental(site.kernels[name]), 1
+        return super()._make(name)

@@ -1,0 +1,670 @@
+"""Measuring what a program's rounding errors are, against ball arithmetic.
+
+Input: a program and the transfer function it computes.
+Output: a :class:`Verification`, a bound that holds at every sample.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import chain
+from math import inf, isfinite, tau
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from flint import acb, arb, ctx
+
+from symflex.budget import spend
+from symflex.codegen.program.build import available_forms, build_program
+from symflex.codegen.program.distributed import build_piecewise, build_real, reaches_of
+from symflex.codegen.program.evaluate import evaluate, nearest_double
+from symflex.codegen.program.nested import build_nested
+from symflex.codegen.program.real_axis import for_positive, in_half_angles
+from symflex.errors import BudgetError, ModelError
+from symflex.transfer import BoundNested, NestedTransferFunction, bind, bind_nested
+from symflex.transfer.bind import EnclosedTransferFunction
+from symflex.transfer.nested_form import EnclosedNested
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from numpy.typing import NDArray
+
+    from symflex.codegen.program.nodes import Piecewise, Program
+    from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction
+    from symflex.transfer.bind import Enclosed
+
+DEFAULT_BAND = (Fraction(1, 10), Fraction(10_000))
+"""Hz."""
+
+SAMPLES = 400
+ASIDE = (0.0, 1e-9, 1e-6, 1e-3, 1e-2)
+"""Relative distances from a pole's or zero's frequency at which the error is measured as well."""
+
+REACH = np.logspace(-9, 12, 85)
+"""Frequencies [rad/s] at which a form may neither overflow nor lose the value."""
+
+SIMILAR = 2.0
+"""Forms whose errors differ by less than this factor count as equally accurate; the faster one is taken."""
+
+MUCH_LONGER = 2
+"""How many times the operations of the shortest form recurrences may take when nothing can be measured."""
+
+LONG = 500
+"""Terms from which coefficients of powers of s are not expanded if another form is accurate."""
+
+ACCURATE = 1e-14
+
+FIRST_BITS = 128
+LAST_BITS = 4096
+ENOUGH_BITS = 64
+
+SCAN = 3000
+"""Frequencies over the band among which a distributed system's resonances and antiresonances are sought."""
+
+MOST_EXTREMES = 40
+"""Resonances, and antiresonances, around which the error is measured; the first and the last ones of more."""
+
+LIGHT_NESTED = 600
+"""Operations of a nested form from which fewer frequencies are looked at."""
+
+LEAST = 0.05
+"""The part of them that is looked at in any case."""
+
+NAMED = 6
+"""Parameters without value that are named."""
+
+LIGHT = 200
+"""Terms of a function with numeric exponents from which fewer frequencies are looked at: each is costly."""
+
+LOWEST, HIGHEST = Fraction("1e-10"), Fraction("1.6e11")
+"""Frequencies [Hz] between which a function with numeric exponents is looked at, 1e-9 to 1e12 rad/s."""
+
+ASIDE_SAMPLES = 30
+"""Frequencies below the band, and above it, at which such a function is measured."""
+
+PROMISED = 1e-12
+"""What such a function promises up to the frequency named."""
+
+TINY = 1e-307
+"""What is smaller has no more digits in double precision."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """How far a function is accurate that is not so everywhere.
+
+    Parameters
+    ----------
+    highest : Fraction or None
+        Up to here [Hz] every sample was measured and accurate to 1e-12; ``None`` when the first was not.
+    error : float
+        The worst one up to there.
+    lowest : Fraction, optional
+        Down to here [Hz] the same holds; the band's lower end when ``None``.
+    """
+
+    highest: Fraction | None
+    error: float
+    lowest: Fraction | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Verification:
+    """How well a program agrees with its transfer function.
+
+    Parameters
+    ----------
+    name : str
+        ``OUT/IN``.
+    form : str
+        The form evaluated: ``closed``, ``closed in s``, ``nested`` or ``factors``; of a distributed system
+        ``pieces`` or ``real``.
+    error : float or None
+        The worst ``|dG| / (|G| (1 + |s G'/G|))`` on the imaginary axis: the relative error beyond what one
+        rounding of ``s`` would cause. ``None`` when it was not measured.
+    band : tuple of Fraction
+        [Hz].
+    samples : int
+        Number of frequencies.
+    reason : str
+        Why it was not measured; empty when it was.
+    reach : Reach or None
+        Only of functions whose exponents are found numerically; these may not be accurate everywhere.
+    """
+
+    name: str
+    form: str
+    error: float | None
+    band: tuple[Fraction, Fraction]
+    samples: int
+    reason: str = ""
+    reach: Reach | None = None
+
+    def text(self, digits: int = 2) -> str:
+        """Return the sentence that stands in the docstring.
+
+        Examples
+        --------
+        >>> Verification("V/F", "closed", 3.1e-16, DEFAULT_BAND, 400).text()
+        'verified: worst relative error 3.1e-16 over 0.1 Hz ... 10 kHz against ball arithmetic'
+        """
+        if self.error is None:
+            return f"not verified: {self.reason}"
+        if self.reach is not None:
+            return self._text_of_reach(self.reach, digits)
+        error = _error_text(self.error, digits)
+        low, high = (frequency_text(f) for f in self.band)
+        if self.error == inf:
+            return f"not accurate: some values overflow over {low} ... {high}"
+        return f"verified: worst relative error {error} over {low} ... {high} against ball arithmetic"
+
+    def _text_of_reach(self, reach: Reach, digits: int) -> str:
+        low, high = (frequency_text(f) for f in self.band)
+        is_lost = self.error is None or self.error == inf
+        worst = (
+            "some values overflow" if is_lost else f"errors up to {_error_text(self.error or 0.0, digits)}"
+        )
+        if reach.highest is None:
+            return f"not accurate over {low} ... {high}, where rounding costs digits: {worst}"
+        start = low if reach.lowest is None else frequency_text(reach.lowest)
+        end = frequency_text(reach.highest)
+        error = _error_text(reach.error, digits)
+        inner = f"verified: worst relative error {error} over {start} ... {end} against ball arithmetic"
+        if reach.highest >= HIGHEST:
+            return inner
+        if reach.highest >= self.band[1]:
+            return f"{inner}; above, rounding costs digits"
+        return f"{inner}; above, up to {high}, rounding costs digits: {worst}"
+
+
+def _error_text(error: float, digits: int) -> str:
+    return "0" if error == 0 else f"{error:.{digits - 1}e}"
+
+
+def frequency_text(hertz: Fraction) -> str:
+    """Return a frequency with a prefix that keeps it short.
+
+    Examples
+    --------
+    >>> [frequency_text(Fraction(t)) for t in ("0.1", "1000", "2.5e6", "1e-5")]
+    ['0.1 Hz', '1 kHz', '2.5 MHz', '1e-05 Hz']
+    """
+    for prefix, size in (("G", 10**9), ("M", 10**6), ("k", 10**3)):
+        if hertz >= size:
+            return f"{float(hertz / size):.6g} {prefix}Hz"
+    return f"{float(hertz):.6g} Hz"
+
+
+def choose_program(
+    tf: AnyTransferFunction,
+    band_hz: tuple[Fraction, Fraction] | None = None,
+    samples: int = SAMPLES,
+) -> tuple[Program | Piecewise, Verification]:
+    """Return the program of the form with the smallest measured error, and the measurement.
+
+    Without values for all parameters nothing can be measured; recurrences are taken unless another form is
+    much shorter.
+
+    Parameters
+    ----------
+    tf : TransferFunction or NestedTransferFunction
+        Derived.
+    band_hz : tuple of Fraction, optional
+        [Hz]; by default the band of the model's ``[analysis]``, else 0.1 Hz to 10 kHz.
+    samples : int
+        Number of frequencies, spaced evenly on a logarithmic scale; more are taken near poles and zeros.
+
+    Raises
+    ------
+    BudgetError
+        SF503 when every program would be too large.
+    ModelError
+        SF233 when a number does not fit in double precision.
+    """
+    return _choose(_gauge(tf, band_hz, samples))
+
+
+def choose_programs(
+    tf: AnyTransferFunction,
+    band_hz: tuple[Fraction, Fraction] | None = None,
+    samples: int = SAMPLES,
+) -> tuple[tuple[Program | Piecewise, Verification], tuple[Piecewise, Verification] | None]:
+    """Return what :func:`choose_program` does, and the same for the frequency response in real arithmetic.
+
+    The latter is there for lossless distributed systems only.
+
+    Parameters
+    ----------
+    tf, band_hz, samples
+        As for :func:`choose_program`.
+
+    Raises
+    ------
+    BudgetError, ModelError
+        As :func:`choose_program` does.
+    """
+    gauge = _gauge(tf, band_hz, samples)
+    return _choose(gauge), _choose_real(gauge)
+
+
+def measure_values(
+    tf: AnyTransferFunction,
+    values: Callable[[NDArray[np.complex128]], Sequence[complex]],
+    form: str,
+    band_hz: tuple[Fraction, Fraction] | None = None,
+    samples: int = SAMPLES,
+) -> Verification:
+    """Return how well values that are computed in some other way agree with a transfer function.
+
+    Parameters
+    ----------
+    tf : TransferFunction
+        Derived.
+    values : callable
+        Takes an array of s [rad/s]; not called when nothing can be measured.
+    form : str
+        What the other way is called.
+    band_hz, samples
+        As for :func:`choose_program`.
+    """
+    gauge = _gauge(tf, band_hz, samples)
+    if gauge.references is None:
+        return gauge.verified(form, None)
+    return gauge.verified(form, gauge.references.worst_of(values(gauge.references.s)))
+
+
+@dataclass(frozen=True, slots=True)
+class _Gauge:
+    """What the programs of one transfer function are measured against.
+
+    Without ``references`` nothing can be measured, for the ``reason`` given.
+    """
+
+    tf: AnyTransferFunction
+    band: tuple[Fraction, Fraction]
+    references: References | None
+    reason: str = ""
+
+    def verified(self, form: str, error: float | None, reach: Reach | None = None) -> Verification:
+        samples = 0 if self.references is None else len(self.references.s)
+        if error is not None and not samples and not self.tf.is_zero:
+            return Verification(self.tf.name, form, None, self.band, 0, "no value could be enclosed")
+        return Verification(self.tf.name, form, error, self.band, samples, self.reason, reach)
+
+
+def _gauge(tf: AnyTransferFunction, band_hz: tuple[Fraction, Fraction] | None, samples: int) -> _Gauge:
+    band = band_hz or tf.model.analysis.band or DEFAULT_BAND
+    missing = [p.name for p in tf.parameters if p.value is None]
+    if missing:
+        if isinstance(tf, NestedTransferFunction) and len(missing) > NAMED:
+            missing[NAMED:] = [f"and {len(missing) - NAMED} more"]
+        return _Gauge(tf, band, None, "no values for " + ", ".join(missing))
+    try:
+        bound = bind_nested(tf) if isinstance(tf, NestedTransferFunction) else bind(tf)
+        return _Gauge(tf, band, References(bound, band, samples))
+    except ModelError as problem:
+        return _Gauge(tf, band, None, problem.diagnostics[0].message)
+
+
+def _choose(gauge: _Gauge) -> tuple[Program | Piecewise, Verification]:
+    tf, references = gauge.tf, gauge.references
+    if isinstance(tf, NestedTransferFunction):
+        nested = build_nested(tf)
+        worst = None if references is None else references.worst_error(nested)
+        return nested, gauge.verified("nested", worst)
+    if tf.is_distributed and not tf.is_zero:
+        usual, *others = reaches_of(tf)
+        rest = (build_piecewise(tf, reach) for reach in others)
+        return _choose_pieces(build_piecewise(tf, usual), rest, gauge, "pieces")
+    forms = available_forms(tf)
+    if references is None:
+        return _unmeasured(gauge, tf, forms)
+    is_long = tf.length > LONG
+    candidates: list[tuple[Program, str, float]] = []
+    for form in forms:
+        is_spare = form == "closed in s" or (form == "factors" and is_long)
+        if is_spare and any(error < ACCURATE for _, _, error in candidates):
+            continue
+        if (program := _program(tf, form)) is not None:
+            candidates.append((program, form, references.worst_error(program)))
+    if not candidates:
+        program = build_program(tf)
+        candidates.append((program, "", references.worst_error(program)))
+    reaching = [c for c in candidates if keeps_its_value(c[0], references.bound)] or candidates
+    best = min(error for _, _, error in reaching)
+    similar = [c for c in reaching if c[2] <= SIMILAR * best]
+    program, form, error = min(similar, key=lambda c: (c[0].size, c[2]))
+    return program, gauge.verified(form, error)
+
+
+def _choose_real(gauge: _Gauge) -> tuple[Piecewise, Verification] | None:
+    """Return the program of the frequency response, in half-angle tangents where that serves as well."""
+    tf, references = gauge.tf, gauge.references
+    if isinstance(tf, NestedTransferFunction) or not tf.is_distributed or tf.is_zero:
+        return None
+    usual, *others = reaches_of(tf)
+    first = build_real(tf, usual)
+    if first is None:
+        return None
+    rest = (made for reach in others if (made := build_real(tf, reach)) is not None)
+    chosen, verification = _choose_pieces(first, rest, gauge, "real")
+    program = for_positive(chosen)
+    shorter = in_half_angles(program)
+    if shorter is None or references is None or verification.error is None:
+        return program, verification
+    error = references.worst_error(shorter)
+    if error > SIMILAR * verification.error or not keeps_its_value(shorter, references.bound):
+        return program, verification
+    return shorter, replace(verification, error=error)
+
+
+def _choose_pieces(
+    first: Piecewise, others: Iterable[Piecewise], gauge: _Gauge, form: str
+) -> tuple[Piecewise, Verification]:
+    """Return the program whose series reach as far as serves accuracy best, and its measured error."""
+    references = gauge.references
+    if references is None:
+        return first, gauge.verified(form, None)
+    if first.solves:
+        return _choose_general(chain([first], others), gauge, references)
+    candidates: list[tuple[bool, float, Piecewise]] = []
+    for program in chain([first], others):
+        error, keeps = references.worst_error(program), keeps_its_value(program, references.bound)
+        candidates.append((not keeps, error, program))
+        if keeps and error < ACCURATE:
+            break
+    _, error, program = min(candidates, key=lambda c: c[:2])
+    return program, gauge.verified(form, error)
+
+
+def _choose_general(
+    programs: Iterable[Piecewise], gauge: _Gauge, references: References
+) -> tuple[Piecewise, Verification]:
+    """Return the program whose accuracy reaches furthest; it ends somewhere, whatever the series do."""
+    band, aside = gauge.band, _Aside(references.bound, gauge.band)
+    found: list[tuple[tuple[float, ...], Piecewise, Reach]] = []
+    for program in programs:
+        measured = aside.extended(program, references.reach(program, band), band)
+        ends = [0.0 if x is None else float(x) for x in (measured.lowest, measured.highest)]
+        lacks = ends[0] > band[0] or ends[1] < band[1]
+        found.append(((lacks, -ends[1], ends[0], measured.error), program, measured))
+        if measured.highest is not None and measured.highest >= band[1] and measured.error < ACCURATE:
+            break
+    _, program, measured = min(found, key=lambda f: f[0])
+    return program, gauge.verified("pieces", references.worst_error(program), measured)
+
+
+def _program(tf: TransferFunction, form: str) -> Program | None:
+    """Return the program of a form, ``None`` when it is too large."""
+    try:
+        return build_program(tf, form)
+    except BudgetError:
+        spend()
+        return None
+
+
+def _unmeasured(gauge: _Gauge, tf: TransferFunction, forms: Sequence[str]) -> tuple[Program, Verification]:
+    # Expanded coefficients of a model without numbers would be pages long.
+    compact = [form for form in forms if form != "factors"] or forms
+    programs = [(form, program) for form in compact if (program := _program(tf, form)) is not None]
+    if not programs:
+        return build_program(tf), gauge.verified("", None)
+    shortest = min(program.size for _, program in programs)
+    form, program = next((f, p) for f, p in programs if p.size <= MUCH_LONGER * shortest)
+    return program, gauge.verified(form, None)
+
+
+def sample_frequencies(
+    bound: BoundTransferFunction | BoundNested, band_hz: tuple[Fraction, Fraction], samples: int
+) -> NDArray[np.float64]:
+    """Return frequencies [Hz] over a band, denser around those of poles and zeros."""
+    low, high = float(band_hz[0]), float(band_hz[1])
+    frequencies = [np.geomspace(low, high, samples)]
+    around = np.array([1 + sign * x for x in ASIDE for sign in (1, -1)])
+    frequencies += [center * around for center in _centers(bound, low, high)]
+    merged = np.unique(np.concatenate(frequencies))
+    return merged[(merged >= low) & (merged <= high)]
+
+
+def _centers(bound: BoundTransferFunction | BoundNested, low: float, high: float) -> list[float]:
+    """Return the frequencies [Hz] of poles and zeros; of a distributed system where these show."""
+    if _vanishes(bound):
+        return []
+    enclosed = bound.enclosed(FIRST_BITS)
+    if not isinstance(enclosed, EnclosedTransferFunction):
+        return _extremes(bound, low, high)
+    roots = np.concatenate([[], *(_roots(polynomial.coeffs()) for polynomial, _ in enclosed.factors)])
+    return [*(np.abs(roots.imag) / tau), *(np.abs(roots) / tau)]
+
+
+def _extremes(bound: BoundTransferFunction | BoundNested, low: float, high: float) -> list[float]:
+    """Return resonances and antiresonances [Hz]: where the magnitude on the axis is largest and smallest."""
+    source = bound.source
+    program = build_nested(source) if isinstance(source, NestedTransferFunction) else build_piecewise(source)
+    part = _part(bound)
+    most = 2 * max(1, int(MOST_EXTREMES * part) // 2)
+    values = doubles(bound)
+
+    def size(hertz: NDArray[np.float64]) -> NDArray[np.float64]:
+        with np.errstate(all="ignore"):
+            return np.nan_to_num(np.log(np.abs(evaluate(program, tau * 1j * hertz, values))))
+
+    grid = np.geomspace(low, high, int(SCAN * part))
+    found: list[float] = []
+    level = size(grid)
+    for sign in (1, -1):
+        inner = sign * level[1:-1]
+        peaks = np.flatnonzero((inner > sign * level[:-2]) & (inner >= sign * level[2:])) + 1
+        if len(peaks) > most:
+            peaks = np.concatenate([peaks[: most // 2], peaks[-most // 2 :]])
+        left, right = grid[peaks - 1], grid[peaks + 1]
+        each = np.arange(len(peaks))
+        for _ in range(8 if len(peaks) else 0):
+            near = np.linspace(left, right, 21)
+            best = np.argmax(sign * size(near), axis=0)
+            left, right = near[np.maximum(best - 1, 0), each], near[np.minimum(best + 1, 20), each]
+        found += ((left + right) / 2).tolist()
+    return found
+
+
+def _vanishes(bound: BoundTransferFunction | BoundNested) -> bool:
+    return bound.is_zero if isinstance(bound, BoundNested) else bound.ratio.is_zero
+
+
+def _part(bound: BoundTransferFunction | BoundNested) -> float:
+    """Return which part of the usual number of frequencies is looked at."""
+    if isinstance(bound, BoundNested):
+        return max(LEAST, min(1.0, LIGHT_NESTED / max(bound.source.size, 1)))
+    if not bound.source.is_nameless:
+        return 1.0
+    return min(1.0, LIGHT / sum(len(f) for f, _ in bound.ratio.factors))
+
+
+def _roots(coefficients: Sequence[acb], *, is_scaled: bool = False) -> NDArray[np.complex128]:
+    """Return rough roots of a polynomial with ascending coefficients of any size."""
+    sizes = [c.abs_upper() for c in coefficients]
+    largest = max(sizes, default=None)
+    if largest is None or not largest > 0:
+        return np.array([], dtype=complex)
+    scaled = [complex(float((c.real / largest).mid()), float((c.imag / largest).mid())) for c in coefficients]
+    with np.errstate(all="ignore"):
+        is_within = np.isfinite(np.divide(scaled, scaled[-1])).all()
+    if is_within:
+        return np.asarray(np.roots(scaled[::-1]), dtype=complex)
+    if is_scaled or not sizes[-1] > 0:
+        return np.array([], dtype=complex)
+    # Quotients of coefficients are beyond doubles: roots are counted in their geometric mean.
+    first = next(i for i, size in enumerate(sizes) if size > 0)
+    mean = ((sizes[first].log() - sizes[-1].log()) / max(len(sizes) - 1 - first, 1)).exp()
+    return float(mean.mid()) * _roots([c * mean**i for i, c in enumerate(coefficients)], is_scaled=True)
+
+
+class References:
+    """Enclosures of a bound transfer function at frequencies over a band.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction or BoundNested
+        With the declared values.
+    band_hz : tuple of Fraction
+        [Hz].
+    samples : int
+        Number of frequencies, besides those around poles and zeros.
+    is_plain : bool
+        True to take none around poles and zeros.
+    """
+
+    def __init__(
+        self,
+        bound: BoundTransferFunction | BoundNested,
+        band_hz: tuple[Fraction, Fraction],
+        samples: int = SAMPLES,
+        *,
+        is_plain: bool = False,
+    ) -> None:
+        self.bound = bound
+        self._first_bits = FIRST_BITS
+        self._known: dict[int, Enclosed | EnclosedNested] = {}
+        low, high = (float(f) for f in band_hz)
+        count = max(1, int(samples * _part(bound)))
+        hertz = np.geomspace(low, high, count) if is_plain else sample_frequencies(bound, band_hz, count)
+        points = 1j * (tau * hertz)
+        found = [(s, self._reference(complex(s))) for s in points]
+        self._lost = [s.imag for s, reference in found if reference is None]
+        self._references = [reference for _, reference in found if reference is not None]
+        self.s = np.array([s for s, reference in found if reference is not None], dtype=complex)
+
+    def worst_error(self, program: Program | Piecewise) -> float:
+        """Return a bound of the error at all frequencies, for a program that gets the nearest doubles."""
+        return max(self._errors(program), default=0.0)
+
+    def worst_of(self, values: Sequence[complex]) -> float:
+        """Return a bound of the error of values at all frequencies."""
+        pairs = zip(self._references, values, strict=True)
+        return max((r.error_of(complex(v)) for r, v in pairs), default=0.0)
+
+    def reach(self, program: Program | Piecewise, band_hz: tuple[Fraction, Fraction]) -> Reach:
+        """Return up to which frequency every sample was measured and is accurate."""
+        worst, end = 0.0, min(self._lost, default=inf)
+        highest: complex | None = None
+        for s, error in zip(self.s, self._errors(program), strict=True):
+            if error > PROMISED or s.imag > end:
+                break
+            highest, worst = s, max(worst, error)
+        else:
+            if not self._lost:
+                return Reach(band_hz[1], worst)
+        hertz = None if highest is None else Fraction(f"{highest.imag / tau:.3g}")
+        return Reach(hertz, worst)
+
+    def down(self, program: Program | Piecewise, start: Fraction) -> tuple[Fraction, float]:
+        """Return down to which frequency [Hz] every sample is accurate, and the worst error of these."""
+        lowest, worst, end = start, 0.0, max(self._lost, default=0.0)
+        for s, error in reversed(list(zip(self.s, self._errors(program), strict=True))):
+            if error > PROMISED or s.imag < end:
+                break
+            lowest, worst = Fraction(f"{s.imag / tau:.3g}"), max(worst, error)
+        return lowest, worst
+
+    def _errors(self, program: Program | Piecewise) -> list[float]:
+        values = evaluate(program, _arguments(program, self.s), doubles(self.bound))
+        return [r.error_of(complex(v)) for r, v in zip(self._references, values, strict=True)]
+
+    def _reference(self, s: complex) -> _Reference | None:
+        """Return the value at ``s``, or ``None`` at a pole or zero."""
+        point = acb(s.real, s.imag)
+        if _vanishes(self.bound):
+            return _Reference(acb(0), FIRST_BITS, acb(1).abs_lower())
+        bits = self._first_bits
+        while bits <= LAST_BITS:
+            spend()
+            function = self._at(bits)
+            if isinstance(function, EnclosedNested):
+                value, slope = function.value_and_slope(point)
+            else:
+                value, slope = function(point), function.logarithmic_derivative(point)
+            if value.is_finite() and slope.is_finite() and value.rel_accuracy_bits() >= ENOUGH_BITS:
+                if isinstance(function, EnclosedNested):
+                    self._first_bits = bits  # the next point most likely needs as many
+                with ctx.workprec(bits):
+                    return _Reference(value, bits, value.abs_lower() * (1 + (point * slope).abs_lower()))
+            bits *= 2
+        return None
+
+    def _at(self, bits: int) -> Enclosed | EnclosedNested:
+        if bits not in self._known:
+            self._known[bits] = self.bound.enclosed(bits)
+        return self._known[bits]
+
+
+class _Aside:
+    """What a program with numeric exponents is worth below a band, and above it.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction or BoundNested
+        With the declared values.
+    band_hz : tuple of Fraction
+        [Hz].
+    """
+
+    def __init__(
+        self, bound: BoundTransferFunction | BoundNested, band_hz: tuple[Fraction, Fraction]
+    ) -> None:
+        low, high = band_hz
+        self._below = References(bound, (LOWEST, low), ASIDE_SAMPLES, is_plain=True) if low > LOWEST else None
+        self._above = (
+            References(bound, (high, HIGHEST), ASIDE_SAMPLES, is_plain=True) if high < HIGHEST else None
+        )
+
+    def extended(self, program: Piecewise, inner: Reach, band_hz: tuple[Fraction, Fraction]) -> Reach:
+        """Return how far a program is accurate, from its reach within the band."""
+        lowest, highest, error = band_hz[0], inner.highest, inner.error
+        if self._below is not None:
+            lowest, own = self._below.down(program, band_hz[0])
+            error = max(error, own)
+        if self._above is not None and inner.highest == band_hz[1]:
+            outer = self._above.reach(program, (band_hz[1], HIGHEST))
+            if outer.highest is not None and outer.highest > band_hz[1]:
+                highest, error = outer.highest, max(error, outer.error)
+        return Reach(highest, error, lowest)
+
+
+@dataclass(frozen=True, slots=True)
+class _Reference:
+    """A value in a ball, and the size that its errors are measured by."""
+
+    value: acb
+    bits: int
+    size: arb
+
+    def error_of(self, computed: complex) -> float:
+        if not isfinite(computed.real) or not isfinite(computed.imag):
+            return inf
+        with ctx.workprec(self.bits):
+            distance = (acb(computed.real, computed.imag) - self.value).abs_upper()
+            if distance < TINY:
+                return 0.0
+            return float((distance / self.size).upper())
+
+
+def _arguments(program: Program | Piecewise, s: NDArray[Any]) -> NDArray[Any]:
+    """Return what a program takes for values of s on the imaginary axis."""
+    return s.imag if program.is_real else s
+
+
+def keeps_its_value(program: Program | Piecewise, bound: BoundTransferFunction | BoundNested) -> bool:
+    """Tell whether a program is finite, and not spuriously zero, from 1e-9 to 1e12 rad/s."""
+    values = evaluate(program, _arguments(program, 1j * REACH), doubles(bound))
+    keeps = np.isfinite(values) & (values != 0)
+    if _vanishes(bound) or keeps.all():
+        return True
+    expected = np.array([bound(complex(s)) for s in 1j * REACH[~keeps]])
+    return bool((~np.isfinite(expected) | (np.abs(expected) < TINY)).all())
+
+
+def doubles(bound: BoundTransferFunction | BoundNested) -> dict[str, float]:
+    """Return the double nearest to every parameter's value."""
+    return {name: nearest_double(value.rational, value.pi_power) for name, value in bound.values}

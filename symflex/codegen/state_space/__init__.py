@@ -1,0 +1,1 @@
+"""State equations as modules."""

@@ -1,0 +1,355 @@
+"""State equations as one self-contained Python module that imports numpy only.
+
+Input: a realisation, and the transfer functions it is measured against.
+Output: a :class:`StateSpaceExport`, the module's text and how well its numbers agree with ball arithmetic.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import inf
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from symflex.codegen.module_text import default_value, described
+from symflex.codegen.numpy.expression import WIDTH, Printer, statement
+from symflex.codegen.program import (
+    Add,
+    Apply,
+    Branch,
+    Constant,
+    Divide,
+    Multiply,
+    Negate,
+    Node,
+    Power,
+    Program,
+    Verification,
+    evaluate,
+    identifiers,
+    inert,
+    measure_values,
+    nearest_double,
+    wrapped,
+)
+from symflex.codegen.program import Parameter as ParameterNode
+from symflex.codegen.python_text import RESERVED, docstring, literal, origin, parameter_table
+from symflex.codegen.state_space.equations import StateEquations
+from symflex.errors import BudgetError, Diagnostic
+from symflex.expressions import (
+    Call,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Product,
+    Quotient,
+    Sum,
+    format_expression,
+    names,
+)
+from symflex.expressions import Power as PowerExpression
+from symflex.model.linearity import integer_exponent
+from symflex.state_space.rounding import Arrays, response
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy.typing as npt
+
+    from symflex.state_space import StateSpace
+    from symflex.transfer import AnyTransferFunction
+
+PI = "pi"
+TERM_LIMIT = 20_000
+"""Terms of all entries together; beyond that the text would be megabytes."""
+
+EQUATION_LINES = 60
+"""Lines of equations in the docstring."""
+
+WORK = 400 * 12**3
+"""Frequencies times the cube of the order: what a measurement may cost."""
+
+FEWEST = 20
+
+LINTS = "E501, E741, N802, N803, N806, PLR0915, RUF001, RUF002, RUF100"
+
+IMPORTS = """\
+# ruff: noqa: {lints}  (names and texts are the model's)
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+"""
+
+LETTERS = ("A", "B", "C", "D")
+
+
+@dataclass(frozen=True, slots=True)
+class StateSpaceExport:
+    """A generated module.
+
+    Parameters
+    ----------
+    text : str
+        The module's source.
+    verified : tuple of Verification
+        One per transfer function.
+    """
+
+    text: str
+    verified: tuple[Verification, ...]
+
+
+def state_space_module(
+    system: StateSpace,
+    tfs: Sequence[AnyTransferFunction],
+    band_hz: tuple[Fraction, Fraction] | None = None,
+    *,
+    samples: int = 400,
+    digits: int = 2,
+) -> StateSpaceExport:
+    """Return a module with a function ``state_space(*, parameter=default, ...)`` that returns A, B, C, D.
+
+    ``STATES``, ``INPUTS`` and ``OUTPUTS`` list names and units in the order of rows and columns.
+
+    Parameters
+    ----------
+    system : StateSpace
+        With symbols.
+    tfs : sequence of TransferFunction
+        Those of its outputs over its inputs that are measured.
+    band_hz : tuple of Fraction, optional
+        Where [Hz]; by default the model's ``[analysis]`` band, else 0.1 Hz to 10 kHz.
+    samples : int
+        Number of frequencies, besides those around poles and zeros; fewer for large systems.
+    digits : int
+        Significant digits of the printed error.
+
+    Raises
+    ------
+    BudgetError
+        SF503 when the text would be too long.
+    ModelError
+        SF233 when a number does not fit in double precision.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... parameters = {m = "2 kg", b = "3 N*s/m"}
+    ... elements.body = {type = "mass", at = "x", m = "m"}
+    ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
+    ... inputs.F = {force = "x"}
+    ... outputs.V = "s*x"
+    ... ''')
+    >>> export = state_space_module(pipeline.state_space(model), pipeline.derive_all(model))
+    >>> "A[1, 1] = -b / m" in export.text
+    True
+    """
+    size = sum(v.size for _, rows, _ in system.matrices for row in rows for v in row.values())
+    if size > TERM_LIMIT:
+        message = f"the state equations have {size} terms; at most {TERM_LIMIT} are written"
+        raise BudgetError(Diagnostic("SF503", message, None, "give parameters numbers: bind() first"))
+    module = _Module(system, StateEquations(system))
+    verified = tuple(module.measured(tf, band_hz, samples) for tf in tfs)
+    return StateSpaceExport(module.text(verified, digits), verified)
+
+
+class _Module:
+    """Prints one realisation."""
+
+    def __init__(self, system: StateSpace, equations: StateEquations) -> None:
+        self._system = system
+        self._equations = equations
+        self._entries = {
+            letter: {
+                (i, j): _node(equations.entry(value))
+                for i, row in enumerate(rows)
+                for j, value in sorted(row.items())
+            }
+            for letter, rows, _ in system.matrices
+        }
+        used = {
+            n.name
+            for _, rows, _ in system.matrices
+            for row in rows
+            for value in row.values()
+            for n in names(equations.entry(value))
+            if isinstance(n, Name)
+        }
+        self._parameters = [p for p in system.model.parameters if p.name in used]
+        self._names = identifiers({p.name: p.name for p in system.model.parameters}, RESERVED)
+        taken = {*RESERVED, *self._names.values()}
+        self._letters = identifiers({letter: letter for letter in LETTERS}, taken)
+
+    # ------------------------------------------------------------------------------------ numbers
+
+    def measured(
+        self, tf: AnyTransferFunction, band_hz: tuple[Fraction, Fraction] | None, samples: int
+    ) -> Verification:
+        """Return how well the matrices of the declared values agree with a transfer function."""
+        missing = [p.name for p in self._parameters if p.value is None]
+        band = band_hz or tf.model.analysis.band
+        if missing and not [p for p in tf.parameters if p.value is None]:
+            nothing = measure_values(tf, lambda s: [0j] * len(s), "state-space", band, 1)
+            reason = "no values for " + ", ".join(missing)
+            return Verification(tf.name, "state-space", None, nothing.band, 0, reason)
+        row = [x.name for x in self._system.outputs].index(tf.output.name)
+        column = [x.name for x in self._system.inputs].index(tf.input.name)
+
+        def values(s: npt.NDArray[np.complex128]) -> list[complex]:
+            return [value[row][column] for value in response(self._arrays(), s.tolist())]
+
+        count = min(samples, max(FEWEST, WORK // max(1, self._system.order) ** 3))
+        return measure_values(tf, values, "state-space", band, count)
+
+    def _arrays(self) -> Arrays:
+        """Return the matrices that the generated code makes of the declared values."""
+        given = {
+            p.name: nearest_double(p.value.rational, p.value.pi_power)
+            for p in self._parameters
+            if p.value is not None
+        }
+        arrays = []
+        for letter, _, shape in self._system.matrices:
+            array = np.zeros(shape)
+            for place, node in self._entries[letter].items():
+                program = Program(tuple(given), (), Branch((), node), None, inf)
+                array[place] = float(evaluate(program, 0.0, given).real)
+            arrays.append(array)
+        return Arrays(*arrays)
+
+    # --------------------------------------------------------------------------------------- text
+
+    def text(self, verified: Sequence[Verification], digits: int) -> str:
+        """Return the module."""
+        system = self._system
+        inputs = [(x.name, x.unit, "") for x in system.inputs]
+        outputs = [(x.name, x.unit, "") for x in system.outputs]
+        states = [(x.name, x.unit, format_expression(self._equations.meaning(x))) for x in system.states]
+        blocks = [
+            parameter_table(system.model, self._names),
+            _table("STATES", states),
+            _table("INPUTS", inputs),
+            _table("OUTPUTS", outputs),
+            self._function(),
+        ]
+        header = docstring(self._header(verified, digits), "")
+        return f"{header}{IMPORTS.format(lints=LINTS)}\n" + "\n\n".join(blocks)
+
+    def _header(self, verified: Sequence[Verification], digits: int) -> list[str]:
+        lines = ["State equations of a linear system as a function of its parameters.", ""]
+        lines += origin(self._system.model, "")
+        lines.append("Written by symflex. With w the states, u the inputs and y the outputs,")
+        lines += ["", "    w' = A w + B u,    y = C w + D u,    y/u = C (s - A)^-1 B + D.", ""]
+        kind = (
+            "Every state is controllable and observable, for almost all values of the parameters."
+            if self._system.is_minimal
+            else "The states are all of the model's, hidden ones too."
+        )
+        lines += wrapped(kind, WIDTH)
+        proof = (
+            "Proved: put into the model's equations, they satisfy these identically. "
+            "Measured with the values in PARAMETERS:"
+        )
+        lines += [*wrapped(proof, WIDTH), ""]
+        for verification in verified:
+            lines += wrapped(inert(f"{verification.name}: {verification.text(digits)}"), WIDTH, "", "    ")
+        return lines
+
+    def _function(self) -> str:
+        signature = ["def state_space(", *(["    *,"] if self._parameters else [])]
+        for parameter in self._parameters:
+            value = default_value(parameter)
+            signature.append(f"    {self._names[parameter.name]}: float{f' = {value}' if value else ''},")
+        floats = "NDArray[np.float64]"
+        returned = f") -> tuple[{floats}, {floats}, {floats}, {floats}]:"
+        lines = [*signature, returned, docstring(self._docstring(), "    ").rstrip("\n")]
+        printer = Printer(self._names, {}, "s")
+        for letter, _, shape in self._system.matrices:
+            own = self._letters[letter]
+            lines.append(f"    {own} = np.zeros({shape})")
+            for (i, j), node in self._entries[letter].items():
+                lines += statement(f"{own}[{i}, {j}]", printer.print(node), "    ")
+        lines.append(f"    return {', '.join(self._letters[letter] for letter in LETTERS)}")
+        return "\n".join(lines) + "\n"
+
+    def _docstring(self) -> list[str]:
+        system = self._system
+        lines = ["Return A, B, C and D as arrays.", ""]
+        equations = self._equations.lines()
+        for equation in equations[:EQUATION_LINES]:
+            lines += wrapped(inert(equation), WIDTH, "        ", "            ")
+        if len(equations) > EQUATION_LINES:
+            lines.append(f"        ... and {len(equations) - EQUATION_LINES} equations more.")
+        for letter, rows, shape in system.matrices:
+            grid = self._equations.grid(rows, shape)
+            if grid and max(map(len, grid)) + 12 <= WIDTH:
+                lines.append("")
+                lines += [f"        {f'{letter} =' if i == 0 else '   '} {row}" for i, row in enumerate(grid)]
+        if self._parameters:
+            lines += ["", "    Parameters", "    ----------"]
+        for parameter in self._parameters:
+            name = self._names[parameter.name]
+            lines.append(f"    {name} : float{'' if parameter.value is None else ', optional'}")
+            lines += wrapped(described(parameter, name), WIDTH, "        ")
+        n, m, p = len(system.states), len(system.inputs), len(system.outputs)
+        lines += ["", "    Returns", "    -------"]
+        shapes = zip(LETTERS, ((n, n), (n, m), (p, n), (p, m)), strict=True)
+        lines += [f"    {letter} : ndarray of float, shape {shape}" for letter, shape in shapes]
+        divisors = [format_expression(d) for d in self._equations.divisors]
+        if divisors:
+            lines += ["", "    Notes", "    -----"]
+            lines += wrapped(inert(f"None of these may be zero: {', '.join(divisors)}."), WIDTH, "    ")
+        return lines
+
+
+def _table(name: str, rows: Sequence[tuple[str, str, str]]) -> str:
+    """Return a tuple of dictionaries."""
+    lines = []
+    for label, unit, meaning in rows:
+        entries = [f'"name": {literal(label)}', f'"unit": {literal(unit)}']
+        entries += [f'"meaning": {literal(meaning)}'] if meaning else []
+        one_line = f"    {{{', '.join(entries)}}},"
+        if len(one_line) <= WIDTH and "\n" not in one_line:
+            lines.append(one_line)
+        else:
+            lines += ["    {", *(f"        {entry}," for entry in entries), "    },"]
+    return "\n".join([f"{name}: tuple[dict[str, str], ...] = (", *lines, ")"]) + "\n"
+
+
+def _node(expression: Expression) -> Node:
+    """Return an expression of constants as a program's node."""
+    match expression:
+        case Number(value) if value < 0:
+            return Negate(Constant(-value))
+        case Number(value) if value.denominator == 1:
+            return Constant(value)
+        case Number(value):
+            return Divide(Constant(Fraction(value.numerator)), Constant(Fraction(value.denominator)))
+        case Name(name):
+            return Constant(Fraction(1), 1) if name == PI else ParameterNode(name)
+        case Negative(Quotient(numerator, denominator)):
+            return Divide(Negate(_node(numerator)), _node(denominator))
+        case Negative(operand):
+            return Negate(_node(operand))
+        case Sum(terms):
+            return Add(tuple(_node(t) for t in terms))
+        case Product(factors):
+            return Multiply(tuple(_node(f) for f in factors))
+        case Quotient(numerator, denominator):
+            return Divide(_node(numerator), _node(denominator))
+        case PowerExpression(base, exponent):
+            order = integer_exponent(exponent) or 0
+            inner = _node(base)
+            raised = inner if abs(order) == 1 else Power(inner, abs(order))
+            return raised if order > 0 else Divide(Constant(Fraction(1)), raised)
+        case Call(name, argument):
+            return Apply(name, _node(argument))
+    message = f"unexpected expression {type(expression).__name__}"
+    raise TypeError(message)

@@ -1,0 +1,171 @@
+"""The LaTeX target."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from symflex.budget import spend
+from symflex.codegen.export import Export
+from symflex.errors import ModelError, SymflexError
+from symflex.model.model import Figure as Asked
+from symflex.print.forms import print_forms
+from symflex.print.latex import TEXT_WIDTH_MM, Picture, latex_document, latex_files
+from symflex.roots.locate import locate
+from symflex.transfer import NestedTransferFunction, bind
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.figure import Figure
+
+    from symflex.model import Model
+    from symflex.print.forms import PrintedForm
+    from symflex.roots import PoleZeroMap
+    from symflex.transfer import AnyTransferFunction, BoundTransferFunction
+
+
+ROOT_DIGITS = 15
+"""Digits to which roots are found for a table; it prints fewer."""
+
+LOOP_TITLES = {"locus": "Root locus", "nyquist": "Nyquist plot of the loop gain"}
+
+DEFAULT_FIGURES = {"bode": "Frequency responses", "poles_zeros": "Poles and zeros", "modes": "Lowest modes"}
+"""Figures of kinds that the model asks for none of."""
+
+MOST_IN_A_FIGURE = 6
+"""So many functions a figure holds that the model did not ask for."""
+
+TALLEST_MM = 225.0
+"""Of a figure with what it shows in words, on a page of the document."""
+
+
+@dataclass(frozen=True, slots=True)
+class LatexExporter:
+    """A standalone LaTeX document, or the files it is made of.
+
+    Parameters
+    ----------
+    width_mm : float
+        Width of the column.
+    form : str, optional
+        Of the transfer functions; the shortest symbolic one by default.
+    has_figures : bool
+        The files hold figures; a document in one file has none.
+    """
+
+    width_mm: float = TEXT_WIDTH_MM
+    form: str | None = None
+    has_figures: bool = True
+
+    suffix = ".tex"
+    summary = "standalone LaTeX document: parameters, transfer functions, poles, zeros, modes"
+
+    def export(
+        self, model: Model, tfs: Sequence[AnyTransferFunction], stem: str = "", *, is_alone: bool = True
+    ) -> Export:
+        """Return the document."""
+        forms, maps, warnings = self._parts(tfs)
+        text = latex_document(model, tfs, forms, pole_zero_maps=maps, width_mm=self.width_mm)
+        return Export(text, warnings)
+
+    def export_files(
+        self, model: Model, tfs: Sequence[AnyTransferFunction]
+    ) -> tuple[dict[str, str], tuple[str, ...]]:
+        """Return the files by name, to be written into one folder, and the warnings."""
+        forms, maps, warnings = self._parts(tfs)
+        pictures, more = self._pictures(model, tfs) if self.has_figures else ([], [])
+        files = latex_files(model, tfs, forms, pole_zero_maps=maps, pictures=pictures, width_mm=self.width_mm)
+        return files, (*warnings, *more)
+
+    def _pictures(self, model: Model, tfs: Sequence[AnyTransferFunction]) -> tuple[list[Picture], list[str]]:
+        """Return the model's figures, one of each kind besides, and why others are left out."""
+        bounds: list[BoundTransferFunction] = []
+        for tf in tfs:
+            if isinstance(tf, NestedTransferFunction):
+                continue
+            try:
+                bound = bind(tf)
+            except ModelError:
+                continue  # as for the tables
+            if not bound.ratio.is_zero:
+                bounds.append(bound)
+        pictures: list[Picture] = []
+        warnings: list[str] = []
+        for figure in model.figures if bounds else ():
+            names = {"/".join(pair) for pair in figure.of}
+            of = [bound for bound in bounds if not names or bound.name in names]
+            if of:
+                named = {**DEFAULT_FIGURES, **LOOP_TITLES}
+                title = figure.title or named.get(figure.kind, figure.kind)
+                self._add(pictures, warnings, figure, of, title)
+        asked = {figure.kind for figure in model.figures}
+        for kind, title in DEFAULT_FIGURES.items() if bounds else ():
+            if kind not in asked:
+                self._add(pictures, warnings, Asked(kind, kind, ()), bounds[:MOST_IN_A_FIGURE], title)
+        return pictures, warnings
+
+    def _add(
+        self,
+        pictures: list[Picture],
+        warnings: list[str],
+        asked: Asked,
+        bounds: Sequence[BoundTransferFunction],
+        title: str,
+    ) -> None:
+        """Draw one figure, without its title, which stands below it."""
+        from symflex.figures import render  # imports matplotlib
+        from symflex.figures.pgf import MM_PER_INCH
+
+        name, kind = asked.name, asked.kind
+        of = bounds[:1] if kind == "modes" else bounds  # all functions of a model have the same modes
+        sources = [bound.source for bound in of]
+        try:
+            figure = self._drawn(asked, of)
+        except SymflexError as error:
+            spend()
+            is_without_modes = kind == "modes" and error.diagnostics[0].code == "SF402"
+            if not is_without_modes:
+                warnings.append(f"the figure {name} is left out: {error.diagnostics[0].message}")
+            return
+        height = MM_PER_INCH * figure.get_figheight()
+        if height > TALLEST_MM:
+            warnings.append(f"the figure {name} is left out: it is {height:.0f} mm high")
+            return
+        is_told = kind == "modes" or bool(asked.gain) or title not in DEFAULT_FIGURES.values()
+        shown = () if is_told else tuple(sources)
+        latex = render(figure, "pgf", font="latex").decode("ascii")
+        pictures.append(Picture(name, latex, title, shown))
+
+    def _drawn(self, asked: Asked, of: Sequence[BoundTransferFunction]) -> Figure:
+        from symflex.figures import LOOP_FIGURES, draw, draw_loop
+        from symflex.loops import characteristic_loop, pick_gain
+
+        kind, band = asked.kind, asked.band
+        if asked.gain and kind in LOOP_FIGURES:
+            source = of[0].source
+            loop = characteristic_loop(source, pick_gain(source.model.parameters, asked.gain))
+            return draw_loop(kind, loop, band_hz=band, width_mm=self.width_mm, font="latex")
+        sources = [bound.source for bound in of]
+        return draw(kind, sources, of, band_hz=band, width_mm=self.width_mm, font="latex")
+
+    def _parts(
+        self, tfs: Sequence[AnyTransferFunction]
+    ) -> tuple[tuple[PrintedForm, ...], list[PoleZeroMap], tuple[str, ...]]:
+        """Return forms, poles and zeros of functions whose parameters all have values, and warnings."""
+        forms, sentences = print_forms(tfs, self.form)
+        maps, warnings = [], list(sentences)
+        for tf in tfs:
+            if isinstance(tf, NestedTransferFunction):
+                warnings.append(f"poles and zeros of {tf.name} are left out: it is in nested form")
+                continue
+            try:
+                bound = bind(tf)
+            except ModelError:
+                continue  # symbolic, which is no fault
+            try:
+                maps.append(locate(bound, digits=ROOT_DIGITS))
+            except SymflexError as error:
+                spend()
+                warnings.append(f"poles and zeros of {tf.name} are left out: {error.diagnostics[0].message}")
+        return forms, maps, tuple(warnings)

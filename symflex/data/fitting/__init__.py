@@ -1,0 +1,21 @@
+"""Fitting resonances to measured frequency responses, with standard errors and the paper's phase test."""
+
+from symflex.data.fitting.fit import Base, Fit, fit_resonances
+from symflex.data.fitting.mode_shapes import FittedModeShapes, mode_shapes
+from symflex.data.fitting.order import CRITERIA, STARTS, Score
+from symflex.data.fitting.phase_test import PartedBand, PhaseTest
+from symflex.data.fitting.resonances import Resonances
+
+__all__ = [
+    "CRITERIA",
+    "STARTS",
+    "Base",
+    "Fit",
+    "FittedModeShapes",
+    "PartedBand",
+    "PhaseTest",
+    "Resonances",
+    "Score",
+    "fit_resonances",
+    "mode_shapes",
+]

@@ -1,0 +1,208 @@
+"""What stands over given poles: the power of s, the zeros, the gain and its sign, by linear least squares.
+
+With poles known, ``H(s) prod(poles) = s^k (c_0 + c_1 s + ... + c_2m s^2m)`` is linear in the coefficients
+for each power of s and each number of zero pairs. All of them are solved, which costs no more than one
+factorisation of the widest, and told apart by the BIC. The sign of the gain is that of ``c_0``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from symflex.data.fitting.resonances import Resonances
+
+if TYPE_CHECKING:
+    from symflex.data.fitting.problem import FitProblem
+
+Real = npt.NDArray[np.float64]
+Complex = npt.NDArray[np.complex128]
+
+TURNS, PER_TURN = 2.5, 8
+"""Dead times tried on either side of that of the poles, in turns of the phase at the highest line."""
+MOST_LINES = 400
+MOST_POLISHED = 12
+POLISHED = 4
+STRANGE, MOST_DAMPED = 10.0, 2.0
+"""What a BIC has to gain by a pair of zeros that is hardly one, and the damping ratio from which it is."""
+REAL = 1e-9
+"""Of a zero's magnitude: the imaginary part from which a zero is one of a pair."""
+
+
+@dataclass(frozen=True, eq=False)
+class Numerator:
+    """What stands over the poles in one response; zeros as in Resonances, padded with infinity."""
+
+    bic: float
+    slope: int
+    omega_z: Real
+    zeta_z: Real
+    gain: float
+    delay: float
+
+
+def strange(omega_z: Real, zeta_z: Real, low: float, high: float) -> npt.NDArray[np.bool_]:
+    """Return which pairs of zeros are hardly those of a structure seen in this band.
+
+    They lie outside it, or are two real ones of the same sign: such zeros make up for noise and for a wrong
+    power of s.
+    """
+    place = np.abs(omega_z)
+    outside = np.isfinite(place) & ((place < low) | (place > high))
+    return np.asarray(outside | (np.isfinite(place) & (np.abs(zeta_z) > MOST_DAMPED)))
+
+
+def over_poles(problem: FitProblem, poles: Complex, most: int) -> list[Resonances]:
+    """Return the functions with these poles that describe the lines best, the best first.
+
+    Parameters
+    ----------
+    problem : FitProblem
+        With the powers of s to be tried, and the dead times to begin with.
+    poles : array of complex, shape (n,)
+        In the upper half plane.
+    most : int
+        How many functions at most.
+    """
+    choices = [_numerators(problem, r, poles, most) for r in range(len(problem.lines))]
+    if not all(choices):
+        return []
+    best = [one[0] for one in choices]
+    found = [_together(problem, poles, best)]
+    # One response at a time gets its next best.
+    for r, one in enumerate(choices):
+        found += [_together(problem, poles, [*best[:r], other, *best[r + 1 :]]) for other in one[1:]]
+    return found
+
+
+def _together(problem: FitProblem, poles: Complex, chosen: list[Numerator]) -> Resonances:
+    size = np.abs(poles)
+    return Resonances(
+        size,
+        -poles.real / size,
+        np.array([one.omega_z for one in chosen]),
+        np.array([one.zeta_z for one in chosen]),
+        np.array([one.gain for one in chosen]),
+        delay=np.array([one.delay for one in chosen]),
+        slope=np.array([one.slope for one in chosen]),
+    ).ordered()
+
+
+def _numerators(problem: FitProblem, response: int, poles: Complex, most: int) -> list[Numerator]:
+    full = _System(problem, response, poles)
+    shapes = [(slope, pairs) for slope in problem.slopes for pairs in range(poles.size + 1)]
+    begun = problem.delays[response]
+    if not problem.free.delay:
+        solved = full.solved(shapes, begun)
+        found = [(rest, begun, shape, c) for shape, (rest, c) in zip(shapes, solved, strict=True)]
+    else:
+        # Poles hardly depend on the dead time they were found with; what stands over them does.
+        thin = _System(problem, response, poles, max(1, full.size // MOST_LINES))
+        turn = 2 * np.pi / float(np.max(full.s.imag))
+        tried = begun + turn * np.arange(-TURNS, TURNS, 1 / PER_TURN)
+        tried = np.unique(np.maximum(tried, 0.0))
+        table = np.array([[rest for rest, _ in thin.solved(shapes, float(one))] for one in tried])
+        least = table.min(axis=0)
+        likely = np.argsort(thin.bic(least, shapes))[:MOST_POLISHED]
+        found = [full.polished(shapes[i], float(tried[np.argmin(table[:, i])])) for i in likely]
+    every = []
+    for rest, delay, shape, coefficients in found:
+        zeros = _pairs(coefficients, full.middle, poles.size)
+        if zeros is not None:
+            gain = float(coefficients[0]) / full.middle ** shape[0]
+            bic = float(full.bic(np.array([rest]), [shape])[0])
+            bic += STRANGE * int(strange(*zeros, *problem.band).sum())
+            every.append(Numerator(bic, shape[0], *zeros, gain, delay))
+    return sorted(every, key=lambda one: one.bic)[:most]
+
+
+class _System:
+    """The linear equations of the coefficients, on every line or on some of them."""
+
+    def __init__(self, problem: FitProblem, response: int, poles: Complex, every: int = 1) -> None:
+        line = problem.lines[response]
+        omega, self.values = line.omega[::every], line.ratio[::every]
+        weight = 1 / np.abs(self.values)
+        if line.deviation is not None:
+            weight = weight / line.deviation[::every]
+        self.weight, self.s, self.size = weight, 1j * omega, omega.size
+        self.middle = float(np.exp(np.mean(np.log(line.omega))))
+        self.has_gain = problem.free.gain
+        below = np.ones(omega.size, np.complex128)
+        for pole in poles:
+            below = below * (1 - 2 * pole.real * self.s / abs(pole) ** 2 + (self.s / abs(pole)) ** 2)
+        self.first = min(problem.slopes)
+        powers = np.arange(self.first, max(problem.slopes) + 2 * poles.size + 1)
+        self.columns = (weight / below)[:, None] * (self.s / self.middle)[:, None] ** powers.astype(float)
+
+    def _at(self, shape: tuple[int, int]) -> npt.NDArray[np.intp]:
+        return np.arange(shape[0] - self.first, shape[0] - self.first + 2 * shape[1] + 1)
+
+    def bic(self, rest: Real, shapes: list[tuple[int, int]]) -> Real:
+        """Return the BIC of sums of squares, one for each power of s and number of pairs."""
+        size = 2 * self.size
+        parameters = np.array([2 * pairs + 1 for _, pairs in shapes])
+        return np.asarray(size * np.log(rest / size + 1e-9) + parameters * np.log(size), np.float64)
+
+    def solved(self, shapes: list[tuple[int, int]], delay: float) -> list[tuple[float, Real]]:
+        """Return for each shape the sum of squares and the coefficients, with one factorisation for all."""
+        target = self.weight * self.values * np.exp(self.s * delay)
+        whole = np.concatenate((self.columns, target[:, None]), axis=1)
+        stacked = np.concatenate((whole.real, whole.imag))
+        norms = np.maximum(np.linalg.norm(stacked, axis=0), np.finfo(float).tiny)
+        _, upper = np.linalg.qr(stacked / norms)
+        return [self._coefficients(upper, norms, shape) for shape in shapes]
+
+    def _coefficients(self, upper: Real, norms: Real, shape: tuple[int, int]) -> tuple[float, Real]:
+        at, right = self._at(shape), upper[:, -1]
+        known = np.zeros(0)
+        if not self.has_gain:
+            # What is known stands on the right: the first coefficient.
+            known = np.array([self.middle ** shape[0]])
+            right = right - upper[:, at[0]] * norms[at[0]] * known[0] / norms[-1]
+            at = at[1:]
+        solution = np.linalg.lstsq(upper[:, at], right, rcond=None)[0]
+        rest = float(np.sum((right - upper[:, at] @ solution) ** 2)) * float(norms[-1]) ** 2
+        return rest, np.concatenate((known, solution * norms[-1] / norms[at]))
+
+    def polished(self, shape: tuple[int, int], delay: float) -> tuple[float, float, tuple[int, int], Real]:
+        """Return sum of squares, dead time, shape and coefficients after a few steps of the dead time."""
+        at = self._at(shape)[0 if self.has_gain else 1 :]
+        for _ in range(POLISHED):
+            target = self.weight * self.values * np.exp(self.s * delay)
+            if not self.has_gain:
+                first = self._at(shape)[0]
+                target = target - self.columns[:, first] * self.middle ** shape[0]
+            turned = -self.weight * self.values * np.exp(self.s * delay) * self.s
+            matrix = np.concatenate((self.columns[:, at], turned[:, None]), axis=1)
+            stacked = np.concatenate((matrix.real, matrix.imag))
+            norms = np.maximum(np.linalg.norm(stacked, axis=0), np.finfo(float).tiny)
+            right = np.concatenate((target.real, target.imag))
+            step = float((np.linalg.lstsq(stacked / norms, right, rcond=None)[0] / norms)[-1])
+            delay = max(delay + step, 0.0)
+        ((rest, coefficients),) = self.solved([shape], delay)
+        return rest, delay, shape, coefficients
+
+
+def _pairs(coefficients: Real, middle: float, count: int) -> tuple[Real, Real] | None:
+    """Return frequencies and damping ratios of the zeros of a polynomial, ascending powers of s/middle."""
+    if coefficients[0] == 0 or coefficients[-1] == 0 or not np.isfinite(coefficients).all():
+        return None
+    roots = np.roots(coefficients[::-1]) * middle
+    pairs = [(abs(z), -z.real / abs(z)) for z in roots if z.imag > REAL * abs(z)]
+    real = [float(z.real) for z in roots if abs(z.imag) <= REAL * abs(z)]
+    left, right = sorted(-z for z in real if z < 0), sorted(z for z in real if z > 0)
+    for side, sign in ((left, 1.0), (right, -1.0)):
+        while len(side) > 1:
+            a, b = side.pop(0), side.pop(0)
+            pairs.append((np.sqrt(a * b), sign * (a + b) / (2 * np.sqrt(a * b))))
+    for a, b in zip(left, right, strict=False):
+        pairs.append((-np.sqrt(a * b), np.sqrt(a * b) / 2 * (1 / a - 1 / b)))
+    if len(pairs) != (coefficients.size - 1) // 2:
+        return None
+    missing = count - len(pairs)
+    omega = np.array([*(p[0] for p in pairs), *[np.inf] * missing], np.float64)
+    return omega, np.array([*(p[1] for p in pairs), *[0.0] * missing], np.float64)

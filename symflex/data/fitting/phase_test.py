@@ -1,0 +1,256 @@
+"""Is the measured function minimum phase? The test of the paper.
+
+The resonances are fitted to the magnitude alone, with all zeros in the left half plane. "The phase plots
+should match also, if the data to be matched actually represent a minimum-phase system" (Eppinger & Seering
+1988, section "Polynomial Resonance Model"): where the measured phase leaves the fitted one, they do not. The
+base keeps its own phase.
+
+Magnitude in a band does not determine phase there: a pair of zeros at twice the highest frequency changes the
+level by tenths of a decibel and the phase by tens of degrees (Bode 1945, chapter 14: phase depends on the
+slope of the level at all frequencies). Where the phases part, a second fit therefore looks for any product of
+the same resonances, zeros in the left half plane, that has both: magnitude and phase as measured. Only where
+there is none, not even with a lag linear in frequency, is the function called nonminimum phase.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final, Literal
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import least_squares
+from scipy.signal import medfilt
+
+if TYPE_CHECKING:
+    from symflex.data.fitting.problem import FitProblem, FittedLines
+    from symflex.data.fitting.resonances import Resonances
+
+Real = npt.NDArray[np.float64]
+Complex = npt.NDArray[np.complex128]
+Verdict = Literal["minimum", "undetermined", "nonminimum"]
+
+LIMIT_DEGREES = 10.0
+SIGNIFICANT = 4.0
+SMOOTHED_LINES = 5
+SHORTEST_RUN, LONGEST_GAP = 4, 10
+STEPS = 100
+CAP = 0.05
+LOWEST_DAMPING = 1e-4
+EDGE = 12.0
+MOST_LAG: Final = np.pi / 2
+"""The phase of a lag at the highest line up to which poles above the band, or a sensor, may be its cause."""
+WORSE: Final = 1.25
+"""How much larger a magnitude misfit may be than that of the magnitude alone to count as a fit as well."""
+POOR: Final = 2.0
+"""Magnitude misfit, over the noise and :data:`CAP`, beyond which resonances describe no magnitude at all."""
+
+
+@dataclass(frozen=True, slots=True)
+class PartedBand:
+    """A band in which the measured phase leaves that of the magnitude-only model.
+
+    Parameters
+    ----------
+    low_hz, high_hz : float
+        Its ends [Hz].
+    worst_degrees, worst_hz : float
+        The largest difference, measured less fitted, and where.
+    """
+
+    low_hz: float
+    high_hz: float
+    worst_degrees: float
+    worst_hz: float
+
+
+@dataclass(frozen=True, eq=False)
+class PhaseTest:
+    """The outcome for one response.
+
+    Parameters
+    ----------
+    resonances : Resonances
+        The magnitude-only fit, of this response alone.
+    difference : array of float, shape (n,)
+        Measured less fitted phase on the lines [rad], in (-pi, pi].
+    bands : tuple of PartedBand
+        Where they part, beyond :data:`LIMIT_DEGREES` and the noise.
+    magnitude_db : float
+        Root mean square of the magnitude's own misfit [dB].
+    verdict : str
+        ``minimum``: a minimum-phase function has magnitude and phase as measured. ``nonminimum``: none of
+        this order has. ``undetermined``: only one with a lag linear in frequency has, or none describes the
+        magnitude, so that its phase says nothing.
+    with_phase : Resonances or None
+        The minimum-phase function found by fitting magnitude and phase, where the magnitude alone left the
+        phase open and there is one.
+    lag_s : float
+        The lag [s] it needs besides; 0 for none.
+    """
+
+    resonances: Resonances
+    difference: Real
+    bands: tuple[PartedBand, ...]
+    magnitude_db: float
+    verdict: Verdict
+    with_phase: Resonances | None = None
+    lag_s: float = 0.0
+
+    @property
+    def is_minimum_phase(self) -> bool:
+        """Whether a minimum-phase function has the measured magnitude and phase in the whole band."""
+        return self.verdict == "minimum"
+
+
+def judge_phase(problem: FitProblem, response: int, fitted: Resonances) -> PhaseTest:
+    """Fit the magnitude alone, from the mirror image of a fit in the left half plane, and compare phases.
+
+    Where they part, functions with zeros in the left half plane are fitted to magnitude and phase together.
+    """
+    search = _Search(problem, response, fitted)
+    line = search.line
+    alone, _ = search.found(search.mirrored, "magnitude")
+    model = search.single.values(alone, 0)
+    mirrored = search.mirrored
+    if problem.free.gain and np.mean(np.cos(np.angle(line.measured.values / model))) < 0:
+        # A magnitude does not tell the sign of a gain, and zeros moved to the other side may have turned it.
+        alone, mirrored, model = (
+            replace(alone, gain=-alone.gain),
+            replace(mirrored, gain=-mirrored.gain),
+            -model,
+        )
+    difference = np.angle(line.measured.values / model)
+    bands = _parted(line.measured.frequency_hz, difference, search.noise)
+    magnitude_db = float(20 / np.log(10) * np.sqrt(np.mean(search.level(model) ** 2)))
+    if not bands:
+        return PhaseTest(alone, difference, bands, magnitude_db, "minimum")
+    misfit = search.misfit(model)
+    for kind in KINDS[1:]:
+        for start in (mirrored, alone):
+            other, lag = search.found(start, kind)
+            turned = search.single.values(other, 0) * np.exp(-1j * line.omega * lag)
+            if search.is_as_measured(turned, misfit):
+                verdict: Verdict = "undetermined" if kind == "lag" else "minimum"
+                return PhaseTest(alone, difference, bands, magnitude_db, verdict, other, lag)
+    return PhaseTest(
+        alone, difference, bands, magnitude_db, "undetermined" if misfit > POOR else "nonminimum"
+    )
+
+
+KINDS: Final = ("magnitude", "both", "lag")
+"""What a search fits: the magnitude; magnitude and phase; these with a lag linear in frequency."""
+
+
+class _Search:
+    """Fits of one response by resonances whose zeros lie in the left half plane."""
+
+    def __init__(self, problem: FitProblem, response: int, fitted: Resonances) -> None:
+        # A dead time is no part of the question: it stays as it was fitted.
+        free = replace(problem.free, delay=False)
+        self.single = replace(
+            problem, lines=problem.lines[response : response + 1], delays=(), free=free
+        ).without_window()
+        self.line: FittedLines = self.single.lines[0]
+        size = self.line.omega.size
+        self.noise: Real = np.zeros(size) if self.line.deviation is None else self.line.deviation
+        self.weight: Real = 1 / np.hypot(self.noise, CAP)
+        self.wanted: Real = np.log(np.abs(self.line.measured.values))
+        self.mirrored = _mirrored(fitted.one(response))
+
+    def level(self, model: Complex) -> Real:
+        """Return the logarithm of the model's magnitude over the measured one."""
+        return np.asarray(np.log(np.abs(model)) - self.wanted, np.float64)
+
+    def misfit(self, model: Complex) -> float:
+        """Return the root mean square of that in units of the noise, or of :data:`CAP` where that is more."""
+        return float(np.sqrt(np.mean((self.level(model) * self.weight) ** 2)))
+
+    def is_as_measured(self, model: Complex, misfit: float) -> bool:
+        """Return whether a model has the measured magnitude, as well as any, and phase within the limits."""
+        if not self.misfit(model) <= max(1.0, WORSE * misfit):
+            return False
+        difference = np.angle(self.line.measured.values / model)
+        return not _parted(self.line.measured.frequency_hz, difference, self.noise)
+
+    def found(self, start: Resonances, kind: str) -> tuple[Resonances, float]:
+        """Return where a start leads, and the lag [s]; ``kind`` is one of :data:`KINDS`."""
+        free, omega = self.single.free, self.line.omega
+        damping = start.places(0, free)["zeta_z"]
+        packed = start.pack(free)
+        packed[damping] = np.log(packed[damping])
+        turn = omega / omega[-1]
+        if kind == "lag":
+            packed = np.append(packed, 0.0)
+
+        def resonances(vector: Real) -> Resonances:
+            plain = np.clip(vector, packed - EDGE, packed + EDGE)
+            plain[damping] = np.exp(plain[damping])
+            return start.unpack(plain[:-1] if kind == "lag" else plain, free)
+
+        def residual(vector: Real) -> Real:
+            model = self.single.values(resonances(vector), 0)
+            level = self.level(model) * self.weight
+            if kind == "magnitude":
+                return level
+            if kind == "lag":
+                model = model * np.exp(-1j * turn * vector[-1])
+            return np.concatenate((level, np.angle(model / self.line.measured.values) * self.weight))
+
+        def slopes(vector: Real) -> Real:
+            now = resonances(vector)
+            model, by = self.single.linearised(now, 0)
+            by = by / model[:, None]
+            by[:, damping] *= now.zeta_z[0, now.has_zeros[0]]
+            if kind == "magnitude":
+                return np.asarray(by.real * self.weight[:, None], np.float64)
+            if kind == "lag":
+                by = np.column_stack((by, -1j * turn))
+            return np.concatenate((by.real, by.imag)) * np.tile(self.weight, 2)[:, None]
+
+        best = packed
+        if packed.size:
+            with np.errstate(all="ignore"):  # a trial step may be wild
+                done = least_squares(residual, packed, slopes, method="lm", x_scale="jac", max_nfev=STEPS)
+            best = done.x
+        lag = float(np.clip(best[-1], -MOST_LAG, MOST_LAG) / omega[-1]) if kind == "lag" else 0.0
+        return resonances(best).ordered(), lag
+
+
+def _mirrored(fitted: Resonances) -> Resonances:
+    """Return the function with the same magnitude and all zeros in the left half plane."""
+    zeta = np.abs(fitted.zeta_z)
+    # Real zeros of opposite sign, mirrored, are an overdamped pair.
+    zeta = np.where(fitted.omega_z < 0, np.hypot(1, zeta), np.maximum(zeta, LOWEST_DAMPING))
+    return replace(fitted, omega_z=np.abs(fitted.omega_z), zeta_z=zeta)
+
+
+def _parted(frequency_hz: Real, difference: Real, noise: Real) -> tuple[PartedBand, ...]:
+    """Return the bands of at least four lines in which a median of five lines leaves the limits."""
+    if difference.size < SMOOTHED_LINES:
+        return ()
+    half = SMOOTHED_LINES // 2
+    # On the unit circle: noise would turn an unwrapped phase by whole turns.
+    padded = np.pad(np.exp(1j * difference), half, mode="edge")
+    turned = medfilt(padded.real, SMOOTHED_LINES) + 1j * medfilt(padded.imag, SMOOTHED_LINES)
+    smooth = np.angle(turned[half:-half])
+    level = medfilt(np.pad(noise, half, mode="edge"), SMOOTHED_LINES)[half:-half]
+    limit = np.maximum(np.radians(LIMIT_DEGREES), SIGNIFICANT * level)
+    outside = np.flatnonzero(np.abs(smooth) > limit)
+    if not outside.size:
+        return ()
+    runs = np.split(outside, np.flatnonzero(np.diff(outside) > LONGEST_GAP) + 1)
+    bands = []
+    for run in runs:
+        if run.size < SHORTEST_RUN:
+            continue
+        worst = run[int(np.argmax(np.abs(smooth[run])))]
+        bands.append(
+            PartedBand(
+                float(frequency_hz[run[0]]),
+                float(frequency_hz[run[-1]]),
+                float(np.degrees(smooth[worst])),
+                float(frequency_hz[worst]),
+            )
+        )
+    return tuple(bands)

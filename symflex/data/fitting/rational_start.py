@@ -1,0 +1,257 @@
+"""Starts from rational approximation: vector fitting and AAA.
+
+Both fit the quotient of measurement and base by a rational function with as many poles as zeros, and both
+are exact on data without noise. Sources: Gustavsen & Semlyen, Rational approximation of frequency domain
+responses by vector fitting, IEEE Trans. Power Delivery 14(3), 1999; Gustavsen, Improving the pole
+relocating properties of vector fitting, IEEE Trans. Power Delivery 21(3), 2006 (relaxed); Nakatsukasa, Sete
+& Trefethen, The AAA algorithm for rational approximation, SIAM J. Sci. Comput. 40(3), 2018.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import eig
+
+from symflex.budget import spend
+
+if TYPE_CHECKING:
+    from symflex.data.fitting.problem import FitProblem
+
+Real = npt.NDArray[np.float64]
+Complex = npt.NDArray[np.complex128]
+
+ITERATIONS = 25
+FIRST_DAMPING = 0.01
+SETTLED = 1e-6
+LOWEST_DAMPING = 1e-4
+SPARE = 2
+GENEROUS = 10
+"""Steps of a vector fit from which only a level of noise, or a first choice of poles, is taken."""
+LARGEST_START = 0.3
+FREE_POWERS = (-2, -1, 0, 1, 2)
+"""Beside the fractions where the power of s is not known: receptances to accelerances, free or held."""
+
+
+def poles_from_vector_fitting(problem: FitProblem, count: int) -> list[Complex]:
+    """Return poles by relaxed vector fitting, begun in two ways.
+
+    From poles spread over the band; and from the most conspicuous poles of a function with two pairs more,
+    which noise, a close pair or a delay may take up on the way.
+    """
+    low, high = problem.band
+    found = [relocated(problem, _spread(low, high, count))]
+    generous = relocated(problem, _spread(low, high, count + SPARE), GENEROUS)
+    found.append(relocated(problem, _conspicuous(problem, generous, count)))
+    return found
+
+
+def poles_from_aaa(problem: FitProblem, count: int) -> list[Complex]:
+    """Return the poles of an AAA approximant of the first response.
+
+    Noise gives AAA spurious poles; of those in the band the ones with the largest residue over real part are
+    taken. Where noise has drowned some, approximants of a higher degree are tried.
+    """
+    line = problem.lines[0]
+    low, high = problem.band
+    for degree in (2 * count, 2 * count + SPARE, 3 * count + SPARE):
+        poles = _aaa_poles(line.omega, problem.quotient(0), degree)
+        wanted = [
+            (size, pole)
+            for size, pole in poles
+            if low <= abs(pole) <= high and abs(pole.real) < 0.5 * abs(pole) and pole.imag > 0
+        ]
+        chosen = sorted(wanted, key=lambda item: -item[0])[:count]
+        if len(chosen) == count:
+            upper = np.array([complex(-max(abs(p.real), LOWEST_DAMPING * abs(p)), p.imag) for _, p in chosen])
+            upper = upper[np.argsort(upper.imag)]
+            return [upper, relocated(problem, upper)]
+    return []
+
+
+def generous_fit(problem: FitProblem, count: int) -> tuple[list[Complex], int]:
+    """Return what a rational function without structure makes of the lines, and its number of parameters.
+
+    Its poles are shared; each response has residues and powers of s of its own.
+    """
+    low, high = problem.band
+    poles = relocated(problem, _spread(low, high, count), GENEROUS)
+    values = []
+    for r, line in enumerate(problem.lines):
+        basis, weight = _local(problem, line.omega, poles), _weights(problem, r)
+        solved = _solved(weight[:, None] * basis, weight * problem.quotient(r))
+        values.append(basis @ solved * (line.measured.values / problem.quotient(r)))
+    return values, 2 * count + len(values) * (2 * count + len(_powers(problem)))
+
+
+def _conspicuous(problem: FitProblem, poles: Complex, count: int) -> Complex:
+    """Return the poles in the band whose peaks stand out most against the response there."""
+    low, high = problem.band
+    size = np.zeros(poles.size)
+    for r, line in enumerate(problem.lines):
+        quotient, weight = problem.quotient(r), _weights(problem, r)
+        basis = _local(problem, line.omega, poles)
+        solved = _solved(weight[:, None] * basis, weight * quotient)
+        for i in range(poles.size):
+            share = np.abs(basis[:, 2 * i : 2 * i + 2] @ solved[2 * i : 2 * i + 2]) * weight
+            size[i] += float(np.sum(share**2))
+    size = np.where((np.abs(poles) >= low) & (np.abs(poles) <= high), size, 0.0)
+    # A smooth rise is no resonance, however large it is.
+    size = size * np.minimum(1.0, LARGEST_START / (-poles.real / np.abs(poles)))
+    chosen = np.sort(np.argsort(-size, kind="stable")[:count])
+    return poles[chosen]
+
+
+def _powers(problem: FitProblem) -> tuple[int, ...]:
+    """Return the powers of s beside the partial fractions."""
+    return (0,) if len(problem.slopes) == 1 else FREE_POWERS
+
+
+def _local(problem: FitProblem, omega: Real, poles: Complex) -> Complex:
+    middle = np.exp(np.mean(np.log(problem.band)))
+    x = 1j * omega[:, None] / middle
+    return np.concatenate((_basis(omega, poles), *(x ** float(p) for p in _powers(problem))), axis=1)
+
+
+def _solved(matrix: Complex, target: Complex) -> Real:
+    """Return the real solution of a complex system in the sense of least squares."""
+    stacked, right = np.concatenate((matrix.real, matrix.imag)), np.concatenate((target.real, target.imag))
+    norms = np.maximum(np.linalg.norm(stacked, axis=0), np.finfo(float).tiny)
+    return np.asarray(np.linalg.lstsq(stacked / norms, right, rcond=None)[0] / norms, np.float64)
+
+
+def _spread(low: float, high: float, count: int) -> Complex:
+    """Return poles spread over a band, as vector fitting wants to begin."""
+    middle = (np.arange(count) + 0.5) / count
+    omega = low * (high / low) ** middle if high > 30 * low else low + (high - low) * middle
+    return -FIRST_DAMPING * omega + 1j * omega
+
+
+def _weights(problem: FitProblem, response: int) -> Real:
+    """Return weights of the quotient's lines: over its standard deviation, or else over its magnitude."""
+    line = problem.lines[response]
+    size = np.abs(problem.quotient(response))
+    return np.asarray(1 / (size if line.deviation is None else size * np.hypot(line.deviation, 0.01)))
+
+
+def _basis(omega: Real, poles: Complex) -> Complex:
+    """Return 1/(s - p) of the pairs in real combinations, shape (k, 2 n)."""
+    s = 1j * omega[:, None]
+    first, second = 1 / (s - poles), 1 / (s - np.conj(poles))
+    basis = np.empty((omega.size, 2 * poles.size), dtype=np.complex128)
+    basis[:, 0::2], basis[:, 1::2] = first + second, 1j * (first - second)
+    return basis
+
+
+def _state_matrix(poles: Complex) -> tuple[Real, Real]:
+    """Return A and b of the basis in real form."""
+    size = 2 * poles.size
+    a, b = np.zeros((size, size)), np.zeros(size)
+    for i, pole in enumerate(poles):
+        k = 2 * i
+        a[k : k + 2, k : k + 2] = [[pole.real, pole.imag], [-pole.imag, pole.real]]
+        b[k] = 2
+    return a, b
+
+
+def _eigenvalues(matrix: Real) -> Complex:
+    return np.asarray(np.linalg.eigvals(matrix), np.complex128)
+
+
+def relocated(problem: FitProblem, poles: Complex, iterations: int = ITERATIONS) -> Complex:
+    """Return the poles after relaxed vector fitting; pairs stay pairs, and stay stable."""
+    quotients = [problem.quotient(r) for r in range(len(problem.lines))]
+    for _ in range(iterations):
+        spend()
+        rows, right = [], []
+        total = 0.0
+        for r, line in enumerate(problem.lines):
+            weight = _weights(problem, r)
+            local = _local(problem, line.omega, poles)
+            shared = np.concatenate((_basis(line.omega, poles), np.ones((line.omega.size, 1))), axis=1)
+            block = weight[:, None] * np.concatenate((local, -quotients[r][:, None] * shared), axis=1)
+            block = np.concatenate((block.real, block.imag))
+            # Only what the shared part needs is kept of each response (Deschrijver et al. 2008).
+            _, upper = np.linalg.qr(block)
+            rows.append(upper[local.shape[1] :, local.shape[1] :])
+            right.append(np.zeros(rows[-1].shape[0]))
+            total += float(np.linalg.norm(weight * np.abs(quotients[r]))) ** 2
+        size = sum(line.omega.size for line in problem.lines)
+        mean = np.sqrt(total) / size
+        summed = np.sum(
+            [
+                np.concatenate((_basis(line.omega, poles).real.sum(axis=0), [line.omega.size]))
+                for line in problem.lines
+            ],
+            axis=0,
+        )
+        rows.append(mean * summed[None, :])
+        right.append(np.array([mean * size]))
+        matrix, target = np.concatenate(rows), np.concatenate(right)
+        norms = np.maximum(np.linalg.norm(matrix, axis=0), np.finfo(float).tiny)
+        solution = np.linalg.lstsq(matrix / norms, target, rcond=None)[0] / norms
+        a, b = _state_matrix(poles)
+        direct = solution[-1] if abs(solution[-1]) > SETTLED else SETTLED
+        moved = _upper(_eigenvalues(a - np.outer(b, solution[:-1]) / direct), poles.size)
+        if moved.size < poles.size:
+            break
+        change = np.max(np.abs(moved - poles) / np.abs(poles))
+        poles = moved
+        if change < SETTLED:
+            break
+    return poles
+
+
+def _upper(roots: Complex, count: int) -> Complex:
+    """Return so many stable poles in the upper half plane; two real ones become a damped pair."""
+    scale = np.abs(roots).max()
+    upper = [complex(-abs(p.real), p.imag) for p in roots if p.imag > 1e-9 * scale]
+    real = sorted(abs(p) for p in roots if abs(p.imag) <= 1e-9 * scale)
+    for first, second in zip(real[0::2], real[1::2], strict=False):
+        centre = np.sqrt(max(first * second, 1e-12 * scale**2))
+        upper.append(centre * complex(-0.5, np.sqrt(0.75)))
+    found = np.array(sorted(upper, key=lambda p: p.imag)[:count], dtype=np.complex128)
+    least = LOWEST_DAMPING * np.abs(found)
+    return np.where(-found.real < least, -least + 1j * found.imag, found)
+
+
+def _aaa_poles(omega: Real, values: Complex, degree: int) -> list[tuple[float, complex]]:
+    """Return poles of an AAA approximant of data at s = j omega and its mirror, each with its weight."""
+    points = np.concatenate((1j * omega, -1j * omega))
+    data = np.concatenate((values, np.conj(values)))
+    free = np.ones(points.size, dtype=bool)
+    chosen: list[int] = []
+    approximant = np.full(points.size, data.mean())
+    weights = np.ones(1, dtype=np.complex128)
+    while len(chosen) < degree + 1 and free.sum() > 2 * degree:
+        # Points enter with their mirror images, so that poles come in pairs.
+        worst = int(np.argmax(np.where(free, np.abs(data - approximant) / np.abs(data), -1)))
+        for place in (worst, (worst + omega.size) % points.size):
+            free[place] = False
+            chosen.append(place)
+        support, at = points[chosen], data[chosen]
+        cauchy = 1 / (points[free, None] - support)
+        loewner = (data[free, None] - at) * cauchy / np.abs(data[free, None])
+        weights = np.conj(np.linalg.svd(loewner, full_matrices=False)[2][-1])
+        approximant = data.copy()
+        approximant[free] = (cauchy @ (weights * at)) / (cauchy @ weights)
+    support, at = points[chosen], data[chosen]
+    size = len(chosen)
+    right = np.eye(size + 1)
+    right[0, 0] = 0
+    left = np.zeros((size + 1, size + 1), dtype=np.complex128)
+    left[0, 1:], left[1:, 0] = weights, 1
+    left[1:, 1:] = np.diag(support)
+    found = []
+    for pole in eig(left, right, right=False):
+        if not np.isfinite(pole) or pole.imag <= 0:
+            continue
+        away = pole - support
+        with np.errstate(all="ignore"):  # data that an approximant meets exactly leave poles on its points
+            residue = np.sum(weights * at / away) / np.sum(-weights / away**2)
+        if not np.isfinite(residue):
+            continue
+        found.append((float(abs(residue) / max(abs(pole.real), 1e-9 * abs(pole))), complex(pole)))
+    return found

@@ -1,0 +1,337 @@
+"""A fit as the text a terminal shows and as JSON data."""
+
+from __future__ import annotations
+
+import textwrap
+from math import floor, isfinite, log10, pi, sqrt
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from symflex.data.fitting import Fit, FittedModeShapes, PhaseTest
+
+SCHEMA: Final = "symflex.fit/1"
+ERROR_DIGITS: Final = 2
+STARTS: Final = {
+    "peaks": "peaks and troughs of the magnitude, the paper's procedure",
+    "vector": "vector fitting",
+    "aaa": "AAA approximation",
+}
+
+
+def fit_text(fit: Fit, width: int = 80, shapes: FittedModeShapes | None = None) -> str:
+    """Return the report of a fit.
+
+    Parameters
+    ----------
+    fit : Fit
+        The result.
+    width : int
+        Columns of the terminal.
+    shapes : FittedModeShapes, optional
+        Printed too.
+    """
+    found = fit.resonances
+    lines = [line for reason in fit.poor for line in _wrapped(f"POOR FIT: {reason}", width, "")]
+    for r, measured in enumerate(fit.measured):
+        lines += _wrapped(f"{measured.name}   {_what(fit, r)}", width, "")
+        if measured.is_synthetic:
+            lines += _wrapped("the data are SYNTHETIC: computed from a model, not measured", width)
+        lines += _wrapped(_data_line(fit, r), width)
+    lines += _wrapped(f"start: {STARTS[fit.candidate.start_kind]}", width)
+    errors = fit.standard_errors()
+    lines += ["", "  poles" + _heads()]
+    for i in range(found.count):
+        lines.append(_row(i, found.omega_p[i], errors.omega_p[i], found.zeta_p[i], errors.zeta_p[i]))
+    for r, measured in enumerate(fit.measured):
+        name = f" of {measured.name}" if found.responses > 1 else ""
+        lines += ["", *([f"  zeros{name}"] if name else []), ("       " if name else "  zeros") + _heads()]
+        for i in np.flatnonzero(found.has_zeros[r]).tolist():
+            z, e = found, errors
+            lines.append(_row(i, z.omega_z[r, i], e.omega_z[r, i], z.zeta_z[r, i], e.zeta_z[r, i]))
+        if not found.has_zeros[r].any():
+            lines.append("   none")
+        if fit.problem.free.gain:
+            lines.append(f"  gain {found.gain[r]:.6g}, standard error {errors.gain[r]:.2g}")
+        if fit.problem.free.lag:
+            lines.append(f"  lag of the sensor {found.lag[r]:.4g} s, standard error {errors.lag[r]:.2g} s")
+        if fit.problem.free.delay:
+            lines.append(f"  dead time {found.delay[r]:.4g} s, standard error {errors.delay[r]:.2g} s")
+    if shapes is not None:
+        lines += ["", *_shape_lines(shapes, width)]
+    lines.append("")
+    for r, measured in enumerate(fit.measured):
+        name = f" of {measured.name}" if found.responses > 1 else ""
+        text = f"residual{name}: {fit.misfit_db(r):.2g} dB and {fit.misfit_degrees(r):.2g} degrees rms"
+        lines += _wrapped(text, width)
+    lines += _wrapped(_accuracy(fit), width)
+    if fit.scores:
+        lines += ["", "  resonances   parameters          BIC         AICc   residual"]
+        for s in fit.scores:
+            mark = " <" if s.count == found.count else "" if s.is_usable else f" {s.status}"
+            numbers = f"{s.bic:10.1f}   {s.aicc:10.1f}   {sqrt(s.reduced):8.4g}"
+            lines.append(f"  {s.count:10d}   {s.parameters:10d}   {numbers}{mark}")
+        told = ["did not fail"] + ["are not weak (a resonance lost in noise)"] * any(
+            s.status == "weak" for s in fit.scores
+        )
+        words = f"chosen by {fit.criterion.upper()}, the lowest of those that {' and '.join(told)}"
+        lines += _wrapped(words, width)
+    lines.append("")
+    for r, test in enumerate(fit.phase_tests):
+        name = f" of {fit.measured[r].name}" if found.responses > 1 else ""
+        lines += _wrapped(f"phase test{name}: {_phase_words(test, fit, r)}", width)
+    for warning in fit.warnings:
+        lines += _wrapped(f"warning: {warning}", width)
+    return "\n".join(lines)
+
+
+def _shape_lines(shapes: FittedModeShapes, width: int) -> list[str]:
+    """Return mode shapes, a block for each mode."""
+    head = f"mass-normalised mode shapes [{shapes.unit}], driven at {shapes.names[shapes.driving]}"
+    lines = _wrapped(head, width)
+    wide = max(len(name) for name in shapes.names)
+    lines += _wrapped("from poles that suit all responses best", width)
+    lines.append(f"  mode  {'response':{wide}}        value   std. error   off real [deg]")
+    for i in range(shapes.shapes.shape[1]):
+        for r, name in enumerate(shapes.names):
+            mode = str(i + 1) if r == 0 else ""
+            value, error = shapes.shapes[r, i], shapes.errors[r, i]
+            lines.append(
+                f"  {mode:>4}  {name:{wide}}   {value:10.5g}   {error:10.2g}   {shapes.turned[r, i]:14.1f}"
+            )
+    return lines
+
+
+def _shapes_json(shapes: FittedModeShapes) -> dict[str, object]:
+    return {
+        "driving": shapes.names[shapes.driving],
+        "unit": shapes.unit,
+        "responses": list(shapes.names),
+        "frequency_hz": shapes.frequency_hz.tolist(),
+        "damping_ratio": shapes.damping_ratio.tolist(),
+        "shapes": shapes.shapes.T.tolist(),
+        "standard_errors": shapes.errors.T.tolist(),
+        "degrees_off_real": shapes.turned.T.tolist(),
+    }
+
+
+def fit_json(fit: Fit, shapes: FittedModeShapes | None = None) -> dict[str, object]:
+    """Return the document ``symflex fit --json`` prints."""
+    found, errors = fit.resonances, fit.standard_errors()
+    return {
+        "schema": SCHEMA,
+        "modes": found.count,
+        "start": fit.candidate.start_kind,
+        "gain_fitted": fit.problem.free.gain,
+        "lag_fitted": fit.problem.free.lag,
+        "delay_fitted": fit.problem.free.delay,
+        "poor": bool(fit.poor),
+        "poor_because": list(fit.poor),
+        "poles": _pairs(found.omega_p, found.zeta_p, errors.omega_p, errors.zeta_p),
+        "responses": [_response_json(fit, r) for r in range(found.responses)],
+        "residual": {
+            "reduced": fit.refined.reduced,
+            "in_units_of_coherence_noise": _is_scaled(fit),
+            "line_correlation": fit.refined.correlation,
+        },
+        "criterion": fit.criterion if fit.scores else None,
+        "orders": [
+            {
+                "modes": s.count,
+                "parameters": s.parameters,
+                "bic": _finite(s.bic),
+                "aicc": _finite(s.aicc),
+                "reduced": _finite(s.reduced),
+                "status": s.status,
+            }
+            for s in fit.scores
+        ],
+        "mode_shapes": None if shapes is None else _shapes_json(shapes),
+        "warnings": list(fit.warnings),
+    }
+
+
+def _response_json(fit: Fit, r: int) -> dict[str, object]:
+    measured, base, test = fit.measured[r], fit.bases[r], fit.phase_tests[r]
+    found, errors, start = fit.resonances, fit.standard_errors(), fit.candidate.start
+    shown = found.has_zeros[r]
+    zeros = (found.omega_z[r], found.zeta_z[r], errors.omega_z[r], errors.zeta_z[r])
+    return {
+        "name": measured.name,
+        "synthetic": measured.is_synthetic,
+        "lines": measured.values.size,
+        "band_hz": [float(measured.frequency_hz[0]), float(measured.frequency_hz[-1])],
+        "averages": measured.averages,
+        "window": measured.window or None,
+        "unit": measured.unit,
+        "base": {"spec": base.path, "tf": base.tf} if base.path else None,
+        "slope": None if base.path else base.slope,
+        "gain": {"value": float(found.gain[r]), "standard_error": float(errors.gain[r])},
+        "lag": {"value": float(found.lag[r]), "standard_error": float(errors.lag[r])},
+        "delay": {"value": float(found.delay[r]), "standard_error": float(errors.delay[r])},
+        "zeros": [
+            pair | {"real_of_opposite_sign": bool(omega < 0)}
+            for pair, omega in zip(
+                _pairs(*(np.abs(x[shown]) if k == 0 else x[shown] for k, x in enumerate(zeros))),
+                found.omega_z[r, shown],
+                strict=True,
+            )
+        ],
+        "start": [
+            {
+                "omega_p": float(start.omega_p[i]),
+                "zeta_p": float(start.zeta_p[i]),
+                "omega_z": _finite(float(start.omega_z[r, i])),
+                "zeta_z": float(start.zeta_z[r, i]),
+            }
+            for i in range(start.count)
+        ],
+        "residual_db": fit.misfit_db(r),
+        "residual_degrees": fit.misfit_degrees(r),
+        "phase_test": {
+            "minimum_phase": None if test.verdict == "undetermined" else test.is_minimum_phase,
+            "verdict": test.verdict,
+            "lag_s": test.lag_s,
+            "magnitude_residual_db": test.magnitude_db,
+            "parted": [
+                {
+                    "low_hz": b.low_hz,
+                    "high_hz": b.high_hz,
+                    "worst_degrees": b.worst_degrees,
+                    "worst_hz": b.worst_hz,
+                }
+                for b in test.bands
+            ],
+        },
+    }
+
+
+def _pairs(
+    omega: np.ndarray, zeta: np.ndarray, omega_error: np.ndarray, zeta_error: np.ndarray
+) -> list[dict[str, object]]:
+    return [
+        {
+            "omega": float(omega[i]),
+            "omega_standard_error": float(omega_error[i]),
+            "frequency_hz": float(omega[i]) / (2 * pi),
+            "frequency_standard_error_hz": float(omega_error[i]) / (2 * pi),
+            "damping_ratio": float(zeta[i]),
+            "damping_standard_error": float(zeta_error[i]),
+        }
+        for i in range(omega.size)
+    ]
+
+
+def _finite(value: float) -> float | None:
+    return value if isfinite(value) else None
+
+
+def _is_scaled(fit: Fit) -> bool:
+    return fit.problem.has_deviations and all(bool(m.averages) for m in fit.measured)
+
+
+def _wrapped(text: str, width: int, indent: str = "  ") -> list[str]:
+    return textwrap.wrap(
+        text, width, initial_indent=indent, subsequent_indent=indent + "  ", break_on_hyphens=False
+    )
+
+
+def _what(fit: Fit, r: int) -> str:
+    count, base = fit.resonances.count, fit.bases[r]
+    word = "resonance" if count == 1 else "resonances"
+    if base.path:
+        return f"{count} {word} on {base.tf} of {base.path}"
+    return f"{count} {word} on a gain" + (f" times s^{base.slope}" if base.slope else "")
+
+
+def _data_line(fit: Fit, r: int) -> str:
+    measured = fit.measured[r]
+    low, high = measured.frequency_hz[0], measured.frequency_hz[-1]
+    parts = [f"data: {measured.values.size} lines from {low:.4g} to {high:.4g} Hz"]
+    if measured.coherence is None:
+        parts.append("no coherence: the noise is estimated")
+    else:
+        parts.append(
+            f"coherence {measured.coherence.min():.3f} or more, median {np.median(measured.coherence):.3f}"
+        )
+        if measured.averages:
+            parts.append(f"{measured.averages:g} averages")
+    if measured.window:
+        parts.append("Hann window")
+    return ", ".join(parts)
+
+
+def _heads() -> str:
+    return f"{'frequency [Hz]':>18}{'std. error':>13}{'damping ratio':>17}{'std. error':>13}"
+
+
+def _row(i: int, omega: float, omega_error: float, zeta: float, zeta_error: float) -> str:
+    hertz, hertz_error = abs(omega) / (2 * pi), omega_error / (2 * pi)
+    left = f"{_shown(hertz, hertz_error):>18}{_error(hertz_error):>13}"
+    mark = "" if omega > 0 else "  real, of opposite sign"
+    return f"  {i + 1:5d}{left}{_shown(zeta, zeta_error):>17}{_error(zeta_error):>13}{mark}"
+
+
+def _places(error: float) -> int:
+    if not isfinite(error) or error <= 0:
+        return 6
+    return max(0, min(10, ERROR_DIGITS - 1 - floor(log10(error))))
+
+
+def _shown(value: float, error: float) -> str:
+    return f"{value:.{_places(error)}f}"
+
+
+def _error(error: float) -> str:
+    return f"{error:.{_places(error)}f}" if error >= 1e-10 else "0"  # noqa: PLR2004
+
+
+def _accuracy(fit: Fit) -> str:
+    words = []
+    size = sqrt(fit.refined.reduced)
+    if _is_scaled(fit):
+        words.append(f"that is {size:.3g} times what coherence explains")
+    words.append("standard errors are scaled to the residual")
+    if fit.refined.correlation > 1:
+        words.append(f"and count neighbouring lines as correlated (a mean has {_times(fit)} the variance)")
+    return ", ".join(words[:-1]) + (", " if len(words) == 2 else " ") + words[-1]  # noqa: PLR2004
+
+
+def _times(fit: Fit) -> str:
+    return f"{fit.refined.correlation:.2f} times"
+
+
+def _phase_words(test: PhaseTest, fit: Fit, r: int) -> str:
+    low, high = fit.measured[r].frequency_hz[[0, -1]]
+    fitted = "a minimum-phase fit to the magnitude alone"
+    if fit.bases[r].path:
+        fitted += " (the base with its own phase)"
+    if not test.bands:
+        return (
+            f"the measured phase is that of {fitted}, within 10 degrees or the noise, "
+            f"from {low:.4g} to {high:.4g} Hz: minimum phase"
+        )
+    bands = "; ".join(
+        f"from {b.low_hz:.4g} to {b.high_hz:.4g} Hz, by {b.worst_degrees:+.0f} degrees at {b.worst_hz:.4g} Hz"
+        for b in test.bands
+    )
+    parts = f"the measured phase parts from that of {fitted} {bands}"
+    if test.verdict == "nonminimum":
+        return f"{parts}: not minimum phase there"
+    if test.is_minimum_phase:
+        return (
+            f"minimum phase: a function with all zeros in the left half plane has the measured magnitude and "
+            f"phase, within 10 degrees or the noise, from {low:.4g} to {high:.4g} Hz. The magnitude alone "
+            f"leaves the phase open ({bands})"
+        )
+    if test.with_phase is not None:
+        return (
+            f"undetermined: {parts}; with a lag of {1e3 * test.lag_s:.3g} ms a minimum-phase function has "
+            "both. A sensor, poles or zeros above the band, or a delay may be the cause, and the data do not "
+            "tell which"
+        )
+    return (
+        f"undetermined: {parts}, and that fit leaves {test.magnitude_db:.2g} dB rms of the magnitude: its "
+        "phase says nothing"
+    )

@@ -1,0 +1,119 @@
+"""Arrays in netCDF 3 files of hostile kind: nothing is allocated that is not there.
+
+The layout is that of Unidata, NetCDF Classic Format Specification (versions 1 and 2: 32 and 64-bit offsets).
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy.typing as npt
+
+from symflex.data.measurement.byte_reader import ByteReader
+
+Attributes = dict[str, str]
+Variable = tuple[tuple[str, ...], npt.NDArray[Any], Attributes]
+
+_TYPES: Final = {1: "i1", 2: "S1", 3: "i2", 4: "i4", 5: "f4", 6: "f8"}
+_DIMENSION, _VARIABLE, _ATTRIBUTE, _ABSENT, _TEXT = 10, 11, 12, 0, 2
+_OFFSETS: Final = {1: "i4", 2: "i8"}
+
+
+def read_netcdf(data: bytes, items: int) -> tuple[Attributes, dict[str, Variable]]:
+    r"""Return global attributes, and by name of every variable its dimensions, values and attributes.
+
+    Parameters
+    ----------
+    data : bytes
+        The file.
+    items : int
+        How many dimensions, variables and attributes there may be of each.
+
+    Raises
+    ------
+    ValueError
+        With the reason: no such file, cut short, an unlimited dimension that is not empty, or variables that
+        stand in the same place.
+    OverflowError
+        Too many items.
+
+    Examples
+    --------
+    >>> read_netcdf(b"CDF\x05", 10)
+    Traceback (most recent call last):
+    ValueError: it is neither netCDF 3 nor .npz
+    """
+    reader = ByteReader(data, ">")
+    if data[:3] != b"CDF" or data[3:4] not in (b"\x01", b"\x02"):
+        message = "it is neither netCDF 3 nor .npz"
+        raise ValueError(message)
+    reader.take(3)
+    offset = _OFFSETS[reader.integer("u1")]
+    records = reader.integer("i4")
+    dimensions = [(_name(reader), reader.integer("i4")) for _ in range(_count(reader, _DIMENSION, items))]
+    attributes = _attributes(reader, items)
+    found: dict[str, Variable] = {}
+    left = len(data)
+    for _ in range(_count(reader, _VARIABLE, items)):
+        name = _name(reader)
+        numbers = [reader.integer("i4") for _ in range(_checked(reader.integer("i4"), items))]
+        if any(not 0 <= number < len(dimensions) for number in numbers):
+            message = "a variable has an unknown dimension"
+            raise ValueError(message)
+        about = _attributes(reader, items)
+        kind = _type(reader)
+        reader.integer("i4")  # the size, which dimensions and type say as well
+        begin = reader.integer(offset)
+        shape = [dimensions[number][1] for number in numbers]
+        if 0 in shape and records:
+            message = f"variable '{name[:40]}' has an unlimited dimension"
+            raise ValueError(message)
+        body = ByteReader(data, ">")
+        body.take(begin)
+        values = body.numbers(kind, shape)
+        left -= values.nbytes
+        if left < 0:
+            message = "variables stand in the same place"
+            raise ValueError(message)
+        found[name] = tuple(dimensions[number][0] for number in numbers), values, about
+    return attributes, found
+
+
+def _checked(count: int, items: int) -> int:
+    if not 0 <= count <= items:
+        raise OverflowError
+    return count
+
+
+def _count(reader: ByteReader, tag: int, items: int) -> int:
+    found, count = reader.integer("i4"), reader.integer("i4")
+    if found != tag and (found, count) != (_ABSENT, 0):
+        message = f"a list of kind {found}"
+        raise ValueError(message)
+    return _checked(count, items)
+
+
+def _name(reader: ByteReader) -> str:
+    name = bytes(reader.take(reader.integer("i4"))).decode("utf-8")
+    reader.align(4)
+    return name
+
+
+def _type(reader: ByteReader) -> str:
+    number = reader.integer("i4")
+    if number not in _TYPES:
+        message = f"values of an unknown type {number}"
+        raise ValueError(message)
+    return _TYPES[number]
+
+
+def _attributes(reader: ByteReader, items: int) -> Attributes:
+    """Return attributes as text."""
+    found: Attributes = {}
+    for _ in range(_count(reader, _ATTRIBUTE, items)):
+        name, kind = _name(reader), _type(reader)
+        values = reader.numbers(kind, (reader.integer("i4"),))
+        reader.align(4)
+        is_text = kind == _TYPES[_TEXT]
+        found[name] = values.tobytes().decode("utf-8") if is_text else " ".join(map(str, values.tolist()))
+    return found

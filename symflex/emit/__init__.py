@@ -1,1 +1,0 @@
-"""What leaves the program: printed forms, LaTeX, numeric code, figures."""

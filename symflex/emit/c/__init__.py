@@ -1,5 +1,0 @@
-"""The export target ``c``: C99 source and header."""
-
-from symflex.emit.c.module import CExport, c_files
-
-__all__ = ["CExport", "c_files"]

@@ -1,0 +1,158 @@
+"""Closing sub-impedances: every sum becomes one generator, so that elimination and print stay compact.
+
+Input: :class:`symflex.equations.Equations`, entries factored over the ring of parameters.
+Output: a :class:`ClosedSystem`, a sparse matrix over a ring with one more generator per distinct sum.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from symflex.algebra import LAPLACE, Factored, Ring, expanded_length
+from symflex.budget import spend
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from flint import fmpz_mpoly
+
+    from symflex.equations import Equations
+    from symflex.library.elements import LinearForm, Variable
+
+SparseRow = dict[int, "fmpz_mpoly"]
+
+TERM_LIMIT = 6_000_000
+MEMORY_LIMIT = 300_000_000
+"""Terms and bytes of one opened polynomial: a free chain of twelve masses, all symbolic, has 5.6 million."""
+
+
+@dataclass(frozen=True)
+class Closure:
+    """A ring with one generator per closed sum, and the way back.
+
+    Parameters
+    ----------
+    base : Ring
+        s, parameters, definitions, pi, functions of constants.
+    ring : Ring
+        Those of the same generators that stand outside closed sums, s and pi in any case, and then the sums:
+        a monomial takes a byte per generator.
+    sums : tuple of (str, fmpz_mpoly)
+        Each closed generator's name and its polynomial in ``base``.
+    """
+
+    base: Ring
+    ring: Ring
+    sums: tuple[tuple[str, fmpz_mpoly], ...]
+
+    @cached_property
+    def images(self) -> tuple[fmpz_mpoly, ...]:
+        """What every generator of ``ring`` is in ``base``."""
+        plain = self.ring.names[: len(self.ring.names) - len(self.sums)]
+        return (*(self.base.generator(n) for n in plain), *(p for _, p in self.sums))
+
+    @cached_property
+    def _closed(self) -> Mapping[str, fmpz_mpoly]:
+        return {str(p): self.ring.generator(name) for name, p in self.sums}
+
+    def close(self, value: Factored) -> fmpz_mpoly:
+        """Return a polynomial entry with its sums closed."""
+        result = self.ring.constant(int(value.unit))
+        for factor, exponent in value.factors:
+            result = result * self._image(factor) ** exponent
+        return result
+
+    def _image(self, factor: fmpz_mpoly) -> fmpz_mpoly:
+        closed = self._closed.get(str(factor))
+        return self._embed(factor) if closed is None else closed
+
+    @cached_property
+    def _embedding(self) -> tuple[fmpz_mpoly, ...]:
+        """What every generator of ``base`` is in ``ring``, where it is there."""
+        absent = self.ring.constant(0)
+        index = self.ring.index
+        return tuple(self.ring.generator(n) if n in index else absent for n in self.base.names)
+
+    def _embed(self, factor: fmpz_mpoly) -> fmpz_mpoly:
+        return factor.compose(*self._embedding)
+
+    def open(self, polynomial: fmpz_mpoly) -> Factored:
+        """Return a closed polynomial over ``base``; factors that stand in front stay factored."""
+        if polynomial.is_zero():
+            return Factored.number(self.base, 0)
+        content = polynomial.term_content()
+        result = Factored.number(self.base, Fraction(int(content.leading_coefficient())))
+        for image, exponent in zip(self.images, content.monoms()[0], strict=True):
+            if exponent:
+                result = result * Factored.polynomial(self.base, image) ** int(exponent)
+        rest = polynomial / content
+        if rest.is_constant():
+            return result * int(rest.leading_coefficient())
+        opened = self.base.compose(rest, self.images, TERM_LIMIT, MEMORY_LIMIT)
+        return result * Factored.polynomial(self.base, opened)
+
+    def opened_length(self, polynomial: fmpz_mpoly) -> int | None:
+        """Return a bound on the terms of a closed polynomial over ``base``; see ``expanded_length``."""
+        return expanded_length(polynomial, [len(image) for image in self.images])
+
+
+@dataclass(frozen=True)
+class ClosedSystem:
+    """The equations as sparse rows over the closed ring.
+
+    ``rows`` have one column per unknown and then one per input; ``outputs`` likewise.
+    """
+
+    closure: Closure
+    unknowns: tuple[Variable, ...]
+    inputs: tuple[Variable, ...]
+    rows: tuple[SparseRow, ...]
+    outputs: tuple[SparseRow, ...]
+
+
+def _is_symbolic(ring: Ring, factor: fmpz_mpoly) -> bool:
+    """Tell whether a factor is a sum with a parameter in it; a sum of numbers and s stays open."""
+    numeric = {ring.index[LAPLACE], ring.index["pi"]}
+    return len(factor) > 1 and any(int(d) and i not in numeric for i, d in enumerate(factor.degrees()))
+
+
+def close(equations: Equations) -> ClosedSystem:
+    """Return the equations with every sum of two or more terms closed."""
+    sums: dict[str, fmpz_mpoly] = {}
+    outside = {LAPLACE, "pi"}
+    forms = [r.form for r in equations.rows] + [o.form for o in equations.outputs]
+    entries = [c for form in forms for _, c in form.terms] + [o.divisor for o in equations.outputs]
+    for entry in entries:
+        spend()
+        for factor, _ in entry.factors:
+            if _is_symbolic(equations.ring, factor):
+                sums.setdefault(str(factor), factor)
+            else:
+                names = equations.ring.names
+                outside |= {names[i] for i, d in enumerate(factor.degrees()) if int(d)}
+    named = tuple((f"sum{i}", factor) for i, factor in enumerate(sums.values()))
+    # A parameter may be called like a closed sum; generator names must differ.
+    taken = set(equations.ring.names)
+    named = tuple((name if name not in taken else f"{name}!", factor) for name, factor in named)
+    kept = (n for n in equations.ring.names if n in outside)
+    closure = Closure(equations.ring, Ring((*kept, *(n for n, _ in named))), named)
+    columns = {v: i for i, v in enumerate((*equations.unknowns, *equations.inputs))}
+
+    def sparse(form: LinearForm) -> SparseRow:
+        row: SparseRow = {}
+        for variable, coefficient in form.terms:
+            spend()
+            column, entry = columns[variable], closure.close(coefficient)
+            row[column] = row[column] + entry if column in row else entry
+        return {c: e for c, e in row.items() if not e.is_zero()}
+
+    return ClosedSystem(
+        closure,
+        equations.unknowns,
+        equations.inputs,
+        tuple(sparse(r.form) for r in equations.rows),
+        tuple(sparse(o.form) for o in equations.outputs),
+    )

@@ -1,0 +1,217 @@
+"""Why a system has no unique solution: what floats, what is redundant, which loop is algebraic."""
+
+from __future__ import annotations
+
+from random import Random
+from typing import TYPE_CHECKING
+
+from flint import nmod_mat
+
+from symflex.algebra import PRIME, random_point, residue
+from symflex.algebra.origin import find_point
+from symflex.algebra.taylor import TaylorField, random_values
+from symflex.errors import Diagnostic, ModelError
+from symflex.errors.diagnostic import nearest
+from symflex.expressions import format_expression
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from flint import nmod_poly
+
+    from symflex.algebra import Factored, Propagation
+    from symflex.equations import EquationRow, Equations
+    from symflex.errors import Span
+    from symflex.library.elements import LinearForm, Variable
+    from symflex.model import Model
+
+SHOWN = 6
+
+
+def explain_singular(equations: Equations) -> ModelError:
+    """Return the error that names the unknowns left open and the rows that repeat others.
+
+    The null spaces are taken at a random point of a prime field, where a nonzero entry proves that the
+    unknown (or row) takes part in the dependence.
+    """
+    matrix = _at_random_point(equations)
+    size = len(equations.unknowns)
+    free = _support(matrix, size)
+    dependent = _support(matrix.transpose(), len(equations.rows))
+    open_unknowns = [equations.unknowns[i] for i in free]
+    rows = [equations.rows[i] for i in dependent]
+    constraints = [r for r in rows if r.role == "constraint"]
+    loops = [r for r in rows if r.role == "signal"]
+    problems: list[Diagnostic] = []
+    nodes = [v for v in open_unknowns if v.kind == "node"]
+    if constraints:
+        owners = list(dict.fromkeys(r.about.owner for r in constraints))
+        names = listed([f"'{o}'" for o in owners])
+        message = (
+            f"the constraints of {names} repeat or contradict each other"
+            if len(owners) > 1
+            else f"the constraint of {names} repeats what is already imposed"
+        )
+        problems.append(Diagnostic("SF302", message, _place(equations, owners[-1]), "remove one of them"))
+    elif conditions := [r for r in rows if r.role == "condition"]:
+        problems += _dependent_conditions(equations, conditions)
+    elif nodes:
+        names = listed([f"'{v}'" for v in nodes])
+        alone = len(nodes) == 1
+        what, verb, hold = ("node", "it floats", "it") if alone else ("nodes", "they float", "them")
+        problems.append(
+            Diagnostic(
+                "SF301",
+                f"nothing determines {what} {names}: {verb}",
+                _place(equations, nodes[0].owner),
+                _meant(equations.model, nodes, f"connect {hold} to ground or give {hold} a mass"),
+            )
+        )
+    elif loops:
+        names = listed([f"'{r.about}'" for r in loops])
+        problems.append(
+            Diagnostic(
+                "SF303",
+                f"the loop through {names} is algebraic and has no unique solution: its gain is exactly one",
+                _place(equations, loops[0].about.owner),
+                "put a dynamic element or another gain into the loop",
+            )
+        )
+    if not problems:
+        names = listed([f"'{v}'" for v in open_unknowns])
+        place = _place(equations, open_unknowns[0].owner) if open_unknowns else None
+        problems.append(Diagnostic("SF304", f"nothing determines {names}", place))
+    return ModelError(*problems)
+
+
+def _meant(model: Model, nodes: Sequence[Variable], otherwise: str) -> str:
+    """Return a hint with the nearest name to that of a lone node which one element touches at most."""
+    owners = {node.owner for node in nodes}
+    touched = [{r.node for _, references in use.nodes for r in references} for use in model.elements]
+    (owner,) = owners if len(owners) == 1 else ("",)
+    touching = sum(owner in t for t in touched)
+    if not owner or touching > 1:
+        return otherwise
+    close = nearest(owner, sorted({"ground"}.union(*touched) - {owner}))
+    # A name no element touches is no node; the lone node of one may be meant as it is.
+    return otherwise if close is None else close if not touching else f"{close} else {otherwise}"
+
+
+def _dependent_conditions(equations: Equations, rows: list[EquationRow]) -> list[Diagnostic]:
+    """Say which conditions of fields follow from one another."""
+    fields = {f.name: f for f in equations.model.fields}
+    found = [(r.about.owner, int(r.about.component.split()[-1])) for r in rows]
+    conditions = [fields[name].conditions[number - 1] for name, number in found]
+    texts = [f"'{format_expression(c)}'" for c in conditions]
+    owners = [f"'{n}'" for n in dict.fromkeys(name for name, _ in found)]
+    of = f"{'field' if len(owners) == 1 else 'fields'} {listed(owners)}"
+    message = (
+        f"the conditions {listed(texts)} of {of} repeat or contradict each other: the state is not determined"
+        if len(texts) > 1
+        else f"the condition {texts[0]} of {of} always holds: one is missing in its place"
+    )
+    return [
+        Diagnostic("SF302", message, conditions[-1].span, "replace one of them by an independent condition")
+    ]
+
+
+def listed(names: list[str]) -> str:
+    """Return names as a sentence lists them, the first few of many."""
+    if len(names) > SHOWN:
+        names = [*names[:SHOWN], f"{len(names) - SHOWN} more"]
+    return (
+        names[0]
+        if len(names) == 1
+        else ", ".join(names[:-1]) + " and " + names[-1]
+        if names
+        else "the system"
+    )
+
+
+def numbers_at_random(equations: Equations) -> tuple[int, Callable[[Factored], int]]:
+    """Return a prime, and what evaluates coefficients at a random point that fulfils the kernels' laws."""
+    if equations.propagation is not None:
+        field, values = _point_of_kernels(equations, equations.propagation)
+        return field.prime, lambda c: _number(field, c, equations.ring.names, values)
+    point = random_point(equations.ring.names)
+    for name, value in equations.definitions:
+        point[name] = residue(value, point)
+    return PRIME, lambda coefficient: residue(coefficient, point)
+
+
+def _at_random_point(equations: Equations) -> nmod_mat:
+    """Return A(s) at a random point."""
+    prime, value = numbers_at_random(equations)
+    return matrix_of([row.form for row in equations.rows], equations.unknowns, prime, value)
+
+
+def matrix_of(
+    forms: Sequence[LinearForm], variables: Sequence[Variable], prime: int, value: Callable[[Factored], int]
+) -> nmod_mat:
+    """Return the coefficients of variables in forms, one row for each form."""
+    columns = {v: i for i, v in enumerate(variables)}
+    entries = [0] * (len(forms) * len(columns))
+    for i, form in enumerate(forms):
+        for variable, coefficient in form.terms:
+            if variable in columns:
+                position = i * len(columns) + columns[variable]
+                entries[position] = (entries[position] + value(coefficient)) % prime
+    return nmod_mat(len(forms), len(columns), entries, prime)
+
+
+def _number(
+    field: TaylorField, value: Factored, names: Sequence[str], values: Mapping[str, nmod_poly]
+) -> int:
+    found = field.rational(value, names, values)
+    return 0 if found is None else int(found[0])
+
+
+def _point_of_kernels(
+    equations: Equations, propagation: Propagation
+) -> tuple[TaylorField, dict[str, nmod_poly]]:
+    ring = propagation.kernel_ring
+
+    def define(values: dict[str, nmod_poly], field: TaylorField) -> bool:
+        for name, value in equations.definitions:
+            found = field.rational(value, equations.ring.names, values)
+            if found is None:
+                return False
+            values[name] = found
+        return True
+
+    def prepare(values: dict[str, nmod_poly], field: TaylorField) -> bool:
+        values.update({p.generator: field.constant(0) for p in propagation.propagators})
+        return define(values, field)
+
+    found = find_point(ring, propagation.table, 1, prepare)
+    if found is None:
+        field = TaylorField(1)
+        values = random_values(equations.ring.names, Random(3), field)
+        define(values, field)
+        return field, values
+    field, values = found
+    for p in propagation.propagators:
+        values[p.generator] = field.polynomial(p.image, ring.names, values)
+    return field, values
+
+
+def _support(matrix: nmod_mat, size: int) -> list[int]:
+    """Return the positions that take part in the (right) null space."""
+    basis, dimension = matrix.nullspace()
+    return [i for i in range(size) if any(int(basis[i, j]) for j in range(dimension))]
+
+
+def _place(equations: Equations, owner: str) -> Span | None:
+    model = equations.model
+    for group in (model.elements, model.signals, model.nodes, model.inputs, model.outputs):
+        for item in group:
+            if item.name == owner and item.span is not None:
+                return item.span
+    return None
+
+
+def is_singular(equations: Equations) -> bool:
+    """Tell whether the determinant vanishes at a random point of a prime field."""
+    if len(equations.rows) != len(equations.unknowns):
+        return True
+    return bool(equations.unknowns) and int(_at_random_point(equations).rank()) < len(equations.unknowns)

@@ -1,0 +1,507 @@
+"""Elimination of a sparse network without multiplying anything out.
+
+Input: :class:`symflex.equations.Equations`, and which transfer functions are wanted.
+Output: a :class:`Elimination`: every quotient as two steps of one straight-line program.
+
+A node's balance is kept as the impedance Z from the node to ground, and the impedances w to its neighbours:
+``(Z + w_1 + w_2 + ...) x = w_1 x_1 + w_2 x_2 + ... + F``. Eliminating the node joins its neighbours by
+``w_j w_k / (Z + w_1 + ...)`` and each to ground by ``w_j Z / (Z + w_1 + ...)``: the star-mesh transformation
+(Rosen, "A new network theorem", Journal of the IEE 62, 1924), which as a way of elimination without
+subtraction is that of Grassmann, Taksar and Heyman ("Regenerative analysis and steady state distributions for
+Markov chains", Operations Research 33, 1985). For a chain it writes down the recurrence of Holzer (1921).
+It holds for any row whose sum over some columns is known, so the same code serves constraints, motors and
+signals. Which unknown is next is Markowitz's rule (1957): the one that can make the fewest new entries.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from heapq import heapify, heappop, heappush
+from typing import TYPE_CHECKING
+
+from symflex.algebra import uncollected
+from symflex.budget import spend
+from symflex.equations.elimination.singular import explain_singular
+from symflex.equations.elimination.straight_line import ONE, ZERO, Step, StraightLine, Workbench
+from symflex.errors import Diagnostic, ModelError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.equations import Equations
+    from symflex.library.elements import LinearForm, Variable
+
+KEPT_LAST = 8
+"""Rows an input may act on and be eliminated last; one that acts on more acts everywhere."""
+
+EXPLAINED = 2_500
+"""Unknowns up to which a singular system is explained: that takes a dense matrix."""
+
+
+@dataclass(frozen=True, eq=False)
+class Elimination:
+    """Quotients as steps of a straight-line program.
+
+    Parameters
+    ----------
+    program : StraightLine
+        Over the generators of the equations; definitions stand for their values.
+    quotients : tuple of (int, int)
+        Per pair, numerator and denominator; neither need be a polynomial.
+    pivots : tuple of int
+        What was divided by: the product of these is the determinant, up to its sign.
+    """
+
+    program: StraightLine
+    quotients: tuple[tuple[int, int], ...]
+    pivots: tuple[int, ...]
+
+
+@dataclass(slots=True)
+class _Row:
+    """``pivot * x = sum(entries)``: entries are minus the coefficients, each a list of terms to be added.
+
+    With ``implicit`` that column's coefficient is not stored: it is the sum of ``ground`` and of the entries
+    in columns of the same class, ``ground`` being the sum of coefficients over these columns.
+    """
+
+    entries: dict[int, list[int]]
+    own: int
+    implicit: int = -1
+    ground: list[int] = field(default_factory=list)
+    load: list[int] = field(default_factory=list)
+    is_balance: bool = False
+
+    def copy(self) -> _Row:
+        """Return the row for an elimination of its own, which sets the load."""
+        entries = {column: terms.copy() for column, terms in self.entries.items()}
+        return replace(self, entries=entries, ground=self.ground.copy())
+
+
+@dataclass(frozen=True, slots=True)
+class _Solved:
+    """``below * x = sum(entries[k] * x_k) + load``."""
+
+    column: int
+    below: int
+    entries: dict[int, int]
+    load: int
+
+
+def eliminate(equations: Equations, pairs: Sequence[tuple[str, str]]) -> Elimination:
+    """Return transfer functions, by name of output and input, as quotients of nested expressions.
+
+    Parameters
+    ----------
+    equations : Equations
+        Of a lumped model; over a ring of either kind.
+    pairs : sequence of (str, str)
+        Output and input.
+
+    Raises
+    ------
+    ModelError
+        SF30x when the equations are singular.
+    """
+    if len(equations.rows) != len(equations.unknowns):
+        raise _singular(equations, ())
+    with uncollected():
+        return _eliminate(equations, pairs)
+
+
+def _eliminate(equations: Equations, pairs: Sequence[tuple[str, str]]) -> Elimination:
+    bench = Workbench(equations.ring.names)
+    index = equations.ring.index
+    for name, value in equations.definitions:
+        bench.define(index[name], bench.factored(value))
+    network = _Network.of(equations, bench)
+    outputs = {o.name: o for o in equations.outputs}
+    found: dict[tuple[str, str], tuple[int, int]] = {}
+    pivots: tuple[int, ...] = ()
+    sources = dict.fromkeys(source for _, source in pairs)
+    for source in sources:
+        wanted = [o for o, i in dict.fromkeys(pairs) if i == source]
+        rows = [network.output(outputs[name].form, source) for name in wanted]
+        run = _Run(network, source, is_only=len(sources) == 1)
+        pivots = tuple(solved.below for solved in run.solved)
+        quotients = run.quotients([row for row, _ in rows], [load for _, load in rows])
+        for name, (num, den) in zip(wanted, quotients, strict=True):
+            found[name, source] = (num, bench.multiply(bench.factored(outputs[name].divisor), den))
+    return Elimination(bench.finished(), tuple(found[pair] for pair in pairs), pivots)
+
+
+def _singular(equations: Equations, columns: Sequence[int]) -> ModelError:
+    if len(equations.unknowns) <= EXPLAINED:
+        return explain_singular(equations)
+    names = ", ".join(f"'{equations.unknowns[c]}'" for c in columns[:6])
+    return ModelError(Diagnostic("SF304", f"nothing determines {names or 'the system'}"))
+
+
+@dataclass(frozen=True, eq=False)
+class _Network:
+    """The rows as steps of a workbench, the same for every input."""
+
+    equations: Equations
+    bench: Workbench
+    columns: dict[tuple[str, str, str], int]
+    classes: list[int]
+    rows: list[tuple[_Row, dict[str, list[int]]]]
+
+    @staticmethod
+    def of(equations: Equations, bench: Workbench) -> _Network:
+        columns: dict[tuple[str, str, str], int] = {
+            (v.kind, v.owner, v.component): i for i, v in enumerate(equations.unknowns)
+        }
+        domains = {n.name: n.domain for n in equations.model.nodes}
+        kinds: dict[tuple[str, str], int] = {}
+        classes: list[int] = []
+        for v in equations.unknowns:
+            # Displacements add up with displacements, not with angles.
+            kind = (domains.get(v.owner, ""), v.component)
+            classes.append(kinds.setdefault(kind, len(kinds)) if v.kind == "node" else -1)
+        network = _Network(equations, bench, columns, classes, [])
+        for row in equations.rows:
+            network.rows.append(network._row(row.about, row.form, is_balance=row.role == "balance"))
+        return network
+
+    def _row(
+        self, about: Variable, form: LinearForm, *, is_balance: bool
+    ) -> tuple[_Row, dict[str, list[int]]]:
+        """Return a row, and what inputs contribute to it."""
+        bench, columns = self.bench, self.columns
+        own = columns[about.kind, about.owner, about.component]
+        row = _Row({}, own, is_balance=is_balance)
+        loads: dict[str, list[int]] = {}
+        diagonal: list[int] = []
+        for variable, coefficient in form.terms:
+            # Variables as keys would cost as much as all the rest.
+            column = columns.get((variable.kind, variable.owner, variable.component), -1)
+            if column == own:
+                diagonal.append(bench.factored(coefficient))
+            elif column < 0:
+                loads.setdefault(variable.owner, []).append(bench.factored(coefficient, -1))
+            else:
+                row.entries.setdefault(column, []).append(bench.factored(coefficient, -1))
+        ground = self._ground(row, diagonal) if is_balance else None
+        if ground is None:
+            if diagonal:
+                row.entries[own] = [bench.negate(d) for d in diagonal]
+        else:
+            row.implicit, row.ground = own, ground
+        return row, loads
+
+    def _ground(self, row: _Row, diagonal: list[int]) -> list[int] | None:
+        """Return what joins a node to ground: its own terms but for those of branches to other nodes."""
+        left: dict[int, int] = {}
+        for step in diagonal:
+            left[step] = left.get(step, 0) + 1
+        kind = self.classes[row.own]
+        for column, steps in row.entries.items():
+            if self.classes[column] == kind:
+                for step in steps:
+                    if not left.get(step):
+                        return None
+                    left[step] -= 1
+        ground: list[int] = []
+        for step in diagonal:
+            if left[step]:
+                left[step] -= 1
+                ground.append(step)
+        return ground
+
+    def output(self, form: LinearForm, source: str) -> tuple[dict[int, int], int]:
+        """Return an output's coefficients by column, and that of the input."""
+        terms: dict[int, list[int]] = {}
+        load: list[int] = []
+        for variable, coefficient in form.terms:
+            step = self.bench.factored(coefficient)
+            column = self.columns.get((variable.kind, variable.owner, variable.component), -1)
+            if column >= 0:
+                terms.setdefault(column, []).append(step)
+            elif variable.owner == source:
+                load.append(step)
+        found = {c: self.bench.add(steps) for c, steps in terms.items()}
+        return {c: step for c, step in found.items() if step}, self.bench.add(load)
+
+
+class _Run:
+    """One elimination, for one input."""
+
+    def __init__(self, network: _Network, source: str, *, is_only: bool = False) -> None:
+        self.network = network
+        self.bench = network.bench
+        self.rows: list[_Row | None] = []
+        size = len(network.classes)
+        self.users: list[dict[int, None]] = [{} for _ in range(size)]
+        self.hidden: list[int] = [0] * size
+        """Per column, how many rows hold it implicitly."""
+        self.handed: dict[int, dict[int, None]] = {}
+        """Per column, the rows other than its own that do."""
+        self.solved: list[_Solved] = []
+        loaded = 0
+        for i, (row, loads) in enumerate(network.rows):
+            own = row if is_only else row.copy()
+            own.load = list(loads.get(source, ())) if loads else []
+            loaded += bool(own.load)
+            for column in own.entries:
+                self.users[column][i] = None
+            self.rows.append(own)
+            if own.implicit >= 0:
+                self.hidden[own.implicit] += 1
+        self.keeps_last = loaded <= KEPT_LAST
+        self._eliminate()
+
+    # ------------------------------------------------------------------------------------------- ordering
+
+    def _cost(self, row: _Row) -> int:
+        """Return how many entries the elimination of a row can make at most."""
+        entries, users, hidden = row.entries, self.users, self.hidden
+        own = row.own
+        width = len(entries) + (row.implicit >= 0)
+        if row.implicit == own or own in entries:
+            return (width - 1) * (len(users[own]) + hidden[own] - 1)
+        counts = [len(users[c]) + hidden[c] for c in entries]
+        if row.implicit >= 0:
+            counts.append(len(users[row.implicit]) + hidden[row.implicit])
+        return (width - 1) * (min(counts, default=1) - 1)
+
+    def _eliminate(self) -> None:
+        rows = self.rows
+        keeps_last = self.keeps_last
+        heap = [
+            (keeps_last and bool(row.load), self._cost(row), row.is_balance, i)
+            for i, row in enumerate(rows)
+            if row is not None
+        ]
+        heapify(heap)
+        while heap:
+            spend()
+            is_late, cost, is_balance, i = heappop(heap)
+            row = rows[i]
+            if row is None:
+                continue
+            now = self._cost(row)
+            late_now = keeps_last and bool(row.load)
+            if now > cost or late_now != is_late:
+                heappush(heap, (late_now, now, is_balance, i))
+                continue
+            for j in self._pivot(i, row):
+                changed = rows[j]
+                if changed is not None:
+                    heappush(
+                        heap, (keeps_last and bool(changed.load), self._cost(changed), changed.is_balance, j)
+                    )
+
+    # -------------------------------------------------------------------------------------------- a pivot
+
+    def _pivot(self, i: int, row: _Row) -> list[int]:
+        """Eliminate an unknown by a row; return the rows that changed."""
+        bench, users = self.bench, self.users
+        add, classes = bench.add, self.network.classes
+        values: dict[int, int] = {}
+        for column, terms in row.entries.items():
+            del users[column][i]
+            step = terms[0] if len(terms) == 1 else add(terms)
+            if step:
+                values[column] = step
+        ground = ZERO
+        if row.implicit >= 0:
+            self.hidden[row.implicit] -= 1
+            ground = add(row.ground)
+            if bench.kinds[ground] > Step.NUMBER:
+                bench.roles.setdefault(ground, "Z")
+            kind = classes[row.implicit]
+            whole = add([ground, *(v for c, v in values.items() if classes[c] == kind)])
+            if whole:
+                values[row.implicit] = bench.negate(whole)
+        if not values:
+            raise _singular(self.network.equations, [row.own])
+        pivot = self._chosen(row, values)
+        below = bench.negate(values.pop(pivot))
+        load = add(row.load)
+        if bench.kinds[below] == Step.NEGATE:
+            # The sign goes to the other side, where it often meets another one.
+            below = bench.negate(below)
+            values = {c: bench.negate(v) for c, v in values.items()}
+            load = bench.negate(load)
+            ground = bench.negate(ground)
+        self.rows[i] = None
+        self.solved.append(_Solved(pivot, below, values, load))
+        return self._substitute(row, pivot, below, values, ground, load)
+
+    def _chosen(self, row: _Row, values: dict[int, int]) -> int:
+        """Return the column to eliminate: the row's own, else by a number, else the one used least."""
+        if row.own in values:
+            return row.own
+        kinds, operands = self.bench.kinds, self.bench.operands
+
+        def rank(column: int) -> tuple[bool, int, int]:
+            step = values[column]
+            inner = operands[step][0] if kinds[step] == Step.NEGATE else step
+            return kinds[inner] != Step.NUMBER, len(self.users[column]) + self.hidden[column], column
+
+        return min(values, key=rank)
+
+    def _substitute(
+        self, row: _Row, pivot: int, below: int, values: dict[int, int], ground: int, load: int
+    ) -> list[int]:
+        bench, users = self.bench, self.users
+        classes = self.network.classes
+        kind = classes[row.implicit] if row.implicit >= 0 else -2
+        sums: dict[int, int] = {kind: ground}
+        changed = list(users[pivot])
+        if self.hidden[pivot]:
+            changed += [j for j in self._holders(pivot) if j not in users[pivot]]
+        quotients: dict[int, int] = {}
+        mine: dict[int, int] = {}
+        for j in changed:
+            other = self._row(j)
+            if other.implicit == pivot:
+                value = self._unfold(j, other, pivot, values)
+            else:
+                value = bench.add(other.entries.pop(pivot))
+            mine[j] = value
+            quotients[j] = bench.divide(value, below) if value else ZERO
+        users[pivot] = {}
+        is_mirrored = self._is_mirrored(mine, values)
+        for j, quotient in quotients.items():
+            if not quotient:
+                continue
+            other = self._row(j)
+            if load:
+                other.load.append(bench.multiply(quotient, load))
+            if other.implicit >= 0:
+                wanted = classes[other.implicit]
+                if wanted not in sums:
+                    sums[wanted] = self._row_sum(wanted, pivot, below, values)
+                if sums[wanted]:
+                    other.ground.append(bench.multiply(quotient, sums[wanted]))
+            if not is_mirrored:
+                self._join(j, other, quotient, values)
+        if is_mirrored:
+            self._join_all(quotients, values)
+        return changed
+
+    def _is_mirrored(self, mine: dict[int, int], values: dict[int, int]) -> bool:
+        """Tell whether row and column of a pivot agree, and every row involved holds its own column."""
+        if len(mine) != len(values):
+            return False
+        rows = self.rows
+        for j, value in mine.items():
+            row = rows[j]
+            if row is None or row.implicit != row.own or values.get(row.own, -1) != value:
+                return False
+        return True
+
+    def _join(self, j: int, row: _Row, quotient: int, values: dict[int, int]) -> None:
+        multiply = self.bench.multiply
+        for column, value in values.items():
+            if column != row.implicit:
+                self._enter(j, row, column, multiply(quotient, value))
+
+    def _join_all(self, quotients: dict[int, int], values: dict[int, int]) -> None:
+        """Join all neighbours of a node by branches, the same in both directions."""
+        multiply, enter = self.bench.multiply, self._enter
+        items = [(j, q, self._row(j)) for j, q in quotients.items()]
+        for a, (j, quotient, row) in enumerate(items):
+            for k, _, other in items[a + 1 :]:
+                product = multiply(quotient, values[other.own])
+                enter(j, row, other.own, product)
+                enter(k, other, row.own, product)
+
+    def _enter(self, j: int, row: _Row, column: int, product: int) -> None:
+        """Add a term to an entry."""
+        known = row.entries.get(column)
+        if known is None:
+            row.entries[column] = [product]
+            self.users[column][j] = None
+        else:
+            known.append(product)
+
+    def _row(self, j: int) -> _Row:
+        """Return a row that is not eliminated yet."""
+        row = self.rows[j]
+        if row is None:
+            raise AssertionError
+        return row
+
+    def _holders(self, column: int) -> list[int]:
+        """Return the rows that hold a column implicitly: its own, or one it was handed to."""
+        rows = self.rows
+        candidates = (column, *self.handed.get(column, ()))
+        return [
+            j for j in dict.fromkeys(candidates) if (row := rows[j]) is not None and row.implicit == column
+        ]
+
+    def _unfold(self, j: int, row: _Row, pivot: int, values: dict[int, int]) -> int:
+        """Return an implicit entry, and hand its place to another column that the pivot row brings in."""
+        bench, classes = self.bench, self.network.classes
+        kind = classes[pivot]
+        self.hidden[pivot] -= 1
+        entries = {c: bench.add(t) for c, t in row.entries.items()}
+        whole = bench.add([bench.add(row.ground), *(v for c, v in entries.items() if classes[c] == kind)])
+        row.implicit = next((c for c in values if classes[c] == kind), -1)
+        if row.implicit >= 0:
+            self.hidden[row.implicit] += 1
+            self.handed.setdefault(row.implicit, {})[j] = None
+            row.entries.pop(row.implicit, None)
+            self.users[row.implicit].pop(j, None)
+        else:
+            row.ground = []
+        row.entries.pop(pivot, None)
+        return bench.negate(whole)
+
+    def _row_sum(self, kind: int, pivot: int, below: int, values: dict[int, int]) -> int:
+        """Return the sum of a row's coefficients over the columns of a class."""
+        bench, classes = self.bench, self.network.classes
+        terms = [bench.negate(v) for c, v in values.items() if classes[c] == kind]
+        if classes[pivot] == kind:
+            terms.insert(0, below)
+        return bench.add(terms)
+
+    # ------------------------------------------------------------------------------------ the other way
+
+    def quotients(self, outputs: Sequence[dict[int, int]], loads: Sequence[int]) -> list[tuple[int, int]]:
+        """Return numerator and denominator of every output, a combination of unknowns and the input."""
+        bench = self.bench
+        needed = {c for row in outputs for c in row}
+        for solved in self.solved:
+            if solved.column in needed:
+                needed.update(solved.entries)
+        last = self.solved[-1] if self.solved else None
+        loaded = [solved for solved in self.solved if solved.load]
+        # With the input on the last row alone, everything is in proportion to the last unknown.
+        is_single = last is not None and loaded == [last]
+        unknowns: dict[int, int] = {}
+        for solved in reversed(self.solved):
+            if solved.column not in needed:
+                continue
+            if is_single and solved is last:
+                unknowns[solved.column] = ONE
+                continue
+            terms = [
+                bench.multiply(bench.divide(value, solved.below), unknowns[c])
+                for c, value in solved.entries.items()
+                if unknowns[c]
+            ]
+            if solved.load:
+                terms.append(bench.divide(solved.load, solved.below))
+            unknowns[solved.column] = bench.add(terms) if terms else ZERO
+        found: list[tuple[int, int]] = []
+        for row, load in zip(outputs, loads, strict=True):
+            total = bench.add([ZERO, *(bench.multiply(value, unknowns[c]) for c, value in row.items())])
+            if is_single and last is not None:
+                above = bench.add([bench.multiply(last.load, total), bench.multiply(load, last.below)])
+                found.append((above, last.below if above else ONE))
+                continue
+            found.append(self._fraction(bench.add([total, load])))
+        return found
+
+    def _fraction(self, value: int) -> tuple[int, int]:
+        bench = self.bench
+        is_negative = bench.kinds[value] == Step.NEGATE
+        inner = bench.operands[value][0] if is_negative else value
+        if bench.kinds[inner] != Step.DIVIDE:
+            return value, ONE
+        above, below = bench.operands[inner]
+        return (bench.negate(above) if is_negative else above), below

@@ -1,0 +1,385 @@
+"""Straight-line programs: values built up step by step, every step from earlier ones, equal steps once.
+
+Input: generators, numbers, and what is done with them.
+Output: a :class:`StraightLine`, flat lists of steps whose length is what a long expression with shared parts
+really needs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+from fractions import Fraction
+from random import Random
+from typing import TYPE_CHECKING
+
+from symflex.algebra import PRIME, terms_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.algebra import Factored
+
+Key = tuple[int, ...]
+
+
+class Step(IntEnum):
+    """What a step does with its operands."""
+
+    GENERATOR = 0
+    NUMBER = 1
+    ADD = 2
+    MULTIPLY = 3
+    DIVIDE = 4
+    NEGATE = 5
+    POWER = 6
+
+
+_GENERATOR, _NUMBER, _ADD, _MULTIPLY, _DIVIDE, _NEGATE, _POWER = map(int, Step)
+
+ZERO, ONE = 0, 1
+"""The first two steps of every program are these numbers."""
+
+
+def _pair_key(kind: int, x: int, y: int) -> int:
+    """Return what tells a sum or product of two steps from all others, smaller than a tuple."""
+    return (x << 32 | y) << 3 | kind if x < y else (y << 32 | x) << 3 | kind
+
+
+@dataclass(frozen=True, eq=False)
+class StraightLine:
+    """Steps in order, each made of earlier ones.
+
+    Parameters
+    ----------
+    names : tuple of str
+        The generators' names.
+    kinds : sequence of int
+        Per step, a :class:`Step`.
+    operands : sequence of tuple of int
+        Per step: position of the generator; numerator and denominator of a non-negative number; the steps
+        that are added or multiplied; dividend and divisor; what is negated; base and exponent.
+    roles : mapping of int to str
+        Steps a reader knows by a name: ``w`` for a sub-impedance that elements in parallel add up to, ``Z``
+        for the impedance of all that is joined to a node, and the names of the model's definitions with an
+        equals sign before them.
+    """
+
+    names: tuple[str, ...]
+    kinds: Sequence[int]
+    operands: Sequence[Key]
+    roles: Mapping[int, str]
+
+    def steps_of(self, *roots: int) -> list[int]:
+        """Return the steps that some values are made of, in order; numbers and generators among them."""
+        found = set(roots)
+        pending = list(roots)
+        while pending:
+            for operand in self.inner(pending.pop()):
+                if operand not in found:
+                    found.add(operand)
+                    pending.append(operand)
+        return sorted(found)
+
+    def inner(self, step: int) -> Key:
+        """Return the earlier steps a step is made of."""
+        kind = self.kinds[step]
+        if kind <= _NUMBER:
+            return ()
+        operands = self.operands[step]
+        return operands[:1] if kind == _POWER else operands
+
+    def fraction(self, step: int) -> Fraction:
+        """Return the value of a number."""
+        above, below = self.operands[step]
+        return Fraction(above, below)
+
+    def size(self, *roots: int) -> int:
+        """Return how many operations some values take, each shared one counted once."""
+        kinds = self.kinds
+        return sum(
+            1 if kinds[i] in (_DIVIDE, _NEGATE, _POWER) else len(self.operands[i]) - 1
+            for i in self.steps_of(*roots)
+            if kinds[i] > _NUMBER
+        )
+
+
+class Workbench:
+    """Makes steps; equal ones get the same number, and what is zero is seen to be.
+
+    Every step carries its value at a random point of a prime field. A value other than zero proves that the
+    step is not zero as a function; a step with value zero is taken for zero (for a function of degree d the
+    odds of being wrong are d in 2^61).
+
+    Parameters
+    ----------
+    names : sequence of str
+        Generators.
+
+    Examples
+    --------
+    >>> bench = Workbench(("s", "k"))
+    >>> s, k = bench.generator(0), bench.generator(1)
+    >>> bench.add([bench.multiply(s, k), bench.negate(bench.multiply(k, s))]) == ZERO
+    True
+    """
+
+    def __init__(self, names: Sequence[str]) -> None:
+        self.names = tuple(names)
+        random = Random(20)
+        self.point = [random.getrandbits(60) + 1 for _ in names]
+        self.kinds: list[int] = [_NUMBER, _NUMBER]
+        self.operands: list[Key] = [(0, 1), (1, 1)]
+        self.residues: list[int] = [0, 1]
+        self.roles: dict[int, str] = {}
+        self._known: dict[Key | int, int] = {(_NUMBER, 0, 1): 0, (_NUMBER, 1, 1): 1}
+        self._polynomials: dict[int, int] = {}
+        self._inverses: dict[int, int] = {}
+        self._defined: dict[int, int] = {}
+
+    def finished(self) -> StraightLine:
+        """Return the program."""
+        return StraightLine(self.names, self.kinds, self.operands, self.roles)
+
+    def _make(self, kind: int, operands: Key, key: Key | int, residue: int) -> int:
+        step = len(self.kinds)
+        self.kinds.append(kind)
+        self.operands.append(operands)
+        self.residues.append(residue)
+        self._known[key] = step
+        return step
+
+    def generator(self, position: int) -> int:
+        """Return a generator, or what the definition of that name stands for."""
+        defined = self._defined.get(position)
+        if defined is not None:
+            return defined
+        key = (_GENERATOR, position)
+        known = self._known.get(key)
+        if known is not None:
+            return known
+        return self._make(_GENERATOR, (position,), key, self.point[position])
+
+    def define(self, position: int, value: int) -> None:
+        """Let a generator stand for a value, under its own name."""
+        self._defined[position] = value
+        if self.kinds[value] > _NUMBER:
+            self.roles.setdefault(value, f"={self.names[position]}")
+
+    def number(self, value: Fraction | int) -> int:
+        """Return a rational number."""
+        exact = Fraction(value)
+        key = (_NUMBER, abs(exact.numerator), exact.denominator)
+        step = self._known.get(key)
+        if step is None:
+            residue = key[1] * pow(key[2], -1, PRIME) % PRIME
+            step = self._make(_NUMBER, key[1:], key, residue)
+        return self.negate(step) if exact < 0 else step
+
+    def negate(self, x: int) -> int:
+        """Return minus ``x``."""
+        if x == ZERO:
+            return ZERO
+        if self.kinds[x] == _NEGATE:
+            return self.operands[x][0]
+        key = (_NEGATE, x)
+        known = self._known.get(key)
+        return self._make(_NEGATE, (x,), key, PRIME - self.residues[x]) if known is None else known
+
+    def add(self, terms: Sequence[int]) -> int:
+        """Return a sum; equal terms are counted, and opposite ones cancel."""
+        count = len(terms)
+        if count == 1:
+            return terms[0]
+        if count == 2:  # noqa: PLR2004
+            x, y = terms
+            if x > 0 < y != x and self.kinds[x] != _NEGATE != self.kinds[y]:
+                return self._pair(x, y)
+        kept = tuple(t for t in terms if t)
+        if len(set(kept)) < len(kept):
+            kept = self._counted(kept)
+        if len(kept) <= 1:
+            return kept[0] if kept else ZERO
+        key = _pair_key(_ADD, *kept) if len(kept) == 2 else (_ADD, *sorted(kept))  # noqa: PLR2004
+        known = self._known.get(key)
+        if known is not None:
+            return known
+        residues = self.residues
+        residue = sum([residues[t] for t in kept]) % PRIME
+        if not residue:
+            return ZERO
+        kinds = self.kinds
+        if any(kinds[t] == _NEGATE for t in kept):
+            return self._signed_sum(kept, key, residue)
+        return self._make(_ADD, kept, key, residue)
+
+    def _pair(self, x: int, y: int) -> int:
+        """Return the sum of two different steps without sign: most sums are of this kind."""
+        key = _pair_key(_ADD, x, y)
+        known = self._known.get(key)
+        if known is not None:
+            return known
+        residue = (self.residues[x] + self.residues[y]) % PRIME
+        return self._make(_ADD, (x, y), key, residue) if residue else ZERO
+
+    def _counted(self, terms: Key) -> Key:
+        counts: dict[int, int] = {}
+        for term in terms:
+            counts[term] = counts.get(term, 0) + 1
+        return tuple(t if n == 1 else self.multiply(self.number(n), t) for t, n in counts.items())
+
+    def _signed_sum(self, terms: Key, key: Key | int, residue: int) -> int:
+        opposite = {self.operands[t][0] for t in terms if self.kinds[t] == _NEGATE}.intersection(terms)
+        if opposite:
+            gone = opposite | {self.negate(t) for t in opposite}
+            return self.add([t for t in terms if t not in gone])
+        if all(self.kinds[t] == _NEGATE for t in terms):
+            return self.negate(self.add([self.operands[t][0] for t in terms]))
+        return self._make(_ADD, terms, key, residue)
+
+    def multiply(self, x: int, y: int) -> int:
+        """Return a product."""
+        if x < 2 or y < 2:  # noqa: PLR2004
+            return ZERO if not x or not y else y if x == ONE else x
+        kinds = self.kinds
+        a, b = kinds[x], kinds[y]
+        if _NEGATE in (a, b):
+            inner_x = self.operands[x][0] if a == _NEGATE else x
+            inner_y = self.operands[y][0] if b == _NEGATE else y
+            product = self.multiply(inner_x, inner_y)
+            return product if a == b else self.negate(product)
+        if a == b == _NUMBER:
+            return self.number(self.fraction(x) * self.fraction(y))
+        key = _pair_key(_MULTIPLY, x, y)
+        known = self._known.get(key)
+        if known is not None:
+            return known
+        return self._make(_MULTIPLY, (x, y), key, self.residues[x] * self.residues[y] % PRIME)
+
+    def product(self, factors: Sequence[int]) -> int:
+        """Return a product of positive factors as one step."""
+        kept = tuple(f for f in factors if f != ONE)
+        if len(kept) <= 1:
+            return kept[0] if kept else ONE
+        key = _pair_key(_MULTIPLY, *kept) if len(kept) == 2 else (_MULTIPLY, *sorted(kept))  # noqa: PLR2004
+        known = self._known.get(key)
+        if known is not None:
+            return known
+        residue = 1
+        for factor in kept:
+            residue = residue * self.residues[factor] % PRIME
+        return self._make(_MULTIPLY, kept, key, residue)
+
+    def divide(self, x: int, y: int) -> int:
+        """Return a quotient.
+
+        Raises
+        ------
+        ZeroDivisionError
+            When the divisor is zero.
+        """
+        if x == ZERO or y == ONE:
+            return x
+        if x == y:
+            return ONE
+        kinds = self.kinds
+        a, b = kinds[x], kinds[y]
+        if _NEGATE in (a, b):
+            inner_x = self.operands[x][0] if a == _NEGATE else x
+            inner_y = self.operands[y][0] if b == _NEGATE else y
+            quotient = self.divide(inner_x, inner_y)
+            return quotient if a == b else self.negate(quotient)
+        if b == _NUMBER:
+            if y == ZERO:
+                message = "division by zero"
+                raise ZeroDivisionError(message)
+            return self.multiply(self.number(1 / self.fraction(y)), x)
+        key = (x << 32 | y) << 3 | _DIVIDE
+        known = self._known.get(key)
+        if known is not None:
+            return known
+        inverse = self._inverses.get(y)
+        if inverse is None:
+            inverse = self._inverses[y] = pow(self.residues[y], -1, PRIME)
+        return self._make(_DIVIDE, (x, y), key, self.residues[x] * inverse % PRIME)
+
+    def power(self, x: int, exponent: int) -> int:
+        """Return a non-negative integer power of a positive step."""
+        if exponent == 1 or x < 2:  # noqa: PLR2004
+            return x
+        if exponent == 0:
+            return ONE
+        if self.kinds[x] == _NUMBER:
+            return self.number(self.fraction(x) ** exponent)
+        if self.kinds[x] == _NEGATE:
+            raised = self.power(self.operands[x][0], exponent)
+            return self.negate(raised) if exponent % 2 else raised
+        key = (_POWER, x, exponent)
+        known = self._known.get(key)
+        if known is not None:
+            return known
+        return self._make(_POWER, (x, exponent), key, pow(self.residues[x], exponent, PRIME))
+
+    def fraction(self, x: int) -> Fraction:
+        """Return the value of a number."""
+        above, below = self.operands[x]
+        return Fraction(above, below)
+
+    def polynomial(self, polynomial: fmpz_mpoly) -> int:
+        """Return a polynomial of the generators; it must outlive the workbench."""
+        known = self._polynomials.get(id(polynomial))
+        if known is not None:
+            return known
+        terms: list[int] = []
+        for monomial, coefficient in terms_of(polynomial):
+            if coefficient == 1 and len(monomial) == 1 and monomial[0][1] == 1:
+                terms.append(self.generator(monomial[0][0]))
+                continue
+            step = self._monomial(monomial)
+            if abs(coefficient) != 1:
+                step = self.multiply(self.number(abs(coefficient)), step)
+            terms.append(self.negate(step) if coefficient < 0 else step)
+        value = self._polynomials[id(polynomial)] = self.add(terms)
+        if len(terms) > 1:
+            self.roles.setdefault(value, "w")
+        return value
+
+    def _monomial(self, monomial: Iterable[tuple[int, int]]) -> int:
+        factors: list[int] = []
+        is_plain = True
+        for i, exponent in monomial:
+            factor = self.power(self.generator(i), exponent)
+            is_plain = is_plain and self.kinds[factor] not in (_NUMBER, _NEGATE)
+            factors.append(factor)
+        if is_plain:
+            return self.product(factors)
+        result = ONE
+        for factor in factors:
+            result = self.multiply(result, factor)
+        return result
+
+    def factored(self, value: Factored, sign: int = 1) -> int:
+        """Return a rational function that is kept as a product; minus it with ``sign`` -1."""
+        factors = value.factors
+        above, below = ONE, ONE
+        if len(factors) == 1 and factors[0][1] == 1:
+            known = self._polynomials.get(id(factors[0][0]))
+            above = self.polynomial(factors[0][0]) if known is None else known
+        else:
+            for factor, exponent in factors:
+                step = self._polynomials.get(id(factor)) or self.polynomial(factor)
+                if exponent > 0:
+                    above = self.multiply(above, step if exponent == 1 else self.power(step, exponent))
+                else:
+                    below = self.multiply(below, step if exponent == -1 else self.power(step, -exponent))
+        numerator, denominator = sign * value.unit.numerator, value.unit.denominator
+        if denominator != 1 or numerator not in (1, -1):
+            role = self.roles.get(above)
+            above = self.multiply(self.number(Fraction(numerator, denominator)), above)
+            if role == "w":
+                self.roles.setdefault(above, role)
+        elif numerator < 0:
+            above = self.negate(above)
+        return above if below == ONE else self.divide(above, below)

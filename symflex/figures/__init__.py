@@ -1,0 +1,244 @@
+"""Figures for a paper: vector output, column width, the same bytes on every run.
+
+A new kind is one file with a drawing function, and one line in :data:`FIGURES`.
+"""
+
+from __future__ import annotations
+
+from math import pi
+from typing import TYPE_CHECKING
+
+from matplotlib.text import Text
+
+from symflex.analysis.response import roots_if_found
+from symflex.errors import Diagnostic, ModelError, UsageError
+from symflex.errors.diagnostic import nearest
+from symflex.figures.bode import draw_bode, draw_response
+from symflex.figures.drawing import FREE, AxisLimits, Drawing
+from symflex.figures.fit import draw_fit
+from symflex.figures.labels import label_of_name
+from symflex.figures.locus import draw_locus, number_label
+from symflex.figures.measured import draw_measured
+from symflex.figures.modes import draw_modes
+from symflex.figures.nyquist import draw_nyquist
+from symflex.figures.pgf import MM_PER_INCH
+from symflex.figures.poles_zeros import draw_poles_zeros
+from symflex.figures.save import FORMATS, render, save
+from symflex.figures.style import DEFAULT_FONT, FONTS, family_of, paper_style
+from symflex.figures.sweep import draw_sweep
+from symflex.loops import closed_loop, loop_gain, require_arrival, trace_locus
+from symflex.model.analysis import FIGURE_KINDS
+from symflex.print.latex.column import checked_width
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from fractions import Fraction
+
+    from matplotlib.figure import Figure
+
+    from symflex.loops import Loop
+    from symflex.transfer import BoundTransferFunction, TransferFunction
+
+FIGURES: dict[str, Drawing] = {
+    "bode": draw_bode,
+    "modes": draw_modes,
+    "nyquist": draw_nyquist,
+    "poles_zeros": draw_poles_zeros,
+}
+
+LOOP_FIGURES: tuple[str, ...] = ("locus", "nyquist")
+"""Kinds that are drawn of a loop and its gain, by :func:`draw_loop`."""
+
+__all__ = [
+    "DEFAULT_FONT",
+    "FIGURES",
+    "FONTS",
+    "FORMATS",
+    "LOOP_FIGURES",
+    "AxisLimits",
+    "Drawing",
+    "draw",
+    "draw_fit",
+    "draw_loop",
+    "draw_measured",
+    "draw_response",
+    "draw_sweep",
+    "render",
+    "save",
+    "unavailable",
+]
+
+
+def draw(
+    kind: str,
+    tfs: Sequence[TransferFunction],
+    bounds: Sequence[BoundTransferFunction],
+    *,
+    band_hz: tuple[float | Fraction, float | Fraction] | None = None,
+    frame: AxisLimits = FREE,
+    title: str | None = None,
+    width_mm: float | None = None,
+    font: str = DEFAULT_FONT,
+) -> Figure:
+    """Draw a figure of one or several transfer functions.
+
+    Parameters
+    ----------
+    kind : str
+        A key of :data:`FIGURES`.
+    tfs, bounds : sequences of equal length, at least one
+        The functions, and the same with numbers.
+    band_hz : (number, number), optional
+        Frequencies shown [Hz]. Without it a Bode plot takes the model's ``band``, or else one that shows all
+        poles and zeros; a pole-zero plot focuses on the resonances that belong together and marks the rest at
+        its border, and with it shows those up to its end; of modes, the lowest are shown, or those in it.
+    frame : AxisLimits, optional
+        Of axes, in place of those that suit what is drawn.
+    title : str, optional
+        Printed as it is, never read as mathematics.
+    width_mm : float, optional
+        Of the figure; by default 3.5 inches, or 7.16 for what needs the width of a page.
+    font : str, optional
+        A key of :data:`FONTS`; :func:`render` is to be told the same one.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    UsageError
+        SF208 an unknown kind; SF911 a kind that is not available yet; SF227 an empty band; SF208 an unknown
+        font; SF902 the width is not between 80 and 1000 mm or too small for what is drawn, or limits are of
+        axes that the figure has not.
+    ModelError
+        SF402 a transfer function is identically zero.
+    """
+    if kind not in FIGURES:
+        if kind in LOOP_FIGURES:
+            message = f"a figure of kind '{kind}' is drawn of a loop"
+            raise UsageError(
+                Diagnostic("SF902", message, None, "name its gain: --gain K, or gain in [figures]")
+            )
+        if kind in FIGURE_KINDS:
+            raise UsageError(unavailable(kind))
+        hint = nearest(kind, FIGURES) or "kinds: " + ", ".join(FIGURES)
+        raise UsageError(Diagnostic("SF208", f"there is no figure of kind '{kind[:64]}'", None, hint))
+    _check_frame(kind, frame)
+    if not tfs or len(tfs) != len(bounds):
+        message = (
+            f"a figure needs as many bound as symbolic transfer functions, not {len(bounds)} and {len(tfs)}"
+        )
+        raise ValueError(message)
+    for bound in bounds:
+        if bound.ratio.is_zero:
+            raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero: nothing to draw"))
+    band = _checked_band(band_hz)
+    width = None if width_mm is None else checked_width(width_mm) / MM_PER_INCH
+    with paper_style(font):
+        figure = FIGURES[kind](tfs, bounds, band_hz=band, frame=frame, title=title, width=width)
+    return _with_every_letter(figure, font)
+
+
+def unavailable(kind: str) -> Diagnostic:
+    """Return what is said of a kind that is announced and not drawn yet."""
+    hint = "there are " + ", ".join((*FIGURES, *LOOP_FIGURES))
+    return Diagnostic("SF911", f"figures of kind '{kind}' are not available yet", None, hint)
+
+
+def _checked_band(band_hz: tuple[float | Fraction, float | Fraction] | None) -> tuple[float, float] | None:
+    if band_hz is None:
+        return None
+    low, high = float(band_hz[0]), float(band_hz[1])
+    if not 0 <= low < high < float("inf"):
+        message = f"a band runs from a lower to a higher frequency, not from {low:g} to {high:g} Hz"
+        raise UsageError(Diagnostic("SF227", message))
+    return low, high
+
+
+def _check_frame(kind: str, frame: AxisLimits) -> None:
+    """Refuse limits of axes that a kind of figure has not."""
+    if frame.phase and kind != "bode":
+        raise UsageError(Diagnostic("SF902", "limits of a phase are for 'bode'"))
+    if frame.x and kind == "bode":
+        raise UsageError(Diagnostic("SF902", "the frequencies of a Bode plot are its band"))
+    if frame != FREE and kind == "modes":
+        raise UsageError(Diagnostic("SF902", "mode shapes have no limits: their largest displacement is 1"))
+
+
+def _with_every_letter(figure: Figure, font: str) -> Figure:
+    """Set texts with letters that a font lacks in one that has them."""
+    for text in figure.findobj(Text):
+        family = family_of(text.get_text(), font)
+        if family and not text.get_parse_math():
+            text.set_fontfamily(family)
+    return figure
+
+
+def draw_loop(
+    kind: str,
+    loop: Loop,
+    *,
+    limits: tuple[Fraction | None, Fraction | None] | None = None,
+    modes: int | None = None,
+    band_hz: tuple[float | Fraction, float | Fraction] | None = None,
+    frame: AxisLimits = FREE,
+    title: str | None = None,
+    width_mm: float | None = None,
+    font: str = DEFAULT_FONT,
+) -> Figure:
+    """Draw a root locus, or the Nyquist plot of a loop gain ``K B/A``.
+
+    Parameters
+    ----------
+    kind : str
+        ``locus`` or ``nyquist``.
+    loop : Loop
+        A straight line in its gain.
+    limits : (Fraction, Fraction), optional
+        First and last gain of a locus; from 0 to 10 times the nominal one by default.
+    modes : int, optional
+        Traced in the locus of a loop with kernels; by default those in the band, or the lowest five.
+    band_hz : (number, number), optional
+        Frequencies of a Nyquist plot [Hz]; a locus is shown up to its end.
+    frame : AxisLimits, optional
+        Of axes, in place of those that suit what is drawn.
+    title : str, optional
+        Printed as it is.
+    width_mm, font
+        As for :func:`draw`.
+
+    Raises
+    ------
+    UsageError
+        SF208 an unknown kind, SF804 no range, SF806 no straight line in the gain.
+    UncertifiedError
+        SF807 the curves do not end in proved poles.
+    """
+    if kind not in LOOP_FIGURES:
+        hint = "kinds: " + ", ".join(LOOP_FIGURES)
+        raise UsageError(
+            Diagnostic("SF208", f"no figure of kind '{kind[:64]}' is drawn of a loop", None, hint)
+        )
+    _check_frame(kind, frame)
+    band = _checked_band(band_hz)
+    width = None if width_mm is None else checked_width(width_mm) / MM_PER_INCH
+    with paper_style(font):
+        if kind == "locus":
+            locus = trace_locus(loop, limits, modes, band_hz=band)
+            require_arrival(locus)
+            reach = None if band is None else 2 * pi * band[1]
+            return _with_every_letter(draw_locus(locus, title, width, reach=reach, frame=frame), font)
+        bound = loop_gain(loop)
+        label = f"loop gain, ${label_of_name(loop.gain.name)} = {number_label(float(loop.nominal or 0))}$"
+        figure = draw_nyquist(
+            [bound.source],
+            [bound],
+            band_hz=band,
+            frame=frame,
+            title=title,
+            width=width,
+            labels=[label],
+            verdict=f"closed loop {roots_if_found(closed_loop(loop)).verdict.headline}",
+        )
+        return _with_every_letter(figure, font)

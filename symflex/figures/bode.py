@@ -1,0 +1,251 @@
+"""Bode plots: magnitude [dB] and phase [deg] over frequency [Hz]."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import cycle
+from math import ceil, log10
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from matplotlib.ticker import (
+    FuncFormatter,
+    LogLocator,
+    MaxNLocator,
+    MultipleLocator,
+    NullFormatter,
+    NullLocator,
+    ScalarFormatter,
+)
+
+from symflex.analysis.response import adaptive_grid, default_band, respond, roots_if_found
+from symflex.figures.drawing import FREE
+from symflex.figures.labels import label_of_frequency, label_of_tf, label_of_unit
+from symflex.figures.style import (
+    COLOURS,
+    COLUMN_INCHES,
+    DASHES,
+    TITLE_POINTS,
+    TITLE_SPACING,
+    new_figure,
+    paper_style,
+    stability_lines,
+    title_lines,
+)
+from symflex.roots import Band
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy.typing as npt
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from symflex.analysis.response import FrequencyResponse
+    from symflex.figures.drawing import AxisLimits, Limits
+    from symflex.roots import PoleZeroMap
+    from symflex.transfer import BoundTransferFunction, TransferFunction
+
+HEIGHT_INCHES: Final = 3.2
+LEGEND_COLUMNS, LEGEND_COLUMNS_WITH_UNITS = 3, 2
+LINE_INCHES: Final = 0.13
+PHASE_MARGIN: Final = 1.12
+PHASE_STEPS: Final = (45, 90, 180, 360, 720, 1440)
+PHASE_TICKS: Final = 7.5
+SHORT_BAND_DECADES: Final = 1.3
+NARROW_BAND_DECADES: Final = 0.6
+"""Between a frequency and four times it there may be one tick of 1, 2 and 5."""
+UNDAMPED: Final = 1e-4
+UNDAMPED_REACH: Final = 0.01
+UNDAMPED_MARGIN_DB: Final = 15.0
+
+
+def draw_bode(
+    tfs: Sequence[TransferFunction],
+    bounds: Sequence[BoundTransferFunction],
+    *,
+    band_hz: Limits | None = None,
+    frame: AxisLimits = FREE,
+    title: str | None = None,
+    width: float | None = None,
+) -> Figure:
+    """Draw magnitude and phase of transfer functions in one figure; see :func:`symflex.figures.draw`.
+
+    Peaks and troughs without damping have no end; they run to the frame. Where poles lie in the right half
+    plane, or may lie there, the legend says so.
+    """
+    # The default roots of distributed systems serve for nothing but a band.
+    given = band_hz or _band_of_model(tfs[0])
+    low, high = given or default_band(*(roots_if_found(bound) for bound in bounds))
+    band = Band(Fraction(low), Fraction(high))
+    maps = [roots_if_found(bound, band) for bound in bounds]
+    responses = [
+        respond(bound, adaptive_grid(bound, low, high, roots=found), found)
+        for bound, found in zip(bounds, maps, strict=True)
+    ]
+    width = width or COLUMN_INCHES
+    shaky = [found for found in maps if found.verdict.word in ("unstable", "unknown")]
+    lines = [
+        *title_lines(title, width),
+        *(line for m in maps for line in title_lines(said_of_grid(m), width)),
+    ]
+    said = stability_lines(shaky, width)
+    units = {response.unit for response in responses}
+    legend_columns = min(len(tfs), LEGEND_COLUMNS if len(units) == 1 else LEGEND_COLUMNS_WITH_UNITS)
+    height = HEIGHT_INCHES + LINE_INCHES * (len(lines) + len(said) + ceil(len(tfs) / legend_columns))
+    figure = new_figure(width, height)
+    figure.set_layout_engine("constrained", h_pad=0.02, w_pad=0.03, hspace=0.03)
+    top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[1.25, 1])
+    limits = frame.y or _magnitude_limits(responses, maps)
+    looks = zip(cycle(COLOURS), cycle(DASHES), strict=False)
+    for tf, response, found, (colour, dash) in zip(tfs, responses, maps, looks, strict=False):
+        label = label_of_tf(tf)
+        if len(units) > 1 and (unit := label_of_unit(response.unit)):
+            label = f"{label} [{unit}]"
+        top.plot(*_magnitude_curve(response, found, limits), color=colour, linestyle=dash, label=label)
+        bottom.plot(response.frequency_hz, np.degrees(response.phase), color=colour, linestyle=dash)
+    top.set_ylim(*limits)
+    top.yaxis.set_major_locator(MaxNLocator(nbins=7, steps=[1, 2, 4, 5, 10], min_n_ticks=3))
+    unit = label_of_unit(units.pop()) if len(units) == 1 else ""
+    top.set_ylabel(f"Magnitude [dB re 1 {unit}]" if unit else "Magnitude [dB]")
+    _set_phase_axis(bottom, responses, frame.phase)
+    set_frequency_axis(bottom, low, high)
+    for axes in (top, bottom):
+        axes.grid(visible=True)
+    figure.align_ylabels([top, bottom])
+    top.legend(
+        title="\n".join(said) or None,
+        loc="lower center",
+        bbox_to_anchor=(0.5, 1.0),
+        ncols=legend_columns,
+        frameon=False,
+        handlelength=2.4,
+        columnspacing=1.4,
+        borderaxespad=0.2,
+        borderpad=0.1,
+    )
+    if lines:
+        figure.suptitle("\n".join(lines), fontsize=TITLE_POINTS, linespacing=TITLE_SPACING, parse_math=False)
+    return figure
+
+
+def said_of_grid(found: PoleZeroMap) -> str:
+    """Return what a figure has to say where roots may be missing that its grid should know of."""
+    certificate = found.certificate
+    if not certificate.is_exceeded:
+        return ""
+    return f"{found.tf}: {certificate.reason}; drawn where its values turn, without knowing all roots"
+
+
+def draw_response(response: FrequencyResponse) -> Figure | None:
+    """Draw magnitude and phase of one frequency response, at its own frequencies.
+
+    Returns
+    -------
+    matplotlib.figure.Figure or None
+        None when it has less than two positive frequencies.
+    """
+    frequency = response.frequency_hz
+    kept = frequency > 0
+    order = np.argsort(frequency[kept], kind="stable")
+    frequency = frequency[kept][order]
+    if not frequency.size or frequency[0] == frequency[-1]:
+        return None
+    level = response.magnitude_db[kept][order]
+    level = np.where(np.isfinite(level), level, np.nan)
+    with paper_style():
+        figure = new_figure(COLUMN_INCHES, HEIGHT_INCHES + LINE_INCHES)
+        figure.set_layout_engine("constrained", h_pad=0.02, w_pad=0.03, hspace=0.03)
+        top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[1.25, 1])
+        top.plot(frequency, level, color=COLOURS[0])
+        bottom.plot(frequency, np.degrees(response.phase[kept][order]), color=COLOURS[0])
+        unit = label_of_unit(response.unit)
+        top.set_ylabel(f"Magnitude [dB re 1 {unit}]" if unit else "Magnitude [dB]")
+        _set_phase_axis(bottom, [response])
+        set_frequency_axis(bottom, float(frequency[0]), float(frequency[-1]))
+        for axes in (top, bottom):
+            axes.grid(visible=True)
+        figure.align_ylabels([top, bottom])
+        lines = title_lines(response.tf, COLUMN_INCHES)
+        figure.suptitle("\n".join(lines), fontsize=TITLE_POINTS, linespacing=TITLE_SPACING, parse_math=False)
+    return figure
+
+
+def _band_of_model(tf: TransferFunction) -> tuple[float, float] | None:
+    band = tf.model.analysis.band
+    return None if band is None else (float(band[0]), float(band[1]))
+
+
+def _magnitude_limits(
+    responses: Sequence[FrequencyResponse], maps: Sequence[PoleZeroMap]
+) -> tuple[float, float]:
+    """Return limits [dB] that hold every damped peak, and undamped ones cut off."""
+    lowest, highest = np.inf, -np.inf
+    is_cut = False
+    for response, found in zip(responses, maps, strict=True):
+        level = response.magnitude_db
+        undamped = _near_undamped(response.omega, found) | ~np.isfinite(level)
+        if undamped.all():
+            continue
+        is_cut = is_cut or bool(undamped.any())
+        lowest = min(lowest, float(level[~undamped].min()))
+        highest = max(highest, float(level[~undamped].max()))
+    if lowest > highest:
+        return -1.0, 1.0
+    margin = UNDAMPED_MARGIN_DB if is_cut else max(0.05 * (highest - lowest), 1.0)
+    return lowest - margin, highest + margin
+
+
+def _magnitude_curve(
+    response: FrequencyResponse, found: PoleZeroMap, limits: tuple[float, float]
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Return frequencies [Hz] and levels [dB], with a point beyond the frame at each root on the axis."""
+    beyond = limits[1] - limits[0]
+    ends = [(root, limits[1] + beyond) for root in found.poles] + [
+        (root, limits[0] - beyond) for root in found.zeros
+    ]
+    added = [(root.frequency_hz(), level) for root, level in ends if root.on_imaginary_axis and root.im > 0]
+    level = np.clip(response.magnitude_db, limits[0] - beyond, limits[1] + beyond)
+    frequency = np.concatenate((response.frequency_hz, [f for f, _ in added]))
+    order = np.argsort(frequency, kind="stable")
+    return frequency[order], np.concatenate((level, [end for _, end in added]))[order]
+
+
+def _near_undamped(omega: npt.NDArray[np.float64], found: PoleZeroMap) -> npt.NDArray[np.bool_]:
+    near = np.zeros(omega.shape, dtype=bool)
+    for root in (*found.poles, *found.zeros):
+        damping = root.damping_ratio()
+        if damping is not None and abs(damping) < UNDAMPED and root.im > 0:
+            centre = float(root.im.mid())
+            near |= np.abs(omega - centre) < UNDAMPED_REACH * centre
+    return near
+
+
+def _set_phase_axis(axes: Axes, responses: Sequence[FrequencyResponse], limits: Limits | None = None) -> None:
+    phase = np.degrees(np.concatenate([response.phase for response in responses]))
+    phase = phase[np.isfinite(phase)]
+    lowest, highest = limits or ((float(phase.min()), float(phase.max())) if phase.size else (0.0, 0.0))
+    for step in PHASE_STEPS:
+        if highest - lowest < PHASE_TICKS * step:
+            break
+    middle, half = (lowest + highest) / 2, max((highest - lowest) / 2, step)
+    axes.set_ylim(*(limits or (middle - PHASE_MARGIN * half, middle + PHASE_MARGIN * half)))
+    is_plain = limits is not None and not 2 * PHASE_STEPS[0] <= highest - lowest < PHASE_TICKS * step
+    axes.yaxis.set_major_locator(MaxNLocator(nbins=7) if is_plain else MultipleLocator(step))
+    axes.set_ylabel("Phase [deg]")
+
+
+def set_frequency_axis(axes: Axes, low: float, high: float) -> None:
+    """Label a logarithmic axis of frequencies [Hz]."""
+    axes.set_xscale("log")
+    axes.set_xlim(low, high)
+    axes.set_xlabel("Frequency [Hz]")
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: label_of_frequency(value)))
+    decades = log10(high / low)
+    if decades < NARROW_BAND_DECADES:
+        axes.xaxis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10]))
+        axes.xaxis.set_major_formatter(ScalarFormatter(useMathText=True))
+        axes.xaxis.set_minor_locator(NullLocator())
+    elif decades < SHORT_BAND_DECADES:
+        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_minor_formatter(NullFormatter())

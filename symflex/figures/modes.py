@@ -1,0 +1,380 @@
+"""Mode shapes: one row of panels per mode, distributed parts along x and nodes side by side."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import pairwise
+from math import floor, log10
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FixedLocator, MaxNLocator, NullFormatter
+
+from symflex.analysis.modes import lowest_modes
+from symflex.errors import Diagnostic, ModelError, UsageError
+from symflex.figures.drawing import FREE
+from symflex.figures.labels import PLAIN_HIGH, label_of_name
+from symflex.figures.pgf import MM_PER_INCH
+from symflex.figures.runs import Run, Stems, panels_of
+from symflex.figures.style import (
+    COLOURS,
+    COLUMN_INCHES,
+    FAINT,
+    LINE_INCHES,
+    PAGE_INCHES,
+    QUIET,
+    new_figure,
+    title_lines,
+    write_titles,
+)
+from symflex.roots import Band
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy.typing as npt
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from symflex.analysis.modes import ModeShape
+    from symflex.figures.drawing import AxisLimits, Limits
+    from symflex.figures.runs import Panel
+    from symflex.transfer import BoundTransferFunction, TransferFunction
+
+DEFAULT_MODES: Final = 5
+MODES_LIMIT: Final = 40
+ROW_INCHES, HEADING_INCHES, AXIS_INCHES, LEGEND_INCHES = 0.56, 0.17, 0.38, 0.06
+LEFT, RIGHT = 0.46, 0.08
+GAP, LABELLED_GAP = 0.34, 0.54
+LABEL_OFFSET: Final = 0.35
+STEM_INCHES, NARROWEST_STEMS, NARROWEST_RUN = 0.3, 0.42, 0.9
+NARROWEST_PANEL: Final = 0.25
+PANELS_IN_COLUMN: Final = 3
+NAMES_LIMIT: Final = 12
+NAME_INCHES: Final = 0.06
+MARGIN: Final = 1.2
+VISIBLE: Final = 0.1
+"""Share of the largest motion from which what moves in quadrature is drawn."""
+LEAST: Final = 1e-6
+"""Numbers from here on are written out."""
+UNIT_NAMES: Final = {"m": "displacement", "rad": "angle", "V": "voltage", "": "signal"}
+LAGGING: Final = (0, (4, 1.5))
+Curve = tuple["npt.NDArray[np.float64]", "npt.NDArray[np.complex128]"]
+
+
+def draw_modes(
+    tfs: Sequence[TransferFunction],
+    bounds: Sequence[BoundTransferFunction],
+    *,
+    band_hz: Limits | None = None,
+    frame: AxisLimits = FREE,
+    title: str | None = None,
+    width: float | None = None,
+) -> Figure:
+    """Draw the shapes of the lowest modes of the first function's model, hidden ones among them.
+
+    As many as ``[analysis]`` says, else five, or the first 40 of a band; and all of poles in the right half
+    plane. Rigid-body motions at 0 are left out. The title says whether the model is stable. The part in
+    phase with the largest displacement is drawn in full, what moves in quadrature dashed. See
+    :func:`symflex.figures.draw`.
+
+    Raises
+    ------
+    ModelError
+        SF402 when there is no mode other than at 0.
+    UsageError
+        SF902 when the panels have no room in the width asked for.
+    """
+    del frame  # largest displacements are 1, and :func:`draw` refuses others
+    band = None if band_hz is None else Band(Fraction(band_hz[0]), Fraction(band_hz[1]))
+    count = min(tfs[0].model.analysis.modes or (MODES_LIMIT if band else DEFAULT_MODES), MODES_LIMIT)
+    numbered, verdict = lowest_modes(bounds[0], count, band)
+    shapes = [found.shape for found in numbered]
+    panels = panels_of(tfs[0].model, shapes)
+    if not panels:
+        where = "" if band_hz is None else f" between {band_hz[0]:g} and {band_hz[1]:g} Hz"
+        message = f"{bounds[0].name} has no mode other than at 0 that has a shape{where}"
+        raise ModelError(Diagnostic("SF402", message))
+    width = width or (COLUMN_INCHES if len(panels) <= PANELS_IN_COLUMN else PAGE_INCHES)
+    titles = (title_lines(title, width), title_lines(verdict.headline, width))
+    lines = [line for group in titles for line in group]
+    per_metre = all(_unit_of_reference(shape) == "m" for shape in shapes)
+    names = {**UNIT_NAMES, "rad": "angle [rad/m]"} if per_metre else UNIT_NAMES
+    labels = [names[_unit_of(panel)] for panel in panels]
+    gaps = [LEFT, *(GAP if a == b else LABELLED_GAP for a, b in pairwise(labels))]
+    columns = _widths(panels, width - RIGHT - sum(gaps))
+    if min(columns) < NARROWEST_PANEL:
+        message = f"{len(panels)} panels side by side have no room in {MM_PER_INCH * width:.4g} mm"
+        raise UsageError(Diagnostic("SF902", message, None, "the width of a page is 170 mm"))
+    is_lagging = any(_lags(panel, shape) for shape in shapes for panel in panels)
+    below = AXIS_INCHES + _name_inches(panels, columns)
+    above = LINE_INCHES * len(lines) + (LEGEND_INCHES if is_lagging else 0) + 0.02
+    height = above + len(shapes) * (HEADING_INCHES + ROW_INCHES) + below
+    figure = new_figure(width, height)
+    runs = sum(isinstance(panel, Run) for panel in panels)
+    for i, shape in enumerate(shapes):
+        bottom = height - above - (i + 1) * (HEADING_INCHES + ROW_INCHES)
+        left = 0.0
+        for j, (panel, room, gap) in enumerate(zip(panels, columns, gaps, strict=True)):
+            left += gap
+            axes = figure.add_axes((left / width, bottom / height, room / width, ROW_INCHES / height))
+            _draw_panel(axes, panel, shape)
+            _set_x_axis(axes, panel, room, is_last=i == len(shapes) - 1, is_named=runs > 1)
+            if j == 0:
+                axes.set_title(heading(shape), loc="left", pad=2.5, fontsize=7.5)
+            left += room
+    _label_columns(figure, labels, columns, gaps, (below + (height - above - below) / 2) / height)
+    if is_lagging:
+        _add_legend(figure, panels, 1 - (LINE_INCHES * len(lines) + 0.03) / height)
+    write_titles(figure, titles, 0.02, height)
+    return figure
+
+
+def heading(shape: ModeShape) -> str:
+    r"""Return natural frequency and damping ratio of a mode, or its pole where that is real.
+
+    Examples
+    --------
+    >>> from flint import arb
+    >>> from symflex.analysis.modes import ModeShape
+    >>> from symflex.roots import Root
+    >>> pole = Root(arb(-3), arb(4), 1, on_imaginary_axis=False, is_real=False)
+    >>> heading(ModeShape(pole, (), (), "x", True))
+    '$0.7958$ Hz, $\\zeta = 0.600$'
+    """
+    pole = shape.pole
+    unstable = ", unstable" if pole.re > 0 else ""
+    if pole.is_real:
+        return f"$s = {label_of_value(float(pole.re.mid()), 4)}$ rad/s{unstable}"
+    frequency = f"${label_of_value(pole.frequency_hz(), 4)}$ Hz"
+    damping = pole.damping_ratio()
+    return rf"{frequency}, $\zeta = {label_of_value(damping, 3)}${unstable}" if damping else frequency
+
+
+def label_of_value(value: float, digits: int) -> str:
+    r"""Return a number with all its significant digits, trailing zeros too.
+
+    Examples
+    --------
+    >>> label_of_value(11, 4), label_of_value(12345.6, 4), label_of_value(0.000149, 3), label_of_value(2e9, 4)
+    ('11.00', '12346', '0.000149', '2.000\\cdot 10^{9}')
+    """
+    if value and not LEAST <= abs(value) < PLAIN_HIGH:
+        mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+        return rf"{mantissa}\cdot 10^{{{int(exponent)}}}"
+    decimals = max(0, digits - 1 - floor(log10(abs(value)))) if value else 0
+    return f"{value:.{decimals}f}"
+
+
+def _widths(panels: Sequence[Panel], room: float) -> list[float]:
+    """Return the panels' widths [inches]: nodes take what they need, the rest is shared."""
+    stems = [
+        max(NARROWEST_STEMS, STEM_INCHES * min(len(p.names), NAMES_LIMIT)) if isinstance(p, Stems) else 0.0
+        for p in panels
+    ]
+    runs = sum(isinstance(p, Run) for p in panels)
+    if not runs:
+        return [room * s / sum(stems) for s in stems]
+    most = max(room - NARROWEST_RUN * runs, NARROWEST_STEMS)
+    shrink = min(1.0, most / sum(stems)) if any(stems) else 1.0
+    left = (room - shrink * sum(stems)) / runs
+    return [left if isinstance(p, Run) else s * shrink for p, s in zip(panels, stems, strict=True)]
+
+
+def _curves(panel: Run, shape: ModeShape) -> list[Curve]:
+    """Return the displacement along each part of a run."""
+    found = []
+    for segment in panel.segments:
+        part = shape.along(segment.name)
+        points = list(part.sampled(part.intervals()))
+        length = float(part.length.mid())
+        share = np.array([float(1 - s if segment.is_reversed else s) for s, _ in points])
+        found.append((segment.offset + length * share, np.array([complex(z[0].mid()) for _, z in points])))
+    return found
+
+
+def _stem_values(panel: Stems, shape: ModeShape) -> npt.NDArray[np.complex128]:
+    return np.array([complex(shape.motion(name).value.mid()) for name in panel.names])
+
+
+def _amplitudes(panel: Panel, shape: ModeShape) -> npt.NDArray[np.complex128]:
+    if isinstance(panel, Stems):
+        return _stem_values(panel, shape)
+    return np.concatenate([values for _, values in _curves(panel, shape)])
+
+
+def _lags(panel: Panel, shape: ModeShape) -> bool:
+    """Tell whether something in a panel is seen to move out of phase."""
+    values = _amplitudes(panel, shape)
+    largest = 1.0 if _is_normalised(panel, shape) else float(np.abs(values).max())
+    return bool(np.abs(values.imag).max() > VISIBLE * largest)
+
+
+def _draw_panel(axes: Axes, panel: Panel, shape: ModeShape) -> None:
+    axes.axhline(0, color=QUIET, linewidth=0.5, zorder=1)
+    values = _amplitudes(panel, shape)
+    if isinstance(panel, Run):
+        _draw_run(axes, panel, shape, is_lagging=_lags(panel, shape))
+    else:
+        _draw_stems(axes, values, is_lagging=_lags(panel, shape))
+    largest = float(np.abs(values).max())
+    axes.tick_params(top=False, right=False)
+    if _is_normalised(panel, shape):
+        axes.set_ylim(-MARGIN, MARGIN)
+        axes.yaxis.set_major_locator(FixedLocator([-1, 0, 1]))
+    else:
+        largest = largest or 1.0
+        axes.set_ylim(-MARGIN * largest, MARGIN * largest)
+        axes.yaxis.set_major_locator(MaxNLocator(nbins=3, symmetric=True, steps=[1, 2, 3, 4, 5, 10]))
+        axes.ticklabel_format(axis="y", style="sci", scilimits=(-2, 3), useMathText=True)
+        axes.yaxis.get_offset_text().set_fontsize(6)
+
+
+def _is_normalised(panel: Panel, shape: ModeShape) -> bool:
+    """Tell whether the panel's unit is that of the largest displacement, which is 1."""
+    return _unit_of(panel) in ("m", _unit_of_reference(shape))
+
+
+def _unit_of(panel: Panel) -> str:
+    if isinstance(panel, Stems):
+        return panel.unit
+    return "rad" if panel.is_turning else "m"
+
+
+def _unit_of_reference(shape: ModeShape) -> str:
+    part = next((p for p in shape.distributed if shape.reference.startswith(f"{p.name}(")), None)
+    if part is not None:
+        return "rad" if part.kind == "shaft" else "m"
+    return shape.motion(shape.reference).unit
+
+
+def _draw_run(axes: Axes, panel: Run, shape: ModeShape, *, is_lagging: bool) -> None:
+    for joint in panel.ends[1:-1]:
+        axes.axvline(joint, color=FAINT, linewidth=0.6, zorder=0)
+    for x, values in _curves(panel, shape):
+        if is_lagging:
+            axes.plot(x, values.imag, color=COLOURS[1], linestyle=LAGGING, linewidth=0.9, zorder=2)
+        axes.plot(x, values.real, color=COLOURS[0], zorder=3, solid_capstyle="round")
+    for node, place in panel.loaded:
+        name = node if any(m.name == node for m in shape.motions) else f"{node}.y"
+        height = complex(shape.motion(name).value.mid()).real
+        axes.plot([place], [height], "o", color=COLOURS[0], markersize=4.2, clip_on=False, zorder=4)
+    span = panel.ends[-1] - panel.ends[0]
+    axes.set_xlim(panel.ends[0] - 0.02 * span, panel.ends[-1] + 0.02 * span)
+
+
+def _draw_stems(axes: Axes, values: npt.NDArray[np.complex128], *, is_lagging: bool) -> None:
+    places = np.arange(1, len(values) + 1)
+    is_crowded = len(values) > NAMES_LIMIT
+    if len(values) > 1:
+        axes.plot(places, values.real, color=COLOURS[0], linewidth=0.5, alpha=0.6, zorder=2)
+    axes.vlines(places, 0, values.real, color=COLOURS[0], linewidth=0.5 if is_crowded else 1.1, zorder=3)
+    axes.plot(places, values.real, "o", color=COLOURS[0], markersize=1.8 if is_crowded else 3.6, zorder=4)
+    if is_lagging:
+        axes.plot(
+            places,
+            values.imag,
+            "D",
+            color=COLOURS[1],
+            markersize=1.4 if is_crowded else 2.8,
+            markerfacecolor="none",
+            markeredgewidth=0.8,
+            zorder=5,
+        )
+    axes.set_xlim(0.5, len(values) + 0.5)
+
+
+def _set_x_axis(axes: Axes, panel: Panel, room: float, *, is_last: bool, is_named: bool) -> None:
+    if isinstance(panel, Run):
+        axes.xaxis.set_major_locator(MaxNLocator(nbins=max(2, int(room / 0.42)), steps=[1, 2, 2.5, 5, 10]))
+        if is_last:
+            symbol = label_of_name(f"x_{panel.segments[0].name}") if is_named else "x"
+            axes.set_xlabel(f"${symbol}$ [{panel.unit}]" if panel.unit else f"${symbol}$", labelpad=1.5)
+    elif len(panel.names) <= NAMES_LIMIT:
+        axes.xaxis.set_major_locator(FixedLocator(range(1, len(panel.names) + 1)))
+        axes.tick_params(axis="x", length=0)
+        if is_last:
+            rotation = 90 if _is_crowded(panel, room) else 0
+            axes.set_xticks(
+                range(1, len(panel.names) + 1), [_label(n) for n in panel.names], rotation=rotation
+            )
+    else:
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True, nbins=max(2, int(room / 0.42))))
+        if is_last:
+            axes.set_xlabel("node", labelpad=1.5)
+    if not is_last:
+        axes.xaxis.set_major_formatter(NullFormatter())
+
+
+def _label(name: str) -> str:
+    owner, _, component = name.partition(".")
+    if component == "theta":
+        return rf"$\theta_{{{label_of_name(owner)}}}$"
+    return f"${label_of_name(owner)}$"
+
+
+def _is_crowded(panel: Stems, room: float) -> bool:
+    return _longest(panel) * NAME_INCHES > room / len(panel.names)
+
+
+def _longest(panel: Stems) -> int:
+    """Return how many letters wide the longest name is."""
+    return max(len(name.partition(".")[0]) + (name.endswith(".theta")) for name in panel.names)
+
+
+def _name_inches(panels: Sequence[Panel], columns: Sequence[float]) -> float:
+    """Return how much room upright names need below the lowest row, beyond that of an axis."""
+    crowded = [
+        _longest(p) * NAME_INCHES
+        for p, room in zip(panels, columns, strict=True)
+        if isinstance(p, Stems) and len(p.names) <= NAMES_LIMIT and _is_crowded(p, room)
+    ]
+    return max(0.0, max(crowded, default=0.0) + 0.08 - AXIS_INCHES)
+
+
+def _label_columns(
+    figure: Figure, labels: Sequence[str], columns: Sequence[float], gaps: Sequence[float], middle: float
+) -> None:
+    """Say beside the panels what they show."""
+    width = figure.get_figwidth()
+    left, before = 0.0, ""
+    for label, room, gap in zip(labels, columns, gaps, strict=True):
+        left += gap
+        if label != before:
+            text = label[0].upper() + label[1:]
+            figure.text(
+                (left - LABEL_OFFSET) / width, middle, text, rotation=90, ha="center", va="center", fontsize=8
+            )
+        left, before = left + room, label
+
+
+def _add_legend(figure: Figure, panels: Sequence[Panel], top: float) -> None:
+    marker = "D" if any(isinstance(panel, Stems) for panel in panels) else ""
+    lines = [
+        Line2D([], [], color=COLOURS[0], label="in phase"),
+        Line2D(
+            [],
+            [],
+            color=COLOURS[1],
+            linestyle=LAGGING if any(isinstance(panel, Run) for panel in panels) else "",
+            linewidth=0.9,
+            marker=marker,
+            markersize=2.8,
+            markerfacecolor="none",
+            markeredgewidth=0.8,
+            label="in quadrature",
+        ),
+    ]
+    figure.legend(
+        handles=lines,
+        loc="upper right",
+        bbox_to_anchor=(1 - RIGHT / figure.get_figwidth(), top),
+        ncols=2,
+        frameon=False,
+        fontsize=7,
+        handlelength=2.2,
+        columnspacing=1.2,
+        borderpad=0.0,
+        borderaxespad=0.0,
+    )

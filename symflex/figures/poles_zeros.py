@@ -1,0 +1,249 @@
+"""Pole-zero arrays: one panel per transfer function, equal scales on both axes and in all panels."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import ceil
+from typing import TYPE_CHECKING, Final
+
+from matplotlib.ticker import MaxNLocator
+
+from symflex.figures.drawing import FREE
+from symflex.figures.labels import label_of_tf
+from symflex.figures.placement import Panel, text_width
+from symflex.figures.s_plane import Mark, View, choose_view, leaving, marks_of
+from symflex.figures.style import (
+    COLOURS,
+    COLUMN_INCHES,
+    LINE_INCHES,
+    NOTE_POINTS,
+    PAGE_INCHES,
+    QUIET,
+    new_figure,
+    stability_lines,
+    title_lines,
+    write_titles,
+)
+from symflex.roots import Band
+from symflex.roots.locate import locate
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from symflex.figures.drawing import AxisLimits, Limits
+    from symflex.roots import PoleZeroMap
+    from symflex.transfer import BoundTransferFunction, TransferFunction
+
+PANELS_IN_COLUMN: Final = 3
+PANELS_ON_PAGE: Final = 4
+LEFT, RIGHT, BOTTOM, TOP, GAP = 0.54, 0.15, 0.38, 0.20, 0.24
+NARROWEST, WIDEST = 0.6, 1.25
+TALLEST_INCHES: Final = 2.6
+LISTED: Final = 5
+NOTE_LINE_POINTS: Final = 7.5
+GLYPHS: Final = {"pole": r"$\times$", "zero": r"$\circ$"}
+COLOUR_OF: Final = {"pole": COLOURS[1], "zero": COLOURS[0]}
+
+
+def draw_poles_zeros(
+    tfs: Sequence[TransferFunction],
+    bounds: Sequence[BoundTransferFunction],
+    *,
+    band_hz: Limits | None = None,
+    frame: AxisLimits = FREE,
+    title: str | None = None,
+    width: float | None = None,
+) -> Figure:
+    """Draw poles (crosses) and zeros (circles); see :func:`symflex.figures.draw`.
+
+    All panels show the same part of the s plane. A root outside it is named at the border where the ray from
+    the origin to it leaves the panel. A multiple root carries its multiplicity. Of distributed systems the
+    default modes are shown, as far up as the highest pole, or those up to the end of a band, and all poles in
+    the right half plane. Within limits asked for, scales may differ, and the title counts what is outside.
+    What it says of stability holds for all poles, drawn or not.
+    """
+    region = None if band_hz is None else Band(Fraction(0), Fraction(band_hz[1]))
+    maps = [locate(bound, region if bound.is_distributed else None) for bound in bounds]
+    panels = [marks_of(found) for found in maps]
+    count = len(panels)
+    width = width or (COLUMN_INCHES if count <= PANELS_IN_COLUMN else PAGE_INCHES)
+    columns = min(count, PANELS_IN_COLUMN if width < (COLUMN_INCHES + PAGE_INCHES) / 2 else PANELS_ON_PAGE)
+    rows = ceil(count / columns)
+    room = (width - LEFT - RIGHT - GAP * (columns - 1)) / columns
+    narrowest = min(NARROWEST, room / 1.3)
+    view = choose_view(
+        [mark for marks in panels for mark in marks],
+        _highest_pole(maps) if band_hz is None else band_hz[1],
+        (narrowest, WIDEST),
+    )
+    is_asked = frame != FREE
+    if is_asked:
+        view = View(frame.x or view.re, frame.y or view.im, frozenset())
+    shape = min(max(view.ratio, narrowest), WIDEST) if is_asked else view.ratio
+    panel_width = min(room, TALLEST_INCHES * shape)
+    panel_height = panel_width / shape
+    outside = [_said_of_rest(found, view) for found in maps] if is_asked else []
+    titles = (
+        title_lines(title, width),
+        stability_lines(maps, width),
+        [line for said in outside if said for line in title_lines(said, width)],
+    )
+    lines = [line for group in titles for line in group]
+    above = LINE_INCHES * len(lines) + (0.04 if lines else 0)
+    height = above + rows * (TOP + panel_height + BOTTOM)
+    figure = new_figure(width, height)
+    # Panels narrower than their room stand in the middle.
+    start = LEFT + (width - LEFT - RIGHT - columns * panel_width - (columns - 1) * GAP) / 2
+    for i, (tf, marks) in enumerate(zip(tfs, panels, strict=True)):
+        row, column = divmod(i, columns)
+        x = start + column * (panel_width + GAP)
+        y = height - above - (row + 1) * (TOP + panel_height) - row * BOTTOM
+        box = (x / width, y / height, panel_width / width, panel_height / height)
+        axes = figure.add_axes(box)
+        _draw_panel(axes, marks, view, panel_width, panel_height)
+        if is_asked:
+            axes.set_aspect("auto")
+        else:
+            _name_the_rest(axes, marks, view, panel_width)
+        axes.set_title(label_of_tf(tf), pad=4)
+        axes.set_xlabel(r"$\mathrm{Re}(s)$ [rad/s]", labelpad=2)
+        if column == 0:
+            axes.set_ylabel(r"$\mathrm{Im}(s)$ [rad/s]", labelpad=1)
+        else:
+            axes.tick_params(labelleft=False)
+    write_titles(figure, titles, 0.04, height)
+    return figure
+
+
+def _highest_pole(maps: Sequence[PoleZeroMap]) -> float | None:
+    """Return up to which frequency [Hz] poles of distributed systems are known, ``None`` without any."""
+    found = [root for each in maps if each.is_infinite for root in each.poles if not root.is_zero]
+    # Poles in the right half plane are known wherever they lie; zeros and others only as far as the rest.
+    found = [root for root in found if not root.re > 0] or found
+    return max((root.frequency_hz() for root in found), default=None)
+
+
+def _draw_panel(axes: Axes, marks: Sequence[Mark], view: View, width: float, height: float) -> None:
+    axes.set_xlim(*view.re)
+    axes.set_ylim(*view.im)
+    axes.set_aspect("equal", adjustable="box")
+    axes.axhline(0, color=QUIET, linewidth=0.5, zorder=1)
+    axes.axvline(0, color=QUIET, linewidth=0.5, zorder=1)
+    axes.xaxis.set_major_locator(MaxNLocator(nbins=max(2, int(width / 0.36)), steps=[1, 2, 2.5, 5, 10]))
+    axes.yaxis.set_major_locator(MaxNLocator(nbins=max(2, int(height / 0.32)), steps=[1, 2, 2.5, 5, 10]))
+    inside = [mark for mark in marks if view.shows(mark)]
+    for kind, shape, size in (("zero", "o", 4.6), ("pole", "x", 4.8)):
+        chosen = [mark.s for mark in inside if mark.kind == kind]
+        axes.plot(
+            [s.real for s in chosen],
+            [s.imag for s in chosen],
+            shape,
+            color=COLOUR_OF[kind],
+            markersize=size,
+            markeredgewidth=0.9,
+            markerfacecolor="none",
+            clip_on=False,
+            zorder=3,
+        )
+    panel = Panel(view, width, tuple(mark.s for mark in inside))
+    for mark in inside:
+        if mark.multiplicity > 1:
+            _number(axes, mark, panel)
+
+
+def _name_the_rest(axes: Axes, marks: Sequence[Mark], view: View, width: float) -> None:
+    """Name at the border what lies outside."""
+    panel = Panel(view, width, tuple(mark.s for mark in marks if view.shows(mark)))
+    for group in leaving(marks, view):
+        _point_outside(axes, group, panel)
+
+
+def _said_of_rest(found: PoleZeroMap, view: View) -> str:
+    """Return how many of the roots found lie outside the limits that were asked for."""
+    counts = {
+        kind: sum(m.multiplicity for m in marks_of(found) if m.kind == kind and not view.shows(m))
+        for kind in GLYPHS
+    }
+    said = [f"{n} {kind}{'s' if n > 1 else ''}" for kind, n in counts.items() if n]
+    return f"{found.tf}: {' and '.join(said)} outside" if said else ""
+
+
+def _number(axes: Axes, mark: Mark, panel: Panel) -> None:
+    """Write a multiplicity in the corner beside its mark where no other root stands."""
+    x, y = panel.at(mark.s)
+    width = text_width(str(mark.multiplicity), NOTE_POINTS)
+    corners = [(right, up) for up in (2.0, -2.0 - NOTE_POINTS) for right in (3.6, -3.6 - width)]
+    others = Panel(panel.view, panel.width, tuple(s for s in panel.roots if s != mark.s))
+    boxes = [(x + dx, y + dy, x + dx + width, y + dy + NOTE_POINTS) for dx, dy in corners]
+    axes.annotate(
+        str(mark.multiplicity),
+        (mark.s.real, mark.s.imag),
+        corners[others.clearest(boxes)],
+        textcoords="offset points",
+        va="bottom",
+        color=COLOUR_OF[mark.kind],
+        fontsize=NOTE_POINTS,
+    )
+
+
+def _point_outside(axes: Axes, group: Sequence[Mark], panel: Panel) -> None:
+    """Draw an arrow to where roots outside the view lie, and name those of the upper half plane beside it."""
+    view = panel.view
+    tip = view.border(group[0].s)
+    tail = tip - panel.free_length(tip, 0.13 * min(view.width, view.height)) * group[0].s / abs(group[0].s)
+    axes.annotate(
+        "",
+        (tip.real, tip.imag),
+        (tail.real, tail.imag),
+        arrowprops={
+            "arrowstyle": "-|>",
+            "mutation_scale": 6,
+            "linewidth": 0.7,
+            "color": "black",
+            "shrinkA": 0,
+            "shrinkB": 0,
+        },
+    )
+    if group[0].s.imag < 0:
+        return
+    notes = [(f"{GLYPHS[m.kind]} {m.value}", COLOUR_OF[m.kind]) for m in group[:LISTED]]
+    if len(group) > LISTED:
+        notes.append((f"and {len(group) - LISTED} more", "black"))
+    is_sideways = abs(group[0].s.imag) * view.width < abs(group[0].s.real) * view.height
+    is_right = tip.real > 0 if is_sideways else False
+    # At the sides the lines stand above or below the arrow, or behind it, else to its right or left.
+    x, y = panel.at(tip)
+    wide = max(text_width(text, NOTE_POINTS) for text, _ in notes)
+    high = NOTE_LINE_POINTS * len(notes)
+    if is_sideways:
+        end_x, end_y = panel.at(tail)
+        inward = -0.8 if is_right else 0.8
+        starts = [
+            (1.5 * inward, 4.0 + high),
+            (1.5 * inward, -6.0),
+            (end_x - x + inward, end_y - y + high / 2),
+        ]
+    else:
+        starts = [(5.0, -2.0), (-5.0, -2.0)]
+    sides = [is_right] * 3 if is_sideways else [False, True]
+    boxes = [
+        (x + dx - (wide if left else 0), y + dy - high, x + dx + (0 if left else wide), y + dy)
+        for (dx, dy), left in zip(starts, sides, strict=True)
+    ]
+    chosen = panel.clearest(boxes)
+    is_right = sides[chosen]
+    for i, (text, colour) in enumerate(notes):
+        offset = (starts[chosen][0], starts[chosen][1] - NOTE_LINE_POINTS * i)
+        axes.annotate(
+            text,
+            (tip.real, tip.imag),
+            offset,
+            textcoords="offset points",
+            ha="right" if is_right else "left",
+            va="top",
+            fontsize=NOTE_POINTS,
+            color=colour,
+        )

@@ -1,0 +1,214 @@
+"""Where the parts of a model stand in a figure of its modes.
+
+Input: a model and the shapes of its modes. Output: panels, each a row of distributed parts laid end to end or
+a row of nodes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from symflex.expressions import Name
+from symflex.library.elements import LineElement
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from symflex.analysis.modes import DistributedShape, ModeShape
+    from symflex.model import Model, PlacedElement
+
+TURNING: Final = ("shaft",)
+INERTIAS: Final = ("mass", "inertia", "rigid_body")
+AT_REST: Final = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class Segment:
+    """A distributed part in a panel.
+
+    Parameters
+    ----------
+    name : str
+        The element's or field's.
+    offset : float
+        Where it begins on the panel's axis.
+    is_reversed : bool
+        Its x runs against the axis.
+    """
+
+    name: str
+    offset: float
+    is_reversed: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """Distributed parts end to end.
+
+    Parameters
+    ----------
+    segments : tuple of Segment
+        In order along the axis.
+    ends : tuple of float
+        Where they begin and end.
+    loaded : tuple of (str, float)
+        Nodes that carry inertia, and where they are.
+    is_turning : bool
+        The displacement is an angle.
+    unit : str
+        Of the axis; empty when unknown.
+    """
+
+    segments: tuple[Segment, ...]
+    ends: tuple[float, ...]
+    loaded: tuple[tuple[str, float], ...] = ()
+    is_turning: bool = False
+    unit: str = "m"
+
+
+@dataclass(frozen=True, slots=True)
+class Stems:
+    """Nodes side by side; ``unit`` is that of their motion."""
+
+    names: tuple[str, ...]
+    unit: str
+
+
+Panel = Run | Stems
+
+
+def panels_of(model: Model, shapes: Sequence[ModeShape]) -> tuple[Panel, ...]:
+    """Return what a figure of the modes shows, from left to right.
+
+    Nodes at the ends of distributed parts are shown there; what rests in all modes, and what turns where a
+    beam shows the slope, is left out. Voltages and signals are shown when nothing else moves.
+    """
+    if not shapes:
+        return ()
+    parts = {part.name: part for part in shapes[0].distributed}
+    runs = [*_runs_of_elements(model, parts), *_runs_of_fields(model, parts)]
+    shown = _nodes_on(model)
+    stems = []
+    for unit in ("m", "rad"):
+        names = [
+            m.name
+            for m in shapes[0].motions
+            if m.unit == unit and m.variable.kind == "node" and m.name not in shown and _moves(m.name, shapes)
+        ]
+        if names:
+            stems.append(Stems(tuple(names), unit))
+    if not runs and not stems:
+        rest = [m for m in shapes[0].motions if m.variable.kind in ("node", "signal")]
+        for unit in dict.fromkeys(m.unit for m in rest):
+            stems.append(Stems(tuple(m.name for m in rest if m.unit == unit), unit))
+    return (*runs, *stems)
+
+
+def _moves(name: str, shapes: Sequence[ModeShape]) -> bool:
+    return any(abs(complex(shape.motion(name).value.mid())) > AT_REST for shape in shapes)
+
+
+def _ends(use: PlacedElement) -> tuple[str, str]:
+    a, b = dict(use.nodes)["between"]
+    return a.node, b.node
+
+
+def _lines(model: Model) -> Iterator[PlacedElement]:
+    return (use for use in model.elements if isinstance(use.element, LineElement))
+
+
+def _nodes_on(model: Model) -> set[str]:
+    """Return the names of motions that distributed elements show."""
+    found: set[str] = set()
+    for use in _lines(model):
+        for node in _ends(use):
+            found |= {node, f"{node}.y", f"{node}.theta"}
+    return found
+
+
+def _runs_of_elements(model: Model, parts: dict[str, DistributedShape]) -> Iterator[Run]:
+    """Yield elements of one kind that follow each other, laid end to end."""
+    carrying = {
+        reference.node
+        for use in model.elements
+        if use.element.type_name in INERTIAS
+        for _, references in use.nodes
+        for reference in references
+    }
+    lines = list(_lines(model))
+    waiting = list(lines)
+    while waiting:
+        chain = _chain(waiting[0], lines)
+        offset, segments, ends, loaded = 0.0, [], [0.0], []
+        for use, is_reversed in chain:
+            waiting.remove(use)
+            first, second = _ends(use)[:: -1 if is_reversed else 1]
+            length = float(parts[use.name].length.mid())
+            segments.append(Segment(use.name, offset, is_reversed))
+            loaded += [(n, x) for n, x in ((first, offset), (second, offset + length)) if n in carrying]
+            offset += length
+            ends.append(offset)
+        kind = chain[0][0].element.type_name
+        yield Run(tuple(segments), tuple(ends), tuple(dict.fromkeys(loaded)), kind in TURNING)
+
+
+def _chain(first: PlacedElement, lines: Sequence[PlacedElement]) -> list[tuple[PlacedElement, bool]]:
+    """Return the path of elements of one kind that holds one, each with whether it is walked backwards."""
+    kind = first.element.type_name
+    meeting: dict[str, list[PlacedElement]] = {}
+    for use in (use for use in lines if use.element.type_name == kind):
+        for node in _ends(use):
+            meeting.setdefault(node, []).append(use)
+
+    def beyond(node: str, use: PlacedElement) -> PlacedElement | None:
+        """Return the one other element at a node; beams must go on in the direction of their x."""
+        others = [other for other in meeting[node] if other is not use]
+        if node == "ground" or len(others) != 1:
+            return None
+        is_folded = _ends(others[0]).index(node) == _ends(use).index(node)
+        return None if is_folded and kind == "beam" else others[0]
+
+    start, node = first, _ends(first)[0]
+    seen = {id(start)}
+    while (before := beyond(node, start)) is not None and id(before) not in seen:
+        seen.add(id(before))
+        a, b = _ends(before)
+        start, node = before, a if b == node else b
+    chain: list[tuple[PlacedElement, bool]] = []
+    here: PlacedElement | None = start
+    used: set[int] = set()
+    while here is not None and id(here) not in used:
+        used.add(id(here))
+        a, b = _ends(here)
+        is_reversed = node == b != a
+        chain.append((here, is_reversed))
+        node = a if is_reversed else b
+        here = beyond(node, here)
+    return chain
+
+
+def _runs_of_fields(model: Model, parts: dict[str, DistributedShape]) -> Iterator[Run]:
+    """Yield fields whose domains do not overlap, on one axis."""
+    units = {p.name: p.unit for p in model.parameters}
+    runs: list[list[tuple[float, float, str]]] = []
+    unit = ""
+    for found in model.fields:
+        part = parts[found.name]
+        start, end = float(part.start.mid()), float((part.start + part.length).mid())
+        unit = next(
+            (units[e.name] for e in (found.end, found.start) if isinstance(e, Name) and e.name in units), unit
+        )
+        low, high = min(start, end), max(start, end)
+        fitting = next(
+            (run for run in runs if all(high <= a + AT_REST or low >= b - AT_REST for a, b, _ in run)), None
+        )
+        if fitting is None:
+            fitting = []
+            runs.append(fitting)
+        fitting.append((low, high, found.name))
+    for run in runs:
+        run.sort()
+        segments = tuple(Segment(name, low) for low, _, name in run)
+        ends = tuple(dict.fromkeys(x for low, high, _ in run for x in (low, high)))
+        yield Run(segments, ends, (), False, unit)

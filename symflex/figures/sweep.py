@@ -1,0 +1,443 @@
+"""Sweeps: modes over a parameter, loci in the s plane, bands of drawn responses."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.collections import LineCollection
+from matplotlib.colors import ListedColormap, LogNorm, Normalize
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+
+from symflex.errors import Diagnostic, ModelError
+from symflex.figures.bode import set_frequency_axis
+from symflex.figures.labels import label_of_frequency, label_of_name, label_of_unit
+from symflex.figures.style import (
+    COLOURS,
+    COLUMN_INCHES,
+    DASHES,
+    DEFAULT_FONT,
+    QUIET,
+    TITLE_POINTS,
+    TITLE_SPACING,
+    new_figure,
+    paper_style,
+    title_lines,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import numpy.typing as npt
+    from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
+    from matplotlib.colors import Colormap
+    from matplotlib.figure import Figure
+
+    from symflex.sweep import Labelled, Sweep
+
+    Doubles = npt.NDArray[np.float64]
+    Panel = Callable[[Axes, Sweep, int | None], None]
+
+PANEL_INCHES: Final = 2.1
+LINE_INCHES: Final = 0.13
+MAP: Final = "viridis"
+MAP_END: Final = 0.92
+"""The yellow at the end of the map is too pale for a line."""
+DECADES: Final = 15.0
+"""Values that span more than this factor stand on a logarithmic axis."""
+BAND: Final = (5, 95)
+MEDIAN: Final = 50
+PLAIN: Final = (1e3, 1e5)
+FEW_DECADES: Final = 300.0
+"""Below this factor, decades are divided."""
+OVERDAMPED: Final = 1.5
+"""Real roots are shown as far to the left as so many times the highest imaginary part."""
+UNDAMPED: Final = 1e-12
+MARKS: Final = 40
+FEW_LINES: Final = 12
+"""Lines per mode that are told apart by how pale they are."""
+PALEST: Final = 0.3
+CROWD: Final = 4000
+"""Points of a cloud beyond which marks become dots."""
+
+
+def draw_sweep(
+    sweep: Sweep,
+    *,
+    modes: int | None = None,
+    title: str | None = None,
+    width: float | None = None,
+    font: str = DEFAULT_FONT,
+) -> Figure:
+    """Draw a sweep.
+
+    Over one parameter: natural frequencies and damping ratios of all modes, and their loci in the s plane,
+    coloured by the parameter; of a response, its magnitudes. Over one parameter at a few values of others: a
+    line for each of these. Otherwise, and of draws: medians and what holds 90 % of the points, from the 5th
+    to the 95th percentile.
+
+    Parameters
+    ----------
+    sweep : Sweep
+        Of roots, a response or margins.
+    modes : int, optional
+        Names of modes shown, from the first.
+    title : str, optional
+        Printed as it is; by default the model's.
+    width : float, optional
+        [inches]; a column by default.
+    font : str, optional
+        A key of :data:`symflex.figures.FONTS`.
+
+    Raises
+    ------
+    ModelError
+        SF402 there is nothing to draw.
+    """
+    with paper_style(font):
+        width = width or COLUMN_INCHES
+        lines = title_lines(sweep.attribute("title") if title is None else title, width)
+        panels = _panels(sweep, modes)
+        figure = new_figure(width, PANEL_INCHES * len(panels) + 0.3 + LINE_INCHES * len(lines))
+        figure.set_layout_engine("constrained", h_pad=0.03, w_pad=0.03)
+        every = figure.subplots(len(panels), squeeze=False)[:, 0]
+        for axes, panel in zip(every, panels, strict=True):
+            PANELS[panel](axes, sweep, modes)
+        if lines:
+            figure.suptitle(
+                "\n".join(lines), fontsize=TITLE_POINTS, linespacing=TITLE_SPACING, parse_math=False
+            )
+        return figure
+
+
+def _panels(sweep: Sweep, modes: int | None) -> list[str]:
+    line = _line(sweep) is not None
+    if sweep.of == "response":
+        if not np.isfinite(sweep["re"]).any():
+            raise _nothing()
+        return ["magnitude lines" if line else "magnitude band"]
+    if sweep.of == "margins":
+        shown = [name for name in ("phase_margin", "gain_margin_up") if np.isfinite(sweep[name]).any()]
+        if not shown:
+            raise _nothing()
+        return [f"{name} {'line' if line else 'histogram'}" for name in shown]
+    there = sweep["status"][..., :modes] > 0
+    if not there.any():
+        raise _nothing()
+    line = _family(sweep) is not None
+    damped = bool(np.max(np.abs(sweep["damping_ratio"][..., :modes][there])) > UNDAMPED)
+    first = ["frequency lines"] if line else ["frequency bands"]
+    if line and damped:
+        first.append("damping lines")
+    return [*first, "loci"] if damped else first
+
+
+def _nothing() -> ModelError:
+    return ModelError(Diagnostic("SF402", "the sweep found nothing that could be drawn"))
+
+
+def _line(sweep: Sweep) -> Labelled | None:
+    """Return the parameter of a sweep along one axis."""
+    shape = sweep["point_status"].shape
+    only = [p for p in sweep.parameters if p.dims != ("draw",)]
+    return only[0] if len(shape) == 1 and len(only) == 1 == len(sweep.parameters) else None
+
+
+def _family(sweep: Sweep) -> tuple[Labelled, int] | None:
+    """Return the parameter that lines run along, and its axis: the others, if any, have few values."""
+    shape = sweep["point_status"].shape
+    if any(p.dims == ("draw",) for p in sweep.parameters) or len(sweep.parameters) != len(shape):
+        return None
+    axis = int(np.argmax(shape))
+    if np.prod(shape) > FEW_LINES * shape[axis]:
+        return None
+    dims = next(v.dims for v in sweep.variables if v.name == "point_status")
+    return next(p for p in sweep.parameters if p.dims == (dims[axis],)), axis
+
+
+def _others(sweep: Sweep, parameter: Labelled) -> str:
+    """Say what tells the lines of a family apart."""
+    others = [p for p in sweep.parameters if p is not parameter and p.values.size > 1]
+    shown = [f"{_label(p)}: {_short(p.values[0])} to {_short(p.values[-1])}" for p in others]
+    return "pale to full, " + "; ".join(shown) if shown else ""
+
+
+def _label(parameter: Labelled) -> str:
+    unit = label_of_unit(parameter.unit)
+    return f"${label_of_name(parameter.name)}$" + (f" [{unit}]" if unit else "")
+
+
+def _spans_decades(values: Doubles) -> bool:
+    finite = values[np.isfinite(values)]
+    return bool(finite.size and finite.min() > 0 and finite.max() > DECADES * finite.min())
+
+
+def _set_parameter_axis(axes: Axes, parameter: Labelled) -> None:
+    axes.set_xlabel(_label(parameter))
+    if parameter.values.size > 1:
+        axes.set_xlim(float(parameter.values.min()), float(parameter.values.max()))
+    if _spans_decades(parameter.values):
+        axes.set_xscale("log")
+        _set_plain_ticks(axes.xaxis)
+    axes.grid(visible=True)
+
+
+def _set_plain_ticks(axis: Axis) -> None:
+    """Write the decades of a logarithmic axis alone; where there are few, two numbers in between."""
+    low, high = axis.get_view_interval()
+    few = 0 < low and high < FEW_DECADES * low
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,), numticks=8))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: label_of_frequency(value)))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def _mode_lines(axes: Axes, sweep: Sweep, modes: int | None, values: Doubles) -> None:
+    found = _family(sweep)
+    if found is None:
+        return
+    parameter, axis = found
+    values = np.moveaxis(values, axis, 0).reshape(parameter.values.size, -1, values.shape[-1])
+    mark = "." if parameter.values.size <= MARKS else "None"
+    order = np.argsort(parameter.values, kind="stable")
+    members = values.shape[1]
+    axes.set_title(_others(sweep, parameter), fontsize=7, loc="right", pad=2)
+    for k in range(values.shape[-1] if modes is None else min(modes, values.shape[-1])):
+        style = DASHES[(k // len(COLOURS)) % len(DASHES)]
+        colour = COLOURS[k % len(COLOURS)]
+        for member in range(members):
+            axes.plot(
+                parameter.values[order],
+                values[order, member, k],
+                marker=mark,
+                linestyle=style,
+                color=colour,
+                alpha=1.0 if members == 1 else PALEST + (1 - PALEST) * member / (members - 1),
+                markersize=2.5,
+                linewidth=1.0,
+            )
+        there = np.nonzero(np.isfinite(values[order, -1, k]))[0]
+        if there.size:
+            last = order[there[-1]]
+            axes.annotate(
+                str(k + 1),
+                (float(parameter.values[last]), float(values[last, -1, k])),
+                xytext=(2, 0),
+                textcoords="offset points",
+                fontsize=6,
+                color=colour,
+                va="center",
+                annotation_clip=False,
+            )
+    _set_parameter_axis(axes, parameter)
+
+
+def _frequency_lines(axes: Axes, sweep: Sweep, modes: int | None) -> None:
+    values = sweep["frequency_hz"]
+    _mode_lines(axes, sweep, modes, values)
+    if _spans_decades(values[..., :modes]):
+        axes.set_yscale("log")
+        _set_plain_ticks(axes.yaxis)
+    else:
+        axes.set_ylim(bottom=0)
+    axes.set_ylabel("natural frequency [Hz]")
+
+
+def _damping_lines(axes: Axes, sweep: Sweep, modes: int | None) -> None:
+    values = sweep["damping_ratio"]
+    _mode_lines(axes, sweep, modes, values)
+    if _spans_decades(values[..., :modes]):
+        axes.set_yscale("log")
+        _set_plain_ticks(axes.yaxis)
+    axes.set_ylabel("damping ratio")
+
+
+def _frequency_bands(axes: Axes, sweep: Sweep, modes: int | None) -> None:
+    """Draw how far each mode's frequency spreads about its median [%]."""
+    values = sweep["frequency_hz"].reshape(-1, sweep["frequency_hz"].shape[-1])[:, :modes]
+    numbers: list[int] = []
+    labels: list[str] = []
+    for k in range(values.shape[1]):
+        own = values[np.isfinite(values[:, k]), k]
+        if not own.size or not np.median(own):
+            continue
+        median = float(np.median(own))
+        low, high = np.percentile(own, BAND)
+        spread = [100 * (x / median - 1) for x in (own.min(), low, high, own.max())]
+        at = len(numbers)
+        axes.plot([at, at], [spread[0], spread[3]], "-", color=QUIET, linewidth=0.8, zorder=2)
+        axes.plot([at, at], [spread[1], spread[2]], "-", color=COLOURS[0], linewidth=4, zorder=3)
+        axes.plot([at], [0], "_", color="black", markersize=6, markeredgewidth=0.8, zorder=4)
+        numbers.append(at)
+        labels.append(f"{k + 1}\n{_short(median)}")
+    axes.set_xticks(numbers, labels)
+    axes.set_xlabel("mode, median of its natural frequency [Hz]")
+    axes.set_ylabel("spread [%]")
+    axes.set_xlim(-0.6, len(numbers) - 0.4)
+    axes.grid(visible=True, axis="y")
+    axes.set_title("bars: 5 to 95 %, lines: all", fontsize=7, loc="right", pad=2)
+
+
+def _short(value: float) -> str:
+    return f"{value:.3g}" if value < PLAIN[0] else f"{value:.0f}" if value < PLAIN[1] else f"{value:.1e}"
+
+
+def _colours(values: Doubles) -> tuple[Normalize, Colormap]:
+    low, high = float(np.min(values)), float(np.max(values))
+    norm = LogNorm(low, high) if _spans_decades(values) else Normalize(low, high)
+    whole = colormaps[MAP]
+    return norm, ListedColormap([whole(x) for x in np.linspace(0, MAP_END, 256)])
+
+
+def _loci(axes: Axes, sweep: Sweep, modes: int | None) -> None:
+    """Draw the roots in the upper half plane, coloured by the first parameter."""
+    parameter = sweep.parameters[0]
+    shape = sweep["point_status"].shape
+    dims = next(v.dims for v in sweep.variables if v.name == "point_status")
+    axis = dims.index(parameter.dims[0])
+    value = np.broadcast_to(
+        parameter.values.reshape([-1 if i == axis else 1 for i in range(len(shape))]), shape
+    ).reshape(-1)
+    re, im = (sweep[name].reshape(value.size, -1)[:, :modes] for name in ("re", "im"))
+    norm, colours = _colours(parameter.values)
+    if _line(sweep) is not None:
+        for k in range(re.shape[1]):
+            points = np.column_stack([re[:, k], im[:, k]])
+            segments = np.stack([points[:-1], points[1:]], axis=1)
+            kept = np.isfinite(segments).all(axis=(1, 2))
+            axes.add_collection(
+                LineCollection(
+                    list(segments[kept]),
+                    cmap=colours,
+                    norm=norm,
+                    array=((value[:-1] + value[1:]) / 2)[kept],
+                    linewidths=1.0,
+                )
+            )
+    spread = np.repeat(value[:, None], re.shape[1], axis=1)
+    there = np.isfinite(re)
+    few = int(there.sum()) <= CROWD
+    marks = axes.scatter(
+        re[there],
+        im[there],
+        c=spread[there],
+        cmap=colours,
+        norm=norm,
+        s=5 if few else 1,
+        marker="." if few else ",",
+        linewidths=0,
+        rasterized=not few,
+    )
+    axes.axvline(0, color=QUIET, linewidth=0.5, zorder=1)
+    right = axes.get_xlim()[1]
+    if right > 0 and np.max(re[there]) > 0:
+        axes.axvspan(0, right, color="#FBEDE4", zorder=0, linewidth=0)
+        axes.set_xlim(right=right)
+    axes.set_ylim(bottom=0)
+    farthest = -OVERDAMPED * float(np.max(im[there]))
+    if farthest < 0 and float(np.min(re[there])) < farthest:
+        rightmost = max(float(np.max(re[there])), 0.0)
+        axes.set_xlim(farthest, rightmost - 0.06 * farthest)
+    axes.set_xlabel(r"$\mathrm{Re}(s)$ [rad/s]")
+    axes.set_ylabel(r"$\mathrm{Im}(s)$ [rad/s]")
+    for each in (axes.xaxis, axes.yaxis):
+        each.set_major_locator(MaxNLocator(nbins=6, steps=[1, 2, 2.5, 5, 10]))
+    bar = axes.figure.colorbar(marks, ax=axes, pad=0.02, aspect=25)
+    bar.set_label(_label(parameter), fontsize=7)
+
+
+def _magnitudes(sweep: Sweep) -> tuple[Doubles, Doubles]:
+    values = np.hypot(sweep["re"], sweep["im"])
+    with np.errstate(divide="ignore"):
+        decibels = 20 * np.log10(values.reshape(-1, values.shape[-1]))
+    return np.asarray(sweep["frequency"]), np.where(np.isfinite(decibels), decibels, np.nan)
+
+
+def _magnitude_lines(axes: Axes, sweep: Sweep, modes: int | None) -> None:
+    del modes
+    parameter = _line(sweep)
+    if parameter is None:
+        return
+    frequency, decibels = _magnitudes(sweep)
+    norm, colours = _colours(parameter.values)
+    lines = LineCollection(
+        [np.column_stack([frequency, row]) for row in decibels],
+        cmap=colours,
+        norm=norm,
+        array=parameter.values,
+        linewidths=0.8,
+    )
+    axes.add_collection(lines)
+    axes.autoscale_view()
+    _set_magnitude_axes(axes, frequency, sweep)
+    bar = axes.figure.colorbar(lines, ax=axes, pad=0.02, aspect=25)
+    bar.set_label(_label(parameter), fontsize=7)
+
+
+def _magnitude_band(axes: Axes, sweep: Sweep, modes: int | None) -> None:
+    del modes
+    frequency, decibels = _magnitudes(sweep)
+    decibels = decibels[np.isfinite(decibels).any(axis=1)]
+    low, middle, high = np.nanpercentile(decibels, (BAND[0], MEDIAN, BAND[1]), axis=0)
+    axes.fill_between(frequency, low, high, color=COLOURS[0], alpha=0.25, linewidth=0, label="5 to 95 %")
+    axes.plot(frequency, middle, "-", color=COLOURS[0], linewidth=1.0, label="median")
+    axes.legend(frameon=False, loc="best", fontsize=7)
+    _set_magnitude_axes(axes, frequency, sweep)
+
+
+def _set_magnitude_axes(axes: Axes, frequency: Doubles, sweep: Sweep) -> None:
+    set_frequency_axis(axes, float(frequency[0]), float(frequency[-1]))
+    axes.set_ylabel(f"$|{_quotient(sweep)}|$ [dB]")
+    axes.grid(visible=True)
+
+
+def _quotient(sweep: Sweep) -> str:
+    return "/".join(label_of_name(end) for end in sweep.attribute("tf").split("/"))
+
+
+MARGIN_LABELS: Final = {"phase_margin": "phase margin [deg]", "gain_margin_up": "gain margin, factor"}
+
+
+def _margin_line(name: str) -> Panel:
+    def draw(axes: Axes, sweep: Sweep, modes: int | None) -> None:
+        del modes
+        parameter = _line(sweep)
+        if parameter is None:
+            return
+        order = np.argsort(parameter.values, kind="stable")
+        values = np.where(np.isfinite(sweep[name]), sweep[name], np.nan)
+        axes.plot(parameter.values[order], values[order], ".-", color=COLOURS[0], markersize=2.5)
+        _set_parameter_axis(axes, parameter)
+        axes.set_ylabel(MARGIN_LABELS[name])
+
+    return draw
+
+
+def _margin_histogram(name: str) -> Panel:
+    def draw(axes: Axes, sweep: Sweep, modes: int | None) -> None:
+        del modes
+        values = sweep[name][np.isfinite(sweep[name])]
+        axes.hist(values, bins=30, color=COLOURS[0], alpha=0.6)
+        for share in (BAND[0], MEDIAN, BAND[1]):
+            axes.axvline(
+                float(np.percentile(values, share)),
+                color=COLOURS[1],
+                linewidth=1.0 if share == MEDIAN else 0.6,
+            )
+        axes.set_xlabel(f"{MARGIN_LABELS[name]}; lines: 5, 50, 95 %")
+        axes.set_ylabel("points")
+
+    return draw
+
+
+PANELS: Final = {
+    "frequency lines": _frequency_lines,
+    "damping lines": _damping_lines,
+    "frequency bands": _frequency_bands,
+    "loci": _loci,
+    "magnitude lines": _magnitude_lines,
+    "magnitude band": _magnitude_band,
+    **{f"{name} line": _margin_line(name) for name in MARGIN_LABELS},
+    **{f"{name} histogram": _margin_histogram(name) for name in MARGIN_LABELS},
+}

@@ -1,0 +1,127 @@
+"""The blocks of the specification language."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symflex.library.blocks.block import Block, BlockParameter
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from symflex.algebra import Factored
+
+
+class Resonance(Block):
+    """One pair of poles and one pair of zeros with unit gain at low frequency.
+
+    Source: Eppinger & Seering 1988, section "Polynomial Resonance Model".
+    """
+
+    type_name = "resonance"
+    summary = (
+        "(omega_p/omega_z)^2 (s^2 + 2 zeta_z omega_z s + omega_z^2)/(s^2 + 2 zeta_p omega_p s + omega_p^2)"
+    )
+    parameters = (
+        BlockParameter("omega_p", "rad/s", "an angular frequency"),
+        BlockParameter("zeta_p", "1", "a damping ratio"),
+        BlockParameter("omega_z", "rad/s", "an angular frequency"),
+        BlockParameter("zeta_z", "1", "a damping ratio"),
+    )
+
+    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
+        """Return the resonance's transfer function."""
+        omega_p, omega_z = values["omega_p"], values["omega_z"]
+        zeros = s**2 + values["zeta_z"] * omega_z * s * 2 + omega_z**2
+        poles = s**2 + values["zeta_p"] * omega_p * s * 2 + omega_p**2
+        return omega_p**2 / omega_z**2 * zeros / poles
+
+
+class TransferFunctionBlock(Block):
+    """A numerator over a denominator: expressions in s, or lists of coefficients, highest power first."""
+
+    type_name = "tf"
+    summary = "num/den, each an expression in s or a list of coefficients (highest power first)"
+    parameters = (
+        BlockParameter("num", "", "a numerator"),
+        BlockParameter("den", "", "a denominator", "1"),
+    )
+
+    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
+        """Return the quotient."""
+        return values["num"] / values["den"]
+
+
+class Integrator(Block):
+    """Gain over s."""
+
+    type_name = "integrator"
+    summary = "k/s"
+    parameters = (BlockParameter("k", "", "a gain", "1"),)
+
+    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
+        """Return ``k/s``."""
+        return values["k"] / s
+
+
+class LeadLag(Block):
+    """A real zero at ``-1/T_1`` and a real pole at ``-1/T_2``; lead when T_1 > T_2."""
+
+    type_name = "lead_lag"
+    summary = "k (1 + T_1 s)/(1 + T_2 s)"
+    parameters = (
+        BlockParameter("k", "", "a gain", "1"),
+        BlockParameter("T_1", "s", "a time constant"),
+        BlockParameter("T_2", "s", "a time constant"),
+    )
+
+    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
+        """Return the compensator's transfer function."""
+        return values["k"] * (values["T_1"] * s + 1) / (values["T_2"] * s + 1)
+
+
+class Lag(Block):
+    """A real pole at ``-1/T``: a first-order low-pass filter."""
+
+    type_name = "lag"
+    summary = "k/(1 + T s)"
+    parameters = (BlockParameter("k", "", "a gain", "1"), BlockParameter("T", "s", "a time constant"))
+
+    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
+        """Return the filter's transfer function."""
+        return values["k"] / (values["T"] * s + 1)
+
+
+class Pid(Block):
+    """Proportional, integral and filtered derivative action, in parallel form."""
+
+    type_name = "pid"
+    summary = "k_p + k_i/s + k_d s/(1 + T_f s)"
+    parameters = (
+        BlockParameter("k_p", "", "a proportional gain"),
+        BlockParameter("k_i", "", "an integral gain", "0"),
+        BlockParameter("k_d", "", "a derivative gain", "0"),
+        BlockParameter("T_f", "s", "a time constant", "0"),
+    )
+
+    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
+        """Return the controller's transfer function."""
+        derivative = values["k_d"] * s / (values["T_f"] * s + 1)
+        return values["k_p"] + values["k_i"] / s + derivative
+
+
+class Delay(Block):
+    """A dead time T [s], the factor ``exp(-s*T)``.
+
+    It is not rational: the equations see its ``kernel_time`` and carry it as a generator of its own.
+    """
+
+    type_name = "delay"
+    summary = "exp(-s T)"
+    parameters = (BlockParameter("T", "s", "a dead time"),)
+    kernel_time = "T"
+
+    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
+        """Return the rational factor beside the kernel, which is one; never called by the equations."""
+        del values
+        return s**0

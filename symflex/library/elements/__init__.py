@@ -1,0 +1,93 @@
+"""The element library. A new element is one file and one line in ``ELEMENTS``."""
+
+from symflex.library.elements.axial import Rod, Shaft, String
+from symflex.library.elements.beam import Beam
+from symflex.library.elements.constraint import Fixed, Pin, Slider
+from symflex.library.elements.coupling import Gyrator, Transformer
+from symflex.library.elements.dc_motor import DcMotor
+from symflex.library.elements.electrical import Capacitor, Inductor, Resistor
+from symflex.library.elements.element import (
+    ACROSS_UNIT,
+    COMPONENT_UNIT,
+    THROUGH_NAME,
+    THROUGH_UNIT,
+    Branch,
+    Choice,
+    Domain,
+    Element,
+    ElementUse,
+    Injection,
+    LinearForm,
+    ParameterPort,
+    Placing,
+    Port,
+    Row,
+    Sign,
+    Stamp,
+    Terminal,
+    Variable,
+)
+from symflex.library.elements.line import LineElement
+from symflex.library.elements.massless_beam import MasslessBeam
+from symflex.library.elements.piezo import Piezo
+from symflex.library.elements.rigid import RigidBody, RigidLink
+from symflex.library.elements.rotation import Inertia, RotaryDamper, TorsionSpring
+from symflex.library.elements.source import CurrentSource, ForceSource, TorqueSource, VoltageSource
+from symflex.library.elements.translation import Damper, Mass, Spring
+
+ELEMENTS: dict[str, Element] = {
+    element.type_name: element
+    for element in (
+        Mass(),
+        Spring(),
+        Damper(),
+        ForceSource(),
+        Inertia(),
+        TorsionSpring(),
+        RotaryDamper(),
+        TorqueSource(),
+        RigidBody(),
+        RigidLink(),
+        MasslessBeam(),
+        Beam(),
+        Rod(),
+        Shaft(),
+        String(),
+        Fixed(),
+        Slider(),
+        Pin(),
+        Resistor(),
+        Inductor(),
+        Capacitor(),
+        VoltageSource(),
+        CurrentSource(),
+        DcMotor(),
+        Piezo(),
+        Transformer(),
+        Gyrator(),
+    )
+}
+
+__all__ = [
+    "ACROSS_UNIT",
+    "COMPONENT_UNIT",
+    "ELEMENTS",
+    "THROUGH_NAME",
+    "THROUGH_UNIT",
+    "Branch",
+    "Choice",
+    "Domain",
+    "Element",
+    "ElementUse",
+    "Injection",
+    "LineElement",
+    "LinearForm",
+    "ParameterPort",
+    "Placing",
+    "Port",
+    "Row",
+    "Sign",
+    "Stamp",
+    "Terminal",
+    "Variable",
+]

@@ -1,0 +1,49 @@
+"""Uniform beam in bending."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symflex.library.elements.element import Choice, ParameterPort, Port
+from symflex.library.elements.line import LineElement
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+THEORIES = ("euler-bernoulli", "rayleigh", "timoshenko")
+
+
+class Beam(LineElement):
+    """A uniform beam of length l [m], cross-section A [m^2] and second moment of area I [m^4] in bending.
+
+    Between planar nodes, the second one l further along x. ``f`` [N] and ``tau`` [N m] are the force and
+    moment the beam delivers at its second end. ``eta`` [s] is Kelvin-Voigt damping (E, and G in the
+    Timoshenko theory, times 1 + eta*s), ``c_f`` and ``k_f`` a viscous and an elastic foundation per
+    length, ``N`` [N] an axial force, positive in tension. A slender beam (l/depth > 10) needs no more than
+    the Euler-Bernoulli theory; Rayleigh adds rotary inertia, Timoshenko also shear.
+    Source: Timoshenko, Young & Weaver 1974, Vibration Problems in Engineering, chapter 5.
+    """
+
+    type_name = "beam"
+    summary = "Uniform beam in bending between two planar nodes"
+    ports = (Port("between", 2, "planar", "the two ends, the second one l further along x"),)
+    parameters = (
+        ParameterPort("E", "Pa", "a modulus of elasticity", sign="positive"),
+        ParameterPort("I", "m^4", "a second moment of area", sign="positive"),
+        ParameterPort("rho", "kg/m^3", "a density", sign="nonnegative"),
+        ParameterPort("A", "m^2", "a cross-section", sign="nonnegative"),
+        ParameterPort("l", "m", "a length"),
+        ParameterPort("eta", "s", "a Kelvin-Voigt loss time", "0", sign="nonnegative"),
+        ParameterPort("c_f", "N*s/m^2", "a viscous foundation", "0"),
+        ParameterPort("k_f", "N/m^2", "an elastic foundation", "0"),
+        ParameterPort("N", "N", "an axial force", "0", only=("euler-bernoulli", "rayleigh")),
+        ParameterPort("kappa", "1", "a shear coefficient", only=("timoshenko",), sign="positive"),
+        ParameterPort("G", "Pa", "a shear modulus", only=("timoshenko",), sign="positive"),
+    )
+    choices = (Choice("theory", THEORIES, THEORIES[0], "a beam theory"),)
+    through = ("f", "tau")
+    ends = ("y", "theta")
+
+    def theory(self, choices: Mapping[str, str]) -> str:
+        """Return the field theory chosen."""
+        return choices["theory"]

@@ -1,0 +1,336 @@
+"""What an element is: its ports, its parameters, and the stamp it leaves in the equations.
+
+Input: an :class:`ElementUse`, the values and unknowns of one use of the element.
+Output: a :class:`Stamp`, pure data.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Mapping
+
+    from symflex.algebra import Factored
+
+Domain = Literal["translation", "rotation", "electrical"]
+PortDomain = Literal["translation", "rotation", "electrical", "planar", "any", "whole"]
+
+Sign = Literal["any", "nonnegative", "positive"]
+
+Placing = Literal["translation", "rotation", "electrical", "planar"]
+
+ACROSS_UNIT: dict[str, str] = {"translation": "m", "rotation": "rad", "electrical": "V"}
+THROUGH_UNIT: dict[str, str] = {"translation": "N", "rotation": "N*m", "electrical": "A"}
+THROUGH_NAME: dict[str, str] = {"translation": "f", "rotation": "tau", "electrical": "i"}
+COMPONENT_UNIT: dict[str, str] = {
+    "f": "N",
+    "tau": "N*m",
+    "i": "A",
+    "supplied": "A",
+    "supplied_f": "N",
+    "supplied_tau": "N*m",
+}
+"""Of through variables, by component; what inputs supply is named so that no element's quantity is meant."""
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """An unknown of the equations, or an input.
+
+    Parameters
+    ----------
+    kind : str
+        ``node`` (displacement [m], angle [rad] or voltage [V]), ``through`` (force [N],
+        torque [N m] or current [A] of an element), ``signal``, ``value`` (an auxiliary
+        unknown that carries a rational expression), ``field`` (an unknown function of x, or
+        one of the constants that fix it) or ``input``.
+    owner : str
+        Name of the node, element, signal, output, field's unknown or input.
+    component : str
+        ``y`` or ``theta`` of a planar node; the quantity's name for a through variable.
+    """
+
+    kind: Literal["node", "through", "signal", "value", "field", "input"]
+    owner: str
+    component: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.owner}.{self.component}" if self.component else self.owner
+
+
+@dataclass(frozen=True, slots=True)
+class LinearForm:
+    """A linear combination of variables, ``sum(coefficient * variable)``."""
+
+    terms: tuple[tuple[Variable, Factored], ...] = ()
+
+    @staticmethod
+    def of(*terms: tuple[Variable | None, Factored]) -> LinearForm:
+        """Return the combination of the given terms; the reference (``None``) contributes nothing."""
+        return LinearForm(tuple((v, c) for v, c in terms if v is not None and not c.is_zero))
+
+    @property
+    def coefficients(self) -> tuple[Factored, ...]:
+        """The coefficients, in order."""
+        return tuple(c for _, c in self.terms)
+
+    @staticmethod
+    def total(forms: Iterable[LinearForm]) -> LinearForm:
+        """Return the sum of the forms, with one term per variable."""
+        merged: dict[Variable, Factored] = {}
+        for form in forms:
+            for variable, coefficient in form.terms:
+                known = merged.get(variable)
+                merged[variable] = coefficient if known is None else known + coefficient
+        return LinearForm(tuple((v, c) for v, c in merged.items() if not c.is_zero))
+
+    def __add__(self, other: LinearForm) -> LinearForm:
+        return LinearForm.total((self, other))
+
+    def __mul__(self, scale: Factored) -> LinearForm:
+        return LinearForm(tuple((v, c * scale) for v, c in self.terms if not scale.is_zero))
+
+
+@dataclass(frozen=True, slots=True)
+class Branch:
+    """A two-terminal admittance: ``admittance * (a - b)`` flows from ``a`` to ``b``.
+
+    Parallel branches between the same variables are added before elimination, so a spring
+    and a damper side by side become one sub-impedance ``k + b*s``.
+    """
+
+    a: Variable | None
+    b: Variable | None
+    admittance: Factored
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """An equation ``form = 0`` that determines (or constrains) ``about``."""
+
+    about: Variable
+    form: LinearForm
+    role: Literal["law", "constraint", "signal"] = "law"
+
+
+@dataclass(frozen=True, slots=True)
+class Injection:
+    """A force, torque or current delivered into a node."""
+
+    node: Variable | None
+    form: LinearForm
+
+
+@dataclass(frozen=True, slots=True)
+class Stamp:
+    """The contribution of one element: unknowns, rows, branches and injections.
+
+    ``through`` gives the element's quantities (``motor.i``) as linear forms.
+    """
+
+    branches: tuple[Branch, ...] = ()
+    injections: tuple[Injection, ...] = ()
+    unknowns: tuple[Variable, ...] = ()
+    rows: tuple[Row, ...] = ()
+    through: tuple[tuple[str, LinearForm], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Port:
+    """Where an element is attached: a key of its table and the terminals listed there.
+
+    Parameters
+    ----------
+    name : str
+        The key.
+    terminals : int
+        How many nodes it lists; one is written as a string, more as an array.
+    domain : str
+        What the port acts on. ``any`` takes the domain the node has from other elements;
+        ``planar`` needs both deflection y and slope theta; ``whole`` takes the node as it is.
+    doc : str
+        What the node is.
+    default : tuple of str, optional
+        Nodes used when the key is missing.
+    pair : str
+        The key that names two nodes in its place, the second one for the reaction; empty without one.
+    """
+
+    name: str
+    terminals: int
+    domain: PortDomain
+    doc: str
+    default: tuple[str, ...] | None = None
+    pair: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterPort:
+    """A value an element or block takes.
+
+    Parameters
+    ----------
+    name : str
+        The key.
+    unit : str
+        Its SI unit; empty when it depends on the ports (see :meth:`Element.unit_of`).
+    doc : str
+        What it is, in the words of an error message: "a mass", "a torque constant".
+    default : str, optional
+        The expression used when the key is missing; ``None`` makes the key required.
+    signal : bool
+        True when the value may be an expression of signals, inputs and nodes.
+    only : tuple of str
+        Values of the element's choices with which the key may be given; empty when with all of them.
+    sign : str
+        What the value must be: ``any``, ``nonnegative`` or ``positive``; of distributed elements, told as
+        far as values and assumptions tell. A distributed element's length is always positive.
+    """
+
+    name: str
+    unit: str
+    doc: str
+    default: str | None = None
+    signal: bool = False
+    only: tuple[str, ...] = ()
+    sign: Sign = "any"
+
+    def applies(self, chosen: Collection[str]) -> bool:
+        """Tell whether the key may be given with the chosen values."""
+        return not self.only or any(value in self.only for value in chosen)
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """A key that takes one of a few words, such as the theory of a beam.
+
+    Parameters
+    ----------
+    name : str
+        The key.
+    values : tuple of str
+        What it may say.
+    default : str
+        What holds when the key is missing.
+    doc : str
+        What it decides, in the words of an error message: "a theory".
+    """
+
+    name: str
+    values: tuple[str, ...]
+    default: str
+    doc: str
+
+
+@dataclass(frozen=True, slots=True)
+class Terminal:
+    """The across variables of one attached node, ``None`` where it is the reference.
+
+    A non-planar node has only ``across``; a planar one has ``y`` and ``theta``.
+    """
+
+    across: Variable | None = None
+    y: Variable | None = None
+    theta: Variable | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ElementUse:
+    """One element of a model, with its values in the ring.
+
+    Parameters
+    ----------
+    name : str
+        The element's name.
+    s : Factored
+        The Laplace variable.
+    terminals : mapping of str to tuple of Terminal
+        Per port, in the order written.
+    domains : mapping of str to str
+        Per port, the domain it was found to have.
+    values : mapping of str to Factored
+        Constant parameters (they may depend on s).
+    forms : mapping of str to LinearForm
+        Values that are expressions of signals.
+    choices : mapping of str to str
+        What was chosen, the theory of a beam for instance.
+    transmission : tuple of tuple of Factored
+        Of a distributed element, row by row, the matrix that takes its state from the first end to the
+        second; empty for others.
+    """
+
+    name: str
+    s: Factored
+    terminals: Mapping[str, tuple[Terminal, ...]]
+    domains: Mapping[str, Placing]
+    values: Mapping[str, Factored]
+    forms: Mapping[str, LinearForm] = field(default_factory=dict)
+    choices: Mapping[str, str] = field(default_factory=dict)
+    transmission: tuple[tuple[Factored, ...], ...] = ()
+
+    @property
+    def one(self) -> Factored:
+        """The ring's one."""
+        return self.s**0
+
+    def unknown(self, component: str) -> Variable:
+        """Return a through variable of this element."""
+        return Variable("through", self.name, component)
+
+    def across(self, port: str) -> tuple[Variable | None, ...]:
+        """Return the across variables of a port's terminals."""
+        return tuple(t.across for t in self.terminals[port])
+
+
+class Element(ABC):
+    """Base of every element. Subclasses are final, stateless and registered in ``ELEMENTS``."""
+
+    type_name: ClassVar[str]
+    summary: ClassVar[str]
+    ports: ClassVar[tuple[Port, ...]]
+    parameters: ClassVar[tuple[ParameterPort, ...]] = ()
+    choices: ClassVar[tuple[Choice, ...]] = ()
+    through: ClassVar[tuple[str, ...]] = ()
+
+    def unit_of(self, quantity: str, domains: Mapping[str, Placing]) -> str:
+        """Return the SI unit of a parameter or through quantity, given the ports' domains."""
+        for parameter in self.parameters:
+            if parameter.name == quantity and parameter.unit:
+                return parameter.unit
+        return {"f": "N", "tau": "N*m", "i": "A"}[quantity]
+
+    def quantities(self, domains: Mapping[str, Placing]) -> tuple[str, ...]:
+        """Return the through quantities an expression may name, given the ports' domains."""
+        del domains
+        return self.through
+
+    @abstractmethod
+    def stamp(self, use: ElementUse) -> Stamp:
+        """Contribute this element's unknowns, rows, branches and injections."""
+
+
+def two_terminal(use: ElementUse, port: str, quantity: str, admittance: Factored) -> Stamp:
+    """Return the stamp of ``through = admittance * (a - b)``.
+
+    An admittance whose denominator depends on s (a relaxing spring, say) gets a through unknown of its own,
+    so that the equations stay polynomial and no root is added to the determinant.
+    """
+    ends = use.across(port)
+    a, b = ends if len(ends) == 2 else (ends[0], None)  # noqa: PLR2004
+    denominator = admittance.denominator()
+    if not denominator.depends_on("s"):
+        form = LinearForm.of((a, admittance), (b, -admittance))
+        return Stamp(branches=(Branch(a, b, admittance),), through=((quantity, form),))
+    through = use.unknown(quantity)
+    numerator = admittance * denominator
+    law = LinearForm.of((through, denominator), (a, -numerator), (b, numerator))
+    flow = LinearForm.of((through, use.one))
+    return Stamp(
+        unknowns=(through,),
+        rows=(Row(through, law),),
+        injections=(Injection(a, flow * (-use.one)), Injection(b, flow)),
+        through=((quantity, flow),),
+    )

@@ -1,0 +1,243 @@
+"""Dynamic colocation: up to which frequency one output moves together with another.
+
+Input: two bound transfer functions from the same input. Output: the first frequency at which their ratio
+leaves a sector of phases and magnitudes, enclosed, with proof that it does not leave before.
+
+A tip sensor may be away from the joint actuator, and yet respond as the joint does for a finite bandwidth:
+"physically noncolocated, but dynamically colocated" (Eppinger and Seering 1988).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from flint import acb, arb
+
+from symflex.budget import Budget, entered_budget
+from symflex.errors import Diagnostic, ModelError, UsageError
+from symflex.loops.stability_map import hertz, real_json
+from symflex.roots import decimals, precision
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from symflex.transfer import BoundTransferFunction
+
+SCHEMA = "symflex.colocation/1"
+BITS = 192
+START_RATIO = 1.02
+NARROWEST = 1e-13
+MOST_INTERVALS = 200_000
+DECADES_BELOW = 6
+TOLERANCE = 2.0**-60
+
+
+@dataclass(frozen=True)
+class DynamicColocation:
+    """The band in which an output stays with a colocated one.
+
+    Parameters
+    ----------
+    tf, reference : str
+        The output over the input, and the colocated output over it.
+    phase : float
+        Largest difference of phase [degrees].
+    magnitude : float
+        Largest difference of magnitude [dB].
+    limits : (float, float)
+        Frequencies examined [Hz].
+    edge : arb or None
+        Where the band ends [rad/s]; ``None`` when it does not end within the limits.
+    is_decided : bool
+        False when the end could not be enclosed narrowly.
+    cause : str
+        ``phase`` or ``magnitude``, what is left first; empty when nothing is, or when that is not decided.
+    begins : bool
+        The outputs are together at the lower limit.
+    """
+
+    tf: str
+    reference: str
+    phase: float
+    magnitude: float
+    limits: tuple[float, float]
+    edge: arb | None
+    is_decided: bool
+    cause: str
+    begins: bool
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return the band in the schema ``symflex.colocation/1``."""
+        edge = None if self.edge is None else real_json(hertz(self.edge), 15)
+        return {
+            "schema": SCHEMA,
+            "tf": self.tf,
+            "with": self.reference,
+            "phase_degrees": self.phase,
+            "magnitude_db": self.magnitude,
+            "examined_hz": list(self.limits),
+            "colocated_at_start": self.begins,
+            "bandwidth_hz": edge,
+            "left_by": self.cause or None,
+            "certified": self.is_decided,
+        }
+
+    def __str__(self) -> str:
+        """Return one line with the number and its unit."""
+        within = f"within {self.phase:g} deg and {self.magnitude:g} dB"
+        head = f"{self.tf} {within} of {self.reference}"
+        low, high = self.limits
+        status = "" if self.is_decided else ", NOT CERTIFIED"
+        if not self.begins:
+            return f"{head}: not at {low:.6g} Hz, where the search begins{status}"
+        if self.edge is None:
+            return f"{head}: from {low:.6g} Hz to {high:.6g} Hz, all that was examined"
+        printed = decimals(hertz(self.edge), arb(0), 12)
+        return f"{head}: up to {printed.re} Hz, where {self.parting}{status}"
+
+    @property
+    def parting(self) -> str:
+        """What happens at the end of the band, in words."""
+        if self.cause:
+            return f"the {self.cause} differs by more"
+        return "the phase or the magnitude may differ by more"
+
+
+def dynamic_colocation(
+    tip: BoundTransferFunction,
+    joint: BoundTransferFunction,
+    phase: float = 10.0,
+    magnitude: float = 1.0,
+    limits: tuple[float, float] | None = None,
+    budget: Budget | None = None,
+) -> DynamicColocation:
+    """Return up to which frequency an output moves with a colocated one.
+
+    Parameters
+    ----------
+    tip, joint : BoundTransferFunction
+        From the same input.
+    phase : float
+        Largest difference of phase [degrees], below 90.
+    magnitude : float
+        Largest difference of magnitude [dB]. One decibel is 12 %: a gain margin one plans with anyway; phases
+        of lossless structures do not differ at all until a zero, so that magnitude is what tells them apart.
+    limits : (float, float), optional
+        Frequencies examined [Hz]; by default the model's band.
+    budget : Budget, optional
+        Of the search.
+
+    Raises
+    ------
+    UsageError
+        SF805 different inputs, outputs of different units, or tolerances that are none; SF804 no band.
+    ModelError
+        SF402 one of the functions is identically zero.
+    """
+    if tip.source.input.name != joint.source.input.name:
+        message = f"{tip.name} and {joint.name} have different inputs"
+        raise UsageError(Diagnostic("SF805", message, None, "compare two outputs of one input"))
+    units = [bound.source.unit for bound in (tip, joint)]
+    if units[0] != units[1]:
+        message = f"{tip.name} is in [{units[0]}] and {joint.name} in [{units[1]}]"
+        hint = 'compare outputs of one unit; an angle times its lever is a displacement: "h*phi"'
+        raise UsageError(Diagnostic("SF805", message, None, hint))
+    if not 0 < phase < 90 or not magnitude > 0:  # noqa: PLR2004 (degrees)
+        message = "tolerances are a phase between 0 and 90 degrees and a magnitude above 0 dB"
+        raise UsageError(Diagnostic("SF805", message))
+    band = tip.source.model.analysis.band
+    if limits is None and band is None:
+        message = "no band of frequencies is given"
+        raise UsageError(Diagnostic("SF804", message, None, "say --band LO HI, or band in [analysis]"))
+    low, high = limits if limits is not None else (float(band[0]), float(band[1])) if band else (0.0, 0.0)
+    for bound in (tip, joint):
+        if bound.ratio.is_zero:
+            raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero"))
+    search = _Search(tip, joint, phase, magnitude, budget or entered_budget())
+    edge, is_decided, begins, cause = search.first_exit(low, high)
+    return DynamicColocation(
+        tip.name, joint.name, phase, magnitude, (low, high), edge, is_decided, cause, begins
+    )
+
+
+@dataclass
+class _Search:
+    """Follows the ratio of two functions upwards until it leaves the sector."""
+
+    tip: BoundTransferFunction
+    joint: BoundTransferFunction
+    phase: float
+    magnitude: float
+    budget: Budget
+
+    def __post_init__(self) -> None:
+        self._ratio = self._ratio_function()
+
+    def _ratio_function(self) -> Callable[[acb], acb]:
+        """Return the ratio with poles that both have cancelled, as far as their factors show."""
+        # Numerator over numerator where the denominators are the same: no 0/0 at a resonance.
+        ratio = self.tip.ratio / self.joint.ratio if self.tip.ratio.ring == self.joint.ratio.ring else None
+        if ratio is None:
+            one, other = self.tip.enclosed(BITS), self.joint.enclosed(BITS)
+            return lambda s: one(s) / other(s)
+        from dataclasses import replace
+
+        if not self.tip.kernels:
+            whole = replace(self.tip, ratio=ratio)
+            return whole.enclosed(BITS)
+        return self.tip.enclosed_part(ratio, BITS)
+
+    def first_exit(self, low: float, high: float) -> tuple[arb | None, bool, bool, str]:
+        """Return the frequency of the first exit, whether it is narrow, whether it begins inside, and why."""
+        with precision(BITS):
+            turn = 2 * arb.pi()
+            start, end = (float((turn * arb(x)).mid()) for x in (low, high))
+            state, cause = self._state(arb(start))
+            if state != 1:
+                return None, state == -1, False, cause
+            pending: list[tuple[float, float]] = []
+            reached = start
+            while reached < end:
+                following = min(reached * START_RATIO, end)
+                pending.append((reached, following))
+                reached = following
+            pending.reverse()
+            for _ in range(MOST_INTERVALS):
+                if not pending:
+                    return None, True, True, ""
+                self.budget.spend()
+                left, right = pending.pop()
+                ball = arb(left).union(arb(right))
+                state, cause = self._state(ball)
+                if state == 1:
+                    continue
+                if right - left < NARROWEST * right:
+                    # It is left within this narrow interval where the other end is outside.
+                    after, why = self._state(arb(right * (1 + 4 * NARROWEST)))
+                    return ball, after == -1, True, why or cause
+                middle = left + (right - left) / 2
+                if not left < middle < right:
+                    return ball, False, True, cause
+                pending += [(middle, right), (left, middle)]
+        return ball, False, True, cause
+
+    def _state(self, omega: arb) -> tuple[int, str]:
+        """Return 1 when the ratio is inside on all of a ball, -1 when outside on all of it, else 0."""
+        value = self._ratio(acb(0, omega))
+        if not value.is_finite():
+            return 0, ""
+        size = abs(value)
+        most = arb(10) ** (arb(self.magnitude) / 20)
+        limit = (arb.pi() * arb(self.phase) / 180).tan()
+        above, below = most - size, size - 1 / most
+        # Within the sector: abs(Im) <= tan(phase) Re.
+        sideways = limit * value.real - abs(value.imag)
+        if above > 0 and below > 0 and sideways > 0:
+            return 1, ""
+        outside = [
+            name
+            for name, slack in (("magnitude", above), ("magnitude", below), ("phase", sideways))
+            if slack < 0
+        ]
+        return (-1, outside[0]) if outside else (0, "")

@@ -1,0 +1,307 @@
+"""Stability boundaries of characteristic functions with kernels: beams, rods, delays.
+
+Crossings of the imaginary axis are isolated in one dimension: along the axis ``A + K B`` vanishes for a real
+K only where ``Im(A conj(B))`` does. Between them poles in the right half plane are counted by the argument
+principle about a half disc, beyond which, where this can be proved, there are none.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import log, pi
+from typing import TYPE_CHECKING
+
+from flint import acb, arb
+
+from symflex.algebra import Factored
+from symflex.algebra.origin import Origin
+from symflex.errors import Diagnostic, UncertifiedError
+from symflex.loops.axis import find_on_axis
+from symflex.loops.crossing import Crossing, PoleCount
+from symflex.loops.loop_function import LoopFunction, LoopValue
+from symflex.loops.origin import LoopAtOrigin, loop_at_origin
+from symflex.roots import Band, precision
+from symflex.roots.counting.argument_principle import CertifiedWinding
+from symflex.roots.counting.tail import right_tail
+from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
+from symflex.roots.distributed.kernel_function import KernelFunction
+from symflex.roots.distributed.side import Side
+from symflex.roots.distributed.square_free_kernels import without_squares
+from symflex.roots.root import exact_fraction
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from fractions import Fraction
+
+    from symflex.loops.axis import AxisRoots
+    from symflex.loops.loop import GainPolynomial
+    from symflex.roots import Budget
+    from symflex.transfer import BoundTransferFunction
+
+BITS = 128
+WAVES = 30.0
+"""Largest argument of a kernel up to which poles are counted where no end is known."""
+DEPTHS = (0.0, 2.0, 5.0, 9.0, 14.0, 20.0)
+NUDGES = (0.0, 0.0137, 0.0291, 0.0531)
+SHRINKINGS = 30
+
+
+@dataclass
+class DistributedFactors:
+    """The factors of a characteristic function that hold kernels, together.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        Carries ring and kernels.
+    factors : tuple of GainPolynomial
+        Those with kernels or wavenumbers, and those with negative exponents.
+    limits : (Fraction, Fraction)
+        Range of the gain.
+    up_to : float or None
+        A frequency up to which to search where no end can be proved [rad/s].
+    budget : Budget
+        Of the search.
+
+    Attributes
+    ----------
+    reasons : list of str
+        Why something is not certified.
+    """
+
+    bound: BoundTransferFunction
+    factors: tuple[GainPolynomial, ...]
+    limits: tuple[Fraction, Fraction]
+    up_to: float | None
+    budget: Budget
+    reasons: list[str] = field(default_factory=list)
+
+    @cached_property
+    def with_gain(self) -> tuple[LoopFunction, ...]:
+        """A and B of every factor that depends on the gain."""
+        return tuple(
+            LoopFunction.of(self.bound, f.coefficients[0], f.coefficients[1])
+            for f in self.factors
+            if f.degree == 1
+        )
+
+    @cached_property
+    def radius(self) -> tuple[float, bool]:
+        """How far poles are searched [rad/s], and whether it is proved that none lies beyond on the right.
+
+        Where it is not, ``reasons`` says why.
+        """
+        low, high = (arb(x.numerator) / x.denominator for x in self.limits)
+        proved: list[float] = []
+        for factor in self.factors:
+            if factor.multiplicity < 0:
+                continue
+            b = factor.coefficients[1] if factor.degree else Factored.number(self.bound.ratio.ring, 0)
+            function = LoopFunction.of(self.bound, factor.coefficients[0], b)
+            tail = right_tail(
+                self.bound, (function.a, function.b), (acb(1), acb(low.union(high))), self._scale
+            )
+            if tail.radius is None:
+                self.reasons.append(tail.reason)
+                return self._without_end, False
+            proved.append(tail.radius)
+        return max(proved), True
+
+    @cached_property
+    def _scale(self) -> float:
+        """A frequency at which the largest argument of a kernel is about one [rad/s]."""
+        return self._function(self.limits[1]).frequency_of(1.0)
+
+    @cached_property
+    def _without_end(self) -> float:
+        return self._function(self.limits[1]).frequency_of(WAVES) if self.up_to is None else self.up_to
+
+    def _product(self, gain: Fraction) -> Factored:
+        total = Factored.number(self.bound.ratio.ring, 1)
+        for factor in self.factors:
+            total = total * factor.at(gain) ** factor.multiplicity
+        return total
+
+    def _function(self, gain: Fraction) -> KernelFunction:
+        whole = self._product(gain)
+        s = whole.ring.context.gen(0)
+        return KernelFunction(*without_squares(self.bound, whole.filter(lambda f: f != s)))
+
+    def crossings(self, digits: int) -> list[Crossing]:
+        """Return where poles cross the axis for gains in the range; the search's gaps go to ``reasons``."""
+        found: list[Crossing] = []
+        for function in self.with_gain:
+            found += self._crossings(function, digits)
+        return found
+
+    def _crossings(self, function: LoopFunction, digits: int) -> list[Crossing]:
+        found: list[Crossing] = []
+        is_mirrored = self._never_leaves(function)
+        if is_mirrored and function.sums is None:
+            self.reasons.append("where poles that mirror each other meet on the axis is not searched")
+            return []
+        first, origin = self.next_to_zero(function, is_mirrored=is_mirrored)
+        if origin is not None:
+            gain = origin.gain()
+            if gain is not None and self._may_be_in_range(gain):
+                found.append(Crossing(gain, (arb(0),)))
+        equation = LoopValue.meeting if is_mirrored else LoopValue.crossing
+        order = 2 if is_mirrored else 1
+        result = self.on_axis(function, equation, self._is_far, (first, self.radius[0]), digits, order)
+        for omega in result.roots:
+            bits = max(BITS, 2 * omega.bits())
+            around, _ = function.on(omega, bits)
+            with precision(bits):
+                if self._is_far(around):
+                    continue
+                if around.b.contains(0):
+                    place = float((omega.mid() / (2 * arb.pi())).mid())
+                    self.reasons.append(f"poles near {place:.6g} Hz may stay on the axis for every gain")
+                    continue
+                gain = around.gain()
+            if self._may_be_in_range(gain):
+                found.append(Crossing(gain, (omega,), is_symmetric=is_mirrored))
+        return found
+
+    def on_axis(
+        self,
+        function: LoopFunction,
+        equation: Callable[[LoopValue], tuple[arb, arb]],
+        is_excluded: Callable[[LoopValue], bool],
+        limits: tuple[float, float],
+        digits: int,
+        order: int = 1,
+    ) -> AxisRoots:
+        """Return the roots of a real function along the axis between two frequencies."""
+        low, high = limits
+        result = find_on_axis(function, equation, is_excluded, (low, high * 1.01), digits, self.budget, order)
+        for gap in result.undecided:
+            place = float((gap.mid() / (2 * arb.pi())).mid())
+            self.reasons.append(f"whether poles cross the axis near {place:.6g} Hz is not decided")
+        return result
+
+    def _never_leaves(self, function: LoopFunction) -> bool:
+        """Tell whether A and B are even or odd alike, so that roots mirror each other for every gain."""
+        ring = self.bound.ratio.ring
+        parts = [KernelFunction(self.bound, Factored.polynomial(ring, f)) for f in (function.a, function.b)]
+        if not all(part.is_even for part in parts):
+            return False
+        powers = [{int(m[0]) % 2 for m in f.monoms()} for f in (function.a, function.b)]
+        return powers[0] == powers[1]
+
+    def next_to_zero(
+        self, function: LoopFunction, *, is_mirrored: bool = False
+    ) -> tuple[float, LoopAtOrigin | None]:
+        """Return a frequency [rad/s] within which no pole crosses the axis but at 0, as far as proved."""
+        origin = loop_at_origin(function, self.budget)
+        if origin is None:
+            self.reasons.append("what poles do next to s = 0 is not proved")
+            return self._scale * 1e-6, None
+        radius = origin.series[0].reach / 4
+        for _ in range(SHRINKINGS):
+            is_proved = origin.moves_away(radius) if is_mirrored else origin.turns_away(radius)
+            if is_proved or self._beyond_all_gains(origin, radius):
+                break
+            radius = radius / 2
+        else:
+            # Several crossings meet at 0: nothing is gained by going closer.
+            self.reasons.append("what poles do next to s = 0 is not proved")
+            radius = origin.series[0].reach / 4
+        return float(radius.lower()), origin
+
+    def _beyond_all_gains(self, origin: LoopAtOrigin, radius: arb) -> bool:
+        first, second = origin.orders
+        if first > second:
+            return False
+        a, b = origin.sizes(radius)
+        most = max(abs(x) for x in self.limits)
+        bound = arb(most.numerator) / most.denominator * b.abs_upper() * radius ** (second - first)
+        return bool(a.abs_lower() > bound)
+
+    def _is_far(self, value: LoopValue) -> bool:
+        """Tell whether the gain of a pole at these values is out of the range."""
+        low, high = (arb(x.numerator) / x.denominator for x in self.limits)
+        most = abs(low).max(abs(high))
+        size = value.a.abs_lower()
+        if size > most * value.b.abs_upper():
+            return True
+        if low > 0 and value.a.abs_upper() < low * value.b.abs_lower():
+            return True
+        if value.b.contains(0):
+            return False
+        gain = value.gain()
+        return bool(gain < low) or bool(gain > high)
+
+    def _may_be_in_range(self, gain: arb) -> bool:
+        low, high = (arb(x.numerator) / x.denominator for x in self.limits)
+        return not (gain < low or gain > high)
+
+    def count(self, gain: Fraction) -> PoleCount:
+        """Return how many poles lie right of the axis and on it, as far as they are searched.
+
+        Raises
+        ------
+        UncertifiedError
+            SF802 when a pole lies on the path of the count.
+        """
+        function = self._function(gain)
+        zeros = self._order_at_zero(gain, function)
+        if function.is_even and function.power == 1:
+            return self._count_mirrored(gain, zeros)
+        winding = CertifiedWinding(function, self.budget, tries_series=True)
+        inner = self._inner_radius(winding, function)
+        for nudge in NUDGES:
+            high = log(self.radius[0] * 1.01) + nudge
+            try:
+                right = winding.count(Cell(inner, high, -pi / 2, pi / 2))
+            except RootOnPathError:
+                continue
+            if right % function.power == 0:
+                return PoleCount(right // function.power, zeros)
+        message = f"poles right of the axis cannot be counted for a gain of {float(gain):.6g}"
+        hint = "one may lie on the imaginary axis whatever the gain is"
+        raise UncertifiedError(Diagnostic("SF802", message, None, hint))
+
+    def _order_at_zero(self, gain: Fraction, function: KernelFunction) -> int:
+        whole = self._product(gain)
+        powers = whole.exponent_of(whole.ring.context.gen(0))
+        order = Origin(function.part.ring, function.bound.kernels).order(function.part)
+        if order is None:
+            self.reasons.append("poles next to s = 0 are counted as poles at 0")
+            return powers + self._turns(function)
+        return powers + order
+
+    def _turns(self, function: KernelFunction) -> int:
+        winding = CertifiedWinding(function, self.budget)
+        return winding.count_within(Winding(function, self.budget).smallest(pi), pi) // function.power
+
+    def _inner_radius(self, winding: CertifiedWinding, function: KernelFunction) -> float:
+        """Return ln of a radius within which there is no pole but at s = 0, proved."""
+        order = Origin(function.part.ring, function.bound.kernels).order(function.part)
+        lowest = Winding(function, self.budget).smallest(pi)
+        for depth in DEPTHS:
+            try:
+                turns = winding.count_within(lowest - depth, pi)
+            except RootOnPathError:
+                continue
+            if order is None or turns == order * function.power:
+                return lowest - depth
+        message = "the poles next to s = 0 cannot be counted"
+        raise UncertifiedError(Diagnostic("SF802", message))
+
+    def _count_mirrored(self, gain: Fraction, zeros: int) -> PoleCount:
+        """Return the counts of a function whose roots mirror each other in the axis, from all its roots."""
+        whole = self._product(gain)
+        side = Side(self.bound, whole, 12, self.budget)
+        high = exact_fraction(arb(self.radius[0])) / 6
+        region = Band(high * 0, high)
+        side.search(region)
+        proof = side.prove(region)
+        if not proof.is_complete:
+            message = f"poles cannot be told apart for a gain of {float(gain):.6g}"
+            raise UncertifiedError(Diagnostic("SF802", message))
+        roots = [r for r in side.roots if float(r.natural_frequency().mid()) <= self.radius[0]]
+        right = sum(r.multiplicity for r in roots if not r.on_imaginary_axis and r.re > 0)
+        axis = sum(r.multiplicity for r in roots if r.on_imaginary_axis and not r.is_zero)
+        return PoleCount(right, axis + zeros)

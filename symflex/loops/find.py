@@ -1,0 +1,323 @@
+"""The stable gains of a loop: crossings from all factors, counts between them, and margins."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from flint import acb, arb
+
+from symflex.algebra import degree_in
+from symflex.budget import Budget, entered_budget
+from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
+from symflex.loops.bandwidth import allowed_bandwidth
+from symflex.loops.crossing import PoleCount
+from symflex.loops.distributed import DistributedFactors
+from symflex.loops.lumped import LumpedFactor
+from symflex.loops.margins import LoopGain
+from symflex.loops.stability_map import Boundary, GainInterval, GainMargin, PhaseMargin, StabilityMap
+from symflex.roots import precision
+from symflex.roots.root import exact_fraction
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.loops.crossing import Crossing
+    from symflex.loops.loop import GainPolynomial, Loop
+
+RANGE_OF_NOMINAL = 100
+"""How many times the nominal gain is examined of a loop with kernels: it may have boundaries without end."""
+GUARD_DIGITS = 6
+SAMPLE_BITS = (6, 12, 24, 48, 96, 192, 384, 768)
+BITS = 128
+Limits = tuple[Fraction | None, Fraction | None]
+
+
+def find_stable_gains(
+    loop: Loop,
+    limits: Limits | None = None,
+    digits: int = 15,
+    budget: Budget | None = None,
+    up_to: float | None = None,
+) -> StabilityMap:
+    """Return for which gains a loop is stable, proved.
+
+    Parameters
+    ----------
+    loop : Loop
+        The characteristic function.
+    limits : (Fraction or None, Fraction or None), optional
+        Range of the gain, its ends left out. By default all gains of the sign that is assumed of it; of a
+        loop with kernels up to 100 times its value.
+    digits : int
+        Significant digits of boundaries and frequencies.
+    budget : Budget, optional
+        Limits the search.
+    up_to : float, optional
+        Where it cannot be proved that no pole lies right of the axis beyond some frequency: how far poles are
+        counted [rad/s]; by default about ten waves of the longest element.
+
+    Raises
+    ------
+    ModelError
+        SF803 a loop with kernels that is no straight line in the gain.
+    UsageError
+        SF804 a range is needed, or is empty.
+    BudgetError
+        SF505, SF506.
+    """
+    budget = budget or entered_budget()
+    plain, mixed = _split(loop)
+    low, high = _limits(loop, limits, is_distributed=bool(mixed))
+    lumped = [LumpedFactor.of(loop.bound, factor) for factor in plain]
+    distributed = None
+    if mixed:
+        if any(factor.degree > 1 for factor in mixed):
+            message = f"a loop with beams, rods or delays must be a straight line in '{loop.gain.name}'"
+            hint = "let the parameter occur as one gain, not squared"
+            raise ModelError(Diagnostic("SF803", message, loop.gain.span, hint))
+        if low is None or high is None:
+            raise _range_needed(loop)
+        distributed = DistributedFactors(loop.bound, mixed, (low, high), up_to, budget)
+    crossings = [c for factor in lumped for c in factor.crossings(digits + GUARD_DIGITS, budget)]
+    if distributed is not None:
+        crossings += distributed.crossings(digits + GUARD_DIGITS)
+    search = _Search(lumped, distributed, (low, high), budget)
+    boundaries, intervals = search.between(crossings)
+    nominal = loop.nominal
+    reasons = [] if distributed is None else distributed.reasons
+    radius = None if distributed is None else distributed.radius[0]
+    is_complete = distributed is None or distributed.radius[1]
+    found = StabilityMap(
+        loop.gain.name,
+        loop.gain.unit,
+        (low, high),
+        boundaries,
+        intervals,
+        nominal,
+        (),
+        (),
+        radius,
+        is_complete,
+        tuple(reasons),
+        digits,
+        None,
+    )
+    loop_gain = _loop_gain(plain, distributed, loop, digits + GUARD_DIGITS, budget)
+    phase_margins: tuple[PhaseMargin, ...] = ()
+    bandwidth = None
+    if loop_gain is not None:
+        if found.is_stable and nominal:
+            phase_margins = _phase_margins(loop_gain, nominal)
+        bandwidth = allowed_bandwidth(intervals, high, loop_gain)
+    return replace(
+        found,
+        gain_margins=_gain_margins(found),
+        phase_margins=phase_margins,
+        bandwidth=bandwidth,
+        reasons=tuple(dict.fromkeys((*search.reasons, *reasons))),
+    )
+
+
+def _split(loop: Loop) -> tuple[tuple[GainPolynomial, ...], tuple[GainPolynomial, ...]]:
+    """Return the factors that are polynomials in s alone, and those with kernels."""
+    ring = loop.bound.ratio.ring
+    generators = [ring.index[name] for name in loop.bound.kernels.generators]
+    plain, mixed = [], []
+    for factor in loop.factors:
+        polynomials = [f for value in factor.coefficients for f, _ in value.factors]
+        if any(degree_in(f, i) for f in polynomials for i in generators) or factor.multiplicity < 0:
+            mixed.append(factor)
+        else:
+            plain.append(factor)
+    if not loop.bound.kernels:
+        mixed = []
+    return tuple(plain), tuple(mixed)
+
+
+def _limits(loop: Loop, given: Limits | None, *, is_distributed: bool) -> Limits:
+    if given is not None:
+        low, high = given
+        if low is not None and high is not None and not low < high:
+            message = f"the range of '{loop.gain.name}' does not end above where it begins"
+            raise UsageError(Diagnostic("SF804", message))
+        return given
+    low = None if loop.gain.assume == "real" else Fraction(0)
+    if not is_distributed:
+        return low, None
+    if not loop.nominal:
+        raise _range_needed(loop)
+    reach = abs(loop.nominal) * RANGE_OF_NOMINAL
+    return (-reach if low is None else low), reach
+
+
+def _range_needed(loop: Loop) -> UsageError:
+    message = f"a loop with kernels needs a bounded range of '{loop.gain.name}'"
+    return UsageError(Diagnostic("SF804", message, None, "give the parameter a value, or say --range LO HI"))
+
+
+@dataclass
+class _Search:
+    """Puts crossings in order, and counts poles between them."""
+
+    lumped: Sequence[LumpedFactor]
+    distributed: DistributedFactors | None
+    limits: Limits
+    budget: Budget
+
+    def __post_init__(self) -> None:
+        self.reasons: list[str] = []
+
+    def between(self, crossings: Sequence[Crossing]) -> tuple[tuple[Boundary, ...], tuple[GainInterval, ...]]:
+        """Return the boundaries inside the range, and the intervals they part it into.
+
+        Crossings at which no count changes are left out.
+        """
+        low, high = (None if x is None else _ball(x) for x in self.limits)
+        groups: list[list[Crossing]] = []
+        with precision(BITS * 4):
+            for crossing in sorted(crossings, key=lambda c: float(c.gain.mid())):
+                if (low is not None and not crossing.gain > low) or (
+                    high is not None and not crossing.gain < high
+                ):
+                    # At an end of the range, or beyond it; what straddles an end narrows the range.
+                    if low is not None and crossing.gain.overlaps(low):
+                        low = _upper(low, crossing.gain)
+                    if high is not None and crossing.gain.overlaps(high):
+                        high = _lower(high, crossing.gain)
+                    continue
+                if groups and any(c.gain.overlaps(crossing.gain) for c in groups[-1]):
+                    groups[-1].append(crossing)
+                else:
+                    groups.append([crossing])
+        gains = [_hull(group) for group in groups]
+        ends: list[arb | None] = [low, *gains, high]
+        counts = []
+        for i, (below, above) in enumerate(pairwise(ends)):
+            self.budget.progress.report(i / len(ends), f"poles counted in {i} of {len(ends) - 1} intervals")
+            counts.append(self._count(_sample(below, above)))
+        boundaries, intervals = [], []
+        start: arb | None = ends[0]
+        for i, (gain, group) in enumerate(zip(gains, groups, strict=True)):
+            if counts[i] == counts[i + 1] and not _is_touching(counts[i], group):
+                continue
+            intervals.append(GainInterval(start, gain, counts[i]))
+            boundaries.append(Boundary(gain, tuple(group)))
+            start = gain
+        intervals.append(GainInterval(start, ends[-1], counts[-1]))
+        return tuple(boundaries), tuple(intervals)
+
+    def _count(self, gain: Fraction) -> PoleCount:
+        self.budget.spend()
+        total = PoleCount(0, 0)
+        for factor in self.lumped:
+            total = total + factor.count(gain, self.budget)
+        if self.distributed is not None:
+            total = total + self.distributed.count(gain)
+        return total
+
+
+def _is_touching(count: PoleCount, group: Sequence[Crossing]) -> bool:
+    """Tell whether a stable loop is not stable at one gain alone: poles touch the axis and turn back."""
+    return count.is_stable and bool(group)
+
+
+def _ball(value: Fraction) -> arb:
+    with precision(BITS):
+        return arb(value.numerator) / value.denominator
+
+
+def _upper(one: arb, other: arb) -> arb:
+    return one if one.upper() >= other.upper() and one.is_exact() else one.union(other)
+
+
+def _lower(one: arb, other: arb) -> arb:
+    return one if one.lower() <= other.lower() and one.is_exact() else one.union(other)
+
+
+def _hull(group: Sequence[Crossing]) -> arb:
+    """Return the narrowest of the enclosures of a gain when there is one, else one that holds all."""
+    with precision(max(BITS, *(c.gain.bits() for c in group))):
+        total = group[0].gain
+        for crossing in group[1:]:
+            total = total.union(crossing.gain)
+        return total
+
+
+def _sample(low: arb | None, high: arb | None) -> Fraction:
+    """Return a short rational number between two balls.
+
+    Raises
+    ------
+    UncertifiedError
+        SF802 when they meet.
+    """
+    start = None if low is None else exact_fraction(low) + exact_fraction(low.rad())
+    end = None if high is None else exact_fraction(high) - exact_fraction(high.rad())
+    if start is None and end is None:
+        return Fraction(1)
+    if start is None or end is None:
+        if start is not None:
+            return _short(2 * start + 1 if start > 0 else start / 2 + 1, start, None)
+        near = end or Fraction(0)
+        return _short(2 * near - 1 if near < 0 else near / 2 - 1, None, near)
+    if not start < end:
+        message = "two boundaries cannot be told apart"
+        raise UncertifiedError(Diagnostic("SF802", message, None, "ask for more --digits"))
+    if low is not None and low > 0 and end > 4 * start:
+        return _short(2 * start, start, end)
+    return _short((start + end) / 2, start, end)
+
+
+def _short(value: Fraction, low: Fraction | None, high: Fraction | None) -> Fraction:
+    """Return a number of few bits next to another, still between two limits."""
+    for bits in SAMPLE_BITS:
+        scale = Fraction(2) ** (bits - (value.numerator.bit_length() - value.denominator.bit_length()))
+        rounded = Fraction(round(value * scale)) / scale
+        if (low is None or low < rounded) and (high is None or rounded < high):
+            return rounded
+    return value
+
+
+def _gain_margins(found: StabilityMap) -> tuple[GainMargin, ...]:
+    interval, nominal = found.nominal_interval, found.nominal
+    if interval is None or not nominal or not interval.poles.is_stable:
+        return ()
+    margins = []
+    for end in (interval.low, interval.high):
+        boundary = next((b for b in found.boundaries if end is not None and b.gain is end), None)
+        if boundary is None:
+            continue
+        with precision(max(BITS, boundary.gain.bits())):
+            factor = boundary.gain * nominal.denominator / nominal.numerator
+        if factor > 0:
+            margins.append(GainMargin(factor, boundary))
+    return tuple(margins)
+
+
+def _loop_gain(
+    plain: Sequence[GainPolynomial],
+    distributed: DistributedFactors | None,
+    loop: Loop,
+    digits: int,
+    budget: Budget,
+) -> LoopGain | None:
+    """Return the loop gain of a loop that is a straight line in its gain, and closed once."""
+    with_gain = loop.with_gain
+    if len(with_gain) != 1 or with_gain[0].degree != 1 or with_gain[0].multiplicity != 1:
+        return None
+    (factor,) = with_gain
+    return LoopGain(loop.bound, factor, None if factor in plain else distributed, digits, budget)
+
+
+def _phase_margins(loop_gain: LoopGain, nominal: Fraction) -> tuple[PhaseMargin, ...]:
+    found = []
+    for omega, ratio in loop_gain.crossovers(nominal):
+        bits = max(BITS, 2 * omega.bits())
+        with precision(bits):
+            # The loop gain is K B/A; its angle beyond that of -1.
+            angle = (-ratio * acb(_ball(nominal))).arg()
+        found.append(PhaseMargin(angle, omega))
+    return tuple(found)

@@ -1,0 +1,457 @@
+"""The root locus: closed-loop poles as the gain grows, proved at both ends and traced between.
+
+Input: a loop that is a straight line in its gain. Output: poles at the first and the last gain and the zeros
+they go to, as certified maps, and curves between them by Newton's method from gain to gain.
+"""
+
+from __future__ import annotations
+
+from cmath import isfinite, phase, rect
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import inf
+from typing import TYPE_CHECKING
+
+from symflex.algebra import Factored
+from symflex.budget import Budget, entered_budget, spend
+from symflex.errors import Diagnostic, UncertifiedError, UsageError
+from symflex.loops.loop_function import LoopFunction
+from symflex.roots import Band, Modes, Position
+from symflex.roots.counting.right_half_plane import is_right
+from symflex.roots.locate import locate
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.loops.loop import Loop
+    from symflex.roots import PoleZeroMap, Region, Root
+    from symflex.roots.pole_zero_map import Exclusion
+    from symflex.transfer import BoundTransferFunction
+
+DEFAULT_MODES = 5
+STEPS = 120
+FIRST_SHARE = 1e-5
+"""The first step, of the whole range."""
+NEWTON_STEPS = 25
+CONVERGED = 1e-12
+FAREST = 0.05
+"""How far a pole may move in a step, relative to its size or that of the largest at the first gain."""
+BEND = 0.2
+"""How far a curve may turn from step to step [rad]."""
+SHORTEST = 0.004
+"""Steps shorter than this, relative to the same, may turn as they will."""
+HALVINGS = 9
+TURNS = (0.3, 1.9, 3.4, 5.0)
+TOUCHING = 1e-7
+ENDS_AGREE = 1e-6
+OUT_OF_SIGHT = 2.5
+"""How far a curve from infinity is followed, relative to the largest pole at the first or last gain."""
+THINNINGS = 150
+"""How often the gain is halved at most to follow it there."""
+
+
+@dataclass(frozen=True)
+class RootLocus:
+    """Closed-loop poles over a range of the gain.
+
+    Parameters
+    ----------
+    gain : str
+        Its name.
+    limits : (Fraction, Fraction)
+        First and last value.
+    start, end : PoleZeroMap
+        Poles at these, and the zeros the poles go to, proved.
+    branches : tuple of tuple of complex
+        Curves [rad/s] from poles at the first gain, not proved. They stop where poles accumulate.
+    arrived : bool
+        Every curve ends next to a proved pole at the last gain, and no two at the same.
+    ends : tuple of complex
+        The proved poles at the last gain [rad/s] to which a curve of any kind goes.
+    entering : tuple of tuple of complex
+        Curves of poles that come from infinity as the gain leaves its first value, as those of a delay do
+        from no gain on.
+    joining : tuple of tuple of complex
+        Curves to poles at the last gain from where none is marked: from higher modes at the first gain, or
+        from where poles accumulate.
+    """
+
+    gain: str
+    limits: tuple[Fraction, Fraction]
+    start: PoleZeroMap
+    end: PoleZeroMap
+    branches: tuple[tuple[complex, ...], ...]
+    arrived: bool
+    ends: tuple[complex, ...] = ()
+    entering: tuple[tuple[complex, ...], ...] = ()
+    joining: tuple[tuple[complex, ...], ...] = ()
+
+
+def loop_gain(loop: Loop, gain: Fraction | None = None) -> BoundTransferFunction:
+    """Return the loop's transfer function ``K B/A``, whose value -1 is a closed-loop pole.
+
+    Parameters
+    ----------
+    loop : Loop
+        A straight line in its gain.
+    gain : Fraction, optional
+        K; the nominal one by default.
+
+    Raises
+    ------
+    UsageError
+        SF806 when the loop is no straight line in its gain, or K has no value.
+    """
+    above, below = _parts(loop)
+    return _with(loop.bound, above * _value(loop, gain), below)
+
+
+def closed_loop(loop: Loop, gain: Fraction | None = None) -> BoundTransferFunction:
+    """Return ``B/(A + K B)``, whose poles are those of the closed loop; as :func:`loop_gain` otherwise."""
+    above, below = _parts(loop)
+    return _with(loop.bound, above, below + above * _value(loop, gain))
+
+
+def _value(loop: Loop, gain: Fraction | None) -> Fraction:
+    value = loop.nominal if gain is None else gain
+    if value is None:
+        message = f"'{loop.gain.name}' has no value"
+        raise UsageError(Diagnostic("SF806", message, loop.gain.span, "give it one in [parameters]"))
+    return value
+
+
+def _parts(loop: Loop) -> tuple[Factored, Factored]:
+    """Return B and A, both with the factors that do not depend on the gain."""
+    one = Factored.number(loop.bound.ratio.ring, 1)
+    above = below = one
+    if len(loop.with_gain) != 1 or loop.with_gain[0].degree != 1 or loop.with_gain[0].multiplicity != 1:
+        message = f"the characteristic function is no straight line in '{loop.gain.name}'"
+        hint = "let the parameter occur as the gain of one loop"
+        raise UsageError(Diagnostic("SF806", message, loop.gain.span, hint))
+    for factor in loop.factors:
+        if factor.degree:
+            above = above * factor.coefficients[1]
+            below = below * factor.coefficients[0]
+    return above, below
+
+
+def _with(bound: BoundTransferFunction, num: Factored, den: Factored) -> BoundTransferFunction:
+    """Return a transfer function of the given parts over the ring of another."""
+    parts = (num, den) if bound.kernels else None
+    return replace(bound, ratio=num / den, hidden=(), parts=parts, is_of_model=False)
+
+
+def trace_locus(
+    loop: Loop,
+    limits: tuple[Fraction | None, Fraction | None] | None = None,
+    modes: int | None = None,
+    budget: Budget | None = None,
+    *,
+    band_hz: tuple[float, float] | None = None,
+) -> RootLocus:
+    """Return the root locus of a loop.
+
+    Parameters
+    ----------
+    loop : Loop
+        A straight line in its gain.
+    limits : (Fraction, Fraction), optional
+        From 0 to 10 times the nominal gain by default.
+    modes : int, optional
+        Of a loop with kernels, how many modes are traced; by default as many as lie in the band at the
+        first or at the last gain, or 5.
+    budget : Budget, optional
+        Of the search for roots.
+    band_hz : (float, float), optional
+        [Hz]
+
+    Raises
+    ------
+    UsageError
+        SF804 no range, SF806 no straight line in the gain.
+    """
+    budget = budget or entered_budget()
+    above, below = _parts(loop)
+    low, high = _range(loop, limits)
+    at_first, at_last = closed_loop(loop, low), closed_loop(loop, high)
+    if modes is None and band_hz is not None and loop.bound.kernels:
+        band = Band(Fraction(0), Fraction(band_hz[1]))
+        shown = [locate(bound, band, 15, budget).poles for bound in (at_first, at_last)]
+        modes = max(sum(root.multiplicity for root in poles if not root.im < 0) for poles in shown)
+    wanted = modes or loop.bound.source.model.analysis.modes or DEFAULT_MODES
+    region: Region | None = Modes(wanted) if loop.bound.kernels else None
+    wider: Region | None = Modes(wanted + 2) if loop.bound.kernels else None
+    start = locate(at_first, region, 15, budget)
+    end = locate(at_last, wider, 15, budget)
+    function = LoopFunction.of(loop.bound, below, above)
+    poles, final = _points(start.all_poles), _points(end.all_poles)
+    bottom, top = float(low), float(high)
+    goals = _goals(bottom, top)
+    early = _trace(function, poles, bottom, goals[:1])
+    first = [branch[-1] for branch in early]
+    later = _trace(function, first, goals[0], goals[1:])
+    forward = [one + other[1:] for one, other in zip(early, later, strict=True)]
+    # Of a loop with kernels, poles beyond those proved at the last gain are not compared, nor those where
+    # poles accumulate, which no search exhausts.
+    reach = max((abs(s) for s in _points(end.poles)), default=0.0) if loop.bound.kernels else inf
+    known = [_nearest(final, b[-1]) is not None for b in forward]
+    lost = [not k and _is_among(end.excluded, b[-1]) for b, k in zip(forward, known, strict=True)]
+    ends = [
+        b[-1]
+        for b, is_known, is_lost in zip(forward, known, lost, strict=True)
+        if is_known or (not is_lost and abs(b[-1]) < reach)
+    ]
+    matched = _matched(ends, final)
+    branches = [
+        tuple(_before(end.excluded, branch) if is_lost else branch)
+        for branch, is_lost in zip(forward, lost, strict=True)
+    ]
+    lowest = [True] * len(final) if region is None else _lowest(end, wanted)
+    kept = [s for i, s in enumerate(final) if lowest[i] or (matched is not None and i in matched)]
+    entering: list[tuple[complex, ...]] = []
+    joining: list[tuple[complex, ...]] = []
+    if matched is not None and len(kept) > len(matched):
+        # Both members of a pair are followed, as where they part one of them may come from a marked pole.
+        back = _trace(function, kept, top, [*reversed(goals[:-1])])
+        size = max(abs(s) for s in (*kept, *poles))
+        ended = {final[i] for i in matched}
+        for s, branch in zip(kept, back, strict=True):
+            near = _nearest(first, branch[-1])
+            if near is not None:
+                if s not in ended:
+                    branches.append((poles[near], *reversed(branch)))
+            elif _is_among(end.excluded, branch[-1]):
+                joining.append(tuple(reversed(_before(end.excluded, branch))))
+            elif (landed := _landed(function, branch[-1], bottom, size)) is not None:
+                joining.append((landed, *reversed(branch)))
+            else:
+                tail = _outwards(function, branch[-1], bottom, goals[0], OUT_OF_SIGHT * size)
+                entering.append((*reversed(tail), *reversed(branch)))
+        entering, parted = _until_parting(entering)
+        branches += parted
+    return RootLocus(
+        loop.gain.name,
+        (low, high),
+        start,
+        end,
+        tuple(branches),
+        matched is not None,
+        tuple(kept),
+        tuple(entering),
+        tuple(joining),
+    )
+
+
+def _until_parting(
+    entering: Sequence[tuple[complex, ...]],
+) -> tuple[list[tuple[complex, ...]], list[tuple[complex, ...]]]:
+    """Cut curves from infinity where they meet one from a marked pole on the axis and leave it as a pair.
+
+    Which of the two leaves which way has no meaning, and both are drawn alike from there on.
+    """
+    kept, parted = [], []
+    ends = {branch[-1] for branch in entering}
+    for branch in entering:
+        last = max((i for i, s in enumerate(branch) if not s.imag), default=None)
+        if last is None or not branch[-1].imag or branch[-1].conjugate() in ends:
+            kept.append(branch)
+        else:
+            kept.append(branch[: last + 1])
+            parted.append(branch[last:])
+    return kept, parted
+
+
+def _range(loop: Loop, limits: tuple[Fraction | None, Fraction | None] | None) -> tuple[Fraction, Fraction]:
+    """Return the first and the last gain."""
+    name = loop.gain.name
+    if limits is None:
+        if loop.nominal is None or not loop.nominal > 0:
+            value = "no value" if loop.nominal is None else f"the value {float(loop.nominal):.6g}"
+            message = f"'{name}' has {value} from which a locus could take its range"
+            raise UsageError(Diagnostic("SF804", message, None, "say --range LO HI"))
+        return Fraction(0), 10 * loop.nominal
+    low, high = limits
+    if low is None or high is None:
+        message = f"a locus ends at a finite value of '{name}'"
+        raise UsageError(Diagnostic("SF804", message, None, "say --range LO HI with two numbers"))
+    if low >= high:
+        how = "is empty" if low == high else "is reversed"
+        message = f"the range of '{name}' {how}: {float(low):.6g} to {float(high):.6g}"
+        hint = (
+            "give two different values" if low == high else f"say --range {float(high):.6g} {float(low):.6g}"
+        )
+        raise UsageError(Diagnostic("SF804", message, None, hint))
+    return low, high
+
+
+def _points(roots: Sequence[Root]) -> list[complex]:
+    return [complex(float(r.re.mid()), float(r.im.mid())) for r in roots for _ in range(r.multiplicity)]
+
+
+def _lowest(found: PoleZeroMap, wanted: int) -> list[bool]:
+    """Tell which poles of a map, with multiplicity, are of the lowest modes, or in the right half plane."""
+    positions = [*Modes(wanted).classify(found.poles), *(Position.INSIDE for _ in found.unstable)]
+    return [
+        position is not Position.OUTSIDE or is_right(root)
+        for root, position in zip(found.all_poles, positions, strict=True)
+        for _ in range(root.multiplicity)
+    ]
+
+
+def _goals(low: float, high: float) -> list[float]:
+    """Return gains above the first, close at the beginning; the last is the last of the range."""
+    growth = (1 / FIRST_SHARE) ** (1 / STEPS)
+    gain, shift = low, (high - low) * FIRST_SHARE
+    goals = []
+    while gain < high:
+        spend()
+        gain = min(low + shift, high)
+        goals.append(gain)
+        shift *= growth
+    return goals
+
+
+def _is_among(holes: Sequence[Exclusion], s: complex) -> bool:
+    """Tell whether a point is in a part of the plane in which poles accumulate."""
+    return any(abs(complex(s.real - hole.re, abs(s.imag) - hole.im)) <= hole.radius for hole in holes)
+
+
+def _before(holes: Sequence[Exclusion], branch: list[complex]) -> list[complex]:
+    """Return a curve up to where it enters such a part; its first point, which is proved, in any case."""
+    inside = (i for i, s in enumerate(branch) if i and _is_among(holes, s))
+    return branch[: next(inside, len(branch))]
+
+
+def _landed(function: LoopFunction, s: complex, gain: float, size: float) -> complex | None:
+    """Return the pole at the first gain next to one a little later, ``None`` where none is near."""
+    found = _newton(function, s, gain, ())
+    is_near = found is not None and abs(found - s) <= 2 * FAREST * max(size, abs(s))
+    return found if is_near else None
+
+
+def _outwards(function: LoopFunction, s: complex, low: float, gain: float, reach: float) -> list[complex]:
+    """Follow a pole out of sight as the gain falls to the first one."""
+    tail: list[complex] = []
+    shift = gain - low
+    for _ in range(THINNINGS):
+        shift /= 2
+        found = _newton(function, s, low + shift, ())
+        if found is None or abs(found) < abs(s) or abs(s) > reach:
+            break
+        tail.append(found)
+        s = found
+    return tail
+
+
+def _nearest(points: Sequence[complex], s: complex) -> int | None:
+    """Return the position of the point that a pole agrees with."""
+    return next((i for i, p in enumerate(points) if abs(p - s) <= ENDS_AGREE * (1 + abs(s))), None)
+
+
+def _trace(
+    function: LoopFunction, poles: Sequence[complex], gain: float, goals: Sequence[float]
+) -> list[list[complex]]:
+    """Return the curves of poles from one gain through others."""
+    size = max((abs(s) for s in poles), default=1.0) or 1.0
+    branches = [[s] for s in poles]
+    current, reached = list(poles), gain
+    for goal in goals:
+        pending = [goal]
+        while pending:
+            spend()
+            aim = pending[-1]
+            found = _moved(function, current, aim, size)
+            far = max(
+                (abs(a - b) / max(size, abs(b)) for a, b in zip(found, current, strict=True)), default=0.0
+            )
+            if (far > FAREST or _bends(branches, found, size)) and len(pending) < HALVINGS:
+                pending.append((reached + aim) / 2)
+                continue
+            current, reached = found, aim
+            pending.pop()
+            for branch, s in zip(branches, current, strict=True):
+                branch.append(s)
+    return branches
+
+
+def _bends(branches: Sequence[Sequence[complex]], found: Sequence[complex], size: float) -> bool:
+    """Tell whether a curve would turn visibly in one step."""
+    for branch, s in zip(branches, found, strict=True):
+        if len(branch) > 1:
+            before, after = branch[-1] - branch[-2], s - branch[-1]
+            shortest = SHORTEST * max(size, abs(s))
+            if abs(after) > shortest and abs(before) > 0 and abs(phase(after / before)) > BEND:
+                return True
+    return False
+
+
+def _moved(function: LoopFunction, poles: Sequence[complex], gain: float, size: float) -> list[complex]:
+    """Return the poles at the next gain; those that meet are sent apart."""
+    found: list[complex] = []
+    for i, s in enumerate(poles):
+        new = _newton(function, s, gain, ())
+        twins = [k for k in range(i) if new is not None and abs(found[k] - new) < TOUCHING * size]
+        if new is None or twins or abs(new - s) > 2 * FAREST * max(size, abs(s)):
+            # Another pole is there already, or two part from the axis: the others are divided out.
+            known = tuple(found)
+            reach = max(TOUCHING * size, 0.02 * size)
+            tries = [s + rect(reach, angle) for angle in TURNS]
+            candidates = [c for start in tries if (c := _newton(function, start, gain, known)) is not None]
+            apart = [c for c in candidates if all(abs(c - f) > TOUCHING * size for f in found)]
+            if apart:
+                new = min(apart, key=lambda c: abs(c - s))
+        found.append(s if new is None else new)
+    return found
+
+
+def _newton(function: LoopFunction, start: complex, gain: float, known: Sequence[complex]) -> complex | None:
+    """Return a root of A + K B with known ones divided out, ``None`` where it is not found."""
+    s = start
+    for _ in range(NEWTON_STEPS):
+        a, a_slope, b, b_slope = function.near(s)
+        value, slope = a + gain * b, a_slope + gain * b_slope
+        if value == 0:
+            return s
+        quotient = slope / value - sum(1 / (s - k) for k in known if s != k)
+        if quotient == 0:
+            return None
+        step = 1 / quotient
+        s -= step
+        if not isfinite(s):
+            return None
+        if abs(step) <= CONVERGED * (1 + abs(s)):
+            # Rounding leaves real poles real.
+            return complex(s.real, 0.0) if abs(s.imag) < CONVERGED * (1 + abs(s)) * 100 else s
+    return None
+
+
+def _matched(ends: Sequence[complex], proved: Sequence[complex]) -> set[int] | None:
+    """Return the positions of the poles that ends are close to, ``None`` unless each has one of its own."""
+    free = dict(enumerate(proved))
+    for end in ends:
+        near = min(free, key=lambda i: abs(free[i] - end), default=None)
+        if near is None or abs(free[near] - end) > ENDS_AGREE * (1 + abs(end)):
+            return None
+        del free[near]
+    return set(range(len(proved))) - set(free)
+
+
+def require_arrival(locus: RootLocus) -> None:
+    """Raise an error when curves of a locus do not end in proved poles.
+
+    Raises
+    ------
+    UncertifiedError
+        SF807.
+    """
+    if not locus.arrived:
+        message = (
+            f"the poles traced do not end in those proved at {locus.gain} = {float(locus.limits[1]):.6g}"
+        )
+        hint = "narrow the range of the gain"
+        low, high = locus.limits
+        if low < 0 < high:
+            hint = f"draw each side of zero alone: --range 0 {float(high):.6g}"
+        elif locus.end.is_infinite:
+            hint += ", or trace fewer modes: --modes N"
+        raise UncertifiedError(Diagnostic("SF807", message, None, hint))

@@ -1,0 +1,250 @@
+"""The two parts of a characteristic function A(s) + K B(s) with kernels, in balls on the imaginary axis.
+
+Both are divided by the same exponential, the one that is largest in the middle of a ball, so that neither
+overflows nor turns fast; their quotient, which alone decides where poles cross the axis, stays what it is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property, lru_cache
+from math import inf, lcm
+from typing import TYPE_CHECKING
+
+from flint import acb, acb_series, arb
+
+from symflex.algebra import Factored
+from symflex.roots import precision
+from symflex.roots.distributed.exponential_sum import ExponentialValues, arguments_of, exponential_sum
+from symflex.transfer.enclose_kernels import expansion
+
+if TYPE_CHECKING:
+    from flint import fmpz_mpoly
+
+    from symflex.roots.distributed.exponential_sum import Argument, ExponentialSum, Place
+    from symflex.transfer import BoundTransferFunction
+    from symflex.transfer.enclose_kernels import KernelValues
+    from symflex.transfer.monomials import Value
+
+Powers = tuple[tuple[int, int, int], ...]
+NOTHING = acb(0)
+
+
+@dataclass(frozen=True, slots=True)
+class LoopValue:
+    """A and B at ``s = j omega``, divided by a common function, and their derivatives in s.
+
+    Parameters
+    ----------
+    a, b : acb
+        Enclosures.
+    a_slope, b_slope : acb
+        Of the derivatives.
+    a_bend, b_bend : acb
+        Of the second derivatives, where these were asked for.
+    """
+
+    a: acb
+    a_slope: acb
+    b: acb
+    b_slope: acb
+    a_bend: acb
+    b_bend: acb
+
+    def crossing(self) -> tuple[arb, arb]:
+        """``Im(A conj(B))``, which vanishes where the gain is real, and its derivative in omega."""
+        value = (self.a * self.b.conjugate()).imag
+        j = acb(0, 1)
+        slope = j * self.a_slope * self.b.conjugate() + self.a * (j * self.b_slope).conjugate()
+        return value, slope.imag
+
+    def excess(self, gain: arb) -> tuple[arb, arb]:
+        """``abs(A)^2 - K^2 abs(B)^2``, which vanishes where the loop gain is one, and its derivative."""
+        square = gain * gain
+        a, b = self.a.conjugate(), self.b.conjugate()
+        value = (self.a * a).real - square * (self.b * b).real
+        j = acb(0, 1)
+        slope = 2 * (j * self.a_slope * a).real - 2 * square * (j * self.b_slope * b).real
+        return value, slope
+
+    def meeting(self) -> tuple[arb, arb]:
+        """Return what vanishes where poles meet on the axis if A/B is real there, and its derivative.
+
+        It is ``-Im((A' B - A B') conj(B)^2)``, the derivative of A/B in omega but for a positive factor.
+        """
+        j, conjugate = acb(0, 1), self.b.conjugate()
+        wronskian = self.a_slope * self.b - self.a * self.b_slope
+        change = self.a_bend * self.b - self.a * self.b_bend
+        slope = j * change * conjugate + 2 * wronskian * (j * self.b_slope).conjugate()
+        return (j * wronskian * conjugate * conjugate).real, (j * slope * conjugate).real
+
+    def gain(self) -> arb:
+        """``-Re(A/B)``: the gain of a pole here, where that is real."""
+        return -(self.a / self.b).real
+
+
+@dataclass(frozen=True, eq=False)
+class LoopFunction:
+    """A and B of one factor ``A + K B`` of a characteristic function.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        Whose ring and kernels they have.
+    a, b : fmpz_mpoly
+        Polynomials over that ring, without common denominator.
+    """
+
+    bound: BoundTransferFunction
+    a: fmpz_mpoly
+    b: fmpz_mpoly
+
+    @classmethod
+    def of(cls, bound: BoundTransferFunction, a: Factored, b: Factored) -> LoopFunction:
+        """Return two functions with the same quotient that are polynomials over the ring."""
+        ring = bound.ratio.ring
+        below = Factored.number(ring, 1)
+        for value in (a, b):
+            for factor, exponent in value.factors:
+                missing = -exponent - below.exponent_of(factor)
+                if missing > 0:
+                    below = below * Factored(ring, Fraction(1), ((factor, missing),))
+        scale = lcm(a.unit.denominator, b.unit.denominator)
+        return cls(bound, (a * below * scale).expand(), (b * below * scale).expand())
+
+    @cached_property
+    def arguments(self) -> tuple[Argument, ...]:
+        """What the exponentials are taken of."""
+        return arguments_of(self.bound.kernels) or ()
+
+    @cached_property
+    def sums(self) -> tuple[ExponentialSum, ExponentialSum] | None:
+        """A and B as sums of exponentials, ``None`` where wavenumbers have no formula."""
+        if arguments_of(self.bound.kernels) is None:
+            return None
+        ring, kernels = self.bound.ratio.ring, self.bound.kernels
+        a, b = (exponential_sum(ring, kernels, self.arguments, f) for f in (self.a, self.b))
+        return None if a is None or b is None else (a, b)
+
+    @cached_property
+    def _evaluators(self) -> dict[int, tuple[KernelValues, ExponentialValues | None]]:
+        return {}
+
+    def evaluator(self, bits: int) -> tuple[KernelValues, ExponentialValues | None]:
+        """Return what evaluates kernels and sums of exponentials at one precision."""
+        if bits not in self._evaluators:
+            with precision(bits):
+                constants = {name: evaluate() for name, evaluate in self.bound.constants}
+                kernels = self.bound.kernel_values(constants)
+            sums = None
+            if self.sums is not None:
+                sums = ExponentialValues(kernels, self.arguments, tuple((f, 1) for f in self.sums))
+            self._evaluators[bits] = (kernels, sums)
+        return self._evaluators[bits]
+
+    def on(self, omega: arb, bits: int, order: int = 1) -> tuple[LoopValue, LoopValue]:
+        """Return the values on a ball of frequencies, and those in its middle, with so many derivatives.
+
+        The first are enclosures by the mean value theorem where these are narrower.
+        """
+        if order > 1 and self.sums is None:
+            message = "second derivatives need exponentials"
+            raise ValueError(message)
+        with precision(bits):
+            middle = omega.mid()
+            wide = acb(0, omega)
+            kernels, sums = self.evaluator(bits)
+            if sums is None:
+                around = kernels.at(expansion(wide))
+                centre = kernels.at(expansion(acb(0, middle)), around)
+                values = [[kernels.polynomial(f, v) for f in (self.a, self.b)] for v in (around, centre)]
+            else:
+                around_place = sums.at(_series(wide, order))
+                centre_place = sums.at(_series(acb(0, middle), order), around_place)
+                less = _largest(sums, centre_place)
+                values = [
+                    [_sum(sums, i, place, less) for i in (0, 1)] for place in (around_place, centre_place)
+                ]
+            (a, b), (a_mid, b_mid) = ([_derivatives(v) for v in pair] for pair in values)
+            off = acb(0, omega - middle)
+            narrow = [_narrower(value[0], mid[0] + value[1] * off) for value, mid in ((a, a_mid), (b, b_mid))]
+            return (
+                LoopValue(narrow[0], a[1], narrow[1], b[1], a[2], b[2]),
+                LoopValue(a_mid[0], a_mid[1], b_mid[0], b_mid[1], a_mid[2], b_mid[2]),
+            )
+
+    def near(self, s: complex, bits: int = 96) -> tuple[complex, complex, complex, complex]:
+        """Return A, A', B and B' at a point, divided alike, in doubles and without proof."""
+        with precision(bits):
+            kernels, sums = self.evaluator(bits)
+            point = expansion(acb(s.real, s.imag))
+            if sums is None:
+                place = kernels.at(point)
+                values = [kernels.polynomial(f, place) for f in (self.a, self.b)]
+            else:
+                at = sums.at(point)
+                less = _largest(sums, at)
+                values = [_sum(sums, i, at, less) for i in (0, 1)]
+            (a, a_slope, _), (b, b_slope, _) = (_derivatives(value) for value in values)
+            return complex(a.mid()), complex(a_slope.mid()), complex(b.mid()), complex(b_slope.mid())
+
+
+def _series(s: acb, order: int) -> acb_series:
+    """Return ``s + x`` up to a power of x."""
+    return expansion(s) if order == 1 else acb_series([s, acb(1)], order + 1)
+
+
+def _narrower(one: acb, other: acb) -> acb:
+    if not other.is_finite():
+        return one
+    if not one.is_finite():
+        return other
+    return other if other.rad() < one.rad() else one
+
+
+def _derivatives(value: Value) -> tuple[acb, acb, acb]:
+    if not isinstance(value, acb_series):
+        return value, NOTHING, NOTHING
+    return value[0], value[1], 2 * value[2]
+
+
+def _number(value: Value) -> acb:
+    return value[0] if isinstance(value, acb_series) else value
+
+
+def _largest(sums: ExponentialValues, place: Place) -> Powers:
+    """Return the exponent, as powers of the arguments, of the largest term of both sums."""
+    best = -inf
+    chosen: Powers = ()
+    for i, (terms, _) in enumerate(sums.sums):
+        pairs = zip(terms.terms, sums.amplitudes(i, place), sums.exponents(i, place), strict=True)
+        for term, amplitude, exponent in pairs:
+            size = abs(_number(amplitude).mid())
+            if size > 0:
+                growth = 0.0 if exponent is None else float(_number(exponent).real.mid())
+                total = growth + float(size.log())
+                if total > best:
+                    best, chosen = total, term.powers
+    return chosen
+
+
+def _sum(sums: ExponentialValues, number: int, place: Place, less: Powers) -> Value:
+    """Return one sum divided by an exponential."""
+    total: Value = acb(0)
+    terms = sums.sums[number][0].terms
+    for term, amplitude in zip(terms, sums.amplitudes(number, place), strict=True):
+        exponent: Value | None = None
+        for i, factor in _difference(term.powers, less):
+            step = place.arguments[i] * factor
+            exponent = step if exponent is None else exponent + step
+        total = total + (amplitude if exponent is None else amplitude * exponent.exp())
+    return total
+
+
+@lru_cache(maxsize=4096)
+def _difference(powers: Powers, less: Powers) -> tuple[tuple[int, acb], ...]:
+    own = {i: complex(a, b) for i, a, b in powers}
+    for i, a, b in less:
+        own[i] = own.get(i, 0) - complex(a, b)
+    return tuple((i, acb(c.real, c.imag)) for i, c in sorted(own.items()) if c)

@@ -1,0 +1,310 @@
+"""Stability boundaries of polynomials in s and a gain, exactly.
+
+With ``s = j omega`` and ``w = omega^2`` the characteristic polynomial is ``E(w, K) + j omega O(w, K)``. It
+has a root on the imaginary axis where E and O vanish together, at s = 0 where its last coefficient does, at
+infinity where its first does. What E and O have in common belongs to roots that mirror each other in the axis
+for every gain; between the real roots of its discriminant their number on the axis stays the same.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import lcm
+from typing import TYPE_CHECKING
+
+from flint import arb
+
+from symflex.algebra import Ring, degree_in
+from symflex.errors import Diagnostic, UncertifiedError
+from symflex.loops.crossing import Crossing, PoleCount
+from symflex.roots import Budget, Constant, PolynomialInS, RootProblem, find_polynomial_roots, precision
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.loops.loop import GainPolynomial
+    from symflex.roots import Root
+    from symflex.transfer import BoundTransferFunction
+
+W, K = 0, 1
+"""Positions of omega squared and of the gain in the ring of E and O."""
+SPARE_DIGITS = 10
+DOUBLINGS = 8
+
+
+@dataclass(frozen=True)
+class LumpedFactor:
+    """One polynomial factor of a characteristic function.
+
+    Parameters
+    ----------
+    constants : tuple of Constant
+        Real numbers the coefficients hold as symbols.
+    ring : Ring
+        w, K and the constants.
+    even, odd : fmpz_mpoly
+        E and O without their common factor.
+    common : fmpz_mpoly
+        The greatest common factor of E and O.
+    zeros : int
+        Roots at s = 0 whatever the gain, which are no part of E and O.
+    multiplicity : int
+        How often the factor occurs.
+    """
+
+    constants: tuple[Constant, ...]
+    ring: Ring
+    even: fmpz_mpoly
+    odd: fmpz_mpoly
+    common: fmpz_mpoly
+    zeros: int
+    multiplicity: int
+
+    @classmethod
+    def of(cls, bound: BoundTransferFunction, factor: GainPolynomial) -> LumpedFactor:
+        """Return a factor without kernels as E and O."""
+        terms = _integer_terms(factor)
+        constants = tuple(Constant(name, evaluate) for name, evaluate in bound.constants)
+        names = bound.ratio.ring.names[1 : 1 + len(constants)]
+        used = [i for i, _ in enumerate(names) if any(key[2][i] for key in terms)]
+        ring = Ring(("w", "K", *(names[i] for i in used)))
+        zeros = min(s for s, _, _ in terms)
+        parts: tuple[dict[tuple[int, ...], int], ...] = ({}, {})
+        for (s, k, rest), number in terms.items():
+            half, is_odd = divmod(s - zeros, 2)
+            place = (half, k, *(rest[i] for i in used))
+            parts[is_odd][place] = number * (-1) ** half
+        even, odd = (ring.context.from_dict(part) for part in parts)
+        common = even.gcd(odd) if len(odd) else even
+        return cls(
+            tuple(constants[i] for i in used),
+            ring,
+            even / common,
+            odd / common if len(odd) else odd,
+            common,
+            zeros,
+            factor.multiplicity,
+        )
+
+    def crossings(self, digits: int, budget: Budget) -> list[Crossing]:
+        """Return the gains at which the number of poles on a side of the axis may change, real and finite."""
+        found: list[Crossing] = []
+        whole = self.even * self.common, self.odd * self.common
+        if degree_in(whole[0], K) == 0 and degree_in(whole[1], K) == 0:
+            return []
+        if degree_in(whole[0], W) or len(whole[1]):
+            for gain in self._gains([_lowest(self.ring, whole[0])], digits, budget):
+                found.append(Crossing(gain, (arb(0),)))
+        for gain in self._gains([self._leading(whole)], digits, budget):
+            found.append(Crossing(gain, (), is_infinite=True))
+        if degree_in(self.common, W):
+            symmetric = [self._leading((self.common, self.common * 0))]
+            found += [Crossing(gain, (), is_infinite=True) for gain in self._gains(symmetric, digits, budget)]
+            found += self._meetings(digits, budget)
+        found += self._on_axis(digits, budget)
+        return found
+
+    def _meetings(self, digits: int, budget: Budget) -> list[Crossing]:
+        """Return where poles that mirror each other in the axis meet, on it or beside it."""
+        w, k = (str(self.ring.context.gen(i)) for i in (W, K))
+        simple = self.common / self.common.gcd(self.common.derivative(w))
+        if degree_in(simple, W) < 2 or degree_in(simple, K) == 0:  # noqa: PLR2004 (two roots can meet)
+            return []
+        slope = simple.derivative(w)
+        gains = self._real_roots(simple.discriminant(w), K, digits, budget)
+        squares = self._real_roots(simple.resultant(slope, k), W, digits + SPARE_DIGITS, budget)
+        found = []
+        for gain in gains:
+            near = tuple(
+                square.re.sqrt()
+                for square in squares
+                if square.re > 0 and all(self._may_vanish(f, square, gain) for f in (simple, slope))
+            )
+            found.append(Crossing(gain.re, near, is_symmetric=True))
+        return found
+
+    def _on_axis(self, digits: int, budget: Budget) -> list[Crossing]:
+        """Return where E and O vanish together at a positive w."""
+        even, odd = (
+            [_coefficient(self.ring, f, K, i) for i in range(degree_in(f, K) + 1)]
+            for f in (self.even, self.odd)
+        )
+        if not len(self.odd) or len(even) == len(odd) == 1:
+            return []
+        if max(len(even), len(odd)) <= 2:  # noqa: PLR2004 (affine)
+            zero = self.ring.constant(0)
+            even, odd = ([*f, zero][:2] for f in (even, odd))
+            resultant = even[0] * odd[1] - even[1] * odd[0]
+            roots = self._real_roots(resultant, W, digits + SPARE_DIGITS, budget)
+            return [c for root in roots if root.re > 0 and (c := self._affine(root, even, odd))]
+        name = [str(self.ring.context.gen(i)) for i in (W, K)]
+        squares = self._real_roots(self.even.resultant(self.odd, name[K]), W, digits + SPARE_DIGITS, budget)
+        gains = self._real_roots(self.even.resultant(self.odd, name[W]), K, digits, budget)
+        found = []
+        for gain in gains:
+            # Which frequencies belong to a gain is told by exclusion: at the others E or O is not 0.
+            near = [
+                square.re
+                for square in squares
+                if square.re > 0 and all(self._may_vanish(f, square, gain) for f in (self.even, self.odd))
+            ]
+            if near:
+                with precision(gain.working_bits()):
+                    found.append(Crossing(gain.re, tuple(w.sqrt() for w in near)))
+        return found
+
+    def _affine(self, root: Root, even: Sequence[fmpz_mpoly], odd: Sequence[fmpz_mpoly]) -> Crossing | None:
+        """Return the gain at which the poles cross at a frequency; ``None`` where that is infinite."""
+        with precision(2 * root.working_bits()):
+            values = [[self._value(f, root.re, arb(0)) for f in pair] for pair in (even, odd)]
+            usable = [(-constant / slope) for constant, slope in values if not slope.contains(0)]
+            if not usable:
+                return None
+            gain = max(usable, key=lambda ball: ball.rel_accuracy_bits())
+            return Crossing(gain, (root.re.sqrt(),))
+
+    def _may_vanish(self, polynomial: fmpz_mpoly, square: Root, gain: Root) -> bool:
+        with precision(2 * max(square.working_bits(), gain.working_bits())):
+            return self._value(polynomial, square.re, gain.re).contains(0)
+
+    def _value(self, polynomial: fmpz_mpoly, square: arb, gain: arb) -> arb:
+        """Return a polynomial of the ring at w and K, at the current precision."""
+        values = [square, gain, *(constant.evaluate() for constant in self.constants)]
+        total = arb(0)
+        for monomial, integer in polynomial.terms():
+            term = arb(int(integer))
+            for value, exponent in zip(values, monomial, strict=True):
+                if exponent:
+                    term *= value ** int(exponent)
+            total += term
+        return total
+
+    def _leading(self, parts: tuple[fmpz_mpoly, fmpz_mpoly]) -> fmpz_mpoly:
+        """Return the coefficient of the highest power of s in ``E + s O``, a polynomial in K."""
+        even, odd = parts
+        high, higher = degree_in(even, W), degree_in(odd, W)
+        chosen, power = (odd, higher) if len(odd) and 2 * higher + 1 > 2 * high else (even, high)
+        return _coefficient(self.ring, chosen, W, power)
+
+    def _gains(self, polynomials: Sequence[fmpz_mpoly], digits: int, budget: Budget) -> list[arb]:
+        return [root.re for f in polynomials for root in self._real_roots(f, K, digits, budget)]
+
+    def _real_roots(self, polynomial: fmpz_mpoly, variable: int, digits: int, budget: Budget) -> list[Root]:
+        """Return the real roots of a polynomial in one of w and K; each once."""
+        if degree_in(polynomial, variable) == 0:
+            return []
+        problem = RootProblem(((self._in_one(polynomial, variable), 1),))
+        return [root for root in find_polynomial_roots(problem, digits, budget=budget) if _is_real(root)]
+
+    def _in_one(self, polynomial: fmpz_mpoly, variable: int) -> PolynomialInS:
+        ring = Ring(("z", *self.ring.names[2:]))
+        parts: list[dict[tuple[int, ...], int]] = [{} for _ in range(degree_in(polynomial, variable) + 1)]
+        for monomial, number in polynomial.terms():
+            parts[int(monomial[variable])][tuple(int(e) for e in monomial[2:])] = int(number)
+        small = Ring(ring.names[1:])
+        return PolynomialInS(tuple(small.context.from_dict(p) for p in parts), small.context, self.constants)
+
+    def count(self, gain: Fraction, budget: Budget) -> PoleCount:
+        """Return how many poles lie right of the axis and on it for a gain that is no crossing.
+
+        Raises
+        ------
+        UncertifiedError
+            SF802 when a root cannot be told from one on the axis.
+        """
+        right, axis = 0, self.zeros
+        degree = max(degree_in(f, K) for f in (self.even, self.odd, self.common))
+        even, odd, common = (_at(self.ring, f, gain, degree) for f in (self.even, self.odd, self.common))
+        coefficients: list[fmpz_mpoly] = []
+        for f, is_odd in ((even, 0), (odd, 1)):
+            for i in range(degree_in(f, W) + 1 if len(f) else 0):
+                place = 2 * i + is_odd
+                coefficients += [self.ring.constant(0)] * (place + 1 - len(coefficients))
+                coefficients[place] = _coefficient(self.ring, f, W, i) * (-1) ** i
+        polynomial = self._polynomial(coefficients)
+        if polynomial.degree:
+            right += self._right_of_axis(polynomial, budget)
+        if degree_in(common, W):
+            squares = self._real_roots_at(common, budget)
+            on_axis = sum(root.multiplicity for root in squares if root.re > 0)
+            axis += 2 * on_axis
+            right += degree_in(common, W) - on_axis
+        return PoleCount(right * self.multiplicity, axis * self.multiplicity)
+
+    def _polynomial(self, coefficients: Sequence[fmpz_mpoly]) -> PolynomialInS:
+        small = Ring(self.ring.names[2:])
+        moved = []
+        for coefficient in coefficients:
+            terms = {tuple(int(e) for e in m[2:]): int(n) for m, n in coefficient.terms()}
+            moved.append(small.context.from_dict(terms))
+        return PolynomialInS(tuple(moved), small.context, self.constants)
+
+    def _right_of_axis(self, polynomial: PolynomialInS, budget: Budget) -> int:
+        digits = 8
+        for _ in range(DOUBLINGS):
+            roots = find_polynomial_roots(RootProblem(((polynomial, 1),)), digits, budget=budget)
+            if all(root.re != 0 for root in roots):
+                return sum(root.multiplicity for root in roots if root.re > 0)
+            digits *= 2
+        message = "it cannot be told on which side of the imaginary axis a pole lies"
+        raise UncertifiedError(Diagnostic("SF802", message))
+
+    def _real_roots_at(self, common: fmpz_mpoly, budget: Budget) -> list[Root]:
+        problem = RootProblem(((self._in_one(common, W), 1),))
+        return [root for root in find_polynomial_roots(problem, 15, budget=budget) if _is_real(root)]
+
+
+def _is_real(root: Root) -> bool:
+    return root.is_real
+
+
+def _coefficient(ring: Ring, polynomial: fmpz_mpoly, variable: int, power: int) -> fmpz_mpoly:
+    """Return the coefficient of a power of one generator, over the same ring."""
+    return ring.context.from_dict(
+        {
+            tuple(0 if i == variable else int(e) for i, e in enumerate(m)): int(n)
+            for m, n in polynomial.terms()
+            if int(m[variable]) == power
+        }
+    )
+
+
+def _lowest(ring: Ring, even: fmpz_mpoly) -> fmpz_mpoly:
+    return _coefficient(ring, even, W, 0)
+
+
+def _at(ring: Ring, polynomial: fmpz_mpoly, gain: Fraction, degree: int) -> fmpz_mpoly:
+    """Return a polynomial at a rational gain, times the gain's denominator to the power of a degree."""
+    total = ring.constant(0)
+    for i in range(degree + 1):
+        scale = gain.numerator**i * gain.denominator ** (degree - i)
+        total = total + _coefficient(ring, polynomial, K, i) * scale
+    return total
+
+
+def _integer_terms(factor: GainPolynomial) -> dict[tuple[int, int, tuple[int, ...]], int]:
+    """Return powers of s, K and constants with integer coefficients, scaled by what has no roots."""
+    rational: dict[tuple[int, int, tuple[int, ...]], Fraction] = {}
+    for k, coefficient in enumerate(factor.coefficients):
+        if coefficient.is_zero:
+            continue
+        above, below = coefficient.numerator(), coefficient.denominator()
+        shift = [0] * len(coefficient.ring.names)
+        number = Fraction(1, below.expand().term_content().leading_coefficient().__int__())
+        for f, e in below.factors:
+            # Only pi stands below: every other value is rational or a generator.
+            for i, power in enumerate(f.monoms()[0]):
+                shift[i] += int(power) * e
+        for monomial, integer in above.expand().terms():
+            exponents = [int(e) - d for e, d in zip(monomial, shift, strict=True)]
+            key = (exponents[0], k, tuple(exponents[1:]))
+            rational[key] = rational.get(key, Fraction(0)) + int(integer) * number
+    least = [min(key[2][i] for key in rational) for i in range(len(next(iter(rational))[2]))]
+    scale = lcm(*(value.denominator for value in rational.values()))
+    return {
+        (s, k, tuple(e - m for e, m in zip(rest, least, strict=True))): int(value * scale)
+        for (s, k, rest), value in rational.items()
+    }

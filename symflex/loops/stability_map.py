@@ -1,0 +1,274 @@
+"""For which values of a gain a loop is stable: the result, and its JSON."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from flint import arb
+
+from symflex.roots import decimals, precision
+
+if TYPE_CHECKING:
+    from fractions import Fraction
+
+    from symflex.loops.bandwidth import AllowedBandwidth
+    from symflex.loops.crossing import Crossing, PoleCount
+
+SCHEMA = "symflex.loops/1"
+BITS = 128
+
+
+@dataclass(frozen=True, slots=True)
+class Boundary:
+    """A gain at which the number of poles right of the imaginary axis, or on it, changes.
+
+    Parameters
+    ----------
+    gain : arb
+        Enclosure.
+    crossings : tuple of Crossing
+        What happens there.
+    """
+
+    gain: arb
+    crossings: tuple[Crossing, ...]
+
+    @property
+    def frequencies(self) -> tuple[arb, ...]:
+        """At which poles are on the axis [rad/s], ascending."""
+        found = [omega for crossing in self.crossings for omega in crossing.frequencies]
+        return tuple(sorted(found, key=lambda omega: float(omega.mid())))
+
+
+@dataclass(frozen=True, slots=True)
+class GainInterval:
+    """An open interval of gains on which the number of unstable poles does not change.
+
+    Parameters
+    ----------
+    low, high : arb or None
+        Its ends; ``None`` where it has none.
+    poles : PoleCount
+        Closed-loop poles that are not in the left half plane.
+    """
+
+    low: arb | None
+    high: arb | None
+    poles: PoleCount
+
+    def holds(self, gain: Fraction) -> bool:
+        """Tell whether a gain is proved to lie inside."""
+        with precision(BITS):
+            value = arb(gain.numerator) / gain.denominator
+            above = self.low is None or bool(value > self.low)
+            return above and (self.high is None or bool(value < self.high))
+
+
+@dataclass(frozen=True, slots=True)
+class GainMargin:
+    """By which factor the gain may change until a boundary.
+
+    Parameters
+    ----------
+    factor : arb
+        Above 1: upwards; below: downwards.
+    boundary : Boundary
+        Which one.
+    """
+
+    factor: arb
+    boundary: Boundary
+
+
+@dataclass(frozen=True, slots=True)
+class PhaseMargin:
+    """How much the phase may change at a frequency where the loop gain is one.
+
+    Parameters
+    ----------
+    angle : arb
+        [rad]; positive: lag until poles reach the axis; negative: lead.
+    frequency : arb
+        Crossover frequency [rad/s].
+    """
+
+    angle: arb
+    frequency: arb
+
+
+@dataclass(frozen=True)
+class StabilityMap:
+    """The gains for which all closed-loop poles are in the open left half plane.
+
+    Parameters
+    ----------
+    gain, unit : str
+        Name and SI unit of the gain; the unit is empty when it is not known.
+    limits : (Fraction or None, Fraction or None)
+        The range examined, without its ends.
+    boundaries : tuple of Boundary
+        Ascending.
+    intervals : tuple of GainInterval
+        Between them, ascending.
+    nominal : Fraction or None
+        The gain's declared value.
+    gain_margins : tuple of GainMargin
+        Of the nominal gain, when the loop is stable there.
+    phase_margins : tuple of PhaseMargin
+        At every crossover, ascending in frequency.
+    radius : arb or None
+        Poles were counted up to this abs(s) [rad/s]; ``None``: all of them.
+    is_complete : bool
+        It is proved that no pole lies right of the axis beyond the radius.
+    reasons : tuple of str
+        What is not proved.
+    digits : int
+        Asked for.
+    bandwidth : AllowedBandwidth or None
+        Which the stable gains next to 0 allow; ``None`` where there are none, or the loop is closed in
+        several places.
+    """
+
+    gain: str
+    unit: str
+    limits: tuple[Fraction | None, Fraction | None]
+    boundaries: tuple[Boundary, ...]
+    intervals: tuple[GainInterval, ...]
+    nominal: Fraction | None
+    gain_margins: tuple[GainMargin, ...]
+    phase_margins: tuple[PhaseMargin, ...]
+    radius: float | None
+    is_complete: bool
+    reasons: tuple[str, ...]
+    digits: int
+    bandwidth: AllowedBandwidth | None
+
+    def __post_init__(self) -> None:
+        if not self.is_complete and not self.reasons:
+            message = "what is not counted needs a reason"
+            raise ValueError(message)
+
+    @property
+    def certified(self) -> bool:
+        """All of it is proved, for all poles."""
+        return self.is_complete and not self.reasons
+
+    @property
+    def stable(self) -> tuple[GainInterval, ...]:
+        """The intervals with all poles in the open left half plane, as far as they are counted."""
+        return tuple(interval for interval in self.intervals if interval.poles.is_stable)
+
+    @property
+    def nominal_interval(self) -> GainInterval | None:
+        """The interval that holds the nominal gain."""
+        if self.nominal is None:
+            return None
+        return next((i for i in self.intervals if i.holds(self.nominal)), None)
+
+    @property
+    def is_stable(self) -> bool | None:
+        """Whether the loop is stable with its nominal gain; ``None`` when there is none."""
+        found = self.nominal_interval
+        return None if found is None else found.poles.is_stable
+
+    @property
+    def phase_margin(self) -> PhaseMargin | None:
+        """The smallest phase margin in absolute value."""
+        return min(self.phase_margins, key=lambda m: abs(float(m.angle.mid())), default=None)
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return the map in the schema ``symflex.loops/1``, ready for :func:`json.dumps`."""
+        worst = self.phase_margin
+        return {
+            "schema": SCHEMA,
+            "gain": self.gain,
+            "unit": self.unit,
+            "range": [None if x is None else str(x) for x in self.limits],
+            "certified": self.certified,
+            "counted_up_to_rad_per_s": None if self.radius is None or self.is_complete else self.radius,
+            "reasons": list(self.reasons),
+            "boundaries": [self._boundary(i) for i in range(len(self.boundaries))],
+            "intervals": [
+                {
+                    "low": None if i.low is None else real_json(i.low, self.digits),
+                    "high": None if i.high is None else real_json(i.high, self.digits),
+                    "right_half_plane_poles": i.poles.right,
+                    "imaginary_axis_poles": i.poles.axis,
+                    "stable": i.poles.is_stable,
+                }
+                for i in self.intervals
+            ],
+            "nominal": None if self.nominal is None else str(self.nominal),
+            "stable": self.is_stable,
+            "gain_margins": [
+                {
+                    "factor": real_json(m.factor, self.digits),
+                    "decibels": float(decibels(m.factor).mid()),
+                    "frequencies_hz": [float(hertz(w).mid()) for w in m.boundary.frequencies],
+                }
+                for m in self.gain_margins
+            ],
+            "phase_margins": [
+                {
+                    "degrees": real_json(degrees(m.angle), self.digits),
+                    "omega": real_json(m.frequency, self.digits),
+                    "frequency_hz": float(hertz(m.frequency).mid()),
+                    "smallest": m is worst,
+                }
+                for m in self.phase_margins
+            ],
+            "bandwidth": self._bandwidth(),
+        }
+
+    def _bandwidth(self) -> dict[str, object] | None:
+        found = self.bandwidth
+        if found is None:
+            return None
+        omega, angle = found.frequency, found.phase_margin
+        return {
+            "gain": None if found.gain is None else float(found.gain),
+            "omega": None if omega is None else real_json(omega, self.digits),
+            "frequency_hz": None if omega is None else float(hertz(omega).mid()),
+            "phase_margin_degrees": None if angle is None else float(degrees(angle).mid()),
+            "limited": found.is_limited,
+        }
+
+    def change(self, index: int) -> int:
+        """Return by how many poles the number right of the axis grows at a boundary, as the gain grows."""
+        return self.intervals[index + 1].poles.right - self.intervals[index].poles.right
+
+    def _boundary(self, index: int) -> dict[str, object]:
+        boundary = self.boundaries[index]
+        return {
+            "gain": real_json(boundary.gain, self.digits),
+            "omega": [real_json(w, self.digits) for w in boundary.frequencies],
+            "frequency_hz": [float(hertz(w).mid()) for w in boundary.frequencies],
+            "through_infinity": any(c.is_infinite for c in boundary.crossings),
+            "mirrored_poles_meet": any(c.is_symmetric for c in boundary.crossings),
+            "poles_entering_right_half_plane": self.change(index),
+        }
+
+
+def real_json(value: arb, digits: int) -> dict[str, str]:
+    """Return the certified decimals of a real number, and a bound of their error."""
+    printed = decimals(value, arb(0), digits)
+    return {"value": printed.re, "radius": printed.radius}
+
+
+def hertz(omega: arb) -> arb:
+    """Return a frequency in Hz from one in rad/s."""
+    with precision(max(BITS, omega.bits())):
+        return omega / (2 * arb.pi())
+
+
+def degrees(angle: arb) -> arb:
+    """Return an angle in degrees from one in rad."""
+    with precision(max(BITS, angle.bits())):
+        return angle * 180 / arb.pi()
+
+
+def decibels(factor: arb) -> arb:
+    """Return ``20 log10`` of a positive factor."""
+    with precision(BITS):
+        return 20 * factor.log() / arb(10).log()

@@ -1,0 +1,32 @@
+"""From text to exact values with positions, and back: the specification as it was written."""
+
+from symflex.model.spec.parse import parse, parse_with_recovery
+from symflex.model.spec.read import read
+from symflex.model.spec.values import (
+    ArrayValue,
+    BooleanValue,
+    Entry,
+    NumberValue,
+    OtherValue,
+    Spec,
+    StringValue,
+    TableValue,
+    Value,
+)
+from symflex.model.spec.write import write
+
+__all__ = [
+    "ArrayValue",
+    "BooleanValue",
+    "Entry",
+    "NumberValue",
+    "OtherValue",
+    "Spec",
+    "StringValue",
+    "TableValue",
+    "Value",
+    "parse",
+    "parse_with_recovery",
+    "read",
+    "write",
+]

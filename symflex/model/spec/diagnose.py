@@ -1,0 +1,291 @@
+"""Say what is wrong with a statement in the words of someone who writes models.
+
+tomllib says *that* a statement is wrong and about where; here its text is looked at for the mistakes
+people make, so that the message shows what was found and the hint what to write.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_left
+from typing import TYPE_CHECKING
+
+from symflex.errors import Diagnostic, Source, Span
+from symflex.model.spec.scan import KEY, Scan, Statement
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+_TWICE = ("Cannot declare", "Cannot mutate", "Cannot overwrite", "Duplicate")
+_ASSIGNMENT = re.compile(rf"[ \t]*+({KEY})[ \t]*+(=|:|(?=[^\s]))")
+_HEADER = re.compile(rf"(\[\[?)[ \t]*+({KEY})[ \t]*+(\]\]?)")
+_CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
+_ESCAPE = re.compile(r"\\(?![btnfr\"\\uU])")
+_STRING_OR_COMMENT = re.compile(r"""("(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')|\#[^\n]*+""")
+_INLINE_COMMENT = re.compile(r"[ \t]*+\#[^\n]*+$")
+_SHOWN = 40
+
+
+def diagnose_unclosed(source: Source, text: str, statement: Statement) -> Diagnostic:
+    r"""Return the diagnostic of a statement with a quote or bracket that is never closed.
+
+    Examples
+    --------
+    >>> from symflex.model.spec.scan import scan
+    >>> source = Source("a.toml", 'm = "60 kg\n')
+    >>> print(diagnose_unclosed(source, source.text, scan(source).statements[0]).render())
+    a.toml:1:5: error[SF101]: the string opened here is never closed: "60 kg
+      1 | m = "60 kg
+        |     ^^^^^^
+      hint: add the closing quote: "
+    """
+    start = statement.start if statement.unclosed is None else statement.unclosed
+    mark = text[start]
+    if mark not in "\"'":
+        close = "]" if mark == "[" else "}"
+        message = f"the bracket '{mark}' opened here is never closed"
+        return Diagnostic("SF101", message, Span(source, start, start + 1), f"add the closing '{close}'")
+    quote = mark * 3 if text.startswith(mark * 3, start) else mark
+    line = text[start : statement.end].partition("\n")[0].rstrip()
+    message = f"the string opened here is never closed: {_shown(line)}"
+    hint = f"add the closing quote: {quote}"
+    if mark in text[statement.start : start].rpartition("\n")[2]:
+        hint = f"a closing {quote} is missing, here or before it in this line"
+    return Diagnostic("SF101", message, Span(source, start, start + len(line)), hint)
+
+
+def diagnose_toml(source: Source, scan: Scan, statement: Statement, message: str, offset: int) -> Diagnostic:
+    """Return the diagnostic of a statement tomllib refuses.
+
+    Parameters
+    ----------
+    source : Source
+        What the span refers to.
+    scan : Scan
+        Its statements.
+    statement : Statement
+        The one that is wrong.
+    message : str
+        What tomllib says.
+    offset : int
+        Where it says so.
+
+    Returns
+    -------
+    Diagnostic
+        SF102 when something is defined twice, else SF101.
+    """
+    text = scan.text
+    if message.startswith(_TWICE):
+        return _twice(source, scan, statement, message)
+    place = Span(source, offset, min(offset + 1, len(text)))
+    if control := _CONTROL.match(text, offset):
+        return Diagnostic("SF101", f"control character U+{ord(control[0]):04X}", place, "remove it")
+    if statement.header:
+        return _bad_header(source, text, statement)
+    if statement.equals is None or offset <= statement.equals:
+        return _bad_key(source, text, statement)
+    return _bad_value(source, text, statement, message, offset)
+
+
+def _twice(source: Source, scan: Scan, statement: Statement, message: str) -> Diagnostic:
+    text = scan.text
+    name, start = _name(text, statement)
+    span = Span(source, start, start + len(name))
+    if message.startswith("Duplicate"):
+        found = message.rpartition("key ")[2]
+        return Diagnostic(
+            "SF102", f"the key {found} stands twice in an inline table", _value_span(source, text, statement)
+        )
+    first = _first(scan, statement, name)
+    if first is None:
+        what = "table" if statement.header else "key"
+        hint = "it stands in an inline table, or is a value already; write it there"
+        return Diagnostic(
+            "SF102", f"{what} '{_cut(name)}' cannot be added to what is defined above", span, hint
+        )
+    hint = f"it is first defined in line {Span(source, first.start, first.end).line}"
+    shown = f"table [{_cut(name)}]" if statement.header else f"key '{_cut(name)}'"
+    return Diagnostic("SF102", f"{shown} is defined twice", span, hint)
+
+
+def _first(scan: Scan, statement: Statement, name: str) -> Statement | None:
+    """Return the first statement of the same name; for a key, under the same header."""
+    first = None
+    for earlier in reversed(scan.statements[: bisect_left(scan.statements, statement.start, key=_start)]):
+        if earlier.header == statement.header and _name(scan.text, earlier)[0] == name:
+            first = earlier
+        if earlier.header and not statement.header:
+            break
+    return first
+
+
+def _start(statement: Statement) -> int:
+    return statement.start
+
+
+def _value_span(source: Source, text: str, statement: Statement) -> Span:
+    """Return the place of the value, without white space and comment."""
+    after = (statement.start if statement.equals is None else statement.equals) + 1
+    written = _without_comment(text[after : statement.end])
+    start = after + len(written) - len(written.lstrip())
+    return Span(source, start, start + len(written.strip()))
+
+
+def _name(text: str, statement: Statement) -> tuple[str, int]:
+    """Return the key of a statement as it is written, and its offset."""
+    match = (_HEADER if statement.header else _ASSIGNMENT).match(text, statement.start, statement.end)
+    if match is None:
+        return text[statement.start : statement.end], statement.start
+    group = 2 if statement.header else 1
+    return match[group], match.start(group)
+
+
+def _bad_header(source: Source, text: str, statement: Statement) -> Diagnostic:
+    found = _INLINE_COMMENT.sub("", text[statement.start : statement.end]).rstrip()
+    span = Span(source, statement.start, statement.start + len(found))
+    hint = (
+        "a header is [name] or [name.name]; quote a name with other characters than letters, digits, _ and -"
+    )
+    match = _HEADER.match(found)
+    if not found.startswith("["):
+        hint = "begin it with '['"
+    elif match and match.end() < len(found):
+        hint = f"begin a new line after {match[0]}"
+    return Diagnostic("SF101", f"{_shown(found)} is no table header", span, hint)
+
+
+def _bad_key(source: Source, text: str, statement: Statement) -> Diagnostic:
+    end = statement.end if statement.equals is None else statement.equals
+    found = text[statement.start : end].rstrip()
+    match = _ASSIGNMENT.match(found)
+    if statement.equals is not None:
+        if not found:
+            message, hint = "no key before '='", "write key = value"
+        else:
+            quoted = found.replace("\\", "\\\\").replace('"', '\\"')
+            message, hint = f"{_shown(found)} is no key", f'put it in quotes: "{_cut(quoted)}"'
+    elif match and match[2] == ":":
+        message = f"expected '=' after the key {_shown(match[1])}, found ':'"
+        colon = statement.start + match.start(2)
+        return Diagnostic("SF101", message, Span(source, colon, colon + 1), "write '=' instead of ':'")
+    else:
+        found = _INLINE_COMMENT.sub("", found.partition("\n")[0]).rstrip()
+        message = f"{_shown(found)} is neither key = value nor a [table]"
+        hint = "write '=' between key and value"
+    width = max(1, len(found.partition("\n")[0]))
+    return Diagnostic("SF101", message, Span(source, statement.start, statement.start + width), hint)
+
+
+def _bad_value(source: Source, text: str, statement: Statement, message: str, offset: int) -> Diagnostic:
+    whole = _value_span(source, text, statement)
+    found = text[whole.start : whole.end]
+    equals = whole.start if statement.equals is None else statement.equals
+    if not found:
+        hint = 'write a number, or text in quotes: "..."'
+        return Diagnostic("SF101", "no value after '='", Span(source, equals, equals + 1), hint)
+    place = Span(source, offset, min(offset + 1, len(text)))
+    if found.startswith("="):
+        return Diagnostic("SF101", "found '=='", Span(source, equals, whole.start + 1), "write a single '='")
+    if escape := _escape(text, statement, message, offset):
+        hint = "write the text between single quotes '...', where a backslash is itself, or double it: \\\\"
+        shown = text[escape[0] : escape[1]]
+        return Diagnostic("SF101", f"{_shown(shown)} is no escape sequence", Span(source, *escape), hint)
+    if found[0] in "\"'":
+        message = f"unexpected text after the value: {_shown(text[offset : whole.end])}"
+        return Diagnostic("SF101", message, Span(source, offset, max(offset + 1, whole.end)))
+    if found[0] not in "[{":
+        said, hint = _bad_scalar(found)
+        return Diagnostic("SF101", said, whole, hint)
+    return _bad_collection(source, text, whole, message, place)
+
+
+def _without_comment(text: str) -> str:
+    return _STRING_OR_COMMENT.sub(lambda match: match[1] or "", text)
+
+
+def _escape(text: str, statement: Statement, message: str, offset: int) -> tuple[int, int] | None:
+    if message.startswith("Escaped character"):
+        return _escape_at(text, statement, offset, re.compile(r"\\[uU][0-9A-Fa-f]*"))
+    if message.startswith("Unescaped"):
+        return _escape_at(text, statement, offset, _ESCAPE)
+    if message.startswith("Invalid hex"):
+        return _escape_at(text, statement, offset, re.compile(r"\\[uU]"))
+    return None
+
+
+def _escape_at(
+    text: str, statement: Statement, offset: int, escape: re.Pattern[str]
+) -> tuple[int, int] | None:
+    # tomllib points behind the backslash, by a distance that depends on the escape.
+    found = [match.start() for match in escape.finditer(text, max(statement.start, offset - 12), offset + 1)]
+    if not found:
+        return None
+    return found[-1], min(found[-1] + 2, statement.end)
+
+
+def _bad_scalar(found: str) -> tuple[str, str]:
+    for applies, hint in _SCALAR_HINTS:
+        if applies(found):
+            return f"{_shown(found)} is not a value", hint(found)
+    return f"{_shown(found)} is neither a number nor quoted text", f"put it in quotes: {_quoted(found)}"
+
+
+def _quoted(found: str) -> str:
+    shown = _cut(found)
+    return f"'{shown}'" if '"' in shown or "\\" in shown else f'"{shown}"'
+
+
+def _matches(pattern: str) -> Callable[[str], bool]:
+    compiled = re.compile(pattern)
+    return lambda found: compiled.fullmatch(found) is not None
+
+
+_DIGITS = r"[+-]?[0-9]++"
+_EXPONENT = r"(?:[eE][+-]?[0-9]++)?"
+_SCALAR_HINTS: tuple[tuple[Callable[[str], bool], Callable[[str], str]], ...] = (
+    (lambda f: f.lower() in {"true", "yes", "on"}, lambda f: "write true"),
+    (lambda f: f.lower() in {"false", "no", "off"}, lambda f: "write false"),
+    (lambda f: f.lower() in {"none", "null", "nil"}, lambda f: "leave the key out"),
+    (_matches(r"[\u201c\u201d\u201e\u2018\u2019\u00ab].*"), lambda f: 'write straight quotes: "'),
+    (_matches(rf"{_DIGITS},[0-9]++"), lambda f: f"write a decimal point: {_cut(f.replace(',', '.'))}"),
+    (_matches(rf"[+-]?\.[0-9]++{_EXPONENT}"), lambda f: f"begin with a digit: {_cut(f.replace('.', '0.'))}"),
+    (
+        _matches(rf"{_DIGITS}\.{_EXPONENT}"),
+        lambda f: f"put a digit after the point: {_cut(f.replace('.', '.0'))}",
+    ),
+    (_matches(r"[+-]?0[0-9]++(?:\.[0-9]++)?"), lambda f: "write it without leading zeros"),
+)
+
+
+def _bad_collection(source: Source, text: str, whole: Span, message: str, place: Span) -> Diagnostic:
+    if text[whole.start] == "{":
+        if place.text in {"\n", "\r", ""} and place.start < whole.end:
+            hint = "write it on one line, or as a table with its own [header]"
+            return Diagnostic("SF101", "an inline table ends on the line it begins", whole, hint)
+        if place.text == "}":
+            return Diagnostic(
+                "SF101", "an inline table has no comma before its '}'", place, "remove the comma"
+            )
+    if place.start >= whole.end or not place.text.strip():
+        return Diagnostic("SF101", message[:1].lower() + message[1:], whole)
+    word = re.compile(r"[^\s,\[\]{}=#]*+").match(text, place.start)
+    found = word[0] if word and word[0] else place.text
+    span = Span(source, place.start, place.start + len(found))
+    if message.startswith("Invalid value"):
+        said, hint = _bad_scalar(found)
+        return Diagnostic("SF101", said, span, hint)
+    if message.startswith("Unclosed"):
+        closing = "]" if message.endswith("array") else "}"
+        return Diagnostic("SF101", f"expected ',' or '{closing}', found {_shown(found)}", span)
+    return Diagnostic("SF101", f"unexpected {_shown(found)}: {message[:1].lower()}{message[1:]}", span)
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= _SHOWN else text[:_SHOWN] + "..."
+
+
+def _shown(text: str) -> str:
+    """Return user text for a message: on one line, cut, quoted unless it brings its quotes."""
+    text = _cut(text.partition("\n")[0].rstrip())
+    return text if text[:1] in {'"', "'"} else f"'{text}'"

@@ -1,0 +1,92 @@
+"""Read a file of hostile kind: never hang on it, never hold more of it than the limit."""
+
+from __future__ import annotations
+
+import os
+import stat
+from typing import TYPE_CHECKING
+
+from symflex.errors import Diagnostic, Source, Span, SpecError, UsageError
+from symflex.model.spec.limits import MAX_BYTES
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+_UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
+
+
+def read(path: str | Path) -> Source:
+    r"""Read the text of a specification.
+
+    Parameters
+    ----------
+    path : str or Path
+        A regular file, UTF-8 with or without a byte order mark, at most 1 MB.
+
+    Returns
+    -------
+    Source
+        The text without its byte order mark; line ends are kept as they are.
+
+    Raises
+    ------
+    UsageError
+        SF901 when there is no such regular file or it cannot be opened.
+    SpecError
+        SF901 when it is too large or not UTF-8, with the byte offset.
+
+    Examples
+    --------
+    >>> read("no/such.toml")
+    Traceback (most recent call last):
+    symflex.errors.exceptions.UsageError: error[SF901]: cannot read 'no/such.toml': No such file or directory
+    """
+    name = os.fspath(path)
+    try:
+        data = read_bytes(name, MAX_BYTES)
+    except OSError as error:
+        raise _unreadable(name, error.strerror or "input/output error") from None
+    except ValueError:
+        raise _unreadable(name, "the name holds a character no file name can have") from None
+    if len(data) > MAX_BYTES:
+        message = f"'{name}' is larger than {MAX_BYTES} bytes"
+        raise SpecError(Diagnostic("SF901", message, hint="is this the right file?"))
+    try:
+        return Source(name, data.decode("utf-8").removeprefix("\ufeff"))
+    except UnicodeDecodeError as error:
+        raise SpecError(_not_utf8(name, data, error.start)) from None
+
+
+def read_bytes(name: str, limit: int) -> bytes:
+    """Return the bytes of a regular file, and of a larger one a byte more than the limit.
+
+    Raises
+    ------
+    UsageError
+        SF901 when it is no regular file.
+    OSError, ValueError
+        When it cannot be opened.
+    """
+    # O_NONBLOCK: a FIFO that takes the file's place after the first look must not hang the open.
+    if not stat.S_ISREG(os.stat(name).st_mode):
+        raise _unreadable(name, "not a regular file")
+    flags = os.O_RDONLY
+    for name_of_flag in ("O_NONBLOCK", "O_CLOEXEC", "O_BINARY"):
+        flags |= getattr(os, name_of_flag, 0)
+    with open(os.open(name, flags), "rb") as file:
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise _unreadable(name, "not a regular file")
+        return file.read(limit + 1)
+
+
+def _unreadable(name: str, reason: str) -> UsageError:
+    return UsageError(Diagnostic("SF901", f"cannot read '{name}': {reason}"))
+
+
+def _not_utf8(name: str, data: bytes, offset: int) -> Diagnostic:
+    source = Source(name, data.decode("utf-8", "replace"))
+    start = len(data[:offset].decode("utf-8"))
+    message = f"not UTF-8: byte 0x{data[offset]:02x} at byte offset {offset}"
+    utf16 = data.startswith(_UTF16_MARKS)
+    hint = "this is UTF-16; save the file as UTF-8" if utf16 else "save the file as UTF-8"
+    return Diagnostic("SF901", message, Span(source, start, start + 1), hint)

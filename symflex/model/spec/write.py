@@ -1,0 +1,168 @@
+"""From nested Python values to the text of a specification, so that both kinds of model are one."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any, Final
+
+from symflex.errors import Diagnostic, SpecError
+from symflex.model.spec.limits import MAX_LITERAL, MAX_NESTING, number_problem
+
+INLINE_SECTIONS: Final = frozenset({"parameters", "elements", "inputs", "outputs", "blocks"})
+
+_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+_NOT_LITERAL = re.compile(r"[\x00-\x08\x0a-\x1f\x7f']")
+_ESCAPED = re.compile(r'[\x00-\x1f\x7f"\\]')
+SHORTER = "give fewer digits, or a unit in which the number lies nearer to 1"
+FLATTER = "no key of a specification needs as many"
+_SURROGATE = re.compile(r"[\ud800-\udfff]")
+_SHORT_ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r", "\b": "\\b", "\f": "\\f"}
+_BITS_PER_DIGIT = 3.3219280948873626
+
+
+def write(mapping: Mapping[str, object]) -> str:
+    r"""Render nested values as the text of a specification.
+
+    The two outer levels become ``[a]`` and ``[a.b]`` headers; what is deeper, and what stands in
+    `parameters`, `elements`, `inputs`, `outputs` and `blocks`, becomes inline tables.
+
+    Parameters
+    ----------
+    mapping : mapping
+        Of str, int, Fraction, Decimal, float, bool, list, tuple and mappings of these. A fraction
+        that is no finite decimal becomes the string ``"p/q"``.
+
+    Returns
+    -------
+    str
+        TOML; :func:`symflex.model.spec.parse` gives the mapping back.
+
+    Raises
+    ------
+    SpecError
+        SF104 for a value that cannot be written, with its path; SF103 for one that passes a limit.
+
+    Examples
+    --------
+    >>> print(write({"symflex": 1, "parameters": {"m": {"value": "2 kg"}, "k": Fraction(1, 3)}}), end="")
+    symflex = 1
+    <BLANKLINE>
+    [parameters]
+    m = { value = "2 kg" }
+    k = "1/3"
+    """
+    blocks = [_block("", [(key, v) for key, v in _items(mapping, ()) if not isinstance(v, Mapping)], ())]
+    for name, section in _items(mapping, ()):
+        if isinstance(section, Mapping):
+            blocks += _section(name, section)
+    return "\n".join(block for block in blocks if block)
+
+
+def _section(name: str, section: Mapping[Any, object]) -> list[str]:
+    items = _items(section, (name,))
+    apart = [] if name in INLINE_SECTIONS else [key for key, value in items if isinstance(value, Mapping)]
+    own = [(key, value) for key, value in items if key not in apart]
+    blocks = [_block(f"[{_key(name)}]\n", own, (name,))] if own or not apart else []
+    for key, value in items:
+        if key in apart and isinstance(value, Mapping):
+            header = f"[{_key(name)}.{_key(key)}]\n"
+            blocks.append(_block(header, _items(value, (name, key)), (name, key)))
+    return blocks
+
+
+def _block(header: str, items: list[tuple[str, object]], path: tuple[str, ...]) -> str:
+    return header + "".join(f"{_key(key)} = {_value(value, (*path, key))}\n" for key, value in items)
+
+
+def _items(mapping: Mapping[Any, object], path: tuple[str, ...]) -> list[tuple[str, object]]:
+    items = []
+    for key, value in mapping.items():
+        if not isinstance(key, str) or _SURROGATE.search(key):
+            raise _refused("SF104", path, f"the key {key!r} is no text", "keys are strings")
+        items.append((key, value))
+    return items
+
+
+def _key(key: str) -> str:
+    return key if _BARE_KEY.fullmatch(key) else _string(key)
+
+
+def _value(value: object, path: tuple[str, ...], depth: int = 0) -> str:
+    match value:
+        case bool():
+            return "true" if value else "false"
+        case str():
+            if _SURROGATE.search(value):
+                raise _refused("SF104", path, "the text holds half a surrogate pair", "leave it out")
+            return _string(value)
+        case int() | Fraction():
+            return _rational(Fraction(value), path)
+        case float():
+            return float.__repr__(value)
+        case Decimal():
+            return _decimal(value, path)
+    if not isinstance(value, Mapping | list | tuple):
+        message = f"a value of type '{type(value).__name__}' has no place in a specification"
+        hint = "text, numbers, booleans, lists and mappings have"
+        raise _refused("SF104", path, message, hint)
+    if depth >= MAX_NESTING:
+        raise _refused("SF103", path[:3], f"brackets nested deeper than {MAX_NESTING}", FLATTER)
+    if isinstance(value, Mapping):
+        pairs = [f"{_key(key)} = {_value(v, (*path, key), depth + 1)}" for key, v in _items(value, path)]
+        return f"{{ {', '.join(pairs)} }}" if pairs else "{}"
+    return f"[{', '.join(_value(item, (*path, str(i)), depth + 1) for i, item in enumerate(value))}]"
+
+
+def _string(text: str) -> str:
+    # Single quotes keep a backslash as it is, so LaTeX reads as LaTeX and places in it stay exact.
+    if ("\\" in text or '"' in text) and not _NOT_LITERAL.search(text):
+        return f"'{text}'"
+    return '"' + _ESCAPED.sub(lambda m: _SHORT_ESCAPES.get(m[0], f"\\u{ord(m[0]):04x}"), text) + '"'
+
+
+def _rational(value: Fraction, path: tuple[str, ...]) -> str:
+    numerator, denominator = value.numerator, value.denominator
+    # Python refuses to print very long integers; measure before printing.
+    if max(numerator.bit_length(), denominator.bit_length()) > MAX_LITERAL * _BITS_PER_DIGIT + 1:
+        raise _refused("SF103", path, f"number of more than {MAX_LITERAL} characters", SHORTER)
+    if denominator == 1:
+        literal = str(numerator)
+    else:
+        places = _decimal_places(denominator)
+        if places is None:
+            return f'"{numerator}/{denominator}"'
+        digits = str(abs(numerator) * 10**places // denominator).rjust(places + 1, "0")
+        literal = f"{'-' * (numerator < 0)}{digits[:-places]}.{digits[-places:]}"
+    return _checked(literal, path)
+
+
+def _decimal_places(denominator: int) -> int | None:
+    """Return how many decimals 1/denominator has, or ``None`` when they never end."""
+    places = {2: 0, 5: 0}
+    for prime in places:
+        while denominator % prime == 0:
+            denominator //= prime
+            places[prime] += 1
+    return max(places.values()) if denominator == 1 else None
+
+
+def _decimal(value: Decimal, path: tuple[str, ...]) -> str:
+    if value.is_nan():
+        return "nan"
+    if value.is_infinite():
+        return "-inf" if value < 0 else "inf"
+    return _checked(str(value), path)
+
+
+def _checked(literal: str, path: tuple[str, ...]) -> str:
+    if problem := number_problem(literal):
+        raise _refused("SF103", path, problem, SHORTER)
+    return literal
+
+
+def _refused(code: str, path: tuple[str, ...], message: str, hint: str) -> SpecError:
+    where = ".".join(_key(part) if not _SURROGATE.search(part) else ascii(part) for part in path)
+    return SpecError(Diagnostic(code, f"{where}: {message}" if where else message, None, hint))

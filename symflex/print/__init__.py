@@ -1,0 +1,1 @@
+"""Printed formulas: forms, and the notations they are written in."""

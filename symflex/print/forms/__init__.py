@@ -1,0 +1,177 @@
+"""Forms of a transfer function. A new form is one function and one line in ``FORMS``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symflex.errors import Diagnostic, UsageError
+from symflex.errors.diagnostic import nearest
+from symflex.expressions import format_expression
+from symflex.print.forms.arrange import Arranger
+from symflex.print.forms.counts import counts_of
+from symflex.print.forms.definitions import definitions_form
+from symflex.print.forms.economical import economical
+from symflex.print.forms.frequency import frequency_form
+from symflex.print.forms.hidden import hidden_expressions, with_hidden
+from symflex.print.forms.hyperbolic import hyperbolic_form
+from symflex.print.forms.kept import with_definitions
+from symflex.print.forms.krylov import krylov_form
+from symflex.print.forms.nested import nested_form, step_names
+from symflex.print.forms.polynomial import constant_form, factored_form, monic_form, polynomial_form
+from symflex.print.forms.printed import Form, PrintedForm
+from symflex.print.forms.usage import forms_of
+from symflex.print.forms.vaughan import vaughan_form
+from symflex.print.forms.zpk import zpk_form
+from symflex.transfer import NestedTransferFunction
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.transfer import AnyTransferFunction, TransferFunction
+
+FORMS: dict[str, Form] = {
+    "polynomial": polynomial_form,
+    "monic": monic_form,
+    "constant": constant_form,
+    "factored": factored_form,
+    "definitions": definitions_form,
+    "zpk": zpk_form,
+    "hyperbolic": hyperbolic_form,
+    "krylov": krylov_form,
+    "vaughan": vaughan_form,
+    "frequency": frequency_form,
+}
+
+LARGE = 300
+"""Number of expanded terms from which only the closed form is tried: no expanded print is shorter."""
+CANDIDATES = ("definitions", "factored", "polynomial")
+"""The symbolic forms of rational functions; the shortest print is the default, ties go to the first."""
+DISTRIBUTED_CANDIDATES = ("hyperbolic", "factored", "vaughan", "krylov")
+"""The same for functions with kernels."""
+
+
+def print_form(tf: AnyTransferFunction, form: str | None = None, digits: int = 6) -> PrintedForm:
+    """Return a transfer function in the named form, or in the one that prints shortest.
+
+    Parameters
+    ----------
+    tf : TransferFunction or NestedTransferFunction
+        Derived.
+    form : str, optional
+        A key of :data:`FORMS`; ``nested`` for those derived so, which have no other.
+    digits : int
+        Significant digits of forms that print decimals.
+
+    Raises
+    ------
+    UsageError
+        SF902 when there is no such form, or the function has none.
+    ModelError
+        SF229 when the form needs numbers and a parameter has none.
+    """
+    if isinstance(tf, NestedTransferFunction):
+        if form not in (None, "nested"):
+            message = f"{tf.name} is derived in nested form, which is not expanded into others"
+            raise UsageError(Diagnostic("SF902", message, None, "ask for the expanded representation"))
+        return nested_form(tf)
+    if form == "nested":
+        message = f"{tf.name} is derived in expanded form"
+        raise UsageError(Diagnostic("SF902", message, None, "ask for the nested representation"))
+    if tf.is_distributed:
+        tf = economical(tf)
+    if form is None:
+        return min((_made(tf, name, digits) for name in _candidates(tf)), key=_length)
+    if form not in FORMS:
+        hint = nearest(form, FORMS) or "forms: " + ", ".join(FORMS)
+        raise UsageError(Diagnostic("SF902", f"there is no form '{form[:64]}'", None, hint))
+    return _made(tf, form, digits)
+
+
+def _made(tf: TransferFunction, form: str, digits: int) -> PrintedForm:
+    return with_definitions(tf, FORMS[form](tf, digits))
+
+
+def print_forms(
+    tfs: Sequence[AnyTransferFunction], form: str | None = None, digits: int = 6
+) -> tuple[tuple[PrintedForm, ...], tuple[str, ...]]:
+    """Return all functions in the named form, and a sentence on each that lacks it, in its default form.
+
+    Parameters
+    ----------
+    tfs, form, digits
+        See :func:`print_form`.
+
+    Raises
+    ------
+    UsageError
+        SF902 when none of them has the form.
+    """
+    found: list[PrintedForm] = []
+    sentences: list[str] = []
+    refusal: UsageError | None = None
+    for tf in tfs:
+        try:
+            found.append(print_form(tf, form, digits))
+        except UsageError as error:
+            refusal = refusal or error
+            found.append(print_form(tf, None, digits))
+            sentences.append(f"{tf.name} has no {form} form: printed in its {found[-1].name} form")
+    if refusal is not None and len(sentences) == len(found):
+        raise refusal
+    return tuple(found), tuple(sentences)
+
+
+def terms_to_print(tf: AnyTransferFunction, form: str | None = None) -> int:
+    """Return about how many terms a symbolic form prints; 0 where that is not known, or few in any case.
+
+    Parameters
+    ----------
+    tf, form
+        See :func:`print_form`.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... parameters = { a = {}, b = {} }
+    ... inputs.u = {}
+    ... outputs.y = "u/(s^2 + a*s + b)"
+    ... ''')
+    >>> terms_to_print(pipeline.derive_all(model)[0], "polynomial")
+    3
+    """
+    if isinstance(tf, NestedTransferFunction) or tf.is_distributed or form == "zpk":
+        return 0
+    closed = tf.closed if form in (None, "definitions") and tf.length > LARGE else None
+    return tf.length if closed is None else len(closed.num) + len(closed.den)
+
+
+def _candidates(tf: TransferFunction) -> tuple[str, ...]:
+    found: tuple[str, ...] = CANDIDATES
+    if tf.is_distributed:
+        found = tuple(name for name in DISTRIBUTED_CANDIDATES if name in forms_of(tf))
+    return found if tf.length <= LARGE else found[:1]
+
+
+def _length(form: PrintedForm) -> int:
+    parts = [form.num, form.den, *(e for _, e in form.where)]
+    return sum(len(format_expression(part)) for part in parts)
+
+
+__all__ = [
+    "CANDIDATES",
+    "DISTRIBUTED_CANDIDATES",
+    "FORMS",
+    "Arranger",
+    "Form",
+    "PrintedForm",
+    "counts_of",
+    "hidden_expressions",
+    "nested_form",
+    "print_form",
+    "print_forms",
+    "step_names",
+    "terms_to_print",
+    "with_hidden",
+]

@@ -1,0 +1,376 @@
+"""Arranging polynomials as a person would: common factors first, descending powers of s, sums grouped."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, cached_property
+from math import gcd
+from operator import add, neg, sub
+from typing import TYPE_CHECKING
+
+from symflex.algebra import LAPLACE, Ring, degree_in, irreducible_factors
+from symflex.expressions import (
+    Call,
+    Expression,
+    Name,
+    Number,
+    Product,
+    Sum,
+    format_expression,
+    number,
+    power,
+    product_of,
+    sum_of,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.print.forms.kept import KeptDefinitions
+
+GROUP_LIMIT = 5_000
+"""Number of terms up to which a polynomial is nested for print."""
+DEEPEST_NEST = 60
+"""Degree in all parameters up to which a sum is nested: each level of print takes out one of them."""
+FACTOR_LIMIT = 400
+"""Number of terms up to which a coefficient is factored for print."""
+
+
+@dataclass(frozen=True)
+class Arranger:
+    """Arranges polynomials of one ring.
+
+    Parameters
+    ----------
+    ring : Ring
+        The generators, s first, in declared order.
+    names : mapping of str to Expression
+        What to print for a generator, where it is not its own name (closed sums).
+    degrees : mapping of str to int
+        Degree in s of such generators, so that they stand where their power belongs.
+    apart : frozenset of str
+        Functions of s: they stand after what multiplies them, and a sum that begins with one begins with a
+        plus.
+    kept : KeptDefinitions or None
+        Polynomials may be of its source; they are arranged over its ring, which is ``ring``.
+    """
+
+    ring: Ring
+    names: Mapping[str, Expression]
+    degrees: Mapping[str, int]
+    apart: frozenset[str] = frozenset()
+    kept: KeptDefinitions | None = None
+
+    @staticmethod
+    def plain(
+        ring: Ring,
+        names: Mapping[str, Expression] | None = None,
+        apart: Iterable[str] = (),
+        kept: KeptDefinitions | None = None,
+    ) -> Arranger:
+        """Return an arranger for a ring whose generators print as themselves."""
+        return Arranger(kept.ring if kept else ring, names or {}, {}, frozenset(apart), kept)
+
+    def closed(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
+        """Return a polynomial in the definitions that are kept."""
+        if self.kept is None or polynomial.context() is self.ring.context:
+            return polynomial
+        return self.kept.rewrite(polynomial)
+
+    @cached_property
+    def _symbols(self) -> tuple[Expression, ...]:
+        return tuple(self.names.get(n, Name(n)) for n in self.ring.names)
+
+    @cached_property
+    def _s_degree(self) -> tuple[tuple[int, int], ...]:
+        """The generators that bear s, by index, and their degrees."""
+        degrees = enumerate(1 if n == LAPLACE else self.degrees.get(n, 0) for n in self.ring.names)
+        return tuple((i, degree) for i, degree in degrees if degree)
+
+    @cached_property
+    def _is_apart(self) -> tuple[bool, ...]:
+        return tuple(n in self.apart for n in self.ring.names)
+
+    @cached_property
+    def _is_sum(self) -> tuple[bool, ...]:
+        return tuple(n in self.degrees for n in self.ring.names)
+
+    @cached_property
+    def _sums(self) -> tuple[int, ...]:
+        return tuple(i for i, is_sum in enumerate(self._is_sum) if is_sum)
+
+    def collected(self, polynomial: fmpz_mpoly, *, factored: bool = True) -> Expression:
+        """Return a polynomial by descending powers of s, each coefficient factored."""
+        is_opened = self.kept is not None and polynomial.context() is self.kept.source.context
+        parts = coefficients(self.kept.source if self.kept and is_opened else self.ring, polynomial)
+        s = self._symbols[0]
+        terms = []
+        for exponent in sorted(parts, reverse=True):
+            coefficient = self.coefficient(parts[exponent], factored=factored)
+            terms.append(product_of([coefficient, power(s, exponent)]))
+        return sum_of(terms) if terms else number(0)
+
+    def coefficient(self, polynomial: fmpz_mpoly, *, factored: bool = True) -> Expression:
+        """Return a polynomial free of s as a product of factors, or as a sum when it has none."""
+        polynomial = self.closed(polynomial)
+        if len(polynomial) == 1 or not factored or len(polynomial) > FACTOR_LIMIT:
+            return self._with_content(polynomial)
+        constant, factors = irreducible_factors(polynomial)
+        sign = 1
+        pieces: list[Expression] = []
+        for factor, exponent in sorted(factors, key=lambda fe: (len(fe[0]) > 1, _order_key(fe[0]))):
+            positive = factor
+            if int(factor.leading_coefficient()) < 0:
+                positive, sign = -factor, sign * (-1) ** exponent
+            pieces.append(power(self._flat(positive), exponent))
+        return product_of([number(constant * sign), *pieces])
+
+    def _with_content(self, polynomial: fmpz_mpoly) -> Expression:
+        content = polynomial.term_content()
+        if int(polynomial.leading_coefficient()) < 0:
+            content = -content if int(content.leading_coefficient()) > 0 else content
+        rest = polynomial / content
+        if rest.is_constant():
+            return self._flat(polynomial)
+        return product_of([self._flat(content), self._flat(rest)])
+
+    def _flat(self, polynomial: fmpz_mpoly) -> Expression:
+        return self._sum(_terms(polynomial))
+
+    def grouped(self, polynomial: fmpz_mpoly) -> Expression:
+        """Return a polynomial nested by its most shared generators."""
+        polynomial = self.closed(polynomial)
+        if polynomial.is_zero():
+            return number(0)
+        if len(polynomial) > GROUP_LIMIT:
+            return self.collected(polynomial, factored=False)
+        return self._group(_terms(polynomial))
+
+    def grouped_by_s(self, polynomial: fmpz_mpoly) -> Expression:
+        """Return the shorter of the nested print and the one by descending powers of s."""
+        nested = self.grouped(polynomial)
+        if len(polynomial) > GROUP_LIMIT or not degree_in(polynomial, 0):
+            return nested
+        collected = self.collected(polynomial)
+        longer = len(format_expression(collected)) > len(format_expression(nested))
+        return nested if longer else collected
+
+    def separated(self, polynomial: fmpz_mpoly, *, by_functions: bool) -> Expression:
+        """Return a sum of coefficients times sums of functions.
+
+        Parameters
+        ----------
+        polynomial : fmpz_mpoly
+            Over the ring.
+        by_functions : bool
+            Collect the coefficients of every product of functions, or the functions that one monomial
+            multiplies.
+        """
+        parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
+        for monomial, coefficient in _terms(self.closed(polynomial)).items():
+            key = tuple(e if f == by_functions else 0 for f, e in zip(self._is_apart, monomial, strict=True))
+            rest = tuple(e - k for e, k in zip(monomial, key, strict=True))
+            parts.setdefault(key, {})[rest] = coefficient
+        # Monomials whose coefficients differ by a number share them.
+        shared: dict[tuple[tuple[tuple[int, ...], int], ...], dict[tuple[int, ...], int]] = {}
+        for key, terms in parts.items():
+            scale = gcd(*terms.values()) * (1 if terms[self._first(terms)] > 0 else -1)
+            primitive = tuple(sorted((m, c // scale) for m, c in terms.items()))
+            shared.setdefault(primitive, {})[key] = scale
+        groups = []
+        for primitive, keys in shared.items():
+            coefficient_terms = dict(primitive)
+            first = tuple(map(add, self._first(coefficient_terms), self._first(keys)))
+            pieces = [self._group(coefficient_terms), self._group(keys)]
+            if not by_functions:
+                pieces.reverse()
+            groups.append((self._monomial_key(first), product_of(pieces)))
+        return sum_of([part for _, part in sorted(groups, key=lambda g: g[0])])
+
+    def _first(self, terms: Mapping[tuple[int, ...], int]) -> tuple[int, ...]:
+        """Return the monomial that is printed first."""
+        return min(terms, key=self._monomial_key)
+
+    def monomial(self, exponents: Sequence[int]) -> Expression:
+        """Return a product of powers of the generators, those of ``ring`` or of what is kept closed."""
+        if self.kept is None or len(exponents) == len(self.ring.names):
+            return self._monomial(tuple(exponents), 1)
+        ((monomial, _),) = _terms(
+            self.kept.rewrite(self.kept.source.context.from_dict({tuple(exponents): 1}))
+        ).items()
+        return self._monomial(monomial, 1)
+
+    def _group(self, terms: dict[tuple[int, ...], int]) -> Expression:
+        content, rest = _pull_content(terms)
+        front = self._monomial(content, 1)
+        if len(rest) == 1:
+            ((monomial, coefficient),) = rest.items()
+            return product_of([number(coefficient), front, self._monomial(monomial, 1)])
+        scale, rest = _pull_number(rest)
+        first = self._first(rest)
+        if rest[first] < 0 and any(e and f for e, f in zip(first, self._is_apart, strict=True)):
+            scale, rest = -scale, {m: -c for m, c in rest.items()}
+        return product_of([number(scale), front, *self._pieces(rest)])
+
+    def _pieces(self, terms: dict[tuple[int, ...], int]) -> list[Expression]:
+        """Return the factors of a sum, each nested."""
+        if 3 < len(terms) <= FACTOR_LIMIT:  # noqa: PLR2004
+            _, factors = irreducible_factors(self.ring.context.from_dict(terms))
+            if len(factors) > 1 or factors[0][1] > 1:
+                ordered = sorted(factors, key=lambda fe: _order_key(fe[0]))
+                positive = [(_terms(f if int(f.leading_coefficient()) > 0 else -f), e) for f, e in ordered]
+                # With every factor's leading coefficient positive, the product's sign is the sum's own.
+                sign = 1 if terms[max(terms)] > 0 else -1
+                return [number(sign), *(power(self._split(f), e) for f, e in positive)]
+        return [self._split(terms)]
+
+    def _split(self, terms: dict[tuple[int, ...], int]) -> Expression:
+        shared = self._most_shared(terms)
+        if shared is None or max(sum(m[1:]) for m in terms) > DEEPEST_NEST:
+            return self._sum(terms)
+        chosen = {m: c for m, c in terms.items() if m[shared]}
+        others = {m: c for m, c in terms.items() if not m[shared]}
+        parts = [(self._rank(chosen), self._group(chosen))]
+        if others:
+            parts += self._parts(others)
+        return sum_of(_share_sums([part for _, part in sorted(parts, key=lambda p: p[0])]))
+
+    def _parts(self, terms: dict[tuple[int, ...], int]) -> list[tuple[tuple[int, ...], Expression]]:
+        """Return the groups of a sum with their places in print."""
+        shared = self._most_shared(terms)
+        if shared is None:
+            return [(self._rank({m: c}), self._sum({m: c})) for m, c in terms.items()]
+        chosen = {m: c for m, c in terms.items() if m[shared]}
+        others = {m: c for m, c in terms.items() if not m[shared]}
+        return [(self._rank(chosen), self._group(chosen)), *(self._parts(others) if others else [])]
+
+    def _most_shared(self, terms: dict[tuple[int, ...], int]) -> int | None:
+        """Return the generator to take out of a sum: closed sums first, then parameters; never s alone."""
+        counts = [0] * len(self.ring.names)
+        for monomial in terms:
+            for i, exponent in enumerate(monomial):
+                if exponent and i:
+                    counts[i] += 1
+        candidates = [i for i, n in enumerate(counts) if n > 1]
+        if not candidates:
+            return None
+        return max(candidates, key=lambda i: (self._is_sum[i], counts[i], -i))
+
+    def _rank(self, terms: dict[tuple[int, ...], int]) -> tuple[int, ...]:
+        """Return a sort key: descending degree in s, then closed sums, then declared order."""
+        best = min(terms, key=self._monomial_key)
+        return self._monomial_key(best)
+
+    def _monomial_key(self, monomial: tuple[int, ...]) -> tuple[int, ...]:
+        degree = sum([monomial[i] * d for i, d in self._s_degree])
+        sums = sum([monomial[i] for i in self._sums])
+        return (-degree, -sums, *map(neg, monomial[1:]))
+
+    def _sum(self, terms: dict[tuple[int, ...], int]) -> Expression:
+        ordered = sorted(terms, key=self._monomial_key)
+        return sum_of([self._monomial(m, terms[m]) for m in ordered])
+
+    def _monomial(self, monomial: tuple[int, ...], coefficient: int) -> Expression:
+        """Return number, pi, parameters in declared order, s, closed sums."""
+        factors = [self._powers(i, monomial[i]) for i in self._print_order if monomial[i]]
+        return product_of([number(coefficient), *factors])
+
+    @cached_property
+    def _print_order(self) -> tuple[int, ...]:
+        """The generators in the order in which a product shows them."""
+
+        def place(i: int) -> int:
+            if i == 0:
+                return 2
+            if self._is_sum[i]:
+                return 4
+            if self._is_apart[i]:
+                return 3
+            return 0 if self.ring.names[i] == "pi" else 1
+
+        return tuple(sorted(range(len(self.ring.names)), key=place))
+
+    @cached_property
+    def _powers(self) -> Callable[[int, int], Expression]:
+        """Return a power of a generator, the same object every time."""
+        return cache(lambda i, exponent: _raised(self._symbols[i], exponent))
+
+
+def _raised(symbol: Expression, exponent: int) -> Expression:
+    """Return a power of a symbol; of an exponential, the exponential of a multiple."""
+    if isinstance(symbol, Call) and symbol.name == "exp":
+        return Call("exp", product_of([number(exponent), symbol.argument]))
+    return power(symbol, exponent)
+
+
+def _share_sums(parts: list[Expression]) -> list[Expression]:
+    """Return the terms of a sum with a parenthesis that several of them bear taken out once."""
+    for part in parts:
+        for shared in _factors(part):
+            if not isinstance(shared, Sum):
+                continue
+            bearing = [p for p in parts if shared in _factors(p)]
+            if len(bearing) > 1:
+                inner = _share_factors(_share_sums([_without(p, shared) for p in bearing]))
+                # Plain factors stand before parentheses.
+                merged = product_of(sorted([shared, *_factors(inner)], key=lambda f: isinstance(f, Sum)))
+                first = parts.index(bearing[0])
+                rest = [p for p in parts if p not in bearing]
+                return _share_sums([*rest[:first], merged, *rest[first:]])
+    return parts
+
+
+def _share_factors(parts: list[Expression]) -> Expression:
+    """Return the sum of the parts with every factor that all of them bear in front."""
+    common: list[Expression] = []
+    for factor in _factors(parts[0]):
+        if not isinstance(factor, Sum | Number) and all(factor in _factors(p) for p in parts):
+            common.append(factor)
+            parts = [_without(p, factor) for p in parts]
+    return product_of([*common, sum_of(parts)])
+
+
+def _factors(part: Expression) -> tuple[Expression, ...]:
+    return part.factors if isinstance(part, Product) else (part,)
+
+
+def _without(part: Expression, shared: Expression) -> Expression:
+    factors = list(_factors(part))
+    factors.remove(shared)
+    return product_of(factors) if factors else number(1)
+
+
+def _order_key(polynomial: fmpz_mpoly) -> tuple[tuple[int, ...], ...]:
+    """Return a key that sorts factors by the declared order of their generators."""
+    return tuple(tuple(-int(e) for e in m) for m in polynomial.monoms())
+
+
+def _terms(polynomial: fmpz_mpoly) -> dict[tuple[int, ...], int]:
+    return {tuple(map(int, m)): int(c) for m, c in polynomial.terms()}
+
+
+def _pull_content(
+    terms: dict[tuple[int, ...], int],
+) -> tuple[tuple[int, ...], dict[tuple[int, ...], int]]:
+    """Return the common monomial and the terms without it."""
+    content = tuple(min(column) for column in zip(*terms, strict=True))
+    return content, {tuple(map(sub, m, content)): n for m, n in terms.items()}
+
+
+def _pull_number(terms: dict[tuple[int, ...], int]) -> tuple[int, dict[tuple[int, ...], int]]:
+    """Return the common integer, negative when every term is, and the terms without it."""
+    scale = gcd(*terms.values())
+    if all(c < 0 for c in terms.values()):
+        scale = -scale
+    return scale, {m: c // scale for m, c in terms.items()}
+
+
+def coefficients(ring: Ring, polynomial: fmpz_mpoly) -> dict[int, fmpz_mpoly]:
+    """Return the coefficient of every power of s that occurs, over the same ring."""
+    parts: dict[int, dict[tuple[int, ...], int]] = {}
+    for monomial, coefficient in polynomial.terms():
+        key = (0, *map(int, monomial[1:]))
+        parts.setdefault(int(monomial[0]), {})[key] = int(coefficient)
+    return {exponent: ring.context.from_dict(part) for exponent, part in parts.items()}

@@ -1,0 +1,100 @@
+"""The compact form: sub-impedances and the user's definitions stay closed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symflex.algebra import Factored, Ring, degree_in
+from symflex.expressions import Expression, Name, format_expression
+from symflex.print.forms.arrange import Arranger
+from symflex.print.forms.constants import constant_symbols
+from symflex.print.forms.hyperbolic import in_kernels
+from symflex.print.forms.kept import REWRITE_LIMIT, in_definitions, is_divisor
+from symflex.print.forms.printed import PrintedForm
+
+if TYPE_CHECKING:
+    from flint import fmpz_mpoly
+
+    from symflex.equations.elimination import Closure
+    from symflex.transfer import ClosedForm, TransferFunction
+
+SMALL = 200
+"""Number of terms up to which every arrangement is tried."""
+
+
+def definitions_form(tf: TransferFunction, digits: int) -> PrintedForm:
+    """Return the shortest print that keeps sums of the network and definitions closed.
+
+    Numerator and denominator each have two candidates, and the shorter one is taken: the elimination's own
+    closed form, and the expanded polynomial rewritten in the definitions by exact division. Functions with
+    kernels are printed as in the hyperbolic form.
+    """
+    del digits
+    if tf.is_distributed:
+        return in_kernels(tf, "definitions", tf.ratio)
+    if tf.closed is not None and _is_large(tf):
+        return PrintedForm("definitions", *_from_closure(tf, tf.closed))
+    num, den = _rewritten(tf)
+    if tf.closed is not None:
+        closed_num, closed_den = _from_closure(tf, tf.closed)
+        # A rational factor may stand differently in the two: take both parts from one of them then.
+        if _same_parts(tf, tf.closed):
+            num, den = min(closed_num, num, key=_length), min(closed_den, den, key=_length)
+        elif _length(closed_num) + _length(closed_den) <= _length(num) + _length(den):
+            num, den = closed_num, closed_den
+    return PrintedForm("definitions", num, den)
+
+
+def _is_large(tf: TransferFunction) -> bool:
+    """Tell whether rewriting the expanded polynomials would cost more than it can shorten."""
+    terms = max(tf.length, 1)
+    return terms > (REWRITE_LIMIT if tf.definitions else SMALL)
+
+
+def _length(expression: Expression) -> int:
+    return len(format_expression(expression))
+
+
+def _same_parts(tf: TransferFunction, closed: ClosedForm) -> bool:
+    """Tell whether the closed denominator opens to the expanded one, not to a multiple of it."""
+    opened = closed.closure.open(closed.den)
+    return tf.base == tf.ratio.ring and (opened / tf.ratio.denominator()).is_one
+
+
+def _from_closure(tf: TransferFunction, closed: ClosedForm) -> tuple[Expression, Expression]:
+    closure = closed.closure
+    base = Arranger.plain(closure.base, constant_symbols(tf))
+    named = _named_sums(tf, closure)
+    symbols = {**constant_symbols(tf), **{n: named.get(n, base.grouped_by_s(p)) for n, p in closure.sums}}
+    degrees = {n: degree_in(p, 0) for n, p in closure.sums}
+    arranger = Arranger(closure.ring, symbols, degrees)
+    return arranger.grouped(closed.num), arranger.grouped(closed.den)
+
+
+def _named_sums(tf: TransferFunction, closure: Closure) -> dict[str, Expression]:
+    """Return the definitions that are exactly a closed sum."""
+    found: dict[str, Expression] = {}
+    for name, value in tf.definitions:
+        if value.unit == 1 and len(value.factors) == 1 and value.factors[0][1] == 1:
+            polynomial = value.factors[0][0]
+            for closed_name, closed_sum in closure.sums:
+                if polynomial == closed_sum:
+                    found.setdefault(closed_name, Name(name))
+    return found
+
+
+def _rewritten(tf: TransferFunction) -> tuple[Expression, Expression]:
+    """Return the expanded form, divided by every definition that makes it shorter."""
+    ring = tf.base
+    above = _embed(tf.ratio.numerator(), ring)
+    below = _embed(tf.ratio.denominator(), ring)
+    arranger = Arranger.plain(ring, constant_symbols(tf))
+    if max(len(above), len(below)) <= REWRITE_LIMIT:
+        divisors = [(name, value.expand()) for name, value in tf.definitions if is_divisor(value)]
+        above, below = (in_definitions(p, divisors, ring) for p in (above, below))
+    return arranger.grouped_by_s(above), arranger.grouped_by_s(below)
+
+
+def _embed(value: Factored, ring: Ring) -> fmpz_mpoly:
+    expanded = value.expand()
+    return expanded.compose(*(ring.generator(n) for n in value.ring.names), ctx=ring.context)

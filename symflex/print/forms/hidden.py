@@ -1,0 +1,145 @@
+"""What cancelled, for print.
+
+Input: a transfer function, and a form of it where names are wanted.
+Output: the cancelled factors:
+
+    spelled out                     cosh(l*sqrt(s/(2*sqrt(E*I/(rho*A))))/2)
+    where a form has q = mu*l       cosh(q/2)
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import TYPE_CHECKING, Final
+
+from symflex.algebra import KernelTable
+from symflex.expressions import (
+    Name,
+    Product,
+    Quotient,
+    format_expression,
+    number,
+    product_of,
+    quotient,
+    substitute,
+)
+from symflex.print.forms.arrange import Arranger
+from symflex.print.forms.constants import constant_symbols
+from symflex.print.forms.hyperbolic import kernel_printer
+from symflex.print.forms.notation import (
+    Naming,
+    Notation,
+    angles_of,
+    notation_of,
+    reachable,
+)
+from symflex.transfer import NestedTransferFunction
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from symflex.expressions import Expression
+    from symflex.print.forms.notation import Line
+    from symflex.print.forms.printed import PrintedForm
+    from symflex.transfer import AnyTransferFunction, TransferFunction
+
+Hidden = tuple[tuple["Expression", int], ...]
+
+MULTIPLES: Final = tuple(Fraction(x) for x in ("1", "2", "1/2", "4", "1/4", "8", "1/8", "3", "1/3"))
+"""Of a length that a form has an argument for: what forms halve, double, and print thirds of."""
+
+
+def hidden_expressions(tf: AnyTransferFunction) -> Hidden:
+    """Return the cancelled factors in s, by descending powers of s, with their multiplicities.
+
+    Kernels are written out, ``cosh(l*sqrt(s/(2*sqrt(E*I/(rho*A)))))``: names of a form mean nothing here.
+    """
+    if isinstance(tf, NestedTransferFunction):
+        return ()  # not looked for
+    used = tf.ring.used_in(h.polynomial for h in tf.hidden)
+    if used & set(tf.kernels.generators):
+        notation = notation_of(tf, used, Naming.of(tf))
+        opened = _opened(notation.lines)
+        return tuple((substitute(e, opened), m) for e, m in _factors(tf, notation))
+    arranger = Arranger.plain(tf.ring, constant_symbols(tf))
+    return tuple((arranger.collected(h.polynomial), h.multiplicity) for h in tf.hidden)
+
+
+def with_hidden(tf: AnyTransferFunction, form: PrintedForm) -> tuple[PrintedForm, Hidden]:
+    """Return a form with lines for all names that cancelled factors need besides its own, and these factors.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> from symflex.print.forms import print_form
+    >>> from symflex.expressions import format_expression
+    >>> model = pipeline.load("derivations/classics/clamped_clamped.toml")
+    >>> tf = next(tf for tf in pipeline.derive_all(model) if tf.name == "M_end/p")
+    >>> form, ((factor, times),) = with_hidden(tf, print_form(tf))
+    >>> format_expression(factor), times, [name for name, _ in form.where]
+    ('sinh(q) - sin(q)', 1, ['q', 'mu', 'a'])
+    """
+    if isinstance(tf, NestedTransferFunction):
+        return form, ()
+    used = tf.ring.used_in(h.polynomial for h in tf.hidden)
+    if not used & set(tf.kernels.generators):
+        return form, hidden_expressions(tf)
+    notation = notation_of(tf, used, _naming(tf, form))
+    known = {_key(e): Name(name) for name, e in _opened(form.where).items()}
+    names: dict[str, Expression] = {
+        name: known[_key(e)] for name, e in _opened(notation.lines).items() if _key(e) in known
+    }
+    arguments = [name for name, _ in notation.lines][: len(angles_of(tf.kernels, used))]
+    for ratio in MULTIPLES[1:]:
+        # The same lines with other lengths: an argument that the form has as a multiple of its own.
+        scaled = notation_of(tf, used, _naming(tf, form), _stretched(tf.kernels, ratio))
+        for name, expression in _opened(scaled.lines).items():
+            if name in arguments and name not in names and _key(expression) in known:
+                part = product_of([number(ratio.denominator), known[_key(expression)]])
+                names[name] = quotient(part, number(ratio.numerator))
+    factors = tuple((substitute(e, names), m) for e, m in _factors(tf, notation))
+    lines = tuple((name, substitute(e, names)) for name, e in notation.lines if name not in names)
+    more = reachable([e for e, _ in factors], lines)
+    return replace(form, where=(*form.where, *more)), factors
+
+
+def _factors(tf: TransferFunction, notation: Notation) -> Hidden:
+    printer = kernel_printer(tf, notation)
+    return tuple((printer.sum(h.polynomial), h.multiplicity) for h in tf.hidden)
+
+
+def _naming(tf: TransferFunction, form: PrintedForm) -> Naming:
+    """Return a naming that leaves a form its names, and gives the same ones every time."""
+    naming = Naming.of(tf)
+    naming.keep(name for name, _ in form.where)
+    return naming
+
+
+def _stretched(table: KernelTable, ratio: Fraction) -> KernelTable:
+    """Return kernels of other lengths, those that share one sharing one again."""
+    lengths = {id(k.length): k.length * ratio for k in table.kernels}
+    kernels = (replace(k, length=lengths[id(k.length)]) if k.wavenumber else k for k in table.kernels)
+    return KernelTable(table.dispersions, tuple(kernels))
+
+
+def _opened(lines: Iterable[Line]) -> dict[str, Expression]:
+    """Return what names stand for, with no other name of the lines left in it."""
+    found = dict(lines)
+    for _ in found:
+        opened = {name: substitute(e, found) for name, e in found.items()}
+        if opened == found:
+            break
+        found = opened
+    return found
+
+
+def _key(expression: Expression) -> tuple[str, ...]:
+    """Return what is equal for products that differ in the order of factors: ``mu*l/2`` and ``l*mu/2``."""
+    above, below = (
+        (expression.numerator, expression.denominator)
+        if isinstance(expression, Quotient)
+        else (expression, number(1))
+    )
+    factors = above.factors if isinstance(above, Product) else (above,)
+    return (*sorted(map(format_expression, factors)), "/", format_expression(below))

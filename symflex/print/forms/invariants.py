@@ -1,0 +1,433 @@
+"""Krylov-Duncan functions: the entire functions of s that kernels combine to.
+
+The solution of ``z' = A z`` is ``exp(lambda x) = K_0 + lambda K_1 + ... + lambda^(n-1) K_(n-1)`` for every
+root lambda of the characteristic polynomial. A polynomial in kernels that permuting the roots leaves as it is
+becomes a polynomial in the K when each exponential is written in this way: nothing is divided, no system is
+solved.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from math import comb
+from typing import TYPE_CHECKING
+
+from symflex.algebra import Factored, KernelTable, Ring
+from symflex.algebra.normal_form import NormalForm, split
+from symflex.print.forms.notation import angles_of, coefficient_name
+from symflex.transfer.compose import compose_rational
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.algebra import Dispersion
+    from symflex.print.forms.notation import Angle
+
+IMAGINARY = "j[]"
+ORDERS = {"bending": 4, "pair": 4, "wave": 2}
+
+Laurent = dict[tuple[int, int], tuple[int, int]]
+
+
+@dataclass(frozen=True, eq=False)
+class Invariants:
+    """The change from kernels to Krylov-Duncan functions, for one table.
+
+    Parameters
+    ----------
+    source : Ring
+        Of the kernels.
+    table : KernelTable
+        Its kernels, none of them of a dispersion without a formula for its wavenumbers.
+    """
+
+    source: Ring
+    table: KernelTable
+
+    @cached_property
+    def angles(self) -> tuple[tuple[Angle, ...], ...]:
+        """The angles by argument: those of both wavenumbers of a pair stand together."""
+        groups: dict[tuple[int, int], list[Angle]] = {}
+        for angle in angles_of(self.table):
+            groups.setdefault((id(angle.dispersion), id(angle.length)), []).append(angle)
+        return tuple(tuple(group) for group in groups.values())
+
+    @cached_property
+    def ring(self) -> Ring:
+        """The source's generators, two coefficients per pair, the K, and the imaginary unit."""
+        families = [
+            krylov_name(i, order)
+            for i, g in enumerate(self.angles)
+            for order in range(ORDERS[g[0].dispersion.kind])
+        ]
+        coefficients = [
+            coefficient_name(i, k)
+            for i, d in enumerate(self.table.dispersions)
+            if d.kind == "pair"
+            for k in (0, 2)
+        ]
+        return Ring((*self.source.names, *coefficients, *families, IMAGINARY))
+
+    def embed(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
+        """Return a polynomial over the source as one over the ring."""
+        images = [self.ring.generator(n) for n in self.source.names]
+        return polynomial.compose(*images, ctx=self.ring.context)
+
+    def convert(self, value: Factored) -> Factored | None:
+        """Return a quotient in Krylov-Duncan functions, ``None`` when it needs arguments half as long.
+
+        Factors that are not invariant by themselves are multiplied with others of their side.
+        """
+        result = Factored.number(self.ring, value.unit)
+        kernels = [self.source.index[k.generator] for k in self.table.kernels if k.wavenumber]
+        waves = [self.source.index[name] for name in self.table.wavenumbers]
+        for side in (1, -1):
+            rest = Factored.number(self.source, 1)
+            for factor, exponent in value.factors:
+                if exponent * side < 0:
+                    continue
+                one = Factored(self.source, Fraction(1), ((factor, abs(exponent)),))
+                degrees = factor.degrees()
+                # A sum of powers of wavenumbers need not be invariant either.
+                moving = kernels if len(factor) == 1 else [*kernels, *waves]
+                if not any(int(degrees[i]) for i in moving):
+                    result = result * Factored.polynomial(self.ring, self.embed(factor)) ** exponent
+                elif (found := self._invariant(factor)) is not None:
+                    result = result * found**exponent
+                else:
+                    rest = rest * one
+            if not rest.is_one:
+                whole = rest.expand()
+                found = self._invariant(whole)
+                if found is None:
+                    # Factors in normal form have a product that need not be: sin(q)*sin(q) is one.
+                    found = self._invariant(NormalForm(self.source, self.table).without_odd_squares(whole))
+                if found is None:
+                    return None
+                result = result * found**side
+        return self._without_wavenumbers(result)
+
+    def _invariant(self, polynomial: fmpz_mpoly) -> Factored | None:
+        """Return a polynomial in the K, times powers of wavenumbers; ``None`` where it has no such form."""
+        work: fmpz_mpoly = self.embed(polynomial)
+        scale = Factored.number(self.ring, 1)
+        for number, dispersion in enumerate(self.table.dispersions):
+            groups = [(i, g) for i, g in enumerate(self.angles) if g[0].dispersion is dispersion]
+            if not groups:
+                continue
+            step = {"bending": self._bending, "wave": self._wave, "pair": self._pair}[dispersion.kind]
+            found = step(work, number, dispersion, groups)
+            if found is None:
+                return None
+            work, factor = found
+            scale = scale * factor
+        return Factored.polynomial(self.ring, work) * scale
+
+    def _k(self, i: int, order: int) -> fmpz_mpoly:
+        return self.ring.generator(krylov_name(i, order))
+
+    def _wave(
+        self,
+        work: fmpz_mpoly,
+        number: int,
+        dispersion: Dispersion,
+        groups: Sequence[tuple[int, tuple[Angle, ...]]],
+    ) -> tuple[fmpz_mpoly, Factored] | None:
+        """Write ``cosh = K_0``, ``sinh = gamma K_1``."""
+        del number
+        gamma = self.ring.generator(dispersion.wavenumbers[0])
+        images: dict[str, fmpz_mpoly] = {}
+        for i, (angle,) in groups:
+            images |= {angle.kernels["cosh"]: self._k(i, 0), angle.kernels["sinh"]: gamma * self._k(i, 1)}
+        work = self._composed(work, images)
+        return self._even(work, dispersion.wavenumbers[0])
+
+    def _even(self, work: fmpz_mpoly, wavenumber: str) -> tuple[fmpz_mpoly, Factored] | None:
+        """Return a polynomial even in a wavenumber, and the wavenumber if it had to be taken out."""
+        index = self.ring.index[wavenumber]
+        parities = {int(m[index]) % 2 for m in work.monoms()}
+        if len(parities) > 1:
+            return None
+        one = Factored.number(self.ring, 1)
+        if parities == {1}:
+            return work / self.ring.generator(wavenumber), Factored.generator(self.ring, wavenumber)
+        return work, one
+
+    def _composed(self, polynomial: fmpz_mpoly, images: Mapping[str, fmpz_mpoly]) -> fmpz_mpoly:
+        ring = self.ring
+        return polynomial.compose(*(images.get(n, ring.generator(n)) for n in ring.names), ctx=ring.context)
+
+    def _pair(
+        self,
+        work: fmpz_mpoly,
+        number: int,
+        dispersion: Dispersion,
+        groups: Sequence[tuple[int, tuple[Angle, ...]]],
+    ) -> tuple[fmpz_mpoly, Factored] | None:
+        """Write ``cosh = K_0 + lambda^2 K_2``, ``sinh = lambda K_1 + lambda^3 K_3`` for both wavenumbers."""
+        images: dict[str, fmpz_mpoly] = {}
+        for i, group in groups:
+            for angle in group:
+                w = self.ring.generator(angle.wavenumber)
+                images[angle.kernels["cosh"]] = self._k(i, 0) + w**2 * self._k(i, 2)
+                images[angle.kernels["sinh"]] = w * self._k(i, 1) + w**3 * self._k(i, 3)
+        work = self._composed(work, images)
+        scale = Factored.number(self.ring, 1)
+        for name in dispersion.wavenumbers:
+            found = self._even(work, name)
+            if found is None:
+                return None
+            work, taken = found
+            scale = scale * taken
+        plain, square = self._symmetric(work, number, dispersion)
+        c2 = self.ring.generator(coefficient_name(number, 2))
+        if self._vanishes(square):
+            return plain, scale
+        # An odd one under exchange is g*(lambda_1^2 - lambda_2^2) = -c_2*g - 2*g*lambda_2^2.
+        if not self._vanishes(2 * plain - c2 * square):
+            return None
+        x, y = (Factored.generator(self.ring, w) for w in dispersion.wavenumbers)
+        return square, scale * (x**2 - y**2) / -2
+
+    def _symmetric(
+        self, work: fmpz_mpoly, number: int, dispersion: Dispersion
+    ) -> tuple[fmpz_mpoly, fmpz_mpoly]:
+        """Return f and g of ``f + g*lambda_2^2``, by ``lambda_1^2 + lambda_2^2 = -c_2``."""
+        ring = self.ring
+        first, second = (ring.index[w] for w in dispersion.wavenumbers)
+        y = ring.generator(dispersion.wavenumbers[1])
+        c0, c2 = (ring.generator(coefficient_name(number, k)) for k in (0, 2))
+        image = -c2 - y * y
+        work = sum(
+            (part * image ** (n // 2) for n, part in split(ring, work, first).items()), ring.constant(0)
+        )
+        while int(work.degrees()[second]) >= 4:  # noqa: PLR2004
+            work = sum(
+                (
+                    part * y**n if n < 4 else -part * (c2 * y ** (n - 2) + c0 * y ** (n - 4))  # noqa: PLR2004
+                    for n, part in split(ring, work, second).items()
+                ),
+                ring.constant(0),
+            )
+        parts = split(ring, work, second)
+        zero = ring.constant(0)
+        return parts.get(0, zero), parts.get(2, zero)
+
+    def _vanishes(self, work: fmpz_mpoly) -> bool:
+        """Tell whether a polynomial is zero when the coefficients of pairs are what they are."""
+        if work.is_zero():
+            return True
+        images: list[Factored | None] = [Factored.generator(self.ring, n) for n in self.ring.names]
+        for i, d in enumerate(self.table.dispersions):
+            if d.kind == "pair":
+                for k in (0, 2):
+                    value = d.characteristic[k].map_factors(
+                        self.ring, lambda f: Factored.polynomial(self.ring, self.embed(f))
+                    )
+                    images[self.ring.index[coefficient_name(i, k)]] = value
+        return compose_rational(self.ring, work, images).is_zero
+
+    def _bending(
+        self,
+        work: fmpz_mpoly,
+        number: int,
+        dispersion: Dispersion,
+        groups: Sequence[tuple[int, tuple[Angle, ...]]],
+    ) -> tuple[fmpz_mpoly, Factored] | None:
+        """Write ``exp(mu x (+-1 +-j))`` as ``K_0 + lambda K_1 + lambda^2 K_2 + lambda^3 K_3``."""
+        del number
+        (name,) = dispersion.wavenumbers
+        mu = self.ring.generator(name)
+        power = self._character(work, name, groups)
+        if power is None:
+            return None
+        work = work * mu**power
+        scale = Factored.generator(self.ring, name) ** -power
+        for i, (angle,) in groups:
+            found = self._opened(work, i, angle, mu)
+            if found is None:
+                return None
+            work, halves = found
+            scale = scale / halves
+        index = self.ring.index[name]
+        assert not any(int(m[index]) % 4 for m in work.monoms())
+        return work, scale
+
+    def _character(
+        self, work: fmpz_mpoly, name: str, groups: Sequence[tuple[int, tuple[Angle, ...]]]
+    ) -> int | None:
+        """Return the power of mu that makes a polynomial invariant under ``mu -> j mu``."""
+        j = self.ring.generator(IMAGINARY)
+        images = {name: j * self.ring.generator(name)}
+        for _, (angle,) in groups:
+            k = {f: self.ring.generator(g) for f, g in angle.kernels.items()}
+            images |= {
+                angle.kernels["cosh"]: k["cos"],
+                angle.kernels["sinh"]: j * k["sin"],
+                angle.kernels["cos"]: k["cosh"],
+                angle.kernels["sin"]: j * k["sinh"],
+            }
+        turned = real_powers(self.ring, self._composed(work, images))
+        return next((n for n in range(4) if real_powers(self.ring, turned * j**n) == work), None)
+
+    def _opened(
+        self, work: fmpz_mpoly, i: int, angle: Angle, mu: fmpz_mpoly
+    ) -> tuple[fmpz_mpoly, int] | None:
+        """Replace the kernels of one angle; return also the power of two that was multiplied in."""
+        places = [self.ring.index[angle.kernels[f]] for f in ("cosh", "sinh", "cos", "sin")]
+        parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
+        for monomial, coefficient in work.terms():
+            m = [int(e) for e in monomial]
+            key = tuple(m[p] for p in places)
+            for p in places:
+                m[p] = 0
+            parts.setdefault(key, {})[tuple(m)] = int(coefficient)
+        highest = max(sum(key) for key in parts)
+        j = self.ring.generator(IMAGINARY)
+        coefficients: dict[tuple[int, int], fmpz_mpoly] = {}
+        for key, terms in parts.items():
+            part = self.ring.context.from_dict(terms) * 2 ** (highest - sum(key))
+            for (a, b), (re, im) in laurent(*key).items():
+                term = part * (re + im * j)
+                coefficients[a, b] = coefficients[a, b] + term if (a, b) in coefficients else term
+        k = [self._k(i, order) for order in range(4)]
+        powers = _Powers(self, k, mu, j)
+        total = self.ring.constant(0)
+        for (a, b), part in coefficients.items():
+            if part.is_zero():
+                continue
+            if (a + b) % 2:
+                return None
+            total = total + part * powers.product((a + b) // 2, (a - b) // 2)
+        return real_powers(self.ring, total), 2**highest
+
+    def _without_wavenumbers(self, value: Factored) -> Factored | None:
+        """Return a value with the even powers of pairs that are left in terms of their coefficients.
+
+        ``None`` when odd ones are left.
+        """
+        for number, d in enumerate(self.table.dispersions):
+            if d.kind != "pair":
+                continue
+            x, y = (Factored.generator(self.ring, w) for w in d.wavenumbers)
+            c0, c2 = (Factored.generator(self.ring, coefficient_name(number, k)) for k in (0, 2))
+            exponents = {str(f): e for f, e in value.factors}
+            power = exponents.get(str(x.factors[0][0]), 0)
+            value = value / (x * y) ** power * c0 ** (power // 2)
+            difference = x**2 - y**2
+            meeting = exponents.get(str(difference.factors[0][0]), 0)
+            if power % 2 or meeting % 2:
+                return None
+            value = value / difference**meeting * (c2**2 - c0 * 4) ** (meeting // 2)
+        return value
+
+    def halved(self) -> tuple[Invariants, Mapping[str, fmpz_mpoly]]:
+        """Return the same with bending arguments half as long, and the kernels in terms of the new ones."""
+        lengths = {
+            id(a.length): a.length / 2 for g in self.angles for a in g if a.dispersion.kind == "bending"
+        }
+        table = KernelTable(
+            self.table.dispersions,
+            tuple(
+                replace(k, length=lengths[id(k.length)])
+                if k.wavenumber and k.dispersion.kind == "bending"
+                else k
+                for k in self.table.kernels
+            ),
+        )
+        images: dict[str, fmpz_mpoly] = {}
+        for group in self.angles:
+            for angle in group:
+                if angle.dispersion.kind == "bending":
+                    k = {f: self.source.generator(g) for f, g in angle.kernels.items()}
+                    images[angle.kernels["cosh"]] = 2 * k["cosh"] ** 2 - 1
+                    images[angle.kernels["sinh"]] = 2 * k["sinh"] * k["cosh"]
+                    images[angle.kernels["cos"]] = 2 * k["cos"] ** 2 - 1
+                    images[angle.kernels["sin"]] = 2 * k["sin"] * k["cos"]
+        return Invariants(self.source, table), images
+
+
+def in_krylov_functions(source: Ring, table: KernelTable, value: Factored) -> tuple[Invariants, Factored]:
+    """Return the change, and a quotient in Krylov-Duncan functions; of half the lengths if it must be."""
+    change = Invariants(source, table)
+    found = change.convert(value)
+    if found is not None:
+        return change, found
+    change, images = change.halved()
+    normal = NormalForm(source, table)
+    halved = value.map_factors(
+        source,
+        lambda f: normal.reduce(
+            f.compose(*(images.get(n, source.generator(n)) for n in source.names), ctx=source.context)
+        ),
+    )
+    found = change.convert(halved)
+    assert found is not None
+    return change, found
+
+
+def krylov_name(group: int, order: int) -> str:
+    """Return the generator of ``K_order`` of one argument."""
+    return f"K{order}[{group}]"
+
+
+def real_powers(ring: Ring, work: fmpz_mpoly) -> fmpz_mpoly:
+    """Use ``j^2 = -1``."""
+    index = ring.index[IMAGINARY]
+    if int(work.degrees()[index]) < 2:  # noqa: PLR2004
+        return work
+    j = ring.generator(IMAGINARY)
+    return sum(
+        (part * j ** (n % 2) * (-1) ** (n // 2) for n, part in split(ring, work, index).items()),
+        ring.constant(0),
+    )
+
+
+def laurent(cosh: int, sinh: int, cos: int, sin: int) -> Laurent:
+    """Return ``(2 cosh)^a (2 sinh)^b (2 cos)^c (2 sin)^d`` as a sum of ``E^i z^k``.
+
+    ``E = exp(q)`` and ``z = exp(j q)``; coefficients are pairs of real and imaginary part.
+    """
+    hyperbolic = _binomials(cosh, sinh)
+    circular = _binomials(cos, sin)
+    # 2 sin q = -j (z - 1/z)
+    re, im = ((1, 0), (0, -1), (-1, 0), (0, 1))[sin % 4]
+    return {
+        (a, b): (x * y * re, x * y * im) for a, x in hyperbolic.items() for b, y in circular.items() if x * y
+    }
+
+
+def _binomials(plus: int, minus: int) -> dict[int, int]:
+    """Return the coefficients of ``(E + 1/E)^plus (E - 1/E)^minus``."""
+    found: dict[int, int] = {}
+    for a in range(plus + 1):
+        for b in range(minus + 1):
+            n = plus + minus - 2 * (a + b)
+            found[n] = found.get(n, 0) + comb(plus, a) * comb(minus, b) * (-1) ** b
+    return found
+
+
+class _Powers:
+    """Powers of ``u = exp((1 + j) q)`` and ``v = exp((1 - j) q)``, each used once for every exponent."""
+
+    def __init__(self, change: Invariants, k: Sequence[fmpz_mpoly], mu: fmpz_mpoly, j: fmpz_mpoly) -> None:
+        self._change, self._k, self._mu, self._j = change, k, mu, j
+        self._known: dict[tuple[int, int], fmpz_mpoly] = {}
+
+    def product(self, a: int, b: int) -> fmpz_mpoly:
+        """Return ``u^a v^b``."""
+        return self._power(1, a) * self._power(-1, b)
+
+    def _power(self, conjugate: int, n: int) -> fmpz_mpoly:
+        if (conjugate, n) not in self._known:
+            sign = 1 if n > 0 else -1
+            j = conjugate * self._j
+            mu = sign * self._mu
+            first = self._k[0] + (1 + j) * mu * self._k[1]
+            base = first + 2 * j * mu**2 * self._k[2] + (2 * j - 2) * mu**3 * self._k[3]
+            self._known[conjugate, n] = real_powers(self._change.ring, base ** abs(n))
+        return self._known[conjugate, n]

@@ -1,0 +1,104 @@
+"""Irreducible factors of polynomials in kernels, trigonometric ones among them.
+
+``cosh^2 + cos^2 - 2`` is ``(sinh - sin)*(sinh + sin)``: such factors are found in exponentials and half-angle
+tangents, where polynomials factor in one way only, and those of even degree are written in kernels again.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from symflex.algebra import Factored, irreducible_factors
+from symflex.algebra.exponentials import Exponentials
+from symflex.algebra.normal_form import NormalForm
+
+if TYPE_CHECKING:
+    from flint import fmpz_mpoly
+
+    from symflex.algebra import KernelTable
+
+
+def irreducible_kernels(value: Factored, table: KernelTable) -> Factored:
+    """Return a product with every factor split as far as it goes over the rationals."""
+    coordinates = Exponentials(value.ring, table)
+    normal = NormalForm(value.ring, table)
+    kernels = [value.ring.index[k.generator] for a in coordinates.angles for k in (a.even, a.odd)]
+    result = Factored.number(value.ring, value.unit)
+    for factor, exponent in value.factors:
+        if len(factor) == 1:
+            result = result * Factored.polynomial(value.ring, factor) ** exponent
+        elif any(int(factor.degrees()[i]) for i in kernels):
+            result = result * _split(factor, coordinates, normal) ** exponent
+        else:
+            result = result * _plain(value, factor) ** exponent
+    return result
+
+
+def _plain(value: Factored, factor: fmpz_mpoly) -> Factored:
+    constant, parts = irreducible_factors(factor)
+    found = Factored.number(value.ring, constant)
+    for part, times in parts:
+        found = found * Factored.polynomial(value.ring, part) ** times
+    return found
+
+
+def _split(factor: fmpz_mpoly, coordinates: Exponentials, normal: NormalForm) -> Factored:
+    """Return the factors of one polynomial, itself where its factors have no kernels of their own."""
+    whole = Factored.polynomial(normal.ring, factor)
+    image = coordinates.transform(factor)
+    exponentials = [
+        coordinates.coordinates.generator(a.coordinates[0])
+        for a in coordinates.angles
+        if a.kind == "hyperbolic"
+    ]
+    found = Factored.number(normal.ring, 1)
+    odd: dict[tuple[int, ...], list[fmpz_mpoly]] = {}
+    for polynomial, exponent in image.factors:
+        if any(polynomial == e for e in exponentials):
+            continue
+        _, parts = irreducible_factors(polynomial)
+        for part, times in parts:
+            parity = coordinates.parity(part)
+            if any(parity):
+                odd.setdefault(parity, []).extend([part] * (times * exponent))
+            else:
+                found = found * _restored(part, coordinates, normal) ** (times * exponent)
+    rest = coordinates.coordinates.constant(1)
+    for parts_of_parity in odd.values():
+        first, *pairs = _paired(parts_of_parity)
+        for pair in pairs:
+            found = found * _restored(pair, coordinates, normal)
+        rest = rest * first
+    if any(coordinates.parity(rest)):
+        return whole
+    found = found * _restored(rest, coordinates, normal)
+    ratio = _expanded_ratio(found, factor, normal)
+    return whole if ratio is None else found * ratio
+
+
+def _paired(parts: list[fmpz_mpoly]) -> list[fmpz_mpoly]:
+    """Return products of two, of different ones first, after the one that is left over (one, if none is)."""
+    left = list(parts)
+    pairs = []
+    while len(left) > 1:
+        first = left.pop(0)
+        other = next((i for i, p in enumerate(left) if p != first), 0)
+        pairs.append(first * left.pop(other))
+    return [left[0] if left else parts[0] ** 0, *pairs]
+
+
+def _restored(polynomial: fmpz_mpoly, coordinates: Exponentials, normal: NormalForm) -> Factored:
+    restored, _ = coordinates.restore(polynomial)
+    return normal.reduce_factored(restored)
+
+
+def _expanded_ratio(found: Factored, factor: fmpz_mpoly, normal: NormalForm) -> Fraction | None:
+    """Return the number by which the factors differ from the polynomial, ``None`` when it is no number."""
+    if any(e < 0 for _, e in found.factors) or found.is_zero:
+        return None
+    product = normal.reduce((found / found.unit).expand())
+    whole = normal.reduce(factor)
+    ratio = whole / found.unit / Fraction(1)
+    difference = ratio / product
+    return difference.unit if difference.is_constant else None

@@ -1,0 +1,148 @@
+"""The definitions that forms keep closed.
+
+Input: a transfer function and the ring of a form.
+Output: the same ring with a generator per definition, and polynomials of fewer terms over it.
+
+    E*I*rho*A*w^4          with EI = E*I            ->  EI*rho*A*w^4
+    b*m_1*s + b*m_2*s      with M = m_1 + m_2       ->  b*M*s
+    m_1*m_2*s^2            with M = m_1 + m_2       ->  m_1*m_2*s^2, as m_2*(M - m_2) is no shorter
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from symflex.algebra import LAPLACE, Ring
+from symflex.expressions import Name, names
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.algebra import Factored
+    from symflex.print.forms.printed import PrintedForm
+    from symflex.transfer import TransferFunction
+
+REWRITE_LIMIT = 5_000
+"""Number of terms up to which a polynomial is rewritten in definitions."""
+
+
+@dataclass(frozen=True, eq=False)
+class KeptDefinitions:
+    """Rewrites polynomials of one ring in definitions.
+
+    Parameters
+    ----------
+    source : Ring
+        Of the form.
+    place : int
+        Of the first generator that is no parameter.
+    values : tuple of (str, Factored)
+        Definitions that are polynomials of its generators with whole coefficients, and of earlier ones.
+    """
+
+    source: Ring
+    place: int
+    values: tuple[tuple[str, Factored], ...]
+
+    @staticmethod
+    def of(tf: TransferFunction, source: Ring) -> KeptDefinitions | None:
+        """Return the definitions of a transfer function that are over a form's ring; None without any."""
+        known = {*source.names}
+        kept: list[tuple[str, Factored]] = []
+        for name, value in tf.definitions:
+            used = {n for n in value.ring.names if value.depends_on(n)}
+            if is_divisor(value) and used <= known:
+                kept.append((name, value))
+                known.add(name)
+        parameters = {p.name for p in tf.model.parameters}
+        place = 1 + max((i for i, n in enumerate(source.names) if n in parameters), default=0)
+        return KeptDefinitions(source, place, tuple(kept)) if kept else None
+
+    @cached_property
+    def ring(self) -> Ring:
+        """The form's ring and a generator per definition, after the parameters."""
+        names_, place = self.source.names, self.place
+        return Ring((*names_[:place], *(name for name, _ in self.values), *names_[place:]))
+
+    @cached_property
+    def _divisors(self) -> tuple[tuple[str, fmpz_mpoly, bool], ...]:
+        """Definitions over :attr:`ring`, and whether they bear s."""
+        zero, found = self.ring.constant(0), []
+        for name, value in self.values:
+            images = (self.ring.generator(n) if n in self.ring.index else zero for n in value.ring.names)
+            divisor = value.expand().compose(*images, ctx=self.ring.context)
+            found.append((name, divisor, value.depends_on(LAPLACE)))
+        return tuple(found)
+
+    def rewrite(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
+        """Return a polynomial of the form's ring in the definitions free of s that shorten it."""
+        ring = self.ring
+        images = [ring.generator(n) for n in self.source.names]
+        result = polynomial.compose(*images, ctx=ring.context)
+        if len(result) > REWRITE_LIMIT:
+            return result
+        free = [(n, d) for n, d, has_s in self._divisors if not has_s]
+        return in_definitions(result, free, ring)
+
+    def name_of(self, polynomial: fmpz_mpoly) -> Name | None:
+        """Return the definition that a polynomial of the form's ring is."""
+        images = [self.ring.generator(n) for n in self.source.names]
+        wanted = polynomial.compose(*images, ctx=self.ring.context)
+        return next((Name(name) for name, divisor, _ in self._divisors if divisor == wanted), None)
+
+
+def is_divisor(value: Factored) -> bool:
+    """Tell whether a definition is a polynomial with whole coefficients, by which others can be divided."""
+    return not (value.is_constant or value.denominator().factors) and value.unit.denominator == 1
+
+
+def in_definitions(
+    polynomial: fmpz_mpoly, divisors: Sequence[tuple[str, fmpz_mpoly]], ring: Ring
+) -> fmpz_mpoly:
+    """Return a polynomial in terms of definitions, each used when it saves terms, or is a product."""
+    for name, divisor in divisors:
+        inner = tuple(int(d) > 0 for d in divisor.degrees())
+        # What stands before different powers of all else is decided apart.
+        parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
+        for monomial, coefficient in polynomial.terms():
+            exponents = tuple(map(int, monomial))
+            key = tuple(0 if i else e for i, e in zip(inner, exponents, strict=True))
+            parts.setdefault(key, {})[exponents] = int(coefficient)
+        polynomial = ring.constant(0)
+        for terms in parts.values():
+            part = ring.context.from_dict(terms)
+            rewritten = _in_powers_of(part, divisor, ring.generator(name), ring)
+            is_shorter = len(rewritten) < len(part) or (len(divisor) == 1 and rewritten != part)
+            polynomial += rewritten if is_shorter else part
+    return polynomial
+
+
+def _in_powers_of(polynomial: fmpz_mpoly, divisor: fmpz_mpoly, symbol: fmpz_mpoly, ring: Ring) -> fmpz_mpoly:
+    """Return ``sum(r_i * symbol**i)`` where ``polynomial = sum(r_i * divisor**i)``."""
+    result = ring.constant(0)
+    place = ring.constant(1)
+    while not polynomial.is_zero():
+        polynomial, remainder = divmod(polynomial, divisor)
+        result = result + remainder * place
+        place = place * symbol
+    return result
+
+
+def with_definitions(tf: TransferFunction, form: PrintedForm) -> PrintedForm:
+    """Return the form with a line for each definition it uses, also those used by definitions."""
+    definitions = {d.name: d.expression for d in tf.model.definitions}
+    explained = {name for name, _ in form.where}
+    pending = [form.num, form.den, *(e for _, e in form.where), *(law for _, law in form.laws)]
+    used: set[str] = set()
+    while pending:
+        for found in names(pending.pop()):
+            name = found.name
+            if isinstance(found, Name) and name in definitions and name not in (*used, *explained):
+                used.add(name)
+                pending.append(definitions[name])
+    lines = tuple((d.name, d.expression) for d in tf.model.definitions if d.name in used)
+    return replace(form, where=(*form.where, *lines)) if lines else form

@@ -1,0 +1,135 @@
+"""Krylov-Duncan functions, in which numerator and denominator are seen to be entire in s."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symflex.algebra import Factored
+from symflex.expressions import Expression, Name, negative, number, power, product_of, quotient, sum_of
+from symflex.print.forms.arrange import Arranger
+from symflex.print.forms.constants import constant_symbols
+from symflex.print.forms.hyperbolic import in_kernels
+from symflex.print.forms.invariants import Invariants, in_krylov_functions, krylov_name
+from symflex.print.forms.kept import KeptDefinitions
+from symflex.print.forms.names import free_family
+from symflex.print.forms.notation import (
+    Line,
+    Naming,
+    notation_of,
+    reachable,
+    wavenumber_laws,
+)
+from symflex.print.forms.printed import PrintedForm
+from symflex.print.forms.products import ProductPrinter, shortest_sides
+from symflex.print.forms.usage import require_kernels
+
+if TYPE_CHECKING:
+    from symflex.print.forms.notation import Angle
+    from symflex.transfer import TransferFunction
+
+
+def krylov_form(tf: TransferFunction, digits: int) -> PrintedForm:
+    """Return the function in ``K_0, K_1, ...`` of the lengths, solutions along x for unit initial data.
+
+    For a beam ``K_0 = cosh(q)*cos(q)``, ``K_1 = (cosh(q)*sin(q) + sinh(q)*cos(q))/(2*mu)``, ...; for a rod
+    ``K_0 = cosh(q)``, ``K_1 = sinh(q)/gamma``. Where the exponents of field equations have no formula, the
+    solutions and their derivatives at the ends stand as ``h(l)``, ``h'(l)``.
+
+    Raises
+    ------
+    UsageError
+        SF902 for a rational function.
+    """
+    del digits
+    require_kernels(tf, "krylov")
+    if tf.is_nameless:
+        return in_kernels(tf, "krylov", tf.ratio)
+    change, value = in_krylov_functions(tf.ratio.ring, tf.kernels, tf.ratio)
+    ring = change.ring
+    used = ring.used_in(f for f, _ in value.factors)
+    naming = Naming.of(tf)
+    families = _families(change, used, naming)
+    explained: set[str] = set(used)
+    for i, group in enumerate(change.angles):
+        for order in range(len(families[i])):
+            if krylov_name(i, order) in used:
+                explained |= {g for a in group for g in a.kernels.values()}
+                explained |= {group[0].wavenumber} if order or len(group) > 1 else set()
+    notation = notation_of(tf, explained, naming, change.table)
+    symbols = {**constant_symbols(tf), **notation.symbols}
+    lines: list[Line] = []
+    for i, group in enumerate(change.angles):
+        for order, (name, line) in enumerate(zip(families[i], _functions(group, symbols), strict=True)):
+            symbols[krylov_name(i, order)] = Name(name)
+            lines.append((name, line))
+    lines += notation.lines
+    functions = (g for g in ring.names if g.startswith("K") and g in symbols and g not in tf.ratio.ring.index)
+    decays = (k.generator for k in tf.kernels.kernels if not k.wavenumber)
+    printer = ProductPrinter(
+        Arranger.plain(ring, symbols, (*functions, *decays), KeptDefinitions.of(tf, ring))
+    )
+    sides = shortest_sides(printer, value, embedded_laws(tf, change))
+    return PrintedForm("krylov", *sides, reachable(sides, lines))
+
+
+def embedded_laws(tf: TransferFunction, change: Invariants) -> dict[str, Factored]:
+    """Return :func:`wavenumber_laws` over the ring of the change."""
+    return {
+        w: one.map_factors(change.ring, lambda f: Factored.polynomial(change.ring, change.embed(f)))
+        for w, one in wavenumber_laws(tf).items()
+    }
+
+
+def _families(change: Invariants, used: frozenset[str], naming: Naming) -> list[tuple[str, ...]]:
+    """Return the names of the functions of every argument."""
+    found: list[tuple[str, ...]] = []
+    for i, group in enumerate(change.angles):
+        if not any(krylov_name(i, order) in used for order in range(_order(group))):
+            found.append(("",) * _order(group))
+            continue
+        family = free_family("KLMNH", _order(group), naming.taken)
+        naming.keep(family)
+        found.append(family)
+    return found
+
+
+def _order(group: tuple[Angle, ...]) -> int:
+    return group[0].dispersion.order
+
+
+def _functions(group: tuple[Angle, ...], symbols: dict[str, Expression]) -> list[Expression]:
+    """Return what ``K_0, K_1, ...`` of one argument are."""
+    if any(g not in symbols for a in group for g in a.kernels.values()):
+        return [number(0)] * _order(group)
+    first = {f: symbols[g] for f, g in group[0].kernels.items()}
+    wave = symbols[group[0].wavenumber]
+    match group[0].dispersion.kind:
+        case "wave":
+            return [first["cosh"], quotient(first["sinh"], wave)]
+        case "bending":
+            growing = product_of([first["cosh"], first["sin"]])
+            turning = product_of([first["sinh"], first["cos"]])
+            return [
+                product_of([first["cosh"], first["cos"]]),
+                quotient(sum_of([growing, turning]), product_of([number(2), wave])),
+                quotient(product_of([first["sinh"], first["sin"]]), product_of([number(2), power(wave, 2)])),
+                quotient(sum_of([growing, negative(turning)]), product_of([number(4), power(wave, 3)])),
+            ]
+    second = {f: symbols[g] for f, g in group[1].kernels.items()}
+    x, y = wave, symbols[group[1].wavenumber]
+    below = sum_of([power(x, 2), negative(power(y, 2))])
+    return [
+        quotient(_difference([power(x, 2), second["cosh"]], [power(y, 2), first["cosh"]]), below),
+        quotient(
+            _difference(
+                [quotient(power(x, 2), y), second["sinh"]], [quotient(power(y, 2), x), first["sinh"]]
+            ),
+            below,
+        ),
+        quotient(_difference([first["cosh"]], [second["cosh"]]), below),
+        quotient(sum_of([quotient(first["sinh"], x), negative(quotient(second["sinh"], y))]), below),
+    ]
+
+
+def _difference(left: list[Expression], right: list[Expression]) -> Expression:
+    return sum_of([product_of(left), negative(product_of(right))])

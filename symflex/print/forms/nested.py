@@ -1,0 +1,236 @@
+"""The nested form: a short quotient, and the sub-impedances it is made of, one line each.
+
+Input: a :class:`symflex.transfer.NestedTransferFunction`.
+Output: a :class:`PrintedForm` whose ``where`` lines use only those before them. What occurs once stands where
+it is used; what occurs more often, and what would be long or deep, has a name.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import count
+from typing import TYPE_CHECKING
+
+from symflex.algebra import LAPLACE
+from symflex.budget import spend
+from symflex.equations.elimination import ONE, Step
+from symflex.expressions import Expression, Name, Negative, Number, Power, Product, Quotient, Sum, number
+from symflex.print.forms.names import names_of
+from symflex.print.forms.printed import PrintedForm
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from symflex.transfer import NestedTransferFunction
+
+DEEPEST = 8
+"""Levels of an expression from which it gets a name."""
+LONGEST_PRODUCT = 24
+"""Factors beyond which a product is continued in a line of its own."""
+SHORT = 3
+"""Factors up to which a product of parameters is written out wherever it occurs."""
+LONGEST_SUM = 100
+"""Terms beyond which a sum is."""
+STEMS = {Step.ADD: "S", Step.MULTIPLY: "P", Step.DIVIDE: "T", Step.POWER: "P"}
+"""Names of shared sums, products and quotients; ``w`` and ``Z`` are what the elimination calls so."""
+
+
+def nested_form(tf: NestedTransferFunction) -> PrintedForm:
+    """Return a nested transfer function for print.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> from symflex.expressions import format_expression
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... parameters = {m_1 = {}, m_2 = {}, k = {}, b = {}}
+    ... elements.first = {type = "mass", at = "x_1", m = "m_1"}
+    ... elements.second = {type = "mass", at = "x_2", m = "m_2"}
+    ... elements.spring = {type = "spring", between = ["x_1", "x_2"], k = "k"}
+    ... elements.loss = {type = "damper", between = ["x_1", "x_2"], b = "b"}
+    ... inputs.F = {force = "x_1"}
+    ... outputs.X = "x_1"
+    ... ''')
+    >>> form = nested_form(pipeline.derive_nested(model)[0])
+    >>> print(format_expression(form.num), "over", format_expression(form.den))
+    1 over m_1*s^2 + w_1*Z_1/(Z_1 + w_1)
+    >>> for name, expression in form.where:
+    ...     print(name, "=", format_expression(expression))
+    w_1 = b*s + k
+    Z_1 = m_2*s^2
+    """
+    return _Printer(tf, _plan(tf)).form()
+
+
+def step_names(tf: NestedTransferFunction) -> dict[int, str]:
+    """Return the names of the steps that have one in the nested form, in order."""
+    return _plan(tf)
+
+
+def _plan(tf: NestedTransferFunction) -> dict[int, str]:
+    """Return the steps to name."""
+    program = tf.program
+    kinds, roles = program.kinds, program.roles
+    uses: dict[int, int] = {}
+    for i in tf.steps:
+        for x in program.inner(i):
+            uses[x] = uses.get(x, 0) + 1
+    ends = {tf.num, tf.den}
+    names: dict[int, str] = {}
+    fresh = _fresh_names(tf)
+    depth: dict[int, int] = {}
+    length: dict[int, int] = {}
+    for i in tf.steps:
+        kind = kinds[i]
+        inner = program.inner(i)
+        depth[i] = 1 + max((depth[x] for x in inner), default=-1)
+        length[i] = sum(length[x] for x in inner) if kind in (Step.MULTIPLY, Step.DIVIDE) else 1
+        if kind in (Step.GENERATOR, Step.NUMBER, Step.NEGATE):
+            continue
+        role = roles.get(i, "")
+        is_monomial = role != "Z" and _is_monomial(tf, i)
+        is_shared = uses.get(i, 0) + (i in ends) > 1 and not is_monomial
+        is_long = depth[i] >= DEEPEST or length[i] >= LONGEST_PRODUCT
+        if role.startswith("=") or is_shared or (is_long and i not in ends):
+            if role.startswith("="):
+                names[i] = role[1:]
+            else:
+                names[i] = next(fresh[role or STEMS[Step(kind)]])
+            depth[i], length[i] = 0, 1
+    return names
+
+
+def _is_monomial(tf: NestedTransferFunction, i: int) -> bool:
+    """Tell whether a step is a short product of powers of generators, which needs no name."""
+    kinds, operands = tf.program.kinds, tf.program.operands
+    if kinds[i] == Step.POWER:
+        return kinds[operands[i][0]] == Step.GENERATOR
+    if kinds[i] != Step.MULTIPLY or len(operands[i]) > SHORT:
+        return False
+    return all(
+        kinds[x] in (Step.GENERATOR, Step.NUMBER)
+        or (kinds[x] == Step.POWER and kinds[operands[x][0]] == Step.GENERATOR)
+        for x in operands[i]
+    )
+
+
+def _fresh_names(tf: NestedTransferFunction) -> dict[str, Iterator[str]]:
+    taken = names_of(tf.model) | tf.generators
+
+    def numbered(stem: str) -> Iterator[str]:
+        return (name for n in count(1) if (name := f"{stem}_{n}") not in taken)
+
+    return {stem: numbered(stem) for stem in ("w", "Z", *dict.fromkeys(STEMS.values()))}
+
+
+@dataclass
+class _Printer:
+    """Turns steps into expressions, earlier ones first."""
+
+    tf: NestedTransferFunction
+    names: dict[int, str]
+    lines: list[tuple[str, Expression]] = field(default_factory=list)
+    known: dict[int, Expression] = field(default_factory=dict)
+    split: dict[int, tuple[tuple[Expression, ...], tuple[Expression, ...]]] = field(default_factory=dict)
+    """Products and quotients that have no name: their factors above and below the bar."""
+
+    def form(self) -> PrintedForm:
+        tf = self.tf
+        self.symbols = {c.generator: c.expression for c in tf.constants}
+        self.order = {name: n for n, name in enumerate(tf.program.names)}
+        self.order[LAPLACE] = len(self.order)
+        self.sums = 0
+        for i in tf.steps:
+            spend()
+            expression = self._made(i)
+            name = self.names.get(i)
+            if name is not None:
+                self.lines.append((name, expression))
+                expression = Name(name)
+                self.split.pop(i, None)
+            self.known[i] = expression
+        num, den = self.known[tf.num], self.known[tf.den]
+        if isinstance(den, Negative):
+            num, den = _negated(num), den.operand
+        if tf.den == ONE and isinstance(num, Quotient):
+            return PrintedForm("nested", num.numerator, num.denominator, tuple(self.lines))
+        return PrintedForm("nested", num, den, tuple(self.lines))
+
+    def _made(self, i: int) -> Expression:
+        program = self.tf.program
+        operands = program.operands[i]
+        match program.kinds[i]:
+            case Step.GENERATOR:
+                name = program.names[operands[0]]
+                return self.symbols.get(name, Name(name))
+            case Step.NUMBER:
+                return Number(program.fraction(i))
+            case Step.NEGATE:
+                return _negated(self.known[operands[0]])
+            case Step.POWER:
+                return Power(self.known[operands[0]], number(operands[1]))
+            case Step.ADD:
+                return self._sum([self.known[x] for x in operands])
+            case _:
+                return self._product(i, operands)
+
+    def _sum(self, terms: Sequence[Expression]) -> Expression:
+        flat: list[Expression] = []
+        for term in terms:
+            if isinstance(term, Sum):
+                flat += term.terms
+            elif isinstance(term, Negative) and isinstance(term.operand, Sum):
+                flat += [_negated(t) for t in term.operand.terms]
+            else:
+                flat.append(term)
+        first = next((n for n, t in enumerate(flat) if not isinstance(t, Negative)), 0)
+        flat.insert(0, flat.pop(first))
+        if len(flat) <= LONGEST_SUM:
+            return Sum(tuple(flat))
+        parts: list[Expression] = []
+        taken = {name for name, _ in self.lines} | set(self.names.values()) | names_of(self.tf.model)
+        for start in range(0, len(flat), LONGEST_SUM):
+            name = next(n for k in count(self.sums + 1) if (n := f"R_{k}") not in taken)
+            self.sums += 1
+            taken.add(name)
+            self.lines.append((name, Sum(tuple(flat[start : start + LONGEST_SUM]))))
+            parts.append(Name(name))
+        return self._sum(parts)
+
+    def _product(self, i: int, operands: Sequence[int]) -> Expression:
+        """Return a product or quotient with everything that is divided by below one bar."""
+        is_quotient = self.tf.program.kinds[i] == Step.DIVIDE
+        above: list[Expression] = []
+        below: list[Expression] = []
+        for n, x in enumerate(operands):
+            over, under = self.split.get(x, ((self.known[x],), ()))
+            if is_quotient and n == 1:
+                over, under = under, over
+            above += over
+            below += under
+        one = number(1)
+        above = sorted((f for f in above if f != one), key=self._place)
+        below = sorted((f for f in below if f != one), key=self._place)
+        self.split[i] = (tuple(above), tuple(below))
+        top = _multiplied(above)
+        return Quotient(top, _multiplied(below)) if below else top
+
+    def _place(self, factor: Expression) -> tuple[int, int]:
+        """Return what sorts factors: numbers, parameters as declared, powers of s, and then the rest."""
+        base = factor.base if isinstance(factor, Power) else factor
+        if isinstance(base, Number):
+            return 0, 0
+        if isinstance(base, Name) and base.name in self.order:
+            return 1, self.order[base.name]
+        return 2, 0
+
+
+def _multiplied(factors: Sequence[Expression]) -> Expression:
+    if not factors:
+        return number(1)
+    return factors[0] if len(factors) == 1 else Product(tuple(factors))
+
+
+def _negated(expression: Expression) -> Expression:
+    return expression.operand if isinstance(expression, Negative) else Negative(expression)

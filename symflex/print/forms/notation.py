@@ -1,0 +1,286 @@
+"""What wavenumbers and kernels print as, and the lines that say what they are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from symflex.algebra import LAPLACE, Dispersion, Factored, Kernel, KernelTable
+from symflex.expressions import (
+    Call,
+    Derivative,
+    Equation,
+    Expression,
+    Name,
+    names,
+    negative,
+    number,
+    power,
+    product_of,
+    quotient,
+    sum_of,
+)
+from symflex.print.forms.arrange import Arranger
+from symflex.print.forms.constants import constant_symbols
+from symflex.print.forms.kept import KeptDefinitions
+from symflex.print.forms.names import free_family, free_names, names_of
+from symflex.print.forms.products import ProductPrinter
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Mapping
+
+    from symflex.algebra import Ring
+    from symflex.transfer import TransferFunction
+
+Line = tuple[str, Expression]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Angle:
+    """A wavenumber times a length, and the generators of its kernels by function."""
+
+    wavenumber: str
+    dispersion: Dispersion
+    length: Factored
+    kernels: Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Notation:
+    """Symbols for generators, and the lines and laws that explain them."""
+
+    symbols: Mapping[str, Expression]
+    lines: tuple[Line, ...]
+    laws: tuple[tuple[str, Equation], ...] = ()
+
+
+class Naming:
+    """Hands out names, none twice.
+
+    Parameters
+    ----------
+    taken : iterable of str
+        Names that are not free.
+    """
+
+    def __init__(self, taken: Iterable[str]) -> None:
+        self._taken = set(taken)
+
+    @staticmethod
+    def of(tf: TransferFunction) -> Naming:
+        """Return the naming for a form of a transfer function."""
+        return Naming((*names_of(tf.model), *tf.ring.names))
+
+    def take(self, stem: str, wanted: int = 1) -> tuple[str, ...]:
+        """Return that many free names; see :func:`free_names`."""
+        found = free_names(stem, wanted, self._taken)
+        self._taken.update(found)
+        return found
+
+    def keep(self, names: Iterable[str]) -> None:
+        """Let the names be used by nothing else."""
+        self._taken.update(names)
+
+    @property
+    def taken(self) -> Collection[str]:
+        """The names that are not free any more."""
+        return self._taken
+
+
+def angles_of(table: KernelTable, used: Collection[str] | None = None) -> tuple[Angle, ...]:
+    """Return the angles of which a kernel is used, in the order of the table."""
+    groups: dict[tuple[str, int], list[Kernel]] = {}
+    for kernel in table.kernels:
+        if kernel.wavenumber:
+            groups.setdefault((kernel.wavenumber, id(kernel.length)), []).append(kernel)
+    return tuple(
+        Angle(w, kernels[0].dispersion, kernels[0].length, {k.function: k.generator for k in kernels})
+        for (w, _), kernels in groups.items()
+        if used is None or any(k.generator in used for k in kernels)
+    )
+
+
+def plain_printer(tf: TransferFunction, ring: Ring | None = None) -> ProductPrinter:
+    """Return a printer for values of s and parameters alone."""
+    own = ring or tf.ring
+    return ProductPrinter(Arranger.plain(own, constant_symbols(tf), (), KeptDefinitions.of(tf, own)))
+
+
+def notation_of(
+    tf: TransferFunction, used: Collection[str], naming: Naming, table: KernelTable | None = None
+) -> Notation:
+    """Return names for the arguments ``q = mu*l``, the wavenumbers and what these are made of.
+
+    Parameters
+    ----------
+    tf : TransferFunction
+        Distributed.
+    used : collection of str
+        The generators that occur, wavenumbers standing by themselves among them.
+    naming : Naming
+        Where names are taken from.
+    table : KernelTable, optional
+        Of the lengths, where they are not the transfer function's own.
+    """
+    printer = plain_printer(tf)
+    angles = angles_of(table or tf.kernels, used)
+    symbols: dict[str, Expression] = {}
+    lines: list[Line] = []
+    arguments = naming.take("q", len(angles))
+    for q, angle in zip(arguments, angles, strict=True):
+        symbols |= {g: Call(f, Name(q)) for f, g in angle.kernels.items()}
+    waves = wave_notation(tf, [d for d in tf.kernels.dispersions if _occurs(d, used, angles)], naming)
+    for q, angle in zip(arguments, angles, strict=True):
+        wave = waves.symbols[angle.wavenumber]
+        sharing = [a for a in angles if a.wavenumber == angle.wavenumber]
+        if len(sharing) == 1 and angle.wavenumber not in used and angle.dispersion.kind != "pair":
+            root = next(e for n, e in waves.lines if Name(n) == wave)
+            waves = Notation(waves.symbols, tuple(line for line in waves.lines if Name(line[0]) != wave))
+            lines.append((q, times_length(printer, root, angle.length)))
+        else:
+            lines.append((q, wave_times_length(printer, wave, angle.length)))
+    decays, laws = other_kernels(tf, used, naming, printer)
+    symbols |= {**waves.symbols, **decays}
+    return Notation(symbols, (*lines, *waves.lines), laws)
+
+
+def _occurs(dispersion: Dispersion, used: Collection[str], angles: Iterable[Angle]) -> bool:
+    return any(w in used for w in dispersion.wavenumbers) or any(a.dispersion is dispersion for a in angles)
+
+
+def wave_times_length(printer: ProductPrinter, wave: Expression, length: Factored) -> Expression:
+    """Return a wavenumber times a length."""
+    above, below = printer.sides(length)
+    return quotient(product_of([wave, above]), below)
+
+
+def times_length(printer: ProductPrinter, root: Expression, length: Factored) -> Expression:
+    """Return a length times what a wavenumber is, s in front."""
+    above, below = printer.sides(length)
+    s = Name(LAPLACE)
+    inner = root.children if root.children and root.children[0] == s else (root,)
+    front = [s] if inner[0] == s else []
+    return quotient(product_of([*front, above, *(inner[1:] if front else inner)]), below)
+
+
+def wave_notation(tf: TransferFunction, dispersions: Iterable[Dispersion], naming: Naming) -> Notation:
+    """Return names for the wavenumbers, each with the line of its own definition before what that needs."""
+    printer = plain_printer(tf)
+    by_kind: dict[str, list[Dispersion]] = {"bending": [], "wave": [], "pair": []}
+    for dispersion in dispersions:
+        if dispersion.kind in by_kind:
+            by_kind[dispersion.kind].append(dispersion)
+    symbols: dict[str, Expression] = {}
+    lines: list[Line] = []
+    bending = by_kind["bending"]
+    lossless = [d for d in bending if speed_squared(d) is not None]
+    speeds = dict(zip(map(id, lossless), naming.take("a", len(lossless)), strict=True))
+    for name, d in zip(naming.take("mu", len(bending)), bending, strict=True):
+        symbols[d.wavenumbers[0]] = Name(name)
+        square = speed_squared(d)
+        if square is None:
+            lines.append((name, Call("sqrt", printer.square_root(d.characteristic[0] / 4))))
+        else:
+            a = speeds[id(d)]
+            lines.append((name, Call("sqrt", quotient(Name(LAPLACE), product_of([number(2), Name(a)])))))
+            lines.append((a, printer.square_root(square)))
+    for name, d in zip(naming.take("gamma", len(by_kind["wave"])), by_kind["wave"], strict=True):
+        symbols[d.wavenumbers[0]] = Name(name)
+        lines.append((name, printer.square_root(-d.characteristic[0])))
+    pairs = by_kind["pair"]
+    lambdas = naming.take("lambda", 2 * len(pairs))
+    deltas = naming.take("delta", len(pairs))
+    for i, d in enumerate(pairs):
+        names_of_pair = (lambdas[2 * i], lambdas[2 * i + 1])
+        symbols |= {w: Name(n) for w, n in zip(d.wavenumbers, names_of_pair, strict=True)}
+        c0, c2 = pair_coefficients(naming)
+        position = next(k for k, known in enumerate(tf.kernels.dispersions) if known is d)
+        symbols |= {coefficient_name(position, 0): c0, coefficient_name(position, 2): c2}
+        delta, half = Name(deltas[i]), quotient(c2, number(2))
+        lines += [
+            (names_of_pair[0], Call("sqrt", sum_of([delta, negative(half)]))),
+            (names_of_pair[1], Call("sqrt", sum_of([negative(half), negative(delta)]))),
+            (delta.name, pair_root(c0, c2)),
+            (c2.name, printer.quotient(d.characteristic[2])),
+            (c0.name, printer.quotient(d.characteristic[0])),
+        ]
+    return Notation(symbols, tuple(lines))
+
+
+def pair_coefficients(naming: Naming) -> tuple[Name, Name]:
+    """Return names for ``c_0`` and ``c_2``."""
+    family = free_family("cbde", 3, naming.taken)
+    naming.keep(family)
+    return Name(family[0]), Name(family[2])
+
+
+def pair_root(c0: Expression, c2: Expression) -> Expression:
+    """Return half the difference of the squares of a pair."""
+    return Call("sqrt", sum_of([quotient(power(c2, 2), number(4)), negative(c0)]))
+
+
+def coefficient_name(dispersion: int, order: int) -> str:
+    """Return the generator of a coefficient of a pair's characteristic polynomial."""
+    return f"c{order}[{dispersion}]"
+
+
+def speed_squared(dispersion: Dispersion) -> Factored | None:
+    """Return ``s^2/c_0`` of a bending beam when it is free of s: E I/(rho A) without losses."""
+    c0 = dispersion.characteristic[0]
+    square = Factored.generator(c0.ring, LAPLACE) ** 2 / c0
+    return None if square.depends_on(LAPLACE) else square
+
+
+def other_kernels(
+    tf: TransferFunction, used: Collection[str], naming: Naming, printer: ProductPrinter
+) -> tuple[dict[str, Expression], tuple[tuple[str, Equation], ...]]:
+    """Return exponentials, and fundamental functions with the laws that determine them."""
+    symbols: dict[str, Expression] = {}
+    for kernel in tf.kernels.kernels:
+        if kernel.function == "exp":
+            exponent = printer.quotient(kernel.dispersion.shift * kernel.length)
+            symbols[kernel.generator] = Call("exp", negative(exponent))
+    general = [
+        d
+        for d in tf.kernels.dispersions
+        if any(k.function == "fundamental" and k.generator in used for k in tf.kernels.kernels_of(d))
+    ]
+    laws = []
+    for name, d in zip(naming.take("h", len(general)), general, strict=True):
+        for kernel in tf.kernels.kernels_of(d):
+            if kernel.function == "fundamental":
+                symbols[kernel.generator] = Call(name, printer.quotient(kernel.length), kernel.order)
+        terms: list[Expression] = [Derivative(name, d.order)]
+        for order in reversed(range(d.order)):
+            c = d.characteristic[order]
+            if not c.is_zero:
+                terms.append(
+                    product_of([printer.quotient(c), Derivative(name, order) if order else Name(name)])
+                )
+        laws.append((name, Equation(sum_of(terms), number(0))))
+    return symbols, tuple(laws)
+
+
+def wavenumber_laws(tf: TransferFunction) -> dict[str, Factored]:
+    """Return per wavenumber a product of its power with s and parameters that is one."""
+    found = {}
+    for d in tf.kernels.dispersions:
+        if d.kind == "bending":
+            (w,) = d.wavenumbers
+            found[w] = Factored.generator(tf.ratio.ring, w) ** 4 * 4 / d.characteristic[0]
+        elif d.kind == "wave":
+            (w,) = d.wavenumbers
+            found[w] = Factored.generator(tf.ratio.ring, w) ** 2 / -d.characteristic[0]
+    return found
+
+
+def reachable(parts: Iterable[Expression], lines: Iterable[Line]) -> tuple[Line, ...]:
+    """Return the lines whose names the parts use, or the lines they need, in the given order."""
+    known = dict(lines)
+    pending, used = list(parts), set()
+    while pending:
+        for found in names(pending.pop()):
+            if isinstance(found, Name) and found.name in known and found.name not in used:
+                used.add(found.name)
+                pending.append(known[found.name])
+    return tuple((name, e) for name, e in known.items() if name in used)

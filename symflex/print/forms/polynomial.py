@@ -1,0 +1,133 @@
+"""Forms over the expanded ring: polynomial, monic, constant, factored."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from symflex.algebra import LAPLACE, Factored, Ring, degree_in, irreducible_factors
+from symflex.expressions import Expression, Name, number, power, product_of, quotient, sum_of
+from symflex.print.forms.arrange import Arranger, coefficients
+from symflex.print.forms.constants import constant_symbols
+from symflex.print.forms.hyperbolic import collected_form, in_kernels
+from symflex.print.forms.irreducible import irreducible_kernels
+from symflex.print.forms.kept import KeptDefinitions
+from symflex.print.forms.printed import PrintedForm
+from symflex.print.forms.usage import require_rational
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from flint import fmpz_mpoly
+
+    from symflex.transfer import TransferFunction
+
+
+def polynomial_form(tf: TransferFunction, digits: int) -> PrintedForm:
+    """Return numerator and denominator by descending powers of s, coefficients collected and factored.
+
+    Functions of s stand among the coefficients.
+    """
+    if tf.is_distributed:
+        return collected_form(tf)
+    del digits
+    arranger = _arranger(tf)
+    return PrintedForm(
+        "polynomial",
+        arranger.collected(tf.ratio.numerator().expand()),
+        arranger.collected(tf.ratio.denominator().expand()),
+    )
+
+
+def _arranger(tf: TransferFunction) -> Arranger:
+    ring = tf.ratio.ring
+    return Arranger.plain(ring, constant_symbols(tf), (), KeptDefinitions.of(tf, ring))
+
+
+def monic_form(tf: TransferFunction, digits: int) -> PrintedForm:
+    """Return the polynomial form divided by the denominator's leading coefficient.
+
+    Raises
+    ------
+    UsageError
+        SF902 for a function with kernels.
+    """
+    del digits
+    return _normalised(tf, "monic", max)
+
+
+def constant_form(tf: TransferFunction, digits: int) -> PrintedForm:
+    """Return the polynomial form divided by the coefficient of the denominator's lowest power of s.
+
+    Without poles at 0 the denominator's constant term is 1, and that of the numerator the static gain.
+
+    Raises
+    ------
+    UsageError
+        SF902 for a function with kernels.
+    """
+    del digits
+    return _normalised(tf, "constant", min)
+
+
+def _normalised(tf: TransferFunction, name: str, choose: Callable[[Iterable[int]], int]) -> PrintedForm:
+    """Return the polynomial form divided by the coefficient of one of the denominator's powers of s."""
+    require_rational(tf, name)
+    ring = tf.ratio.ring
+    arranger = _arranger(tf)
+    den = tf.ratio.denominator().expand()
+    parts = coefficients(ring, den)
+    divisor = parts[choose(parts)]
+    return PrintedForm(
+        name,
+        _divided(arranger, ring, tf.ratio.numerator().expand(), divisor),
+        _divided(arranger, ring, den, divisor),
+    )
+
+
+def _divided(arranger: Arranger, ring: Ring, polynomial: fmpz_mpoly, divisor: fmpz_mpoly) -> Expression:
+    parts = coefficients(ring, polynomial)
+    terms = []
+    for exponent in sorted(parts, reverse=True):
+        common = parts[exponent].gcd(divisor)
+        below = divisor / common
+        above = parts[exponent] / common
+        if int(below.leading_coefficient()) < 0:
+            above, below = -above, -below
+        coefficient = quotient(arranger.coefficient(above), arranger.coefficient(below))
+        terms.append(product_of([coefficient, power(Name(LAPLACE), exponent)]))
+    return sum_of(terms) if terms else number(0)
+
+
+def factored_form(tf: TransferFunction, digits: int) -> PrintedForm:
+    """Return numerator and denominator as products of irreducible factors over the rationals.
+
+    Of functions with kernels the trigonometric factors too.
+    """
+    del digits
+    if tf.is_distributed:
+        return in_kernels(tf, "factored", irreducible_kernels(tf.ratio, tf.kernels))
+    arranger = _arranger(tf)
+    return PrintedForm(
+        "factored",
+        _irreducible(arranger, tf.ratio.numerator()),
+        _irreducible(arranger, tf.ratio.denominator()),
+    )
+
+
+def _irreducible(arranger: Arranger, value: Factored) -> Expression:
+    """Return number, parameters, powers of s, then polynomials by degree in s."""
+    unit = Fraction(value.unit)
+    pieces: list[tuple[tuple[object, ...], Expression]] = []
+    for factor, exponent in value.factors:
+        constant, parts = irreducible_factors(factor)
+        unit *= Fraction(constant) ** exponent
+        for part, times in parts:
+            positive, sign = (part, 1) if int(part.leading_coefficient()) > 0 else (-part, -1)
+            unit *= Fraction(sign) ** (exponent * times)
+            degree = degree_in(positive, 0)
+            own = arranger.kept.name_of(positive) if arranger.kept and len(positive) > 1 else None
+            printed = power(own or arranger.collected(positive), exponent * times)
+            key = (len(positive) > 1, degree, tuple(tuple(-int(e) for e in m[1:]) for m in positive.monoms()))
+            pieces.append((key, printed))
+    return product_of([number(unit), *(p for _, p in sorted(pieces, key=lambda item: item[0]))])

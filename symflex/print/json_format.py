@@ -1,0 +1,54 @@
+"""Transfer functions as JSON data; strings are in the specification language's own expression grammar."""
+
+from __future__ import annotations
+
+from graphlib import TopologicalSorter
+from typing import TYPE_CHECKING
+
+from symflex.expressions import Name, format_expression, names
+from symflex.print.forms import hidden_expressions
+from symflex.print.latex import inline_latex
+from symflex.transfer import NestedTransferFunction
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.expressions import Expression
+    from symflex.print.forms import PrintedForm
+    from symflex.transfer import AnyTransferFunction
+
+SCHEMA = "symflex.derive/1"
+
+
+def derive_json(tf: AnyTransferFunction, form: PrintedForm) -> dict[str, object]:
+    """Return one entry of ``transfer_functions``; ``hidden`` is None where that was not examined."""
+    hidden = [{"factor": format_expression(e), "multiplicity": m} for e, m in hidden_expressions(tf)]
+    return {
+        "tf": tf.name,
+        "quantity": tf.quantity,
+        "unit": tf.unit,
+        "form": form.name,
+        "num": format_expression(form.num),
+        "den": format_expression(form.den),
+        "where": [[name, format_expression(e)] for name, e in _in_order_of_definition(form)],
+        "laws": [[name, format_expression(law)] for name, law in form.laws],
+        "latex": inline_latex(tf, form),
+        "hidden": None if isinstance(tf, NestedTransferFunction) else hidden,
+        "stability": form.stability.to_json_dict() if form.stability else None,
+    }
+
+
+def _in_order_of_definition(form: PrintedForm) -> list[tuple[str, Expression]]:
+    """Return the ``where`` lines so that each uses only those before it."""
+    lines = dict(form.where)
+    graph = {
+        name: [n.name for n in names(e) if isinstance(n, Name) and n.name in lines] for name, e in form.where
+    }
+    return [(name, lines[name]) for name in TopologicalSorter(graph).static_order()]
+
+
+def derive_document(
+    entries: Sequence[tuple[AnyTransferFunction, PrintedForm]],
+) -> dict[str, object]:
+    """Return the document ``symflex derive --json`` prints."""
+    return {"schema": SCHEMA, "transfer_functions": [derive_json(tf, form) for tf, form in entries]}

@@ -1,0 +1,363 @@
+r"""A whole article about a model, in one file or in files to ``\input``, and the fragment for a paper.
+
+Documents compile with pdflatex and lualatex and only amsmath, array, booktabs, geometry and siunitx
+(version 3); lmodern and microtype are used where they are installed. All of it is ASCII.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from symflex.algebra import LAPLACE
+from symflex.errors import Diagnostic, UsageError
+from symflex.print.forms import counts_of, with_hidden
+from symflex.print.latex.column import COLUMNS_MM
+from symflex.print.latex.equation import equation_label, form_labels, ratio_latex, transfer_function_latex
+from symflex.print.latex.expression import Writer
+from symflex.print.latex.preamble import preamble
+from symflex.print.latex.table import (
+    KINDS,
+    VALUE_DIGITS,
+    mode_table,
+    parameter_table,
+    root_table,
+    roots_of,
+)
+from symflex.print.latex.text import escape_text
+from symflex.print.latex.units import unit_latex
+from symflex.print.latex.width import EM_MM
+from symflex.print.text import region_text
+from symflex.transfer import NestedTransferFunction
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from symflex.expressions import Expression
+    from symflex.model import Model
+    from symflex.print.forms import PrintedForm
+    from symflex.roots import PoleZeroMap
+    from symflex.transfer import AnyTransferFunction, HiddenFactor, TransferFunction
+
+TEXT_WIDTH_MM: Final = COLUMNS_MM["a4"]
+"""Width of the text of the document, and of fragments unless asked otherwise."""
+
+DOCUMENT: Final = "document.tex"
+"""Of the files of a document, the one to compile."""
+
+_LONGEST_HIDDEN: Final = 0.5
+_COUNTS: Final = "no one two three four five six seven eight nine ten eleven twelve".split()
+_FOR_EQUATIONS: Final = "amsmath"
+_FOR_TABLES: Final = "amsmath,array,booktabs,siunitx"
+_FOR_FIGURES: Final = ("pgf",)
+
+
+@dataclass(frozen=True, slots=True)
+class _Block:
+    """A part of a document: running text, or what a file of its own may hold."""
+
+    text: str
+    file: str = ""
+    packages: str = ""
+    title: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    r"""A figure that a document inputs.
+
+    Parameters
+    ----------
+    name : str
+        Of its file, without suffix.
+    latex : str
+        A ``pgfpicture`` as wide as the column.
+    title : str
+        Plain text; what it shows.
+    of : tuple of TransferFunction
+        Whose it shows that of; empty where that goes without saying.
+    """
+
+    name: str
+    latex: str
+    title: str
+    of: tuple[TransferFunction, ...] = ()
+
+
+def latex_fragment(tf: AnyTransferFunction, form: PrintedForm, *, width_mm: float = TEXT_WIDTH_MM) -> str:
+    r"""Return one transfer function for ``\input`` in a paper, with its definitions; it needs amsmath.
+
+    Parameters
+    ----------
+    tf, form : TransferFunction, PrintedForm
+        What is printed, and how.
+    width_mm : float, optional
+        Width of the column, set in ten points.
+    """
+    return _file(_equation(tf, form, width_mm, ""), width_mm)
+
+
+def latex_document(
+    model: Model,
+    tfs: Sequence[AnyTransferFunction],
+    forms: Sequence[PrintedForm],
+    *,
+    pole_zero_maps: Sequence[PoleZeroMap] = (),
+    width_mm: float = TEXT_WIDTH_MM,
+) -> str:
+    r"""Return an article with the model's parameters, transfer functions, poles, zeros and modes.
+
+    Parameters
+    ----------
+    model : Model
+        Gives title, source and parameters.
+    tfs, forms : sequence of TransferFunction, sequence of PrintedForm
+        In pairs, in the order of print.
+    pole_zero_maps : sequence of PoleZeroMap, optional
+        Each is printed after the transfer function of its name.
+    width_mm : float, optional
+        Width of the text.
+
+    Returns
+    -------
+    str
+        It compiles with two runs of pdflatex or lualatex, without warnings.
+
+    Raises
+    ------
+    UsageError
+        SF902 when a map belongs to none of the transfer functions.
+    """
+    blocks = _blocks(model, tfs, forms, pole_zero_maps, width_mm)
+    return "".join((*_opening(model, width_mm), *(block.text for block in blocks), "\\end{document}\n"))
+
+
+def latex_files(
+    model: Model,
+    tfs: Sequence[AnyTransferFunction],
+    forms: Sequence[PrintedForm],
+    *,
+    pole_zero_maps: Sequence[PoleZeroMap] = (),
+    pictures: Sequence[Picture] = (),
+    width_mm: float = TEXT_WIDTH_MM,
+) -> dict[str, str]:
+    r"""Return the same article as files to ``\input`` into a paper, and the document that inputs them all.
+
+    A file holds one transfer function (``V_tip_over_F.tex``), the table of its poles, zeros or hidden roots
+    (``V_tip_over_F_poles.tex``), of the parameters or of the modes, or a figure (``fig5.pgf``), and names the
+    packages that it needs. See :func:`latex_document`.
+
+    Returns
+    -------
+    dict of str to str
+        Text by name of file; :data:`DOCUMENT` is the one to compile.
+    """
+    files: dict[str, str] = {}
+    parts = list(_opening(model, width_mm, _FOR_FIGURES if pictures else ()))
+    for block in _blocks(model, tfs, forms, pole_zero_maps, width_mm):
+        if not block.file:
+            parts.append(block.text)
+            continue
+        name = _free_name(block.file, files)
+        files[name] = _file(block, width_mm)
+        after = block.text[len(block.text.rstrip("\n")) :]
+        parts.append(f"\\input{{{name.removesuffix('.tex')}}}{after}")
+    if pictures:
+        parts.append("\\section{Figures}\n\n")
+    for picture in pictures:
+        name = _free_name(_plain_stem(picture.name), files, ".pgf")
+        files[name] = picture.latex
+        # What a figure shows stands on the page that shows it.
+        parts.append(
+            f"\\noindent\\begin{{minipage}}{{\\linewidth}}\\raggedright\n\\input{{{name}}}\n\n"
+            f"\\smallskip\\noindent {_caption(picture)}\n\\end{{minipage}}\n\\bigskip\n\n"
+        )
+    files[DOCUMENT] = "".join((*parts, "\\end{document}\n"))
+    return files
+
+
+def _caption(picture: Picture) -> str:
+    ratios = ", ".join(f"${ratio_latex(tf)}$" for tf in picture.of)
+    return f"{escape_text(picture.title)}{f' of {ratios}' if ratios else ''}."
+
+
+def _free_name(stem: str, files: Mapping[str, str], suffix: str = ".tex") -> str:
+    """Return a name that none of the files has, not even where capitals count as small letters."""
+    taken = {DOCUMENT, *(name.lower() for name in files)}
+    name, number = f"{stem}{suffix}", 2
+    while name.lower() in taken:
+        name, number = f"{stem}_{number}{suffix}", number + 1
+    return name
+
+
+def _file(block: _Block, width_mm: float) -> str:
+    head = f"% {block.title}\n% Needs \\usepackage{{{block.packages}}}; for a column of {width_mm:g} mm.\n"
+    return f"{head}{block.text.rstrip()}\n"
+
+
+def _opening(model: Model, width_mm: float, packages: Sequence[str] = ()) -> Iterator[str]:
+    yield f"% To be compiled twice, with pdflatex or lualatex.\n{preamble(width_mm, packages)}\n\n"
+    yield f"\\begin{{document}}\n\n{_heading(model)}\n\n"
+
+
+def _blocks(
+    model: Model,
+    tfs: Sequence[AnyTransferFunction],
+    forms: Sequence[PrintedForm],
+    maps: Sequence[PoleZeroMap],
+    width_mm: float,
+) -> Iterator[_Block]:
+    known = [tf.name for tf in tfs]
+    for found in maps:
+        if found.tf not in known:
+            message = f"poles and zeros of '{found.tf[:64]}', which is not among the transfer functions"
+            raise UsageError(Diagnostic("SF902", message))
+    if model.parameters:
+        yield _Block(f"\\section{{Parameters}}\n\n{_about_values(model)}{_BEFORE_TABLE}")
+        yield _table(parameter_table(model, width_mm=width_mm), "parameters", "Parameters")
+    if tfs:
+        yield _Block("\\section{Transfer functions}\n\n")
+    for tf, form in zip(tfs, forms, strict=True):
+        yield _Block(_introduction(tf))
+        named, factors = with_hidden(tf, form)
+        # Without a blank line: a display belongs to the paragraph before it.
+        yield _equation(tf, named, width_mm, "\n\n")
+        hidden = _hidden_modes(tf, named, [e for e, _ in factors], width_mm)
+        of_tf = [found for found in maps if found.tf == tf.name]
+        if hidden and not of_tf:
+            yield _Block("\n".join((r"\noindent", *hidden)) + "\n\n")
+        for found in of_tf:
+            yield _Block("\n".join((r"\noindent", *hidden, *_about_roots(tf, found))) + "\n\n")
+            for kind in KINDS:
+                if roots_of(found, kind):
+                    title = f"{kind.capitalize() if kind != 'hidden' else 'Hidden roots'}"
+                    yield _Block(f"\\medskip\\noindent {title}:{_BEFORE_TABLE}")
+                    table = root_table(found, kind, width_mm=width_mm)
+                    yield _table(table, f"{_stem(tf)}_{kind}", f"{title} of {_comment(tf.name)}")
+    if any(found.all_poles for found in maps):
+        yield _Block(f"\\section{{Modes}}\n\n{_about_modes(maps)}{_BEFORE_TABLE}")
+        yield _table(mode_table(maps, width_mm=width_mm), "modes", "Modes")
+
+
+_PROVED: Final = "Every pole and zero listed is enclosed to the digits printed, and their count is proved."
+_BEFORE_TABLE: Final = "\n\n\\nopagebreak\\medskip\n"
+
+
+def _table(table: str, file: str, title: str) -> _Block:
+    return _Block(f"{table}\n\\medskip\n\n", file, _FOR_TABLES, title)
+
+
+def _equation(tf: AnyTransferFunction, form: PrintedForm, width_mm: float, after: str) -> _Block:
+    display = transfer_function_latex(tf, form, width_mm=width_mm)
+    title = f"{_comment(tf.name)}, {_comment(tf.quantity)}: \\eqref{{{equation_label(tf.name)}}}"
+    return _Block(f"{display}{after}", _stem(tf), _FOR_EQUATIONS, title)
+
+
+def _stem(tf: AnyTransferFunction) -> str:
+    """Return a file's name without its suffix, of letters that every file system has."""
+    return _plain_stem(tf.name.replace("/", "_over_"))
+
+
+def _plain_stem(name: str) -> str:
+    return re.sub(r"[^A-Za-z0-9_]", "_", name)
+
+
+def _heading(model: Model) -> str:
+    title = escape_text(model.title) or "Transfer functions"
+    source = escape_text(model.source)
+    lines = [r"\begin{center}", rf"{{\LARGE {title}\par}}"]
+    if source:
+        lines += [r"\medskip", source]
+    return "\n".join((*lines, r"\end{center}"))
+
+
+def _about_values(model: Model) -> str:
+    if all(p.value is None for p in model.parameters):
+        return "All parameters are symbolic."
+    return f"Values have {VALUE_DIGITS} significant digits where they are not shorter."
+
+
+def _introduction(tf: AnyTransferFunction) -> str:
+    unit = f", in {unit_latex(tf.unit)}" if tf.unit and tf.unit != "1" else ""
+    if isinstance(tf, NestedTransferFunction):
+        quantity = escape_text(tf.quantity)
+        return (
+            f"\\subsection{{${ratio_latex(tf)}$}}\n\nThe {quantity}{unit}, in nested form; "
+            "hidden modes were not looked for:\n"
+        )
+    zeros, poles = counts_of(tf)
+    counts = f"{_counted(zeros, 'zero')} and {_counted(poles, 'pole')}"
+    if zeros is None and poles is None:
+        counts = "infinitely many zeros and poles"
+    return f"\\subsection{{${ratio_latex(tf)}$}}\n\nThe {escape_text(tf.quantity)}{unit}, with {counts}:\n"
+
+
+def _counted(count: int | None, noun: str) -> str:
+    if count is None:
+        return f"infinitely many {noun}s"
+    number = _COUNTS[count] if count < len(_COUNTS) else str(count)
+    return f"{number} {noun}{'' if count == 1 else 's'}"
+
+
+def _hidden_modes(
+    tf: AnyTransferFunction, form: PrintedForm, printed: Sequence[Expression], width_mm: float
+) -> list[str]:
+    """Return a sentence for every factor in s that cancelled."""
+    if isinstance(tf, NestedTransferFunction):
+        return []
+    writer = Writer(form_labels(tf, form))
+    return [_hidden_mode(h, e, tf, writer, width_mm) for h, e in zip(tf.hidden, printed, strict=True)]
+
+
+def _hidden_mode(
+    factor: HiddenFactor, printed: Expression, tf: TransferFunction, writer: Writer, width_mm: float
+) -> str:
+    ring = tf.ratio.ring
+    degrees = factor.polynomial.degrees()
+    count = int(degrees[ring.index[LAPLACE]])
+    is_transcendental = any(int(degrees[ring.index[k.generator]]) for k in tf.kernels.kernels)
+    is_one = not is_transcendental and count * factor.multiplicity == 1
+    noun, verb = ("mode", "is") if is_one else ("modes", "are")
+    if factor.polynomial == ring.generator(LAPLACE):
+        what, where = "The factor $s$", rf"the {noun} at $s = 0$"
+    else:
+        piece = writer.piece(printed)
+        if piece.width <= _LONGEST_HIDDEN * width_mm / EM_MM:
+            what = f"The factor ${piece.latex}$"
+        else:
+            what = "A transcendental factor" if is_transcendental else f"A factor of degree {count} in $s$"
+        where = f"the {noun} at its {'root' if count == 1 and not is_transcendental else 'roots'}"
+    times = "" if factor.multiplicity == 1 else f" {_counted(factor.multiplicity, 'time')}"
+    return (
+        f"{what} cancels between numerator and denominator{times}: {where} {verb} hidden, that is, "
+        "uncontrollable from this input or unobservable at this output."
+    )
+
+
+def _about_roots(tf: AnyTransferFunction, found: PoleZeroMap) -> list[str]:
+    if not (found.all_poles or found.zeros or found.hidden):
+        return [f"${ratio_latex(tf)}$ has neither poles nor zeros in the region searched."]
+    sentences = []
+    if shown := region_text(found.region):
+        sentences.append(f"Listed are {escape_text(shown)}.")
+    sentences.append(f"{escape_text(found.verdict.sentence.capitalize())}.")
+    if found.certificate.certified:
+        sentences.append(
+            "Every pole and zero listed is enclosed to the digits printed, and their count is proved."
+        )
+    else:
+        reason = escape_text(found.certificate.reason or "no reason given")
+        sentences.append(f"The list is not certified: {reason}.")
+    return sentences
+
+
+def _about_modes(maps: Sequence[PoleZeroMap]) -> str:
+    shown = "" if all(found.certificate.certified for found in maps) else " The lists are not all certified."
+    whose = "the transfer function" if len(maps) == 1 else "at least one of the transfer functions"
+    return f"The modes that are poles of {whose}; number 0 is motion as a rigid body.{shown}"
+
+
+def _comment(text: str) -> str:
+    """Return text for one comment line."""
+    return "".join(c if c.isascii() and c.isprintable() else "?" for c in text)

@@ -1,0 +1,405 @@
+r"""A transfer function as numbered display mathematics that fits the column.
+
+Input: a :class:`~symflex.transfer.TransferFunction` and one of its printed forms.
+Output: ``equation`` and ``align`` environments; they need amsmath and nothing else.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from symflex.algebra import LAPLACE
+from symflex.expressions import Call, Derivative, Expression, Name, Negative, is_number, names, number
+from symflex.print.latex.column import NARROWEST_MM
+from symflex.print.latex.expression import Piece, Style, Writer
+from symflex.print.latex.label import labels_of, symbol
+from symflex.print.latex.lines import break_lines
+from symflex.print.latex.width import EM_MM, FRACTION_EDGES, MINUS, QUAD, RELATION
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from symflex.model import Input, Model, Output
+    from symflex.print.forms import PrintedForm
+    from symflex.transfer import AnyTransferFunction
+
+_OVER: Final = "_over_"
+
+RESERVED: Final = {LAPLACE: "s", "pi": r"\pi"}
+
+NOTEBOOK_MM: Final = 190.0
+"""Width of an equation in a notebook, in type of ten points."""
+
+LONGEST_IN_NOTEBOOK: Final = 20_000
+
+# TeX keeps a whole display in its memory.
+_LINES_PER_DISPLAY: Final = 300
+_TAG: Final = 2.9
+"""A number of three digits and the least room before it."""
+
+_PARENTHESES: Final = 0.781
+_WHERE: Final = r"\text{where}\quad "
+_WHERE_WIDTH: Final = 3.57
+_LEAST_ROOM: Final = 17.5
+_WIDEST_LEFT: Final = 6.0
+_NUMERATORS: Final = (("N", "D"), ("P", "Q"), ("B", "A"), (r"\mathcal{N}", r"\mathcal{D}"))
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """One equation of a display: its sides, the right one in lines, and the width of the left one."""
+
+    left: str
+    left_width: float
+    right: tuple[str, ...]
+
+
+def model_labels(model: Model) -> dict[str, str]:
+    """Return the labels of a model's parameters and definitions, declared or made, no two alike."""
+    named = [(p.name, p.latex) for p in model.parameters] + [(d.name, d.latex) for d in model.definitions]
+    return labels_of(named, RESERVED)
+
+
+def equation_label(name: str) -> str:
+    r"""Return the ``\label`` of a transfer function: that of the exported functions of its name.
+
+    Different names have different labels: a slash remains where ``_over_`` could be read in two ways.
+
+    Examples
+    --------
+    >>> equation_label("V_tip/F"), equation_label("a/b_over_c")
+    ('eq:V_tip_over_F', 'eq:a/b_over_c')
+    """
+    plain = re.sub(r"[^A-Za-z0-9_/]", lambda m: f".{ord(m[0]):x}.", name)
+    joined = plain.replace("/", _OVER)
+    is_unique = len(re.findall(f"(?={_OVER})", joined)) == 1
+    return f"eq:{joined if is_unique else plain}"
+
+
+def ratio_latex(tf: AnyTransferFunction) -> str:
+    r"""Return output over input on one line, such as ``V_{\mathrm{tip}}(s)/F(s)``."""
+    s = Writer({}).piece(Name(LAPLACE))
+    (above, _), (below, _) = _end(tf.output, s), _end(tf.input, s)
+    return f"{above}/{below}"
+
+
+def transfer_function_latex(
+    tf: AnyTransferFunction,
+    form: PrintedForm,
+    *,
+    width_mm: float | None,
+    label: str = "",
+) -> str:
+    r"""Return a transfer function as a numbered display, with its definitions in ``where`` lines.
+
+    Parameters
+    ----------
+    tf : TransferFunction
+        What is printed.
+    form : PrintedForm
+        Its numerator, denominator and definitions.
+    width_mm : float or None
+        Width of the text, set in ten points, treated as 80 mm when it is less; ``None`` never breaks a line.
+    label : str, optional
+        In place of :func:`equation_label` of the name, where several models share a document.
+
+    Returns
+    -------
+    str
+        ``equation`` when one line suffices, else ``align`` with numerator and denominator named and broken.
+    """
+    writer = Writer(form_labels(tf, form))
+    width = None if width_mm is None else max(width_mm, NARROWEST_MM) / EM_MM
+    parts = [_formula(tf, form, writer, width, label or equation_label(tf.name))]
+    if form.where or form.laws:
+        parts.append(_where(form, writer, width))
+    return "\n".join(parts)
+
+
+def formula_latex(
+    left: str,
+    expression: Expression,
+    where: Sequence[tuple[str, Expression]],
+    labels: Mapping[str, str],
+    *,
+    width_mm: float,
+) -> str:
+    r"""Return an equation of any expression as a display without a number, broken where it must be.
+
+    Parameters
+    ----------
+    left : str
+        LaTeX of its left side.
+    expression : Expression
+        Its right side.
+    where : sequence of (str, Expression)
+        Lines below it.
+    labels : Mapping of str to str
+        Declared labels.
+    width_mm : float
+        Width of the text, set in ten points.
+
+    Examples
+    --------
+    >>> print(formula_latex("y", Name("omega_p1"), (), {}, width_mm=80))
+    \begin{align*}
+      y &= \omega_{p1}
+    \end{align*}
+    """
+    writer = Writer(labels)
+    width = max(width_mm, NARROWEST_MM) / EM_MM
+    # The commands of the left side are wider than what they print.
+    left_width = min(float(len(left)), _WIDEST_LEFT)
+    rows = [_row(left, left_width, expression, writer, width, left_width)]
+    parts = [_align(rows, "align*", "")]
+    if where:
+        lines = _broken_rows(where, writer, width - _WHERE_WIDTH)
+        lines[0] = _Row(f"{_WHERE}{lines[0].left}", lines[0].left_width, lines[0].right)
+        parts.append(_align(lines, "align*", ""))
+    return "\n".join(parts)
+
+
+def inline_latex(tf: AnyTransferFunction, form: PrintedForm) -> str:
+    r"""Return a transfer function as one line of mathematics without delimiters, for notebooks and HTML."""
+    writer = Writer(form_labels(tf, form))
+    formula = f"{_left_side(tf, form, writer)[0]} = {_right_side(form, writer)[0]}"
+    if not (form.where or form.laws):
+        return formula
+    where = [f"{writer.label(n).latex} = {writer.piece(e).latex}" for n, e in form.where]
+    where += [f"{law.latex} = {value}" for law, value in _laws(form, writer)]
+    return rf"{formula},\quad \text{{where }} " + r",\; ".join(where)
+
+
+def notebook_latex(tf: AnyTransferFunction, form: PrintedForm) -> str | None:
+    r"""Return a transfer function as mathematics without delimiters, in lines where one would be too long.
+
+    Only commands that KaTeX and MathJax share are used.
+
+    Returns
+    -------
+    str or None
+        :func:`inline_latex`, or an ``aligned`` environment. None when it would be longer than
+        :data:`LONGEST_IN_NOTEBOOK` characters, which a page takes seconds to set.
+    """
+    writer = Writer(form_labels(tf, form))
+    width = NOTEBOOK_MM / EM_MM
+    right, right_width = _right_side(form, writer)
+    if len(right) > LONGEST_IN_NOTEBOOK:
+        return None
+    one_line = _left_side(tf, form, writer)[1] + RELATION + right_width
+    if not (form.where or form.laws) and one_line <= width:
+        return inline_latex(tf, form)
+    rows = [*_rows(tf, form, writer, width), *_where_rows(form, writer, width)]
+    lines = []
+    for row in rows:
+        first, *more = row.right if row.right[0] else row.right[1:]
+        lines += [f"{row.left} &= {first}", *(rf"&\quad {line}" for line in more)]
+    body = " \\\\ ".join(lines)
+    latex = rf"\begin{{aligned}} {body} \end{{aligned}}"
+    return latex if len(latex) <= LONGEST_IN_NOTEBOOK else None
+
+
+def form_labels(tf: AnyTransferFunction, form: PrintedForm) -> dict[str, str]:
+    """Return the labels of every name in a printed form: the model's, and those the form brings."""
+    labels = model_labels(tf.model)
+    own = [(name, "") for name, _ in (*form.where, *form.laws) if name not in labels]
+    return labels_of(own, labels)
+
+
+def _end(end: Input | Output, argument: Piece) -> tuple[str, float]:
+    label = symbol(end.name, {end.name: end.latex})
+    return f"{label.latex}({argument.latex})", label.width + argument.width + _PARENTHESES
+
+
+def _left_side(tf: AnyTransferFunction, form: PrintedForm, writer: Writer) -> tuple[str, float]:
+    argument = writer.piece(form.argument)
+    (above, above_width), (below, below_width) = _end(tf.output, argument), _end(tf.input, argument)
+    return rf"\frac{{{above}}}{{{below}}}", max(above_width, below_width) + FRACTION_EDGES.text
+
+
+def split_sign(form: PrintedForm) -> tuple[str, Expression]:
+    """Return the sign that stands before the fraction, and the numerator without it."""
+    num = form.num
+    return ("-", num.operand) if isinstance(num, Negative) else ("", num)
+
+
+def _right_side(form: PrintedForm, writer: Writer) -> tuple[str, float]:
+    if is_number(form.den, 1):
+        piece = writer.piece(form.num)
+        return piece.latex, piece.width
+    sign, num = split_sign(form)
+    above, below = writer.piece(num, Style.TEXT), writer.piece(form.den, Style.TEXT)
+    width = max(above.width, below.width) + FRACTION_EDGES.text + (MINUS if sign else 0)
+    return rf"{sign}\frac{{{above.latex}}}{{{below.latex}}}", width
+
+
+def _formula(
+    tf: AnyTransferFunction,
+    form: PrintedForm,
+    writer: Writer,
+    width: float | None,
+    name: str,
+) -> str:
+    left, left_width = _left_side(tf, form, writer)
+    right, right_width = _right_side(form, writer)
+    label = rf"\label{{{name}}}"
+    # Where only the number lacks room, it stands below the formula by itself.
+    if width is None or left_width + RELATION + right_width <= width:
+        return f"\\begin{{equation}}\n  {label}\n  {left} = {right}\n\\end{{equation}}"
+    return _align(_rows(tf, form, writer, width), "align", label)
+
+
+def _rows(tf: AnyTransferFunction, form: PrintedForm, writer: Writer, width: float) -> list[_Row]:
+    """Return the equations that a formula too wide for one line is made of."""
+    left, left_width = _left_side(tf, form, writer)
+    if is_number(form.den, 1):
+        return [_row(left, left_width, form.num, writer, width, left_width, _TAG)]
+    return _named_parts(form, writer, width, left, left_width)
+
+
+def _named_parts(form: PrintedForm, writer: Writer, width: float, left: str, left_width: float) -> list[_Row]:
+    """Return the quotient of what is short and of names for what is not, and what the names stand for."""
+    sign, num = split_sign(form)
+    varying, argument = varying_names(form), writer.piece(form.argument)
+    parts = []
+    for name, expression in zip(free_names(form, writer), (num, form.den), strict=True):
+        piece = writer.piece(expression, Style.TEXT)
+        is_long = left_width + RELATION + MINUS + FRACTION_EDGES.text + piece.width + _TAG > width
+        depends = any(n.name in varying for n in names(expression))
+        head = f"{name}({argument.latex})" if depends else name
+        parts.append((head if is_long else piece.latex, expression, is_long))
+    rows = [_Row(left, left_width, (rf"{sign}\frac{{{parts[0][0]}}}{{{parts[1][0]}}}",))]
+    rows += [
+        _row(head, MINUS + argument.width + _PARENTHESES, expression, writer, width, left_width)
+        for head, expression, is_long in parts
+        if is_long
+    ]
+    return rows
+
+
+def varying_names(form: PrintedForm) -> frozenset[str]:
+    """Return s, and the names that stand for functions of it."""
+    varying = {LAPLACE, *(name for name, _ in form.laws)}
+    # A line may use the names of any other.
+    users: dict[str, list[str]] = {}
+    for name, expression in form.where:
+        for used in names(expression):
+            if isinstance(used, Name):
+                users.setdefault(used.name, []).append(name)
+    pending = list(varying)
+    while pending:
+        fresh = [name for name in users.get(pending.pop(), ()) if name not in varying]
+        varying.update(fresh)
+        pending += fresh
+    return frozenset(varying)
+
+
+def free_names(form: PrintedForm, writer: Writer) -> tuple[str, str]:
+    """Return names for numerator and denominator that no symbol of the formula bears."""
+    expressions = [form.num, form.den, *(e for _, e in form.where)]
+    used = {n.name for e in expressions for n in names(e) if isinstance(n, Name)}
+    taken = {writer.label(name).latex for name in sorted(used)}
+    free = [pair for pair in _NUMERATORS if not taken & set(pair)]
+    return free[0] if free else _NUMERATORS[-1]
+
+
+def _where(form: PrintedForm, writer: Writer, width: float | None) -> str:
+    return _align(_where_rows(form, writer, width), "align*", "")
+
+
+def _where_rows(form: PrintedForm, writer: Writer, width: float | None) -> list[_Row]:
+    if not (form.where or form.laws):
+        return []
+    rows = _broken_rows(form.where, writer, width) if form.where else []
+    rows += [_Row(left.latex, left.width, (value,)) for left, value in _laws(form, writer)]
+    first = rows[0]
+    rows[0] = _Row(f"{_WHERE}{first.left}", first.left_width, first.right)
+    return rows
+
+
+def _laws(form: PrintedForm, writer: Writer) -> list[tuple[Piece, str]]:
+    """Return the differential equations of functions of x and their values at x = 0."""
+    rows = []
+    for name, law in form.laws:
+        order = max(node.order for node in names(law) if isinstance(node, Derivative))
+        rows.append((writer.piece(law.left), writer.piece(law.right).latex))
+        at_zero = [writer.piece(Call(name, number(0), k)) for k in range(order)]
+        rows += [(piece, "1" if k == order - 1 else "0") for k, piece in enumerate(at_zero)]
+    return rows
+
+
+def _broken_rows(
+    equations: Sequence[tuple[str, Expression]], writer: Writer, width: float | None
+) -> list[_Row]:
+    heads = [writer.label(name) for name, _ in equations]
+    column = max(_WHERE_WIDTH + heads[0].width, *(head.width for head in heads))
+    return [
+        _row(head.latex, head.width, expression, writer, width, column)
+        for head, (_, expression) in zip(heads, equations, strict=True)
+    ]
+
+
+def _row(
+    left: str,
+    left_width: float,
+    expression: Expression,
+    writer: Writer,
+    width: float | None,
+    column: float,
+    tag: float = 0.0,
+) -> _Row:
+    """Return an equation with its right side broken.
+
+    Parameters
+    ----------
+    left, left_width : str, float
+        Its left side.
+    expression : Expression
+        Its right side.
+    writer : Writer
+        Gives names their labels.
+    width : float or None
+        Of a line [em]; None never breaks one.
+    column : float
+        Width of the widest left side.
+    tag : float
+        Room that the first line leaves for its number.
+    """
+    if width is None:
+        return _Row(left, left_width, (writer.piece(expression).latex,))
+    room = width - column - RELATION
+    if room - tag < _LEAST_ROOM:
+        # The left side stands in a line of its own.
+        room = width - RELATION - QUAD
+        lines = break_lines(expression, writer, room, room - QUAD + RELATION)
+        return _Row(left, left_width, ("", *lines))
+    return _Row(left, left_width, tuple(break_lines(expression, writer, room - tag, room - QUAD)))
+
+
+def _align(rows: Sequence[_Row], environment: str, label: str) -> str:
+    """Return rows aligned at their equals signs; pages may break between lines."""
+    stands_alone = any(row.right[0] == "" for row in rows)
+    lines: list[str] = []
+    for row in rows:
+        if stands_alone:
+            whole = row.right[1:] if row.right[0] == "" else row.right
+            lines += [f"& {row.left}", rf"&\quad = {whole[0]}"]
+            continuation = whole[1:]
+        else:
+            lines.append(f"{row.left} &= {row.right[0]}")
+            continuation = row.right[1:]
+        indent = r"&\qquad " if stands_alone else r"&\quad "
+        lines += [f"{indent}{line}" for line in continuation]
+    if environment == "align":
+        lines = [f"{lines[0]} {label}", *(rf"{line} \notag" for line in lines[1:])]
+    displays = []
+    for start in range(0, len(lines), _LINES_PER_DISPLAY):
+        # The first line stays with the next.
+        first, *more = lines[start : start + _LINES_PER_DISPLAY]
+        body = " \\\\*\n  ".join((first, " \\\\\n  ".join(more))) if more else first
+        displays.append(f"\\begin{{{environment}}}\n  {body}\n\\end{{{environment}}}")
+    if len(lines) == 1:
+        return displays[0]
+    return "\n".join((r"\begingroup\allowdisplaybreaks", *displays, r"\endgroup"))

@@ -1,0 +1,440 @@
+r"""How names print: a declared label when it is sound LaTeX, else one made from the name.
+
+A declared label is read completely before it is used, so that it cannot break the formula it stands in:
+every command has its argument, no atom bears two superscripts, and text holds only text.
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from symflex.model.labels import ACCENTS, FONTS, GREEK, SYMBOLS
+from symflex.print.latex.width import (
+    COMMA_SIZES,
+    FENCE_SIZES,
+    ITALIC,
+    NOTHING,
+    OPERATOR_SIZES,
+    OTHER_ALPHABETS,
+    PRIME_SIZES,
+    RELATION_SIZES,
+    ROMAN,
+    SCRIPT_SPACE,
+    SLASH_SIZES,
+    STAR_SIZES,
+    TEXT_ITALIC,
+    THIN_SIZES,
+    TYPEWRITER,
+    UPRIGHT,
+    Alphabet,
+    Width,
+    always,
+    greek_width,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+WIDEST_LABEL: Final = 12.0
+"""Width in em beyond which a label gives way to the name in small type."""
+
+_GREEK: Final = frozenset(GREEK)
+_ACCENTS: Final = frozenset(ACCENTS)
+_FONTS: Final = frozenset(FONTS)
+_SYMBOLS: Final = frozenset(SYMBOLS)
+_TEXT_FONTS: Final = frozenset(("text", "textrm", "textit"))
+_DEEPEST: Final = 8
+_TOKEN: Final = re.compile(r"\\([A-Za-z]+) *|\\([,;:! ])|([A-Za-z0-9_^{}'+\-=/.,()| *])")
+_TEXT: Final = re.compile(r"[A-Za-z0-9'+\-=/.,()| *]*")
+_NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+_STEM: Final = re.compile(r"([A-Za-z]+)([0-9]*)")
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    r"""A label and what the formula around it must know.
+
+    Parameters
+    ----------
+    latex : str
+        Sound in math mode.
+    size : Width
+        Rounded up.
+    is_wordy : bool
+        Holds a word, so that a neighbour needs a thin space.
+    has_superscript : bool
+        Bears a superscript or prime, so that a power needs parentheses.
+    is_sum, is_product : bool
+        Prints an operation, so that it may need parentheses.
+    subscript : Width
+        Of the subscript at its end, above which a power has room.
+    """
+
+    latex: str
+    size: Width
+    is_wordy: bool = False
+    has_superscript: bool = False
+    is_sum: bool = False
+    is_product: bool = False
+    subscript: Width = NOTHING
+
+    @property
+    def width(self) -> float:
+        """Width at full size [em]."""
+        return self.size.text
+
+
+def label_of(name: str) -> str:
+    r"""Return the label of a name that has none declared.
+
+    Greek names print as letters, the parts after underscores as subscripts; words in subscripts are upright.
+
+    Examples
+    --------
+    >>> print(*map(label_of, ("omega_p1", "k_amp", "EI", "m_1", "k_tau", "V_tip_x")))
+    \omega_{p1} k_{\mathrm{amp}} \mathit{EI} m_{1} k_{\tau} V_{\mathrm{tip},x}
+    """
+    return _made(name).latex
+
+
+def read_label(latex: str) -> Label | None:
+    r"""Read a declared label; ``None`` when it would break a formula.
+
+    Examples
+    --------
+    >>> read_label(r"\omega_{p1}").latex, read_label(r"\hat"), read_label(r"\text{a_b}"), read_label("x^2'")
+    ('\\omega_{p1}', None, None, None)
+    """
+    return _read(latex)
+
+
+def labels_of(named: Iterable[tuple[str, str]], reserved: Mapping[str, str]) -> dict[str, str]:
+    r"""Return a label for every name, no two alike.
+
+    Parameters
+    ----------
+    named : iterable of (str, str)
+        Names with their declared labels, which may be empty.
+    reserved : Mapping of str to str
+        Names with labels that no other may take.
+
+    Examples
+    --------
+    >>> labels_of([("m_1", ""), ("m1", ""), ("k", "k_t")], {"s": "s"})
+    {'s': 's', 'k': 'k_t', 'm_1': 'm_{1}', 'm1': '\\mathtt{m1}'}
+    """
+    labels = dict(reserved)
+    taken = set(map(_plain, labels.values()))
+    # Declared labels choose first.
+    for name, latex in sorted(named, key=lambda pair: not pair[1]):
+        label = _symbol(name, latex)
+        if _plain(label.latex) in taken:
+            label = _verbatim(name)
+        taken.add(_plain(label.latex))
+        labels[name] = label.latex
+    return labels
+
+
+def symbol(name: str, labels: Mapping[str, str]) -> Label:
+    """Return the label of a name, declared or made."""
+    return _symbol(name, labels.get(name, ""))
+
+
+@functools.lru_cache(maxsize=4096)
+def _symbol(name: str, latex: str) -> Label:
+    label = _read(latex) if latex else None
+    if label is None or label.width > WIDEST_LABEL:
+        label = _made(name)
+    return label
+
+
+def _plain(latex: str) -> str:
+    """Return a label without what does not show, to tell labels apart."""
+    return re.sub(r"[{} ]|\\[,;:! ]", "", latex)
+
+
+def _made(name: str) -> Label:
+    parts = name.split("_")
+    if not _NAME.fullmatch(name) or not all(parts):
+        return _verbatim(name)
+    match = _STEM.fullmatch(parts[0])
+    if match is None:
+        return _verbatim(name)
+    subscripts = [_subscript(p) for p in (*((match[2],) if match[2] else ()), *parts[1:])]
+    latex = _stem(match[1])
+    if subscripts:
+        latex += f"_{{{','.join(subscripts)}}}"
+    label = _read(latex)
+    return label if label is not None and label.width <= WIDEST_LABEL else _verbatim(name)
+
+
+def _stem(letters: str) -> str:
+    if letters in _GREEK:
+        return f"\\{letters}"
+    return letters if len(letters) == 1 else rf"\mathit{{{letters}}}"
+
+
+def _subscript(part: str) -> str:
+    letters = part.rstrip("0123456789")
+    number = part[len(letters) :]
+    if letters in _GREEK:
+        return f"\\{letters} {number}".rstrip()
+    return part if len(letters) <= 1 else rf"\mathrm{{{part}}}"
+
+
+def _verbatim(name: str) -> Label:
+    """Return a name in typewriter, stacked and small when it is long: this label always works."""
+    if _NAME.fullmatch(name) and _typewriter_width(name.replace("_", r"\_")) <= WIDEST_LABEL:
+        text = name.replace("_", r"\_")
+        return Label(rf"\mathtt{{{text}}}", always(_typewriter_width(text)), is_wordy=True)
+    plain = re.sub(r"[^A-Za-z0-9_]", ".", name)
+    pieces = [plain[i : i + _STACKED].replace("_", r"\_") for i in range(0, len(plain), _STACKED)]
+    lines = [rf"\scriptscriptstyle\mathtt{{{piece}}}" for piece in pieces]
+    stacked = r"\\".join(lines)
+    return Label(rf"\substack{{{stacked}}}", always(_stacked_width(stacked)), is_wordy=True)
+
+
+def _stacked_width(latex: str) -> float:
+    # An underscore is a rule that hardly shrinks.
+    lines: list[str] = re.findall(r"\\mathtt\{([^}]*)\}", latex)
+    return max(
+        _TINY_SIZE * TYPEWRITER * len(line.replace(r"\_", "")) + _UNDERSCORE * line.count(r"\_")
+        for line in lines or [""]
+    )
+
+
+def _typewriter_width(text: str) -> float:
+    # An underscore in mathematics is a rule, half as wide again as a letter.
+    return (len(text) - 0.5 * text.count(r"\_")) * TYPEWRITER
+
+
+@functools.lru_cache(maxsize=4096)
+def _read(latex: str) -> Label | None:
+    if _TYPEWRITER.fullmatch(latex):
+        text = latex.removeprefix(r"\mathtt{").removesuffix("}")
+        return Label(latex, always(_typewriter_width(text)), is_wordy=True)
+    if _SMALL.fullmatch(latex):
+        return Label(latex, always(_stacked_width(latex)), is_wordy=True)
+    try:
+        whole, _ = _read_list(latex, 0, ITALIC, 0)
+    except _UnsoundError:
+        return None
+    if not whole.atoms:
+        return None
+    return Label(
+        latex,
+        whole.size,
+        whole.is_wordy,
+        whole.has_superscript,
+        whole.is_sum,
+        whole.is_product or whole.atoms > 1,
+        whole.subscript,
+    )
+
+
+_STACKED: Final = 22
+"""Characters in a line of a stacked name."""
+
+_TINY_SIZE: Final = 0.55
+_UNDERSCORE: Final = 0.5
+
+# What `_verbatim` writes of a proper name, sound by construction.
+_TYPEWRITER: Final = re.compile(r"\\mathtt\{(?:[A-Za-z0-9]|\\_)+\}")
+_SMALL: Final = re.compile(
+    r"\\substack\{\\scriptscriptstyle\\mathtt\{(?:[A-Za-z0-9.]|\\_)+\}"
+    r"(?:\\\\\\scriptscriptstyle\\mathtt\{(?:[A-Za-z0-9.]|\\_)+\})*\}"
+)
+
+
+class _UnsoundError(Exception):
+    """The label would break a formula."""
+
+
+@dataclass(slots=True)
+class _Found:
+    """What a list of atoms amounts to."""
+
+    size: Width = NOTHING
+    atoms: int = 0
+    letters: int = 0
+    is_wordy: bool = False
+    has_superscript: bool = False
+    is_sum: bool = False
+    is_product: bool = False
+    subscript: Width = NOTHING
+    last: str = ""
+
+    def add(self, size: Width) -> None:
+        """Add an atom."""
+        self.size += size
+        self.atoms += 1
+        self.subscript = NOTHING
+        self.last = ""
+
+    def add_script(self, sign: str, size: Width) -> None:
+        """Add a script of the last atom, above or below the one that it bears already."""
+        self.size += size.beyond(self.subscript)
+        self.subscript = size if sign == "_" else NOTHING
+
+
+def _read_list(latex: str, start: int, letters: Alphabet, depth: int) -> tuple[_Found, int]:
+    """Read atoms up to the closing brace, or to the end at depth 0; return them and where reading goes on."""
+    if depth > _DEEPEST:
+        raise _UnsoundError
+    found, position = _Found(), start
+    # The scripts that the last atom bears; without an atom there is nothing to bear one.
+    scripts: set[str] | None = None
+    while position < len(latex):
+        match = _TOKEN.match(latex, position)
+        if match is None:
+            raise _UnsoundError
+        position = match.end()
+        command, space, sign = match.groups()
+        if space:
+            found.size += THIN_SIZES * 2
+            found.subscript, found.last = NOTHING, ""
+            scripts = None
+        elif command:
+            inner, position = _read_command(latex, command, position, letters, depth)
+            _merge(found, inner)
+            scripts = set()
+        elif sign == "{":
+            inner, position = _read_list(latex, position, letters, depth + 1)
+            _merge(found, inner)
+            scripts = set()
+        elif sign == "}":
+            if not depth:
+                raise _UnsoundError
+            return found, position
+        elif sign in "_^'":
+            position = _read_script(latex, sign, position, found, scripts, letters, depth)
+        elif sign != " ":
+            _add_sign(found, sign, letters)
+            scripts = set()
+    if depth:
+        raise _UnsoundError
+    return found, position
+
+
+def _read_script(
+    latex: str,
+    sign: str,
+    position: int,
+    found: _Found,
+    scripts: set[str] | None,
+    letters: Alphabet,
+    depth: int,
+) -> int:
+    """Read what a script sign raises or lowers; a prime is a superscript and may be repeated."""
+    if scripts is None or (sign in scripts and sign != "'") or {sign, *scripts} >= {"^", "'"}:
+        raise _UnsoundError
+    scripts.add(sign)
+    found.has_superscript = found.has_superscript or sign != "_"
+    if sign == "'":
+        # More primes stand beside the first, wherever a subscript ends.
+        found.size += PRIME_SIZES + SCRIPT_SPACE
+        found.subscript = NOTHING
+        return position
+    inner, position = _read_argument(latex, position, letters, depth)
+    found.add_script(sign, inner.size.raised + SCRIPT_SPACE)
+    found.is_wordy = found.is_wordy or inner.is_wordy or inner.letters > 1
+    return position
+
+
+def _read_argument(latex: str, start: int, letters: Alphabet, depth: int) -> tuple[_Found, int]:
+    """Read the one atom or group that a script or accent applies to."""
+    match = _TOKEN.match(latex, start)
+    if match is None:
+        raise _UnsoundError
+    command, _, sign = match.groups()
+    found, position = _Found(), match.end()
+    if sign == "{":
+        found, position = _read_list(latex, position, letters, depth + 1)
+    elif command in _GREEK or command in _SYMBOLS:
+        found.add(_command_width(command))
+    elif sign and (sign.isalnum() or sign in "*+-"):
+        _add_sign(found, sign, letters)
+    if not found.atoms:
+        raise _UnsoundError
+    return found, position
+
+
+def _read_command(
+    latex: str, command: str, position: int, letters: Alphabet, depth: int
+) -> tuple[_Found, int]:
+    found = _Found()
+    if command in _GREEK or command in _SYMBOLS:
+        found.add(_command_width(command))
+        found.is_sum = command in ("pm", "mp")
+        found.is_product = command in ("cdot", "times")
+        return found, position
+    if command in _ACCENTS:
+        inner, position = _read_argument(latex, position, letters, depth)
+        found.add(inner.size + THIN_SIZES)
+        found.is_wordy = inner.is_wordy
+        return found, position
+    if command not in _FONTS or latex[position : position + 1] != "{":
+        raise _UnsoundError
+    if command in _TEXT_FONTS:
+        match = _TEXT.match(latex, position + 1)
+        if match is None or latex[match.end() : match.end() + 1] != "}" or not match[0].strip():
+            raise _UnsoundError
+        # Text shrinks in scripts as letters do, at least.
+        found.add(_text_size(match[0]))
+        found.is_wordy = True
+        return found, match.end() + 1
+    inner, position = _read_list(latex, position + 1, _ALPHABETS.get(command, OTHER_ALPHABETS), depth + 1)
+    if not inner.atoms:
+        raise _UnsoundError
+    found.add(inner.size)
+    found.letters = inner.letters
+    found.is_wordy = inner.letters > 1
+    return found, position
+
+
+_ALPHABETS: Final[dict[str, Alphabet]] = {"mathrm": UPRIGHT, "mathit": TEXT_ITALIC}
+_SIGN_SIZES: Final = (
+    dict.fromkeys("+-", OPERATOR_SIZES)
+    | {"=": RELATION_SIZES, ",": COMMA_SIZES, "*": STAR_SIZES, "/": SLASH_SIZES, ".": FENCE_SIZES[1]}
+    | dict.fromkeys("()", FENCE_SIZES[0])
+    | {"|": FENCE_SIZES[1]}
+)
+_SCRIPT_TEXT, _TINY_TEXT = 0.85, 0.7
+
+
+def _text_size(text: str) -> Width:
+    """Return the width of words in mathematics, in the wider of two fonts."""
+    italic = TEXT_ITALIC.widths
+    em = sum(max(ROMAN[c], italic[c].text if c in italic else 0.0) for c in text) + TEXT_ITALIC.kern.text
+    return Width(em, _SCRIPT_TEXT * em, _TINY_TEXT * em)
+
+
+def _command_width(command: str) -> Width:
+    return greek_width(command) if command in _GREEK else OPERATOR_SIZES
+
+
+def _add_sign(found: _Found, sign: str, letters: Alphabet) -> None:
+    if sign.isalnum():
+        found.letters += sign.isalpha()
+        before = found.last
+        found.add(letters.after(before, sign))
+        found.last = sign
+    elif sign in "+-=,|":
+        found.is_sum = True
+        found.add(_SIGN_SIZES[sign])
+    else:
+        found.is_product = found.is_product or sign in "/*"
+        found.add(_SIGN_SIZES[sign])
+
+
+def _merge(found: _Found, inner: _Found) -> None:
+    """Add a group as one atom of the list around it."""
+    found.add(inner.size)
+    found.letters += inner.letters
+    found.is_wordy = found.is_wordy or inner.is_wordy
+    found.has_superscript = found.has_superscript or inner.has_superscript
+    found.is_sum = found.is_sum or inner.is_sum
+    found.is_product = found.is_product or inner.is_product

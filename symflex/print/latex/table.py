@@ -1,0 +1,348 @@
+r"""Tables of parameters, poles, zeros and modes, with booktabs and siunitx, as wide as a column allows."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Final
+
+from flint import arb
+
+from symflex.print.latex.column import COLUMNS_MM
+from symflex.print.latex.equation import model_labels
+from symflex.print.latex.label import symbol
+from symflex.print.latex.tabular import (
+    SETTINGS,
+    Column,
+    Setting,
+    fitting,
+    number_column,
+    number_width,
+    tabular,
+)
+from symflex.print.latex.text import escape_text, text_width
+from symflex.print.latex.units import quantity_latex, siunitx_unit, unit_latex
+from symflex.print.latex.width import EM_MM
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from symflex.model import ExactValue, Model, Parameter
+    from symflex.roots import PoleZeroMap, Root
+
+VALUE_DIGITS: Final = 7
+"""Significant digits of a value that is not a shorter decimal."""
+
+ROOT_DIGITS: Final = 6
+"""Significant digits of a root, where its radius certifies them and the column has room."""
+
+LONGEST_MEANING: Final = 400
+"""Characters of a description that a table prints; a row must fit a page."""
+
+KINDS: Final = {"poles": "pole", "zeros": "zero", "hidden": "hidden root"}
+"""What a :class:`~symflex.roots.PoleZeroMap` holds, and what one of it is called."""
+
+_FEWEST_DIGITS: Final = 3
+_PI: Final = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899")
+_LARGEST_PLAIN: Final = 5
+_SMALLEST_PLAIN: Final = -4
+_NARROWEST_MEANING: Final = 12.5
+_WRAPPED: Final = r">{{\raggedright\arraybackslash}}p{{{:.1f}mm}}"
+_FREQUENCY_BITS: Final = 256
+
+
+def parameter_table(model: Model, *, width_mm: float = COLUMNS_MM["a4"]) -> str:
+    r"""Return the table of a model's parameters: symbol, meaning, value in the unit it was given in.
+
+    Values that are not short decimals are rounded to :data:`VALUE_DIGITS` significant digits; a parameter
+    without a value is called symbolic. Needs booktabs, siunitx and array.
+
+    Parameters
+    ----------
+    model : Model
+        Whose parameters, in declared order.
+    width_mm : float, optional
+        Width of the column; meanings are broken into lines where they must be.
+    """
+    labels = model_labels(model)
+    widths = [symbol(p.name, labels).width for p in model.parameters]
+    symbols = tuple(f"${labels[p.name]}$" for p in model.parameters)
+    first = Column("l", ("Symbol",), (text_width("Symbol"),), symbols, max(widths, default=0.0))
+    values = tuple(map(_value, model.parameters))
+    widest = max(map(_value_width, model.parameters), default=0.0)
+    last = Column("l", ("Value",), (text_width("Value"),), values, widest)
+    room = width_mm / EM_MM
+    if not any(p.doc for p in model.parameters):
+        return tabular((first, last), fitting((first, last), room) or SETTINGS[-1])
+    texts = tuple(_cut(p.doc) for p in model.parameters)
+    meanings = tuple(map(escape_text, texts))
+    natural = Column("l", ("Meaning",), (text_width("Meaning"),), meanings, max(map(text_width, texts)))
+    if SETTINGS[0].width((first, natural, last)) <= room:
+        return tabular((first, natural, last), SETTINGS[0])
+    for setting in SETTINGS:
+        left = room - setting.width((first, Column("p", ("",), (0.0,), (), 0.0), last))
+        if left >= _NARROWEST_MEANING * setting.scale:
+            return tabular((first, _wrapped(natural, left), last), setting, _heights(texts, left, setting))
+    # Without room beside each other, a value stands below its meaning.
+    setting = SETTINGS[-1]
+    left = room - setting.width((first, Column("p", ("",), (0.0,), (), 0.0)))
+    both = tuple(
+        rf"{meaning}\newline {value}" if meaning else value
+        for meaning, value in zip(meanings, values, strict=True)
+    )
+    below = Column("l", ("Meaning, value",), natural.head_widths, both, 0.0)
+    heights = [1 + height for height in _heights(texts, left, setting)]
+    return tabular((first, _wrapped(below, left)), setting, heights)
+
+
+def _wrapped(column: Column, width: float) -> Column:
+    """Return a column of paragraphs of a width [em]."""
+    return Column(_WRAPPED.format(width * EM_MM), column.head, column.head_widths, column.cells, width)
+
+
+def _heights(texts: Iterable[str], width: float, setting: Setting) -> list[int]:
+    """Return how many lines paragraphs take in a column [em], words being kept whole."""
+    return [1 + int(setting.scale * text_width(text) / (0.8 * width)) for text in texts]
+
+
+def root_table(
+    found: PoleZeroMap, kind: str, *, digits: int = ROOT_DIGITS, width_mm: float = COLUMNS_MM["a4"]
+) -> str:
+    r"""Return the table of poles, zeros or hidden roots: both parts, frequency, damping ratio, multiplicity.
+
+    A conjugate pair is one row with a plus-minus sign. Each number has the digits that the root's enclosure
+    certifies, at most ``digits``; where a narrow column has no room for them fewer, but not less than three.
+    Needs booktabs and siunitx.
+
+    Parameters
+    ----------
+    found : PoleZeroMap
+        Certified roots.
+    kind : str
+        A key of :data:`KINDS`.
+    digits : int, optional
+        Significant digits.
+    width_mm : float, optional
+        Width of the column.
+    """
+    entries = one_of_each_pair(roots_of(found, kind))
+    heads = (
+        (("Re $s$", r"(\unit{\radian\per\second})"), ("Re s", "(rad/s)"), _real_part),
+        (("Im $s$", r"(\unit{\radian\per\second})"), ("Im s", "(rad/s)"), _imaginary_part),
+        (("Frequency", r"(\unit{\hertz})"), ("Frequency", "(Hz)"), _frequency),
+        (("Damping", "ratio"), ("Damping", "ratio"), _damping),
+    )
+    return _table_of(entries, heads, digits, width_mm / EM_MM)
+
+
+def roots_of(found: PoleZeroMap, kind: str) -> tuple[Root, ...]:
+    """Return the roots that a table of one kind lists: poles in the right half plane wherever they lie."""
+    if kind == "hidden":
+        return tuple(h.root for h in found.hidden)
+    return found.all_poles if kind == "poles" else found.zeros
+
+
+def mode_table(
+    maps: Sequence[PoleZeroMap], *, digits: int = ROOT_DIGITS, width_mm: float = COLUMNS_MM["a4"]
+) -> str:
+    r"""Return the table of the modes that are poles of any of several functions: frequencies and damping.
+
+    Rigid-body motions come first; a conjugate pair, or a real pole, is one mode. See :func:`root_table`.
+
+    Parameters
+    ----------
+    maps : sequence of PoleZeroMap
+        Of transfer functions of one model.
+    """
+    from symflex.roots.root import overlap  # imports numpy
+
+    modes: list[Entry] = []
+    for found in maps:
+        for entry in one_of_each_pair(found.all_poles):
+            same = [i for i, m in enumerate(modes) if overlap(m.root, entry.root)]
+            if not same:
+                modes.append(entry)
+            elif entry.root.multiplicity > modes[same[0]].root.multiplicity:
+                modes[same[0]] = entry
+    modes.sort(key=lambda m: float(m.root.natural_frequency().mid()))
+    heads = (
+        (("Frequency", r"(\unit{\hertz})"), ("Frequency", "(Hz)"), _frequency),
+        (("Frequency", r"(\unit{\radian\per\second})"), ("Frequency", "(rad/s)"), _angular_frequency),
+        (("Damping", "ratio"), ("Damping", "ratio"), _damping),
+    )
+    numbers, before = [], 0
+    for mode in modes:
+        # Rigid-body motions are number 0, as mode_shape() counts.
+        numbers.append("0" if mode.root.is_zero else str(before + 1))
+        before += 0 if mode.root.is_zero else mode.root.multiplicity
+    return _table_of(modes, heads, digits, width_mm / EM_MM, ("Mode", numbers))
+
+
+_Head = tuple[tuple[str, ...], tuple[str, ...], "Callable[[Entry, int], str]"]
+
+
+def _table_of(
+    entries: Sequence[Entry],
+    heads: Sequence[_Head],
+    digits: int,
+    room: float,
+    first: tuple[str, Sequence[str]] | None = None,
+) -> str:
+    """Return a table of roots with as many digits as there is room for [em]."""
+    for count in range(digits, min(digits, _FEWEST_DIGITS) - 1, -1):
+        columns = []
+        if first is not None:
+            title, numbers = first
+            columns.append(Column("r", (title,), (text_width(title),), tuple(numbers), 2.0))
+        for head, plain, cell in heads:
+            cells = [cell(entry, count) for entry in entries]
+            columns.append(number_column(head, tuple(map(text_width, plain)), cells))
+        if any(entry.root.multiplicity > 1 for entry in entries):
+            times = tuple(str(entry.root.multiplicity) for entry in entries)
+            head = ("Multi-", "plicity")
+            columns.append(Column("r", head, tuple(map(text_width, head)), times, 1.0))
+        setting = fitting(columns, room)
+        if setting is not None:
+            break
+    return tabular(columns, setting or SETTINGS[-1])
+
+
+def decimal_text(value: ExactValue) -> str:
+    """Return a value as a decimal, with pi to eighty digits; without trailing zeros unless it is rounded.
+
+    Examples
+    --------
+    >>> from symflex.model import ExactValue
+    >>> values = ("0.11", "2/3", "210000000000", "-4.7e-12", "955377")
+    >>> [decimal_text(ExactValue(Fraction(v))) for v in values]
+    ['0.11', '0.6666667', '2.1e11', '-4.7e-12', '955377']
+    """
+    number = value.rational * _PI**value.pi_power
+    if number == 0:
+        return "0"
+    sign, size = ("-" if number < 0 else ""), abs(number)
+    leading = _decimal_exponent(size)
+    count = round(size / Fraction(10) ** (leading - VALUE_DIGITS + 1))
+    if count == 10**VALUE_DIGITS:
+        leading, count = leading + 1, count // 10
+    text = str(count)
+    if Fraction(count) * Fraction(10) ** (leading - VALUE_DIGITS + 1) == size:
+        text = text.rstrip("0")
+    if _SMALLEST_PLAIN <= leading < 0:
+        return f"{sign}0.{'0' * (-leading - 1)}{text}"
+    if 0 <= leading <= _LARGEST_PLAIN:
+        whole = text[: leading + 1].ljust(leading + 1, "0")
+        return f"{sign}{whole}{'.' if len(text) > leading + 1 else ''}{text[leading + 1 :]}"
+    return f"{sign}{text[0]}{'.' if len(text) > 1 else ''}{text[1:]}e{leading}"
+
+
+def _decimal_exponent(value: Fraction) -> int:
+    estimate = math.floor((value.numerator.bit_length() - value.denominator.bit_length()) * math.log10(2))
+    while value >= Fraction(10) ** (estimate + 1):
+        estimate += 1
+    while value < Fraction(10) ** estimate:
+        estimate -= 1
+    return estimate
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= LONGEST_MEANING else f"{text[:LONGEST_MEANING]}\u2026"
+
+
+def _value(parameter: Parameter) -> str:
+    value, unit = parameter.as_written()
+    if value is None:
+        return f"symbolic, in {unit_latex(unit)}" if unit and unit != "1" else "symbolic"
+    return quantity_latex(decimal_text(value), unit)
+
+
+def _value_width(parameter: Parameter) -> float:
+    value, written = parameter.as_written()
+    unit = "" if written == "1" else written
+    width = text_width(unit) * (1.0 if siunitx_unit(written) is None else 1.1) + 0.4
+    if value is None:
+        return text_width("symbolic, in ") + width
+    return number_width(decimal_text(value)) + width
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A root to print, alone or for its conjugate pair."""
+
+    root: Root
+    is_pair: bool
+
+
+def one_of_each_pair(roots: Sequence[Root]) -> list[Entry]:
+    """Return every root once, a conjugate pair as the member above the real axis."""
+    lower = [r for r in roots if r.im < 0]
+    entries = []
+    for root in roots:
+        if root.im > 0:
+            partner = next((r for r in lower if r.im.overlaps(-root.im) and r.re.overlaps(root.re)), None)
+            if partner is not None:
+                lower.remove(partner)
+            entries.append(Entry(root, partner is not None))
+        elif not root.im < 0:
+            entries.append(Entry(root, is_pair=False))
+    return entries + [Entry(root, is_pair=False) for root in lower]
+
+
+def _real_part(entry: Entry, digits: int) -> str:
+    root = entry.root
+    return _certified(root.decimal(digits).re, is_exact=root.on_imaginary_axis)
+
+
+def _imaginary_part(entry: Entry, digits: int) -> str:
+    root = entry.root
+    shown = _certified(root.decimal(digits).im, is_exact=root.is_real)
+    return rf"\pm {shown}" if entry.is_pair and not shown.startswith("{") else shown
+
+
+def _angular_frequency(entry: Entry, digits: int) -> str:
+    from symflex.roots import decimals  # imports numpy
+
+    return _certified(
+        decimals(entry.root.natural_frequency(), arb(0), digits).re, is_exact=entry.root.is_zero
+    )
+
+
+def _frequency(entry: Entry, digits: int) -> str:
+    return _certified(frequency_text(entry.root, digits), is_exact=entry.root.is_zero)
+
+
+def _damping(entry: Entry, digits: int) -> str:
+    shown = damping_text(entry.root, digits)
+    return _certified(shown, is_exact=entry.root.on_imaginary_axis) if shown else "{--}"
+
+
+def frequency_text(root: Root, digits: int) -> str:
+    """Return the natural frequency abs(s)/(2 pi) of a root [Hz] with at most so many certified digits."""
+    from symflex.roots import decimals, precision  # imports numpy
+
+    with precision(max(_FREQUENCY_BITS, root.working_bits())):
+        frequency = root.natural_frequency() / (2 * arb.pi())
+    return decimals(frequency, arb(0), digits).re
+
+
+def damping_text(root: Root, digits: int) -> str:
+    """Return ``-re/abs(s)`` with at most so many certified digits, empty at 0 and where s may be 0."""
+    from symflex.roots import decimals, precision  # imports numpy
+
+    frequency = root.natural_frequency()
+    if root.is_zero or not frequency > 0:
+        return ""
+    if root.on_imaginary_axis:
+        return "0"
+    if root.is_real:
+        return "1" if root.re < 0 else "-1"
+    with precision(max(_FREQUENCY_BITS, root.working_bits())):
+        ratio = -root.re / frequency
+    return decimals(ratio, arb(0), digits).re
+
+
+def _certified(decimal: str, *, is_exact: bool) -> str:
+    """Return a decimal as a cell; a zero that is not exact is nearly zero."""
+    is_near_zero = decimal.partition("e")[0] == "0" and not is_exact
+    return r"{$\approx 0$}" if is_near_zero else decimal

@@ -1,0 +1,365 @@
+"""Roots of lossless functions on both axes, isolated in one dimension, and modes by their number.
+
+Sign changes on a grid, in doubles, give guesses; one interval Newton step proves that each is a root, and the
+only one in its interval; the count on an arc, which takes the part of that of Wittrick and Williams (1971)
+and serves zeros as well as poles, shows that there are no others. A mode of a given number lies between two
+circles, aimed at by the largest terms and counted: nothing grows with the number.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import cycle, islice
+from math import exp, inf, log, pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+from flint import arb
+
+from symflex.budget import spend
+from symflex.roots.axes.axis_function import IMAGINARY, REAL
+from symflex.roots.axes.axis_root import AxisRoots, bits_of, bracketed, changes_sign
+from symflex.roots.axes.harmonic_sum import lossless_function
+from symflex.roots.counting.winding import RootOnPathError
+from symflex.roots.precision import precision
+from symflex.roots.root import Root
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from symflex.roots.axes.axis_function import AxisFunction, Doubles
+    from symflex.roots.axes.harmonic_sum import LosslessFunction
+    from symflex.roots.counting.winding import Cell
+    from symflex.roots.distributed.kernel_function import KernelFunction
+
+GRID = 0.8
+"""Largest change of a phase [rad] from one sample to the next."""
+BATCH = 4096
+MOST_SAMPLES = 2_000_000
+NEWTON_STEPS = 6
+CLOSER = 1e-12
+"""Relative to t: no further Newton step is needed after one as short as this."""
+COUNT_BITS = 64
+HALF = 0.5
+"""From one integer, to tell it from all others."""
+ROUNDS = 40
+SECANTS = 30
+NEARLY = 0.2
+ASIDE = (0.0, 0.6, -0.6, 1.2)
+"""Turns by which circles are moved that meet roots; the first passes midway between two as a rule."""
+WITHIN, BEYOND = -1, 1
+SHARES = (0.5, 0.4, 0.6)
+"""Where a ring is cut in two."""
+HALVINGS = 60
+FEW = 8
+CLOSE = 1e-9
+DEPTH = 30.0
+"""How far below the first resonances roots are sought, in ln."""
+HIGHEST = 1e130
+"""abs(s) [rad/s] beyond which nothing is sought."""
+UNRELIABLE = 1e-10
+"""Relative to the terms of a sum, what is lost in rounding."""
+FIRST_PHASE = 1e-3
+"""Largest phase [rad] at the first sample."""
+
+
+@dataclass(frozen=True, slots=True)
+class Guess:
+    """A sign change of one factor on one axis.
+
+    Parameters
+    ----------
+    frequency : float
+        abs(s) [rad/s].
+    t : float
+        Where, in the variable of the axis.
+    source : AxisFunction
+        The factor there.
+    exponent : int
+        Of the factor: the root's multiplicity.
+    """
+
+    frequency: float
+    t: float
+    source: AxisFunction
+    exponent: int
+
+
+class LosslessSearch:
+    """Searches one lossless function.
+
+    Parameters
+    ----------
+    function : LosslessFunction
+        Real, but for a constant factor, on both axes, factor by factor; what is not is left to a count.
+    order : int
+        To which the function vanishes at s = 0.
+    digits : int
+        Significant digits of every root.
+
+    Attributes
+    ----------
+    roots : list of Root
+        What :meth:`scan` found, in the closed right upper quadrant.
+    reached : float
+        ln of the radius up to which it searched.
+    """
+
+    def __init__(self, function: LosslessFunction, order: int, digits: int) -> None:
+        self.function = function
+        self.order = order
+        self._newton = AxisRoots(digits)
+        self._known: dict[int, tuple[tuple[AxisFunction, int], ...]] = {}
+        self.roots: list[Root] = []
+        self.reached = -inf
+        self.missing = 0
+        self.excluded: set[Cell] = set()
+        self.holes: tuple[Cell, ...] = ()
+        self.is_even = True
+        self.left = pi / 2
+
+    def _factors_on(self, axis: int) -> tuple[tuple[AxisFunction, int], ...]:
+        """Return all factors that are real on an axis, and their exponents."""
+        if axis not in self._known:
+            found = (
+                (self.function.on_axis(number, axis), exponent)
+                for number, (_, exponent) in enumerate(self.function.factors)
+                if exponent > 0
+            )
+            self._known[axis] = tuple(
+                (source, e) for source, e in found if source is not None and source.waves
+            )
+        return self._known[axis]
+
+    @property
+    def _sources(self) -> tuple[tuple[AxisFunction, int], ...]:
+        return self._factors_on(REAL) + self._factors_on(IMAGINARY)
+
+    def count(self, z: float) -> int:
+        """Return the number of roots with ln(abs(s)) below ``z``, without those at 0: proved.
+
+        Raises
+        ------
+        RootOnPathError
+            A root lies on the circle, or too close to it.
+        """
+        turn = self.function.turn(z)
+        with precision(COUNT_BITS):
+            quarters = turn / (arb.pi() / 2)
+            if not quarters.is_finite():
+                raise RootOnPathError
+            found = round(float(quarters))
+            if not abs(quarters - found) < HALF:
+                raise RootOnPathError
+        return found - self.order
+
+    def scan(self, modes: int, radius: float, is_complete: Callable[[], bool]) -> bool:
+        """Find the lowest modes, and all up to ln of a radius; tell whether these are all."""
+        self.roots, self.reached = self.lowest(modes) if modes else ([], self.smallest())
+        if self.reached < radius:
+            self.roots = self.on_axes(-inf, radius)
+            self.reached = radius
+        return is_complete()
+
+    def on_axes(self, low: float, high: float) -> list[Root]:
+        """Return the roots on both axes between ln of two radii."""
+        return self.between(exp(low), exp(high))
+
+    def passing(self, radius: float) -> float:
+        """Return ln of the radius itself: nothing is left out."""
+        return radius
+
+    def smallest(self) -> float:
+        """Return ln of a radius within which no roots are sought."""
+        return log(self.function.first_frequency) - DEPTH
+
+    def lowest(self, modes: int) -> tuple[list[Root], float]:
+        """Return the lowest modes, one of each pair, and ln of a radius between them and the next."""
+        if not self._sources:
+            return [], self.smallest()
+        low = 0.0
+        guesses: list[Guess] = []
+        high, about = self.function.first_frequency, self._about(modes + 1)
+        samples = 0
+        while sum(g.exponent for g in guesses) <= modes:
+            found, used = self._guesses(low, high)
+            guesses += found
+            samples += used
+            if samples > MOST_SAMPLES or high > HIGHEST:
+                break
+            known = len(guesses)
+            growth = 4.0 if known < FEW else max(1.05, (1.1 * modes / known) ** 2)
+            low, high = high, about if about > high else high * growth
+        chosen: list[Guess] = []
+        total = 0
+        for guess in guesses:
+            if total >= modes and guess.frequency > chosen[-1].frequency * (1 + CLOSE):
+                # The circle passes between the last mode wanted and the next.
+                return self._proved(chosen), (log(chosen[-1].frequency) + log(guess.frequency)) / 2
+            chosen.append(guess)
+            total += guess.exponent
+        return self._proved(chosen), log(low) if low else self.smallest()
+
+    def _about(self, modes: int) -> float:
+        """Return an abs(s) below which about so many modes lie, not far too large in any case."""
+        first = self.function.first_frequency
+        place = self._place(2 * modes + self.order, log(first))
+        return min(max(first, exp(place)), first * (2 * modes + FEW) ** 2)
+
+    def between(self, low: float, high: float) -> list[Root]:
+        """Return the roots with abs(s) between two [rad/s] at which a factor changes its sign."""
+        return self._proved(self._guesses(low, high)[0])
+
+    def _guesses(self, low: float, high: float) -> tuple[list[Guess], int]:
+        """Return all sign changes between two abs(s), ascending, and how many samples it took."""
+        found: list[Guess] = []
+        samples = 0
+        for source, exponent in self._sources:
+            changes, used = self._sign_changes(source, low, high)
+            samples += used
+            found += [Guess(source.natural_frequency(t), t, source, exponent) for t in changes]
+        found.sort(key=lambda guess: guess.frequency)
+        return found, samples
+
+    @np.errstate(all="ignore")  # what is too large for doubles changes no sign
+    def _sign_changes(self, source: AxisFunction, low: float, high: float) -> tuple[list[float], int]:
+        """Return t at every sign change between two abs(s), close to doubles' precision."""
+        start, end = source.at_frequency(low), source.at_frequency(high)
+        if start == 0:
+            start = end * FIRST_PHASE
+        count = int(source.fastest(end) * (end - start) / GRID) + 16
+        found: list[float] = []
+        last: tuple[float, float] | None = None
+        for first in range(0, count, BATCH):
+            spend()
+            indices = np.arange(first, min(first + BATCH, count) + 1)
+            t = start + (end - start) * indices / count
+            values, _, sizes = source.sampled(t)
+            sure = np.abs(values) > UNRELIABLE * sizes
+            t, values = t[sure], values[sure]
+            if last is not None:
+                t, values = np.insert(t, 0, last[0]), np.insert(values, 0, last[1])
+            if not t.size:
+                continue
+            last = (float(t[-1]), float(values[-1]))
+            at = np.nonzero(np.signbit(values[1:]) != np.signbit(values[:-1]))[0]
+            if at.size:
+                found += _polished(source, t[at], t[at + 1], values[at], values[at + 1]).tolist()
+        return found, count
+
+    def _proved(self, guesses: Sequence[Guess]) -> list[Root]:
+        proved = (self._proved_at(guess.source, guess.t, guess.exponent) for guess in guesses)
+        return [root for root in proved if root is not None]
+
+    def _proved_at(self, source: AxisFunction, t: float, exponent: int) -> Root | None:
+        frequency = self._newton.frequency(source, t)
+        if frequency is None:
+            return None
+        zero = arb(0)
+        is_real = source.axis == REAL
+        return Root(
+            frequency if is_real else zero,
+            zero if is_real else frequency,
+            exponent,
+            on_imaginary_axis=not is_real,
+            is_real=is_real,
+        )
+
+    def numbered(self, number: int) -> Root | None:
+        """Return one mode by its number, from 1, without those below it; ``None`` where it is not isolated.
+
+        Modes count by natural frequency; roots that mirror each other count as one.
+
+        Raises
+        ------
+        RootOnPathError
+            Roots are too close to each other for circles to pass between them.
+        """
+        low, below = self._circle(number - 1, WITHIN)
+        high, upto = self._circle(number, BEYOND)
+        for share in islice(cycle(SHARES), HALVINGS):
+            root = self._only_root(low, high, upto - below)
+            if root is not None:
+                return root
+            middle = low + (high - low) * share
+            count = self.count(middle) // 2
+            if count < number:
+                low, below = middle, count
+            else:
+                high, upto = middle, count
+        return None
+
+    def _only_root(self, low: float, high: float, multiplicity: int) -> Root | None:
+        """Return the root that is all a ring holds, proved to lie between its circles."""
+        for axis in (IMAGINARY, REAL):
+            for source, exponent in self._factors_on(axis):
+                ends = source.at_frequency(exp(low)), source.at_frequency(exp(high))
+                if exponent == multiplicity and changes_sign(source, *ends):
+                    root = self._proved_at(source, bracketed(source, *ends), exponent)
+                    if root is not None and arb(low).exp() < root.natural_frequency() < arb(high).exp():
+                        return root
+        return None
+
+    def _circle(self, modes: int, side: int) -> tuple[float, int]:
+        """Return ln of a radius within which at most or at least so many modes lie, and how many do."""
+        aim = modes
+        for _ in range(ROUNDS):
+            z, count = self._counted_near(aim)
+            if (count - modes) * side >= 0:
+                return z, count
+            # The estimate is off by a few.
+            aim += modes - count
+        raise RootOnPathError
+
+    def _counted_near(self, modes: int) -> tuple[float, int]:
+        """Return ln of a radius within which about so many modes lie, and how many do."""
+        start = log(self.function.first_frequency)
+        for aside in ASIDE:
+            z = self._place(2 * modes + self.order + aside, start) if modes > 0 else start + modes - 1 - aside
+            try:
+                return z, self.count(z) // 2
+            except RootOnPathError:
+                continue
+        raise RootOnPathError
+
+    def _place(self, turns: float, start: float) -> float:
+        """Return ln(abs(s)) where about so many roots lie below, spread evenly along its root."""
+        goal = turns * pi / 2
+        here, there = start, start + 2.0
+        before, value = self.function.estimate(here) - goal, self.function.estimate(there) - goal
+        for _ in range(SECANTS):
+            if abs(value) < NEARLY or value == before:
+                break
+            roots = exp(here / 2), exp(there / 2)
+            root = roots[1] - value * (roots[1] - roots[0]) / (value - before)
+            here, before = there, value
+            there = min(2 * log(root) if root > 0 else there - 2.0, log(HIGHEST))
+            value = self.function.estimate(there) - goal
+        return there
+
+
+def _polished(
+    source: AxisFunction,
+    low: Doubles,
+    high: Doubles,
+    below: Doubles,
+    above: Doubles,
+) -> Doubles:
+    """Return roots of a function between pairs of points of opposite sign, by safeguarded Newton steps."""
+    t: Doubles = low + (high - low) * np.abs(below) / (np.abs(below) + np.abs(above))
+    negative = np.signbit(below)
+    for _ in range(NEWTON_STEPS):
+        values, slopes, _ = source.sampled(t)
+        left = np.signbit(values) == negative
+        low, high = np.where(left, t, low), np.where(left, high, t)
+        step = t - values / slopes
+        last, t = t, np.where((step >= low) & (step <= high), step, (low + high) / 2)
+        if (np.abs(t - last) <= CLOSER * t).all():
+            break
+    return t
+
+
+def lossless_search(function: KernelFunction, order: int, digits: int) -> LosslessSearch | None:
+    """Return a search for an even function of one value without losses, ``None`` for one with losses."""
+    lossless = lossless_function(function, bits_of(digits))
+    return None if lossless is None else LosslessSearch(lossless, order, digits)

@@ -1,0 +1,1 @@
+"""Counting roots by how far an argument turns, with proof."""

@@ -1,0 +1,289 @@
+"""Counting roots by the argument principle, with proof: every step of a path is a ball of s.
+
+A sum of exponentials is followed through the largest of these, whose argument is known, and the ratio to it,
+whose values on a step's ball must keep to one side of 0: :mod:`~symflex.roots.distributed.exponential_sum`.
+Any other
+function leaves its value F(m) in the middle by no more than the bound of abs(F') over the ball times half the
+step; where that is less than abs(F(m)), the argument stays within the arc sine of the ratio.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, pi
+from typing import TYPE_CHECKING, Protocol
+
+from flint import acb, arb
+
+from symflex.roots.counting.series_steps import SeriesSteps
+from symflex.roots.counting.stepping import ROOM, SPREAD, WIDENED, angle, total_turn
+from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
+from symflex.roots.precision import precision
+
+if TYPE_CHECKING:
+    from symflex.budget import Budget
+    from symflex.roots.distributed.kernel_function import KernelFunction
+
+BITS = 64
+LAST_BITS = 2048
+FIRST_STEP = 0.2
+"""Of the first step [in z]."""
+SMALLEST = 1e-12
+SMALLEST_TURN = 1e-6
+LOSSY = 0.01
+"""Share of its bound below which a turn says that the bound is poor: nearly equal exponentials cancel."""
+
+
+class Path(Protocol):
+    """A curve in the s plane, from t = 0 to 1."""
+
+    def point(self, t: float) -> acb:
+        """Return a point."""
+        ...
+
+    def step(self, start: float, end: float) -> tuple[acb, acb, arb]:
+        """Return a ball around a step, its middle, and the most that s moves from the middle on it."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """What is straight in z = ln(s).
+
+    Parameters
+    ----------
+    start, end : complex
+        z; an imaginary part that is the double nearest to pi or pi/2 stands for that number itself.
+    """
+
+    start: complex
+    end: complex
+
+    def _place(self, t: float) -> complex:
+        return self.start if t == 0 else self.end if t == 1 else self.start + (self.end - self.start) * t
+
+    def point(self, t: float) -> acb:
+        """Return a point."""
+        z = self._place(t)
+        return acb(arb(z.real), _angle(z.imag)).exp()
+
+    def step(self, start: float, end: float) -> tuple[acb, acb, arb]:
+        """Return a ball around a step, its middle, and the most that s moves from the middle on it."""
+        a, b = self._place(start), self._place(end)
+        middle, half = (a + b) / 2, (b - a) / 2
+        re = arb(middle.real, abs(half.real) * WIDENED + SPREAD * abs(middle.real))
+        im = arb(middle.imag, abs(half.imag) * WIDENED + SPREAD * (1 + abs(middle.imag)))
+        ball = acb(re, im).exp()
+        centre = acb(middle.real, middle.imag).exp()
+        return ball, centre, ball.abs_upper() * acb(re.rad(), im.rad()).abs_upper()
+
+
+@dataclass(frozen=True, slots=True)
+class Circle:
+    """About an exact point.
+
+    Parameters
+    ----------
+    centre : acb
+        Exact.
+    radius : arb
+        Exact [rad/s].
+    """
+
+    centre: acb
+    radius: arb
+
+    def point(self, t: float) -> acb:
+        """Return a point."""
+        return self.centre + self.radius * (acb(0, 2) * arb.pi() * arb(t)).exp()
+
+    def step(self, start: float, end: float) -> tuple[acb, acb, arb]:
+        """Return a ball around a step, its middle, and the most that s moves from the middle on it."""
+        middle, half = (start + end) / 2, (end - start) / 2
+        turn = arb(middle, half * WIDENED + SPREAD)
+        ball = self.centre + self.radius * (acb(0, 2) * arb.pi() * turn).exp()
+        return ball, self.point(middle), self.radius * 2 * arb.pi() * turn.rad()
+
+
+class CertifiedWinding(Winding):
+    """Follows one function along paths with proof.
+
+    Parameters
+    ----------
+    function : KernelFunction
+        What is followed.
+    budget : Budget
+        Spent by every step.
+    tries_series : bool
+        Where steps are too long for sums of exponentials, power series are tried before shorter steps: next
+        to points where wavenumbers meet these would have to be very short. They are tried anyway on a path
+        where a step turned far less than it might have.
+    """
+
+    def __init__(self, function: KernelFunction, budget: Budget, *, tries_series: bool = False) -> None:
+        super().__init__(function, budget)
+        self._tries_series = tries_series
+        self._bits = BITS
+        self._turns: dict[tuple[complex, complex], arb] = {}
+        self._series = SeriesSteps(function)
+
+    def count(self, cell: Cell) -> int:
+        """Return the number of roots in a cell, with multiplicity: proved.
+
+        Raises
+        ------
+        RootOnPathError
+            A root lies on the cell's boundary, or too close to it.
+        """
+        smallest = max(SMALLEST, 1e-9 * cell.size)
+        with precision(BITS):
+            total = arb(0)
+            for start, end in cell.edges:
+                total += self.certified_turn(start, end, smallest)
+            return _whole(total / (2 * arb.pi()))
+
+    def count_within(self, z: float, left: float) -> int:
+        """Return the number of roots with ln(abs(s)) below ``z``, those at s = 0 included: proved.
+
+        Parameters
+        ----------
+        z : float
+            ln of the radius.
+        left : float
+            pi, or pi/2 for functions whose roots mirror each other in the imaginary axis: by symmetry an arc
+            from the positive real axis tells what the circle does.
+
+        Raises
+        ------
+        RootOnPathError
+            A root lies on the circle, or too close to it.
+        """
+        turn = self.certified_turn(complex(z, 0.0), complex(z, left))
+        with precision(BITS):
+            return _whole(turn / _angle(left))
+
+    def count_in_disc(self, centre: acb, radius: arb) -> int:
+        """Return the number of roots closer to an exact point than a radius [rad/s]: proved.
+
+        Raises
+        ------
+        RootOnPathError
+            A root lies on the circle, or too close to it.
+        """
+        bits = max(BITS, centre.bits() + BITS)
+        with precision(bits):
+            turn, _ = self._follow(Circle(centre, radius), 2 * pi, SMALLEST_TURN, bits)
+            return _whole(turn / (2 * arb.pi()))
+
+    def certified_turn(self, start: complex, end: complex, smallest: float = SMALLEST) -> arb:
+        """Return a ball around the change of the argument [rad] from ``start`` straight to ``end``, in z.
+
+        Raises
+        ------
+        RootOnPathError
+            When steps would become smaller than ``smallest``.
+        """
+        if (end, start) in self._turns:
+            return -self._turns[end, start]
+        if (start, end) not in self._turns:
+            length = abs(end - start)
+            with precision(BITS):
+                turn, self._bits = self._follow(Line(start, end), length, smallest / length, self._bits)
+            self._turns[start, end] = turn
+        return self._turns[start, end]
+
+    def _follow(self, path: Path, length: float, smallest: float, bits: int) -> tuple[arb, int]:
+        """Return the change of the argument along a path, and the precision that it took."""
+        tries_series = self._tries_series
+
+        def change(start: float, end: float) -> tuple[float, arb]:
+            nonlocal bits, tries_series
+            self.spend()
+            with precision(bits):
+                off, turn = self._change(path, start, end, bits, tries_series=tries_series)
+            tries_series = tries_series or (off <= ROOM and _is_lossy(off, turn))
+            if off == inf:
+                # Perhaps it is not the step that is too long, but the precision that is too low.
+                bits = self._sufficient(path.point((start + end) / 2), bits)
+            return off, turn
+
+        turn = total_turn(change, FIRST_STEP / length, smallest)
+        return turn, bits
+
+    def _change(
+        self, path: Path, start: float, end: float, bits: int, *, tries_series: bool = False
+    ) -> tuple[float, arb]:
+        """Return a bound on how far arg F may turn on a step, and how far it turns from end to end."""
+        ball, centre, reach = path.step(start, end)
+        here, there = path.point(start), path.point(end)
+        by_exponentials = self.function.turn_of_exponentials(ball, here, there, bits)
+        if by_exponentials is not None:
+            if tries_series and (by_exponentials[0] > ROOM or _is_lossy(*by_exponentials)):
+                by_series = self._series.change(centre, reach, here, there, bits)
+                return min(by_series, by_exponentials, key=lambda found: found[0])
+            return by_exponentials
+        if self.function.has_fundamental:
+            return self._series.change(centre, reach, here, there, bits)
+        found = self.function.enclosed_about(ball, centre, bits)
+        off = 0.0
+        for value, slope, exponent in found:
+            size, change = value.abs_lower(), (slope * reach).abs_upper()
+            if not change.is_finite() or not size > 0:
+                return inf, arb(0)
+            off += abs(exponent) * angle(change, size)
+        off *= self.function.power
+        if off > ROOM:
+            return off, arb(0)
+        # Both ends lie within a right angle of the middle.
+        return off, _principal(self._phase(there, bits) - self._phase(here, bits))
+
+    def _phase(self, s: acb, bits: int) -> arb:
+        """Return a ball around arg F at a point, up to whole turns."""
+        phase = arb(0)
+        for value, _, exponent in self.function.enclosed(s, bits):
+            phase += exponent * _argument(value)
+        return phase * self.function.power
+
+    def _sufficient(self, s: acb, bits: int) -> int:
+        """Return a precision at which no factor of F is lost at a point."""
+        while bits <= max(LAST_BITS, 4 * s.bits()):
+            with precision(bits):
+                factors = self.function.enclosed(s, bits)
+                if all(value.is_finite() and not value.contains(0) for value, _, _ in factors):
+                    return bits
+            bits *= 2
+        raise RootOnPathError
+
+
+def _argument(value: acb) -> arb:
+    """Return an argument of a ball, up to whole turns, also where it crosses the negative real axis."""
+    return value.arg() if value.real.mid() > 0 else (-value).arg() + arb.pi()
+
+
+def _angle(value: float) -> arb:
+    """Return an imaginary part of z, where a double stands for pi or pi/2 if it is the nearest one."""
+    for known, exact in ((pi, arb.pi()), (pi / 2, arb.pi() / 2)):
+        if abs(value) == known:
+            return exact if value > 0 else -exact
+    return arb(value)
+
+
+def _is_lossy(off: float, turn: arb) -> bool:
+    return bool(abs(turn) < LOSSY * off)
+
+
+def _principal(difference: arb) -> arb:
+    """Return a difference of arguments less whole turns, proved to lie between -pi and pi."""
+    turns = round(float(difference.mid()) / (2 * pi))
+    result = difference - 2 * arb.pi() * turns
+    if not abs(result) < arb.pi():
+        raise RootOnPathError
+    return result
+
+
+def _whole(turns: arb) -> int:
+    """Return the only integer in a ball."""
+    found = turns.unique_fmpz()
+    if found is None:
+        raise RootOnPathError
+    return int(found)

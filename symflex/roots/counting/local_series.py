@@ -1,0 +1,198 @@
+"""A function's power series about a point, with proof: counts of roots in small discs.
+
+Where wavenumbers vanish or meet, a function with kernels is a small difference of large terms, and still as
+smooth in s as anywhere. Its values on a circle about the place, where they are easily told, make the
+coefficients (Lyness and Moler 1967); what these miss is bounded by Cauchy's estimate on a wider circle. Where
+one term outweighs all others on a circle, it says how many roots lie within (Pellet 1881).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from flint import acb, acb_poly, arb
+
+from symflex.roots.precision import precision
+
+if TYPE_CHECKING:
+    from symflex.roots.distributed.kernel_function import KernelFunction
+
+TERMS = 16
+"""Coefficients that are computed; those beyond are bounded."""
+SHRUNK = 2.0**-6
+"""Radius of the circle where values are taken, over that where they are bounded."""
+ARCS = 32
+MOST_ARCS = 1024
+WIDE_BITS = 64
+REACH = 0.04
+"""Relative radius of the circle on which a function is bounded to expand it about a point."""
+SERIES_POINTS = 20
+SERIES_BITS = 128
+BITS_A_POINT = 6
+"""What every value more adds to the accuracy of a series."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LocalSeries:
+    """The first terms of ``F(c + x)``, and a bound of the others.
+
+    Parameters
+    ----------
+    centre : acb
+        c, exact [rad/s].
+    coefficients : tuple of acb
+        Of the powers of x from 0 on.
+    reach : arb
+        Radius of a disc where F is analytic [rad/s].
+    bound : arb
+        At least abs(F) on that disc's circle.
+    """
+
+    centre: acb
+    coefficients: tuple[acb, ...]
+    reach: arb
+    bound: arb
+
+    def count(self, radius: arb) -> int | None:
+        """Return how many roots are closer to the centre than a radius; ``None`` where no term outweighs all.
+
+        Parameters
+        ----------
+        radius : arb
+            Exact, smaller than the reach [rad/s].
+        """
+        share = radius / self.reach
+        if not share < 1:
+            return None
+        power, sizes = arb(1), []
+        for coefficient in self.coefficients:
+            sizes.append(abs(coefficient) * power)
+            power *= radius
+        rest = self.bound * share ** len(sizes) / (1 - share)
+        largest = max(range(len(sizes)), key=lambda k: sizes[k].mid())
+        others = sum((size for k, size in enumerate(sizes) if k != largest), rest)
+        return largest if sizes[largest] > others else None
+
+    def around(self, centre: acb, radius: arb) -> tuple[tuple[acb, ...], arb] | None:
+        """Return a polynomial's coefficients about another point, and what it may miss closer than a radius.
+
+        ``None`` where the radius goes beyond the reach.
+        """
+        off = centre - self.centre
+        share = (off.abs_upper() + radius).upper() / self.reach
+        if not share < 1:
+            return None
+        rest = (self.bound * share ** len(self.coefficients) / (1 - share)).upper()
+        shifted = acb_poly(list(self.coefficients))(acb_poly([off, acb(1)]))
+        return tuple(shifted.coeffs()), rest
+
+    def middle(self, count: int) -> acb | None:
+        """Return about the mean of so many roots next to the centre, ``None`` where it cannot be told."""
+        below, own = self.coefficients[count - 1 : count + 1]
+        # Of a monic polynomial the coefficient below the highest is minus the sum of the roots.
+        mean = self.centre - below / (own * count)
+        return mean.mid() if mean.is_finite() else None
+
+
+def local_series(
+    function: KernelFunction, centre: acb, reach: arb, bits: int, points: int
+) -> LocalSeries | None:
+    """Return a function's series about a point, ``None`` where it cannot be bounded on the circle.
+
+    Parameters
+    ----------
+    function : KernelFunction
+        Its :attr:`~symflex.roots.distributed.kernel_function.KernelFunction.power` is expanded.
+    centre : acb
+        Exact [rad/s].
+    reach : arb
+        Exact radius of the circle on which the function is bounded [rad/s].
+    bits : int
+        Precision of the coefficients.
+    points : int
+        Where values are taken; each makes the error that comes of their number smaller by ``2^-6``.
+    """
+    bound = bound_on_circle(function, centre, reach, ARCS)
+    if bound is None:
+        return None
+    return sampled_series(function, centre, reach, bound, bits, points, TERMS, SHRUNK)
+
+
+def sampled_series(
+    function: KernelFunction,
+    centre: acb,
+    reach: arb,
+    bound: arb,
+    bits: int,
+    points: int,
+    terms: int,
+    shrunk: float,
+) -> LocalSeries | None:
+    """Return a function's series about a point from values on a circle, ``None`` where these are not finite.
+
+    Parameters
+    ----------
+    function, centre, reach, bits
+        See :func:`local_series`.
+    bound : arb
+        Of the function on the circle of radius ``reach``.
+    points : int
+        Where values are taken; each makes the error that comes of their number smaller by ``shrunk``.
+    terms : int
+        Coefficients wanted; not more than points.
+    shrunk : float
+        Radius of the circle where values are taken, over ``reach``.
+    """
+    with precision(bits):
+        radius = (reach * shrunk).mid()
+        roots = [(acb(0, 2) * arb.pi() * k / points).exp() for k in range(points)]
+        values = [function.value(centre + radius * root, bits) for root in roots]
+        if not all(value.is_finite() for value in values):
+            return None
+        share = radius / reach
+        aliased = bound * share**points / (1 - share**points)
+        coefficients = []
+        power, limit = arb(1), arb(1)
+        for n in range(min(terms, points)):
+            total = sum((v * roots[-n * k % points] for k, v in enumerate(values)), acb(0)) / points
+            # a_n + a_(n + points) r^points + ... is what the values give.
+            error = (aliased / limit).upper()
+            coefficients.append(total / power + acb(arb(0, error), arb(0, error)))
+            power *= radius
+            limit *= reach
+        return LocalSeries(centre, tuple(coefficients), reach, bound)
+
+
+def bound_on_circle(function: KernelFunction, centre: acb, reach: arb, arcs: int) -> arb | None:
+    """Return at least the size of an analytic function on a circle, ``None`` where none is found.
+
+    Parameters
+    ----------
+    function : KernelFunction
+        Its :attr:`~symflex.roots.distributed.kernel_function.KernelFunction.power` is bounded.
+    centre : acb
+        Exact [rad/s].
+    reach : arb
+        Exact radius [rad/s].
+    arcs : int
+        Into which the circle is cut at first.
+    """
+    with precision(WIDE_BITS):
+        disc = centre + acb(arb(0, reach), arb(0, reach))
+        if not function.is_analytic_on(disc, WIDE_BITS):
+            return None
+        largest = arb(0)
+        pending = [(k, arcs) for k in range(arcs)]
+        while pending:
+            k, parts = pending.pop()
+            half = (arb.pi() / parts).upper()
+            direction = (acb(0, 1) * (arb.pi() * (2 * k + 1) / parts + arb(0, half))).exp()
+            value = function.value(centre + reach * direction, WIDE_BITS)
+            if value.is_finite():
+                largest = largest.max(abs(value).upper())
+            elif parts < MOST_ARCS:
+                pending += [(2 * k, 2 * parts), (2 * k + 1, 2 * parts)]
+            else:
+                return None
+        return largest

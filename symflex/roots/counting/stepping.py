@@ -1,0 +1,84 @@
+"""Adding up how far an argument turns along a path, in steps as long as the proof of each allows."""
+
+from __future__ import annotations
+
+from math import asin, inf, pi
+from typing import TYPE_CHECKING
+
+from flint import arb
+
+from symflex.budget import spend
+from symflex.roots.counting.winding import RootOnPathError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from flint import acb
+
+ROOM = 1.5
+"""Largest deviation of the argument [rad] from the middle to an end of a step; less than pi/2."""
+GOAL = 1.15
+"""Deviation that the next step aims at."""
+GROWTH = 1.5
+SHRINKING = 0.5
+NEARER = 0.5
+"""Of the last step that was too long, what is tried next: deviations grow exponentially."""
+FORGETTING = 1.1
+"""Growth of that bound with every step."""
+WIDENED = 1 + 2.0**-40
+SPREAD = 2.0**-50
+"""Relative width that makes up for the rounding of a step's middle."""
+
+
+def deviation(values: acb) -> float:
+    """Return how far the argument may turn from the middle of a ball of values [rad].
+
+    Half a turn and more stands for what may wind about 0; infinite where nothing is known.
+    """
+    if not values.is_finite():
+        return inf
+    middle = values.mid()
+    room = middle.abs_lower()
+    return angle((values - middle).abs_upper(), room) if room > 0 else inf
+
+
+def angle(off: arb, size: arb) -> float:
+    """Return half the angle [rad] at which a disc of radius ``off``, so far from 0, is seen from there."""
+    share = float((off / size).upper())
+    return asin(share) if share < 1 else share * pi / 2
+
+
+def total_turn(change: Callable[[float, float], tuple[float, arb]], first: float, smallest: float) -> arb:
+    """Return the change of an argument along a path from t = 0 to 1.
+
+    Parameters
+    ----------
+    change : callable
+        Returns for a step between two t a bound on the deviation from its middle, and the turn from one end
+        to the other, which has to be right where the bound is at most ``ROOM``.
+    first, smallest : float
+        Length of the first step in t, and of those that are too short.
+
+    Raises
+    ------
+    RootOnPathError
+        When steps would become smaller than ``smallest``.
+    """
+    total = arb(0)
+    t, step = 0.0, first
+    longest = inf
+    while t < 1:
+        spend()
+        end = min(1.0, t + step)
+        off, turn = change(t, end)
+        if off > ROOM:
+            longest = end - t
+            step = longest * max(SHRINKING, min(0.7, GOAL / off))
+            if step < smallest:
+                raise RootOnPathError
+            continue
+        total += turn
+        longest *= FORGETTING
+        step = min((end - t) * max(1 / GROWTH, min(GROWTH, GOAL / max(off, 0.1))), NEARER * longest)
+        t = end
+    return total

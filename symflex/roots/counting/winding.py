@@ -1,0 +1,256 @@
+"""Counting roots by the argument principle, numerically: how often a function winds about 0 along a path.
+
+Paths are straight in z = ln(s), where rows of resonances are spaced alike whatever their frequency. Steps are
+halved until values and slopes at both ends agree; that is fast, and proves nothing.
+"""
+
+from __future__ import annotations
+
+from cmath import pi
+from dataclasses import dataclass
+from itertools import pairwise
+from math import ceil, exp, inf, log
+from typing import TYPE_CHECKING
+
+from symflex.errors import BudgetError, Diagnostic
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.budget import Budget
+    from symflex.roots.distributed.kernel_function import KernelFunction, Sample
+
+RING = log(2)
+LARGEST_RING = 120
+SAME_ORDER = 0.05
+LONGEST_STEP = 0.4
+PHASE_STEP = 2.0
+"""Largest change [rad] of a kernel's argument over a step: no row of roots is stepped over."""
+DISAGREEMENT = 0.3
+"""Largest difference between ln F at the end of a step and what the slopes at both ends predict."""
+BEND = 2.0
+"""Largest change of ln F over a step that a change of slope may cause."""
+SMALLEST_STEP = 1e-13
+NEARLY_WHOLE = 0.05
+WORK_LIMIT = 5_000_000
+"""Terms evaluated in one search."""
+SHORTER = "ask for fewer modes or a smaller region"
+TOO_LONG = "the search for roots takes too long"
+
+
+class RootOnPathError(Exception):
+    """A path meets a root, or passes too close to it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A rectangle ``low < ln abs(s) < high``, ``right < arg(s) < left``."""
+
+    low: float
+    high: float
+    right: float
+    left: float
+
+    @property
+    def centre(self) -> complex:
+        """The middle, in z."""
+        return complex((self.low + self.high) / 2, (self.right + self.left) / 2)
+
+    @property
+    def size(self) -> float:
+        """The longer side."""
+        return max(self.high - self.low, self.left - self.right)
+
+    @property
+    def edges(self) -> tuple[tuple[complex, complex], ...]:
+        """The four sides, counterclockwise about the cell."""
+        corners = (
+            complex(self.low, self.right),
+            complex(self.high, self.right),
+            complex(self.high, self.left),
+            complex(self.low, self.left),
+        )
+        return tuple((corners[i - 1], corners[i]) for i in range(4))
+
+    def holds(self, z: complex, margin: float = 0.0) -> bool:
+        """Tell whether a point lies inside, or at most ``margin`` outside."""
+        along = self.low - margin < z.real < self.high + margin
+        return along and self.right - margin < z.imag < self.left + margin
+
+    def split(self, share: float) -> tuple[Cell, Cell]:
+        """Return the two parts on both sides of a cut across the longer side."""
+        if self.high - self.low >= self.left - self.right:
+            middle = self.low + share * (self.high - self.low)
+            return (
+                Cell(self.low, middle, self.right, self.left),
+                Cell(middle, self.high, self.right, self.left),
+            )
+        middle = self.right + share * (self.left - self.right)
+        return Cell(self.low, self.high, self.right, middle), Cell(self.low, self.high, middle, self.left)
+
+    def without(self, hole: Cell) -> tuple[Cell, ...]:
+        """Return cells that fill this one but for a hole."""
+        low, high = max(self.low, hole.low), min(self.high, hole.high)
+        right, left = max(self.right, hole.right), min(self.left, hole.left)
+        if low >= high or right >= left:
+            return (self,)
+        around = (
+            Cell(self.low, low, self.right, self.left),
+            Cell(high, self.high, self.right, self.left),
+            Cell(low, high, self.right, right),
+            Cell(low, high, left, self.left),
+        )
+        return tuple(cell for cell in around if cell.low < cell.high and cell.right < cell.left)
+
+
+class Winding:
+    """Follows one function along paths, remembering its values.
+
+    Parameters
+    ----------
+    function : KernelFunction
+        What is followed.
+    budget : Budget
+        Spent by every value.
+    """
+
+    def __init__(self, function: KernelFunction, budget: Budget) -> None:
+        self.function = function
+        self.budget = budget
+        self._samples: dict[complex, Sample | None] = {}
+        self._reaches: dict[float, float] = {}
+        self._edges: dict[tuple[complex, complex], float] = {}
+
+    def spend(self) -> None:
+        """Go on if the work and the time allow it.
+
+        Raises
+        ------
+        BudgetError
+            SF505 when the search has become too long and no time was given, SF506 when that is over.
+        """
+        self.budget.spend()
+        if not self.budget.is_timed and self.function.work > WORK_LIMIT:
+            raise BudgetError(Diagnostic("SF505", TOO_LONG, None, SHORTER))
+
+    def sample(self, z: complex) -> Sample:
+        """Return ln F and its slope at a point.
+
+        Raises
+        ------
+        RootOnPathError
+            The point is a root.
+        BudgetError
+            SF505 when the search has become too long.
+        """
+        if z not in self._samples:
+            self.spend()
+            self._samples[z] = self.function.at_logarithm(z)
+        found = self._samples[z]
+        if found is None:
+            raise RootOnPathError
+        return found
+
+    def reach(self, z: float) -> float:
+        """Return the largest kernel argument at ``abs(s) = exp(z)``."""
+        if z not in self._reaches:
+            self._reaches[z] = self.function.reach(exp(z))
+        return self._reaches[z]
+
+    def smallest(self, left: float, holes: Sequence[Cell] = ()) -> float:
+        """Return ln of a radius within which no roots lie but those at s = 0, by all appearances.
+
+        Parameters
+        ----------
+        left : float
+            pi, or pi/2 for functions whose roots mirror each other in the imaginary axis.
+        holes : sequence of Cell
+            To stay away from.
+        """
+        order = self.function.order_at_zero()
+        z = self._scale()
+        for hole in holes:
+            z = min(z, hole.low - RING)
+        for _ in range(LARGEST_RING):
+            try:
+                turns = self.turn(complex(z, 0), complex(z, left)) / left
+            except RootOnPathError:
+                turns = inf
+            if abs(turns - order) < SAME_ORDER:
+                return z
+            z -= RING
+        message, hint = "the lowest root cannot be found", "ask for a band, which needs no lowest root"
+        raise BudgetError(Diagnostic("SF505", message, None, hint))
+
+    def _scale(self) -> float:
+        """Return ln of a frequency at which the largest argument of a kernel is about one."""
+        z, step = 0.0, 2 * RING
+        reach = self.reach(z)
+        for _ in range(LARGEST_RING):
+            if reach > 1:
+                z -= step
+                lower = self.reach(z)
+                if lower > 0.9 * reach:
+                    break
+                reach = lower
+            else:
+                higher = self.reach(z + step)
+                if higher > 1:
+                    break
+                z += step
+        return z
+
+    def turn(self, start: complex, end: complex, smallest: float = SMALLEST_STEP) -> float:
+        """Return the change of the argument [rad] from ``start`` straight to ``end``.
+
+        Raises
+        ------
+        RootOnPathError
+            When steps would become smaller than ``smallest``.
+        """
+        if (end, start) in self._edges:
+            return -self._edges[end, start]
+        if (start, end) not in self._edges:
+            longest = min(LONGEST_STEP, PHASE_STEP / max(1.0, self.reach(max(start.real, end.real))))
+            pieces = abs(end - start) / longest
+            if not pieces <= WORK_LIMIT:
+                raise BudgetError(Diagnostic("SF505", TOO_LONG, None, SHORTER))
+            count = max(1, ceil(pieces))
+            points = [start + (end - start) * i / count for i in range(count)] + [end]
+            total = 0.0
+            pending = list(pairwise(points))
+            while pending:
+                a, b = pending.pop()
+                step = continuous_step(self.sample(a), self.sample(b), b - a)
+                if step is not None:
+                    total += step
+                elif abs(b - a) < smallest:
+                    raise RootOnPathError
+                else:
+                    pending += [(a, (a + b) / 2), ((a + b) / 2, b)]
+            self._edges[start, end] = total
+        return self._edges[start, end]
+
+    def count(self, cell: Cell) -> int:
+        """Return the number of roots in a cell, with multiplicity.
+
+        Raises
+        ------
+        RootOnPathError
+            A root lies on the cell's boundary, or too close to it.
+        """
+        smallest = max(SMALLEST_STEP, 1e-7 * cell.size)
+        turns = sum(self.turn(start, end, smallest) for start, end in cell.edges) / (2 * pi)
+        if abs(turns - round(turns)) > NEARLY_WHOLE:
+            raise RootOnPathError
+        return round(turns)
+
+
+def continuous_step(start: Sample, end: Sample, step: complex) -> float | None:
+    """Return the change of the argument over a step, ``None`` when the step is too long to tell."""
+    predicted = step * (start.slope + end.slope) / 2
+    change = end.log - start.log
+    change += 2j * pi * round((predicted.imag - change.imag) / (2 * pi))
+    if abs(change - predicted) > DISAGREEMENT or abs(step * (end.slope - start.slope)) > BEND:
+        return None
+    return change.imag

@@ -1,0 +1,1 @@
+"""Roots of functions with kernels: searched, counted and enclosed."""

@@ -1,0 +1,197 @@
+"""Domains of the s plane that are searched and counted: cells of ln(s), and holes where roots accumulate.
+
+A search keeps to the upper half plane, for functions whose roots mirror each other in the imaginary axis to
+a quarter of the plane; what is counted is the ring that mirror images make of it.
+"""
+
+from __future__ import annotations
+
+from cmath import phase
+from math import inf, log, pi
+from typing import TYPE_CHECKING
+
+from flint import acb, arb
+
+from symflex.roots.counting.winding import Cell
+from symflex.roots.precision import precision
+from symflex.roots.region import Band, Rectangle
+from symflex.roots.root import FLOAT_BITS, Root
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from symflex.roots.region import Region
+
+NEIGHBOURHOOD = 0.05
+"""Of a point where roots accumulate: relative to its distance from 0."""
+WIDER = 1e-3
+"""How far beyond its limits, in ln, a ring is searched."""
+
+
+def holes_about(points: Sequence[complex]) -> tuple[Cell, ...]:
+    """Return neighbourhoods of points, those that meet as one.
+
+    Examples
+    --------
+    >>> (hole,) = holes_about([1 + 0j, 1.01 + 0j])
+    >>> round(hole.low, 6), round(hole.high, 6)
+    (-0.05, 0.05995)
+    """
+    found: list[Cell] = []
+    for hole in map(_hole_about, points):
+        joined = hole
+        while meeting := next((h for h in found if _meet(h, joined)), None):
+            found.remove(meeting)
+            joined = Cell(
+                min(meeting.low, joined.low),
+                max(meeting.high, joined.high),
+                min(meeting.right, joined.right),
+                max(meeting.left, joined.left),
+            )
+        found.append(joined)
+    return tuple(found)
+
+
+def _meet(a: Cell, b: Cell) -> bool:
+    along = a.low <= b.high and b.low <= a.high
+    return along and a.right <= b.left and b.right <= a.left
+
+
+def _hole_about(point: complex) -> Cell:
+    z = complex(log(abs(point)), phase(point))
+    e = NEIGHBOURHOOD
+    return Cell(z.real - e, z.real + e, z.imag - e, z.imag + e)
+
+
+def is_whole_ring(cell: Cell, left: float, holes: Sequence[Cell]) -> bool:
+    """Tell whether a cell and its mirror images make a ring, whose circles pass by all holes.
+
+    Parameters
+    ----------
+    cell : Cell
+        In the upper half plane.
+    left : float
+        Argument of s up to which the search goes: pi, or pi/2 where mirror images make up for the rest.
+    holes : sequence of Cell
+        Neighbourhoods that are left out.
+    """
+    return (
+        cell.right <= 0
+        and cell.left >= left
+        and all(
+            hole.high < cell.low or hole.low > cell.high or (cell.low < hole.low and hole.high < cell.high)
+            for hole in holes
+        )
+    )
+
+
+def parts(domain: Cell, left: float, holes: Sequence[Cell]) -> tuple[tuple[Cell, ...], tuple[Cell, ...]]:
+    """Return the cells that were searched, and the holes in them, mirror images included.
+
+    Parameters
+    ----------
+    domain : Cell
+        What was to be searched.
+    left : float
+        See :func:`is_whole_ring`.
+    holes : sequence of Cell
+        Neighbourhoods that are left out.
+    """
+    if is_whole_ring(domain, left, holes):
+        cell = Cell(domain.low, domain.high, -pi, pi)
+        met = [h for h in holes if h.low < cell.high and h.high > cell.low]
+        return (cell,), tuple(image for hole in met for image in _images(hole))
+    cells: tuple[Cell, ...] = (domain,)
+    for hole in holes:
+        cells = tuple(part for whole in cells for part in whole.without(hole))
+    return cells, ()
+
+
+def _images(hole: Cell) -> tuple[Cell, ...]:
+    """Return a neighbourhood in the closed upper half plane and, off the real axis, its mirror image."""
+    if hole.right <= 0 <= hole.left or hole.right <= pi <= hole.left:
+        return (hole,)
+    return (hole, Cell(hole.low, hole.high, -hole.left, -hole.right))
+
+
+def decider(cell: Cell) -> Callable[[Root], bool | None]:
+    """Return what tells whether a root lies in a cell, ``None`` where its enclosure does not decide that.
+
+    Examples
+    --------
+    >>> from flint import arb
+    >>> is_inside = decider(Cell(0.0, 1.0, -pi, pi))
+    >>> frequencies = (arb(2), arb(3), arb(1, 0.1))
+    >>> [is_inside(Root(arb(0), f, 1, on_imaginary_axis=True, is_real=False)) for f in frequencies]
+    [True, False, None]
+    """
+    with precision(FLOAT_BITS):
+        low, high = arb(cell.low).exp(), arb(cell.high).exp()
+
+    def is_inside(root: Root) -> bool | None:
+        if root.is_zero:
+            return cell.low == -inf
+        size = root.natural_frequency()
+        if size < low or size > high:
+            return False
+        is_ring = cell.right <= -pi and cell.left >= pi
+        is_between = True if is_ring else _is_between(cell, root)
+        return is_between and (True if size > low and size < high else None)
+
+    return is_inside
+
+
+def _is_between(cell: Cell, root: Root) -> bool | None:
+    """Tell whether the argument of a root lies between those of a cell's sides."""
+    with precision(FLOAT_BITS):
+        # Measured from the middle of the cell, the argument does not jump on it.
+        middle = acb(0, (cell.right + cell.left) / 2).exp()
+        turned = (root.enclosure() / middle).arg()
+        half = (cell.left - cell.right) / 2
+        if turned > half or turned < -half:
+            return False
+        return True if turned < half and turned > -half else None
+
+
+def limits(region: Region, *, is_even: bool) -> tuple[float, float, float, float]:
+    """Return ln(abs(s)) and arg(s) between which a region lies, folded into the upper half plane.
+
+    Parameters
+    ----------
+    region : Region
+        A band or a rectangle.
+    is_even : bool
+        Roots mirror each other in the imaginary axis too.
+
+    Raises
+    ------
+    TypeError
+        For any other region.
+    """
+    match region:
+        case Band(low, high):
+            return _log(2 * pi * low) - WIDER, _log(2 * pi * high) + WIDER, 0.0, pi
+        case Rectangle(re_low, re_high, im_low, im_high):
+            sides = (float(re_low), float(re_high), float(im_low), float(im_high))
+            return _limits_of_rectangle(*sides, is_even=is_even)
+    message = f"no search for {type(region).__name__}"
+    raise TypeError(message)
+
+
+def _limits_of_rectangle(
+    re_low: float, re_high: float, im_low: float, im_high: float, *, is_even: bool
+) -> tuple[float, float, float, float]:
+    across_real, across_imaginary = im_low <= 0 <= im_high, re_low <= 0 <= re_high
+    bottom = 0.0 if across_real else min(abs(im_low), abs(im_high))
+    top = max(abs(im_low), abs(im_high))
+    corners = [complex(re, im) for re in (re_low, re_high) for im in (bottom, top)]
+    nearest = complex(0.0 if across_imaginary else min(abs(re_low), abs(re_high)), bottom)
+    low, high = _log(abs(nearest)) - WIDER, _log(max(abs(corner) for corner in corners)) + WIDER
+    right, left = min(map(phase, corners)), max(map(phase, corners))
+    if is_even or not nearest:
+        right, left = 0.0, pi
+    return low, high, right, left
+
+
+def _log(size: float) -> float:
+    return log(size) if size > 0 else -inf

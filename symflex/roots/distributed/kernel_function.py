@@ -1,0 +1,485 @@
+"""The part of a numerator or denominator that holds kernels, as a function of s.
+
+Input: a bound transfer function and a product of factors over its ring.
+Output: a :class:`KernelFunction`, evaluated with its logarithmic derivative at any precision.
+"""
+
+from __future__ import annotations
+
+from cmath import exp as cexp
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property, lru_cache
+from math import exp, lcm
+from typing import TYPE_CHECKING, Final
+
+from flint import acb, acb_series, arb
+
+from symflex.algebra import Factored, degree_in
+from symflex.budget import spend
+from symflex.errors import Diagnostic, ModelError, UncertifiedError
+from symflex.roots.counting.stepping import ROOM, deviation
+from symflex.roots.distributed.double_sums import DoubleSums
+from symflex.roots.distributed.exponential_sum import ExponentialValues, Place, arguments_of, exponential_sum
+from symflex.roots.precision import precision
+from symflex.transfer.enclose_kernels import expansion
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.algebra import Dispersion, KernelTable
+    from symflex.roots.distributed.exponential_sum import Argument, ExponentialSum
+    from symflex.transfer import BoundTransferFunction
+    from symflex.transfer.enclose_kernels import KernelValues
+    from symflex.transfer.monomials import Value
+
+FIRST_BITS = 64
+LAST_BITS = 4096
+SETTLED_BITS = 24
+"""Accuracy asked of every factor before its sign, phase or slope is used."""
+ORIGIN = -140.0
+"""ln(abs(s)) where the order of a root at 0 is read off."""
+BRANCH_BITS = 256
+ANYWHERE = (0.7, 1.3)
+"""Real and imaginary part of a frequency like any other."""
+BRANCHES = (1, 2, 4)
+SINGLE: Final = {"wave": 2, "bending": 4}
+"""Dispersions of one wavenumber, and how many branches it has."""
+TWINS: Final = {"cosh": "cos", "cos": "cosh", "sinh": "sin", "sin": "sinh"}
+MODAL_WORK = 0.15
+"""What sums over characteristic roots cost, in multiplications of a term, over the order to the fourth."""
+
+
+FactorBall = tuple[acb, acb, int]
+"""Value and derivative of a factor, and its exponent."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """Value and slope of a function F at a point.
+
+    Parameters
+    ----------
+    log : complex
+        ln F, its imaginary part up to whole turns.
+    slope : complex
+        The logarithmic derivative in the coordinate of the path.
+    """
+
+    log: complex
+    slope: complex
+
+
+@dataclass(eq=False)
+class KernelFunction:
+    """A product of powers of polynomials in s, wavenumbers and kernels.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        Whose ring and kernels they are.
+    part : Factored
+        Factors of s, of wavenumbers and of kernels; entire together.
+
+    Attributes
+    ----------
+    power : int
+        What is counted is ``part**power``: a power that makes a function of one value out of one whose sign
+        or phase depends on the branch of a wavenumber; 1 for most.
+    work : int
+        Terms evaluated so far; grows with use, so that searches can keep to a budget.
+    """
+
+    bound: BoundTransferFunction
+    part: Factored
+    power: int = field(default=1, init=False)
+    work: int = field(default=0, init=False)
+
+    def __post_init__(self) -> None:
+        self._bits = FIRST_BITS
+        laws = self.bound.kernels.dispersions
+        terms = sum(len(f) for f, _ in self.part.factors) + 2 * len(self.bound.kernels.kernels)
+        self._cost = terms + int(MODAL_WORK * sum(law.order**4 for law in laws if law.kind == "general"))
+        self._values = lru_cache(maxsize=None)(self._kernel_values)
+        self._sums = lru_cache(maxsize=None)(self._exponential_values)
+        self.part, self.power = self._of_one_value()
+
+    @cached_property
+    def is_even(self) -> bool:
+        """Proved: F(-s) is F(s) or -F(s), so that roots mirror each other in the imaginary axis too."""
+        kernels = [k for k in self.bound.kernels.kernels if self.part.depends_on(k.generator)]
+        if any(kernel.function == "exp" for kernel in kernels):
+            return False
+        # Another part's dispersion relation may be lopsided.
+        dispersions = [
+            law
+            for law in self.bound.kernels.dispersions
+            if any(kernel.dispersion is law for kernel in kernels)
+            or any(self.part.depends_on(name) for name in law.wavenumbers)
+        ]
+        laws = [value for law in dispersions for value in law.characteristic]
+        shifted = any(not law.shift.is_zero for law in dispersions)
+        even = all(_parity(f) is not None for value in laws for f, _ in value.factors) and all(
+            sum((_parity(f) or 0) * e for f, e in value.factors) % 2 == 0 for value in laws
+        )
+        return even and not shifted and all(_parity(f) is not None for f, _ in self.part.factors)
+
+    @cached_property
+    def has_fundamental(self) -> bool:
+        """Some kernels are fundamental functions: sums over roots that have no names."""
+        return any(
+            kernel.function == "fundamental" and self.part.depends_on(kernel.generator)
+            for kernel in self.bound.kernels.kernels
+        )
+
+    def at_logarithm(self, z: complex, *, is_simple: bool = False) -> Sample | None:
+        """Return the sample at ``s = exp(z)``, with the slope in z; ``None`` on a root.
+
+        With ``is_simple``, every factor in the numerator counts once.
+        """
+        found = self._settled(lambda: acb(z.real, z.imag).exp())
+        if found is None:
+            return None
+        factors, s = found
+        return self._sample([(f, d, min(e, 1)) for f, d, e in factors] if is_simple else factors, s)
+
+    def at_point(self, s: acb) -> Sample | None:
+        """Return the sample at an exact ``s``, with the slope in ln(s)."""
+        found = self._settled(lambda: s)
+        return None if found is None else self._sample(*found)
+
+    def order_at_zero(self) -> float:
+        """Return the order of the root at s = 0, close to an integer; NaN when it is not found."""
+        sample = self.at_logarithm(complex(ORIGIN, 0.0))
+        return float("nan") if sample is None else sample.slope.real
+
+    def enclosed(self, s: acb, bits: int) -> list[FactorBall]:
+        """Return balls around value and derivative of every factor on a ball ``s``."""
+        with precision(bits):
+            return self._factors(s, bits)
+
+    def enclosed_about(self, ball: acb, centre: acb, bits: int) -> list[FactorBall]:
+        """Return balls around values at an exact point, and around derivatives on a ball that holds it.
+
+        Both are of the same branch of the wavenumbers.
+        """
+        self._spend(bits)
+        with precision(bits):
+            values = self._evaluator(bits)
+            wide = values.at(expansion(ball))
+            exact = values.at(centre, wide)
+            return [
+                (_number(values.value(i, exact)), series[1], exponent)
+                for i, (_, exponent) in enumerate(self.part.factors)
+                if isinstance(series := values.value(i, wide), acb_series)
+            ]
+
+    def value(self, s: acb, bits: int) -> acb:
+        """Return a ball around F, to the :attr:`power` that makes it one function, on a ball ``s``."""
+        self._spend(bits)
+        total = acb(1)
+        with precision(bits):
+            values = self._evaluator(bits)
+            place = values.at(s)
+            for i, (_, exponent) in enumerate(self.part.factors):
+                total *= _number(values.value(i, place)) ** (exponent * self.power)
+        return total
+
+    def is_analytic_on(self, disc: acb, bits: int) -> bool:
+        """Tell whether no law of waves has a pole on a ball, as far as its coefficients show there."""
+        with precision(bits):
+            evaluator = self._values(bits)
+            values: dict[str, Value] = {"s": disc, **{n: acb(c) for n, c in evaluator.constants.items()}}
+            laws = [
+                value for law in evaluator.table.dispersions for value in (*law.characteristic, law.shift)
+            ]
+            return all(_number(evaluator.value(value, values)).is_finite() for value in laws)
+
+    def fastest(self, z: complex) -> float:
+        """Return the largest exponent at ``s = exp(z)``, in absolute value; 0 where none is known."""
+        return self.reach(abs(cexp(z))) if self.in_doubles is None else self.in_doubles.fastest(z)
+
+    def turn_of_exponentials(self, ball: acb, start: acb, end: acb, bits: int) -> tuple[float, arb] | None:
+        """Return how far arg F, of :attr:`power`, turns between two points of a ball.
+
+        Parameters
+        ----------
+        ball : acb
+            Holds the path from one point to the other.
+        start, end : acb
+            Points.
+        bits : int
+            Precision.
+
+        Returns
+        -------
+        tuple
+            A measure of how far F may turn anywhere on the ball, infinite where nothing is proved, and the
+            turn. ``None`` when the function is no sum of exponentials.
+        """
+        if self.exponentials is None:
+            return None
+        self._spend(bits)
+        sums = self._sums(bits)
+        around = sums.at(ball)
+        first, last = sums.at(start, around), sums.at(end, around)
+        total, widest = arb(0), 0.0
+        for i, (terms, exponent) in enumerate(sums.sums):
+            largest = sums.largest(i, around) if len(terms.terms) > 1 else 0
+            widest = max(widest, deviation(_number(sums.value(i, around, largest))))
+            if widest > ROOM:
+                return widest, total
+            ratio = _number(sums.value(i, last, largest)) / _number(sums.value(i, first, largest))
+            own = [sums.exponents(i, place)[largest] for place in (first, last)]
+            if own[0] is not None and own[1] is not None:
+                total += exponent * _number(own[1] - own[0]).imag
+            total += exponent * ratio.arg()
+        return widest, total * self.power
+
+    def _exponential_values(self, bits: int) -> ExponentialValues:
+        return ExponentialValues(self._values(bits), self.arguments, self.exponentials or ())
+
+    @cached_property
+    def arguments(self) -> tuple[Argument, ...]:
+        """What the exponentials of :attr:`exponentials` are taken of."""
+        return arguments_of(self.bound.kernels) or ()
+
+    @cached_property
+    def exponentials(self) -> tuple[tuple[ExponentialSum, int], ...] | None:
+        """The factors as sums of exponentials, where all wavenumbers have formulas and the sums are short."""
+        if arguments_of(self.bound.kernels) is None:
+            return None
+        found = []
+        for factor, exponent in self.part.factors:
+            terms = exponential_sum(self.part.ring, self.bound.kernels, self.arguments, factor)
+            if terms is None:
+                return None
+            found.append((terms, exponent))
+        return tuple(found)
+
+    @cached_property
+    def in_doubles(self) -> DoubleSums | None:
+        """The factors for guesses at many points; ``None`` where they are no sums of exponentials."""
+        if self.exponentials is None:
+            return None
+        with precision(FIRST_BITS):
+            return DoubleSums(self._sums(FIRST_BITS))
+
+    def _anywhere(self) -> tuple[int, dict[str, Value], acb]:
+        """Return a precision, the generators' values at a frequency like any other, and the product's."""
+        bits = BRANCH_BITS
+        while bits <= LAST_BITS:
+            with precision(bits):
+                evaluator = self._values(bits)
+                values = evaluator.at(acb(*ANYWHERE))
+                value = _number(evaluator.value(self.part, values))
+            if value.is_finite() and value.rel_accuracy_bits() >= FIRST_BITS:
+                return bits, values, value
+            bits *= 4
+        message = f"a part of {self.bound.name} is 0/0 or 0 at every s for these values"
+        hint = "a rigid or massless limit has its own equations"
+        raise ModelError(Diagnostic("SF231", message, None, hint))
+
+    def _of_one_value(self) -> tuple[Factored, int]:
+        """Return the product without those powers of wavenumbers that change with the branch, and an order.
+
+        Where a wavenumber vanishes they are roots of half or quarter order; numerator and denominator share
+        them, and they are no roots of a transfer function. The order is that of the power in which the choice
+        of the wavenumbers does not matter.
+        """
+        part, order = self.part, 1
+        bits, values, value = self._anywhere()
+        with precision(bits):
+            for law in self.bound.kernels.dispersions:
+                for other in other_branches(law, self.bound.kernels, values):
+                    turned = _number(self._values(bits).value(self.part, {**values, **other})) / value
+                    if law.kind in SINGLE:
+                        step = acb(0, 1) if law.kind == "bending" else acb(-1)
+                        powers = range(SINGLE[law.kind])
+                        power = next((k for k in powers if (turned - step**k).contains(0)), 0)
+                        if power:
+                            part = part * Factored.generator(part.ring, law.wavenumbers[0]) ** -power
+                            turned = turned / step**power
+                    found = next((n for n in BRANCHES if (turned**n - 1).contains(0)), None)
+                    if found is None or not turned.rel_accuracy_bits() >= SETTLED_BITS:
+                        message = f"a part of {self.bound.name} has no value of its own for every s"
+                        raise UncertifiedError(Diagnostic("SF404", message))
+                    order = lcm(order, found)
+        return part, order
+
+    def reach(self, s: float) -> float:
+        """Return the largest kernel argument, in absolute value, at a positive ``s``."""
+        with precision(FIRST_BITS):
+            evaluator = self._values(FIRST_BITS)
+            values = evaluator.at(acb(s))
+            sizes = []
+            for kernel in self.bound.kernels.kernels:
+                law, length = kernel.dispersion, _number(evaluator.value(kernel.length, values))
+                if kernel.function == "exp":
+                    rate = _number(evaluator.value(law.shift, values))
+                elif kernel.function == "fundamental":
+                    rate = _spectral_size([_number(evaluator.value(c, values)) for c in law.characteristic])
+                else:
+                    rate = _number(values[kernel.wavenumber])
+                sizes.append(abs(rate * length).mid())
+            return max(float(size) if size.is_finite() else 0.0 for size in sizes)
+
+    def frequency_of(self, waves: float) -> float:
+        """Return a frequency at which the largest argument of a kernel has a given size [rad/s]."""
+        low, high = -60.0, 60.0
+        for _ in range(60):
+            middle = (low + high) / 2
+            low, high = (middle, high) if self.reach(exp(middle)) < waves else (low, middle)
+        return exp(high)
+
+    def _sample(self, found: list[tuple[acb, acb, int]], s: acb) -> Sample:
+        total, slope = 0j, 0j
+        for value, derivative, exponent in found:
+            middle = value.mid()
+            total += exponent * complex(float(abs(middle).log()), float(middle.arg()))
+            slope += exponent * complex(s * derivative / value)
+        return Sample(self.power * total, self.power * slope)
+
+    def _settled(self, point: Callable[[], acb]) -> tuple[list[tuple[acb, acb, int]], acb] | None:
+        bits = self._bits
+        while bits <= LAST_BITS:
+            with precision(bits):
+                s = point()
+                found = self._factors(s, bits)
+                if any(f == 0 for f, _, _ in found):
+                    return None
+                if all(f.rel_accuracy_bits() >= SETTLED_BITS and d.is_finite() for f, d, _ in found):
+                    return found, s
+            bits *= 2
+        return None
+
+    def _spend(self, bits: int) -> None:
+        spend()
+        self.work += self._cost * max(1, bits // (2 * FIRST_BITS))
+
+    def _factors(self, s: acb, bits: int) -> list[FactorBall]:
+        """Return value, derivative and exponent of every factor, at the current precision."""
+        self._spend(bits)
+        values = self._evaluator(bits)
+        place = values.at(expansion(s))
+        return [
+            (series[0], series[1], exponent)
+            for i, (_, exponent) in enumerate(self.part.factors)
+            if isinstance(series := values.value(i, place), acb_series)
+        ]
+
+    def _evaluator(self, bits: int) -> ExponentialValues | _KernelFactors:
+        """Return what evaluates the factors: as sums of exponentials where they are."""
+        if self.exponentials is not None:
+            return self._sums(bits)
+        return _KernelFactors(self._values(bits), [factor for factor, _ in self.part.factors])
+
+    def _kernel_values(self, bits: int) -> KernelValues:
+        with precision(bits):
+            constants = {name: evaluate() for name, evaluate in self.bound.constants}
+            return self.bound.kernel_values(constants)
+
+
+@dataclass(frozen=True, slots=True)
+class _KernelFactors:
+    """Polynomials in kernels, evaluated as they stand."""
+
+    evaluator: KernelValues
+    factors: Sequence[fmpz_mpoly]
+
+    def at(self, s: Value, near: Place | None = None) -> Place:
+        """Return the values of the generators, of the branch that others have."""
+        return Place(self.evaluator.at(s, None if near is None else near.values), ())
+
+    def value(self, number: int, place: Place) -> Value:
+        """Return the value of one polynomial."""
+        return self.evaluator.polynomial(self.factors[number], place.values)
+
+
+def other_branches(
+    law: Dispersion, table: KernelTable, values: Mapping[str, Value]
+) -> list[dict[str, Value]]:
+    """Return the values of wavenumbers and kernels with another root of the dispersion relation chosen."""
+    kernels = table.kernels_of(law)
+    turn = acb(0, 1) if law.kind == "bending" else acb(-1)
+    found: list[dict[str, Value]] = []
+    for wavenumber in law.wavenumbers:
+        branch: dict[str, Value] = {wavenumber: turn * values[wavenumber]}
+        for kernel in (k for k in kernels if k.wavenumber == wavenumber):
+            source = values[kernel.generator]
+            if law.kind == "bending":
+                twin = TWINS[kernel.function]
+                source = next(
+                    (
+                        values[k.generator]
+                        for k in kernels
+                        if k.function == twin and k.length is kernel.length
+                    ),
+                    source,
+                )
+            branch[kernel.generator] = turn * source if kernel.function in ("sinh", "sin") else source
+        found.append(branch)
+    if len(law.wavenumbers) > 1:
+        first, second = law.wavenumbers
+        branch = {first: values[second], second: values[first]}
+        for kernel in kernels:
+            other = second if kernel.wavenumber == first else first
+            twin_of = (
+                k.generator
+                for k in kernels
+                if (k.wavenumber, k.function) == (other, kernel.function) and k.length is kernel.length
+            )
+            branch[kernel.generator] = values[next(twin_of, kernel.generator)]
+        found.append(branch)
+    return found
+
+
+def _parity(polynomial: fmpz_mpoly) -> int | None:
+    """Return whether all powers of s are even (0) or odd (1), ``None`` when neither."""
+    found = {int(monomial[0]) % 2 for monomial in polynomial.monoms()}
+    return found.pop() if len(found) == 1 else None
+
+
+def _spectral_size(coefficients: Sequence[acb]) -> acb:
+    """Return about the size of the largest root of a characteristic polynomial."""
+    order = len(coefficients)
+    sizes = [abs(c).mid() for c in coefficients]
+    return acb(
+        max((size.root(order - i) for i, size in enumerate(sizes) if size > 0), key=float, default=arb(0))
+    )
+
+
+def _number(value: Value) -> acb:
+    return value[0] if isinstance(value, acb_series) else value
+
+
+def split_off_kernels(value: Factored, table: KernelTable) -> tuple[Factored, Factored]:
+    """Return the factors that hold s alone, and the product of those that hold wavenumbers or kernels.
+
+    Exponential kernels by themselves have no roots and are left out of both, as is what does not depend on s.
+    """
+    ring = value.ring
+    varying = [0] + [
+        ring.index[name]
+        for law in table.dispersions
+        if any(c.depends_on(ring.names[0]) for c in (*law.characteristic, law.shift))
+        for name in (*law.wavenumbers, *(k.generator for k in table.kernels_of(law)))
+    ]
+    generators = [ring.index[name] for name in table.generators]
+    bare = {str(ring.generator(k.generator)) for k in table.kernels if k.function == "exp"}
+    plain, mixed = [], []
+    for factor, exponent in value.factors:
+        if any(degree_in(factor, i) for i in generators):
+            if str(factor) not in bare and any(degree_in(factor, i) for i in varying):
+                mixed.append((factor, exponent))
+        else:
+            plain.append((factor, exponent))
+    return Factored(ring, Fraction(1), tuple(plain)), Factored(ring, Fraction(1), tuple(mixed))
+
+
+def has_kernels(value: Factored, table: KernelTable) -> bool:
+    """Tell whether a product has a factor with a kernel, not only powers of wavenumbers."""
+    kernels = [value.ring.index[k.generator] for k in table.kernels]
+    return any(degree_in(f, i) for f, e in value.factors if e > 0 for i in kernels)

@@ -1,0 +1,230 @@
+"""Proving that a box holds exactly one root of a function with kernels.
+
+Where the interval Newton operator ``N(X) = m - f(m)/f'(X)`` of a factor f sends a box X into its interior,
+f has exactly one root in X, a simple one, and N(X) holds it (Moore 1966; Krawczyk 1969 multiplies with an
+approximate inverse instead, which saves nothing in one dimension). Where all other factors differ from 0 on
+X, the function has that root with the factor's exponent for its multiplicity.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+from typing import TYPE_CHECKING
+
+from flint import acb, arb
+
+from symflex.roots.counting.local_series import BITS_A_POINT, REACH, SERIES_BITS, SERIES_POINTS, local_series
+from symflex.roots.precision import bits_for_digits, precision
+from symflex.roots.root import GUARD_BITS, Root
+
+if TYPE_CHECKING:
+    from symflex.roots.distributed.kernel_function import KernelFunction
+
+LEAST_BITS = 96
+BOX_SHARE = 0.4
+"""The box is so many of the bits smaller than the root is large."""
+DOUBLINGS = 5
+CLOSE = BOX_SHARE + 0.02
+"""The last Newton step before a box is drawn is by so many of the bits smaller."""
+FIRST_BITS = 64
+STEPS = 80
+SMALLER = 4
+PATIENCE = 10
+"""Newton steps at one precision, after the first, beyond which they converge too slowly for a simple root."""
+
+
+class _SlowError(Exception):
+    """Newton steps do not double their digits: next to the root the factor is not like a simple one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """A box that holds exactly one root of one factor, and what is known of the others there.
+
+    Parameters
+    ----------
+    re, im : arb
+        Enclosures of the root [rad/s], exactly zero where symmetry proves that.
+    reach : arb
+        Half the side of the box in which there is no other root of the factor [rad/s].
+    exponent : int
+        Of the factor.
+    touching : tuple of int
+        Other factors that may have a root in the box.
+    """
+
+    re: arb
+    im: arb
+    reach: arb
+    exponent: int
+    touching: tuple[int, ...]
+
+
+def prove_simple(
+    function: KernelFunction,
+    s: acb,
+    digits: int,
+    *,
+    factor: int | None = None,
+    even: bool | None = None,
+    first_bits: int = FIRST_BITS,
+) -> Root | None:
+    """Return the root of a factor next to a point with an enclosure, or ``None`` where none is proved.
+
+    Parameters
+    ----------
+    function : KernelFunction
+        A product of factors.
+    s : acb
+        Exact, close to the root.
+    digits : int
+        Significant digits wanted.
+    factor : int, optional
+        Which factor; the nearest root by default.
+    even : bool, optional
+        Whether roots mirror each other in the imaginary axis.
+    first_bits : int
+        Precision of the first steps: next to other roots, few bits may lead astray.
+
+    Returns
+    -------
+    Root
+        ``multiplicity`` is the factor's exponent. Where other factors have roots in the same box that cannot
+        be told apart, it is the sum of all exponents, and the root is not ``certified``.
+    """
+    is_even = function.is_even if even is None else even
+    wanted = bits_for_digits(digits + 2) + GUARD_BITS
+    bits = max(LEAST_BITS, wanted, first_bits)
+    found: Box | None = None
+    for _ in range(DOUBLINGS):
+        try:
+            box = _box(function, s, (first_bits, bits), factor, even=is_even)
+        except _SlowError:
+            break
+        if box is not None:
+            found = box
+            with precision(bits):
+                size = acb(box.re, box.im).abs_lower()
+                error = box.re.rad() + box.im.rad()
+                if not box.touching and error < size * arb(10) ** -digits:
+                    return _root(box, box.exponent, certified=True)
+                s = acb(box.re.mid(), box.im.mid())
+        bits *= 2
+    if found is None:
+        return None
+    total = found.exponent
+    for other in found.touching:
+        try:
+            beside = _box(function, s, (first_bits, bits // 2), other, even=is_even)
+        except _SlowError:
+            return None
+        if beside is None:
+            return None
+        total += beside.exponent
+    return _root(found, total, certified=not found.touching)
+
+
+def _root(box: Box, multiplicity: int, *, certified: bool) -> Root:
+    return Root(
+        box.re,
+        box.im,
+        multiplicity,
+        on_imaginary_axis=bool(box.re == 0) and certified,
+        is_real=bool(box.im == 0) and certified,
+        certified=certified,
+    )
+
+
+def _box(
+    function: KernelFunction, s: acb, levels: tuple[int, int], factor: int | None, *, even: bool
+) -> Box | None:
+    """Return a box about the root next to ``s``, after Newton steps from a first to a last precision."""
+    bits = levels[1]
+    with precision(bits):
+        middle = acb(s.real.mid(), s.imag.mid())
+        approached = _approached(function, middle, levels, factor)
+        if approached is None:
+            return None
+        middle, chosen = approached
+        reach = middle.abs_upper() * arb(2) ** (-BOX_SHARE * bits)
+        on_axis = even and bool(abs(middle.real) < reach / SMALLER)
+        is_real = bool(abs(middle.imag) < reach / SMALLER)
+        middle = acb(arb(0) if on_axis else middle.real, arb(0) if is_real else middle.imag)
+        reach = reach.mid()
+        box = acb(arb(middle.real, reach), arb(middle.imag, reach))
+        factors = function.enclosed_about(box, middle, bits)
+        value, slope, exponent = factors[chosen]
+        step = value / slope
+        if not step.is_finite() or not (abs(step.real) < reach and abs(step.imag) < reach):
+            return None
+        farthest = (box - middle).abs_upper()
+        touching = tuple(
+            i
+            for i, (other, change, _) in enumerate(factors)
+            if i != chosen and not other.abs_lower() > (change * farthest).abs_upper()
+        )
+        if touching and _is_alone(function, middle, farthest, exponent, bits):
+            touching = ()
+        root = middle - step
+        # The only root of the product in a box that mirrors itself is its own mirror image.
+        alone = not touching
+        return Box(
+            arb(0) if on_axis and alone else root.real,
+            arb(0) if is_real and alone else root.imag,
+            reach,
+            exponent,
+            touching,
+        )
+
+
+def _is_alone(function: KernelFunction, middle: acb, radius: arb, exponent: int, bits: int) -> bool:
+    """Tell whether a function has so many roots near a point: where wavenumbers vanish, boxes do not say."""
+    within = (radius * SMALLER).mid()
+    reach = within.max((middle.abs_upper() * REACH).mid())
+    series = local_series(function, middle, reach, bits + SERIES_BITS, SERIES_POINTS + bits // BITS_A_POINT)
+    return series is not None and series.count(within) == exponent * function.power
+
+
+def _approached(
+    function: KernelFunction, s: acb, levels: tuple[int, int], factor: int | None
+) -> tuple[acb, int] | None:
+    """Return a point close to a root to a share of the bits, by Newton steps at rising precision."""
+    first, bits = min(levels), levels[1]
+    level, chosen, patience = first, factor or 0, STEPS
+    for _ in range(STEPS):
+        factors = function.enclosed(s, level)
+        if factor is None and level == first:
+            chosen = nearest_factor(factors)
+        value, slope, _ = factors[chosen]
+        with precision(level):
+            step = value / slope
+            if not step.is_finite():
+                if level >= bits:
+                    return None
+                level, patience = min(2 * level, bits), PATIENCE
+                continue
+            s = (s - step).mid()
+            size, least = step.abs_upper(), s.abs_lower()
+        if level >= bits and size < least * 2.0 ** (-CLOSE * bits):
+            return s, chosen
+        if size < least * 2.0 ** (-level / 3) and level < bits:
+            level, patience = min(2 * level, bits), PATIENCE
+            continue
+        patience -= 1
+        if patience < 0:
+            # Steps of unknown sign ask for more digits; others are right, and too short.
+            if step.contains(0):
+                return None
+            raise _SlowError
+    return None
+
+
+def nearest_factor(factors: list[tuple[acb, acb, int]]) -> int:
+    """Return the factor with a positive exponent whose root is nearest by Newton's estimate."""
+    sizes = []
+    for i, (value, slope, exponent) in enumerate(factors):
+        size, steepness = abs(value).mid(), abs(slope).mid()
+        if exponent > 0 and steepness > 0:
+            sizes.append((float((size / steepness).log()) if size > 0 else -inf, i))
+    return min(sizes)[1] if sizes else 0

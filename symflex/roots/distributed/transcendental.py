@@ -1,0 +1,409 @@
+"""Roots of functions with kernels in a part of the s plane: counted, separated, proved one by one.
+
+Cells of z = ln(s) are counted by the argument principle and split until each holds one root. The count may be
+numerical, which makes guesses, or proved, which leaves none out; every root found is proved either way.
+"""
+
+from __future__ import annotations
+
+from cmath import exp, pi
+from dataclasses import dataclass
+from math import inf
+from typing import TYPE_CHECKING
+
+from flint import acb, arb
+
+from symflex.errors import BudgetError, Diagnostic
+from symflex.roots.axes.axis_scan import sign_changes
+from symflex.roots.counting.winding import RING, Cell, RootOnPathError
+from symflex.roots.distributed.branch_points import in_disc, is_branched, prove_together, snapped
+from symflex.roots.distributed.clusters import middle_of, resolve
+from symflex.roots.distributed.krawczyk import prove_simple
+from symflex.roots.precision import bits_for_digits, precision
+from symflex.roots.root import Root, overlap
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from symflex.roots.counting.argument_principle import CertifiedWinding
+    from symflex.roots.counting.winding import Winding
+
+MARGIN = 0.03
+"""How far beyond the axes cells reach [rad], so that no side lies on a row of roots."""
+RIGHT_HALF = 1.3
+"""Where the first cut across a half plane is made [rad]: to the right of lightly damped roots."""
+SHARES = (0.5127, 0.4631, 0.5719, 0.4213, 0.55, 0.38, 0.61)
+"""Where a cell may be cut: off its middle, where symmetry puts roots."""
+NUDGES = (0.0, 0.0123, 0.0371, 0.0743, 0.113, 0.171)
+CLOSEST = 1e-11
+"""Cells smaller than this are not split further."""
+SEARCH_STEPS = 30
+CONVERGED = 1e-11
+FIRST_BITS = 128
+SMALL = 1e-9
+"""Size of cells in which roots that cannot be told apart by splitting are told apart by their moments."""
+NEAR = 0.1
+"""Size of cells in which a root without a box is enclosed by a circle."""
+NEIGHBOURS = 1e-4
+"""Relative radius of the circle about one of several roots in a cell within which the others are sought."""
+CLUSTER_BITS = 256
+CLUSTER_DOUBLINGS = 4
+DISC_GROWTH = 100
+APART = 8
+"""Radii of a disc about several roots at which the circle goes by whose moments they are told apart."""
+FEW = 8
+"""Modes from which on a search goes on in smaller rings."""
+UNCHECKED = 12
+"""Octaves searched along the axes between two counts."""
+HIGHEST = 300.0
+"""ln of the radius [rad/s] beyond which nothing is sought."""
+MODES_LIMIT = 2000
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What a search brought to light.
+
+    Parameters
+    ----------
+    roots : tuple of Root
+        In the upper half plane, for even functions in its right quadrant; both with the axes.
+    missing : int
+        Roots that were counted but not found.
+    cell : Cell, optional
+        What was searched.
+    """
+
+    roots: tuple[Root, ...]
+    missing: int
+    cell: Cell | None = None
+
+
+class RootSearch:
+    """Searches one function.
+
+    Parameters
+    ----------
+    winding : Winding
+        Counts the roots of a function with at least one kernel.
+    proof : CertifiedWinding
+        Of the same function.
+    holes : sequence of Cell
+        What is left out: neighbourhoods of points where roots accumulate.
+    digits : int
+        Significant digits of every root.
+
+    Attributes
+    ----------
+    is_even : bool
+        Roots mirror each other in the imaginary axis.
+    excluded : set of Cell
+        The holes that a search met.
+    roots : list of Root
+        What :meth:`extend` found: in the upper half plane, for even functions in its right quadrant.
+    missing : int
+        Roots that were counted on the way but not found.
+    reached : float
+        ln of the radius up to which it searched.
+    """
+
+    def __init__(self, winding: Winding, proof: CertifiedWinding, holes: Sequence[Cell], digits: int) -> None:
+        self.function = winding.function
+        self.holes = tuple(holes)
+        self.digits = digits
+        self.is_even = self.function.is_even
+        self.excluded: set[Cell] = set()
+        self.roots: list[Root] = []
+        self.missing = 0
+        self.reached = -inf
+        self._winding = winding
+        self._proof = proof
+
+    @property
+    def left(self) -> float:
+        """The largest arg(s) searched [rad], but for the margin; mirror images are known without search."""
+        return pi / 2 if self.is_even else pi
+
+    def smallest(self) -> float:
+        """Return ln of a radius within which no roots lie but those at s = 0, by all appearances."""
+        return self._winding.smallest(self.left, self.holes)
+
+    def extend(self, modes: int, radius: float = -inf) -> None:
+        """Search outwards until there are enough modes, and at least to ln of a radius.
+
+        The results accumulate in :attr:`roots` and :attr:`missing`; none lacks as far as :attr:`reached`.
+
+        Raises
+        ------
+        BudgetError
+            SF505, SF506; what was found stays.
+        """
+        if self.reached == -inf:
+            self.reached = self.smallest()
+        while self.reached < radius or (known := self._modes()) < modes:
+            if self.reached > HIGHEST:
+                # Kernels that do not depend on s: there are no more roots.
+                self.reached = inf
+                break
+            if self.reached >= radius:
+                self._winding.budget.progress.report(known / modes, f"{known} of {modes} modes located")
+            high, found = self._ring(self.reached, self.passing(self.reached + RING))
+            self.roots.extend(found.roots)
+            self.missing += found.missing
+            self.reached = high
+
+    def scan(self, modes: int, radius: float, is_complete: Callable[[], bool]) -> bool:
+        """Search both axes outwards until there are enough modes; see :meth:`extend`.
+
+        Parameters
+        ----------
+        modes : int
+            Wanted.
+        radius : float
+            ln of a radius up to which to go in any case.
+        is_complete : callable
+            Tells whether :attr:`roots` are all up to :attr:`reached`; asked every now and then.
+
+        Returns
+        -------
+        bool
+            False when there are roots off the axes.
+        """
+        if self.reached == -inf:
+            self.reached = self.smallest()
+        checked = self.reached
+        while self.reached < radius or self._modes() < modes:
+            if self.reached > HIGHEST:
+                self.reached = inf
+                break
+            known = self._modes()
+            if self.reached >= radius:
+                self._winding.budget.progress.report(known / modes, f"{known} of {modes} modes located")
+            high = self.reached + (RING if known < FEW else RING / 4)
+            try:
+                self.roots.extend(self.on_axes(self.reached, high))
+            except RootOnPathError:
+                return False
+            self.reached = high
+            if high - checked > UNCHECKED * RING:
+                if not is_complete():
+                    return False
+                checked = high
+        return is_complete()
+
+    def on_axes(self, low: float, high: float) -> list[Root]:
+        """Return the roots on both axes where an even function changes its sign, between ln of two radii."""
+        found: list[Root] = []
+        for angle in (0.0, pi / 2):
+            last: Root | None = None
+            for z in sign_changes(self._winding, low, high, angle):
+                with precision(FIRST_BITS):
+                    s = acb(z.real, z.imag).exp().mid()
+                root = prove_simple(self.function, s, self.digits, even=True)
+                # Newton's method may have gone to the same root twice.
+                if root is not None and (last is None or not overlap(root, last)):
+                    found.append(root)
+                    last = root
+        return found
+
+    def _modes(self) -> int:
+        return sum(root.multiplicity for root in self.roots)
+
+    def passing(self, radius: float) -> float:
+        """Return ln of a radius, at least the one given, whose circle passes all holes."""
+        for hole in sorted(self.holes, key=lambda hole: hole.low):
+            if hole.low - max(NUDGES) <= radius <= hole.high:
+                radius = hole.high + MARGIN
+        return radius
+
+    def ring(self, low: float, high: float, right: float = 0.0, left: float = pi) -> Found:
+        """Return the roots with ln(abs(s)) and arg(s) in the given limits, and perhaps a few beyond."""
+        cell = self._widened(Cell(low, high, right, min(left, self.left)))
+        for nudge in NUDGES:
+            moved = Cell(cell.low - nudge / 3, cell.high + nudge / 2, cell.right - nudge, cell.left + nudge)
+            try:
+                return self._search(moved)
+            except RootOnPathError:
+                continue
+        return Found((), 1)
+
+    def _widened(self, cell: Cell) -> Cell:
+        return Cell(cell.low - 1e-3, cell.high + 1.1e-3, cell.right - MARGIN, cell.left + MARGIN)
+
+    def _ring(self, low: float, high: float) -> tuple[float, Found]:
+        """Return the roots in a whole ring, whose outer radius may move to pass between roots."""
+        for nudge in NUDGES:
+            try:
+                found = self._search(Cell(low, high + nudge, -MARGIN, self.left + MARGIN))
+            except RootOnPathError:
+                continue
+            return high + nudge, found
+        message = f"roots do not separate near {exp(high).real:g} rad/s"
+        raise BudgetError(Diagnostic("SF505", message, None, "ask for a band that ends elsewhere"))
+
+    def _search(self, cell: Cell) -> Found:
+        cells = [cell]
+        for hole in self.holes:
+            parts = [part for whole in cells for part in whole.without(hole)]
+            if parts != cells:
+                self.excluded.add(hole)
+            cells = parts
+        counted = [(part, self._winding.count(part)) for part in cells]
+        roots: list[Root] = []
+        missing = 0
+        for part, count in counted:
+            found, lost = self._separate(part, count)
+            roots.extend(found)
+            missing += lost
+        return Found(tuple(roots), missing, cell)
+
+    def _separate(self, cell: Cell, count: int) -> tuple[list[Root], int]:
+        """Return the roots in a cell known to hold ``count`` of them."""
+        roots: list[Root] = []
+        missing = 0
+        pending = [(cell, count)]
+        while pending:
+            part, number = pending.pop()
+            if number == 0:
+                continue
+            found = self._together(part, number) if number > 0 else None
+            parts = None
+            if found is None and part.size > CLOSEST and number > 0:
+                parts = self._split(part, number)
+            if found is None and parts is None and number > 0:
+                found = self._cluster(part, number)
+            if found is not None:
+                roots.extend(found)
+            elif parts is not None:
+                pending.extend(parts)
+            else:
+                missing += max(1, abs(number) // self.function.power)
+        # Beyond the axes are mirror images of others; where wavenumbers branch there may be no root.
+        kept = (r for r in roots if r.multiplicity and not r.im < 0 and not (self.is_even and r.re < 0))
+        return list(kept), missing
+
+    def _split(self, cell: Cell, count: int) -> tuple[tuple[Cell, int], tuple[Cell, int]] | None:
+        shares: tuple[float, ...] = SHARES
+        if cell.right < 0 and cell.left > pi / 2 and cell.left - cell.right >= cell.high - cell.low:
+            shares = ((RIGHT_HALF - cell.right) / (cell.left - cell.right), *SHARES)
+        for share in shares:
+            one, other = cell.split(share)
+            try:
+                number = self._winding.count(one)
+            except RootOnPathError:
+                continue
+            return (one, number), (other, count - number)
+        return None
+
+    def _together(self, cell: Cell, count: int) -> list[Root] | None:
+        """Return the root in a cell when there is one, of any multiplicity; ``None`` to look closer."""
+        z = cell.centre
+        for _ in range(SEARCH_STEPS):
+            try:
+                slope = self._winding.sample(z).slope
+            except RootOnPathError:
+                break
+            if slope == 0:
+                return None
+            step = count / slope
+            z -= step
+            if not cell.holds(z, cell.size):
+                return None
+            if abs(step) < CONVERGED:
+                break
+        else:
+            return None
+        if not cell.holds(z, CONVERGED):
+            return None
+        with precision(FIRST_BITS):
+            s = acb(z.real, z.imag).exp().mid()
+        root = prove_simple(self.function, s, self.digits, even=self.is_even)
+        if root is not None and root.multiplicity * self.function.power == count and _is_in(cell, root):
+            return [root]
+        if count <= self.function.power:
+            # No box about it: perhaps a wavenumber vanishes there, which has two branches.
+            return None if root is not None or cell.size > NEAR else self._about(s, count)
+        # Several roots, perhaps too close to each other to be parted by cuts.
+        with precision(FIRST_BITS):
+            radius = (s.abs_upper() * NEIGHBOURS).mid()
+        found = resolve(self.function, s, radius, self.digits, CLUSTER_BITS, even=self.is_even)
+        if found is None or sum(each.multiplicity for each in found) * self.function.power != count:
+            if not is_branched(self.function, s, radius):
+                return None
+            one = prove_together(
+                self.function, s, radius, self.digits, count, even=self.is_even, is_close=True
+            )
+            if one is None:
+                return None
+            found = self._apart(one) or [one]
+        return found if all(_is_in(cell, each) for each in found) else None
+
+    def _apart(self, root: Root) -> list[Root] | None:
+        """Return the roots that agree in all digits wanted, by more digits."""
+        bits = 2 * max(CLUSTER_BITS, root.working_bits())
+        with precision(bits):
+            centre = acb(root.re.mid(), root.im.mid())
+            radius = ((root.re.rad() + root.im.rad()) * APART).upper()
+        found = resolve(self.function, centre, radius, self.digits, bits, even=self.is_even)
+        total = 0 if found is None else sum(each.multiplicity for each in found)
+        return found if total == root.multiplicity else None
+
+    def _cluster(self, cell: Cell, count: int) -> list[Root] | None:
+        """Return the roots in a small cell by their moments, or as one that could not be told apart."""
+        whole, broken = divmod(count, self.function.power)
+        if broken or cell.size > SMALL:
+            return None
+        with precision(FIRST_BITS):
+            centre = acb(cell.centre.real, cell.centre.imag).exp().mid()
+            radius = (centre.abs_upper() * 2 * cell.size).mid()
+        bits = CLUSTER_BITS
+        for _ in range(CLUSTER_DOUBLINGS):
+            found = resolve(self.function, centre, radius, self.digits, bits, even=self.is_even)
+            if found is not None and sum(root.multiplicity for root in found) == whole:
+                return found
+            bits *= 2
+        return self._as_one(centre, radius, count)
+
+    def _about(self, s: acb, count: int) -> list[Root] | None:
+        """Return the only root in a circle that is not small: next to a branch, small ones fail."""
+        with precision(FIRST_BITS):
+            size = (s.abs_upper() * NEIGHBOURS).mid()
+        found = prove_together(self.function, s, size, self.digits, count, even=self.is_even)
+        if found is not None:
+            return [found]
+        return self._in_disc(snapped(s, size, even=self.is_even), size, count)
+
+    def _in_disc(self, centre: acb, size: arb, count: int) -> list[Root] | None:
+        """Return all roots in a disc as one if there are so many."""
+        try:
+            if self._proof.count_in_disc(centre, size) != count:
+                return None
+        except RootOnPathError:
+            return None
+        return [in_disc(centre, size, count // self.function.power, even=self.is_even)]
+
+    def _as_one(self, centre: acb, radius: arb, count: int) -> list[Root] | None:
+        """Return the smallest disc that is proved to hold all roots of a cluster."""
+        together = prove_together(self.function, centre, radius, self.digits, count, even=self.is_even)
+        if together is not None:
+            return [together]
+        bits = max(CLUSTER_BITS, 2 * bits_for_digits(self.digits))
+        centre = middle_of(self.function, centre, radius, bits) or centre
+        with precision(bits):
+            size = (centre.abs_upper() * arb(10) ** -self.digits).mid()
+            centre = snapped(centre, size, even=self.is_even)
+            while size < radius:
+                found = self._in_disc(centre, size, count)
+                if found is not None:
+                    return found
+                size = (size * DISC_GROWTH).mid()
+        return None
+
+
+def _is_in(cell: Cell, root: Root) -> bool:
+    """Tell whether a root lies in a cell, or at most a hair outside."""
+    with precision(FIRST_BITS):
+        z = acb(root.re.mid(), root.im.mid()).log()
+    point = complex(z.mid())
+    turns = round((cell.centre.imag - point.imag) / (2 * pi))
+    return cell.holds(point + 2j * pi * turns, CONVERGED)

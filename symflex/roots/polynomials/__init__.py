@@ -1,0 +1,1 @@
+"""Roots of polynomials: split exactly, isolated and enclosed."""

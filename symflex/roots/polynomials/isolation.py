@@ -1,0 +1,230 @@
+"""Isolation of all simple roots of one real polynomial, at growing precision.
+
+Input: a square-free polynomial and the digits wanted. Output: disjoint discs in the closed upper half
+plane that, with their mirror images, hold all roots. A cluster that the constants' balls never tell apart
+comes out as one disc with its count.
+"""
+
+from __future__ import annotations
+
+from itertools import chain
+from typing import TYPE_CHECKING
+
+from flint import acb_poly, arb
+
+from symflex.errors import Diagnostic, UncertifiedError
+from symflex.roots.polynomials.discs import (
+    Disc,
+    LevelPolynomial,
+    complete,
+    groups,
+    middle_of,
+    with_mirrors,
+)
+from symflex.roots.precision import bits_for_digits, precision
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from flint import acb
+
+    from symflex.budget import Budget
+    from symflex.roots.polynomials.discs import Proposer
+    from symflex.roots.problem import PolynomialInS
+
+    Goal = Callable[[acb], arb]
+
+GUARD_DIGITS = 2
+LARGEST_CLUSTER = 64
+EXTRA_BITS = 64
+GROWTH_WITH_CONSTANTS = 4
+GROWTH_EXACT = 64
+GROWTH_FLOOR = 2048
+
+
+def isolations(
+    polynomial: PolynomialInS,
+    digits: int,
+    *,
+    in_square: bool,
+    proposers: Sequence[Proposer],
+    budget: Budget | None = None,
+) -> Iterator[tuple[Disc, ...]]:
+    """Enclose every root of a square-free polynomial, ever closer.
+
+    Parameters
+    ----------
+    polynomial : PolynomialInS
+        In s, or in z = s^2; of positive degree, without the root 0.
+    digits : int
+        Correct digits wanted in each nonzero component of the roots s.
+    in_square : bool
+        The variable is z = s^2.
+    proposers : sequence of callables
+        Engines that guess roots; the next one is asked when a guess does not certify.
+    budget : Budget, optional
+        Heeded between evaluations; no limit by default.
+
+    Yields
+    ------
+    tuple of Disc
+        All roots; at last with all digits wanted, or at the bound on precision. A ``count`` above one marks
+        roots that could not be told apart within that bound.
+
+    Raises
+    ------
+    UncertifiedError
+        SF404 when the bound on precision is reached without isolating discs.
+    BudgetError
+        SF506 when the time is over.
+
+    Examples
+    --------
+    >>> from symflex.roots.polynomials.durand_kerner import propose_by_durand_kerner
+    >>> from symflex.roots.problem import PolynomialInS
+    >>> polynomial = PolynomialInS.from_integers([-2, 0, 1])
+    >>> [found] = isolations(polynomial, 10, in_square=False, proposers=[propose_by_durand_kerner])
+    >>> len(found)
+    2
+    """
+    bits = first_bits(polynomial, digits)
+    growth = GROWTH_EXACT if polynomial.is_exact else GROWTH_WITH_CONSTANTS
+    limit = growth * bits + GROWTH_FLOOR
+    goal = goal_of(digits, in_square=in_square)
+    known: tuple[acb, ...] | None = None
+    while True:
+        with precision(bits):
+            level = LevelPolynomial.of(acb_poly(polynomial.enclosure()), budget)
+            discs = _solve(level, goal, proposers, known, last=bits >= limit)
+            enough = discs is not None and all(disc.radius <= goal(disc.centre) for disc in discs)
+        if discs is not None:
+            # Outside the block: what takes the discs has its own precision.
+            yield discs
+            if enough or bits >= limit:
+                return
+            known = tuple(disc.centre for disc in discs)
+        if bits >= limit:
+            message = f"roots of a polynomial of degree {polynomial.degree} do not separate at {limit} bits"
+            hint = (
+                "its roots lie too close together or differ in size by hundreds of decades"
+                if polynomial.is_exact
+                else "look for constants in its coefficients that satisfy a relation"
+            )
+            raise UncertifiedError(Diagnostic("SF404", message, hint=hint))
+        bits = min(2 * bits, limit)
+
+
+def first_bits(polynomial: PolynomialInS, digits: int) -> int:
+    """Return the precision to begin with, for so many digits.
+
+    Examples
+    --------
+    >>> from symflex.roots.problem import PolynomialInS
+    >>> first_bits(PolynomialInS.from_integers([-2, 0, 1]), 10)
+    118
+    """
+    return bits_for_digits(digits) + 2 * polynomial.degree + EXTRA_BITS
+
+
+def goal_of(digits: int, *, in_square: bool) -> Goal:
+    """Return the largest radius about z that leaves each component of s the digits wanted.
+
+    For s = sqrt(z) an error e of z moves s by e / (2 abs(s)), and abs(im z) = 2 abs(re s) abs(im s).
+
+    Examples
+    --------
+    >>> from flint import acb
+    >>> goal_of(1, in_square=False)(acb(4, 5))
+    [0.00400000000000000 +/- ...]
+    """
+
+    def goal(z: acb) -> arb:
+        if z.imag == 0:
+            size = z.abs_lower()
+        elif in_square:
+            size = abs(z.imag)
+        else:
+            size = abs(z.real).min(abs(z.imag))
+        return size / arb(10) ** (digits + GUARD_DIGITS)
+
+    return goal
+
+
+def _solve(
+    level: LevelPolynomial,
+    goal: Goal,
+    proposers: Sequence[Proposer],
+    known: tuple[acb, ...] | None,
+    *,
+    last: bool,
+) -> tuple[Disc, ...] | None:
+    """Ask for guesses, those of the level before first, until one certifies."""
+    for guesses in chain([known], (propose(level.value) for propose in proposers)):
+        discs = None if guesses is None else _certify(level, goal, proposers, guesses, last=last)
+        if discs is not None:
+            return discs
+    return None
+
+
+def _certify(
+    level: LevelPolynomial,
+    goal: Goal,
+    proposers: Sequence[Proposer],
+    guesses: Sequence[acb],
+    *,
+    last: bool,
+) -> tuple[Disc, ...] | None:
+    """Return discs proved to hold all roots, with clusters taken apart (or, at last, surrounded)."""
+    discs = [level.polish(guess, goal) for guess in guesses]
+    if complete(discs, level.degree):
+        return tuple(discs)
+    resolved = _resolve(level, goal, proposers, groups(with_mirrors(discs)), last=last)
+    return resolved if resolved is not None and complete(resolved, level.degree) else None
+
+
+def _resolve(
+    level: LevelPolynomial,
+    goal: Goal,
+    proposers: Sequence[Proposer],
+    clusters: Sequence[Sequence[Disc]],
+    *,
+    last: bool,
+) -> tuple[Disc, ...] | None:
+    """Take clusters apart, those in the lower half plane left to their mirror images."""
+    resolved: list[Disc] = []
+    for cluster in clusters:
+        middle = middle_of(cluster)
+        if middle.imag < 0:
+            continue
+        if len(cluster) == 1:
+            resolved.extend(cluster)
+            continue
+        apart = _take_apart(level, goal, proposers, cluster, middle, last=last)
+        if apart is None and last:
+            disc = level.surround(middle, len(cluster))
+            apart = None if disc is None else (disc,)
+        if apart is None:
+            return None
+        resolved.extend(apart)
+    return tuple(resolved)
+
+
+def _take_apart(
+    level: LevelPolynomial,
+    goal: Goal,
+    proposers: Sequence[Proposer],
+    cluster: Sequence[Disc],
+    middle: acb,
+    *,
+    last: bool,
+) -> tuple[Disc, ...] | None:
+    """Separate one cluster, and the smaller clusters it may consist of."""
+    if len(cluster) > LARGEST_CLUSTER:
+        return None
+    discs = level.separate(middle, len(cluster), goal, proposers)
+    if discs is None:
+        return None
+    smaller = groups(with_mirrors(discs) if middle.imag == 0 else discs)
+    if max(len(each) for each in smaller) >= len(cluster):
+        return None
+    return _resolve(level, goal, proposers, smaller, last=last)

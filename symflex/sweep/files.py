@@ -1,0 +1,313 @@
+"""Sweeps as files: netCDF and .npz with named axes, CSV and Parquet as tables; equal sweeps, equal bytes."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import zipfile
+from io import BytesIO, StringIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from symflex.data.measurement.archive import read_archive
+from symflex.data.measurement.netcdf import read_netcdf
+from symflex.errors import DataError, Diagnostic, UsageError
+from symflex.files import write
+from symflex.model.spec.read import read_bytes
+from symflex.sweep.point_margins import MARGINS
+from symflex.sweep.sweep import DRAW, FREQUENCY, MODE, SCHEMA, Labelled, Sweep, missing_library
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from symflex.sweep.task import Array
+
+NEW_YEAR = (1980, 1, 1, 0, 0, 0)
+"""The date of every file in an archive."""
+SIZE_LIMIT = 2**30
+"""Bytes of a file that is read, and of what it holds."""
+ARRAYS_LIMIT = 10_000
+HEADER = "header"
+CHARACTERS = "characters"
+_ROOTS = ("re", "im", "radius", "status", "link", "multiplicity", "frequency_hz", "damping_ratio")
+ARRAYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "poles": ((MODE,), _ROOTS),
+    "zeros": ((MODE,), _ROOTS),
+    "response": ((FREQUENCY,), ("re", "im")),
+    "margins": ((), (*MARGINS, "stable")),
+}
+"""By what is swept: the axis that arrays have besides those of points, and their names."""
+
+
+def archive(arrays: Mapping[str, Array]) -> bytes:
+    """Return arrays as the content of an .npz file without dates.
+
+    Examples
+    --------
+    >>> archive({"a": np.arange(3)}) == archive({"a": np.arange(3)})
+    True
+    """
+    buffer = BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as file:
+        for name, values in arrays.items():
+            content = BytesIO()
+            np.lib.format.write_array(content, np.asarray(values, order="C"), allow_pickle=False)
+            file.writestr(zipfile.ZipInfo(f"{name}.npy", NEW_YEAR), content.getvalue())
+    return buffer.getvalue()
+
+
+def npz_bytes(sweep: Sweep) -> bytes:
+    """Return a sweep as an .npz; its entry ``header`` is JSON and says which axes the arrays have."""
+    every = (*sweep.coordinates, *sweep.variables)
+    header = {
+        "attributes": dict(sweep.attributes),
+        "coordinates": [c.name for c in sweep.coordinates],
+        "arrays": {e.name: {"dims": e.dims, "unit": e.unit, "doc": e.doc} for e in every},
+    }
+    return archive({HEADER: np.array(json.dumps(header, indent=1)), **{e.name: e.values for e in every}})
+
+
+def netcdf_bytes(sweep: Sweep) -> bytes:
+    """Return a sweep as netCDF 3, with 64-bit offsets, as xarray, MATLAB, Julia and R read it."""
+    from scipy.io import netcdf_file  # most commands write none
+
+    buffer = _Unclosed()
+    file = netcdf_file(buffer, "w", version=2)
+    for name, value in sweep.attributes:
+        setattr(file, name, value.encode())
+    sizes = {
+        dim: size
+        for e in (*sweep.coordinates, *sweep.variables)
+        for dim, size in zip(e.dims, e.values.shape, strict=True)
+    }
+    for dim, size in sizes.items():
+        file.createDimension(dim, size)
+    for each in (*sweep.coordinates, *sweep.variables):
+        values, dims = each.values, each.dims
+        if values.dtype.kind == "U":
+            width = max(values.dtype.itemsize // 4, 1)
+            if CHARACTERS not in file.dimensions:
+                file.createDimension(CHARACTERS, width)
+            values = values.astype(f"S{width}").view("S1").reshape(*values.shape, width)
+            dims = (*dims, CHARACTERS)
+        variable = file.createVariable(each.name, _storage(values), dims)
+        variable[...] = values
+        for name, value in (("units", each.unit), ("long_name", each.doc)):
+            if value:
+                setattr(variable, name, value.encode())
+    file.close()
+    return buffer.content
+
+
+class _Unclosed(BytesIO):
+    """Keeps its content when the writer closes it."""
+
+    content = b""
+
+    def close(self) -> None:
+        self.content = self.getvalue()
+        super().close()
+
+
+def _storage(values: Array) -> np.dtype[Any]:
+    # netCDF 3 has no integers of 64 bits.
+    return np.dtype(np.int32) if values.dtype == np.int64 else values.dtype
+
+
+def csv_bytes(sweep: Sweep) -> bytes:
+    """Return a sweep as comma-separated text: a row for each point and mode or frequency."""
+    names, columns = _table(sweep)
+    buffer = StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow(names)
+    writer.writerows(zip(*(_texts(column) for column in columns), strict=True))
+    return buffer.getvalue().encode()
+
+
+def _texts(column: Array) -> Iterator[str]:
+    # The shortest decimal that is read back as the same double.
+    return (repr(value) if isinstance(value, float) else str(value) for value in column.tolist())
+
+
+def parquet_bytes(sweep: Sweep) -> bytes:
+    """Return the same table as Apache Parquet.
+
+    Raises
+    ------
+    UsageError
+        SF914 when pyarrow is not installed.
+    """
+    try:
+        import pyarrow  # an extra
+        from pyarrow import parquet
+    except ImportError:
+        raise missing_library("pyarrow", "Parquet") from None
+    names, columns = _table(sweep)
+    table = pyarrow.table(dict(zip(names, columns, strict=True)))
+    table = table.replace_schema_metadata(dict(sweep.attributes))
+    buffer = BytesIO()
+    parquet.write_table(table, buffer)
+    return buffer.getvalue()
+
+
+def _table(sweep: Sweep) -> tuple[list[str], list[Array]]:
+    """Return names and columns of a long table: one row for each element of the largest arrays."""
+    largest = max(sweep.variables, key=lambda v: len(v.dims))
+    dims, shape = largest.dims, largest.values.shape
+    columns: dict[str, Array] = {}
+    for each in (*sweep.coordinates, *sweep.variables):
+        values = each.values.reshape([shape[dims.index(d)] if d in each.dims else 1 for d in dims])
+        columns[each.name] = np.broadcast_to(values, shape).reshape(-1)
+    if "status" in columns:
+        # What is absent needs no row, unless a point has nothing else.
+        first = np.zeros(shape, bool)
+        first[..., :1] = ~np.any(sweep["status"], axis=-1, keepdims=True)
+        kept = (columns["status"] > 0) | first.reshape(-1)
+        columns = {name: column[kept] for name, column in columns.items()}
+    return list(columns), list(columns.values())
+
+
+WRITERS: dict[str, Callable[[Sweep], bytes]] = {
+    ".nc": netcdf_bytes,
+    ".npz": npz_bytes,
+    ".csv": csv_bytes,
+    ".parquet": parquet_bytes,
+}
+"""By the ending of a file's name."""
+
+
+def check_writable(path: Path) -> None:
+    """Refuse, before anything is computed, a file that cannot be written afterwards.
+
+    Raises
+    ------
+    UsageError
+        SF902 an ending that stands for no format; SF914 the library it needs is not installed; SF903 no such
+        folder, or what is there is no file.
+    """
+    if path.suffix.lower() not in WRITERS:
+        raise UsageError(Diagnostic("SF902", f"'{path.name}' must end in {', '.join(WRITERS)}"))
+    if path.suffix.lower() == ".parquet":
+        try:
+            import pyarrow  # noqa: F401 (an extra)
+        except ImportError:
+            raise missing_library("pyarrow", "Parquet") from None
+    write.check_writable(path)
+
+
+def sweep_bytes(sweep: Sweep, suffix: str) -> bytes:
+    """Return a sweep as the content of a file with that ending."""
+    return WRITERS[suffix.lower()](sweep)
+
+
+def read_sweep(path: str | Path) -> Sweep:
+    """Read a sweep that was written as netCDF or .npz.
+
+    Raises
+    ------
+    UsageError
+        SF901 no such file.
+    DataError
+        SF915 the file holds no sweep.
+
+    Examples
+    --------
+    >>> read_sweep("no.nc")
+    Traceback (most recent call last):
+    symflex.errors.exceptions.UsageError: error[SF901]: cannot read 'no.nc': ...
+    """
+    file = Path(path)
+    try:
+        data = read_bytes(os.fspath(file), SIZE_LIMIT)
+    except OSError as error:
+        raise UsageError(Diagnostic("SF901", f"cannot read '{path}': {error.strerror}")) from None
+    except ValueError:
+        raise UsageError(Diagnostic("SF901", f"cannot read '{str(path)!r}'")) from None
+    try:
+        if len(data) > SIZE_LIMIT:
+            raise OverflowError
+        sweep = _from_npz(data) if data[:2] == b"PK" else _from_netcdf(data)
+    except OverflowError:
+        raise _no_sweep(path, f"it is larger than {SIZE_LIMIT} bytes, or holds too many arrays") from None
+    except (ValueError, KeyError, TypeError, IndexError, AttributeError, RecursionError) as error:
+        raise _no_sweep(path, str(error)) from None
+    if sweep.attribute("schema") != SCHEMA:
+        raise _no_sweep(path, "it does not say that it holds one")
+    return sweep
+
+
+def _no_sweep(path: str | Path, reason: str) -> DataError:
+    said = "".join(c for c in reason if c.isprintable())[:100]
+    hint = "it reads what 'symflex sweep -o' writes as .nc or .npz"
+    return DataError(Diagnostic("SF915", f"'{path}' holds no sweep: {said}", None, hint))
+
+
+def _from_npz(data: bytes) -> Sweep:
+    found = read_archive(data, SIZE_LIMIT, ARRAYS_LIMIT)
+    header = json.loads(str(found[HEADER]))
+    arrays = [
+        Labelled(str(name), tuple(map(str, of["dims"])), found[name], str(of["unit"]), str(of["doc"]))
+        for name, of in header["arrays"].items()
+    ]
+    return _sweep(header["attributes"], arrays, set(header["coordinates"]))
+
+
+def _from_netcdf(data: bytes) -> Sweep:
+    attributes, variables = read_netcdf(data, ARRAYS_LIMIT)
+    arrays = [
+        Labelled(name, *_texts_joined(dims, values), about.get("units", ""), about.get("long_name", ""))
+        for name, (dims, values, about) in variables.items()
+    ]
+    known = {*attributes.get("parameters", "").split(), "mode", "frequency", "draw"}
+    return _sweep(attributes, arrays, known)
+
+
+def _texts_joined(dims: tuple[str, ...], values: Array) -> tuple[tuple[str, ...], Array]:
+    """Return an array with characters put together to texts, in this computer's byte order."""
+    if dims and dims[-1] == CHARACTERS and values.shape[-1]:
+        width = values.shape[-1]
+        joined = np.ascontiguousarray(values).view(f"S{width}").reshape(values.shape[:-1])
+        return dims[:-1], joined.astype(f"<U{width}")
+    return dims, values.astype(values.dtype.newbyteorder("="))
+
+
+def _sweep(attributes: Mapping[str, str], arrays: list[Labelled], coordinates: set[str]) -> Sweep:
+    """Return a sweep, with every array that one of its kind has, in its shape.
+
+    Raises
+    ------
+    ValueError
+        With what is missing or does not fit.
+    """
+    sizes: dict[str, int] = {}
+    for each in arrays:
+        for dim, size in zip(each.dims, each.values.shape, strict=True):
+            if sizes.setdefault(dim, size) != size:
+                message = f"arrays disagree about the length of '{dim}'"
+                raise ValueError(message)
+    found = Sweep(
+        tuple((str(k), str(v)) for k, v in attributes.items()),
+        tuple(each for each in arrays if each.name in coordinates),
+        tuple(each for each in arrays if each.name not in coordinates),
+    )
+    known = {each.name: each for each in (*found.coordinates, *found.variables)}
+    if found.of not in ARRAYS or "point_status" not in known:
+        message = f"it holds no {found.of[:40] or 'results'} with their status"
+        raise ValueError(message)
+    own, names = ARRAYS[found.of]
+    points = known["point_status"].dims
+    swept = found.attribute("parameters").split()
+    expected = {name: (points + own, "fiub") for name in names} | {dim: ((dim,), "fiu") for dim in own}
+    expected |= {"point_status": (points, "fiu"), "code": (points, "U")}
+    expected |= {name: ((DRAW,) if (name,) != known[name].dims else (name,), "fiu") for name in swept}
+    for name, (dims, kinds) in expected.items():
+        if name not in known or known[name].dims != dims or known[name].values.dtype.kind not in kinds:
+            message = f"'{name[:40]}' is missing, or of another shape or kind"
+            raise ValueError(message)
+    if not set(points) <= {*swept, DRAW} or 0 in known["point_status"].values.shape:
+        message = "its axes are no parameters, or empty"
+        raise ValueError(message)
+    return found

@@ -1,0 +1,141 @@
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from symflex import pipeline
+from symflex.analysis.response import adaptive_grid, default_band, respond, roots_if_found
+from symflex.errors import UsageError
+from symflex.roots.locate import locate
+from tests.unit.analysis.systems import rational
+
+TURN = 2 * math.pi
+
+
+@pytest.mark.parametrize("damping", ["0.1", "0.01", "1e-4", "1e-8"])
+def test_the_peak_of_a_resonance_is_on_the_grid(damping):
+    bound = rational(f"1/(s^2 + 2*{damping}*s + 1)")
+    zeta = float(damping)
+    peak = 1 / (2 * zeta * math.sqrt(1 - zeta**2))  # of a single degree of freedom; Ewins 2000, section 2.2
+    grid = adaptive_grid(bound, 0.01, 1)
+    assert respond(bound, grid).magnitude.max() == pytest.approx(peak, rel=1e-3)
+
+
+def test_the_trough_of_a_lightly_damped_zero_is_on_the_grid():
+    bound = rational("(s^2 + 2e-6*s + 1)/(s + 1)^2")
+    trough = 2e-6 / 2  # |2 zeta j| over |1 + j|^2
+    assert respond(bound, adaptive_grid(bound, 0.01, 1)).magnitude.min() == pytest.approx(trough, rel=1e-3)
+
+
+def test_the_phase_advances_by_small_steps_through_a_resonance():
+    bound = rational("1/(s^2 + 2e-5*s + 1)")
+    phase = respond(bound, adaptive_grid(bound, 0.01, 1, points=50)).phase
+    assert np.abs(np.diff(phase)).max() < math.radians(10)
+
+
+def test_the_grid_keeps_off_a_pole_on_the_axis():
+    bound = rational("1/(s^2 + 1)")
+    low = 1 / TURN
+    assert np.abs(adaptive_grid(bound, low, 10 * low) - 1).min() == pytest.approx(1e-7, rel=0.02)
+
+
+def test_the_grid_closes_in_on_a_pole_on_the_axis_from_both_sides():
+    grid = adaptive_grid(rational("1/(s^2 + 1)"), 0.01, 1)
+    assert {-1, 1} == set(np.sign(grid[np.abs(grid - 1) < 1e-6] - 1))
+
+
+def test_the_grid_increases():
+    grid = adaptive_grid(rational("(s^2 + 2)/((s^2 + 1)*(s^2 + 1e-3*s + 2.001))"), 0.01, 1)
+    assert (np.diff(grid) > 0).all()
+
+
+def test_the_grid_ends_at_the_band():
+    grid = adaptive_grid(rational("1/(s^2 + 1e-3*s + 1)"), 0.01, 1)
+    assert (grid[0], grid[-1]) == pytest.approx((0.01 * TURN, TURN), rel=1e-15)
+
+
+def test_a_function_without_resonances_gets_the_points_asked_for():
+    assert len(adaptive_grid(rational("1/(s + 1)"), 0.01, 1, points=77)) == 77
+
+
+def test_points_are_added_only_around_resonances_in_the_band():
+    assert len(adaptive_grid(rational("1/(s^2 + 1e-3*s + 1)"), 10, 100, points=77)) == 77
+
+
+@pytest.mark.parametrize(("low", "high"), [(0, 1), (-1, 1), (2, 1), (1, 1), (1, math.inf), (math.nan, 1)])
+def test_a_band_must_be_positive_and_not_empty(low, high):
+    with pytest.raises(UsageError, match="SF227"):
+        adaptive_grid(rational("1/(s + 1)"), low, high)
+
+
+def test_a_grid_has_two_points_or_more():
+    with pytest.raises(ValueError, match="at least 2 points"):
+        adaptive_grid(rational("1/(s + 1)"), 1, 2, points=1)
+
+
+def test_the_default_band_spans_a_decade_beyond_poles_and_zeros():
+    found = locate(rational("s*(s + 200)/(s^2 + 0.1*s + 9)"))
+    assert default_band(found) == pytest.approx((3 / TURN / 10, 200 / TURN * 10), rel=1e-14)
+
+
+def test_the_default_band_of_two_functions_shows_both():
+    maps = [locate(rational("1/(s + 1)")), locate(rational("1/(s + 50)"))]
+    assert default_band(*maps) == pytest.approx((1 / TURN / 10, 50 / TURN * 10), rel=1e-14)
+
+
+def test_the_default_band_of_integrators_alone_is_a_decade_around_one_hertz():
+    assert default_band(locate(rational("1/s^2"))) == (0.1, 10)
+
+
+def without_roots(bound):
+    """What a search that found no root leaves behind."""
+    found = locate(bound)
+    certificate = replace(
+        found.certificate, certified=False, is_exceeded=True, reason="too long", code="SF505"
+    )
+    return replace(found, poles=(), zeros=(), certificate=certificate)
+
+
+def test_where_no_root_is_known_the_grid_follows_the_values_through_a_resonance():
+    # 1/(s^2 + 2 zeta s + 1) with zeta = 1/100 has its peak 1/(2 zeta sqrt(1 - zeta^2)) at sqrt(1 - 2 zeta^2).
+    bound = rational("1/(s^2 + s/50 + 1)")
+    omega = adaptive_grid(bound, 0.01, 1.0, 100, roots=without_roots(bound))
+    peak = np.abs(1 / (1 - omega**2 + 1j * omega / 50)).max()
+    assert peak == pytest.approx(50 / math.sqrt(1 - 1e-4), rel=1e-3)
+
+
+def test_where_no_root_is_known_the_values_turn_little_from_point_to_point():
+    bound = rational("1/(s^2 + s/50 + 1)")
+    omega = adaptive_grid(bound, 0.01, 1.0, 100, roots=without_roots(bound))
+    phase = np.unwrap(np.angle(1 / (1 - omega**2 + 1j * omega / 50)))
+    assert np.abs(np.diff(phase)).max() < math.radians(15)
+
+
+def test_a_grid_without_roots_ends_where_values_have_no_logarithm():
+    bound = rational("(s^2 + 1)/(s^2 + 4)")
+    assert len(adaptive_grid(bound, 0.01, 1.0, 50, roots=without_roots(bound))) < 3000
+
+
+MATCHED = """
+symflex = 1
+parameters = { E = "210 GPa", rho = "7800 kg/m^3", A = "1e-4 m^2", l = "2 m" }
+inputs.F = { unit = "N" }
+outputs.V = "s*u(l)"
+[fields.u]
+domain = ["0", "l"]
+equation = "E*u'' = rho*s^2*u"
+conditions = ["E*A*u'(0) = -F", "E*A*u'(l) = -A*sqrt(E*rho)*s*u(l)"]
+"""
+
+
+@pytest.mark.slow
+def test_a_rod_that_ends_in_its_own_impedance_has_a_response_though_its_roots_cannot_be_had():
+    # A wave runs along it once: V/F = exp(-s l/c)/(A sqrt(E rho)).
+    (bound,) = pipeline.derive_bound(pipeline.loads(MATCHED), [("V", "F")])
+    assert not roots_if_found(bound).certificate.certified
+    omega = np.array([10.0, 1e3, 3e4])
+    expected = np.exp(-1j * omega * 2 * math.sqrt(7800 / 210e9)) / (1e-4 * math.sqrt(210e9 * 7800))
+    assert respond(bound, omega).values == pytest.approx(expected, rel=1e-12)

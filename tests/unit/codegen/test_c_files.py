@@ -1,0 +1,619 @@
+"""Exported C: compiled and run on the models of derivations/, against ball arithmetic and libm."""
+
+from __future__ import annotations
+
+import ctypes
+import itertools
+import math
+import re
+import subprocess
+from functools import cache
+
+import mpmath as mp
+import numpy as np
+import pytest
+from flint import acb
+
+from symflex import pipeline
+from symflex.codegen.c import c_files
+from symflex.codegen.c.expression import Kind, Term, complex_term, difference, product, quotient, total
+from symflex.codegen.c.support import support
+from symflex.codegen.exporters import EXPORTERS
+from symflex.codegen.program import verify
+from symflex.errors import UsageError
+from symflex.transfer import bind
+from tests.house.repository import ROOT, blocks, slow_ones, specifications
+from tests.unit.codegen.against_balls import axis_points, worst_errors
+from tests.unit.codegen.exportable import MASSLESS, PIPE
+from tests.unit.codegen.test_numpy_distributed import BAR, COMPRESSED, DELAY, SENSOR, specification
+
+pytestmark = pytest.mark.needs_tool("gcc")
+
+SPECS = specifications(ROOT / "derivations", "*/*.toml")
+STRICT = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic"]
+FEW = ("two_mass", "six_mass", "rigid_body", "sliding_free_beam", "rod_tip_mass", "two_mass_force")
+"""Models whose values are compared in every run; the others with -m slow."""
+ACCURACY = 1e-13
+POINTER = ctypes.POINTER(ctypes.c_double)
+
+
+def compiled(folder, files, name="plant", flags=("-O1",)):
+    """Compile exported files into a library, with functions that take arrays for ctypes."""
+    (folder / f"{name}.c").write_text(files.source, encoding="utf-8")
+    (folder / f"{name}.h").write_text(files.header, encoding="utf-8")
+    functions = re.findall(r"^double complex (\w+)\(", files.header, re.MULTILINE)
+    lines = [f'#include "{name}.h"', "#include <string.h>"]
+    for i, function in enumerate(functions):
+        lines.append(f"""
+void at_{i}(const double *s, double *value, size_t n, const double *p)
+{{
+    for (size_t k = 0; k < n; k++) {{
+        double complex z;
+        memcpy(&z, s + 2 * k, sizeof z);
+        z = {function}(z, p ? (const {name}_parameters *)(const void *)p : &{name}_defaults);
+        memcpy(value + 2 * k, &z, sizeof z);
+    }}
+}}
+void freq_{i}(const double *omega, double *real, double *imag, size_t n, const double *p)
+{{
+    {function}_freq(omega, real, imag, n, p ? (const {name}_parameters *)(const void *)p : &{name}_defaults);
+}}""")
+    (folder / "arrays.c").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    command = ["gcc", *STRICT, *flags, "-shared", "-fPIC", "-o", "library.so", f"{name}.c", "arrays.c", "-lm"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return ctypes.CDLL(str(folder / "library.so")), functions
+
+
+def pointer(array):
+    return None if array is None else array.ctypes.data_as(POINTER)
+
+
+def value_at(library, number, s, parameters=None):
+    s = np.ascontiguousarray(np.atleast_1d(s), dtype=complex)
+    value = np.empty_like(s)
+    function = getattr(library, f"at_{number}")
+    function(pointer(s.view(float)), pointer(value.view(float)), ctypes.c_size_t(s.size), pointer(parameters))
+    return value
+
+
+def response(library, number, omega, parameters=None):
+    omega = np.ascontiguousarray(np.atleast_1d(omega), dtype=float)
+    real, imag = np.full_like(omega, np.nan), np.full_like(omega, np.nan)
+    function = getattr(library, f"freq_{number}")
+    function(pointer(omega), pointer(real), pointer(imag), ctypes.c_size_t(omega.size), pointer(parameters))
+    return real + 1j * imag
+
+
+def errors(enclosed, s, *found):
+    """Return the worst ``|dG| / (|G| (1 + |s G'/G|))`` of several arrays of values at s."""
+    worst = 0.0
+    for k, point in enumerate(s):
+        z = acb(point.real, point.imag)
+        value = enclosed(z)
+        size = value.abs_lower() * (1 + (z * enclosed.logarithmic_derivative(z)).abs_lower())
+        for values in found:
+            distance = (acb(values[k].real, values[k].imag) - value).abs_upper()
+            worst = max(worst, float((distance / size).upper()))
+    return worst
+
+
+def exported(text, **options):
+    model = pipeline.loads(text)
+    return c_files(pipeline.derive_all(model), model, name="plant", samples=5, **options)
+
+
+# ------------------------------------------------------------------------------------------ values
+
+
+@pytest.mark.parametrize("path", slow_ones(SPECS, lambda path: path.stem not in FEW), ids=lambda p: p.stem)
+def test_values_agree_with_balls_over_the_band_and_beside_resonances(path, tmp_path, monkeypatch):
+    model = pipeline.load(path)
+    tfs = pipeline.derive_all(model)
+    # The program that is exported is chosen by fewer samples than usual: the samples are below.
+    monkeypatch.setattr(verify, "MOST_EXTREMES", 6)
+    files = c_files(tfs, model, name="plant", samples=5)
+    monkeypatch.undo()
+    library, functions = compiled(tmp_path, files)
+    assert len(functions) == len(tfs)
+    turns = np.exp(1j * np.linspace(0.1, 6.2, 12))
+    for number, tf in enumerate(tfs):
+        bound = bind(tf)
+        enclosed = bound.enclosed(192)
+        hertz = verify.sample_frequencies(bound, model.analysis.band or verify.DEFAULT_BAND, 400)
+        omega = math.tau * hertz
+        found = response(library, number, omega)
+        assert errors(enclosed, 1j * omega, found, value_at(library, number, 1j * omega)) <= ACCURACY
+        elsewhere = np.logspace(-2, 5, 12) * turns
+        assert errors(enclosed, elsewhere, value_at(library, number, elsewhere)) <= ACCURACY
+        # Reflection, and a length that no block of frequencies divides.
+        assert np.array_equal(response(library, number, -omega[:37]), found[:37].conj())
+
+
+ARM = 'E = "E", I = "I", rho = "rho", A = "A", l = "l"'
+FOUNDATION = f"""
+symflex = 1
+[parameters]
+{BAR}k_f = "3 kN/m^2"
+[elements]
+arm = {{ type = "beam", between = ["ground", "q"], k_f = "k_f", {ARM} }}
+[inputs]
+F = {{ force = "q" }}
+[outputs]
+X = "q"
+"""
+KINDS = {
+    "a sign that depends on the frequency": FOUNDATION,
+    "a point inside": SENSOR,
+    "two beams": specification("two_beams"),
+    "axial force": specification("tension"),
+    "a delay": DELAY,
+}
+
+
+@pytest.mark.parametrize("kind", slow_ones(KINDS, lambda kind: kind == "two beams"))
+def test_other_kinds_of_kernels_agree_with_balls(kind, tmp_path):
+    model = pipeline.loads(KINDS[kind])
+    tfs = pipeline.derive_all(model)[:1]
+    library, _ = compiled(tmp_path, c_files(tfs, model, name="plant", samples=5))
+    enclosed = bind(tfs[0]).enclosed(192)
+    omega = np.geomspace(1e-2, 1e5, 150)
+    found, negative = response(library, 0, omega), response(library, 0, -omega)
+    assert errors(enclosed, 1j * omega, found, negative.conj(), value_at(library, 0, 1j * omega)) <= ACCURACY
+
+
+SMALL = """
+symflex = 1
+[parameters]
+m = "2 kg"
+b = { unit = "N*s/m" }
+k = "18 N/m"
+[elements]
+body = { type = "mass", at = "x", m = "m" }
+loss = { type = "damper", between = ["x", "ground"], b = "b" }
+spring = { type = "spring", between = ["x", "ground"], k = "k" }
+[inputs]
+F = { force = "x" }
+[outputs]
+X = "x"
+V = "s*x"
+"""
+
+
+def test_parameters_can_be_changed_and_missing_ones_are_nan(tmp_path):
+    library, functions = compiled(tmp_path, exported(SMALL))
+    assert functions == ["plant_X_over_F", "plant_V_over_F"]
+    given = np.array([3.0, 0.5, 7.0])
+    s = np.array([1j, -2.0 + 0.5j])
+    expected = 1 / (3 * s**2 + 0.5 * s + 7)
+    assert value_at(library, 0, s, given) == pytest.approx(expected, rel=1e-15)
+    assert value_at(library, 1, s, given) == pytest.approx(s * expected, rel=1e-15)
+    assert response(library, 0, [1.0], given) == pytest.approx(expected[:1], rel=1e-15)
+    assert np.isnan(value_at(library, 0, s)).all()
+
+
+def test_a_pole_is_not_finite_and_nothing_is_written_for_no_frequencies(tmp_path):
+    library, _ = compiled(tmp_path, exported(SMALL))
+    lossless = np.array([2.0, 0.0, 18.0])
+    assert not np.isfinite(value_at(library, 0, [3j], lossless)).any()
+    assert not np.isfinite(response(library, 0, [3.0], lossless)).any()
+    untouched = np.full(3, 5.0)
+    library.freq_0(pointer(untouched), pointer(untouched), pointer(untouched), ctypes.c_size_t(0), None)
+    assert (untouched == 5.0).all()
+
+
+BEAM = """
+symflex = 1
+[parameters]
+E = "200 GPa"
+I = "4e-9 m^4"
+rho = "7850 kg/m^3"
+A = "4.8e-4 m^2"
+l = "1.086 m"
+[elements]
+arm = { type = "beam", between = ["p", "q"], E = "E", I = "I", rho = "rho", A = "A", l = "l" }
+slide = { type = "slider", at = "p" }
+[inputs]
+F = { force = "p" }
+[outputs]
+V = "s*p"
+"""
+
+
+@pytest.fixture(scope="module")
+def beam(tmp_path_factory):
+    return compiled(tmp_path_factory.mktemp("beam"), exported(BEAM))[0]
+
+
+@pytest.fixture(scope="module")
+def six_masses(tmp_path_factory):
+    path = ROOT / "derivations" / "eppinger1988" / "six_mass.toml"
+    return compiled(tmp_path_factory.mktemp("six_masses"), exported(path.read_text(encoding="utf-8")))[0]
+
+
+@pytest.fixture(params=["beam", "six_masses"])
+def either(request):
+    return request.getfixturevalue(request.param)
+
+
+def test_one_array_may_be_the_frequencies_themselves(either):
+    omega = np.geomspace(1e-3, 1e4, 75)
+    expected = response(either, 0, omega)
+    for place in (0, 1):
+        arrays = [np.empty_like(omega), np.empty_like(omega)]
+        arrays[place] = omega.copy()
+        either.freq_0(pointer(arrays[place]), *map(pointer, arrays), ctypes.c_size_t(75), None)
+        assert np.array_equal(arrays[0] + 1j * arrays[1], expected)
+
+
+def test_a_value_does_not_depend_on_its_neighbours(either):
+    omega = np.geomspace(1e-7, 1e6, 75)
+    alone = np.array([response(either, 0, [w])[0] for w in omega])
+    assert np.array_equal(alone, response(either, 0, omega))
+
+
+def test_nothing_overflows_from_1e_minus_9_to_1e12(beam):
+    omega = np.logspace(-9, 12, 85)
+    # Rigid at low frequencies, semi-infinite on average at high ones: decreasing, and finite throughout.
+    found = np.abs(response(beam, 0, omega))
+    assert np.isfinite(found).all()
+    assert found[0] == pytest.approx(1 / (7850 * 4.8e-4 * 1.086 * 1e-9), rel=1e-12)
+    assert np.isfinite(value_at(beam, 0, 1j * omega)).all()
+
+
+FAR = """
+symflex = 1
+parameters = { m = "1 kg", k = "1 N/m" }
+[elements]
+%s
+[inputs]
+F = { force = "x1" }
+[outputs]
+X = "x%d"
+"""
+
+
+def chain(count):
+    """A chain of masses and springs whose powers of s overflow."""
+    lines = [f'm{i} = {{ type = "mass", at = "x{i}", m = "m" }}' for i in range(1, count + 1)]
+    lines += [
+        f'k{i} = {{ type = "spring", between = ["x{i}", "x{i + 1}"], k = "k" }}' for i in range(1, count)
+    ]
+    return FAR % ("\n".join(lines), count)
+
+
+def test_powers_of_s_that_would_overflow_are_divided_out(tmp_path):
+    files = exported(chain(8))
+    assert "if (cx_abs(s) > " in files.source
+    library, _ = compiled(tmp_path, files)
+    omega = np.array([1e3, 1e12, 1e15])
+    # |X_8/F| -> k^7 / (m^8 omega^16)
+    expected = omega**-16.0
+    assert np.abs(response(library, 0, omega)) == pytest.approx(expected, rel=1e-4)
+    assert np.abs(value_at(library, 0, 1j * omega)) == pytest.approx(expected, rel=1e-4)
+
+
+# --------------------------------------------------------------------------- functions without branches
+
+FUNCTIONS = """
+#define CALL(name) \\
+    void at_##name(const double *x, double *y, size_t n) \\
+    { for (size_t i = 0; i < n; i++) y[i] = lane_##name(x[i]); }
+CALL(tan) CALL(tanh) CALL(exp)
+"""
+
+
+@pytest.fixture(scope="module")
+def elementary(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("elementary")
+    code = support("LANES lane_tan( lane_tanh( lane_exp(", "void", 1)
+    includes = "#include <float.h>\n#include <math.h>\n#include <stdint.h>\n#include <string.h>\n"
+    (folder / "lanes.c").write_text(f"{includes}{code}{FUNCTIONS}", encoding="utf-8")
+    command = ["gcc", "-std=c99", "-O2", "-shared", "-fPIC", "-o", "lanes.so", "lanes.c", "-lm"]
+    subprocess.run(command, cwd=folder, check=True)
+    return ctypes.CDLL(str(folder / "lanes.so"))
+
+
+@pytest.mark.parametrize(
+    ("name", "points", "bound"),
+    [
+        ("tan", np.linspace(-40.0, 40.0, 1501), 4.0),
+        ("tan", np.logspace(-12, 0, 301), 4.0),
+        ("tanh", np.logspace(-12, 2, 1501), 4.0),
+        ("tanh", -np.logspace(-6, 4, 301), 4.0),
+        ("exp", np.linspace(-700.0, 700.0, 1501), 2.0),
+        ("exp", np.linspace(-1.0, 1.0, 501), 2.0),
+    ],
+)
+def test_functions_without_branches_are_accurate_to_a_few_units(elementary, name, points, bound):
+    points = np.ascontiguousarray(points)
+    found = np.empty_like(points)
+    getattr(elementary, f"at_{name}")(pointer(points), pointer(found), ctypes.c_size_t(points.size))
+    with mp.workdps(40):
+        for x, y in zip(points.tolist(), found.tolist(), strict=True):
+            exact = getattr(mp, name)(mp.mpf(x))
+            # Of a tangent also what one rounding of the argument causes.
+            ulps = 1 + (abs(x * (1 + exact**2) / exact) if name == "tan" and x else 0)
+            assert abs(y - exact) <= bound * mp.mpf(2) ** -53 * abs(exact) * ulps
+
+
+# ------------------------------------------------------------------------------------------ the files
+
+
+@cache
+def files_of(name):
+    (path,) = [p for p in SPECS if p.stem == name]
+    model = pipeline.load(path)
+    return c_files(pipeline.derive_all(model), model, name=name, samples=5)
+
+
+MIXED = ("six_mass", "sliding_free_beam", "timoshenko_cantilever", "robot_axis")
+"""Lumped; in real arithmetic; with series and circles; with losses. All others are compiled above."""
+
+
+@pytest.fixture
+def written(tmp_path):
+    for name in MIXED:
+        files = files_of(name)
+        (tmp_path / f"{name}.c").write_text(files.source, encoding="utf-8")
+        (tmp_path / f"{name}.h").write_text(files.header, encoding="utf-8")
+    return tmp_path
+
+
+@pytest.mark.parametrize("flags", [[], ["-ffast-math"], ["-D__STDC_NO_COMPLEX__", "-Wno-unused-function"]])
+def test_no_compiler_warns_whatever_it_supports(written, flags):
+    sources = [f"{name}.c" for name in MIXED]
+    command = ["gcc", *STRICT, *flags, "-fsyntax-only", *sources]
+    done = subprocess.run(command, cwd=written, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.needs_tool("nm")
+def test_the_objects_call_no_allocator_and_hold_no_variables(written):
+    sources = [f"{name}.c" for name in MIXED]
+    subprocess.run(["gcc", *STRICT, "-c", *sources], cwd=written, check=True)
+    objects = [f"{name}.o" for name in MIXED]
+    listed = subprocess.run(["nm", *objects], cwd=written, capture_output=True, text=True, check=True)
+    symbols = [line.split()[-2:] for line in listed.stdout.splitlines() if line and not line.endswith(":")]
+    called = {symbol for kind, symbol in symbols if kind == "U"}
+    assert called <= {"sqrt", "exp", "sin", "cos", "hypot", "pow", "fabs", "copysign", "memcpy"}
+    # t is code and r constant data; d and b would be variables.
+    assert {kind.lower() for kind, _ in symbols} <= {"t", "r", "u"}
+
+
+def test_objects_of_two_models_are_linked_together(written):
+    (written / "main.c").write_text(
+        '#include "six_mass.h"\n#include "sliding_free_beam.h"\n#include <stdio.h>\n'
+        "int main(void)\n{\n    double omega = 0.0, real, imag;\n"
+        "    six_mass_parameters p = six_mass_defaults;\n    p.m_1 = 2.0 * p.m_1;\n"
+        "    six_mass_V_act_over_F_freq(&omega, &real, &imag, 1, &p);\n"
+        '    printf("%d", sliding_free_beam_defaults.l > 1.0);\n    return 0;\n}\n',
+        encoding="utf-8",
+    )
+    sources = ["main.c", "six_mass.c", "sliding_free_beam.c"]
+    subprocess.run(["gcc", *STRICT, *sources, "-o", "both", "-lm"], cwd=written, check=True)
+    done = subprocess.run([written / "both"], capture_output=True, text=True, check=True)
+    assert done.stdout == "1"
+
+
+@pytest.mark.needs_tool("g++")
+def test_a_cpp_program_includes_the_header_and_links(written):
+    (written / "main.cpp").write_text(
+        '#include "sliding_free_beam.h"\n#include <cmath>\n'
+        "int main()\n{\n    double omega[2] = {10.0, -10.0}, real[2], imag[2];\n"
+        "    sliding_free_beam_V_tip_over_F_freq(omega, real, imag, 2, &sliding_free_beam_defaults);\n"
+        "    return imag[0] == -imag[1] && std::isfinite(imag[0]) ? 0 : 1;\n}\n",
+        encoding="utf-8",
+    )
+    subprocess.run(["gcc", *STRICT, "-c", "sliding_free_beam.c"], cwd=written, check=True)
+    command = ["g++", "-std=c++11", "-Wall", "-Wextra", "-Werror", "-pedantic", "main.cpp"]
+    command += ["sliding_free_beam.o", "-o", "program", "-lm"]
+    subprocess.run(command, cwd=written, check=True)
+    assert subprocess.run([written / "program"], check=False).returncode == 0
+
+
+def test_without_a_name_everything_is_one_file_that_compiles(tmp_path):
+    model = pipeline.loads(SMALL)
+    export = EXPORTERS["c"].export(model, pipeline.derive_all(model))
+    assert not export.companions
+    (tmp_path / "one.c").write_text(export.text, encoding="utf-8")
+    subprocess.run(["gcc", *STRICT, "-c", "one.c"], cwd=tmp_path, check=True)
+
+
+def test_the_header_tells_the_verified_error_units_and_what_omega_is():
+    header = files_of("sliding_free_beam").header
+    assert "against ball arithmetic" in " ".join(header.replace("*", " ").split())
+    assert "2 pi times the frequency in Hz" in " ".join(header.replace("*", " ").split())
+    assert re.search(r"double rho; +/\* density \[kg/m\^3\] \*/", header)
+    assert re.search(r"double I_; +/\* second moment of area, 'I' in the model \[m\^4\] \*/", header)
+    assert all(len(line) <= 88 for line in header.split("\n"))
+
+
+def test_the_text_is_the_same_each_time():
+    first, second = exported(BEAM), exported(BEAM)
+    assert (first.source, first.header) == (second.source, second.header)
+
+
+def test_a_transfer_function_given_twice_is_written_once():
+    model = pipeline.loads(SMALL)
+    tfs = pipeline.derive_all(model)
+    once, twice = (c_files(given, model, name="plant", samples=5) for given in (tfs, [*tfs, *tfs]))
+    assert once.source == twice.source
+
+
+@pytest.mark.parametrize("name", ["", "a b", 'a"b', "../a", "a\nb", "é", "a>b", "-a"])
+def test_a_name_that_cannot_be_included_is_refused(name):
+    model = pipeline.loads(SMALL)
+    with pytest.raises(UsageError, match="cannot be the name of a C header"):
+        c_files(pipeline.derive_all(model), model, name=name, samples=5)
+
+
+NAMELESS = """
+symflex = 1
+[parameters]
+EI = "100 N*m^2"
+m = "3 kg/m"
+U = "4 m/s"
+l = "2 m"
+[fields.y]
+domain = ["0", "l"]
+equation = "EI*y'''' + 2*m*U*s*y' + m*s^2*y = p"
+conditions = ["y(0) = 0", "y''(0) = 0", "y(l) = 0", "y''(l) = 0"]
+[inputs]
+p = { unit = "N/m" }
+[outputs]
+Y = "y(l/2)"
+"""
+
+
+NAMELESS_SPECS = {"unsymmetric": (NAMELESS, 1e-13), "pipe": (PIPE, 1e-13), "massless": (MASSLESS, 2e-8)}
+"""With the error allowed: the numpy module reaches no more for roots that are equal at every s."""
+
+
+@cache
+def nameless(name):
+    model = pipeline.loads(NAMELESS_SPECS[name][0])
+    (tf,) = pipeline.derive_all(model)
+    return tf, c_files([tf], model, name="plant", samples=5)
+
+
+@pytest.mark.parametrize("name", [pytest.param("unsymmetric", marks=pytest.mark.slow), "pipe", "massless"])
+@pytest.mark.slow
+def test_functions_without_a_formula_for_their_wavenumbers_agree_with_balls(name, tmp_path):
+    tf, files = nameless(name)
+    allowed = NAMELESS_SPECS[name][1]
+    library, _ = compiled(tmp_path, files)
+    omega = axis_points(tf, 20)
+    s = np.concatenate([1j * omega, omega[::5] * np.exp(1j * np.linspace(0.1, 6.2, len(omega[::5])))])
+    assert worst_errors(tf, s, value_at(library, 0, s))[0] < allowed
+    assert worst_errors(tf, -1j * omega, response(library, 0, -omega))[0] < allowed
+
+
+@pytest.mark.slow
+def test_roots_that_nearly_meet_cost_c_code_no_digits(tmp_path):
+    # x^4 + 400 x^2 + s^2 has double roots at s = 200, which c takes apart a little.
+    model = pipeline.loads(COMPRESSED)
+    (tf,) = pipeline.derive_all(model)
+    library, _ = compiled(tmp_path, c_files([tf], model, name="plant", samples=5))
+    s = np.array([200.0, 200.0001, 199.9 + 0.05j, 201.0, 190 - 3j, 260.0])
+    assert worst_errors(tf, s, value_at(library, 0, s))[0] < 1e-11
+
+
+ROOTS = np.array(
+    [
+        [1.0, -2.0, 3.0, -4.0],
+        [1e-6, 1.0, -1e3, 2e6],
+        [1j, -1j, 5.0, -5.0],
+        [1.0 + 1.0j, 1.0 - 1.0j, -3.0, 0.0],
+        [0.0, 0.0, 2.0, -7.0],
+    ]
+)
+
+
+def test_c_finds_roots_of_any_sizes(tmp_path):
+    call = "void run(const cx *c, cx *x)\n{\n    cx_roots(c, 4, x);\n}\n"
+    code = f"#include <math.h>\n#include <string.h>\n{support('cx_roots(', 'void', 4)}\n{call}"
+    (tmp_path / "roots.c").write_text(code, encoding="utf-8")
+    command = ["gcc", *STRICT, "-shared", "-fPIC", "-o", "roots.so", "roots.c", "-lm"]
+    subprocess.run(command, cwd=tmp_path, check=True)
+    library = ctypes.CDLL(str(tmp_path / "roots.so"))
+    for expected in ROOTS:
+        coefficients = np.poly(expected)[:0:-1].astype(complex)
+        found = np.empty(5, dtype=complex)
+        library.run(pointer(coefficients.view(float)), pointer(found.view(float)))
+        nearest = np.min(np.abs(found[:4, None] - expected), axis=0)
+        assert np.all(nearest <= 1e-14 * np.abs(expected) + 1e-50)
+        least = min(abs(x - y) for x, y in itertools.combinations(expected, 2))
+        assert found[4] == pytest.approx(least, rel=1e-13)
+    unknown = np.array([1.0, np.nan, 1.0, 1.0], dtype=complex)
+    library.run(pointer(unknown.view(float)), pointer(found.view(float)))
+    assert np.all(np.isnan(found[:4]))
+
+
+def test_only_functions_that_are_called_are_in_the_file():
+    two_mass = pipeline.load(ROOT / "derivations" / "eppinger1988" / "two_mass.toml")
+    lumped = c_files(pipeline.derive_all(two_mass), two_mass, name="plant", samples=5).source
+    massless, pipe = (nameless(name)[1].source for name in ("massless", "pipe"))
+    for name, texts in {"cx_roots": [pipe], "cx_modal": [pipe], "cx_propagated": [massless]}.items():
+        assert [name in text for text in (lumped, massless, pipe)] == [
+            text in texts for text in (lumped, massless, pipe)
+        ]
+
+
+# --------------------------------------------------------------------------------------- expressions
+
+
+VALUES = {Kind.REAL: 1.5, Kind.IMAGINARY: -0.75j, Kind.COMPLEX: 2.5 + 0.5j}
+OTHERS = {Kind.REAL: -3.0, Kind.IMAGINARY: 2.25j, Kind.COMPLEX: 0.25 - 4.0j}
+OPERATIONS = {
+    total: complex.__add__,
+    difference: complex.__sub__,
+    product: complex.__mul__,
+    quotient: complex.__truediv__,
+}
+TEXTS = {Kind.REAL: "{0}_{1}.re", Kind.IMAGINARY: "{0}_{1}.im", Kind.COMPLEX: "{0}_{1}"}
+
+
+def test_every_pair_of_kinds_computes_what_complex_numbers_do(tmp_path):
+    lines, expected = [], []
+    for letter, values in (("x", VALUES), ("y", OTHERS)):
+        for kind, value in values.items():
+            z = complex(value)
+            lines.append(f"    const cx {letter}_{kind.value} = cx_of({z.real}, {z.imag});")
+    for x, y in itertools.product(VALUES, OTHERS):
+        for operation, exact in OPERATIONS.items():
+            terms = [Term(TEXTS[k].format(letter, k.value), k) for letter, k in (("x", x), ("y", y))]
+            found = complex_term(operation(*terms))
+            lines.append(f"    z = {found.text};")
+            lines.append(f"    value[{2 * len(expected)}] = z.re; value[{2 * len(expected) + 1}] = z.im;")
+            expected.append(exact(complex(VALUES[x]), complex(OTHERS[y])))
+    body = "\n".join(lines)
+    run = f"void run(double *value)\n{{\n    cx z;\n{body}\n}}\n"
+    code = f"#include <math.h>\n{support(body, 'void', 1)}\n{run}"
+    (tmp_path / "pairs.c").write_text(code, encoding="utf-8")
+    command = ["gcc", "-std=c99", "-shared", "-fPIC", "-o", "pairs.so", "pairs.c", "-lm"]
+    subprocess.run(command, cwd=tmp_path, check=True)
+    found = np.zeros(len(expected), dtype=complex)
+    ctypes.CDLL(str(tmp_path / "pairs.so")).run(pointer(found.view(float)))
+    assert found == pytest.approx(expected, rel=1e-15)
+
+
+@pytest.mark.parametrize("function", ["cx_div", "lane_div"])
+def test_a_quotient_of_numbers_of_any_size_neither_overflows_nor_vanishes(function, tmp_path):
+    code = support(f"{function}(", "void", 1)
+    call = f"void run(const cx *z, const cx *w, cx *q)\n{{\n    *q = {function}(*z, *w);\n}}\n"
+    (tmp_path / "quotient.c").write_text(f"#include <math.h>\n{code}\n{call}", encoding="utf-8")
+    command = ["gcc", "-std=c99", "-shared", "-fPIC", "-o", "quotient.so", "quotient.c", "-lm"]
+    subprocess.run(command, cwd=tmp_path, check=True)
+    library = ctypes.CDLL(str(tmp_path / "quotient.so"))
+    for z, w in itertools.product((1e200 + 2e200j, 3e-200 - 1e-200j, -2e150j), repeat=2):
+        found = np.zeros(1, dtype=complex)
+        given = [np.array([v], dtype=complex) for v in (z, w)]
+        library.run(*(pointer(v.view(float)) for v in given), pointer(found.view(float)))
+        with mp.workdps(30):
+            exact = complex(mp.mpc(z) / mp.mpc(w)) if 1e-300 < abs(z) / abs(w) < 1e300 else None
+        if exact is not None:
+            assert abs(found[0] - exact) <= 1e-15 * abs(exact)
+
+
+# -------------------------------------------------------------------------------- the page and the command
+
+
+def test_the_example_of_the_page_prints_what_it_says(tmp_path):
+    page = blocks(ROOT / "docs" / "export-c.md")
+    (program,) = [block.text for block in page if block.title == "main.c"]
+    (output,) = [block.text for block in page if block.title == "output"]
+    (commands,) = [block.text.splitlines() for block in page if block.language == "sh"]
+    specification = commands[0].split()[2]
+    model = pipeline.load(ROOT / specification)
+    files = c_files(pipeline.derive_all(model), model, name="beam", samples=5)
+    for name, text in (("beam.c", files.source), ("beam.h", files.header), ("main.c", program)):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    subprocess.run(commands[1].split(), cwd=tmp_path, check=True)
+    done = subprocess.run(["./main"], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert done.stdout == output
+    # Vaughan 1968: V_tip/F at a length l, by the closed form of the sliding-free beam.
+    q = (7850 * 4.8e-4 / (200e9 * 4e-9)) ** 0.25 * math.sqrt(math.tau * 10) * 0.543
+    exact = -(math.cos(q) + math.cosh(q)) / (math.cosh(q) * math.sin(q) + math.sinh(q) * math.cos(q))
+    exact *= q / (7850 * 4.8e-4 * 0.543 * math.tau * 10)
+    assert float(output.split()[1]) == pytest.approx(exact, abs=1e-6)

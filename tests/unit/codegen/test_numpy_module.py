@@ -1,0 +1,416 @@
+"""The generated module: imported from a file, called as a user would, compared with ball arithmetic."""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+import inspect
+import os
+import pickle
+import subprocess
+import sys
+import warnings
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from flint import acb
+
+from symflex import pipeline
+from symflex.codegen.numpy.module import numpy_module
+from symflex.codegen.program import build_program, choose_program, evaluate
+from symflex.errors import ModelError
+from tests.house.repository import specifications
+
+ROOT = Path(__file__).parents[3]
+DERIVATIONS = ROOT / "derivations" / "eppinger1988"
+SPECS = specifications(DERIVATIONS, "*.toml")
+
+SYMBOLIC = """
+symflex = 1
+parameters = { m = "2 kg", b = { doc = "friction" }, k = "50 N/m" }
+elements.body = { type = "mass", at = "x", m = "m" }
+elements.loss = { type = "damper", between = ["x", "ground"], b = "b" }
+elements.spring = { type = "spring", between = ["x", "ground"], k = "k" }
+inputs = { F = { force = "x" }, u = {} }
+outputs = { X = "x", gain = "k*u" }
+"""
+
+
+def exported(model):
+    return numpy_module(pipeline.derive_all(model), model)
+
+
+@cache
+def exported_text(spec):
+    return exported(pipeline.load(spec)).text
+
+
+def imported(text, folder, name="generated"):
+    path = folder / f"{name}.py"
+    path.write_text(text, encoding="utf-8")
+    spec = importlib.util.spec_from_file_location(name, path)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("generated")
+
+
+@pytest.fixture(scope="module")
+def two_mass(folder):
+    return imported(exported(pipeline.load(DERIVATIONS / "two_mass.toml")).text, folder, "two_mass")
+
+
+@pytest.fixture(scope="module")
+def symbolic(folder):
+    return imported(exported(pipeline.loads(SYMBOLIC)).text, folder, "symbolic")
+
+
+# ------------------------------------------------------------------------------------------------ values
+
+
+@pytest.mark.parametrize("spec", SPECS, ids=lambda p: p.stem)
+def test_every_function_agrees_with_ball_arithmetic_at_complex_points(spec, folder):
+    model = pipeline.load(spec)
+    module = imported(exported_text(spec), folder, spec.stem)
+    random = np.random.default_rng(1)
+    size = 10.0 ** random.uniform(-3, 5, 60)
+    s = np.array([*(size * np.exp(1j * random.uniform(0, 2 * np.pi, 60))), 3.0, -0.4, 1e-9j, 1e12j, 1e12])
+    for tf in pipeline.derive_all(model):
+        bound = pipeline.bind(tf)
+        expected = np.array([bound(complex(z)) for z in s])
+        computed = module.TRANSFER_FUNCTIONS[tf.name](s)
+        # A wave's phase is as uncertain as s times its delay: one rounding of 1e12j is 1e5 of the value's.
+        swing = [1.0 + (abs(z * slope_of(bound, z)) if tf.is_distributed else 0.0) for z in s]
+        size = np.maximum(abs(expected), 1e-300)
+        assert np.max(abs(computed - expected) / size / swing) < 1e-12
+
+
+def slope_of(bound, s):
+    """Return G'/G."""
+    return complex(bound.enclosed(1024).logarithmic_derivative(acb(s.real, s.imag)))
+
+
+@pytest.mark.parametrize("spec", SPECS, ids=lambda p: p.stem)
+def test_every_function_agrees_with_ball_arithmetic_to_1e_minus_13_over_the_band(spec, folder):
+    model = pipeline.load(spec)
+    module = imported(exported_text(spec), folder, spec.stem)
+    low, high = (float(f) for f in model.analysis.band)
+    s = 2j * np.pi * np.geomspace(low, high, 300)
+    for tf in pipeline.derive_all(model):
+        bound = pipeline.bind(tf)
+        expected = np.array([bound(complex(z)) for z in s])
+        swing = [1.0 + (abs(z * slope_of(bound, z)) if tf.is_distributed else 0.0) for z in s]
+        assert np.max(abs(module.TRANSFER_FUNCTIONS[tf.name](s) / expected - 1) / swing) < 1e-13
+
+
+@pytest.mark.parametrize("spec", SPECS, ids=lambda p: p.stem)
+def test_the_text_computes_exactly_what_was_verified(spec, folder):
+    model = pipeline.load(spec)
+    module = imported(exported_text(spec), folder, spec.stem)
+    s = 2j * np.pi * np.geomspace(1e-3, 1e6, 500)
+    for tf in pipeline.derive_all(model):
+        values = {n: p["value"] for n, p in module.PARAMETERS.items()}
+        program, _ = choose_program(tf)
+        assert module.TRANSFER_FUNCTIONS[tf.name](s).tolist() == evaluate(program, s, values).tolist()
+
+
+def test_a_far_branch_in_the_text_computes_exactly_what_was_verified(folder):
+    n = 8
+    lines = ["symflex = 1", "[parameters]", 'm = "2 kg"', 'k = "3 kN/m"', 'b = "4 N*s/m"', "[elements]"]
+    lines += [f'M{i} = {{ type = "mass", at = "x{i}", m = "m" }}' for i in range(n)]
+    for i in range(n - 1):
+        lines.append(f'K{i} = {{ type = "spring", between = ["x{i}", "x{i + 1}"], k = "k" }}')
+        lines.append(f'B{i} = {{ type = "damper", between = ["x{i}", "x{i + 1}"], b = "b" }}')
+    lines += ["[inputs]", 'F = { force = "x0" }', "[outputs]", 'A = "s^2*x0"', 'X = "x7"']
+    model = pipeline.loads("\n".join(lines))
+    module = imported(exported(model).text, folder, "far")
+    s = np.concatenate([1j * np.logspace(-9, 13, 200), 10.0 ** np.arange(5, 14)])
+    for tf in pipeline.derive_all(model):
+        program, _ = choose_program(tf)
+        assert program.far is not None
+        computed = module.TRANSFER_FUNCTIONS[tf.name](s)
+        assert computed.tolist() == evaluate(program, s, {"m": 2, "k": 3000, "b": 4}).tolist()
+        bound = pipeline.bind(tf)
+        expected = np.array([bound(complex(z)) for z in s])
+        assert np.max(abs(computed / expected - 1)) < 1e-12
+
+
+def test_the_static_gain_is_returned_at_zero(folder):
+    module = imported(exported(pipeline.load(DERIVATIONS / "rigid_body.toml")).text, folder, "rigid_body")
+    # Eppinger & Seering's G_rb at s = 0, from the printed formula.
+    r, k_tau = 0.025 / (2 * np.pi), 0.11
+    gain = 50 * 4 * r * k_tau / (200 * r**2 * (1.1 + 50 * 0.2) + k_tau * (50 * 4 * 0.03 + 0.11))
+    assert module.V_tip_over_V_cmd(0) == pytest.approx(gain, rel=1e-15)
+    assert module.A_tip_over_V_cmd(0) == 0
+
+
+def test_a_pole_is_not_finite_and_raises_no_warning(two_mass):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        values = two_mass.X_act_over_F(np.array([0, 1]))
+        assert not np.isfinite(two_mass.X_act_over_F(0))
+    assert not np.isfinite(values[0])
+    assert np.isfinite(values[1])
+
+
+@pytest.mark.parametrize("s", [1e-9j, 1e-9, 1e12, 1e12j, 1e100, 1e-100j])
+def test_extremes_of_s_raise_no_warning(two_mass, s):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        two_mass.V_tip_over_F(np.array([s]))
+        two_mass.V_tip_over_F(s)
+
+
+# --------------------------------------------------------------------------------------- scalars, arrays
+
+
+@pytest.mark.parametrize(
+    "s", [2, 2.0, 2 + 0j, np.float32(2), np.int8(2), np.complex64(2), np.array(2), True + 1]
+)
+def test_a_scalar_of_any_kind_gives_a_python_complex(two_mass, s):
+    value = two_mass.V_tip_over_F(s)
+    assert type(value) is complex
+    assert value == two_mass.V_tip_over_F(2.0 + 0j)
+
+
+def test_integers_in_parameters_count_as_real_numbers(two_mass):
+    assert two_mass.V_tip_over_F(3j, m_1=np.int16(30000), m_2=30000) == two_mass.V_tip_over_F(
+        3j, m_1=3e4, m_2=3e4
+    )
+
+
+def test_arrays_longer_than_a_block_have_the_values_of_their_elements(two_mass):
+    s = np.geomspace(1, 1e3, 50_000).reshape(2, 25_000) * 1j
+    masses = np.linspace(1.0, 3.0, s.size).reshape(s.shape)
+    function = two_mass.V_tip_over_F
+    for given in ({}, {"m_1": masses}, {"m_1": masses[:, :1]}, {"m_1": masses.T.copy().T}):
+        found = function(s, **given)
+        assert found.shape == s.shape
+        for place in ((0, 0), (0, 20_479), (0, 20_480), (1, 24_999)):
+            one = {name: np.broadcast_to(a, s.shape)[place] for name, a in given.items()}
+            assert found[place] == pytest.approx(function(s[place], **one), rel=1e-15)
+    assert function(s[:, ::-1])[0, 0] == function(s)[0, -1]
+
+
+def test_s_and_every_parameter_are_broadcast_together(two_mass):
+    s = 1j * np.arange(1, 5)
+    m_1 = np.array([[1.0], [2.0], [3.0]])
+    k = np.linspace(1, 2, 2).reshape(2, 1, 1)
+    values = two_mass.X_tip_over_F(s, m_1=m_1, k=k, b=[0.1, 0.2, 0.3, 0.4])
+    assert values.shape == (2, 3, 4)
+    alone = two_mass.X_tip_over_F(4j, m_1=3.0, k=2.0, b=0.4)
+    assert values[1, 2, 3] == pytest.approx(alone, rel=1e-15)
+
+
+def test_an_array_in_one_parameter_and_a_scalar_s_give_an_array(two_mass):
+    values = two_mass.V_act_over_F(1j, m_2=[1, 2, 3])
+    assert isinstance(values, np.ndarray)
+    assert values.shape == (3,)
+    assert values.dtype == complex
+
+
+def test_a_complex_stiffness_is_accepted(two_mass):
+    value = two_mass.X_tip_over_F(2j, k=71653 * (1 + 0.02j))
+    k, b, m_1, m_2 = 71653 * (1 + 0.02j), 41, 60, 20
+    s = 2j
+    expected = (b * s + k) / (s**2 * (m_1 * m_2 * s**2 + (m_1 + m_2) * (b * s + k)))
+    assert value == pytest.approx(expected, rel=1e-14)
+
+
+def test_an_empty_array_gives_an_empty_array(two_mass):
+    assert two_mass.V_tip_over_F(np.zeros((0, 3))).shape == (0, 3)
+
+
+def test_the_arguments_are_not_changed(two_mass):
+    s, m_1 = np.array([1j, 2j]), np.array([1.0, 2.0])
+    result = two_mass.V_tip_over_F(s, m_1=m_1)
+    result[:] = 0
+    assert s.tolist() == [1j, 2j]
+    assert m_1.tolist() == [1.0, 2.0]
+
+
+def test_a_constant_has_the_shape_of_s(symbolic):
+    assert symbolic.gain_over_u(np.ones((2, 3))).tolist() == [[50] * 3] * 2
+    assert symbolic.gain_over_u(1) == 50
+    assert type(symbolic.gain_over_u(1)) is complex
+    assert symbolic.gain_over_u(np.ones(2), k=[[1], [2], [3]]).shape == (3, 2)
+
+
+def test_a_function_that_is_zero_returns_zeros_in_the_shape_of_s(symbolic):
+    assert symbolic.X_over_u(np.ones((2, 3))).tolist() == [[0] * 3] * 2
+    assert symbolic.X_over_u(0) == 0
+
+
+def test_a_parameter_without_value_is_required(symbolic):
+    with pytest.raises(TypeError, match="b"):
+        symbolic.X_over_F(1j)
+    assert symbolic.X_over_F(1j, b=3.0) == pytest.approx(1 / (48 + 3j), rel=1e-15)
+
+
+def test_parameters_are_keywords_only(two_mass):
+    with pytest.raises(TypeError, match="positional"):
+        two_mass.V_tip_over_F(1j, 2.0)
+
+
+@pytest.mark.parametrize("value", [None, "1", object(), [None, 1]])
+def test_what_is_no_number_is_refused(two_mass, value):
+    with pytest.raises(TypeError):
+        two_mass.V_tip_over_F(1j, m_1=value)
+
+
+# ---------------------------------------------------------------------------------------------- the text
+
+
+def test_parameters_have_value_unit_and_doc(two_mass, symbolic):
+    assert two_mass.PARAMETERS["k"] == {
+        "value": 71653.0,
+        "unit": "N/m",
+        "doc": "stiffness of the transmission",
+    }
+    assert symbolic.PARAMETERS["b"] == {"value": None, "unit": "N*s/m", "doc": "friction"}
+    assert list(two_mass.PARAMETERS) == ["m_1", "m_2", "k", "b"]
+
+
+def test_defaults_are_the_doubles_nearest_to_the_exact_values(folder):
+    module = imported(
+        exported(pipeline.load(DERIVATIONS / "polynomial_resonance.toml")).text, folder, "resonance"
+    )
+    # 25 mm per turn in m/rad, 1/(80*pi) = 0.00397887357729738339422...
+    assert module.PARAMETERS["r"]["value"] == 0.0039788735772973835
+    signature = inspect.signature(module.A_tip_over_V_cmd)
+    assert signature.parameters["r"].default == 0.0039788735772973835
+
+
+def test_a_frequency_in_hertz_is_taken_in_hertz(folder):
+    module = imported(
+        exported(pipeline.load(DERIVATIONS / "polynomial_resonance.toml")).text, folder, "in_hertz"
+    )
+    assert module.PARAMETERS["omega_p1"] == {"value": 11.0, "unit": "Hz", "doc": "peak of mode 1"}
+
+
+def test_transfer_functions_are_found_by_name(two_mass):
+    assert list(two_mass.TRANSFER_FUNCTIONS) == ["X_act/F", "V_act/F", "X_tip/F", "V_tip/F"]
+    assert two_mass.TRANSFER_FUNCTIONS["V_tip/F"] is two_mass.V_tip_over_F
+
+
+def test_functions_can_be_pickled(two_mass):
+    assert pickle.loads(pickle.dumps(two_mass.V_tip_over_F)) is two_mass.V_tip_over_F
+
+
+def test_the_docstring_has_formula_units_title_source_and_verification(two_mass):
+    text = two_mass.V_tip_over_F.__doc__
+    assert text.startswith("Mobility V_tip/F [m/(N*s)].")
+    assert "V_tip/F = (b*s + k)/(s*(m_1*m_2*s^2 + (b*s + k)*(m_1 + m_2)))" in text
+    assert "stiffness of the transmission [N/m]." in text
+    assert "Two masses joined by a flexible transmission" in text
+    assert "Eppinger & Seering 1988, fig. 8a" in text
+    assert "over 0.1 Hz ... 100 Hz against ball arithmetic" in " ".join(text.split())
+
+
+def test_a_function_without_values_says_that_it_is_not_verified(symbolic):
+    assert "not verified: no values for b" in symbolic.X_over_F.__doc__
+    assert "X/F: not verified: no values for b" in symbolic.__doc__
+
+
+def test_a_long_formula_is_shortened(folder):
+    module = imported(exported_text(DERIVATIONS / "six_mass.toml"), folder, "six_mass")
+    formula = module.X_act_over_F.__doc__.split("Parameters")[0]
+    assert len(formula.splitlines()) < 26
+    assert "lines more" in formula
+
+
+@pytest.mark.parametrize("spec", SPECS, ids=lambda p: p.stem)
+def test_the_module_imports_numpy_only(spec):
+    tree = ast.parse(exported_text(spec))
+    roots = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            roots |= {alias.name.split(".")[0] for alias in node.names}
+        if isinstance(node, ast.ImportFrom):
+            roots.add(node.module.split(".")[0])
+    assert roots == {"__future__", "numpy"}
+
+
+@pytest.mark.parametrize("spec", SPECS, ids=lambda p: p.stem)
+def test_the_module_satisfies_ruff(spec, tmp_path):
+    path = tmp_path / "generated.py"
+    path.write_text(exported_text(spec), encoding="utf-8")
+    ruff = Path(sys.executable).with_name("ruff")
+    if not ruff.exists():
+        pytest.skip("ruff is not installed")
+    for rules in ("E4,E7,E9,F", "E,F,I,D,N,B,RUF,ANN,UP,PL"):
+        command = [
+            ruff,
+            "check",
+            "--isolated",
+            "--no-cache",
+            "--select",
+            rules,
+            "--config",
+            'lint.pydocstyle.convention="numpy"',
+        ]
+        run = subprocess.run(
+            [*command, "--ignore", "PLR0913,PLR0917", path], capture_output=True, text=True, check=False
+        )
+        assert run.returncode == 0, run.stdout
+
+
+def test_every_line_fits_in_88_columns_but_the_linters_own():
+    for spec in SPECS:
+        lines = exported_text(spec).splitlines()
+        assert all(len(line) <= 88 for line in lines if not line.startswith("# ruff"))
+
+
+def test_the_text_is_the_same_in_every_process():
+    code = (
+        "from symflex import pipeline\n"
+        "from symflex.codegen.numpy.module import numpy_module\n"
+        "import hashlib, sys\n"
+        "m = pipeline.load(sys.argv[1])\n"
+        "print(hashlib.sha256(numpy_module(pipeline.derive_all(m), m).text.encode()).hexdigest())\n"
+    )
+    digests = set()
+    for seed in ("0", "1", "4711"):
+        environment = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)}
+        command = [sys.executable, "-c", code, str(DERIVATIONS / "lumped_bending_beam.toml")]
+        digests.add(
+            subprocess.run(command, capture_output=True, text=True, check=True, env=environment).stdout
+        )
+    assert len(digests) == 1
+
+
+def test_one_verification_per_function_in_order():
+    model = pipeline.load(DERIVATIONS / "two_mass.toml")
+    assert [v.name for v in exported(model).verified] == ["X_act/F", "V_act/F", "X_tip/F", "V_tip/F"]
+
+
+def test_the_band_can_be_given():
+    model = pipeline.load(DERIVATIONS / "two_mass.toml")
+    export = numpy_module(pipeline.derive_all(model), model, (Fraction(1), Fraction(5)), samples=10)
+    assert "over 1 Hz ... 5 Hz" in export.text
+    assert export.verified[0].band == (1, 5)
+
+
+def test_a_function_asked_for_twice_is_written_once():
+    model = pipeline.load(DERIVATIONS / "two_mass.toml")
+    tfs = pipeline.derive_all(model)
+    assert numpy_module([*tfs, *tfs], model).text == numpy_module(tfs, model).text
+
+
+def test_a_default_beyond_double_precision_is_refused():
+    model = pipeline.loads(SYMBOLIC.replace('"2 kg"', "1e400"))
+    with pytest.raises(ModelError, match="SF233"):
+        exported(model)
+
+
+def test_a_program_can_be_built_without_values():
+    tf = pipeline.derive_all(pipeline.loads(SYMBOLIC))[0]
+    assert complex(evaluate(build_program(tf), 1j, {"m": 2, "b": 3, "k": 50})) == pytest.approx(1 / (48 + 3j))

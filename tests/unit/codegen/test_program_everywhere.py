@@ -1,0 +1,68 @@
+"""Programs whose pieces are all evaluated everywhere: cases, places, and lumped functions as pieces."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+import pytest
+
+from symflex import pipeline
+from symflex.codegen.program import build_piecewise, build_program, evaluate
+from symflex.codegen.program.evaluate import numbers_of_pieces, value_of_piece
+from symflex.codegen.program.everywhere import cases_of, in_pieces, places_of
+from symflex.codegen.program.verify import doubles
+from tests.unit.codegen.test_numpy_distributed import DELAY, SPECS, specification
+
+TEXTS = {**{name: specification(name) for name in SPECS}, "delay": DELAY}
+
+
+def programs(name):
+    for tf in pipeline.derive_all(pipeline.loads(TEXTS[name])):
+        yield build_piecewise(tf), doubles(pipeline.bind(tf))
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_for_every_result_of_tests_one_piece_serves_the_right_one(name):
+    for program, _ in programs(name):
+        cases = cases_of(program)
+        for results in product((False, True), repeat=len(program.conditions)):
+            serving = [
+                k
+                for k, alternatives in enumerate(cases)
+                if any(all(results[test] is wanted for test, wanted in case) for case in alternatives)
+            ]
+            assert serving == [program.pieces[sum(2**i for i, r in enumerate(results) if r)]]
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_a_piece_is_regular_at_its_place_whatever_the_parameters(name):
+    random = np.random.default_rng(1)
+    for program, values in programs(name):
+        for piece, place in zip(program.code, places_of(program, values), strict=True):
+            for _ in range(20):
+                given = {n: v * 10 ** random.uniform(-1, 1) for n, v in values.items()}
+                with np.errstate(all="ignore"):
+                    assert np.isfinite(value_of_piece(piece, np.complex128(place), given))
+
+
+@pytest.mark.parametrize("name", ["sliding_free", "rod_tip_mass", "delay"])
+def test_a_place_lies_where_its_piece_serves(name):
+    for program, values in programs(name):
+        for k, place in enumerate(places_of(program, values)):
+            number = int(numbers_of_pieces(program, np.complex128(place), values))
+            assert program.pieces[number] == k
+
+
+def test_a_lumped_function_with_a_far_branch_is_two_pieces():
+    lines = ["symflex = 1", "parameters = { m = '2 kg', k = '3 kN/m' }", "[elements]"]
+    lines += [f"M{i} = {{ type = 'mass', at = 'x{i}', m = 'm' }}" for i in range(8)]
+    lines += [f"K{i} = {{ type = 'spring', between = ['x{i}', 'x{i + 1}'], k = 'k' }}" for i in range(7)]
+    lines += ["[inputs]", "F = { force = 'x0' }", "[outputs]", "X = 'x7'"]
+    (tf,) = pipeline.derive_all(pipeline.loads("\n".join(lines)))
+    program = build_program(tf)
+    assert program.far is not None
+    pieces = in_pieces(program)
+    assert len(pieces.code) == 2
+    s, values = 1j * np.logspace(-6, 13, 60), {"m": 2.0, "k": 3000.0}
+    assert evaluate(pieces, s, values).tolist() == evaluate(program, s, values).tolist()

@@ -1,0 +1,147 @@
+"""The measured error is a measured error: it sees one wrong digit, and the best form is taken."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+from flint import acb, acb_poly
+
+from symflex import pipeline
+from symflex.codegen.program import (
+    Constant,
+    Multiply,
+    References,
+    available_forms,
+    build_program,
+    choose_program,
+)
+from symflex.codegen.program.verify import (
+    DEFAULT_BAND,
+    Verification,
+    _roots,
+    frequency_text,
+    sample_frequencies,
+)
+from tests.house.repository import specifications
+
+DERIVATIONS = Path(__file__).parents[3] / "derivations" / "eppinger1988"
+BAND = (Fraction(1, 10), Fraction(1000))
+
+
+def transfer_functions(name):
+    return pipeline.derive_all(pipeline.load(DERIVATIONS / f"{name}.toml"))
+
+
+TWO_MASS = transfer_functions("two_mass")[0]
+
+
+def spoiled(program, factor):
+    """Return a program whose result is wrong by a factor."""
+    value = Multiply((Constant(Fraction(factor)), program.near.value))
+    return replace(program, near=replace(program.near, value=value))
+
+
+MANY_DECIMALS = ("fitted_resonances",)
+"""Rounding one by one of some twenty parameters with nine digits each shows."""
+
+
+@pytest.mark.parametrize("spec", specifications(DERIVATIONS, "*.toml"), ids=lambda p: p.stem)
+def test_the_error_of_every_derivation_is_of_the_size_of_rounding(spec):
+    for tf in pipeline.derive_all(pipeline.load(spec)):
+        _, verification = choose_program(tf)
+        assert 0 < verification.error < (2e-15 if spec.stem in MANY_DECIMALS else 1e-15)
+
+
+@pytest.mark.parametrize("spec", specifications(DERIVATIONS, "*.toml"), ids=lambda p: p.stem)
+def test_the_error_of_every_form_of_every_derivation_is_below_1e_minus_13(spec):
+    for tf in pipeline.derive_all(pipeline.load(spec)):
+        for form in available_forms(tf):
+            references = References(pipeline.bind(tf), DEFAULT_BAND)
+            assert references.worst_error(build_program(tf, form)) < 1e-13
+
+
+def test_an_error_in_the_ninth_digit_is_measured_as_such():
+    bound = pipeline.bind(TWO_MASS)
+    program = spoiled(build_program(TWO_MASS), 1 + Fraction(1, 10**9))
+    # Where |s G'/G| = 2, at low frequencies, the measure divides by 3.
+    assert 1e-9 / 3.1 < References(bound, BAND).worst_error(program) < 1.01e-9
+
+
+def test_a_value_that_is_not_finite_is_an_infinite_error():
+    bound = pipeline.bind(TWO_MASS)
+    program = build_program(TWO_MASS)
+    assert References(bound, BAND).worst_error(spoiled(spoiled(program, 10**300), 10**300)) == np.inf
+
+
+def test_samples_stand_at_every_pole_and_zero():
+    bound = pipeline.bind(TWO_MASS)
+    frequencies = sample_frequencies(bound, BAND, 400)
+    # 11 Hz pole and 59.85 rad/s zero of the two-mass model, from its own closed forms.
+    pole = np.sqrt(71653 * 80 / (60 * 20)) / (2 * np.pi)
+    zero = np.sqrt(71653 / 20) / (2 * np.pi)
+    for wanted in (pole, zero):
+        assert np.min(abs(frequencies / wanted - 1)) < 1e-4
+    assert len(frequencies) > 400
+
+
+def test_recurrences_are_taken_for_the_six_masses_because_they_are_the_most_accurate():
+    tf = transfer_functions("six_mass")[0]
+    _, verification = choose_program(tf)
+    errors = {
+        f: References(pipeline.bind(tf), DEFAULT_BAND).worst_error(build_program(tf, f))
+        for f in available_forms(tf)
+    }
+    assert verification.form == "closed" == min(errors, key=errors.get)
+    assert errors["factors"] > 10 * errors["closed"]
+
+
+def test_the_band_of_the_analysis_is_the_default():
+    assert choose_program(TWO_MASS)[1].band == (Fraction(1, 10), Fraction(100))
+    assert choose_program(TWO_MASS, BAND)[1].band == BAND
+
+
+def test_a_parameter_without_value_is_named_as_the_reason():
+    text = """
+    symflex = 1
+    parameters = { m = "2 kg", b = {} }
+    elements.body = { type = "mass", at = "x", m = "m" }
+    elements.loss = { type = "damper", between = ["x", "ground"], b = "b" }
+    inputs.F = { force = "x" }
+    outputs.V = "s*x"
+    """
+    _, verification = choose_program(pipeline.derive_all(pipeline.loads(text))[0])
+    assert verification.error is None
+    assert verification.text() == "not verified: no values for b"
+
+
+def test_the_sentence_says_error_and_band():
+    verification = Verification("V/F", "closed", 3.14e-16, (Fraction(1, 10), Fraction(1000)), 400)
+    assert (
+        verification.text()
+        == "verified: worst relative error 3.1e-16 over 0.1 Hz ... 1 kHz against ball arithmetic"
+    )
+    assert "3.14e-16" in verification.text(3)
+
+
+def test_a_lossless_resonance_inside_the_band_does_not_spoil_the_measure():
+    for tf in transfer_functions("lumped_bending_beam"):
+        assert choose_program(tf)[1].error < 1e-15
+
+
+@pytest.mark.parametrize(
+    ("hertz", "text"), [("0.1", "0.1 Hz"), ("1000", "1 kHz"), ("1500", "1.5 kHz"), ("2e9", "2 GHz")]
+)
+def test_a_frequency_is_printed_with_a_prefix(hertz, text):
+    assert frequency_text(Fraction(hertz)) == text
+
+
+def test_rough_roots_are_found_where_quotients_of_coefficients_are_beyond_doubles():
+    # (s^2 + 1e24)^30 has coefficients up to 1e720.
+    polynomial = acb_poly([acb(10) ** 24, 0, 1]) ** 30
+    found = _roots(polynomial.coeffs())
+    assert len(found) == 60
+    assert abs(np.exp(np.mean(np.log(abs(found)))) / 1e12 - 1) < 1e-6

@@ -1,0 +1,145 @@
+"""Closed sums and the way back, and Cramer's rule, on two masses whose equations are written by hand."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+
+from symflex import pipeline
+from symflex.equations.elimination import close, closing
+from symflex.equations.elimination.determinants import Determinants
+from symflex.errors import BudgetError, ModelError
+from tests.unit.equations.test_minors import at
+
+TEXT = """symflex = 1
+[parameters]
+m = {}
+M = {}
+k = {}
+b = {}
+sum0 = {}
+[elements]
+first = { type = "mass", at = "x", m = "m" }
+second = { type = "mass", at = "y", m = "M" }
+link = { type = "spring", between = ["x", "y"], k = "k" }
+loss = { type = "damper", between = ["x", "y"], b = "b" }
+wall = { type = "spring", between = ["x", "ground"], k = "sum0 + 2*k" }
+[inputs]
+F = { force = "x" }
+G = { force = "y" }
+H = { force = "y" }
+[outputs]
+X = "x"
+Y = "y"
+W = "s*(s + 2)*x + pi*s^2*y"
+"""
+EQUATIONS = pipeline.assemble(pipeline.loads(TEXT))
+NAMES = EQUATIONS.ring.names
+GIVEN = {name: Fraction(7 + 3 * i, 5 - 2 * i) for i, name in enumerate(NAMES)}
+POINT = tuple(GIVEN[name] for name in NAMES)
+
+
+def value(factored):
+    """Return what a factored function is where every name has its fraction, pi one like any other."""
+    product = Fraction(factored.unit)
+    for polynomial, exponent in factored.factors:
+        product *= at(polynomial, POINT) ** exponent
+    return product
+
+
+def responses():
+    """Return the displacements per force on x and on y from the two equations of motion."""
+    s, m, M, k, b, more = (GIVEN[name] for name in ("s", "m", "M", "k", "b", "sum0"))
+    w = b * s + k
+    (p, q), r = (m * s**2 + w + 2 * k + more, -w), M * s**2 + w
+    determinant = p * r - q * q
+    x, y = {"F": r, "G": -q, "H": -q}, {"F": -q, "G": p, "H": p}
+    return {
+        (output, source): number / determinant
+        for source in "FGH"
+        for output, number in (
+            ("X", x[source]),
+            ("Y", y[source]),
+            ("W", s * (s + 2) * x[source] + GIVEN["pi"] * s**2 * y[source]),
+        )
+    }
+
+
+@pytest.mark.parametrize(("pair", "expected"), responses().items(), ids=str)
+def test_a_bordered_determinant_over_the_determinant_is_the_response(pair, expected):
+    found = Determinants.of(EQUATIONS)
+    num, den = found.opened(found.num(*pair)), found.opened(found.den)
+    assert value(num) / value(den) == expected
+
+
+def test_sums_with_a_parameter_are_closed_and_sums_of_s_alone_are_not():
+    closure = close(EQUATIONS).closure
+    s, m, k, b, more = (EQUATIONS.ring.generator(name) for name in ("s", "m", "k", "b", "sum0"))
+    assert [polynomial for _, polynomial in closure.sums] == [m * s**2 + 2 * k + more, b * s + k]
+    # A parameter is called sum0; the closed sum gets another name. Only M stands outside of sums.
+    assert [name for name, _ in closure.sums] == ["sum0!", "sum1"]
+    assert closure.ring.names == ("s", "M", "pi", "sum0!", "sum1")
+
+
+def test_what_was_closed_opens_again():
+    closure = close(EQUATIONS).closure
+    s, M, pi, first, second = (closure.ring.generator(name) for name in closure.ring.names)
+    sums = [at(polynomial, POINT) for _, polynomial in closure.sums]
+    point = (*(GIVEN[name] for name in ("s", "M", "pi")), *sums)
+    number = closure.ring.constant(-6)
+    for closed in (s * first, 3 * second**2 * M, -first * (M + second), first - second, s**2 + pi, number):
+        assert value(closure.open(closed)) == at(closed, point)
+    nothing = closure.open(closure.ring.constant(0))
+    assert (nothing.is_zero, nothing.ring) == (True, EQUATIONS.ring)
+
+
+def test_factors_in_front_stay_factored():
+    closure = close(EQUATIONS).closure
+    s, M, second = (closure.ring.generator(name) for name in ("s", "M", "sum1"))
+    b, k = EQUATIONS.ring.generator("b"), EQUATIONS.ring.generator("k")
+    opened = closure.open(6 * s**2 * M * second**3)
+    assert opened.unit == 6
+    base = EQUATIONS.ring.generator
+    assert sorted(((str(f), e) for f, e in opened.factors)) == sorted(
+        [(str(b * base("s") + k), 3), ("M", 1), ("s", 2)]
+    )
+
+
+@pytest.mark.parametrize("limit", ["TERM_LIMIT", "MEMORY_LIMIT"])
+def test_opening_keeps_to_its_limits(monkeypatch, limit):
+    closure = close(EQUATIONS).closure
+    first, second = closure.ring.generator("sum0!"), closure.ring.generator("sum1")
+    polynomial = (first + second) * (first - 2 * second)
+    assert closure.opened_length(polynomial) >= 12
+    assert not closure.open(polynomial).is_zero
+    monkeypatch.setattr(closing, limit, 3)
+    with pytest.raises(BudgetError):
+        closure.open(polynomial)
+
+
+def test_one_mass_has_one_column_and_the_sign_of_its_border():
+    text = """symflex = 1
+parameters = { m = {}, k = {}, b = {} }
+elements.body = { type = "mass", at = "x", m = "m" }
+elements.held = { type = "spring", between = ["x", "ground"], k = "k" }
+elements.loss = { type = "damper", between = ["x", "ground"], b = "b" }
+inputs.F = { force = "x" }
+outputs.X = "x"
+"""
+    found = Determinants.of(pipeline.assemble(pipeline.loads(text)))
+    assert len(found.reduced.columns) == 1
+    # s and pi stand in the closed ring whether they occur or not.
+    assert found.system.closure.ring.names == ("s", "pi", "sum0")
+    above, below = found.opened(found.num("X", "F")), found.opened(found.den)
+    s, m, k, b = (below.ring.generator(name) for name in "smkb")
+    assert above.factors == ()
+    assert below.expand() == int(above.unit) * (m * s**2 + b * s + k)
+
+
+def test_a_loop_without_a_solution_is_told_from_the_equations():
+    text = 'symflex = 1\n[signals]\ne = "U + e"\n[inputs]\nU = {}\n[outputs]\nX = "e"\n'
+    with pytest.raises(ModelError) as caught:
+        Determinants.of(pipeline.assemble(pipeline.loads(text)))
+    assert caught.value.diagnostics[0].code.startswith("SF30")
+    assert "e" in caught.value.diagnostics[0].message

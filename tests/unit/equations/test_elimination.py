@@ -1,0 +1,265 @@
+"""Elimination against independent dense solutions."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from random import Random
+
+import pytest
+import sympy
+
+import symflex
+from symflex import pipeline
+from symflex.algebra import Ring
+from symflex.equations.elimination import Minors, close, eliminate_unit_pivots, expansion_order, is_singular
+from symflex.errors import BudgetError
+from tests.contract.exact import Point, solve
+from tests.house.repository import slow_ones
+
+HEADER = "symflex = 1\n[parameters]\n"
+
+
+# ---------------------------------------------------------------------- networks with a matrix by hand
+
+
+def random_network(seed):
+    """Return (text, branches): masses at nodes 0..n-1 and springs and dampers between them and ground."""
+    random = Random(seed)
+    size = random.randrange(2, 6)
+    branches = [("m", i, None, f"m_{i}") for i in range(size)]
+    for i in range(size):
+        other = random.choice([None, *range(i)]) if i else None
+        branches.append((random.choice("kb"), i, other, f"p_{len(branches)}"))
+    for _ in range(random.randrange(0, 4)):
+        i = random.randrange(size)
+        other = random.choice([None, *(j for j in range(size) if j != i)])
+        branches.append((random.choice("kb"), i, other, f"p_{len(branches)}"))
+    kinds = {"m": ("mass", "m"), "k": ("spring", "k"), "b": ("damper", "b")}
+    lines = []
+    for n, (kind, i, other, value) in enumerate(branches):
+        name, key = kinds[kind]
+        there = "ground" if other is None else f"x{other}"
+        place = f'at = "x{i}"' if kind == "m" else f'between = ["x{i}", "{there}"]'
+        lines.append(f'e{n} = {{ type = "{name}", {place}, {key} = "{value}" }}')
+    parameters = "\n".join(f"{value} = {{}}" for *_, value in branches)
+    outputs = "\n".join(f'X{i} = "x{i}"' for i in range(size))
+    text = f"{HEADER}{parameters}\n[elements]\n" + "\n".join(lines)
+    return f'{text}\n[inputs]\nF = {{ force = "x0" }}\n[outputs]\n{outputs}\n', branches, size
+
+
+def stiffness(branches, size, value, at):
+    """Return the dynamic stiffness matrix from the branches alone."""
+    matrix = [[0 * at for _ in range(size)] for _ in range(size)]
+    for kind, i, other, name in branches:
+        admittance = value(name) * {"m": at * at, "k": at / at, "b": at}[kind]
+        matrix[i][i] += admittance
+        if other is not None:
+            matrix[other][other] += admittance
+            matrix[i][other] -= admittance
+            matrix[other][i] -= admittance
+    return matrix
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_the_quotient_of_a_random_network_is_that_of_exact_dense_elimination(seed):
+    text, branches, size = random_network(seed)
+    at = Fraction(7, 3)
+    point = Point(seed, s=at)
+    expected = solve(
+        stiffness(branches, size, lambda n: point[n], at), [Fraction(int(i == 0)) for i in range(size)]
+    )
+    for tf, wanted in zip(pipeline.derive_all(pipeline.loads(text)), expected, strict=True):
+        found = tf.ratio.unit
+        for factor, exponent in tf.ratio.factors:
+            images = [point[n] for n in tf.ratio.ring.names]
+            total = Fraction(0)
+            for monomial, c in factor.terms():
+                term = Fraction(int(c))
+                for image, e in zip(images, monomial, strict=True):
+                    term *= image ** int(e)
+                total += term
+            found *= total**exponent
+        assert found == wanted
+
+
+@pytest.mark.parametrize("seed", slow_ones(range(6), lambda seed: seed == 5))
+def test_the_quotient_of_a_small_network_is_sympys(seed):
+    text, branches, size = random_network(100 + seed)
+    if size > 3:
+        text, branches, size = random_network(200 + seed)
+    s = sympy.Symbol("s")
+    matrix = sympy.Matrix(stiffness(branches, size, sympy.Symbol, s))
+    minor = matrix.copy()
+    minor.col_del(0)
+    minor.row_del(0)
+    G = symflex.loads(text).transfer_function("X0", "F")
+    ratio = (G.num / G.den).xreplace({x: sympy.Symbol(x.name) for x in (G.num / G.den).free_symbols})
+    expected = minor.det(method="berkowitz") / matrix.det(method="berkowitz")
+    assert sympy.cancel(ratio - expected) == 0
+
+
+# --------------------------------------------------------------------------------- the parts, one by one
+
+
+def random_sparse(seed, size, ring, *, units):
+    random = Random(seed)
+    entries = [ring.generator(n) for n in ring.names]
+    rows = []
+    for i in range(size):
+        row = {(i + 1) % size: entries[random.randrange(len(entries))]}
+        for _ in range(random.randrange(1, 4)):
+            value = entries[random.randrange(len(entries))] * random.randrange(1, 4) + random.randrange(-2, 3)
+            if units and random.random() < 0.5:
+                value = ring.constant(random.choice((1, -1)))
+            if not value.is_zero():
+                row[random.randrange(size)] = value
+        row[size] = entries[random.randrange(len(entries))]
+        rows.append(row)
+    return tuple(rows)
+
+
+def dense(rows, columns, ring):
+    symbols = sympy.symbols(ring.names)
+
+    def entry(polynomial):
+        return sum(
+            int(c) * sympy.prod(x ** int(e) for x, e in zip(symbols, m, strict=True))
+            for m, c in polynomial.terms()
+        )
+
+    return sympy.Matrix([[entry(row[c]) if c in row else 0 for c in columns] for row in rows])
+
+
+RING = Ring(("s", "a", "b"))
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_determinant_of_minors_is_sympys(seed):
+    rows = random_sparse(seed, 4, RING, units=False)
+    found = Minors(rows, ring=RING).determinant(0b1111)
+    expected = dense(rows, range(4), RING).det(method="berkowitz")
+    assert sympy.expand(expected - dense(({0: found},), [0], RING)[0]) == 0
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_order_of_expansion_changes_the_determinant_by_its_sign_only(seed):
+    rows = random_sparse(seed, 5, RING, units=False)
+    order = expansion_order(rows, (0, 1, 2, 3, 4))
+    plain = Minors(rows, ring=RING).determinant(0b11111)
+    ordered = Minors(tuple(rows[i] for i in order), ring=RING).determinant(0b11111)
+    assert sorted(order) == [0, 1, 2, 3, 4]
+    assert ordered in (plain, -plain)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_unit_pivots_leave_the_quotient_as_it_is(seed):
+    size = 5
+    rows = random_sparse(seed, size, RING, units=True)
+    goal = ({0: RING.generator("a"), 3: RING.constant(1), size: RING.generator("b")},)
+    whole = (1 << size) - 1
+    before = Minors(rows, ring=RING)
+    den = before.determinant(whole)
+    if den.is_zero():
+        pytest.skip("this matrix is singular")
+    num = before.bordered(goal[0], whole | 1 << size)
+    reduced = eliminate_unit_pivots(rows, goal, size)
+    after = Minors(reduced.rows, ring=RING)
+    columns = sum(1 << c for c in reduced.columns)
+    den_after = after.determinant(columns)
+    num_after = after.bordered(reduced.outputs[0], columns | 1 << size)
+    sign = -1 if (size - len(reduced.columns)) % 2 else 1
+    assert num * den_after == sign * num_after * den
+
+
+def test_no_unit_pivot_is_left():
+    rows = random_sparse(3, 6, RING, units=True)
+    reduced = eliminate_unit_pivots(rows, (), 6)
+    left = [e for row in reduced.rows for c, e in row.items() if c in reduced.columns]
+    assert not any(e.is_constant() and abs(int(e.leading_coefficient())) == 1 for e in left)
+
+
+def test_the_rows_given_are_not_changed():
+    rows = random_sparse(3, 6, RING, units=True)
+    before = [dict(row) for row in rows]
+    eliminate_unit_pivots(rows, (), 6)
+    assert [dict(row) for row in rows] == before
+
+
+def test_minors_are_shared_between_outputs():
+    text, *_ = random_network(4)
+    equations = pipeline.assemble(pipeline.loads(text))
+    system = close(equations)
+    minors = Minors(system.rows, ring=system.closure.ring)
+    every = (1 << len(system.unknowns)) - 1
+    minors.determinant(every)
+    known = dict(minors._known)
+    minors.determinant(every)
+    assert minors._known == known
+
+
+def test_more_rows_than_the_limit_are_refused():
+    with pytest.raises(BudgetError) as caught:
+        Minors(tuple({0: RING.constant(1)} for _ in range(701)), ring=RING)
+    assert caught.value.diagnostics[0].code == "SF502"
+
+
+def test_a_chain_may_be_longer_than_calls_may_be_deep():
+    # The determinant of tridiagonal (-1, 2, -1) with n rows is n + 1.
+    n = 520
+    rows = tuple(
+        {j: RING.constant(2 if j == i else -1) for j in range(max(i - 1, 0), min(i + 2, n))} for i in range(n)
+    )
+    assert Minors(rows, ring=RING).determinant((1 << n) - 1) == RING.constant(n + 1)
+
+
+def test_a_dense_matrix_with_too_many_minors_is_refused(monkeypatch):
+    monkeypatch.setattr("symflex.equations.elimination.minors.MINOR_LIMIT", 50)
+    rows = tuple({j: RING.generator("a") + i + j for j in range(8)} for i in range(8))
+    with pytest.raises(BudgetError) as caught:
+        Minors(rows, ring=RING).determinant(255)
+    assert caught.value.diagnostics[0].code == "SF502"
+
+
+def test_a_closed_sum_opens_to_itself():
+    text, *_ = random_network(7)
+    equations = pipeline.assemble(pipeline.loads(text))
+    closure = close(equations).closure
+    for row in equations.rows:
+        for _, coefficient in row.form.terms:
+            assert closure.open(closure.close(coefficient)).expand() == coefficient.expand()
+
+
+def test_parameters_named_like_internal_generators_do_not_collide():
+    """sum0 and x13 are names a program might use inside; sqrt(k*q) is generator 13 here."""
+    text = f"""{HEADER}T = 1
+k = 3
+q = 5
+sum0 = 7
+sum1 = 11
+x6 = 100
+x7 = 101
+x8 = 105
+x9 = 103
+x10 = 104
+x13 = 102
+[elements]
+a = {{ type = "spring", between = ["x", "z"], k = "T^2*s^2 + x13" }}
+b = {{ type = "spring", between = ["z", "y"], k = "T^2*s^2 + sqrt(k*q)" }}
+c = {{ type = "spring", between = ["z", "ground"], k = "sum0 + x10" }}
+d = {{ type = "spring", between = ["y", "ground"], k = "sum1 + x8" }}
+e = {{ type = "spring", between = ["y", "ground"], k = "x9 + x10 + x7 + x6" }}
+[inputs]
+F = {{ force = "x" }}
+[outputs]
+X = "x"
+"""
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    series = [4 + 15**0.5, 11 + 105 + 100 + 101 + 103 + 104]  # at s = 2
+    middle = 111 + series[0] * series[1] / sum(series)
+    assert pipeline.bind(tf)(2 + 0j).real == pytest.approx(1 / 106 + 1 / middle, rel=1e-14)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_solvable_network_is_not_called_singular(seed):
+    text, *_ = random_network(seed)
+    assert not is_singular(pipeline.assemble(pipeline.loads(text)))

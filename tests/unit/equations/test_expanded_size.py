@@ -1,0 +1,111 @@
+"""The estimate of a determinant's size, on programs and rows small enough to count by hand."""
+
+from __future__ import annotations
+
+from math import exp, inf, log
+from types import SimpleNamespace
+
+import pytest
+
+from symflex.algebra import Factored, Ring
+from symflex.equations.elimination.expanded_size import LARGEST, _forests, _monomials, expanded_terms
+from symflex.equations.elimination.straight_line import Step
+
+RING = Ring(("s", "k", "m", "pi"))
+S, K, M, PI = (RING.generator(name) for name in RING.names)
+
+
+def elimination(steps, *pivots, roles=None):
+    kinds, operands = zip(*steps, strict=True)
+    return SimpleNamespace(
+        program=SimpleNamespace(kinds=kinds, operands=operands, roles=roles or {}), pivots=pivots
+    )
+
+
+A, B, NONE, FIVE = (
+    (Step.GENERATOR, (0,)),
+    (Step.GENERATOR, (1,)),
+    (Step.NUMBER, (0, 1)),
+    (Step.NUMBER, (5, 2)),
+)
+
+
+@pytest.mark.parametrize(
+    ("steps", "value"),
+    [
+        ([A, B, (Step.ADD, (0, 1, 1))], 3),
+        ([A, FIVE, (Step.ADD, (0, 1))], 2),
+        ([A, NONE, (Step.ADD, (0, 0, 1))], 2),
+        ([A, (Step.ADD, (0, 0)), (Step.ADD, (0, 0, 0)), (Step.MULTIPLY, (1, 2))], 6),
+        ([A, (Step.ADD, (0, 0)), (Step.ADD, (0, 0, 0)), (Step.DIVIDE, (2, 1))], 1.5),
+        ([A, (Step.ADD, (0, 0, 0)), (Step.NEGATE, (1,)), (Step.ADD, (0, 2))], 2),
+        ([A, (Step.ADD, (0, 0, 0)), (Step.POWER, (1, 4))], 81),
+        ([A, NONE, (Step.ADD, (0, 0)), (Step.DIVIDE, (2, 1))], 1),
+    ],
+    ids=["sum", "number", "zero", "product", "quotient", "difference", "power", "over zero"],
+)
+def test_a_pivot_counts_terms_where_every_name_is_one(steps, value):
+    assert _forests(elimination(steps, len(steps) - 1)) == pytest.approx(log(value))
+
+
+def test_a_closed_sum_counts_as_one_name():
+    steps = [A, B, (Step.ADD, (0, 1, 1)), (Step.ADD, (0, 2))]
+    assert _forests(elimination(steps, 3, roles={2: "w"})) == pytest.approx(log(2))
+
+
+def test_pivots_multiply_and_those_that_vanish_do_not_count():
+    steps = [A, NONE, (Step.ADD, (0, 0)), (Step.ADD, (0, 0, 0))]
+    assert _forests(elimination(steps, 2, 3, 1)) == pytest.approx(log(6))
+
+
+def rows(*entries):
+    """Return equations of the rows of factored entries, as far as sizes are read off them."""
+    forms = [SimpleNamespace(form=SimpleNamespace(terms=[(None, e) for e in row])) for row in entries]
+    return SimpleNamespace(ring=RING, rows=forms)
+
+
+def product(*factors):
+    value = Factored.number(RING, 1)
+    for polynomial, exponent in factors:
+        value = value * Factored.polynomial(RING, polynomial) ** exponent
+    return value
+
+
+@pytest.mark.parametrize(
+    ("entries", "count"),
+    [
+        # The highest power of each name in a row, added over the rows, and one more for none.
+        ([[product((S, 2)), product((S, 1))]], 3),
+        ([[product((S, 2))], [product((S, 3))]], 6),
+        ([[product((S, 2), (K, 1))], [product((K, 1), (M, 1))]], 3 * 3 * 2),
+        # A sum with a parameter is one name, of s and pi alone it has their powers.
+        ([[product((S + K, 2))]], 3),
+        ([[product((S + K, 2)), product((S + K, 1))], [product((S + K, 1))]], 4),
+        ([[product((S**2 + 3 * S, 1)), product((S**3 + 1, 1))]], 4),
+        ([[product((S**2 + PI, 2))]], 5 * 3),
+        ([[product((S + K, 1), (M, 1), (S**2 + K + M, 1))]], 2 * 2 * 2),
+        # What is divided by has no power.
+        ([[product((S, -2)), product((K, 1))]], 2),
+        ([[product((M, -1))]], 1),
+    ],
+)
+def test_monomials_are_counted_up_to_the_powers_that_rows_reach(entries, count):
+    assert exp(_monomials(rows(*entries))) == pytest.approx(count)
+
+
+DOUBLED = [A, (Step.ADD, (0, 0))]
+
+
+@pytest.mark.parametrize(("pivots", "terms"), [(1, 2), (4, 16), (5, 21), (700, 21)])
+def test_the_smaller_of_both_counts_is_taken(pivots, terms):
+    # A row of power 20 has 21 monomials, and so many pivots of two terms make two to their number.
+    found = expanded_terms(rows([product((S, 20))]), elimination(DOUBLED, *([1] * pivots)))
+    assert found == pytest.approx(terms)
+
+
+@pytest.mark.parametrize(("pivots", "is_finite"), [(1009, True), (1011, False)])
+def test_a_count_beyond_doubles_is_infinite(pivots, is_finite):
+    many = rows(*([product((S, 1), (K, 10**200), (M, 10**200))],))
+    found = expanded_terms(many, elimination(DOUBLED, *([1] * pivots)))
+    assert LARGEST == pytest.approx(1010 * log(2), rel=1e-3)
+    assert (found < inf) is is_finite

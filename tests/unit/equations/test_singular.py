@@ -1,0 +1,280 @@
+"""What is said of singular systems: what floats, what is redundant, which loop is algebraic."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from symflex import pipeline
+from symflex.equations.elimination import is_singular
+from symflex.equations.elimination.singular import explain_singular, listed
+from symflex.errors import ModelError
+
+HEADER = "symflex = 1\n[parameters]\n"
+MASS = 'M = { type = "mass", at = "x", m = "m" }\n'
+SINGULAR = {
+    "a node between two massless links to nowhere": (
+        'm = {}\nk = {}\n[elements]\nK = { type = "spring", between = ["a", "c"], k = "k" }\n',
+        '[inputs]\nF = { force = "a" }\n[outputs]\nX = "a"\n',
+        "SF301",
+        ("'a'", "'c'"),
+    ),
+    "a node held twice": (
+        'm = {}\n[elements]\nM = { type = "mass", at = "x", m = "m" }\n'
+        'one = { type = "fixed", at = "x" }\ntwo = { type = "fixed", at = "x" }\n',
+        '[inputs]\nF = { force = "x" }\n[outputs]\nX = "x"\n',
+        "SF302",
+        ("'one'", "'two'"),
+    ),
+    "two voltage sources at one node": (
+        'R = {}\n[elements]\nr = { type = "resistor", between = ["a", "ground"], R = "R" }\n'
+        'one = { type = "voltage_source", at = "a", v = "U" }\n'
+        'two = { type = "voltage_source", at = "a", v = "2*U" }\n',
+        '[inputs]\nU = {}\n[outputs]\nX = "a"\n',
+        "SF302",
+        ("'one'", "'two'"),
+    ),
+    "an algebraic loop of gain one": (
+        "k = {}\n",
+        '[signals]\ne = "U + e"\n[inputs]\nU = {}\n[outputs]\nX = "e"\n',
+        "SF303",
+        ("'e'",),
+    ),
+    "an algebraic loop of gain one through two signals": (
+        "k = {}\n",
+        '[signals]\ne = "U + g/k"\ng = "k*e"\n[inputs]\nU = {}\n[outputs]\nX = "e"\n',
+        "SF303",
+        ("'e'", "'g'"),
+    ),
+    "a loop of gain one through a definition": (
+        "k = {}\n",
+        '[definitions]\nZ = "k/k"\n[signals]\ne = "U + Z*e"\n[inputs]\nU = {}\n[outputs]\nX = "e"\n',
+        "SF303",
+        ("'e'",),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SINGULAR)
+def test_a_singular_system_is_explained(name):
+    head, tail, code, named = SINGULAR[name]
+    model = pipeline.loads(HEADER + head + tail)
+    with pytest.raises(ModelError) as caught:
+        pipeline.derive_all(model)
+    (problem,) = caught.value.diagnostics
+    assert problem.code == code
+    assert all(n in problem.message for n in named)
+    assert problem.span is not None
+
+
+def said(head, tail):
+    with pytest.raises(ModelError) as caught:
+        pipeline.derive_all(pipeline.loads(HEADER + head + tail))
+    (problem,) = caught.value.diagnostics
+    return problem.code, problem.message, problem.hint, problem.span.text
+
+
+LOOP = "the loop through {} is algebraic and has no unique solution: its gain is exactly one"
+SAID = {
+    "a node between two massless links to nowhere": (
+        "nothing determines nodes 'a' and 'c': they float",
+        "connect them to ground or give them a mass",
+        "a",
+    ),
+    "a node held twice": (
+        "the constraints of 'one' and 'two' repeat or contradict each other",
+        "remove one of them",
+        "two",
+    ),
+    "an algebraic loop of gain one": (
+        LOOP.format("'e'"),
+        "put a dynamic element or another gain into the loop",
+        "e",
+    ),
+    "an algebraic loop of gain one through two signals": (
+        LOOP.format("'e' and 'g'"),
+        "put a dynamic element or another gain into the loop",
+        "e",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SAID)
+def test_what_makes_a_system_singular_is_said_in_a_sentence_with_a_way_out(name):
+    head, tail, code, _ = SINGULAR[name]
+    message, hint, place = SAID[name]
+    found = said(head, tail)
+    assert found[:3] == (code, message, hint)
+    assert place in found[3]
+
+
+@pytest.mark.parametrize(
+    ("names", "sentence"),
+    [
+        ([], "the system"),
+        (["a"], "a"),
+        (["a", "b"], "a and b"),
+        (["a", "b", "c"], "a, b and c"),
+        (list("abcdef"), "a, b, c, d, e and f"),
+        (list("abcdefg"), "a, b, c, d, e, f and 1 more"),
+        (list("abcdefghi"), "a, b, c, d, e, f and 3 more"),
+    ],
+)
+def test_names_are_listed_as_in_a_sentence(names, sentence):
+    assert listed(names) == sentence
+
+
+@pytest.mark.parametrize("name", SINGULAR)
+def test_is_singular_agrees_with_derivation(name):
+    head, tail, *_ = SINGULAR[name]
+    assert is_singular(pipeline.assemble(pipeline.loads(HEADER + head + tail)))
+
+
+def test_a_loop_with_another_gain_is_solved():
+    text = f'{HEADER}k = {{}}\n[signals]\ne = "U + k*e"\n[inputs]\nU = {{}}\n[outputs]\nX = "e"\n'
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    assert str(tf.ratio) in ("-1*(k - 1)^-1", "(k - 1)^-1*-1")
+
+
+@pytest.mark.parametrize(("node", "meant"), [("X", "x"), ("x_tpi", "x_tip"), ("gruond", "ground")])
+def test_a_floating_node_that_one_element_touches_is_compared_with_the_others(node, meant):
+    text = f"""symflex = 1
+parameters = {{ m = "1 kg", k = "2 N/m" }}
+inputs = {{ r = {{}} }}
+outputs = {{ X = "x" }}
+[elements]
+a = {{ type = "mass", at = "x", m = "m" }}
+b = {{ type = "mass", at = "x_tip", m = "m" }}
+c = {{ type = "spring", between = ["x", "x_tip"], k = "k" }}
+d = {{ type = "force_source", at = "{node}", f = "k*r" }}
+"""
+    with pytest.raises(ModelError, match="SF301") as caught:
+        pipeline.derive_all(pipeline.loads(text))
+    assert caught.value.diagnostics[0].hint.startswith(f"did you mean '{meant}'?")
+
+
+# ------------------------------------------------------------------------- fields and what they stand in
+
+STRINGS = HEADER + "T = {}\nmu = {}\nl = {}\nk = {}\n"
+ENDS = '[inputs]\nF = {}\n[outputs]\nX = "w(l)"\n'
+ALWAYS = "T*w''(l) = mu*s^2*w(l)"
+TURNED = ("u(0) = w(l)", "u'(0) = -w'(l)", "w(0) = u(l) + F", "w'(0) = -u'(l)")
+"""u(x) = w(l - x) at one end; that it is so at the other too follows by cosh^2 - sinh^2 = 1."""
+
+
+def string(name, conditions):
+    """Return the field of a string, T w'' = mu s^2 w."""
+    listed_conditions = ", ".join(f'"{c}"' for c in conditions)
+    equation = f"T*{name}'' - mu*s^2*{name} = 0"
+    return (
+        f'[fields.{name}]\ndomain = ["0", "l"]\nequation = "{equation}"\nconditions = [{listed_conditions}]\n'
+    )
+
+
+def what_is_wrong(text):
+    """Return the explanation of a system that is singular."""
+    equations = pipeline.assemble(pipeline.loads(text))
+    assert is_singular(equations)
+    (problem,) = explain_singular(equations).diagnostics
+    return problem
+
+
+def test_a_condition_that_the_field_fulfils_anyway_is_named():
+    found = what_is_wrong(STRINGS + string("w", ["w(0) = F", ALWAYS]) + ENDS)
+    assert (found.code, found.message, found.hint, found.span.text) == (
+        "SF302",
+        f"the condition '{ALWAYS}' of field 'w' always holds: one is missing in its place",
+        "replace one of them by an independent condition",
+        ALWAYS,
+    )
+
+
+def test_conditions_that_follow_from_each_other_are_named_with_their_fields():
+    found = what_is_wrong(STRINGS + string("u", TURNED[:2]) + string("w", TURNED[2:]) + ENDS)
+    first, second, third, last = (f"'{c}'" for c in TURNED)
+    assert (found.code, found.message, found.hint, found.span.text) == (
+        "SF302",
+        f"the conditions {first}, {second}, {third} and {last} of fields 'u' and 'w' repeat or contradict "
+        "each other: the state is not determined",
+        "replace one of them by an independent condition",
+        TURNED[3],
+    )
+
+
+@pytest.mark.parametrize(
+    ("conditions", "fails"),
+    [(["w(0) = F", "w(l) = 0"], False), (["w(0) = F", ALWAYS], True), (["w'(0) = 0", "T*w'(l) = F"], False)],
+)
+def test_a_string_is_determined_by_a_condition_at_each_end(conditions, fails):
+    assert is_singular(pipeline.assemble(pipeline.loads(STRINGS + string("w", conditions) + ENDS))) is fails
+
+
+@pytest.mark.parametrize(("offset", "gain_is_one"), [(1, True), (2, False)])
+def test_a_loop_next_to_a_field_has_the_gain_that_its_definitions_say(offset, gain_is_one):
+    loop = f'[definitions]\nY = "k + {offset}"\nZ = "(Y - 1)/k"\n[signals]\ne = "F + Z*e"\n'
+    text = STRINGS + loop + string("w", ["w(0) = 0", "w(l) = e"]) + ENDS
+    if gain_is_one:
+        found = what_is_wrong(text)
+        assert (found.code, found.message) == ("SF303", LOOP.format("'e'"))
+    else:
+        assert not is_singular(pipeline.assemble(pipeline.loads(text)))
+
+
+@pytest.mark.parametrize("floats", [True, False])
+def test_a_node_that_floats_is_found_where_no_prime_field_holds_every_wavenumber(floats):
+    # Fourth roots of this many independent quantities are not in one of 400 fields together.
+    beams = "".join(
+        f'b{i} = {{ type = "beam", between = ["p{i}", "p{i + 1}"], E = "T", I = "{p}", A = "k", rho = "mu", '
+        'l = "l" }\n'
+        for i, p in enumerate(range(2, 8))
+    )
+    loose = 'K = { type = "spring", between = ["y", "z"], k = "k" }\n' if floats else ""
+    text = f'{STRINGS}[elements]\n{beams}{loose}[inputs]\nF = {{ force = "p0" }}\n[outputs]\nX = "p6"\n'
+    if floats:
+        assert what_is_wrong(text).message == "nothing determines nodes 'y' and 'z': they float"
+    else:
+        assert not is_singular(pipeline.assemble(pipeline.loads(text)))
+
+
+# ------------------------------------------------------------------------------------------- what is left
+
+
+def test_one_node_that_floats_is_told_in_the_singular():
+    found = what_is_wrong(
+        f'{HEADER}m = {{}}\n[elements]\n{MASS}f = {{ type = "force_source", at = "v", f = "F" }}\n'
+        '[inputs]\nF = {}\n[outputs]\nX = "x"\n'
+    )
+    assert found.message == "nothing determines node 'v': it floats"
+    assert found.hint == "connect it to ground or give it a mass"
+
+
+def test_a_name_that_one_element_touches_may_be_meant_as_it_is():
+    found = what_is_wrong(
+        f'{HEADER}m = {{}}\n[elements]\n{MASS}f = {{ type = "force_source", at = "X", f = "F" }}\n'
+        '[inputs]\nF = {}\n[outputs]\nX_x = "x"\n'
+    )
+    assert found.hint == "did you mean 'x'? else connect it to ground or give it a mass"
+
+
+def test_an_input_at_a_name_that_no_element_touches_is_told_the_nearest_alone():
+    found = what_is_wrong(
+        f'{HEADER}m = {{}}\n[elements]\n{MASS}[inputs]\nF = {{ force = "X" }}\n[outputs]\nY = "x"\n'
+    )
+    assert found.hint == "did you mean 'x'?"
+
+
+def test_an_unknown_without_an_equation_is_named_where_it_is_defined():
+    text = f'{HEADER}k = {{}}\n[signals]\ne = "U"\ng = "k*U"\n[inputs]\nU = {{}}\n[outputs]\nX = "e + g"\n'
+    equations = pipeline.assemble(pipeline.loads(text))
+    (problem,) = explain_singular(replace(equations, rows=equations.rows[:1])).diagnostics
+    assert (problem.code, problem.message) == ("SF304", "nothing determines 'g'")
+    assert problem.span.text == "g"
+
+
+@pytest.mark.parametrize("kept", [0, 1])
+def test_as_many_equations_as_unknowns_are_needed(kept):
+    text = f'{HEADER}k = {{}}\n[signals]\ne = "U"\ng = "k*U"\n[inputs]\nU = {{}}\n[outputs]\nX = "e + g"\n'
+    equations = pipeline.assemble(pipeline.loads(text))
+    assert not is_singular(equations)
+    assert is_singular(replace(equations, rows=equations.rows[:kept]))

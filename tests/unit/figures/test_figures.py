@@ -1,0 +1,524 @@
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import pytest
+
+from symflex.errors import ModelError, UsageError
+from symflex.figures import FIGURES, FORMATS, LOOP_FIGURES, AxisLimits, draw, render, save
+from symflex.figures.labels import label_of, label_of_name, label_of_tf, label_of_unit
+from symflex.figures.s_plane import Mark, choose_view, leaving
+from symflex.model import Output
+from symflex.model.analysis import FIGURE_KINDS
+from symflex.model.labels import ACCENTS, FONTS, GREEK, SYMBOLS
+from symflex.transfer import bind
+from tests.unit.analysis.systems import derived, rational
+
+ROOT = Path(__file__).parents[3]
+TWO_MASSES = """
+title = "Two masses"
+elements.a = { type = "mass", at = "x", m = "1 kg" }
+elements.b = { type = "mass", at = "y", m = "1 kg" }
+elements.k = { type = "spring", between = ["x", "y"], k = "50 N/m" }
+elements.d = { type = "damper", between = ["x", "y"], b = "DAMPING N*s/m" }
+inputs.F = { force = "x" }
+outputs.X_tip = "y"
+outputs.V_act = "s*x"
+analysis.band = ["0.2 Hz", "5 Hz"]
+"""
+DRAW_ALL = f"""
+import hashlib
+from symflex.figures import FIGURES, FORMATS, draw, render
+from symflex.transfer import bind
+from tests.unit.analysis.systems import derived
+tfs = derived({TWO_MASSES.replace("DAMPING", "0.1")!r})
+for kind in FIGURES:
+    figure = draw(kind, tfs, [bind(tf) for tf in tfs], title="a title")
+    for format in FORMATS:
+        print(kind, format, hashlib.sha256(render(figure, format)).hexdigest())
+"""
+
+
+@pytest.fixture(scope="module")
+def tfs():
+    return derived(TWO_MASSES.replace("DAMPING", "0.1"))
+
+
+@pytest.fixture(scope="module")
+def undamped():
+    return derived(TWO_MASSES.replace('"DAMPING N*s/m"', '"0*1"'))
+
+
+def drawn(kind, tfs, **asked):
+    return draw(kind, tfs, [bind(tf) for tf in tfs], **asked)
+
+
+def drawn_rational(kind, expression, **asked):
+    bound = rational(expression)
+    return draw(kind, [bound.source], [bound], **asked)
+
+
+def texts(axes):
+    return [text.get_text() for text in axes.texts]
+
+
+def python(code, **environment):
+    result = subprocess.run(
+        [sys.executable, "-c", code],
+        env={**os.environ, **environment},
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return result.stdout
+
+
+# ------------------------------------------------------------------------------------------ every kind
+
+
+def test_every_kind_may_be_asked_for_in_a_specification():
+    assert set(FIGURES) <= set(FIGURE_KINDS)
+
+
+@pytest.mark.parametrize("kind", sorted(set(FIGURE_KINDS) - set(FIGURES) - set(LOOP_FIGURES)))
+def test_a_kind_of_the_language_without_a_drawing_is_not_available_yet(kind, tfs):
+    with pytest.raises(UsageError, match=r"SF911.*not available yet"):
+        drawn(kind, tfs)
+
+
+def test_an_unknown_kind_names_the_nearest(tfs):
+    with pytest.raises(UsageError, match=r"(?s)SF208.*did you mean 'bode'"):
+        drawn("bodee", tfs)
+
+
+@pytest.mark.parametrize("kind", FIGURES)
+def test_a_figure_of_nothing_is_refused(kind):
+    with pytest.raises(ValueError, match="as many bound as symbolic"):
+        draw(kind, [], [])
+
+
+@pytest.mark.parametrize("kind", FIGURES)
+def test_a_function_that_is_zero_has_no_figure(kind):
+    with pytest.raises(ModelError, match="SF402"):
+        drawn_rational(kind, "s - s")
+
+
+@pytest.mark.parametrize("kind", FIGURES)
+def test_a_figure_of_one_function_is_a_column_wide(kind, tfs):
+    assert drawn(kind, tfs[:1]).get_size_inches()[0] == 3.5
+
+
+@pytest.mark.parametrize("kind", FIGURES)
+@pytest.mark.parametrize("format", FORMATS)
+def test_two_drawings_have_the_same_bytes(kind, format, tfs):
+    assert render(drawn(kind, tfs), format) == render(drawn(kind, tfs), format)
+
+
+@pytest.mark.slow
+def test_the_bytes_do_not_depend_on_the_hash_seed():
+    assert python(DRAW_ALL, PYTHONHASHSEED="1") == python(DRAW_ALL, PYTHONHASHSEED="2")
+
+
+@pytest.mark.parametrize("kind", FIGURES)
+def test_the_user_s_own_settings_do_not_matter(kind, tfs):
+    expected = render(drawn(kind, tfs), "svg")
+    with matplotlib.rc_context(
+        {"font.size": 20, "axes.grid": True, "lines.linewidth": 9, "svg.fonttype": "none"}
+    ):
+        assert render(drawn(kind, tfs), "svg") == expected
+
+
+@pytest.mark.parametrize("kind", FIGURES)
+def test_global_settings_are_left_as_they_were(kind, tfs):
+    before = dict(matplotlib.rcParams)
+    render(drawn(kind, tfs), "pdf")
+    assert dict(matplotlib.rcParams) == before
+
+
+def test_pyplot_is_never_imported():
+    code = f"{DRAW_ALL}\nimport sys\nprint('matplotlib.pyplot' in sys.modules)"
+    assert python(code).splitlines()[-1] == "False"
+
+
+@pytest.mark.parametrize("kind", FIGURES)
+def test_a_title_is_printed_as_it_is(kind, tfs):
+    title = "Costs $5 or $\\frac{x$ & <b>"
+    figure = drawn(kind, tfs, title=title)
+    render(figure, "svg")
+    found = [text for text in figure.findobj(matplotlib.text.Text) if text.get_text() == title]
+    assert [text.get_parse_math() for text in found] == [False]
+
+
+@pytest.mark.parametrize("kind", FIGURES)
+def test_control_characters_of_a_title_do_not_reach_the_file(kind, tfs):
+    assert b"\x1b" not in render(drawn(kind, tfs, title="a\x1b[31m\ud800b"), "svg")
+
+
+def test_an_unknown_format_is_refused(tfs):
+    with pytest.raises(UsageError, match="SF208"):
+        render(drawn("bode", tfs), "jpg")
+
+
+@pytest.mark.parametrize(("format", "start"), [("pdf", b"%PDF-"), ("png", b"\x89PNG"), ("svg", b"<?xml")])
+def test_save_writes_the_format_asked_for(format, start, tfs, tmp_path):
+    save(drawn("bode", tfs), tmp_path / "figure", format)
+    assert (tmp_path / "figure").read_bytes().startswith(start)
+
+
+def test_the_name_of_the_file_tells_the_format(tfs, tmp_path):
+    save(drawn("bode", tfs), tmp_path / "figure.PNG")
+    assert (tmp_path / "figure.PNG").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_name_that_tells_no_format_is_refused(tfs, tmp_path):
+    with pytest.raises(UsageError, match="SF208"):
+        save(drawn("bode", tfs), tmp_path / "figure")
+
+
+def test_save_does_not_write_through_a_link(tfs, tmp_path):
+    (tmp_path / "a.svg").symlink_to(tmp_path / "b.svg")
+    with pytest.raises(UsageError, match="SF903"):
+        save(drawn("bode", tfs), tmp_path / "a.svg", "svg")
+
+
+def test_no_date_is_in_the_file(tfs):
+    figure = drawn("bode", tfs)
+    assert b"CreationDate" not in render(figure, "pdf")
+    assert b"<dc:date>" not in render(figure, "svg")
+
+
+# ---------------------------------------------------------------------------------------------- labels
+
+
+@pytest.mark.parametrize(
+    ("name", "label"),
+    [
+        ("F", "F"),
+        ("X_tip", r"X_{\mathrm{tip}}"),
+        ("theta_1", r"\theta_{1}"),
+        ("x2", "x_{2}"),
+        ("speed", r"\mathrm{speed}"),
+        ("a_b_max", r"a_{b,\mathrm{max}}"),
+        ("x_", "x"),
+    ],
+)
+def test_a_name_becomes_a_label(name, label):
+    assert label_of_name(name) == label
+
+
+@pytest.mark.parametrize("command", sorted({*GREEK, *ACCENTS, *FONTS, *SYMBOLS}))
+def test_every_command_a_label_may_use_is_drawn(command):
+    argument = "{x}" if command in ACCENTS or command in FONTS else ""
+    output = Output("y", None, latex=f"\\{command}{argument}")
+    figure = matplotlib.figure.Figure()
+    figure.text(0, 0, f"${label_of(output)}$")
+    figure.savefig(os.devnull, format="svg")
+
+
+def test_the_model_s_own_label_comes_first():
+    assert label_of(Output("X_tip", None, latex=r"\hat{x}")) == r"{\hat{x}}"
+
+
+@pytest.mark.parametrize("latex", ["$", "{", r"\nonsense", "a^{b}^{c}"])
+def test_a_label_that_cannot_be_set_gives_way_to_the_name(latex):
+    assert label_of(Output("X_tip", None, latex=latex)) == r"X_{\mathrm{tip}}"
+
+
+def test_a_transfer_function_is_labelled_output_over_input(tfs):
+    assert label_of_tf(tfs[0]) == r"$X_{\mathrm{tip}}/F$"
+
+
+@pytest.mark.parametrize(
+    ("unit", "label"),
+    [
+        ("", ""),
+        ("1", ""),
+        ("m/N", r"$\mathrm{m/N}$"),
+        ("1/(N*m*s^2)", r"$\mathrm{1/(N\,m\,s^{2})}$"),
+        ("kg^(1/2)*Ohm", r"$\mathrm{kg^{1/2}\,\Omega}$"),
+    ],
+)
+def test_a_unit_becomes_a_label(unit, label):
+    assert label_of_unit(unit) == label
+
+
+# ------------------------------------------------------------------------------------------------ bode
+
+
+def test_the_level_is_relative_to_the_unit(tfs):
+    assert drawn("bode", tfs[:1]).axes[0].get_ylabel() == r"Magnitude [dB re 1 $\mathrm{m/N}$]"
+
+
+def test_different_units_stand_in_the_legend(tfs):
+    labels = [text.get_text() for text in drawn("bode", tfs).axes[0].get_legend().get_texts()]
+    assert labels == [
+        r"$X_{\mathrm{tip}}/F$ [$\mathrm{m/N}$]",
+        r"$V_{\mathrm{act}}/F$ [$\mathrm{m/(N\,s)}$]",
+    ]
+
+
+def test_the_band_is_the_model_s(tfs):
+    assert drawn("bode", tfs).axes[0].get_xlim() == pytest.approx((0.2, 5))
+
+
+def test_a_band_may_be_given_in_exact_numbers(tfs):
+    assert drawn("bode", tfs, band_hz=(Fraction(1, 2), Fraction(3))).axes[0].get_xlim() == pytest.approx(
+        (0.5, 3)
+    )
+
+
+def test_a_band_asked_for_comes_first(tfs):
+    assert drawn("bode", tfs, band_hz=(1, 3)).axes[0].get_xlim() == pytest.approx((1, 3))
+
+
+@pytest.mark.parametrize("band", [(3, 1), (2, 2), (-1, 2), (np.nan, 2), (1, np.nan), (1, np.inf)], ids=str)
+@pytest.mark.parametrize("kind", FIGURES)
+def test_a_band_that_is_none_is_refused(kind, band, tfs):
+    with pytest.raises(UsageError, match="SF227"):
+        drawn(kind, tfs, band_hz=band)
+
+
+@pytest.mark.parametrize(
+    "ends",
+    [(1, 0), (2, 2), (np.nan, 1), (0, np.nan), (-np.inf, 0), (0, np.inf), (-1e300, 1e300), (1, 1 + 1e-12)],
+    ids=str,
+)
+@pytest.mark.parametrize("axis", ["x", "y", "phase"])
+def test_limits_of_an_axis_that_are_none_are_refused(axis, ends):
+    with pytest.raises(UsageError, match="SF902"):
+        AxisLimits(**{axis: ends})
+
+
+def test_a_bode_plot_has_the_limits_asked_for(undamped):
+    frame = AxisLimits(y=(-60.0, 40.0), phase=(-200.0, 20.0))
+    top, bottom = drawn("bode", undamped, frame=frame).axes
+    assert top.get_ylim() == (-60, 40)
+    assert bottom.get_ylim() == (-200, 20)
+    # An undamped peak still runs to the frame.
+    assert max(line.get_ydata().max() for line in top.lines) > 40
+
+
+@pytest.mark.parametrize("ends", [(-1.0, 1.0), (0.0, 1e-9), (-1e30, 1e30), (-400.0, 0.0)], ids=str)
+def test_phases_have_a_few_ticks_whatever_their_limits_are(ends, tfs):
+    figure = drawn("bode", tfs, frame=AxisLimits(phase=ends))
+    assert 2 <= len(figure.axes[1].get_yticks()) <= 12
+
+
+@pytest.mark.parametrize("kind", ["nyquist", "poles_zeros"])
+def test_a_plane_has_the_limits_asked_for(kind, tfs):
+    for axes in drawn(kind, tfs, frame=AxisLimits(x=(-3.0, 1.0), y=(0.0, 2.0))).axes:
+        assert (axes.get_xlim(), axes.get_ylim()) == ((-3, 1), (0, 2))
+
+
+def test_one_axis_may_be_left_as_it_is(tfs):
+    free, asked = (drawn("poles_zeros", tfs, frame=f).axes[0] for f in (AxisLimits(), AxisLimits(x=(-9, 1))))
+    assert asked.get_ylim() == free.get_ylim()
+    assert asked.get_xlim() == (-9, 1)
+
+
+def test_roots_outside_the_limits_asked_for_are_counted():
+    # (s - 30) is unstable and outside: the title says both.
+    figure = drawn_rational("poles_zeros", "(s + 5)/((s^2 + 1*s + 1)*(s - 30))", frame=AxisLimits(x=(-2, 1)))
+    said = [text.get_text() for text in figure.texts]
+    assert "unstable: 1 pole in the right half plane" in said
+    assert any(text.endswith(": 1 pole and 1 zero outside") for text in said)
+
+
+@pytest.mark.parametrize(
+    ("kind", "limits", "said"),
+    [
+        ("nyquist", {"phase": (0, 1)}, "for 'bode'"),
+        ("poles_zeros", {"phase": (0, 1)}, "for 'bode'"),
+        ("bode", {"x": (0, 1)}, "its band"),
+        ("modes", {"y": (0, 1)}, "mode shapes"),
+    ],
+)
+def test_limits_of_an_axis_that_a_figure_has_not_are_refused(kind, limits, said, tfs):
+    with pytest.raises(UsageError, match=f"SF902.*{said}"):
+        drawn(kind, tfs, frame=AxisLimits(**limits))
+
+
+def test_a_band_chooses_among_all_modes():
+    # A free chain of two equal masses: one mode, at sqrt(100) rad/s.
+    tfs = derived(TWO_MASSES.replace("DAMPING", "0"))
+    titles = [axes.get_title(loc="left") for axes in drawn("modes", tfs, band_hz=(1.5, 1.7)).axes]
+    assert titles == ["$1.592$ Hz"]
+    with pytest.raises(ModelError, match=r"SF402.*between 1\.7 and 2 Hz"):
+        drawn("modes", tfs, band_hz=(1.7, 2))
+
+
+@pytest.mark.parametrize(
+    "band", [(9, 11), (12, 18), (1, 3), (2e6, 2.1e6), (1000, 1000.01), (0.001, 0.0012)], ids=str
+)
+def test_a_narrow_band_has_frequencies_that_differ_below_it(band, tfs):
+    figure = drawn("bode", tfs, band_hz=band)
+    figure.canvas.draw()
+    labels = [t.get_text() for t in figure.axes[1].get_xticklabels() if t.get_text()]
+    assert len(set(labels)) == len(labels) >= 3
+
+
+def test_a_nyquist_plot_of_a_band_ends_with_it():
+    # 1/(s + 1) at 1/(2 pi) Hz is (1 - j)/2.
+    turn = 1 / (2 * np.pi)
+    figure = drawn_rational("nyquist", "1/(s + 1)", band_hz=(turn / 1e4, turn))
+    (curve,) = (line for line in figure.axes[0].lines if line.get_label().endswith("$P = 0$"))
+    assert (curve.get_xdata()[-1], curve.get_ydata()[-1]) == pytest.approx((0.5, -0.5))
+
+
+def test_without_a_band_all_poles_and_zeros_are_shown():
+    low, high = drawn_rational("bode", "1/((s + 1)*(s + 50))").axes[0].get_xlim()
+    assert (2 * np.pi * low, 2 * np.pi * high) == pytest.approx((0.1, 500))
+
+
+def test_the_curve_shows_the_peak_of_the_resonance():
+    figure = drawn_rational("bode", "1/(s^2 + 0.0002*s + 1)")
+    level = figure.axes[0].lines[0].get_ydata()
+    assert level.max() == pytest.approx(20 * np.log10(1 / 0.0002), abs=0.01)
+
+
+def test_the_phase_of_an_undamped_pole_falls_from_0_to_minus_180_degrees():
+    phase = drawn_rational("bode", "1/(s^2 + 1)").axes[1].lines[0].get_ydata()
+    assert sorted(set(phase)) == [-180, 0]
+
+
+def test_an_undamped_peak_is_cut_off_near_what_surrounds_it():
+    # 1 % from the pole the level is 20 log10(1/0.02) = 34 dB; the peak itself has no end.
+    assert 34 < drawn_rational("bode", "1/(s^2 + 1)").axes[0].get_ylim()[1] < 60
+
+
+def test_an_undamped_peak_runs_to_the_frame():
+    axes = drawn_rational("bode", "1/(s^2 + 1)").axes[0]
+    assert axes.lines[0].get_ydata().max() > axes.get_ylim()[1]
+
+
+def test_an_undamped_trough_runs_to_the_frame():
+    axes = drawn_rational("bode", "s^2 + 1").axes[0]
+    assert axes.lines[0].get_ydata().min() < axes.get_ylim()[0]
+
+
+@pytest.mark.parametrize("expression", ["1/(s + 1)", "1/(s + 1)^4", "1/(s + 1)^30", "7"])
+def test_phase_ticks_are_multiples_of_45_degrees(expression):
+    axes = drawn_rational("bode", expression).axes[1]
+    low, high = axes.get_ylim()
+    ticks = [tick for tick in axes.get_yticks() if low <= tick <= high]
+    assert 2 <= len(ticks) <= 9
+    assert all(tick % 45 == 0 for tick in ticks)
+
+
+def test_curves_differ_in_colour_and_in_dashes(undamped):
+    first, second = drawn("bode", undamped).axes[0].lines
+    assert first.get_color() != second.get_color()
+    assert first.get_linestyle() != second.get_linestyle()
+
+
+# ----------------------------------------------------------------------------------------- poles and zeros
+
+
+def test_there_is_one_panel_per_function(tfs):
+    assert len(drawn("poles_zeros", tfs).axes) == 2
+
+
+def test_both_axes_have_the_same_scale(tfs):
+    for axes in drawn("poles_zeros", tfs).axes:
+        box = axes.get_window_extent()
+        per_pixel = np.diff(axes.get_xlim())[0] / box.width, np.diff(axes.get_ylim())[0] / box.height
+        assert per_pixel[0] == pytest.approx(per_pixel[1], rel=1e-9)
+        assert axes.get_aspect() == 1
+
+
+def test_all_panels_show_the_same_part_of_the_plane(tfs):
+    first, second = drawn("poles_zeros", tfs).axes
+    assert (first.get_xlim(), first.get_ylim()) == (second.get_xlim(), second.get_ylim())
+
+
+def test_poles_are_crosses_where_they_are():
+    axes = drawn_rational("poles_zeros", "(s + 2)/(s^2 + 2*s + 10)").axes[0]
+    crosses = next(line for line in axes.lines if line.get_marker() == "x")
+    assert sorted(zip(*crosses.get_data(), strict=True)) == [(-1, -3), (-1, 3)]
+
+
+def test_zeros_are_circles_where_they_are():
+    axes = drawn_rational("poles_zeros", "(s + 2)/(s^2 + 2*s + 10)").axes[0]
+    circles = next(line for line in axes.lines if line.get_marker() == "o")
+    assert list(zip(*circles.get_data(), strict=True)) == [(-2, 0)]
+
+
+def test_a_multiple_root_carries_its_multiplicity():
+    assert texts(drawn_rational("poles_zeros", "1/(s + 1)^3").axes[0]) == ["3"]
+
+
+def test_a_root_far_away_is_named_at_the_border():
+    axes = drawn_rational("poles_zeros", "1/((s + 5000)*(s^2 + 4*s + 4900))").axes[0]
+    assert r"$\times$ $-5000$" in texts(axes)
+
+
+def test_a_function_without_poles_and_zeros_has_an_empty_panel():
+    assert texts(drawn_rational("poles_zeros", "7").axes[0]) == []
+
+
+def test_many_functions_take_the_page_and_several_rows(tfs):
+    figure = drawn("poles_zeros", tfs * 3)
+    assert figure.get_size_inches()[0] == 7.16
+    assert len({round(axes.get_position().y0, 6) for axes in figure.axes}) == 2
+
+
+RESONANT = [Mark("pole", complex(-2, y)) for y in (70, -70, 240, -240)]
+
+
+def seen(marks, high_hz=None):
+    view = choose_view(marks, high_hz, (0.6, 1.25))
+    return [mark.s for mark in marks if view.shows(mark)]
+
+
+def test_neighbouring_resonances_are_shown_together():
+    assert len(seen(RESONANT)) == 4
+
+
+def test_a_far_real_root_does_not_squash_the_resonances():
+    marks = [*RESONANT, Mark("pole", -5000 + 0j)]
+    assert len(seen(marks)) == 4
+
+
+def test_a_far_resonance_does_not_squash_the_near_ones():
+    marks = [*RESONANT, Mark("pole", 20000j), Mark("pole", -20000j)]
+    assert len(seen(marks)) == 4
+
+
+def test_a_real_root_of_the_size_of_the_resonances_is_shown():
+    marks = [*RESONANT, Mark("zero", 400 + 0j)]
+    assert 400 in seen(marks)
+
+
+def test_real_roots_alone_are_shown_from_the_lowest():
+    assert seen([Mark("pole", -50 + 0j), Mark("pole", -5000 + 0j)]) == [-50]
+
+
+def test_a_band_decides_what_is_shown():
+    marks = [*RESONANT, Mark("pole", 20000j), Mark("pole", -20000j)]
+    assert len(seen(marks, high_hz=5000)) == 6
+
+
+def test_the_view_has_the_shape_asked_for():
+    for marks in (RESONANT, [Mark("pole", -50 + 0j)], []):
+        assert 0.6 <= choose_view(marks, None, (0.6, 1.25)).ratio * (1 + 1e-12)
+        assert choose_view(marks, None, (0.6, 1.25)).ratio <= 1.25 * (1 + 1e-12)
+
+
+def test_the_border_lies_on_the_ray_from_the_origin():
+    view = choose_view(RESONANT, None, (0.6, 1.25))
+    edge = view.border(complex(-3000, 4000))
+    assert edge.imag / edge.real == pytest.approx(-4 / 3)
+    assert edge.real == pytest.approx(view.re[0]) or edge.imag == pytest.approx(view.im[1])
+
+
+def test_roots_outside_in_one_direction_share_an_arrow():
+    marks = [*RESONANT, Mark("zero", -9000 + 0j), Mark("pole", -5000 + 0j), Mark("pole", 5000 + 0j)]
+    groups = leaving(marks, choose_view(marks, None, (0.6, 1.25)))
+    assert [[mark.s for mark in group] for group in groups] == [[-5000, -9000], [5000]]

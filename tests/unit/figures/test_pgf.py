@@ -1,0 +1,160 @@
+"""Figures in PGF: their size, their texts, and that no text of a model brings a command."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import pytest
+
+from symflex import pipeline
+from symflex.codegen.targets.latex import LatexExporter
+from symflex.errors import UsageError
+from symflex.figures import FIGURES, draw, render
+from symflex.figures.pgf import pgf_text
+from symflex.print.latex import DOCUMENT
+from tests.unit.codegen.test_numpy_hostile import HOSTILE
+from tests.unit.print.test_html import MARKUP
+from tests.unit.print.test_latex_document import MORE
+from tests.unit.print.test_latex_text import COMMANDS as OF_TEXT
+
+SPEC = """symflex = 1
+title = "Two masses"
+[elements]
+a = { type = "mass", at = "x", m = "1 kg" }
+b = { type = "mass", at = "y", m = "1 kg" }
+k = { type = "spring", between = ["x", "y"], k = "50 N/m" }
+d = { type = "damper", between = ["x", "y"], b = "0.1 N*s/m" }
+[inputs]
+F = { force = "x" }
+[outputs]
+X = "x"
+Y = "y"
+[analysis]
+band = ["0.2 Hz", "5 Hz"]
+"""
+NUMBER = r"-?[0-9.]+"
+POINT = rf"pgfqpoint\{{{NUMBER}pt\}}\{{{NUMBER}pt\}}"
+OF_DRAWING = re.compile(
+    rf"\\(?:(?:begin|end)\{{pgfscope\}}|pgfpath(?:moveto|lineto|close|curveto|quadraticcurveto|rectangle)|{POINT}"
+    r"|pgfusepath\{(?:stroke|fill|stroke,fill|clip)\}"
+    rf"|pgfset(?:linewidth\{{{NUMBER}pt\}}|(?:butt|round|rect)cap|(?:miter|round|bevel)join)"
+    rf"|pgfsetdash\{{(?:\{{{NUMBER}pt\}})*\}}\{{{NUMBER}pt\}}"
+    rf"|definecolor\{{figure(?:fill|stroke)\}}\{{rgb\}}\{{{NUMBER},{NUMBER},{NUMBER}\}}"
+    rf"|pgfset(?:fill|stroke)(?:color\{{figure(?:fill|stroke)\}}|opacity\{{{NUMBER}\}})"
+    rf"|pgftext\[x={NUMBER}pt,y={NUMBER}pt,base(?:,left|,right)?(?:,rotate=90)?\]\{{\\fontsize\{{\d\}}\{{[0-9.]+\}}"
+    rf"\\selectfont(?:\\color\[rgb\]\{{{NUMBER},{NUMBER},{NUMBER}\}})?\{{\}})"
+)
+OF_MATHEMATICS = {r"\mathrm", r"\zeta", r"\times", r"\circ", r"\pm", r"\cdot", r"\,", r"\!"}
+
+
+@pytest.fixture(scope="module")
+def bounds():
+    model = pipeline.loads(SPEC)
+    return pipeline.derive_bound(model, model.transfer_functions)
+
+
+def text_of(kind, bounds, **asked):
+    figure = draw(kind, [bound.source for bound in bounds], bounds, font="latex", **asked)
+    return render(figure, "pgf", font="latex").decode("ascii")
+
+
+def commands_beside_drawing(text):
+    """The commands of a picture's texts that neither escape a character nor belong to labels of figures."""
+    lines = text.splitlines()
+    assert lines[2] == r"\begin{pgfpicture}"
+    assert lines[4] == r"\pgfusepath{use as bounding box}"
+    assert lines[-1] == r"\end{pgfpicture}\relax"
+    rest = OF_TEXT.sub("", OF_DRAWING.sub("", "\n".join(lines[5:-1])))
+    return set(re.findall(r"\\(?:[A-Za-z]+|.)", rest)) - OF_MATHEMATICS
+
+
+@pytest.mark.parametrize("kind", FIGURES)
+def test_a_picture_is_as_wide_as_asked_for_and_holds_nothing_but_a_drawing(kind, bounds):
+    text = text_of(kind, bounds, width_mm=88.5, title="Two masses")
+    assert re.search(r"\\pgfpathrectangle\{\\pgfpointorigin\}\{\\pgfqpoint\{88\.5mm\}\{[0-9.]+mm\}\}", text)
+    assert commands_beside_drawing(text) == set()
+    assert "Two" in text or kind == "modes"
+    # What is drawn stays near the picture: 88.5 mm are 251.8 pt.
+    places = [float(x) for x in re.findall(r"\\pgfqpoint\{(-?[0-9.]+)pt\}", text)]
+    assert -30 < min(places)
+    assert max(places) < 280
+
+
+@pytest.mark.parametrize("text", [*HOSTILE, *MARKUP, *MORE], ids=ascii)
+def test_no_text_becomes_a_command_or_mathematics_that_a_label_may_not_hold(text):
+    for written in (pgf_text(text), pgf_text(text, is_math=False), pgf_text(f"$X_{{{text}}}$ [${text}$]")):
+        rest = OF_TEXT.sub("", written)
+        assert set(re.findall(r"\\(?:[A-Za-z]+|.)", rest)) <= OF_MATHEMATICS | {r"\mathrm"}
+        assert rest.count("{") == rest.count("}")
+        assert rest.count("$") % 2 == 0
+        assert "%" not in rest
+        assert "^^" not in rest
+
+
+@pytest.mark.parametrize("text", MORE, ids=ascii)
+def test_a_hostile_model_is_drawn_as_any_other(text, bounds):
+    odd = [
+        replace(
+            bound,
+            source=replace(
+                bound.source, output=replace(bound.source.output, latex=text), unit=bound.source.unit
+            ),
+        )
+        for bound in bounds
+    ]
+    written = text_of("poles_zeros", odd, title=text)
+    assert commands_beside_drawing(written) == set()
+
+
+def test_a_label_that_would_break_a_formula_gives_way_in_figures_too(bounds):
+    # matplotlib sets both, TeX neither.
+    for label in (r"x^2'", r"\hat"):
+        ends = replace(bounds[0].source.output, latex=label)
+        odd = replace(bounds[0], source=replace(bounds[0].source, output=ends))
+        assert "$X/F$" in text_of("poles_zeros", [odd])
+
+
+def test_colours_and_sizes_of_texts_are_kept(bounds):
+    text = text_of("bode", bounds, title="A title")
+    assert r"\fontsize{8}{9.6}\selectfont{}Frequency [Hz]" in text
+    assert r"\definecolor{figurestroke}{rgb}{0,0.4471,0.698}" in text  # #0072B2
+    assert "rotate=90" in text
+
+
+def test_equal_figures_give_equal_text(bounds):
+    assert text_of("modes", bounds[:1]) == text_of("modes", bounds[:1])
+
+
+def test_a_figure_in_the_font_of_latex_embeds_computer_modern(bounds):
+    sources = [bound.source for bound in bounds]
+    for font, name in (("latex", b"Cmr10"), ("times", b"STIX"), ("sans", b"DejaVuSans")):
+        data = render(draw("poles_zeros", sources, bounds, font=font, width_mm=100), "pdf", font=font)
+        assert name in data
+        # 100 mm in points of 1/72 inch
+        width = float(re.search(rb"/MediaBox \[ 0 0 ([0-9.]+) ", data)[1])
+        assert width == pytest.approx(100 / 25.4 * 72, abs=1e-6)
+
+
+@pytest.mark.parametrize("asked", [{"font": "comic"}, {"width_mm": 20.0}, {"width_mm": 1e9}], ids=str)
+def test_a_font_or_width_that_does_not_exist_is_refused(asked, bounds):
+    with pytest.raises(UsageError):
+        draw("bode", [bound.source for bound in bounds], bounds, **asked)
+
+
+def test_the_figures_of_a_model_and_one_of_each_other_kind_are_among_the_files():
+    figures = '[figures.fig_7]\nkind = "bode"\nof = ["Y/F"]\ntitle = "100 % \\\\input{x}"\n'
+    model = pipeline.loads(SPEC + figures)
+    tfs = pipeline.derive_all(model)
+    files, warnings = LatexExporter(88.5).export_files(model, tfs)
+    assert warnings == ()
+    assert {name for name in files if name.endswith(".pgf")} == {"fig_7.pgf", "poles_zeros.pgf", "modes.pgf"}
+    assert r"\usepackage{pgf}" in files[DOCUMENT]
+    assert r"100 \% \textbackslash{}input\{x\}." in files[DOCUMENT]
+    assert "$X(s)/F(s)$, $Y(s)/F(s)$" in files[DOCUMENT]
+    # Of what is exported only: nothing of the figure's remains.
+    files, _ = LatexExporter(88.5).export_files(model, tfs[:1])
+    assert "fig_7.pgf" not in files
+    without, _ = LatexExporter(88.5, has_figures=False).export_files(model, tfs)
+    assert not any(name.endswith(".pgf") for name in without)
+    assert "pgf" not in without[DOCUMENT]

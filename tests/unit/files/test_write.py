@@ -1,0 +1,175 @@
+from __future__ import annotations
+
+import os
+import stat
+
+import pytest
+
+from symflex.errors import UsageError
+from symflex.files.write import check_folder, check_writable, write_atomically, write_folder
+
+
+def refusal(path):
+    with pytest.raises(UsageError) as caught:
+        write_atomically(path, b"new")
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "SF903"
+    return diagnostic.message
+
+
+def fail(*_):
+    raise OSError(28, "No space left on device")
+
+
+def test_a_new_file_holds_the_data(tmp_path):
+    write_atomically(tmp_path / "a.svg", b"\x00data\r\n")
+    assert (tmp_path / "a.svg").read_bytes() == b"\x00data\r\n"
+
+
+def test_an_existing_file_is_replaced(tmp_path):
+    (tmp_path / "a.svg").write_bytes(b"an old and longer content")
+    write_atomically(tmp_path / "a.svg", b"new")
+    assert (tmp_path / "a.svg").read_bytes() == b"new"
+
+
+def test_no_temporary_file_remains(tmp_path):
+    write_atomically(tmp_path / "a.svg", b"new")
+    assert os.listdir(tmp_path) == ["a.svg"]
+
+
+@pytest.mark.parametrize("function", ["fsync", "replace"])
+def test_a_failure_on_the_way_leaves_the_old_content(tmp_path, monkeypatch, function):
+    (tmp_path / "a.svg").write_bytes(b"old")
+    monkeypatch.setattr(os, function, fail)
+    refusal(tmp_path / "a.svg")
+    assert (tmp_path / "a.svg").read_bytes() == b"old"
+
+
+@pytest.mark.parametrize("function", ["fsync", "replace"])
+def test_a_failure_on_the_way_leaves_no_temporary_file(tmp_path, monkeypatch, function):
+    monkeypatch.setattr(os, function, fail)
+    refusal(tmp_path / "a.svg")
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_full_disk_is_named(tmp_path, monkeypatch):
+    monkeypatch.setattr(os, "fsync", fail)
+    assert refusal(tmp_path / "a.svg").endswith("a.svg': No space left on device")
+
+
+def test_a_missing_folder_is_named(tmp_path):
+    folder = tmp_path / "figures"
+    assert refusal(folder / "a.svg") == f"cannot write '{folder / 'a.svg'}': there is no folder '{folder}'"
+
+
+def test_a_folder_is_not_overwritten(tmp_path):
+    assert refusal(tmp_path).endswith("it is not a regular file")
+
+
+def test_a_file_in_place_of_the_folder_is_an_error(tmp_path):
+    (tmp_path / "figures").write_bytes(b"")
+    assert refusal(tmp_path / "figures" / "a.svg").endswith("Not a directory")
+
+
+def test_a_symbolic_link_is_not_written_through(tmp_path):
+    (tmp_path / "target").write_bytes(b"old")
+    (tmp_path / "a.svg").symlink_to(tmp_path / "target")
+    assert "symbolic link" in refusal(tmp_path / "a.svg")
+
+
+def test_the_target_of_a_symbolic_link_is_untouched(tmp_path):
+    (tmp_path / "target").write_bytes(b"old")
+    (tmp_path / "a.svg").symlink_to(tmp_path / "target")
+    refusal(tmp_path / "a.svg")
+    assert (tmp_path / "target").read_bytes() == b"old"
+
+
+def test_a_link_to_nothing_is_refused_too(tmp_path):
+    (tmp_path / "a.svg").symlink_to(tmp_path / "nothing")
+    assert "symbolic link" in refusal(tmp_path / "a.svg")
+
+
+def test_a_fifo_is_refused_at_once(tmp_path):
+    os.mkfifo(tmp_path / "a.svg")
+    assert refusal(tmp_path / "a.svg").endswith("it is not a regular file")
+
+
+def test_a_name_no_file_can_have_is_refused(tmp_path):
+    assert refusal(tmp_path / "a\0.svg").endswith("the name holds a character no file name can have")
+
+
+@pytest.mark.skipif(os.name == "posix" and os.geteuid() == 0, reason="root may write everywhere")
+def test_a_folder_without_write_permission_is_an_error(tmp_path):
+    tmp_path.chmod(0o500)
+    message = refusal(tmp_path / "a.svg")
+    tmp_path.chmod(0o700)
+    assert message.endswith("Permission denied")
+
+
+def test_an_existing_file_keeps_its_permissions(tmp_path):
+    (tmp_path / "a.svg").write_bytes(b"old")
+    (tmp_path / "a.svg").chmod(0o640)
+    write_atomically(tmp_path / "a.svg", b"new")
+    assert stat.S_IMODE((tmp_path / "a.svg").stat().st_mode) == 0o640
+
+
+def test_a_new_file_gets_the_permissions_of_the_umask(tmp_path):
+    before = os.umask(0o027)
+    write_atomically(tmp_path / "a.svg", b"new")
+    os.umask(before)
+    assert stat.S_IMODE((tmp_path / "a.svg").stat().st_mode) == 0o640
+
+
+def test_a_folder_is_made_and_filled(tmp_path):
+    write_folder(tmp_path / "new", {"a.tex": "first", "b.tex": "größer"})
+    assert (tmp_path / "new" / "b.tex").read_text(encoding="utf-8") == "größer"
+    write_folder(tmp_path / "new", {"a.tex": "second"})
+    assert sorted(p.name for p in (tmp_path / "new").iterdir()) == ["a.tex", "b.tex"]
+    assert (tmp_path / "new" / "a.tex").read_text(encoding="utf-8") == "second"
+
+
+@pytest.mark.parametrize("name", ["", ".", "..", "../a", "/a", "b/c", "a\\b", "a\0"])
+def test_a_name_that_leads_elsewhere_is_refused_before_anything_is_written(tmp_path, name):
+    with pytest.raises(ValueError, match="no name of a file"):
+        write_folder(tmp_path / "new", {"a.tex": "", name: ""})
+    assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.parametrize("folder", ["file", "no/such/folder", "a\0"])
+def test_a_folder_that_cannot_be_made_is_a_usage_error(tmp_path, folder):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(UsageError, match="SF903"):
+        write_folder(tmp_path / folder, {"a.tex": ""})
+
+
+def test_nothing_is_written_through_a_link_in_a_folder(tmp_path):
+    (tmp_path / "elsewhere").write_text("old")
+    (tmp_path / "new").mkdir()
+    (tmp_path / "new" / "a.tex").symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(UsageError, match="symbolic link"):
+        write_folder(tmp_path / "new", {"a.tex": "new"})
+    assert (tmp_path / "elsewhere").read_text() == "old"
+
+
+@pytest.mark.parametrize("name", ["no/such/folder/a.svg", "folder", "link", "a\0b", "x" * 300])
+def test_what_could_not_be_written_is_refused_beforehand(tmp_path, name):
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(UsageError, match="SF903"):
+        check_writable(tmp_path / name)
+
+
+def test_what_can_be_written_is_not_touched_beforehand(tmp_path):
+    check_writable(tmp_path / "a.svg")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_below_a_file_is_refused_beforehand(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(UsageError, match="SF903"):
+        check_folder(tmp_path / "file" / "below")
+
+
+def test_folders_that_can_be_made_are_not_made_beforehand(tmp_path):
+    check_folder(tmp_path / "a" / "b")
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,107 @@
+"""Cascaded loops with dead time: proved whatever carries the delay, or it is said why not."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from symflex import pipeline
+from symflex.loops.text import stability_text
+
+CASCADE = """
+symflex = 1
+
+[parameters]
+J   = "3 g*m^2"
+k_t = "1.1 N*m/A"
+L   = "6 mH"
+R   = "0.6 ohm"
+K_c = "30 V/A"
+T_c = "2 ms"
+K_v = "4 A*s/rad"
+T_v = "10 ms"
+K_p = "60 1/s"
+T   = "0.5 ms"
+
+[blocks]
+D_v  = {{ type = "delay", T = "{speed}*T" }}
+D_c  = {{ type = "delay", T = "{current}*T" }}
+D_u  = {{ type = "delay", T = "{voltage}*T" }}
+PI_v = {{ type = "tf", num = "K_v*(T_v*s + 1)", den = "T_v*s" }}
+PI_c = {{ type = "tf", num = "K_c*(T_c*s + 1)", den = "T_c*s" }}
+
+[elements]
+motor = {{ type = "dc_motor", terminals = ["u", "ground"], shaft = "phi", k_t = "k_t", L = "L", R = "R" }}
+amp   = {{ type = "voltage_source", at = "u", v = "v_m" }}
+rotor = {{ type = "inertia", at = "phi", J = "J" }}
+
+[signals]
+v_m = "D_u*PI_c*(PI_v*(K_p*(r - phi) - D_v*s*phi) - D_c*motor.i)"
+
+[inputs]
+r = {{ unit = "rad" }}
+
+[outputs]
+Phi = "phi"
+"""
+PLACES = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1), (2, 0, 1)]
+
+
+def counted(speed, current, voltage):
+    """Count the roots of the hand-written characteristic function by its winding, with numpy alone."""
+    inertia, k, inductance, resistance = 3e-3, 1.1, 6e-3, 0.6
+    time = 0.5e-3
+
+    def function(s):
+        speed_controller, current_controller = (
+            4 * (0.01 * s + 1) / (0.01 * s),
+            30 * (0.002 * s + 1) / (0.002 * s),
+        )
+        forward = np.exp(-s * voltage * time) * current_controller
+        winding = inductance * s + resistance + forward * np.exp(-s * current * time)
+        back = k * s + forward * speed_controller * (60 + np.exp(-s * speed * time) * s)
+        return s**2 * (inertia * s**2 * winding + k * back)
+
+    radius, inner = 1e6, 1e-2
+    axis = np.geomspace(inner, radius, 400_000)
+    half = np.linspace(-np.pi / 2, np.pi / 2, 400_000)
+    path = np.concatenate(
+        [radius * np.exp(1j * half), 1j * axis[::-1], inner * np.exp(1j * half[::-1]), -1j * axis]
+    )
+    return round(
+        float(np.unwrap(np.angle(function(path)))[-1] - np.angle(function(path[:1]))[0]) / (2 * np.pi)
+    )
+
+
+def cascade(speed, current, voltage):
+    return pipeline.loads(CASCADE.format(speed=speed, current=current, voltage=voltage))
+
+
+@pytest.mark.parametrize("place", PLACES, ids=str)
+def test_a_cascade_is_proved_wherever_the_dead_time_is(place):
+    found = pipeline.stability(cascade(*place), "K_v", limits=(Fraction(3), Fraction(5)))
+    assert (found.certified, found.reasons) == (True, ())
+    assert found.nominal_interval.poles.right == counted(*place)
+
+
+@pytest.mark.parametrize("place", PLACES, ids=str)
+def test_its_roots_say_the_same(place):
+    model = cascade(*place)
+    verdict = pipeline.roots(pipeline.derive_bound(model, model.transfer_functions)[0]).verdict
+    assert (verdict.right, verdict.certified) == (counted(*place), True)
+
+
+def test_a_loop_that_cannot_be_proved_has_a_reason():
+    # The current's rate fed back with dead time: K_d D s^2 beside L s^2, neutral and not small enough.
+    text = CASCADE.format(speed=0, current=1, voltage=0).replace("D_c*motor.i", "D_c*(1 + s/1000)*motor.i")
+    found = pipeline.stability(pipeline.loads(text), "K_v", limits=(Fraction(3), Fraction(5)))
+    assert not found.certified
+    assert "share the highest power of s" in found.reasons[0]
+    assert f"not proved: {found.reasons[0]}" in stability_text(found)
+
+
+def test_a_map_that_is_not_complete_cannot_be_without_a_reason():
+    found = pipeline.stability(cascade(0, 0, 1), "K_v", limits=(Fraction(3), Fraction(5)))
+    with pytest.raises(ValueError, match="needs a reason"):
+        replace(found, is_complete=False, reasons=())

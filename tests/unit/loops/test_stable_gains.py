@@ -1,0 +1,215 @@
+"""What is said about loops, and what is not."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import symflex
+from symflex.errors import BudgetError, ModelError, UsageError
+
+
+def counts(found):
+    return [(i.poles.right, i.poles.axis) for i in found.proved.intervals]
+
+
+def test_a_hidden_unstable_mode_makes_the_loop_unstable():
+    model = symflex.loads("""
+symflex = 1
+parameters.K = 1
+signals.x = "u/(s - 1)"
+signals.u = "K*(r - y)"
+signals.y = "u/(s + 1)"
+inputs.r = {}
+outputs.Y = "y"
+""")
+    found = model.stability("K")
+    assert found.certified
+    assert found.stable == ()
+    assert counts(found) == [(1, 0)]
+
+
+def test_poles_on_the_axis_for_every_gain_are_no_stability(loop):
+    found = loop("K/s^2").stability("K")
+    assert counts(found) == [(0, 2)]
+    assert found.is_stable is False
+
+
+def test_undamped_masses_flutter_when_the_far_one_is_fed_back():
+    # m = 1, k = 1: (s^2 + 1)^2 - 1 + K has a double root in s^2 at K = 1.
+    model = symflex.Model(
+        parameters={"K": {"value": "0.5 N/m"}},
+        signals={"F": "K*(r - y)"},
+        elements={
+            "a": {"type": "mass", "at": "x", "m": "1 kg"},
+            "k": {"type": "spring", "between": ["x", "y"], "k": "1 N/m"},
+            "b": {"type": "mass", "at": "y", "m": "1 kg"},
+            "drive": {"type": "force_source", "at": "x", "f": "F"},
+        },
+        inputs={"r": {}},
+        outputs={"Y": "y"},
+    )
+    found = model.stability("K")
+    (boundary,) = found.boundaries
+    assert float(boundary.gain) == 1
+    assert boundary.entering == 2
+    assert counts(found) == [(0, 4), (2, 0)]
+    assert abs(2 * math.pi * boundary.frequencies_hz[0] - 1) < 1e-12
+
+
+def test_a_pole_through_infinity_and_one_through_zero(loop):
+    # (s + 1) + K (s + 2): the pole is -(1 + 2 K)/(1 + K).
+    found = loop("K*(s + 2)/(s + 1)", K={"value": 1, "assume": "real"}).stability("K")
+    infinite, zero = found.proved.boundaries
+    assert (float(infinite.gain), float(zero.gain)) == (-1, -0.5)
+    assert infinite.crossings[0].is_infinite
+    assert [float(w) for w in zero.frequencies] == [0]
+    assert counts(found) == [(0, 0), (1, 0), (0, 0)]
+
+
+def test_a_gain_may_occur_squared_in_a_polynomial(loop):
+    # s^3 + 2 s^2 + 3 s + K^2 is stable for K^2 < 6.
+    found = loop("K^2/(s^3 + 2*s^2 + 3*s)").stability("K")
+    (boundary,) = found.boundaries
+    assert abs(float(boundary.gain) - math.sqrt(6)) < 1e-12
+    assert abs(2 * math.pi * boundary.frequencies_hz[0] - math.sqrt(3)) < 1e-12
+
+
+def test_poles_that_touch_the_axis_at_one_gain():
+    found = symflex.loads("""
+symflex = 1
+parameters.K = 3
+signals.y = "r/(s + (K - 1)^2)"
+inputs.r = {}
+outputs.Y = "y"
+""").stability("K")
+    assert [tuple(map(float, ends)) for ends in found.stable] == [(0, 1), (1, math.inf)]
+
+
+def test_all_digits_of_a_transcendental_boundary(loop):
+    found = loop("K*D/s").stability("K", (0, 5), digits=50)
+    printed = found.to_json_dict()["boundaries"][0]["gain"]["value"]
+    assert printed == "3.1415926535897932384626433832795028841971693993751"
+
+
+def test_a_neutral_loop_is_certified_only_below_a_gain_of_one(loop):
+    below = loop("K*D*(s + 3)/(s + 1)").stability("K", (0, 0.9))
+    beyond = loop("K*D*(s + 3)/(s + 1)").stability("K", (0, 3))
+    assert below.certified
+    assert not beyond.certified
+    assert beyond.counted_up_to_hz < math.inf
+    assert float(beyond.boundaries[0].gain) == float(below.boundaries[0].gain)
+
+
+def test_what_is_not_proved_of_a_beam_without_loss_is_said(lossless_beam):
+    found = lossless_beam("act", is_damped=True).stability("K", up_to_hz=100)
+    assert not found.certified
+    assert abs(found.counted_up_to_hz - 100) < 1e-9
+    assert "NOT CERTIFIED beyond 100 Hz" in str(found)
+    assert counts(found) == [(0, 0)]
+
+
+def test_crossing_where_a_damper_at_the_actuator_does_nothing(lossless_beam):
+    # Poles cross where the damped end is at rest: at a colocated zero, 2 + cosh 2q + cos 2q = 0.
+    found = lossless_beam("tip", is_damped=True).stability("K", up_to_hz=60)
+    (hertz,) = found.boundaries[0].frequencies_hz
+    stiffness, mass, length = 200e9 * 4000e-12, 7850 * 480e-6, 1.086
+    # Of the clamped-free beam the first root of cosh x cos x = -1, x = 2q.
+    assert abs(2 * math.pi * hertz - 1.8751040687119611**2 / length**2 * math.sqrt(stiffness / mass)) < 1e-7
+
+
+def test_mirrored_poles_of_a_lossless_beam(lossless_beam):
+    colocated = lossless_beam("act").stability("K", up_to_hz=100)
+    tip = lossless_beam("tip").stability("K", up_to_hz=100)
+    assert [right for right, _ in counts(colocated)] == [0]
+    assert [right for right, _ in counts(tip)] == [0, 2]
+    assert found_symmetric(tip)
+
+
+def found_symmetric(found):
+    return all(c.is_symmetric for b in found.proved.boundaries for c in b.crossings)
+
+
+def test_a_real_pole_through_zero_beside_a_delay(loop):
+    # s + 2 + 3 K e^(-s T) is 0 at s = 0 for K = -2/3; a factor in front of the delay counts.
+    found = loop("3*K*D/(s + 2)", K={"value": 1, "assume": "real"}).stability("K", (-1, 1))
+    boundary = found.boundaries[0]
+    assert abs(float(boundary.gain) + 2 / 3) < 1e-12
+    assert boundary.frequencies_hz == (0.0,)
+    assert counts(found)[:2] == [(1, 0), (0, 0)]
+
+
+def test_values_in_place_of_declared_ones(loop):
+    model = loop("K*D/s")
+    assert abs(float(model.stability("K", (0, 50), T="0.25 s").boundaries[0].gain) - 2 * math.pi) < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "code"),
+    [
+        (("Q",), UsageError, "SF902"),
+        (("T",), ModelError, "SF801"),
+        (("K", (2, 1)), UsageError, "SF804"),
+        (("K", (0, None)), UsageError, "SF804"),
+    ],
+)
+def test_errors(loop, arguments, error, code):
+    with pytest.raises(error, match=code):
+        loop("K*D/s").stability(*arguments)
+
+
+def test_a_gain_squared_beside_a_delay_is_refused(loop):
+    with pytest.raises(ModelError, match="SF803"):
+        loop("K^2*D/s").stability("K", (0, 3))
+
+
+def test_a_gain_without_value_needs_a_range_beside_a_delay(loop):
+    with pytest.raises(UsageError, match="SF804"):
+        loop("K*D/s", K={}).stability("K")
+    assert loop("K*D/s", K={}).stability("K", (0, 5)).is_stable is None
+
+
+def test_the_budget_is_kept(loop):
+    with pytest.raises(BudgetError, match="SF506"):
+        loop("K*D/s").stability("K", (0, 50), budget=1e-6)
+
+
+def test_the_document_is_json(loop):
+    document = json.loads(json.dumps(loop("K/(s*(s + 1)*(s + 2))").stability("K").to_json_dict()))
+    assert document["schema"] == "symflex.loops/1"
+    assert document["boundaries"][0]["gain"]["value"].startswith("6.0000")
+    assert document["intervals"][1]["right_half_plane_poles"] == 2
+    assert document["certified"] is True
+    assert document["phase_margins"][0]["smallest"] is True
+
+
+def test_the_bandwidth_is_where_half_of_the_limit_has_loop_gain_one(loop):
+    found = loop("K/(s*(s + 1)*(s + 2))").stability("K")
+    # abs(3/(s (s+1) (s+2))) = 1 with x = omega^2: x (x + 1) (x + 4) = 9.
+    (x,) = [r.real for r in np.roots([1, 5, 4, -9]) if abs(r.imag) < 1e-12 and r.real > 0]
+    assert found.bandwidth_hz == pytest.approx(np.sqrt(x) / (2 * np.pi), rel=1e-12)
+    assert found.to_json_dict()["bandwidth"]["limited"] is True
+    # Its phase is that of -1 plus the margin.
+    s = 1j * np.sqrt(x)
+    margin = np.degrees(np.angle(-3 / (s * (s + 1) * (s + 2))))
+    assert found.to_json_dict()["bandwidth"]["phase_margin_degrees"] == pytest.approx(margin)
+
+
+def test_the_bandwidth_of_a_loop_with_a_delay(loop):
+    found = loop("K*D/s").stability("K", (0, 20))
+    # K/omega = 1, and K is half of pi/(2 T).
+    assert found.bandwidth_hz == pytest.approx(0.25, rel=1e-12)
+
+
+def test_there_may_be_no_bandwidth_or_no_limit_to_it(loop):
+    assert loop("K/(s + 1)").stability("K").bandwidth_hz == float("inf")
+    # Half of the limit is a loop gain of 1/2 where it is largest.
+    assert np.isnan(loop("K*D/(s + 1)", T="10 s").stability("K", (0, 2)).bandwidth_hz)
+    assert np.isnan(loop("K/(s - 1)").stability("K").bandwidth_hz)
+
+
+def test_the_print_fits_a_terminal(loop):
+    assert max(map(len, str(loop("K*D/s").stability("K")).splitlines())) <= 80

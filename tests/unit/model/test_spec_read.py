@@ -1,0 +1,127 @@
+"""Files that are no specification are refused without hanging."""
+
+from __future__ import annotations
+
+import os
+import socket
+from pathlib import Path
+
+import pytest
+
+from symflex.errors import Diagnostic, SpecError, SymflexError, UsageError
+from symflex.model.spec import read
+
+
+def refusal(path: str | Path) -> Diagnostic:
+    with pytest.raises(SymflexError) as raised:
+        read(path)
+    assert raised.value.diagnostics[0].code == "SF901"
+    return raised.value.diagnostics[0]
+
+
+def test_the_text_is_read_with_its_line_ends(tmp_path: Path) -> None:
+    path = tmp_path / "a.toml"
+    path.write_bytes("é = 1\r\n".encode())
+    assert read(path).text == "é = 1\r\n"
+
+
+def test_the_source_is_named_as_its_path(tmp_path: Path) -> None:
+    path = tmp_path / "a.toml"
+    path.write_bytes(b"")
+    assert read(path).name == str(path)
+
+
+def test_a_byte_order_mark_is_no_part_of_the_text(tmp_path: Path) -> None:
+    path = tmp_path / "a.toml"
+    path.write_bytes(b"\xef\xbb\xbfa = 1")
+    assert read(path).text == "a = 1"
+
+
+def test_a_symbolic_link_to_a_file_is_read(tmp_path: Path) -> None:
+    (tmp_path / "a.toml").write_bytes(b"a = 1")
+    (tmp_path / "b.toml").symlink_to("a.toml")
+    assert read(tmp_path / "b.toml").text == "a = 1"
+
+
+def test_bytes_that_are_not_utf8_are_named_with_their_offset(tmp_path: Path) -> None:
+    path = tmp_path / "a.toml"
+    path.write_bytes("é = 1\nb = ".encode() + b"\xe9\n")
+    problem = refusal(path)
+    assert problem.message == "not UTF-8: byte 0xe9 at byte offset 11"
+
+
+def test_bytes_that_are_not_utf8_have_a_line_and_column(tmp_path: Path) -> None:
+    path = tmp_path / "a.toml"
+    path.write_bytes("é = 1\nb = ".encode() + b"\xe9\n")
+    span = refusal(path).span
+    assert span is not None
+    assert (span.line, span.column) == (2, 5)
+
+
+def test_utf16_is_recognised(tmp_path: Path) -> None:
+    path = tmp_path / "a.toml"
+    path.write_bytes("a = 1\n".encode("utf-16"))
+    assert refusal(path).hint == "this is UTF-16; save the file as UTF-8"
+
+
+def test_a_file_of_one_megabyte_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "a.toml"
+    path.write_bytes(b"#" * 1_000_000)
+    assert len(read(path).text) == 1_000_000
+
+
+def test_a_larger_file_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a.toml"
+    path.write_bytes(b"#" * 1_000_001)
+    assert "larger than 1000000 bytes" in refusal(path).message
+
+
+def test_a_file_larger_than_memory_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a.toml"
+    path.touch()
+    os.truncate(path, 1 << 40)
+    assert "larger than" in refusal(path).message
+
+
+def test_a_missing_file_is_a_usage_error(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="No such file"):
+        read(tmp_path / "a.toml")
+
+
+def test_a_file_with_wrong_bytes_is_a_spec_error(tmp_path: Path) -> None:
+    path = tmp_path / "a.toml"
+    path.write_bytes(b"\xff")
+    with pytest.raises(SpecError, match="not UTF-8"):
+        read(path)
+
+
+def test_a_directory_is_refused(tmp_path: Path) -> None:
+    assert "not a regular file" in refusal(tmp_path).message
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no FIFOs here")
+def test_a_fifo_is_refused_without_waiting_for_a_writer(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "fifo")
+    assert "not a regular file" in refusal(tmp_path / "fifo").message
+
+
+@pytest.mark.skipif(not Path("/dev/zero").exists(), reason="no devices here")
+def test_a_device_is_refused() -> None:
+    assert "not a regular file" in refusal("/dev/zero").message
+
+
+@pytest.mark.skipif(not hasattr(socket, "AF_UNIX"), reason="no sockets here")
+def test_a_socket_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with socket.socket(socket.AF_UNIX) as server:
+        server.bind("s")
+        assert "not a regular file" in refusal("s").message
+
+
+def test_a_name_no_file_can_have_is_refused() -> None:
+    assert "no file name can have" in refusal("a\0b").message
+
+
+def test_a_loop_of_links_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "a").symlink_to("a")
+    assert "cannot read" in refusal(tmp_path / "a").message

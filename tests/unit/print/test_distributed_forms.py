@@ -1,0 +1,410 @@
+"""Forms of transfer functions with kernels: all of them are the same function, and print as papers do."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import mpmath
+import pytest
+
+from symflex import pipeline
+from symflex.errors import UsageError
+from symflex.expressions import (
+    Call,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+    format_expression,
+)
+from symflex.print.forms import FORMS, hidden_expressions, print_form, with_hidden
+from symflex.print.forms.usage import forms_of
+from symflex.print.json_format import derive_json
+from symflex.print.latex import transfer_function_latex
+from symflex.print.sympy.expression import to_sympy
+from symflex.print.text import derive_text, form_text
+from tests.contract.exact import read
+from tests.house.repository import slow_ones
+from tests.unit.codegen.models_with_kernels import MODELS, NAMES, derived, spec
+from tests.unit.print.residues import PRIME, point_for
+
+EVERY_FORM = ("hyperbolic", "factored", "krylov", "vaughan", "frequency", "polynomial", "definitions", None)
+NO_FORMULA = {"third order"}
+LONG = {"two beams of pairs", "two beams", "robot_axis"}
+
+of_case = cache(derived)
+
+
+@cache
+def printed(name, number, form):
+    """Return a form of one of a case's functions, printed once for all tests of it."""
+    return print_form(of_case(name)[number], form)
+
+
+def reread(form):
+    """Return what a form prints, read back by the specification's own parser."""
+    num, den = (read(format_expression(e)) for e in (form.num, form.den))
+    return num, den, [(name, read(format_expression(e))) for name, e in form.where]
+
+
+def shown(tf, form=None):
+    found = print_form(tf, form)
+    return format_expression(found.num), format_expression(found.den)
+
+
+def lines(tf, form):
+    return [f"{name} = {format_expression(e)}" for name, e in print_form(tf, form).where]
+
+
+def case(name, pair):
+    return next(tf for tf in of_case(name) if tf.name == pair)
+
+
+def turns(names):
+    """The names, those whose prints are the longest with -m slow only."""
+    return slow_ones(names, lambda name: name in LONG)
+
+
+@pytest.mark.parametrize("form", EVERY_FORM, ids=str)
+@pytest.mark.parametrize("name", turns(NAMES))
+def test_a_form_is_the_function_in_exact_arithmetic(name, form):
+    for number, tf in enumerate(of_case(name)):
+        if form is not None and form != "definitions" and form not in forms_of(tf):
+            continue
+        for seed in (1, 2):
+            point = point_for(tf, seed)
+            assert point.form(*reread(printed(name, number, form))) == point.truth
+
+
+@pytest.mark.parametrize("form", ["hyperbolic", "factored", "krylov", "vaughan", "frequency", "polynomial"])
+def test_definitions_stay_closed_in_every_form_of_a_beam(form):
+    shown = print_form(case("beam with definitions", "X/F"), form)
+    text = " ".join(format_expression(e) for e in (shown.num, shown.den, *(e for _, e in shown.where)))
+    assert "sqrt(EI/load)" in text
+    assert text.count("E*I") == text.count("rho*A") == 1  # in their own lines
+
+
+def test_a_form_with_a_wrong_sign_is_told_apart():
+    tf = case("sliding_free_beam", "V_act/F")
+    num, den, where = reread(print_form(tf, "vaughan"))
+    point = point_for(tf)
+    wrong = read(format_expression(den).replace("- 4*S*C", "+ 4*S*C"))
+    assert point.form(num, den, where) == point.truth
+    assert point.form(num, wrong, where) != point.truth
+    assert point.truth < PRIME
+
+
+def value_of(expression, values):
+    """Return the value of an expression to mpmath's precision, by principal branches."""
+    match expression:
+        case Number(value):
+            return mpmath.mpf(value.numerator) / value.denominator
+        case Name(name):
+            return values(name)
+        case Negative(operand):
+            return -value_of(operand, values)
+        case Sum(terms):
+            return mpmath.fsum(value_of(t, values) for t in terms)
+        case Product(factors):
+            return mpmath.fprod(value_of(f, values) for f in factors)
+        case Quotient(above, below):
+            return value_of(above, values) / value_of(below, values)
+        case Power(base, exponent):
+            return value_of(base, values) ** value_of(exponent, values)
+        case Call(name, argument):
+            return getattr(mpmath, name)(value_of(argument, values))
+    raise TypeError(type(expression).__name__)
+
+
+def value_at(form, known):
+    num, den, where = reread(form)
+    where = dict(where)
+
+    def values(name):
+        return value_of(where[name], values) if name in where else known[name]
+
+    return value_of(num, values) / value_of(den, values)
+
+
+@pytest.mark.parametrize("name", turns(n for n in NAMES if n not in NO_FORMULA))
+def test_all_forms_agree_to_45_digits_at_complex_points(name):
+    with mpmath.workdps(60):
+        for number, tf in enumerate(of_case(name)):
+            parameters = {p.name: mpmath.mpf(3 + i) / (4 + i % 5) for i, p in enumerate(tf.model.parameters)}
+            for s in (mpmath.mpc(1, 2) / 3, mpmath.mpc(-2, 1) / 5):
+                known = {**parameters, "s": s, "pi": mpmath.pi}
+                first, *others = (value_at(printed(name, number, form), known) for form in forms_of(tf))
+                assert max(abs(v / first - 1) for v in others) < mpmath.mpf(10) ** -45
+
+
+def test_vaughans_form_of_the_colocated_mobility_is_the_papers_with_its_two_misprints_corrected():
+    # Eppinger & Seering 1988, "Bending Beam Models": the print has 2C^2 for 6C^2 and -1 for -1/2.
+    assert derive_text(
+        case("sliding_free_beam", "V_act/F"), print_form(case("sliding_free_beam", "V_act/F"), "vaughan")
+    ).split("\n")[2:11] == [
+        "  -sqrt(2/p)*((S^2 + C^2)^2 + 2*S^2 + 6*C^2 + 1)",
+        "  ----------------------------------------------",
+        "      2*rho*A*a*((S^2 + C^2)^2 - 4*S*C - 1)",
+        "",
+        "  where S = exp(-sqrt(T*p))*sin(sqrt(T*p))",
+        "        C = exp(-sqrt(T*p))*cos(sqrt(T*p))",
+        "        p = s/a",
+        "        a = sqrt(E*I/(rho*A))",
+        "        T = l^2/2",
+    ]
+
+
+def test_vaughans_form_of_the_tip_mobility_is_the_papers():
+    assert derive_text(
+        case("sliding_free_beam", "V_tip/F"), print_form(case("sliding_free_beam", "V_tip/F"), "vaughan")
+    ).split("\n")[2:11] == [
+        "     -2*sqrt(2/p)*C*(S^2 + C^2 + 1)",
+        "  -----------------------------------",
+        "  rho*A*a*((S^2 + C^2)^2 - 4*S*C - 1)",
+        "",
+        "  where S = exp(-sqrt(T*p))*sin(sqrt(T*p))",
+        "        C = exp(-sqrt(T*p))*cos(sqrt(T*p))",
+        "        p = s/a",
+        "        a = sqrt(E*I/(rho*A))",
+        "        T = l^2/2",
+    ]
+
+
+def test_the_frequency_form_of_the_sliding_free_beam_is_real_but_for_one_factor():
+    # Krylov-Duncan theory: free poles at tan + tanh = 0, colocated zeros at cos cosh = -1.
+    assert shown(case("sliding_free_beam", "V_act/F"), "frequency") == (
+        "-beta*j*(cosh(beta*l)*cos(beta*l) + 1)",
+        "rho*A*omega*(cosh(beta*l)*sin(beta*l) + sinh(beta*l)*cos(beta*l))",
+    )
+
+
+def test_the_tip_receptance_of_a_cantilever_has_the_textbook_denominator():
+    # 1 + cos cosh, Rao 2007, table 11.1
+    assert shown(case("clamped_free", "W_tip/F"), "frequency") == (
+        "cosh(beta*l)*sin(beta*l) - sinh(beta*l)*cos(beta*l)",
+        "E*I*beta^3*(cosh(beta*l)*cos(beta*l) + 1)",
+    )
+
+
+def test_the_textbook_denominator_stays_whole_where_the_numerator_needs_half_the_length():
+    _, den = shown(case("clamped_free", "W_mid/F"), "frequency")
+    assert den == "E*I*beta^3*(cosh(beta*l)*cos(beta*l) + 1)"
+
+
+def test_the_left_side_of_the_frequency_form_is_a_function_of_the_frequency():
+    tf = case("pinned_pinned", "theta_near/tau")
+    form = print_form(tf, "frequency")
+    assert derive_text(tf, form).startswith("theta_near(j*omega)/tau(j*omega)   ")
+    assert form_text(tf, form).startswith("theta_near(j*omega)/tau(j*omega) = ")
+    latex = transfer_function_latex(tf, form, width_mm=None)
+    assert r"\frac{\theta_{\mathrm{near}}(j \omega)}{\tau(j \omega)}" in latex
+
+
+def test_other_forms_are_functions_of_s_on_their_left_side():
+    tf = case("pinned_pinned", "theta_near/tau")
+    assert r"\frac{\theta_{\mathrm{near}}(s)}{\tau(s)}" in transfer_function_latex(
+        tf, print_form(tf), width_mm=None
+    )
+
+
+def hidden_lines(tf, form):
+    return [line for line in derive_text(tf, print_form(tf, form)).splitlines() if "hidden: " in line]
+
+
+def test_hidden_factors_bear_the_arguments_of_the_form():
+    # Antisymmetric modes of a beam clamped at both ends, which a uniform load does not drive.
+    assert hidden_lines(case("clamped_clamped", "M_end/p"), "hyperbolic") == [
+        "  hidden: sinh(q) - sin(q) cancelled"
+    ]
+
+
+def test_hidden_factors_of_twice_the_length_of_a_form_bear_twice_its_argument():
+    tf = case("clamped_clamped", "M_end/p")
+    assert ("q", "mu*l/2") in [(n, format_expression(e)) for n, e in print_form(tf, "krylov").where]
+    assert hidden_lines(tf, "krylov") == ["  hidden: sinh(2*q) - sin(2*q) cancelled"]
+
+
+def test_hidden_factors_bring_the_lines_of_names_that_a_form_lacks():
+    tf = case("clamped_clamped", "M_end/p")
+    form, ((factor, _),) = with_hidden(tf, print_form(tf, "vaughan"))
+    assert format_expression(factor) == "sinh(q) - sin(q)"
+    assert "q" in [name for name, _ in form.where]
+
+
+@pytest.mark.parametrize("form", [f for f in EVERY_FORM if f])
+@pytest.mark.parametrize("pair", ["W_mid/p", "W_quarter/p", "M_end/p"])
+def test_hidden_factors_in_a_form_s_names_are_those_spelled_out(pair, form):
+    tf = case("clamped_clamped", pair)
+    if form != "definitions" and form not in forms_of(tf):
+        return
+    named, factors = with_hidden(tf, print_form(tf, form))
+    known = {
+        "E": mpmath.mpf(3),
+        "I": 2,
+        "rho": mpmath.mpf(5) / 3,
+        "A": mpmath.mpf(7) / 4,
+        "l": mpmath.mpf(9) / 8,
+    }
+    known |= {"s": mpmath.mpc(1, 2) / 3, "pi": mpmath.pi}
+    where = dict(named.where)
+
+    def values(name):
+        return value_of(where[name], values) if name in where else known[name]
+
+    for (factor, times), (spelled, again) in zip(factors, hidden_expressions(tf), strict=True):
+        assert times == again
+        assert mpmath.almosteq(value_of(factor, values), value_of(spelled, known.__getitem__), 1e-12)
+
+
+def test_long_hidden_factors_are_printed_to_their_end_within_80_columns():
+    text = derive_text(
+        case("clamped_clamped", "W_quarter/p"), print_form(case("clamped_clamped", "W_quarter/p"))
+    )
+    (start,) = [i for i, line in enumerate(text.splitlines()) if "hidden: " in line]
+    shown_ = " ".join(line.strip() for line in text.splitlines()[start:]).strip()
+    assert shown_.endswith("cancelled")
+    assert "..." not in shown_
+    assert max(map(len, text.splitlines())) <= 80
+
+
+def test_the_imaginary_unit_of_the_frequency_form_is_a_line():
+    assert lines(case("sliding_free_beam", "V_act/F"), "frequency")[-2:] == ["omega = s/j", "j = sqrt(-1)"]
+
+
+def test_a_rational_function_has_a_frequency_form():
+    text = MODELS["loop with a delay"].replace("K*late*x - omega*j*x", "K*x - omega*s*x")
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    assert shown(tf, "frequency") == ("-1", "m*omega_1^2 - K - j_1*omega*omega_1")
+
+
+def test_names_of_the_model_are_left_alone():
+    tf = case("the paper's names taken", "W/F")
+    names = [name for name, _ in print_form(tf, "vaughan").where]
+    assert names == ["S_1", "C_1", "S_2", "C_2", "p_1", "a_1", "T_1", "T_2"]
+
+
+def test_arguments_are_explained_by_the_wavenumber_and_that_by_the_speed():
+    assert lines(case("sliding_free_beam", "V_tip/F"), "hyperbolic") == [
+        "q = mu*l",
+        "mu = sqrt(s/(2*a))",
+        "a = sqrt(E*I/(rho*A))",
+    ]
+
+
+def test_a_wavenumber_that_stands_nowhere_else_is_written_into_the_argument():
+    # Transmission of force through a rod fixed at its end: 1/cosh, Rao 2007, chapter 9.
+    text = """[elements]
+bar = { type = "rod", between = ["x", "ground"], E = "E", A = "A", rho = "rho", l = "l" }
+[inputs]
+F = { force = "x" }
+[outputs]
+wall = "bar.f"
+"""
+    (tf,) = pipeline.derive_all(pipeline.loads(spec("E A rho l", text)))
+    assert shown(tf, "hyperbolic") == ("1", "cosh(q)")
+    assert lines(tf, "hyperbolic") == ["q = s*l*sqrt(rho/E)"]
+
+
+def test_a_rods_wavenumber_is_taken_out_of_its_root():
+    assert lines(case("rod_tip_mass", "X_tip/F"), "hyperbolic") == ["q = gamma*l", "gamma = s*sqrt(rho/E)"]
+
+
+def test_losses_stay_under_the_root():
+    assert lines(case("lossy beam on a foundation", "X/F"), "hyperbolic") == [
+        "q_1 = mu*l",
+        "mu = sqrt(sqrt((rho*A*s^2 + c_f*s + k_f)/(E*I*(eta*s + 1)))/2)",
+    ]
+
+
+def test_krylov_duncan_functions_of_the_free_beam():
+    # K_0 of l is the numerator: the tip and the slider move alike where cos cosh = 0.
+    assert shown(case("sliding_free_beam", "V_tip/F"), "krylov") == (
+        "K_0",
+        "rho*A*s*(4*mu^4*K_2*K_3 + K_0*K_1)",
+    )
+
+
+def test_trigonometric_factors_are_found():
+    assert shown(case("free_free", "A_near/F"), "factored")[1] == (
+        "rho*A*(sinh(q_1) - sin(q_1))*(sinh(q_1) + sin(q_1))"
+    )
+
+
+def test_a_function_of_whole_lengths_is_not_printed_in_halves():
+    # The model's other output is at midspan.
+    assert lines(case("clamped_free", "W_tip/F"), "hyperbolic")[0] == "q = mu*l"
+    assert lines(case("clamped_free", "W_mid/F"), "hyperbolic")[0] == "q = mu*l/2"
+
+
+def test_a_twofold_delay_is_one_exponential():
+    assert shown(case("delay and rod", "X_late/u"))[0] == "K*sinh(q)*exp(-2*T*s)"
+
+
+def test_exponents_without_a_formula_leave_solutions_with_their_law():
+    (tf,) = of_case("third order")
+    assert form_text(tf, print_form(tf)).split("\n") == [
+        "Out/u = (h(l)*(h'(l)*(s^2 + k) + b*s*h''(l)) + h''(l)^2)/h''(l)",
+        "  where h''' + b*s*h' + (s^2 + k)*h = 0",
+        "  where h(0) = h'(0) = 0, h''(0) = 1",
+    ]
+
+
+def test_a_law_is_in_the_json():
+    (tf,) = of_case("third order")
+    assert derive_json(tf, print_form(tf))["laws"] == [["h", "h''' + b*s*h' + (s^2 + k)*h = 0"]]
+
+
+def test_a_solution_at_a_point_is_a_function_for_sympy():
+    assert str(to_sympy(Call("h", Name("l")), {})) == "h(l)"
+
+
+@pytest.mark.parametrize("form", ["vaughan", "frequency"])
+def test_a_form_that_needs_formulas_is_refused_without_them(form):
+    (tf,) = of_case("third order")
+    with pytest.raises(UsageError, match="forms of Out/u: hyperbolic, krylov, factored, polynomial"):
+        print_form(tf, form)
+
+
+@pytest.mark.parametrize("form", ["monic", "constant", "zpk"])
+def test_a_form_of_rational_functions_is_refused_for_a_beam(form):
+    with pytest.raises(UsageError, match="not a rational function of s"):
+        print_form(case("sliding_free_beam", "V_act/F"), form)
+
+
+@pytest.mark.parametrize("form", ["hyperbolic", "krylov", "vaughan"])
+def test_a_form_of_beams_is_refused_for_a_rational_function(form):
+    text = """[elements]
+M = { type = "mass", at = "x", m = "m" }
+[inputs]
+F = { force = "x" }
+[outputs]
+X = "x"
+"""
+    (tf,) = pipeline.derive_all(pipeline.loads(spec("m", text)))
+    with pytest.raises(
+        UsageError, match="forms of X/F: definitions, factored, polynomial, monic, constant, zpk"
+    ):
+        print_form(tf, form)
+
+
+def test_every_form_is_one_of_some_function():
+    found = {form for name in ("third order", "numbers") for form in forms_of(of_case(name)[0])}
+    assert set(FORMS) - found == {"definitions", "monic", "constant", "zpk"}
+
+
+def test_a_hidden_factor_of_kernels_is_written_out():
+    tf = case("sliding_sliding", "V_mid/F")
+    printed = [format_expression(e) for e, _ in hidden_expressions(tf)]
+    assert any("cosh(l*sqrt(s/(2*sqrt(E*I/(rho*A))))/2)" in text for text in printed)
+
+
+@pytest.mark.parametrize("name", turns(NAMES))
+def test_text_keeps_to_80_columns(name):
+    for number, tf in enumerate(of_case(name)):
+        for form in forms_of(tf):
+            rows = derive_text(tf, printed(name, number, form)).split("\n")
+            # Nobody reads a formula of a hundred lines.
+            assert max(map(len, rows)) <= 80 or len(rows) > 100

@@ -1,0 +1,295 @@
+"""The forms print what a person would write."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from symflex import pipeline
+from symflex.errors import ModelError
+from symflex.expressions import format_expression
+from symflex.print.forms import hidden_expressions, print_form
+from symflex.print.forms.usage import RATIONAL
+from symflex.print.json_format import derive_json
+from symflex.print.text import derive_text
+from tests.contract.exact import Point, read, value_of
+
+ROOT = Path(__file__).parents[3]
+FOLDER = ROOT / "derivations" / "eppinger1988"
+
+TWO_MASS = """symflex = 1
+[parameters]
+m_1 = {}
+m_2 = {}
+k = {}
+b = {}
+[elements]
+M_1 = { type = "mass", at = "x", m = "m_1" }
+M_2 = { type = "mass", at = "y", m = "m_2" }
+K = { type = "spring", between = ["x", "y"], k = "k" }
+B = { type = "damper", between = ["x", "y"], b = "b" }
+[inputs]
+F = { force = "x" }
+[outputs]
+X = "x"
+Y = "y"
+"""
+
+
+def tf_of(text, output, source):
+    return pipeline.derive(pipeline.assemble(pipeline.loads(text)), output, source)
+
+
+def printed(tf, form=None, digits=6):
+    found = print_form(tf, form, digits)
+    return format_expression(found.num), format_expression(found.den)
+
+
+def test_the_rigid_body_prints_as_the_paper_does():
+    model = pipeline.load(FOLDER / "rigid_body.toml")
+    tf = pipeline.derive(pipeline.assemble(model), "V_tip", "V_cmd")
+    assert printed(tf) == (
+        "k_amp*k_preamp*r*k_tau",
+        "r^2*(m_eff*s + b_eff)*(L*s + R + k_amp*k_current) + k_tau*(k_amp*k_preamp*k_tach + k_bemf)",
+    )
+
+
+def test_the_polynomial_form_has_descending_powers_and_parameters_in_declared_order():
+    assert printed(tf_of(TWO_MASS, "X", "F"), "polynomial") == (
+        "m_2*s^2 + b*s + k",
+        "m_1*m_2*s^4 + b*(m_1 + m_2)*s^3 + k*(m_1 + m_2)*s^2",
+    )
+
+
+def test_the_factored_form_takes_the_rigid_body_mode_out():
+    assert printed(tf_of(TWO_MASS, "Y", "F"), "factored") == (
+        "b*s + k",
+        "s^2*(m_1*m_2*s^2 + b*(m_1 + m_2)*s + k*(m_1 + m_2))",
+    )
+
+
+def test_the_monic_form_s_denominator_begins_with_a_bare_power_of_s():
+    num, den = printed(tf_of(TWO_MASS, "Y", "F"), "monic")
+    assert den.startswith("s^4 + ")
+    assert num == "b/(m_1*m_2)*s + k/(m_1*m_2)"
+
+
+@pytest.mark.parametrize("form", RATIONAL)
+def test_a_zero_function_prints_as_zero_over_one(form):
+    text = TWO_MASS.replace('K = { type = "spring", between = ["x", "y"], k = "k" }\n', "").replace(
+        'B = { type = "damper", between = ["x", "y"], b = "b" }\n', ""
+    )
+    text = text.replace("m_1 = {}", "m_1 = 1").replace("m_2 = {}", "m_2 = 1")
+    assert printed(tf_of(text, "Y", "F"), form) == ("0", "1")
+
+
+def test_a_definition_is_used_where_it_shortens_and_stands_in_the_where_list():
+    text = TWO_MASS.replace("[elements]", '[definitions]\nZ = "b*s + k"\nunused = "m_1 + m_2"\n[elements]')
+    form = print_form(tf_of(text, "Y", "F"), "definitions")
+    assert format_expression(form.num) == "Z"
+    assert [(n, format_expression(e)) for n, e in form.where if n == "Z"] == [("Z", "b*s + k")]
+
+
+def test_a_where_list_brings_the_definitions_of_its_definitions_in_dependency_order():
+    text = """symflex = 1
+[parameters]
+m = {}
+b = {}
+k = {}
+[definitions]
+Z = "m*s^2 + Y"
+Y = "b*s + k"
+[elements]
+part = { type = "spring", between = ["x", "ground"], k = "Z" }
+[inputs]
+F = { force = "x" }
+[outputs]
+X = "x"
+"""
+    form = print_form(tf_of(text, "X", "F"), "definitions")
+    assert (format_expression(form.num), format_expression(form.den)) == ("1", "Z")
+    assert [n for n, _ in form.where] == ["Y", "Z"]
+
+
+MASSES = TWO_MASS.replace("[elements]", '[definitions]\nM = "m_1 + m_2"\nmu = "m_1*m_2"\n[elements]')
+CLOSED = {
+    "polynomial": "mu*s^4 + M*b*s^3 + M*k*s^2",
+    "monic": "s^4 + M*b/mu*s^3 + M*k/mu*s^2",
+    "constant": "mu/(M*k)*s^4 + b/k*s^3 + s^2",
+    "factored": "s^2*(mu*s^2 + M*b*s + M*k)",
+    "frequency": "omega^2*(mu*omega^2 - M*k - j*M*b*omega)",
+}
+
+
+@pytest.mark.parametrize("name", CLOSED)
+def test_definitions_stay_closed_in_every_form_of_two_masses(name):
+    # s^2 (m_1 m_2 s^2 + (m_1 + m_2)(b s + k)), by hand; factors of a product may stand in any order.
+    form = print_form(tf_of(MASSES, "Y", "F"), name)
+    shown = format_expression(form.den)
+    for above, below in (("k*M", "M*k"), ("b*M", "M*b")):
+        shown = shown.replace(above, below)
+    assert shown == CLOSED[name]
+    assert {"M", "mu"} <= {n for n, _ in form.where}
+
+
+def test_a_factor_that_is_a_definition_with_s_bears_its_name():
+    text = TWO_MASS.replace("[elements]", '[definitions]\nZ = "b*s + k"\n[elements]')
+    form = print_form(tf_of(text, "Y", "F"), "factored")
+    assert format_expression(form.num) == "Z"
+
+
+def test_a_definition_that_shortens_one_coefficient_only_is_used_there():
+    text = TWO_MASS.replace("[elements]", '[definitions]\nM = "m_1 + m_2"\n[elements]')
+    form = print_form(tf_of(text, "Y", "F"), "definitions")
+    assert format_expression(form.den).replace("*M", "").count("M") == 0
+    assert "m_1*m_2*s^4" in format_expression(form.den)
+
+
+def test_a_reciprocal_definition_is_not_lost():
+    """k_2 + k/q: a definition 1/q once counted as zero there."""
+    text = """symflex = 1
+[parameters]
+k = {}
+q = {}
+k_2 = {}
+[definitions]
+c = "1/q"
+[elements]
+part = { type = "spring", between = ["x", "ground"], k = "c*k + k_2" }
+[inputs]
+F = { force = "x" }
+[outputs]
+X = "x"
+"""
+    tf = tf_of(text, "X", "F")
+    at = Point(3)
+    for name in ("polynomial", "monic", "factored", "definitions"):
+        form = print_form(tf, name)
+        for n, e in form.where:
+            at.values[n] = value_of(e, at)
+        assert value_of(form.num, at) / value_of(form.den, at) == 1 / (at["k"] / at["q"] + at["k_2"])
+
+
+def numeric(k="8 N/m", b="1 N*s/m"):
+    return (
+        TWO_MASS.replace("m_1 = {}", 'm_1 = "2 kg"')
+        .replace("m_2 = {}", 'm_2 = "3 kg"')
+        .replace("k = {}", f'k = "{k}"')
+        .replace("b = {}", f'b = "{b}"')
+    )
+
+
+def test_zpk_prints_gain_and_real_quadratic_factors():
+    # X/F = (3 s^2 + s + 8)/(s^2 (6 s^2 + 5 s + 40)): 1/2 (s^2 + s/3 + 8/3)/(s^2 (s^2 + 5/6 s + 20/3)).
+    num, den = printed(tf_of(numeric(), "X", "F"), "zpk", 4)
+    assert num == "0.5*(s^2 + 0.3333*s + 2.667)"
+    assert den == "s^2*(s^2 + 0.8333*s + 6.667)"
+
+
+@pytest.mark.parametrize("digits", [1, 3, 17, 30])
+def test_zpk_prints_as_many_digits_as_asked_for(digits):
+    _, den = printed(tf_of(numeric(), "X", "F"), "zpk", digits)
+    constant = den.removesuffix(")").rpartition(" + ")[2]
+    assert abs(Fraction(constant) - Fraction(20, 3)) <= Fraction(1, 2 * 10 ** (digits - 1))
+    assert len(constant.replace(".", "")) == digits
+
+
+def test_zpk_needs_every_value():
+    with pytest.raises(ModelError) as caught:
+        print_form(tf_of(TWO_MASS, "X", "F"), "zpk")
+    assert caught.value.diagnostics[0].code == "SF229"
+
+
+def test_an_undamped_pair_has_no_term_in_s():
+    text = numeric().replace('B = { type = "damper", between = ["x", "y"], b = "b" }\n', "")
+    # Without b: (3 s^2 + 8)/(s^2 (6 s^2 + 40)), and 40/6 = 6.667.
+    assert printed(tf_of(text, "X", "F"), "zpk", 4) == ("0.5*(s^2 + 2.667)", "s^2*(s^2 + 6.667)")
+
+
+def test_what_cancelled_prints_by_descending_powers():
+    text = TWO_MASS.replace(
+        'K = { type = "spring", between = ["x", "y"]', 'K = { type = "spring", between = ["y", "ground"]'
+    )
+    text = text.replace(
+        'B = { type = "damper", between = ["x", "y"]', 'B = { type = "damper", between = ["y", "ground"]'
+    )
+    tf = tf_of(text, "X", "F")
+    assert [(format_expression(e), m) for e, m in hidden_expressions(tf)] == [("m_2*s^2 + b*s + k", 1)]
+
+
+def test_pi_stands_before_the_parameters():
+    text = TWO_MASS.replace('k = "k" }', 'k = "k*pi^2*m_1" }')
+    num, _ = printed(tf_of(text, "Y", "F"), "polynomial")
+    assert num == "b*s + pi^2*m_1*k"
+
+
+def test_a_function_of_constants_prints_as_it_was_written():
+    text = TWO_MASS.replace('k = "k" }', 'k = "sqrt(k*m_1)" }')
+    num, _ = printed(tf_of(text, "Y", "F"), "polynomial")
+    assert num == "b*s + sqrt(k*m_1)"
+
+
+PROGRAM = """
+from symflex import pipeline
+from symflex.print.forms import print_form
+from symflex.print.forms.usage import forms_of
+from symflex.expressions import format_expression
+for tf in pipeline.derive_all(pipeline.load("derivations/eppinger1988/lumped_bending_beam.toml")):
+    for name in (*forms_of(tf), None):
+        form = print_form(tf, name)
+        print(*(format_expression(e) for e in (form.num, form.den)), form.where)
+"""
+
+
+def test_the_forms_do_not_depend_on_the_hash_seed():
+    seen = {
+        subprocess.run(
+            [sys.executable, "-c", PROGRAM],
+            env={**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)},
+            cwd=ROOT,
+            capture_output=True,
+            check=True,
+            text=True,
+        ).stdout
+        for seed in ("0", "1", "77")
+    }
+    assert len(seen) == 1
+
+
+def test_a_long_print_is_read_back():
+    (tf, *_) = pipeline.derive_all(pipeline.load(FOLDER / "six_mass.toml"))
+    form = print_form(tf)
+    assert read(format_expression(form.den)) == form.den
+
+
+def test_a_form_that_lists_poles_says_what_a_hidden_one_makes_of_stability():
+    text = 'symflex = 1\ninputs.u = {}\nsignals.x = "u/(s - 3)"\noutputs.y = "(s - 3)*x/(s + 1)"'
+    tf = tf_of(text, "y", "u")
+    form = print_form(tf, "zpk")
+    assert (
+        derive_text(tf, form).splitlines()[0].endswith("zpk form; unstable: 1 pole in the right half plane")
+    )
+    assert derive_json(tf, form)["stability"]["right_half_plane"] == 1
+
+
+def test_zpk_writes_a_gain_of_more_digits_than_python_does():
+    text = 'symflex = 1\nparameters.a = 1e200\ninputs.u = {}\noutputs.y = "a^23*u/(s + 1)"'
+    num, _ = printed(tf_of(text, "y", "u"), "zpk", 4)
+    assert num == "1" + 4600 * "0"
+
+
+def test_a_power_of_a_block_of_many_poles_is_not_nested_level_by_level():
+    # (s + a)^900 has 901 terms, each of which would be nested in the one before.
+    text = """symflex = 1
+parameters = { a = "3 1/s" }
+blocks.G = { type = "tf", num = "1", den = "(s + a)^30" }
+signals.u = "G^30*r"
+inputs.r = {}
+outputs.U = "u"
+"""
+    assert printed(tf_of(text, "U", "r"), "definitions") == ("1", "(s + a)^900")

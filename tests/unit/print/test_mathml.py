@@ -1,0 +1,209 @@
+"""MathML says what the expression says: it is read back by a reader of its own, and evaluated."""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import mpmath
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from symflex import pipeline
+from symflex.expressions import (
+    Call,
+    Name,
+    Negative,
+    Quotient,
+    Sum,
+    format_expression,
+    number,
+    power,
+    product_of,
+    quotient,
+    sum_of,
+)
+from symflex.model.labels import ACCENTS, FONTS, GREEK, LABEL_LIMIT, SYMBOLS
+from symflex.print.forms import print_form
+from symflex.print.latex import model_labels
+from symflex.print.mathml import (
+    MathmlWriter,
+    label_mathml,
+    math_element,
+    mathml_expression,
+    transfer_function_mathml,
+)
+from tests.house.repository import specifications
+from tests.independent.spec_expressions import evaluate
+
+ROOT = Path(__file__).parents[3]
+LONG = ("polynomial_resonance", "robot_axis", "six_mass")
+DERIVATIONS = [
+    pytest.param(path, marks=[pytest.mark.slow] if path.stem in LONG else [], id=path.stem)
+    for path in specifications(ROOT / "derivations" / "eppinger1988", "*.toml")
+]
+CORE = frozenset(
+    "math mrow mi mn mo mtext mspace mfrac msqrt msub msup msubsup mover munder".split()
+)  # elements of MathML Core that the printer uses
+VALUES = {"s": mpmath.mpf("1.3"), "a": mpmath.mpf("0.7"), "b": mpmath.mpf("2.1"), "c": mpmath.mpf("0.4")}
+SIGNS = (
+    {"\u2212": "-", "\u22c5": "*", "\u2062": "*", "+": "+", "/": "/"}
+    | {c: "(" for c in "([{"}
+    | {c: ")" for c in ")]}"}
+)
+
+
+def read(element):
+    """Return an element of MathML as text of the specification's grammar."""
+    children = list(element)
+    match element.tag:
+        case "math" | "mrow":
+            return read_row(children)
+        case "mi" | "mn":
+            return element.text
+        case "mo":
+            return SIGNS[element.text]
+        case "mfrac":
+            return f"(({read(children[0])})/({read(children[1])}))"
+        case "msqrt":
+            return f"sqrt({read_row(children)})"
+        case "msup" if children[0].tag == "mi" and children[0].text == "e":
+            return f"exp({read(children[1])})"
+        case "msup" if children[0].tag == "mo":  # a closing parenthesis that bears the exponent
+            return f")^({read(children[1])})"
+        case "msup":
+            return f"({read(children[0])})^({read(children[1])})"
+    raise AssertionError(element.tag)
+
+
+def read_row(children):
+    """Return elements side by side; a function is applied to what follows the invisible operator."""
+    texts = []
+    i = 0
+    while i < len(children):
+        following = children[i + 1] if i + 1 < len(children) else None
+        if following is not None and following.tag == "mo" and following.text == "\u2061":
+            argument = read(children[i + 2])
+            head = children[i]
+            if head.tag == "msup":
+                texts.append(f"({head[0].text}({argument}))^({read(head[1])})")
+            else:
+                texts.append(f"{head.text}({argument})")
+            i += 3
+        else:
+            texts.append(read(children[i]))
+            i += 1
+    return "".join(texts)
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _many_digits():
+    # Sines of large numbers need them.
+    with mpmath.workdps(60):
+        yield
+
+
+def value_of(mathml):
+    text = read(ET.fromstring(f"<mrow>{mathml}</mrow>"))
+    return evaluate(re.sub(r"(?<![\w)])\+", "", text), VALUES)
+
+
+def expressions():
+    leaves = st.sampled_from([Name(n) for n in "sabc"]) | st.builds(number, st.integers(1, 20))
+
+    def grow(inner):
+        return st.one_of(
+            st.builds(lambda x, y: sum_of([x, y]), inner, inner),
+            st.builds(lambda x, y: Sum((x, Negative(y))), inner, inner),
+            st.builds(lambda x, y: product_of([x, y]), inner, inner),
+            st.builds(quotient, inner, inner),
+            st.builds(power, inner, st.integers(2, 3)),
+            st.builds(Call, st.sampled_from(["sqrt", "sin"]), inner),
+            st.builds(lambda x: power(Call("sin", x), 2), inner),
+            # Towers of exponentials have no value that fits into memory.
+            st.builds(Call, st.sampled_from(["exp", "cosh"]), leaves),
+            st.builds(lambda x: power(Call("cosh", x), 2), leaves),
+            st.builds(Negative, inner),
+        )
+
+    return st.recursive(leaves, grow, max_leaves=10)
+
+
+def close(a, b):
+    if mpmath.isnan(a) or mpmath.isnan(b) or mpmath.isinf(b):
+        return True
+    return abs(a - b) <= mpmath.mpf("1e-9") * max(1, abs(b))
+
+
+@settings(max_examples=80, deadline=None)
+@given(expressions())
+def test_mathml_has_the_value_of_the_expression(expression):
+    try:
+        expected = evaluate(format_expression(expression), VALUES)
+        found = value_of(mathml_expression(expression, {}))
+    except (ZeroDivisionError, OverflowError):
+        return
+    assert close(found, expected)
+
+
+@settings(max_examples=80, deadline=None)
+@given(expressions(), st.floats(1, 12))
+def test_pieces_side_by_side_have_the_value_of_the_expression(expression, width):
+    pieces = MathmlWriter({}).pieces(expression, width)
+    try:
+        expected = evaluate(format_expression(expression), VALUES)
+        found = value_of("".join(pieces))
+    except (ZeroDivisionError, OverflowError):
+        return
+    assert close(found, expected)
+
+
+def test_a_long_sum_is_parted_before_its_signs():
+    letters = Sum(tuple(Name(c) for c in "abcdefghijklmnopqrst"))
+    pieces = MathmlWriter({}).pieces(letters, 5.0)
+    assert len(pieces) == 20
+    assert all(piece.startswith('<mo form="infix">+</mo>') for piece in pieces[1:])
+
+
+@pytest.mark.parametrize("path", DERIVATIONS)
+def test_every_formula_is_well_formed_and_of_mathml_core(path):
+    for tf in pipeline.derive_all(pipeline.load(path)):
+        rows = transfer_function_mathml(tf, print_form(tf))
+        for row in rows:
+            for content in (row.left, *row.pieces):
+                found = ET.fromstring(math_element(f"<mrow>{content}</mrow>"))
+                assert {e.tag for e in found.iter()} <= CORE
+
+
+@pytest.mark.parametrize("path", DERIVATIONS)
+def test_every_label_is_well_formed(path):
+    model = pipeline.load(path)
+    labels = model_labels(model)
+    for name in labels:
+        assert ET.fromstring(f"<math>{label_mathml(name, labels)}</math>") is not None
+
+
+@pytest.mark.parametrize(
+    "latex",
+    [
+        *(f"\\{c}" for c in (*GREEK, *SYMBOLS)),
+        *(f"\\{c}{{x}}" for c in (*ACCENTS, *FONTS)),
+        "x'_{a,b}", "k_1^{*}", r"\mathrm{e.m.f.}", r"\hat{\omega}_{p1}'", "A|B", "{x}_{y_z}",
+    ],
+)  # fmt: skip
+def test_whatever_a_declared_label_may_hold_is_well_formed(latex):
+    assert len(latex) <= LABEL_LIMIT
+    found = ET.fromstring(f"<math>{label_mathml('n', {'n': latex})}</math>")
+    assert {e.tag for e in found.iter()} <= CORE
+
+
+def test_names_that_have_no_label_are_text():
+    assert label_mathml("a__b", {}) == '<mtext class="tt">a__b</mtext>'
+
+
+def test_quotients_inside_exponents_have_slashes():
+    shown = mathml_expression(Call("exp", Negative(Quotient(Name("s"), number(2)))), {})
+    assert "<mfrac>" not in shown
+    assert "<mo>/</mo>" in shown

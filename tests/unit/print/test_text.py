@@ -1,0 +1,114 @@
+"""Laying out formulas and roots for a terminal."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from symflex import pipeline
+from symflex.errors import Source, Span, Text
+from symflex.expressions import PROGRAM_LIMITS, format_expression, parse
+from symflex.print.text import roots_text, wrapped
+from symflex.roots import Modes
+
+CHAIN = " + ".join(
+    f"(b_{i}*s + k_{i})*(m_{i}*s^2 + c_{i}*(d_{i} + e_{i}*(f_{i}*s + g_{i})))" for i in range(9)
+)
+OSCILLATOR = """
+symflex = 1
+parameters = { m = "2 kg", k = "19 N/m", b = "1 N*s/m" }
+inputs  = { F = { force = "x" } }
+outputs = { X = "x" }
+[elements]
+body = { type = "mass", at = "x", m = "m" }
+wall = { type = "spring", between = ["x", "ground"], k = "k" }
+loss = { type = "damper", between = ["x", "ground"], b = "b" }
+"""
+
+
+def expression(text):
+    return parse(Text(text, Span(Source("", text), 0, len(text))), limits=PROGRAM_LIMITS)
+
+
+def test_what_fits_stays_on_one_line():
+    assert wrapped(expression("m*s^2 + b*s + k"), 15) == ["m*s^2 + b*s + k"]
+
+
+def test_simple_terms_fill_the_lines():
+    assert wrapped(expression("a + b + c + d + e + f"), 12) == ["a + b + c", "  + d + e", "  + f"]
+
+
+def test_terms_with_parentheses_stand_one_to_a_line():
+    text = "(a + b)*(c + d) + (e + f)*(g + h) - (i + j)*k"
+    assert wrapped(expression(text), 40) == ["(a + b)*(c + d)", "  + (e + f)*(g + h)", "  - (i + j)*k"]
+
+
+def test_products_break_after_a_times():
+    text = "(a_1 + b_1)*(a_2 + b_2)*(a_3 + b_3)"
+    assert wrapped(expression(text), 26) == ["(a_1 + b_1)*(a_2 + b_2)*", "    (a_3 + b_3)"]
+
+
+def test_a_long_sum_stands_to_the_right_of_a_short_factor():
+    text = "s^2*((a + b)*(c + d) + (e + f)*(g + h))"
+    assert wrapped(expression(text), 30) == ["s^2*((a + b)*(c + d)", "     + (e + f)*(g + h))"]
+
+
+def test_a_long_sum_stands_below_a_long_factor():
+    text = "(alpha + beta)*((a + b)*(c + d) + (e + f)*(g + h))"
+    assert wrapped(expression(text), 30) == [
+        "(alpha + beta)*(",
+        "    (a + b)*(c + d)",
+        "    + (e + f)*(g + h))",
+    ]
+
+
+def test_a_name_too_long_for_the_line_is_not_broken():
+    assert wrapped(expression("x" * 60), 40) == ["x" * 60]
+
+
+@pytest.mark.parametrize("width", [40, 60, 80, 120])
+def test_a_nested_sum_keeps_to_the_width(width):
+    assert max(map(len, wrapped(expression(CHAIN), width))) <= width
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    width=st.integers(12, 90),
+    parts=st.lists(
+        st.sampled_from(["a", "b*(c + d)", "(e - f)^2*g", "-h", "k/(m + n)", CHAIN]), min_size=1, max_size=6
+    ),
+    nested=st.booleans(),
+)
+def test_breaking_changes_nothing_but_white_space(width, parts, nested):
+    tree = expression(" + ".join(f"({part})*p" if nested else f"({part})" for part in parts))
+    joined = "".join("".join(wrapped(tree, width)).split())
+    assert joined == "".join(format_expression(tree).split())
+
+
+@pytest.fixture(scope="module")
+def bound():
+    return pipeline.bind(pipeline.derive_all(pipeline.loads(OSCILLATOR))[0])
+
+
+@pytest.mark.parametrize("digits", [3, 15, 25, 30])
+def test_root_tables_keep_to_80_columns(bound, digits):
+    assert max(map(len, roots_text(pipeline.roots(bound, None, digits), digits).splitlines())) <= 80
+
+
+@pytest.mark.parametrize("digits", [6, 30, 70])
+def test_all_digits_of_a_pair_are_shown_in_every_layout(bound, digits):
+    found = pipeline.roots(bound, None, digits)
+    upper = found.poles[0].decimal(digits)
+    text = roots_text(found, digits)
+    assert upper.re in text
+    assert f"+-{upper.im}" in text
+
+
+def test_the_number_of_roots_counts_multiplicity_and_both_members_of_a_pair(bound):
+    assert "  poles: 2\n" in roots_text(pipeline.roots(bound, None, 5), 5)
+
+
+def test_what_was_asked_for_is_said(bound):
+    text = roots_text(pipeline.roots(bound, Modes(1), 5), 5)
+    assert "shown: the mode of lowest natural frequency, and roots at 0" in text

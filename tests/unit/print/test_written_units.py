@@ -1,0 +1,81 @@
+"""Values stand in tables as they were written, and beside the SI values of generated code."""
+
+from __future__ import annotations
+
+import pytest
+
+from symflex import pipeline
+from symflex.codegen.exporters import EXPORTERS
+from symflex.print.html.model import model_html
+from symflex.print.latex import parameter_table
+
+SPEC = """
+symflex = 1
+[parameters]
+E = "70 GPa"
+K = { value = "40 V/(A*s)", doc = "integral gain" }
+n = "90 deg"
+l = "2 m"
+m = { unit = "t" }
+[inputs]
+u = {}
+[outputs]
+y = "l*u"
+"""
+ROWS = [r"\qty{70}{\giga\pascal}", r"\qty{40}{\volt\per\ampere\per\second}", r"\qty{90}{\degree}",
+        r"\qty{2}{\metre}", r"symbolic, in \unit{\tonne}"]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def model():
+    return pipeline.loads(SPEC)
+
+
+@pytest.mark.parametrize("row", ROWS)
+def test_a_table_in_latex_has_values_as_they_were_written(row, model):
+    assert row in parameter_table(model)
+
+
+def test_a_notebook_has_values_as_they_were_written(model):
+    shown = model_html(model)
+    assert ">70</td>" in shown
+    assert ">GPa</td>" in shown
+    assert "7e10" not in shown
+
+
+def test_a_value_set_in_another_unit_stands_in_that_unit():
+    model = pipeline.loads(SPEC.replace('"2 m"', '"80 cm"'))
+    assert r"\qty{80}{\centi\metre}" in parameter_table(model)
+
+
+BEAM = """
+symflex = 1
+[parameters]
+k = "35 kN/m"
+m = "3 kg"
+[elements]
+body = { type = "mass", at = "x", m = "m" }
+wall = { type = "spring", between = ["x", "ground"], k = "k" }
+[inputs]
+F = { force = "x" }
+[outputs]
+X = "x"
+"""
+
+
+@pytest.mark.parametrize(
+    ("target", "said"),
+    [
+        ("numpy", "[N/m]. 35 kN/m in the model."),
+        ("jax", "[N/m]. 35 kN/m in the model."),
+        ("julia", "[N/m]. 35 kN/m in the model."),
+        ("matlab", "[N/m]. 35 kN/m in the model."),
+        ("state-space", "[N/m]. 35 kN/m in the model."),
+        ("c", ".k = 35000.0, /* 35 kN/m */"),
+    ],
+)
+def test_generated_code_says_values_as_they_were_written(target, said):
+    model = pipeline.loads(BEAM)
+    text = EXPORTERS[target].export(model, pipeline.derive_all(model), "spring").text
+    assert said in " ".join(text.replace("%", " ").split())
+    assert "3 kg in the model" not in text  # that is SI
