@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Angle:
+class KernelPair:
     """A pair of kernels of one argument.
 
     Parameters
@@ -57,7 +57,7 @@ class Exponentials:
     table: KernelTable
 
     @cached_property
-    def angles(self) -> tuple[Angle, ...]:
+    def angles(self) -> tuple[KernelPair, ...]:
         """The pairs of kernels."""
         found = []
         kernels = {(k.function, k.wavenumber, id(k.length)): k for k in self.table.kernels}
@@ -67,9 +67,9 @@ class Exponentials:
                 odd = kernels[odd_function, kernel.wavenumber, id(kernel.length)]  # type: ignore[index]
                 tail = kernel.generator.partition("[")[2]
                 if kernel.function == "cosh":
-                    found.append(Angle("hyperbolic", kernel, odd, (f"E[{tail}",)))
+                    found.append(KernelPair("hyperbolic", kernel, odd, (f"E[{tail}",)))
                 else:
-                    found.append(Angle("circular", kernel, odd, (f"t[{tail}", f"u[{tail}")))
+                    found.append(KernelPair("circular", kernel, odd, (f"t[{tail}", f"u[{tail}")))
         return tuple(found)
 
     @cached_property

@@ -38,7 +38,7 @@ Key = tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Mode:
+class CharacteristicMode:
     """The solutions ``exp(x_i length)`` of one dispersion at one length; of a decay, ``exp(-shift*length)``.
 
     Parameters
@@ -156,15 +156,15 @@ class ModalSums:
     table: KernelTable
 
     @cached_property
-    def _modes(self) -> Mapping[tuple[int, int, bool], Mode]:
+    def _modes(self) -> Mapping[tuple[int, int, bool], CharacteristicMode]:
         return {
-            _key(k): Mode(k.dispersion, k.length, k.function == "exp")
+            _key(k): CharacteristicMode(k.dispersion, k.length, k.function == "exp")
             for k in self.table.kernels
             if k.function in ("fundamental", "exp")
         }
 
     @property
-    def modes(self) -> tuple[Mode, ...]:
+    def modes(self) -> tuple[CharacteristicMode, ...]:
         """The modes that slots count."""
         return tuple(self._modes.values())
 
@@ -293,7 +293,7 @@ class _RootAlgebra:
     """
 
     ring: Ring
-    modes: Sequence[Mode]
+    modes: Sequence[CharacteristicMode]
 
     def vanishes(
         self,

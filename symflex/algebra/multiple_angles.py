@@ -15,11 +15,11 @@ from symflex.algebra.factored import Factored
 if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
-    from symflex.algebra.exponentials import Angle
+    from symflex.algebra.exponentials import KernelPair
     from symflex.algebra.ring import Ring
 
 
-def lift(ring: Ring, polynomial: fmpz_mpoly, angle: Angle, n: int) -> Factored | None:
+def lift(ring: Ring, polynomial: fmpz_mpoly, angle: KernelPair, n: int) -> Factored | None:
     """Return a polynomial in normal form with an angle's kernels standing for n times its argument.
 
     Parameters
@@ -28,7 +28,7 @@ def lift(ring: Ring, polynomial: fmpz_mpoly, angle: Angle, n: int) -> Factored |
         Of the polynomial; the result is over the same generators.
     polynomial : fmpz_mpoly
         Of degree at most one in the odd kernel.
-    angle : Angle
+    angle : KernelPair
         Which kernels.
     n : int
         The multiple.

@@ -27,7 +27,7 @@ TRIALS = 4
 """Values of the parameters that are tried in each field."""
 
 
-class Origin:
+class OriginSeries:
     """Orders at s = 0, or where another polynomial in s and parameters vanishes, of functions over one ring.
 
     Parameters

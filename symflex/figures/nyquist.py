@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from symflex.figures.drawing import AxisLimits, Limits
-    from symflex.roots.counting.right_half_plane import StabilityVerdict
+    from symflex.roots.verdict import StabilityVerdict
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
 HEIGHT_INCHES: Final = 3.3
@@ -110,7 +110,7 @@ def _open_poles(verdict: StabilityVerdict) -> str:
 
     Examples
     --------
-    >>> from symflex.roots.counting.right_half_plane import StabilityVerdict
+    >>> from symflex.roots.verdict import StabilityVerdict
     >>> _open_poles(StabilityVerdict("unstable", 2, True, "", 2))
     '$P = 2$'
     """

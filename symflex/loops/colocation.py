@@ -154,7 +154,7 @@ def dynamic_colocation(
     for bound in (tip, joint):
         if bound.ratio.is_zero:
             raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero"))
-    search = _Search(tip, joint, phase, magnitude, budget or entered_budget())
+    search = _ColocationSearch(tip, joint, phase, magnitude, budget or entered_budget())
     edge, is_decided, begins, cause = search.first_exit(low, high)
     return DynamicColocation(
         tip.name, joint.name, phase, magnitude, (low, high), edge, is_decided, cause, begins
@@ -162,7 +162,7 @@ def dynamic_colocation(
 
 
 @dataclass
-class _Search:
+class _ColocationSearch:
     """Follows the ratio of two functions upwards until it leaves the sector."""
 
     tip: BoundTransferFunction

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from flint import acb, arb
 
 from symflex.algebra import Factored
-from symflex.algebra.origin import Origin
+from symflex.algebra.origin import OriginSeries
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.loops.axis import find_on_axis
 from symflex.loops.crossing import Crossing, PoleCount
@@ -25,9 +25,9 @@ from symflex.roots import Band, precision
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.tail import right_tail
 from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
-from symflex.roots.distributed.kernel_function import KernelFunction
 from symflex.roots.distributed.side import Side
-from symflex.roots.distributed.square_free_kernels import without_squares
+from symflex.roots.functions.kernel_function import KernelFunction
+from symflex.roots.functions.square_free_kernels import without_squares
 from symflex.roots.root import exact_fraction
 
 if TYPE_CHECKING:
@@ -266,7 +266,7 @@ class DistributedFactors:
     def _order_at_zero(self, gain: Fraction, function: KernelFunction) -> int:
         whole = self._product(gain)
         powers = whole.exponent_of(whole.ring.context.gen(0))
-        order = Origin(function.part.ring, function.bound.kernels).order(function.part)
+        order = OriginSeries(function.part.ring, function.bound.kernels).order(function.part)
         if order is None:
             self.reasons.append("poles next to s = 0 are counted as poles at 0")
             return powers + self._turns(function)
@@ -278,7 +278,7 @@ class DistributedFactors:
 
     def _inner_radius(self, winding: CertifiedWinding, function: KernelFunction) -> float:
         """Return ln of a radius within which there is no pole but at s = 0, proved."""
-        order = Origin(function.part.ring, function.bound.kernels).order(function.part)
+        order = OriginSeries(function.part.ring, function.bound.kernels).order(function.part)
         lowest = Winding(function, self.budget).smallest(pi)
         for depth in DEPTHS:
             try:

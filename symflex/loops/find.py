@@ -84,7 +84,7 @@ def find_stable_gains(
     crossings = [c for factor in lumped for c in factor.crossings(digits + GUARD_DIGITS, budget)]
     if distributed is not None:
         crossings += distributed.crossings(digits + GUARD_DIGITS)
-    search = _Search(lumped, distributed, (low, high), budget)
+    search = _GainSearch(lumped, distributed, (low, high), budget)
     boundaries, intervals = search.between(crossings)
     nominal = loop.nominal
     reasons = [] if distributed is None else distributed.reasons
@@ -159,7 +159,7 @@ def _range_needed(loop: Loop) -> UsageError:
 
 
 @dataclass
-class _Search:
+class _GainSearch:
     """Puts crossings in order, and counts poles between them."""
 
     lumped: Sequence[LumpedFactor]

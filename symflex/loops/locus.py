@@ -17,8 +17,8 @@ from symflex.budget import Budget, entered_budget, spend
 from symflex.errors import Diagnostic, UncertifiedError, UsageError
 from symflex.loops.loop_function import LoopFunction
 from symflex.roots import Band, Modes, Position
-from symflex.roots.counting.right_half_plane import is_right
 from symflex.roots.locate import locate
+from symflex.roots.verdict import is_right
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

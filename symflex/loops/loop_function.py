@@ -16,13 +16,13 @@ from flint import acb, acb_series, arb
 
 from symflex.algebra import Factored
 from symflex.roots import precision
-from symflex.roots.distributed.exponential_sum import ExponentialValues, arguments_of, exponential_sum
+from symflex.roots.functions.exponential_sum import ExponentialValues, arguments_of, exponential_sum
 from symflex.transfer.enclose_kernels import expansion
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
-    from symflex.roots.distributed.exponential_sum import Argument, ExponentialSum, Place
+    from symflex.roots.functions.exponential_sum import Argument, ExponentialSum, Place
     from symflex.transfer import BoundTransferFunction
     from symflex.transfer.enclose_kernels import KernelValues
     from symflex.transfer.monomials import Value

@@ -18,7 +18,7 @@ from flint import arb
 from symflex.algebra import Ring, degree_in
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.loops.crossing import Crossing, PoleCount
-from symflex.roots import Budget, Constant, PolynomialInS, RootProblem, find_polynomial_roots, precision
+from symflex.roots import Budget, PolynomialInS, RealConstant, RootProblem, find_polynomial_roots, precision
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -41,7 +41,7 @@ class LumpedFactor:
 
     Parameters
     ----------
-    constants : tuple of Constant
+    constants : tuple of RealConstant
         Real numbers the coefficients hold as symbols.
     ring : Ring
         w, K and the constants.
@@ -55,7 +55,7 @@ class LumpedFactor:
         How often the factor occurs.
     """
 
-    constants: tuple[Constant, ...]
+    constants: tuple[RealConstant, ...]
     ring: Ring
     even: fmpz_mpoly
     odd: fmpz_mpoly
@@ -67,7 +67,7 @@ class LumpedFactor:
     def of(cls, bound: BoundTransferFunction, factor: GainPolynomial) -> LumpedFactor:
         """Return a factor without kernels as E and O."""
         terms = _integer_terms(factor)
-        constants = tuple(Constant(name, evaluate) for name, evaluate in bound.constants)
+        constants = tuple(RealConstant(name, evaluate) for name, evaluate in bound.constants)
         names = bound.ratio.ring.names[1 : 1 + len(constants)]
         used = [i for i, _ in enumerate(names) if any(key[2][i] for key in terms)]
         ring = Ring(("w", "K", *(names[i] for i in used)))

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 from flint import acb, arb
 
 from symflex.algebra import Factored
-from symflex.algebra.origin import Origin
+from symflex.algebra.origin import OriginSeries
 from symflex.budget import spend
 from symflex.errors import SymflexError
 from symflex.roots import precision
 from symflex.roots.counting.local_series import SERIES_POINTS, local_series
 from symflex.roots.counting.winding import Winding
-from symflex.roots.distributed.kernel_function import KernelFunction
+from symflex.roots.functions.kernel_function import KernelFunction
 
 if TYPE_CHECKING:
     from symflex.loops.loop_function import LoopFunction
@@ -136,7 +136,7 @@ def loop_at_origin(function: LoopFunction, budget: Budget) -> LoopAtOrigin | Non
         whole = Factored.polynomial(ring, polynomial)
         try:
             part = KernelFunction(function.bound, whole)
-            order = Origin(ring, function.bound.kernels).order(part.part)
+            order = OriginSeries(ring, function.bound.kernels).order(part.part)
             if order is None or part.power != 1:
                 return None
             lowest = Winding(part, budget).smallest(pi)

@@ -7,11 +7,11 @@ from symflex.budget import Budget, Progress
 from symflex.roots.finder import RootFinder
 from symflex.roots.kernel_finder import KernelRootFinder
 from symflex.roots.pole_zero_map import Certificate, HiddenRoot, PoleZeroMap, find_pole_zero_map
+from symflex.roots.polynomial_roots import POLYNOMIAL, PolynomialRootFinder, find_polynomial_roots
 from symflex.roots.polynomials.durand_kerner import propose_by_durand_kerner
 from symflex.roots.polynomials.laguerre import propose_by_laguerre
-from symflex.roots.polynomials.polynomial import POLYNOMIAL, PolynomialRootFinder, find_polynomial_roots
 from symflex.roots.precision import precision
-from symflex.roots.problem import Constant, KernelProblem, PolynomialInS, Problem, RootProblem
+from symflex.roots.problem import KernelProblem, PolynomialInS, Problem, RealConstant, RootProblem
 from symflex.roots.region import Band, Everything, Mode, Modes, Position, Rectangle, Region
 from symflex.roots.root import Root, RootDecimals, decimals
 
@@ -29,7 +29,6 @@ __all__ = [
     "Band",
     "Budget",
     "Certificate",
-    "Constant",
     "Everything",
     "HiddenRoot",
     "KernelProblem",
@@ -42,6 +41,7 @@ __all__ = [
     "Position",
     "Problem",
     "Progress",
+    "RealConstant",
     "Rectangle",
     "Region",
     "Root",

@@ -8,9 +8,9 @@ from flint import fmpz_mpoly_ctx
 
 from symflex.budget import Budget, entered_budget
 from symflex.roots.distributed.distributed import locate_distributed
-from symflex.roots.distributed.vanishing import without_lengths_of_zero
+from symflex.roots.functions.vanishing import without_lengths_of_zero
 from symflex.roots.pole_zero_map import PoleZeroMap, find_pole_zero_map
-from symflex.roots.problem import Constant, PolynomialInS, RootProblem
+from symflex.roots.problem import PolynomialInS, RealConstant, RootProblem
 from symflex.transfer import BoundTransferFunction, coefficients_in_s
 
 if TYPE_CHECKING:
@@ -75,5 +75,5 @@ def _polynomial(bound: BoundTransferFunction, factor: fmpz_mpoly) -> PolynomialI
         integers = fmpz_mpoly_ctx.get([], "lex")
         numbers = (int(c.leading_coefficient()) if len(c) else 0 for c in coefficients)
         return PolynomialInS(tuple(integers.constant(n) for n in numbers), integers)
-    constants = tuple(Constant(name, evaluate) for name, evaluate in bound.constants)
+    constants = tuple(RealConstant(name, evaluate) for name, evaluate in bound.constants)
     return PolynomialInS(coefficients, bound.constant_ring.context, constants)

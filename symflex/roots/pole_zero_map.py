@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Self
 
 from symflex.errors import BudgetError, Diagnostic
-from symflex.roots.counting.right_half_plane import NOT_EXAMINED, StabilityVerdict, is_right, judge
-from symflex.roots.polynomials.polynomial import POLYNOMIAL
+from symflex.roots.polynomial_roots import POLYNOMIAL
 from symflex.roots.region import Everything, Mode, Modes, Position, Region
 from symflex.roots.root import Root, overlap
+from symflex.roots.verdict import NOT_EXAMINED, StabilityVerdict, is_right, judge
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -22,7 +22,7 @@ ZERO_TEST_BITS = (64, 256, 1024, 4096)
 
 
 @dataclass(frozen=True, slots=True)
-class Constant:
+class RealConstant:
     """A real number that exact steps treat as an independent symbol.
 
     Parameters
@@ -35,7 +35,7 @@ class Constant:
     Examples
     --------
     >>> from flint import arb
-    >>> Constant("pi", arb.pi).name
+    >>> RealConstant("pi", arb.pi).name
     'pi'
     """
 
@@ -53,7 +53,7 @@ class PolynomialInS:
         In ascending powers of s, all in ``context``; trailing zeros are dropped.
     context : fmpz_mpoly_ctx
         Ring of the coefficients; generator number i stands for ``constants[i]``.
-    constants : tuple of Constant
+    constants : tuple of RealConstant
         One for each generator; empty when all coefficients are integers.
 
     Raises
@@ -71,7 +71,7 @@ class PolynomialInS:
 
     coefficients: tuple[fmpz_mpoly, ...]
     context: fmpz_mpoly_ctx
-    constants: tuple[Constant, ...] = ()
+    constants: tuple[RealConstant, ...] = ()
 
     def __post_init__(self) -> None:
         if len(self.constants) != self.context.nvars():

@@ -13,7 +13,7 @@ from flint import arb
 from symflex.budget import spend
 from symflex.errors import SymflexError
 from symflex.roots import Everything, Modes, precision
-from symflex.roots.distributed.vanishing import without_lengths_of_zero
+from symflex.roots.functions.vanishing import without_lengths_of_zero
 from symflex.roots.locate import locate
 from symflex.sweep.rounding import Doubles, doubles
 from symflex.sweep.similarity import Similarities

@@ -24,7 +24,7 @@ from symflex.algebra import (
 from symflex.algebra.exponentials import Exponentials, split_content
 from symflex.algebra.multiple_angles import lift
 from symflex.algebra.normal_form import NormalForm, split
-from symflex.algebra.origin import Origin
+from symflex.algebra.origin import OriginSeries
 from symflex.algebra.vanishing import Vanishing
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
-    from symflex.algebra.exponentials import Angle
+    from symflex.algebra.exponentials import KernelPair
 
     Split = Callable[[fmpz_mpoly], tuple[fmpz_mpoly, fmpz_mpoly]]
 
@@ -195,7 +195,7 @@ class KernelReduction:
                     break
         return ratio, modes, table
 
-    def _lift(self, value: Factored, angles: Sequence[Angle], n: int) -> Factored | None:
+    def _lift(self, value: Factored, angles: Sequence[KernelPair], n: int) -> Factored | None:
         result = Factored.number(self.ring, value.unit)
         for factor, exponent in value.factors:
             images = Factored.polynomial(self.ring, factor)
@@ -217,8 +217,8 @@ class KernelReduction:
         if reduced.num.is_zero:
             return result
         for factor in self._vanishing:
-            whole = Origin(self.ring, self.table, factor).order(determinant)
-            left = Origin(self.ring, reduced.table, factor).order(reduced.den)
+            whole = OriginSeries(self.ring, self.table, factor).order(determinant)
+            left = OriginSeries(self.ring, reduced.table, factor).order(reduced.den)
             if whole is not None and left is not None and whole > left:
                 result = result * Factored.polynomial(self.ring, factor) ** (whole - left)
         return result
@@ -317,7 +317,7 @@ class KernelReduction:
 
     def _apart_at_origin(self, num: Factored, den: Factored, table: KernelTable) -> tuple[Factored, Factored]:
         """Return both without the power of s that divides both, as entire functions."""
-        origin = Origin(self.ring, table)
+        origin = OriginSeries(self.ring, table)
         orders = origin.order(num), origin.order(den)
         if orders[0] is None or orders[1] is None:
             return num, den

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.algebra import Ring
-    from symflex.algebra.exponentials import Angle
+    from symflex.algebra.exponentials import KernelPair
 
 Image = nmod_poly | None
 """A polynomial in an angle's exponential, or half-angle tangent; ``None`` when its degree is too low."""
@@ -39,12 +39,12 @@ class KernelImages:
     ----------
     ring : Ring
         Where the polynomials live.
-    angles : sequence of Angle
+    angles : sequence of KernelPair
         The kernels: hyperbolic and circular functions, in pairs.
     """
 
     ring: Ring
-    angles: Sequence[Angle]
+    angles: Sequence[KernelPair]
 
     def prove_apart(self, f: fmpz_mpoly, g: fmpz_mpoly) -> bool:
         """Tell whether two polynomials are proved to share no factor with a kernel; False decides nothing."""

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from symflex.analysis.modes.bound_equations import SystemAt
     from symflex.library.elements import Variable
     from symflex.roots import PoleZeroMap, Region, Root
-    from symflex.roots.counting.right_half_plane import StabilityVerdict
+    from symflex.roots.verdict import StabilityVerdict
     from symflex.transfer import BoundTransferFunction
 
 DIGITS = 15

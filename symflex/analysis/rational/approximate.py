@@ -13,7 +13,7 @@ from symflex.analysis.rational.truncation import modes_up_to, truncate
 from symflex.analysis.response import default_band
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.roots.distributed.vanishing import without_lengths_of_zero
+from symflex.roots.functions.vanishing import without_lengths_of_zero
 
 if TYPE_CHECKING:
     from symflex.analysis.rational.truncation import Truncation

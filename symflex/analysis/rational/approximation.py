@@ -10,7 +10,7 @@ import mpmath
 import numpy as np
 
 from symflex.analysis.rational.toolboxes import PERCENTS, ApproximateFunction, doubles
-from symflex.roots.counting.right_half_plane import NOT_EXAMINED, StabilityVerdict
+from symflex.roots.verdict import NOT_EXAMINED, StabilityVerdict
 from symflex.state_space.numeric import BoundStateSpace, not_installed
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from flint import acb, acb_series, arb, ctx
 
 from symflex.algebra import Factored
-from symflex.algebra.origin import Origin
+from symflex.algebra.origin import OriginSeries
 from symflex.analysis.rational.local_values import BRANCHES, local_values, series_length
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots import precision
@@ -28,7 +28,7 @@ from symflex.roots.counting.local_series import (
     LocalSeries,
     local_series,
 )
-from symflex.roots.distributed.kernel_function import KernelFunction
+from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.precision import bits_for_digits
 
 if TYPE_CHECKING:
@@ -119,8 +119,8 @@ def expand_at_zero(bound: BoundTransferFunction, last: int, digits: int) -> Laur
     """
     named = any(law.wavenumbers for law in bound.kernels.dispersions)
     branches = BRANCHES if named else 1
-    origin = Origin(bound.ratio.ring, bound.kernels)
-    # Origin counts in quarters, where there are branches.
+    origin = OriginSeries(bound.ratio.ring, bound.kernels)
+    # Orders count in quarters, where there are branches.
     orders = [
         origin.order(Factored(bound.ratio.ring, Fraction(1), ((f, branches),)))
         for f, _ in bound.ratio.factors

@@ -12,7 +12,7 @@ from symflex.analysis.rational.laurent import expand_at_pole, expand_at_zero
 from symflex.budget import spend
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots import precision
-from symflex.roots.distributed.vanishing import without_lengths_of_zero
+from symflex.roots.functions.vanishing import without_lengths_of_zero
 from symflex.roots.locate import locate
 from symflex.roots.root import GUARD_BITS
 

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, UsageError
 from symflex.roots import Band, Everything, Modes, Position
-from symflex.roots.counting.right_half_plane import is_right
 from symflex.roots.locate import locate
+from symflex.roots.verdict import is_right
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

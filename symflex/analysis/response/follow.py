@@ -20,14 +20,14 @@ from flint import acb
 from symflex.budget import entered_budget, spend
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots.counting.winding import Winding, continuous_step
-from symflex.roots.distributed.kernel_function import KernelFunction
+from symflex.roots.functions.kernel_function import KernelFunction
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     import numpy.typing as npt
 
-    from symflex.roots.distributed.kernel_function import Sample
+    from symflex.roots.functions.kernel_function import Sample
     from symflex.transfer import BoundTransferFunction
 
 LONGEST_STEP = 0.1

@@ -14,7 +14,7 @@ from flint import acb, ctx
 from symflex.analysis.response.follow import follow_phase
 from symflex.analysis.response.frequency_response import FrequencyResponse
 from symflex.analysis.response.phase import count_turns
-from symflex.roots.distributed.vanishing import without_lengths_of_zero
+from symflex.roots.functions.vanishing import without_lengths_of_zero
 from symflex.roots.locate import locate
 from symflex.transfer.bind import EnclosedDistributed
 

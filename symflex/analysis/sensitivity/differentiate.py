@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb
 
-from symflex.algebra.origin import Origin
+from symflex.algebra.origin import OriginSeries
 from symflex.analysis.sensitivity.branch import Branch, find_branch
 from symflex.analysis.sensitivity.sensitivity import Sensitivity
 from symflex.analysis.sensitivity.tangents import Tangents
@@ -130,7 +130,7 @@ class _Side:
         ring, table = self.tangents.tf.ratio.ring, self.tangents.tf.kernels
         if not table:
             return self.part.exponent_of(ring.context.gen(0)) == root.multiplicity
-        return Origin(ring, table).order(self.part) == root.multiplicity
+        return OriginSeries(ring, table).order(self.part) == root.multiplicity
 
 
 def _conjugate(value: acb) -> acb:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.algebra import Dispersion
-    from symflex.algebra.modal_sum import Mode
+    from symflex.algebra.modal_sum import CharacteristicMode
     from symflex.codegen.program.nodes import Straight
     from symflex.transfer import TransferFunction
 
@@ -171,7 +171,7 @@ class _ModalWorkshop:
             [forge.multiply([forge.power(x, n - i), site.coefficient(law, i)]) for i in range(n)]
         )
 
-    def _mode(self, site: Site, mode: Mode) -> int:
+    def _mode(self, site: Site, mode: CharacteristicMode) -> int:
         forge = site.forge
         if mode.is_decay:
             shift = forge.multiply([site.length(mode.length), site.value(mode.dispersion.shift)])

@@ -10,7 +10,7 @@ from symflex.expressions import Expression, Name, format_expression
 
 if TYPE_CHECKING:
     from symflex.expressions import Equation
-    from symflex.roots.counting.right_half_plane import StabilityVerdict
+    from symflex.roots.verdict import StabilityVerdict
     from symflex.transfer import TransferFunction
 
 

@@ -38,7 +38,7 @@ Rate = tuple[arb, arb]
 
 
 @dataclass(frozen=True, slots=True)
-class Wave:
+class AxisWave:
     """Terms ``exp(g) (even(t) cos(p) + odd(t) sin(p))``.
 
     Parameters
@@ -107,7 +107,7 @@ class AxisFunction:
 
     Parameters
     ----------
-    waves : tuple of Wave
+    waves : tuple of AxisWave
         Its terms; at least one does not grow, and the others, for large t, decay.
     axis : int
         0 real, 1 imaginary.
@@ -115,7 +115,7 @@ class AxisFunction:
         What its terms are made of.
     """
 
-    waves: tuple[Wave, ...]
+    waves: tuple[AxisWave, ...]
     axis: int
     enclosures: Enclosures
 
@@ -193,7 +193,7 @@ class _Numbers:
     slopes: list[Term]
 
 
-def _numbers(waves: Sequence[Wave], enclosures: Enclosures) -> _Numbers:
+def _numbers(waves: Sequence[AxisWave], enclosures: Enclosures) -> _Numbers:
     growing = sorted({w.growth for w in waves if any(w.growth)}, key=_length)
     turning = list(dict.fromkeys(w.phase for w in waves))
     growths, phases = ([enclosures.rate(key) for key in keys] for keys in (growing, turning))

@@ -29,7 +29,7 @@ CLOSE = 1e-12
 """Relative to t: no further Newton step is needed after one as short as this."""
 
 
-class AxisRoots:
+class AxisNewton:
     """Encloses roots to a number of digits.
 
     Parameters

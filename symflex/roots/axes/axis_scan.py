@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from symflex.roots.counting.winding import Winding
-    from symflex.roots.distributed.double_sums import Doubles, DoubleSums
-    from symflex.roots.distributed.kernel_function import Sample
+    from symflex.roots.functions.double_sums import Doubles, DoubleSums
+    from symflex.roots.functions.kernel_function import Sample
 
 STEP = 1.0
 """Largest change of an exponent [rad] from one sample to the next."""
@@ -169,7 +169,8 @@ def _pieces(
         if _changes_sign(winding, one, between):
             break
         if between.slope.real > 0:
-            pieces.reverse()
+            # The dip is in the first half: that is cut next.
+            pieces[-2:] = pieces[:-3:-1]
     return sorted(pieces, key=lambda piece: piece[0])
 
 

@@ -15,27 +15,27 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
+from symflex.roots.axes.arc_sum import ArcSum, ArcTerm
 from symflex.roots.axes.axis_function import (
     FLOAT_BITS,
     IMAGINARY,
     LINEAR,
     QUADRATIC,
     AxisFunction,
+    AxisWave,
     Enclosures,
     Monomial,
     Multiples,
     Polynomial,
-    Wave,
 )
-from symflex.roots.counting.arc_sum import ArcSum, Exponential
 from symflex.roots.precision import precision
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symflex.algebra import Factored
-    from symflex.roots.distributed.exponential_sum import Argument, ExponentialSum
-    from symflex.roots.distributed.kernel_function import KernelFunction
+    from symflex.roots.functions.exponential_sum import Argument, ExponentialSum
+    from symflex.roots.functions.kernel_function import KernelFunction
     from symflex.transfer import BoundTransferFunction
     from symflex.transfer.monomials import Value
 
@@ -147,7 +147,7 @@ class LosslessFunction:
             )
 
 
-def _exponential(key: Key, terms: dict[Place, Gaussian], numbers: Enclosures) -> Exponential:
+def _exponential(key: Key, terms: dict[Place, Gaussian], numbers: Enclosures) -> ArcTerm:
     linear, square = acb(0), acb(0)
     for i, a, b in key:
         if numbers.degrees[i] == LINEAR:
@@ -157,10 +157,10 @@ def _exponential(key: Key, terms: dict[Place, Gaussian], numbers: Enclosures) ->
     powers: dict[int, acb] = {}
     for (power, monomial), number in terms.items():
         powers[power] = powers.get(power, acb(0)) + acb(*number) * numbers.product(monomial)
-    return Exponential(linear, square, tuple(sorted(powers.items())))
+    return ArcTerm(linear, square, tuple(sorted(powers.items())))
 
 
-def _real_waves(turned: Terms, arguments: int) -> tuple[Wave, ...] | None:
+def _real_waves(turned: Terms, arguments: int) -> tuple[AxisWave, ...] | None:
     """Return real terms, if all complex ones times one unit come in conjugate pairs."""
     pairs: dict[tuple[Multiples, Multiples], dict[Place, Gaussian]] = {}
     for key, terms in turned.items():
@@ -201,7 +201,7 @@ def _unit_that_makes_real(pairs: Mapping[tuple[Multiples, Multiples], dict[Place
     return 1, 0
 
 
-def _wave(growth: Multiples, phase: Multiples, terms: Mapping[Place, Gaussian]) -> Wave:
+def _wave(growth: Multiples, phase: Multiples, terms: Mapping[Place, Gaussian]) -> AxisWave:
     """Return one of two conjugate exponentials and the other as cosine and sine of a phase of one sign."""
     opposite = tuple(-p for p in phase)
     weight = 1 + (opposite != phase)
@@ -213,10 +213,10 @@ def _wave(growth: Multiples, phase: Multiples, terms: Mapping[Place, Gaussian]) 
             even.setdefault(power, {})[monomial] = weight * re
         if im and opposite != phase:
             odd.setdefault(power, {})[monomial] = weight * sign * im
-    return Wave(growth, max(phase, opposite), even, odd)
+    return AxisWave(growth, max(phase, opposite), even, odd)
 
 
-def _divided(wave: Wave, growth: Multiples) -> Wave:
+def _divided(wave: AxisWave, growth: Multiples) -> AxisWave:
     """Return a wave without an exponential that all have in common."""
     rest = tuple(own - taken for own, taken in zip(wave.growth, growth, strict=True))
     return replace(wave, growth=rest)

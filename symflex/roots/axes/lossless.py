@@ -18,7 +18,7 @@ from flint import arb
 
 from symflex.budget import spend
 from symflex.roots.axes.axis_function import IMAGINARY, REAL
-from symflex.roots.axes.axis_root import AxisRoots, bits_of, bracketed, changes_sign
+from symflex.roots.axes.axis_root import AxisNewton, bits_of, bracketed, changes_sign
 from symflex.roots.axes.harmonic_sum import lossless_function
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.precision import precision
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from symflex.roots.axes.axis_function import AxisFunction, Doubles
     from symflex.roots.axes.harmonic_sum import LosslessFunction
     from symflex.roots.counting.winding import Cell
-    from symflex.roots.distributed.kernel_function import KernelFunction
+    from symflex.roots.functions.kernel_function import KernelFunction
 
 GRID = 0.8
 """Largest change of a phase [rad] from one sample to the next."""
@@ -108,7 +108,7 @@ class LosslessSearch:
     def __init__(self, function: LosslessFunction, order: int, digits: int) -> None:
         self.function = function
         self.order = order
-        self._newton = AxisRoots(digits)
+        self._newton = AxisNewton(digits)
         self._known: dict[int, tuple[tuple[AxisFunction, int], ...]] = {}
         self.roots: list[Root] = []
         self.reached = -inf

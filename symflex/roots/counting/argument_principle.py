@@ -1,7 +1,7 @@
 """Counting roots by the argument principle, with proof: every step of a path is a ball of s.
 
 A sum of exponentials is followed through the largest of these, whose argument is known, and the ratio to it,
-whose values on a step's ball must keep to one side of 0: :mod:`~symflex.roots.distributed.exponential_sum`.
+whose values on a step's ball must keep to one side of 0: :mod:`~symflex.roots.functions.exponential_sum`.
 Any other
 function leaves its value F(m) in the middle by no more than the bound of abs(F') over the ball times half the
 step; where that is less than abs(F(m)), the argument stays within the arc sine of the ratio.
@@ -15,14 +15,15 @@ from typing import TYPE_CHECKING, Protocol
 
 from flint import acb, arb
 
+from symflex.roots.argument import ROOM, angle
 from symflex.roots.counting.series_steps import SeriesSteps
-from symflex.roots.counting.stepping import ROOM, SPREAD, WIDENED, angle, total_turn
+from symflex.roots.counting.stepping import SPREAD, WIDENED, total_turn
 from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
 from symflex.roots.precision import precision
 
 if TYPE_CHECKING:
     from symflex.budget import Budget
-    from symflex.roots.distributed.kernel_function import KernelFunction
+    from symflex.roots.functions.kernel_function import KernelFunction
 
 BITS = 64
 LAST_BITS = 2048
@@ -47,7 +48,7 @@ class Path(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class LogarithmicLine:
     """What is straight in z = ln(s).
 
     Parameters
@@ -188,7 +189,9 @@ class CertifiedWinding(Winding):
         if (start, end) not in self._turns:
             length = abs(end - start)
             with precision(BITS):
-                turn, self._bits = self._follow(Line(start, end), length, smallest / length, self._bits)
+                turn, self._bits = self._follow(
+                    LogarithmicLine(start, end), length, smallest / length, self._bits
+                )
             self._turns[start, end] = turn
         return self._turns[start, end]
 

@@ -16,7 +16,7 @@ from flint import acb, acb_poly, arb
 from symflex.roots.precision import precision
 
 if TYPE_CHECKING:
-    from symflex.roots.distributed.kernel_function import KernelFunction
+    from symflex.roots.functions.kernel_function import KernelFunction
 
 TERMS = 16
 """Coefficients that are computed; those beyond are bounded."""
@@ -103,7 +103,7 @@ def local_series(
     Parameters
     ----------
     function : KernelFunction
-        Its :attr:`~symflex.roots.distributed.kernel_function.KernelFunction.power` is expanded.
+        Its :attr:`~symflex.roots.functions.kernel_function.KernelFunction.power` is expanded.
     centre : acb
         Exact [rad/s].
     reach : arb
@@ -170,7 +170,7 @@ def bound_on_circle(function: KernelFunction, centre: acb, reach: arb, arcs: int
     Parameters
     ----------
     function : KernelFunction
-        Its :attr:`~symflex.roots.distributed.kernel_function.KernelFunction.power` is bounded.
+        Its :attr:`~symflex.roots.functions.kernel_function.KernelFunction.power` is bounded.
     centre : acb
         Exact [rad/s].
     reach : arb

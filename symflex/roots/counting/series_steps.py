@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, arb
 
+from symflex.roots.argument import ROOM, angle
 from symflex.roots.counting.local_series import LocalSeries, bound_on_circle, sampled_series
-from symflex.roots.counting.stepping import ROOM, angle
 from symflex.roots.precision import precision
 
 if TYPE_CHECKING:
-    from symflex.roots.distributed.kernel_function import KernelFunction
+    from symflex.roots.functions.kernel_function import KernelFunction
 
 LEAST = 2
 FEWEST = 20
@@ -47,7 +47,7 @@ class SeriesSteps:
     Parameters
     ----------
     function : KernelFunction
-        Its :attr:`~symflex.roots.distributed.kernel_function.KernelFunction.power` is followed.
+        Its :attr:`~symflex.roots.functions.kernel_function.KernelFunction.power` is followed.
     """
 
     function: KernelFunction

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from math import asin, inf, pi
+from math import inf
 from typing import TYPE_CHECKING
 
 from flint import arb
 
 from symflex.budget import spend
+from symflex.roots.argument import ROOM
 from symflex.roots.counting.winding import RootOnPathError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from flint import acb
-
-ROOM = 1.5
-"""Largest deviation of the argument [rad] from the middle to an end of a step; less than pi/2."""
 GOAL = 1.15
 """Deviation that the next step aims at."""
 GROWTH = 1.5
@@ -28,24 +25,6 @@ FORGETTING = 1.1
 WIDENED = 1 + 2.0**-40
 SPREAD = 2.0**-50
 """Relative width that makes up for the rounding of a step's middle."""
-
-
-def deviation(values: acb) -> float:
-    """Return how far the argument may turn from the middle of a ball of values [rad].
-
-    Half a turn and more stands for what may wind about 0; infinite where nothing is known.
-    """
-    if not values.is_finite():
-        return inf
-    middle = values.mid()
-    room = middle.abs_lower()
-    return angle((values - middle).abs_upper(), room) if room > 0 else inf
-
-
-def angle(off: arb, size: arb) -> float:
-    """Return half the angle [rad] at which a disc of radius ``off``, so far from 0, is seen from there."""
-    share = float((off / size).upper())
-    return asin(share) if share < 1 else share * pi / 2
 
 
 def total_turn(change: Callable[[float, float], tuple[float, arb]], first: float, smallest: float) -> arb:

@@ -19,7 +19,7 @@ from flint import acb, arb
 
 from symflex.algebra import LAPLACE, Ring, degree_in
 from symflex.budget import spend
-from symflex.roots.distributed.exponential_sum import ExponentialValues, arguments_of, exponential_sum
+from symflex.roots.functions.exponential_sum import ExponentialValues, arguments_of, exponential_sum
 from symflex.roots.precision import precision
 from symflex.transfer import coefficients_in_s
 
@@ -122,7 +122,7 @@ def right_tail(
     with precision(BITS):
         kernels = bound.kernel_values({name: evaluate() for name, evaluate in bound.constants})
         values = ExponentialValues(kernels, arguments, tuple((terms, 1) for terms in known))
-        function = _Function(kernels, values, tuple(scales), table.dispersions)
+        function = _FunctionFarOut(kernels, values, tuple(scales), table.dispersions)
         if function.is_free_beyond(start):
             return Tail(start)
         # Where the largest radius is none, there is none at all.
@@ -140,7 +140,7 @@ def right_tail(
 
 
 @dataclass(frozen=True, slots=True)
-class _Function:
+class _FunctionFarOut:
     """Polynomials in kernels, and what they are multiplied with, for large s."""
 
     kernels: KernelValues

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.budget import Budget
-    from symflex.roots.distributed.kernel_function import KernelFunction, Sample
+    from symflex.roots.functions.kernel_function import KernelFunction, Sample
 
 RING = log(2)
 LARGEST_RING = 120

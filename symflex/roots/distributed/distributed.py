@@ -15,7 +15,7 @@ from symflex.algebra import Factored
 from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.model.passive import is_passive
-from symflex.roots.counting.right_half_plane import DEGENERATE, PASSIVE, is_right, judge, search_right
+from symflex.roots.distributed.right_half_plane import DEGENERATE, PASSIVE, search_right
 from symflex.roots.distributed.side import (
     ACCUMULATION_DIGITS,
     LOSSLESS,
@@ -24,19 +24,20 @@ from symflex.roots.distributed.side import (
     groups,
     polynomial_roots,
 )
-from symflex.roots.distributed.transcendental import HIGHEST
+from symflex.roots.plane.search import HIGHEST
 from symflex.roots.pole_zero_map import Certificate, Exclusion, HiddenRoot, PoleZeroMap, right_beyond
-from symflex.roots.polynomials.polynomial import POLYNOMIAL, in_order
+from symflex.roots.polynomial_roots import POLYNOMIAL, in_order
 from symflex.roots.region import Band, Everything, Mode, Modes, Position
 from symflex.roots.root import overlap
+from symflex.roots.verdict import is_right, judge
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.roots.counting.right_half_plane import StabilityVerdict
     from symflex.roots.counting.winding import Cell
     from symflex.roots.region import Region
     from symflex.roots.root import Root
+    from symflex.roots.verdict import StabilityVerdict
     from symflex.transfer import BoundTransferFunction
 
 DEFAULT_MODES = 5

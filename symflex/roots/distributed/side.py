@@ -13,20 +13,20 @@ from typing import TYPE_CHECKING
 from flint import acb, arb
 
 from symflex.algebra import Factored, Ring, degree_in
-from symflex.algebra.origin import Origin
+from symflex.algebra.origin import OriginSeries
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.roots.axes.lossless import LosslessSearch, lossless_search
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
-from symflex.roots.distributed.branch_points import prove_together
-from symflex.roots.distributed.domains import WIDER, decider, holes_about, is_whole_ring, limits, parts
-from symflex.roots.distributed.kernel_function import KernelFunction, has_kernels, split_off_kernels
-from symflex.roots.distributed.krawczyk import prove_simple
-from symflex.roots.distributed.square_free_kernels import without_squares
-from symflex.roots.distributed.transcendental import HIGHEST, MODES_LIMIT, RootSearch
-from symflex.roots.polynomials.polynomial import find_polynomial_roots, in_order
+from symflex.roots.functions.kernel_function import KernelFunction, has_kernels, split_off_kernels
+from symflex.roots.functions.square_free_kernels import without_squares
+from symflex.roots.plane.branch_points import prove_together
+from symflex.roots.plane.domains import WIDER, decider, holes_about, is_whole_ring, limits, parts
+from symflex.roots.plane.krawczyk import prove_simple
+from symflex.roots.plane.search import HIGHEST, MODES_LIMIT, RootSearch
+from symflex.roots.polynomial_roots import find_polynomial_roots, in_order
 from symflex.roots.precision import precision
-from symflex.roots.problem import Constant, PolynomialInS, RootProblem
+from symflex.roots.problem import PolynomialInS, RealConstant, RootProblem
 from symflex.roots.region import Modes
 from symflex.roots.root import FLOAT_BITS, Root, mirror_images, overlap
 from symflex.transfer import coefficients_in_s
@@ -166,7 +166,7 @@ class Side:
         powers = part.exponent_of(part.ring.context.gen(0))
         exact = None
         for terms in ORIGIN_TERMS:
-            exact = Origin(part.ring, self.function.bound.kernels, terms=terms).order(
+            exact = OriginSeries(part.ring, self.function.bound.kernels, terms=terms).order(
                 self.function.part**power
             )
             if exact is not None:
@@ -577,7 +577,7 @@ def polynomial_roots(bound: BoundTransferFunction, part: Factored, digits: int) 
 
 def polynomial_in_s(bound: BoundTransferFunction, factor: fmpz_mpoly) -> PolynomialInS:
     """Return a factor without wavenumbers and kernels as a polynomial in s."""
-    constants = tuple(Constant(name, evaluate) for name, evaluate in bound.constants)
+    constants = tuple(RealConstant(name, evaluate) for name, evaluate in bound.constants)
     ring = bound.ratio.ring
     used = tuple(c for c in constants if degree_in(factor, ring.index[c.name]))
     small = Ring(("s", *(c.name for c in used)))

@@ -16,11 +16,11 @@ from flint import fmpz_mpoly, fmpz_mpoly_ctx
 
 from symflex.algebra import square_free_factors
 from symflex.budget import Budget, entered_budget
-from symflex.roots.problem import Constant, PolynomialInS, RootProblem
+from symflex.roots.problem import PolynomialInS, RealConstant, RootProblem
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class SquareFreePart:
     """A square-free polynomial without the root 0.
 
     Parameters
@@ -46,12 +46,12 @@ class Splitting:
     ----------
     zeros : int
         Multiplicity of the root s = 0.
-    parts : tuple of Part
+    parts : tuple of SquareFreePart
         Pairwise coprime.
     """
 
     zeros: int
-    parts: tuple[Part, ...]
+    parts: tuple[SquareFreePart, ...]
 
 
 def split(problem: RootProblem, budget: Budget | None = None) -> Splitting:
@@ -91,15 +91,15 @@ def split(problem: RootProblem, budget: Budget | None = None) -> Splitting:
         for factor, power in square_free_factors(ring.lift(polynomial, low))[1]:
             if _degree(factor) > 0:
                 base = _insert(base, factor, power * exponent)
-    parts: list[Part] = []
+    parts: list[SquareFreePart] = []
     for element, multiplicity in base:
         time.spend()
         even = element.gcd(ring.reflect(element))
         odd = element // even
         if _degree(even) > 0:
-            parts.append(Part(ring.lower(even, 2), multiplicity, in_square=True))
+            parts.append(SquareFreePart(ring.lower(even, 2), multiplicity, in_square=True))
         if _degree(odd) > 0:
-            parts.append(Part(ring.lower(odd, 1), multiplicity, in_square=False))
+            parts.append(SquareFreePart(ring.lower(odd, 1), multiplicity, in_square=False))
     return Splitting(zeros, tuple(parts))
 
 
@@ -130,7 +130,7 @@ class _Ring:
     """Z[s, constants], with s the first generator."""
 
     context: fmpz_mpoly_ctx
-    constants: tuple[Constant, ...]
+    constants: tuple[RealConstant, ...]
 
     @classmethod
     def of(cls, problem: RootProblem) -> _Ring:

@@ -11,7 +11,7 @@ from symflex.algebra import Dispersion, Factored, Ring, propagate
 from symflex.algebra.exponentials import Exponentials
 from symflex.algebra.multiple_angles import lift
 from symflex.algebra.normal_form import NormalForm
-from symflex.algebra.origin import Origin
+from symflex.algebra.origin import OriginSeries
 from symflex.algebra.taylor import TaylorField, primes, square_root
 from symflex.algebra.vanishing import Vanishing
 from symflex.errors import BudgetError
@@ -245,7 +245,7 @@ def test_the_order_at_a_zero_wavenumber_is_that_of_the_taylor_series(function, o
 @pytest.mark.parametrize(("power", "order"), [(0, 0), (4, 2), (8, 4)])
 def test_orders_at_the_origin_follow_the_dispersion_relation(power, order):
     found = propagation("bending", (L,))
-    origin = Origin(found.kernel_ring, embedded(found))
+    origin = OriginSeries(found.kernel_ring, embedded(found))
     assert origin.order(Factored.generator(found.kernel_ring, "mu[0]") ** power) == order
 
 

@@ -8,7 +8,7 @@ import pytest
 from flint import fmpz
 
 from symflex.algebra import Dispersion, Factored, Ring, propagate
-from symflex.algebra.origin import Origin, find_point
+from symflex.algebra.origin import OriginSeries, find_point
 from symflex.algebra.taylor import BASE, TaylorField, primes
 from symflex.algebra.vanishing import Vanishing
 from symflex.transfer.distributed import embedded_table
@@ -149,12 +149,12 @@ ORDERS = {
 )
 def test_an_order_at_the_origin_is_that_of_the_function_with_its_wavenumbers_in_s(kind, function, order):
     ring, table, gens = kernels_of(kind)
-    assert Origin(ring, table).order(function(*gens)) == order
+    assert OriginSeries(ring, table).order(function(*gens)) == order
 
 
 def test_decays_start_at_one_where_their_rate_is_zero():
     ring, table, (s, _, _, a, b, first, second) = kernels_of("exponential", S)
-    origin = Origin(ring, table)
+    origin = OriginSeries(ring, table)
     assert [origin.order(f) for f in (first, 1 - first, first - second, first * second - 1)] == [0, 1, 1, 1]
     assert origin.order(first - second + s * (a - b)) == 2
 
@@ -171,20 +171,20 @@ def test_decays_start_at_one_where_their_rate_is_zero():
 )
 def test_an_order_where_something_else_vanishes_is_that_of_the_factor(at, function, order):
     ring, table, _ = kernels_of("wave")
-    assert Origin(ring, table, over(ring, at).expand()).order(over(ring, function)) == order
+    assert OriginSeries(ring, table, over(ring, at).expand()).order(over(ring, function)) == order
 
 
 def test_where_the_coefficient_of_a_wave_vanishes_its_wavenumber_is_of_half_the_order():
     ring, table, (_, r, *_, w, _, d, _, _) = kernels_of("wave")
-    origin = Origin(ring, table, r.expand())
+    origin = OriginSeries(ring, table, r.expand())
     assert [origin.order(f) for f in (w**2, d / w, w)] == [1, 0, None]
 
 
 def test_nothing_is_said_of_a_dispersion_without_names_or_where_nothing_is_linear():
     ring, table, (s, *_) = kernels_of("general")
-    assert Origin(ring, table).order(s) is None
+    assert OriginSeries(ring, table).order(s) is None
     ring, table, (s, r, p, *_) = kernels_of("wave")
-    assert Origin(ring, table, (s**2 + r**2 + p**2 - 5).expand()).order(s) is None
+    assert OriginSeries(ring, table, (s**2 + r**2 + p**2 - 5).expand()).order(s) is None
 
 
 def test_a_point_where_all_relations_hold_has_values_beside_dispersions_without_names():

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 from flint import arb, fmpz_mpoly_ctx, fmpz_poly
 
-from symflex.roots import Constant, PolynomialInS, RootProblem
+from symflex.roots import PolynomialInS, RealConstant, RootProblem
 
 
 def multiply(a, b):
@@ -46,7 +46,7 @@ def with_constant(name, evaluate, rows):
     context = fmpz_mpoly_ctx.get([name], "lex")
     (generator,) = context.gens()
     coefficients = tuple(rows(generator, context.constant(1)))
-    return PolynomialInS(coefficients, context, (Constant(name, evaluate),))
+    return PolynomialInS(coefficients, context, (RealConstant(name, evaluate),))
 
 
 def with_pi(rows):

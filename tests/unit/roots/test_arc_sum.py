@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from flint import acb, arb
 
-from symflex.roots.counting.arc_sum import ArcSum, Exponential, _Arc, _most
+from symflex.roots.axes.arc_sum import ArcSum, ArcTerm, _Arc, _most
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.precision import precision
 
@@ -23,7 +23,7 @@ def working_precision():
 
 def term(p, q, powers):
     """Return a term given numbers, and the coefficients of powers of x by their exponents."""
-    return Exponential(acb(p), acb(q), tuple((n, acb(c)) for n, c in powers.items()))
+    return ArcTerm(acb(p), acb(q), tuple((n, acb(c)) for n, c in powers.items()))
 
 
 def polynomial(*roots):
@@ -32,7 +32,7 @@ def polynomial(*roots):
     for root in roots:
         shifted = [acb(0), *coefficients]
         coefficients = [a - root * b for a, b in zip(shifted, [*coefficients, acb(0)], strict=True)]
-    return ArcSum((Exponential(acb(0), acb(0), tuple(enumerate(coefficients))),))
+    return ArcSum((ArcTerm(acb(0), acb(0), tuple(enumerate(coefficients))),))
 
 
 @pytest.mark.parametrize("radius", [0.3, 7.0, 5000.0])

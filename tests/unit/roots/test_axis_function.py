@@ -13,11 +13,11 @@ from symflex.roots.axes.axis_function import (
     IMAGINARY,
     REAL,
     AxisFunction,
+    AxisWave,
     Enclosures,
-    Wave,
     _products,
 )
-from symflex.roots.axes.axis_root import CLOSE, AxisRoots, bits_of, bracketed, changes_sign
+from symflex.roots.axes.axis_root import CLOSE, AxisNewton, bits_of, bracketed, changes_sign
 from symflex.roots.precision import precision
 
 BITS = 300
@@ -54,11 +54,11 @@ def every_kind(bits=BITS):
     with precision(bits):
         one = Enclosures(bits, (arb(2).sqrt(), arb(3)), (arb("1.25"), arb("0.5")), (1, 2))
     waves = (
-        Wave((0, 0), (1, 0), {0: {(): 2, ((0, 1),): 3}, 2: {((0, 2), (1, 1)): -1}}, {1: {(): 5}}),
-        Wave((-1, 0), (0, 1), {0: {(): 1}, 1: {(): -1}}, {3: {((1, 1),): 1}}),
-        Wave((-2, 0), (0, 0), {0: {(): 7}}, {}),
-        Wave((-1, -1), (1, -1), {0: {(): 4}}, {1: {(): -2}}),
-        Wave((2, -1), (0, 0), {0: {(): 6}}, {}),
+        AxisWave((0, 0), (1, 0), {0: {(): 2, ((0, 1),): 3}, 2: {((0, 2), (1, 1)): -1}}, {1: {(): 5}}),
+        AxisWave((-1, 0), (0, 1), {0: {(): 1}, 1: {(): -1}}, {3: {((1, 1),): 1}}),
+        AxisWave((-2, 0), (0, 0), {0: {(): 7}}, {}),
+        AxisWave((-1, -1), (1, -1), {0: {(): 4}}, {1: {(): -2}}),
+        AxisWave((2, -1), (0, 0), {0: {(): 6}}, {}),
     )
     return AxisFunction(waves, REAL, one)
 
@@ -126,7 +126,7 @@ def test_s_is_the_square_of_t_or_twice_that(axis, frequency):
 
 
 def decay():
-    return AxisFunction((Wave((-1,), (0,), {0: {(): 1}}, {}),), REAL, Enclosures(64, (), (arb(1),), (1,)))
+    return AxisFunction((AxisWave((-1,), (0,), {0: {(): 1}}, {}),), REAL, Enclosures(64, (), (arb(1),), (1,)))
 
 
 def test_what_has_decayed_is_a_ball_that_holds_it():
@@ -155,7 +155,7 @@ def test_products_of_exponentials_are_known_by_their_factors():
 def polynomial(*coefficients, axis=REAL):
     """Return a polynomial in t, lowest power first."""
     even = {n: {(): c} for n, c in enumerate(coefficients) if c}
-    return AxisFunction((Wave((0,), (0,), even, {}),), axis, Enclosures(2000, (), (arb(1),), (1,)))
+    return AxisFunction((AxisWave((0,), (0,), even, {}),), axis, Enclosures(2000, (), (arb(1),), (1,)))
 
 
 @pytest.mark.parametrize("digits", [5, 40, 300])
@@ -163,7 +163,7 @@ def polynomial(*coefficients, axis=REAL):
 def test_a_root_next_to_a_guess_is_enclosed(digits, guess):
     # (t - 2)(t - 3)(t + 5)
     source = polynomial(30, -19, 0, 1)
-    found = AxisRoots(digits).frequency(source, guess)
+    found = AxisNewton(digits).frequency(source, guess)
     assert found.contains(4)
     with precision(bits_of(digits)):
         assert found.rad() < 4 * arb(10) ** -digits
@@ -174,7 +174,7 @@ def test_a_root_next_to_a_guess_is_enclosed(digits, guess):
 def test_of_two_roots_close_together_the_one_next_to_the_guess_is_enclosed(sign, axis, square):
     # (t - 1)^2 - 2^-60, times 2^60: 1 +- 2^-30.
     source = polynomial(2**60 - 1, -(2**61), 2**60, axis=axis)
-    found = AxisRoots(30).frequency(source, 1 + sign * 2.0**-30)
+    found = AxisNewton(30).frequency(source, 1 + sign * 2.0**-30)
     with precision(400):
         roots = [square * (1 + s * arb(2) ** -30) ** 2 for s in (sign, -sign)]
         assert [found.contains(root) for root in roots] == [True, False]
@@ -192,13 +192,13 @@ def test_of_two_roots_close_together_the_one_next_to_the_guess_is_enclosed(sign,
 )
 @pytest.mark.parametrize("guess", [2.0, 2 + 2.0**-30, 2.001])
 def test_no_root_is_enclosed_where_none_is_single(coefficients, guess):
-    assert AxisRoots(20).frequency(polynomial(*coefficients), guess) is None
+    assert AxisNewton(20).frequency(polynomial(*coefficients), guess) is None
 
 
 def test_a_guess_too_large_for_doubles_encloses_nothing():
     one = Enclosures(64, (), (arb(1),), (2,))
-    source = AxisFunction((Wave((0,), (1,), {}, {0: {(): 1}}),), REAL, one)
-    assert AxisRoots(20).frequency(source, 1e200) is None
+    source = AxisFunction((AxisWave((0,), (1,), {}, {0: {(): 1}}),), REAL, one)
+    assert AxisNewton(20).frequency(source, 1e200) is None
 
 
 @pytest.mark.parametrize(

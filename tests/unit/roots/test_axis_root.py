@@ -7,7 +7,7 @@ from math import inf, pi, sqrt
 import pytest
 from flint import arb
 
-from symflex.roots.axes.axis_root import AxisRoots, _level, bits_of, bracketed, changes_sign
+from symflex.roots.axes.axis_root import AxisNewton, _level, bits_of, bracketed, changes_sign
 from symflex.roots.precision import bits_for_digits, precision
 
 
@@ -66,7 +66,7 @@ SQUARE = Real(lambda t: t * t - 2, lambda t: 2 * t)
     ids=["cosine", "square"],
 )
 def test_a_root_next_to_a_guess_is_enclosed_to_the_digits_wanted(source, guess, root, digits):
-    found = AxisRoots(digits).frequency(source, guess)
+    found = AxisNewton(digits).frequency(source, guess)
     with precision(3000):
         assert found.contains(2 * root()) or abs(found.mid() - 2 * root()) <= found.rad() * 1.001
         assert found.rad() < abs(found) * arb(10) ** -(digits + 1)
@@ -74,7 +74,7 @@ def test_a_root_next_to_a_guess_is_enclosed_to_the_digits_wanted(source, guess, 
 
 @pytest.mark.parametrize(("guess", "root"), [(1.0, "1"), (1.000001, "1.000001")])
 def test_of_two_close_roots_the_one_guessed_is_enclosed(guess, root):
-    found = AxisRoots(30).frequency(of_roots("1", "1.000001"), guess)
+    found = AxisNewton(30).frequency(of_roots("1", "1.000001"), guess)
     with precision(400):
         assert found.overlaps(2 * arb(root))
         assert found.rad() < 1e-30
@@ -86,18 +86,18 @@ def test_of_two_close_roots_the_one_guessed_is_enclosed(guess, root):
     ids=["none", "double"],
 )
 def test_where_no_simple_root_is_none_is_proved(source):
-    assert AxisRoots(20).frequency(source, 1.0) is None
+    assert AxisNewton(20).frequency(source, 1.0) is None
 
 
 def test_where_doubles_do_not_reach_nothing_is_known():
     source = Real(lambda t: t - 1, lambda t: arb(1), fastest=inf)
-    assert AxisRoots(20).frequency(source, 1.0) is None
+    assert AxisNewton(20).frequency(source, 1.0) is None
     assert source.asked == []
 
 
 def test_no_more_precision_is_asked_for_than_the_digits_take():
     source = Real(lambda t: t.cos(), lambda t: -t.sin())
-    AxisRoots(50).frequency(source, pi / 2)
+    AxisNewton(50).frequency(source, pi / 2)
     assert max(source.asked) <= bits_of(50) < bits_for_digits(52) + 200
     assert min(source.asked) >= 53
 

@@ -13,7 +13,7 @@ from symflex.budget import Budget
 from symflex.roots import ROOT_FINDERS, KernelProblem, Modes
 from symflex.roots.axes.axis_scan import sign_changes
 from symflex.roots.counting.winding import Winding
-from symflex.roots.distributed.kernel_function import KernelFunction
+from symflex.roots.functions.kernel_function import KernelFunction
 from tests.unit.roots.distributed import ROD, SLIDING_FREE, bound
 
 CLOSE = 1e-6

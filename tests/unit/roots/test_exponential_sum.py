@@ -10,8 +10,8 @@ import pytest
 from flint import acb, acb_series, arb
 from mpmath import mp, mpc
 
-from symflex.roots.distributed.double_sums import DoubleSums, _wavenumbers
-from symflex.roots.distributed.exponential_sum import (
+from symflex.roots.functions.double_sums import DoubleSums, _wavenumbers
+from symflex.roots.functions.exponential_sum import (
     MOST_EXPONENTIALS,
     ExponentialValues,
     _spread,

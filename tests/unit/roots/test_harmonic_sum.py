@@ -12,7 +12,7 @@ from mpmath import mp, mpc, mpf
 from symflex.roots import precision
 from symflex.roots.axes.axis_function import IMAGINARY, REAL
 from symflex.roots.axes.harmonic_sum import LosslessFunction, lossless_function
-from symflex.roots.distributed.kernel_function import KernelFunction
+from symflex.roots.functions.kernel_function import KernelFunction
 from tests.unit.roots.distributed import (
     DELAY_LOOP,
     KELVIN_VOIGT,

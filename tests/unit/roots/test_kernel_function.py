@@ -11,7 +11,7 @@ from mpmath import mp, mpc
 
 from symflex.algebra import Factored
 from symflex.errors import ModelError, UncertifiedError
-from symflex.roots.distributed.kernel_function import (
+from symflex.roots.functions.kernel_function import (
     KernelFunction,
     _KernelFactors,
     _parity,

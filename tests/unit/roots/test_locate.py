@@ -11,7 +11,7 @@ from symflex.budget import Budget
 from symflex.errors import BudgetError, ModelError
 from symflex.roots import Band, KernelProblem, Modes
 from symflex.roots.distributed.side import ENGINES
-from symflex.roots.distributed.vanishing import _value, without_lengths_of_zero
+from symflex.roots.functions.vanishing import _value, without_lengths_of_zero
 from symflex.roots.kernel_finder import KernelRootFinder
 from symflex.roots.locate import locate
 from tests.unit.roots.distributed import DELAY_LOOP, ROD, bound

@@ -10,9 +10,9 @@ from flint import acb, arb, ctx
 from mpmath import exp, findroot, mp, mpf, sin
 
 from symflex.roots import ROOT_FINDERS, KernelProblem, Mode, Modes
-from symflex.roots.axes.axis_function import IMAGINARY, REAL, AxisFunction, Enclosures, Wave
-from symflex.roots.axes.axis_root import AxisRoots, bits_of, bracketed, changes_sign
-from symflex.roots.counting.arc_sum import ArcSum, Exponential
+from symflex.roots.axes.arc_sum import ArcSum, ArcTerm
+from symflex.roots.axes.axis_function import IMAGINARY, REAL, AxisFunction, AxisWave, Enclosures
+from symflex.roots.axes.axis_root import AxisNewton, bits_of, bracketed, changes_sign
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.precision import precision
 from tests.unit.roots.distributed import FREE, PINNED_IN_THE_MIDDLE, ROD, SLIDING_FREE, bound
@@ -30,7 +30,7 @@ def working_precision():
 
 
 def exponential(p, q, *powers):
-    return Exponential(acb(*p), acb(*q), tuple((n, acb(*c)) for n, c in powers))
+    return ArcTerm(acb(*p), acb(*q), tuple((n, acb(*c)) for n, c in powers))
 
 
 def turn_by_samples(terms, radius):
@@ -98,8 +98,8 @@ def test_a_root_on_the_arc_is_refused():
     root = acb(3) + acb(0, 1) * arb.pi()
     factor = (acb(0, 1) * arb.pi() * 2 / 180).exp()
     terms = (
-        Exponential(acb(0), acb(0), ((0, acb(1)),)),
-        Exponential(factor, acb(0), ((0, acb(-3).exp()),)),
+        ArcTerm(acb(0), acb(0), ((0, acb(1)),)),
+        ArcTerm(factor, acb(0), ((0, acb(-3).exp()),)),
     )
     with pytest.raises(RootOnPathError):
         ArcSum(terms).turn(abs(root).mid())
@@ -108,7 +108,7 @@ def test_a_root_on_the_arc_is_refused():
 def decaying(axis, digits):
     """Return exp(-t) + sin(t) as a function of t."""
     one = Enclosures(bits_of(digits), (), (arb(1),), (1,))
-    waves = (Wave((0,), (1,), {}, {0: {(): 1}}), Wave((-1,), (0,), {0: {(): 1}}, {}))
+    waves = (AxisWave((0,), (1,), {}, {0: {(): 1}}), AxisWave((-1,), (0,), {0: {(): 1}}, {}))
     return AxisFunction(waves, axis, one)
 
 
@@ -118,7 +118,7 @@ def test_a_root_on_an_axis_is_enclosed_to_any_number_of_digits(digits, guess):
     source = decaying(IMAGINARY, digits)
     assert changes_sign(source, guess - 0.5, guess + 0.5)
     t = bracketed(source, guess - 0.5, guess + 0.5)
-    frequency = AxisRoots(digits).frequency(source, t)
+    frequency = AxisNewton(digits).frequency(source, t)
     with mp.workdps(digits + 60), precision(bits_of(digits) + 200):
         exact = findroot(lambda t: exp(-t) + sin(t), guess)
         assert frequency.rad() < frequency * arb(10) ** -digits
@@ -128,7 +128,7 @@ def test_a_root_on_an_axis_is_enclosed_to_any_number_of_digits(digits, guess):
 def test_nothing_is_enclosed_where_no_root_is():
     source = decaying(REAL, 20)
     assert not changes_sign(source, 0.5, 2.0)
-    assert AxisRoots(20).frequency(source, 1.5) is None
+    assert AxisNewton(20).frequency(source, 1.5) is None
 
 
 @pytest.mark.parametrize("text", [ROD, FREE, SLIDING_FREE, PINNED_IN_THE_MIDDLE])

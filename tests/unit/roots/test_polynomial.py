@@ -11,23 +11,23 @@ from flint import acb, arb, fmpq
 
 from symflex.budget import Budget
 from symflex.roots import POLYNOMIAL, Everything, PolynomialInS, Root, RootProblem, precision
-from symflex.roots.polynomials.discs import Disc
-from symflex.roots.polynomials.durand_kerner import propose_by_durand_kerner
-from symflex.roots.polynomials.polynomial import (
+from symflex.roots.polynomial_roots import (
     PolynomialRootFinder,
     _by_degree,
     _conjugates,
     _hull,
     _is_apart,
     _merge,
+    _PolynomialSearch,
     _roots_of,
-    _Search,
     _square_roots,
     _touching,
     find_polynomial_roots,
     in_order,
 )
-from symflex.roots.polynomials.squarefree import Part, Splitting
+from symflex.roots.polynomials.discs import Disc
+from symflex.roots.polynomials.durand_kerner import propose_by_durand_kerner
+from symflex.roots.polynomials.squarefree import Splitting, SquareFreePart
 
 CORNERS = [(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]
 
@@ -52,7 +52,7 @@ def part(*roots, in_square=False, multiplicity=1):
         coefficients = [
             x - Fraction(value) * y for x, y in zip(longer, [*coefficients, Fraction(0)], strict=True)
         ]
-    return Part(PolynomialInS.from_rationals(coefficients), multiplicity, in_square)
+    return SquareFreePart(PolynomialInS.from_rationals(coefficients), multiplicity, in_square)
 
 
 def encloses(roots, point):
@@ -327,7 +327,7 @@ def test_an_engine_given_is_the_one_that_is_asked():
 @pytest.mark.parametrize(("off", "kept"), [(Fraction(1, 2 * 10**9), 0), (1, 1)])
 def test_a_root_that_a_part_not_solved_may_share_is_left_out_of_a_search_broken_off(off, kept):
     solved, other = part(2), part(2 + off, 7)
-    search = _Search(RootProblem(()), 10, (), Budget(0.0, clock=count().__next__))
+    search = _PolynomialSearch(RootProblem(()), 10, (), Budget(0.0, clock=count().__next__))
     search.splitting = Splitting(0, (solved, other))
     search.solved[0] = [root(2, 0, 1e-9)]
     search._prove_singly()

@@ -8,8 +8,8 @@ import pytest
 from symflex import pipeline
 from symflex.print.text import roots_text
 from symflex.roots import Band, Everything, Mode, Modes, PoleZeroMap, Rectangle
-from symflex.roots.counting.right_half_plane import StabilityVerdict
 from symflex.roots.counting.tail import Tail
+from symflex.roots.verdict import StabilityVerdict
 
 HAYES = """
 symflex = 1

@@ -13,9 +13,9 @@ from symflex.budget import Budget
 from symflex.errors import BudgetError
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
-from symflex.roots.distributed.distributed import transcendental
-from symflex.roots.distributed.kernel_function import KernelFunction
-from symflex.roots.distributed.transcendental import RootSearch
+from symflex.roots.functions.kernel_function import KernelFunction
+from symflex.roots.plane import search as transcendental
+from symflex.roots.plane.search import RootSearch
 from symflex.roots.precision import precision
 from symflex.roots.root import Root
 from tests.unit.roots.distributed import DELAY_LOOP, bound

@@ -109,7 +109,15 @@ def test_sizes_beyond_doubles_put_it_at_an_end(above, place):
 
 @pytest.mark.parametrize(
     ("roots", "count"),
-    [((0.4, 0.6), 2), ((0.8, 0.9), 2), ((0.3, 0.4), 2), ((0.4, 3.0), 1), ((-2.0, 3.0), 0)],
+    [
+        ((0.4, 0.6), 2),
+        ((0.8, 0.9), 2),
+        ((0.3, 0.4), 2),
+        ((0.64, 0.65), 2),
+        ((0.13, 0.15), 2),
+        ((0.4, 3.0), 1),
+        ((-2.0, 3.0), 0),
+    ],
 )
 def test_two_roots_in_one_step_are_met_by_its_slopes(roots, count):
     ray = parabola(*roots)
@@ -137,7 +145,16 @@ def test_a_step_that_need_not_be_cut_is_one_piece():
 
 
 @pytest.mark.parametrize(
-    ("lowest", "cuts"), [(0.3, [0.5, 0.25, 0.375]), (0.9, [0.5, 0.75, 0.875]), (0.45, [0.5, 0.25, 0.375])]
+    ("lowest", "cuts"),
+    [
+        (0.1, [0.5, 0.25, 0.125]),
+        (0.2, [0.5, 0.25, 0.125]),
+        (0.3, [0.5, 0.25, 0.375]),
+        (0.45, [0.5, 0.25, 0.375]),
+        (0.6, [0.5, 0.75, 0.625]),
+        (0.7, [0.5, 0.75, 0.625]),
+        (0.9, [0.5, 0.75, 0.875]),
+    ],
 )
 def test_a_step_towards_zero_is_halved_three_times_on_the_side_of_the_dip(lowest, cuts):
     # A dip that does not reach zero.

@@ -10,8 +10,8 @@ import pytest
 from flint import acb, arb
 
 from symflex.roots.counting.winding import Cell, RootOnPathError
-from symflex.roots.distributed.distributed import transcendental
-from symflex.roots.distributed.transcendental import NEAR, RIGHT_HALF, SHARES, RootSearch, _is_in
+from symflex.roots.plane import search as transcendental
+from symflex.roots.plane.search import NEAR, RIGHT_HALF, SHARES, RootSearch, _is_in
 from symflex.roots.root import Root
 
 DIGITS = 17

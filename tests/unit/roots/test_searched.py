@@ -12,18 +12,14 @@ from symflex.algebra import Factored
 from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.roots import Band, Everything, Mode, Modes, Rectangle
-from symflex.roots.counting.right_half_plane import DEGENERATE, PASSIVE, RightHalfPlane
 from symflex.roots.counting.winding import Cell
-from symflex.roots.distributed.distributed import (
-    _degenerate_points,
-    _Searched,
-    distributed,
-    locate_distributed,
-)
+from symflex.roots.distributed import distributed
+from symflex.roots.distributed.distributed import _degenerate_points, _Searched, locate_distributed
+from symflex.roots.distributed.right_half_plane import DEGENERATE, PASSIVE, RightHalfPlane
 from symflex.roots.distributed.side import LOSSLESS, Proof
-from symflex.roots.distributed.transcendental import HIGHEST
+from symflex.roots.plane.search import HIGHEST
 from symflex.roots.pole_zero_map import HiddenRoot
-from symflex.roots.polynomials.polynomial import POLYNOMIAL
+from symflex.roots.polynomial_roots import POLYNOMIAL
 from symflex.transfer import HiddenFactor
 from tests.unit.roots.distributed import DELAY_LOOP, LINE, ON_A_FOUNDATION, ROD, bound
 from tests.unit.roots.stand_ins import OVER, places, root

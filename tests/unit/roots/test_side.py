@@ -9,7 +9,7 @@ import mpmath
 import pytest
 
 from symflex.algebra import Factored
-from symflex.algebra.origin import Origin
+from symflex.algebra.origin import OriginSeries
 from symflex.budget import Budget
 from symflex.errors import BudgetError, UncertifiedError
 from symflex.roots import Band, Modes, Rectangle
@@ -28,7 +28,7 @@ from symflex.roots.distributed.side import (
     groups,
     polynomial_in_s,
 )
-from symflex.roots.distributed.transcendental import MODES_LIMIT
+from symflex.roots.plane.search import MODES_LIMIT
 from tests.unit.roots.distributed import DELAY_LOOP, FREE, KELVIN_VOIGT, ROD, bound
 from tests.unit.roots.stand_ins import root, side
 
@@ -403,7 +403,7 @@ def test_roots_next_to_0_of_functions_without_a_formula_are_in_a_small_box(
     monkeypatch, turns, hidden, expected
 ):
     one = side(ROD)
-    monkeypatch.setattr(Origin, "order", lambda self, part: None)
+    monkeypatch.setattr(OriginSeries, "order", lambda self, part: None)
     monkeypatch.setattr(one, "_turns_about_zero", lambda power: (-5.0, turns))
     roots, order = one._roots_at_zero(bound(ROD).den, is_hidden=hidden)
     assert order == turns
@@ -415,7 +415,7 @@ def test_roots_next_to_0_of_functions_without_a_formula_are_in_a_small_box(
 
 def test_a_power_of_s_alone_is_a_root_at_0_whatever_lies_next_to_it(monkeypatch):
     one = side(ROD)
-    monkeypatch.setattr(Origin, "order", lambda self, part: None)
+    monkeypatch.setattr(OriginSeries, "order", lambda self, part: None)
     monkeypatch.setattr(one, "_turns_about_zero", lambda power: (-5.0, 0))
     part = bound(ROD).den
     s = part.ring.context.gen(0)

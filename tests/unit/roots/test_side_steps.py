@@ -12,10 +12,10 @@ from symflex.roots import Band, Modes, Rectangle
 from symflex.roots.axes.lossless import LosslessSearch
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
-from symflex.roots.distributed.distributed import side as side_module
-from symflex.roots.distributed.domains import WIDER
+from symflex.roots.distributed import side as side_module
 from symflex.roots.distributed.side import FEW, GUESS_AND_PROVE, LOSSLESS, SUBDIVISION, Proof
-from symflex.roots.distributed.transcendental import HIGHEST, Found, RootSearch
+from symflex.roots.plane.domains import WIDER
+from symflex.roots.plane.search import HIGHEST, Found, RootSearch
 from tests.unit.roots.distributed import DELAY_LOOP, KELVIN_VOIGT
 from tests.unit.roots.stand_ins import OVER, root, side
 

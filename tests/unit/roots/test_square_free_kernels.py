@@ -6,8 +6,8 @@ import pytest
 from flint import acb
 
 from symflex.algebra import Factored
-from symflex.roots.distributed.distributed import square_free_kernels
-from symflex.roots.distributed.square_free_kernels import without_squares
+from symflex.roots.functions import square_free_kernels
+from symflex.roots.functions.square_free_kernels import without_squares
 from symflex.roots.precision import precision
 from tests.unit.roots.distributed import DELAY_LOOP, ROD, SLIDING_FREE, bound
 

@@ -13,10 +13,11 @@ from flint import acb, arb
 from symflex.budget import Budget
 from symflex.errors import BudgetError
 from symflex.roots import precision
+from symflex.roots.argument import ROOM, angle, deviation
 from symflex.roots.counting.argument_principle import (
     CertifiedWinding,
     Circle,
-    Line,
+    LogarithmicLine,
     _angle,
     _argument,
     _principal,
@@ -24,9 +25,9 @@ from symflex.roots.counting.argument_principle import (
 )
 from symflex.roots.counting.local_series import LocalSeries
 from symflex.roots.counting.series_steps import BLURRED, MOST, SeriesSteps, _followed
-from symflex.roots.counting.stepping import FORGETTING, GOAL, NEARER, ROOM, angle, deviation, total_turn
+from symflex.roots.counting.stepping import FORGETTING, GOAL, NEARER, total_turn
 from symflex.roots.counting.winding import Cell, RootOnPathError, Winding, continuous_step
-from symflex.roots.distributed.kernel_function import Sample
+from symflex.roots.functions.kernel_function import Sample
 from tests.unit.roots.known_functions import KnownFunction, exact
 
 
@@ -137,10 +138,10 @@ def test_a_root_on_the_path_ends_in_steps_that_are_too_short():
 @pytest.mark.parametrize(
     "path",
     [
-        Line(complex(1, 0), complex(1, pi)),
-        Line(complex(-2, pi / 2), complex(3, pi / 2)),
-        Line(complex(2, -1), complex(-1, 2)),
-        Line(complex(40, 3), complex(40, -3)),
+        LogarithmicLine(complex(1, 0), complex(1, pi)),
+        LogarithmicLine(complex(-2, pi / 2), complex(3, pi / 2)),
+        LogarithmicLine(complex(2, -1), complex(-1, 2)),
+        LogarithmicLine(complex(40, 3), complex(40, -3)),
         Circle(acb(3, -4), arb("0.5")),
         Circle(acb(0), arb(7)),
     ],
@@ -165,11 +166,11 @@ def test_a_steps_ball_holds_the_path_and_its_reach_the_distance_from_its_middle(
 
 def test_an_end_is_met_exactly():
     with precision(200):
-        assert Line(0j, complex(0, pi)).point(1).contains(acb(-1))
-        assert Line(complex(0, -pi / 2), 1j).point(0).contains(acb(0, -1))
-        assert Line(complex(1, 0), complex(2, 0)).point(1).contains(acb(2).exp())
+        assert LogarithmicLine(0j, complex(0, pi)).point(1).contains(acb(-1))
+        assert LogarithmicLine(complex(0, -pi / 2), 1j).point(0).contains(acb(0, -1))
+        assert LogarithmicLine(complex(1, 0), complex(2, 0)).point(1).contains(acb(2).exp())
         assert Circle(acb(1, 1), arb(2)).point(0.25).contains(acb(1, 3))
-        assert float(abs(Line(0j, complex(0, pi)).point(1) + 1).upper()) < 1e-50
+        assert float(abs(LogarithmicLine(0j, complex(0, pi)).point(1) + 1).upper()) < 1e-50
 
 
 def test_doubles_nearest_to_pi_stand_for_pi():
@@ -670,7 +671,7 @@ def test_a_step_on_which_nothing_is_known_proves_nothing(broken):
             return [(v, bad, e) if broken == "slope" else (bad, d, e) for v, d, e in found]
 
     winding = CertifiedWinding(Unknown(PRODUCTS["double"]), Budget())
-    assert winding._change(Line(1j, 2 + 1j), 0.0, 0.01, 64)[0] == inf
+    assert winding._change(LogarithmicLine(1j, 2 + 1j), 0.0, 0.01, 64)[0] == inf
 
 
 @pytest.mark.parametrize("least", [200, 1000])

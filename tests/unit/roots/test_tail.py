@@ -29,7 +29,7 @@ from symflex.roots.counting.tail import (
     _turned,
     right_tail,
 )
-from symflex.roots.distributed.exponential_sum import MOST_EXPONENTIALS
+from symflex.roots.functions.exponential_sum import MOST_EXPONENTIALS
 
 
 def bound(text):

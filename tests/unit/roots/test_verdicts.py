@@ -11,20 +11,12 @@ from flint import acb
 
 from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic
-from symflex.roots.counting import right_half_plane
-from symflex.roots.counting.right_half_plane import (
-    ACCUMULATING,
-    NOT_COUNTED,
-    NOT_EXAMINED,
-    ON_AXIS,
-    RightHalfPlane,
-    StabilityVerdict,
-    judge,
-    search_right,
-)
 from symflex.roots.counting.tail import Tail
 from symflex.roots.counting.winding import RootOnPathError
+from symflex.roots.distributed import right_half_plane
+from symflex.roots.distributed.right_half_plane import ACCUMULATING, NOT_COUNTED, RightHalfPlane, search_right
 from symflex.roots.distributed.side import Proof
+from symflex.roots.verdict import NOT_EXAMINED, ON_AXIS, StabilityVerdict, judge
 from tests.unit.roots.stand_ins import root as pole
 
 LEFT, RIGHT, TWICE = pole(-1), pole(2, 3), pole(1, times=2)

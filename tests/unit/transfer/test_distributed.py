@@ -8,7 +8,7 @@ from flint import acb, ctx
 
 from symflex import pipeline
 from symflex.algebra import degree_in
-from symflex.algebra.origin import Origin
+from symflex.algebra.origin import OriginSeries
 from symflex.errors import ModelError
 from symflex.transfer import bind
 
@@ -115,7 +115,7 @@ def test_element_and_field_give_the_same_function():
 
 def test_a_free_beam_has_a_double_pole_at_the_origin_and_its_velocity_a_simple_one():
     tf = SLIDING["V_act/F"]
-    origin = Origin(tf.ratio.ring, tf.kernels)
+    origin = OriginSeries(tf.ratio.ring, tf.kernels)
     assert (origin.order(tf.num), origin.order(tf.den)) == (0, 1)
 
 

@@ -18,9 +18,9 @@ from flint import acb, acb_series, arb
 from symflex.algebra import Factored, degree_in
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
-from symflex.roots.counting.stepping import ROOM, deviation
-from symflex.roots.distributed.double_sums import DoubleSums
-from symflex.roots.distributed.exponential_sum import ExponentialValues, Place, arguments_of, exponential_sum
+from symflex.roots.argument import ROOM, deviation
+from symflex.roots.functions.double_sums import DoubleSums
+from symflex.roots.functions.exponential_sum import ExponentialValues, Place, arguments_of, exponential_sum
 from symflex.roots.precision import precision
 from symflex.transfer.enclose_kernels import expansion
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.algebra import Dispersion, KernelTable
-    from symflex.roots.distributed.exponential_sum import Argument, ExponentialSum
+    from symflex.roots.functions.exponential_sum import Argument, ExponentialSum
     from symflex.transfer import BoundTransferFunction
     from symflex.transfer.enclose_kernels import KernelValues
     from symflex.transfer.monomials import Value

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symflex.algebra import Dispersion, Factored
-    from symflex.roots.distributed.exponential_sum import Amplitude, ExponentialValues
+    from symflex.roots.functions.exponential_sum import Amplitude, ExponentialValues
 
 Numbers = npt.NDArray[np.complex128]
 Doubles = npt.NDArray[np.float64]
@@ -50,17 +50,17 @@ class DoubleSums:
 
     def __init__(self, values: ExponentialValues) -> None:
         evaluator = values.evaluator
-        self._laws: list[tuple[Dispersion, list[_Product]]] = [
-            (law, [_Product(values, c) for c in law.characteristic])
+        self._laws: list[tuple[Dispersion, list[_SampledProduct]]] = [
+            (law, [_SampledProduct(values, c) for c in law.characteristic])
             for law in evaluator.table.dispersions
             if law.wavenumbers
         ]
         self._arguments = [
-            (a.wavenumber, None if a.wavenumber else _Product(values, a.rate), complex(length))
+            (a.wavenumber, None if a.wavenumber else _SampledProduct(values, a.rate), complex(length))
             for a, length in zip(values.arguments, values.lengths, strict=True)
         ]
         self._sums = [
-            _Terms(values.coefficients[i], terms.combinations, len(self._arguments))
+            _SampledTerms(values.coefficients[i], terms.combinations, len(self._arguments))
             for i, (terms, _) in enumerate(values.sums)
         ]
 
@@ -87,7 +87,7 @@ class DoubleSums:
         return values, arguments
 
 
-class _Product:
+class _SampledProduct:
     """A product of powers of polynomials in s."""
 
     def __init__(self, values: ExponentialValues, product: Factored) -> None:
@@ -121,7 +121,7 @@ class _Amplitudes:
         return found
 
 
-class _Terms:
+class _SampledTerms:
     """One sum."""
 
     def __init__(

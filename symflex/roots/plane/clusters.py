@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, arb
 
-from symflex.roots.distributed.branch_points import prove_together
-from symflex.roots.distributed.krawczyk import prove_simple
+from symflex.roots.plane.branch_points import prove_together
+from symflex.roots.plane.krawczyk import prove_simple
 from symflex.roots.precision import precision
 from symflex.roots.root import GUARD_BITS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.roots.distributed.kernel_function import KernelFunction
+    from symflex.roots.functions.kernel_function import KernelFunction
     from symflex.roots.root import Root
 
 POINTS = 64

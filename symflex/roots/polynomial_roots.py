@@ -15,7 +15,7 @@ from symflex.roots.polynomials.durand_kerner import propose_by_durand_kerner
 from symflex.roots.polynomials.isolation import first_bits, isolations
 from symflex.roots.polynomials.laguerre import within_budget
 from symflex.roots.polynomials.singly import differs_from_zero, prove_singly
-from symflex.roots.polynomials.squarefree import Part, Splitting, split
+from symflex.roots.polynomials.squarefree import Splitting, SquareFreePart, split
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.problem import RootProblem
 from symflex.roots.root import GUARD_BITS, Root
@@ -120,11 +120,11 @@ def find_polynomial_roots(
         raise ValueError(message)
     for polynomial, _ in problem.factors:
         polynomial.require_leading_coefficient()
-    search = _Search(problem, digits, proposers, budget or entered_budget())
+    search = _PolynomialSearch(problem, digits, proposers, budget or entered_budget())
     return search.run()
 
 
-class _Search:
+class _PolynomialSearch:
     """Solves the parts of a product one after the other."""
 
     def __init__(
@@ -168,7 +168,7 @@ class _Search:
             others = [self.splitting.parts[j] for j in unsolved if j != i]
             self.solved[i] = [root for root in roots if _is_apart(root, others, self.digits)]
 
-    def _singles(self, part: Part) -> list[Root]:
+    def _singles(self, part: SquareFreePart) -> list[Root]:
         found: list[Root] = []
         digits = min(self.digits, SINGLE_DIGITS)
         singles = prove_singly(part.polynomial, digits, self.budget, in_square=part.in_square)
@@ -194,7 +194,7 @@ class _Search:
         return [_merge([roots[i] for i in cluster]) for cluster in _touching(roots)]
 
 
-def _is_apart(root: Root, others: Sequence[Part], digits: int) -> bool:
+def _is_apart(root: Root, others: Sequence[SquareFreePart], digits: int) -> bool:
     """Tell whether polynomials whose roots are not known have none where a root is: its multiplicity is."""
     for part in others:
         bits = max(first_bits(part.polynomial, digits), root.working_bits())
@@ -215,7 +215,7 @@ def _by_degree(degree: int, budget: Budget) -> tuple[Proposer, ...]:
     return (laguerre,)
 
 
-def _roots_of(part: Part, discs: Sequence[Disc], digits: int) -> list[Root]:
+def _roots_of(part: SquareFreePart, discs: Sequence[Disc], digits: int) -> list[Root]:
     convert = _square_roots if part.in_square else _conjugates
     roots: list[Root] = []
     for disc in discs:

@@ -15,7 +15,7 @@ from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.root import Root
 
 if TYPE_CHECKING:
-    from symflex.roots.distributed.kernel_function import KernelFunction
+    from symflex.roots.functions.kernel_function import KernelFunction
 
 MOST_POINTS = 400
 """Enough for some 600 digits of one root."""

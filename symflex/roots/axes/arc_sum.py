@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
-from symflex.roots.counting.stepping import ROOM, SPREAD, WIDENED, deviation, total_turn
+from symflex.roots.argument import ROOM, deviation
+from symflex.roots.counting.stepping import SPREAD, WIDENED, total_turn
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,7 +35,7 @@ SHORTEST = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
-class Exponential:
+class ArcTerm:
     """Terms ``c x^n`` before one exponential.
 
     Parameters
@@ -67,11 +68,11 @@ class ArcSum:
 
     Parameters
     ----------
-    terms : tuple of Exponential
+    terms : tuple of ArcTerm
         What is summed.
     """
 
-    terms: tuple[Exponential, ...]
+    terms: tuple[ArcTerm, ...]
 
     @cached_property
     def _sizes(self) -> tuple[_Size, ...]:
@@ -139,7 +140,7 @@ def _reach(linear: float, square: float) -> float:
 class _Arc:
     """A sum on the arc of one radius; places on it are shares t of its length."""
 
-    def __init__(self, terms: Sequence[Exponential], sizes: Sequence[_Size], radius: arb) -> None:
+    def __init__(self, terms: Sequence[ArcTerm], sizes: Sequence[_Size], radius: arb) -> None:
         self._terms = terms
         self._radius = radius
         self._eighth = arb.pi() / 4

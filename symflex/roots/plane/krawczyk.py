@@ -19,7 +19,7 @@ from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.root import GUARD_BITS, Root
 
 if TYPE_CHECKING:
-    from symflex.roots.distributed.kernel_function import KernelFunction
+    from symflex.roots.functions.kernel_function import KernelFunction
 
 LEAST_BITS = 96
 BOX_SHARE = 0.4

@@ -1,0 +1,138 @@
+"""Roots of a function with kernels in the right half plane, wherever they lie.
+
+The closed right half plane is searched up to a radius beyond which one of the function's terms outweighs all
+others, see :mod:`~symflex.roots.counting.tail`; a certified count about the half disc says how many roots it
+holds, and only where there are some they are searched.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import log, pi
+from typing import TYPE_CHECKING
+
+from flint import acb
+
+from symflex.errors import BudgetError
+from symflex.roots.counting.tail import right_tail
+from symflex.roots.counting.winding import RootOnPathError
+from symflex.roots.distributed.side import Side
+from symflex.roots.region import Rectangle
+from symflex.roots.verdict import count_right, is_right
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.algebra import Factored
+    from symflex.budget import Budget
+    from symflex.roots.root import Root
+    from symflex.transfer import BoundTransferFunction
+
+PASSIVE = "passive, energy is nowhere supplied"
+ACCUMULATING = "poles accumulate in the right half plane"
+DEGENERATE = "a root where wavenumbers meet may be no pole"
+NOT_COUNTED = "the poles right of the imaginary axis could not be counted"
+WAVES = 10.0
+"""Largest argument of a kernel up to which poles are counted where no end of them is known."""
+MARGIN = 1.01
+"""How far beyond the radius of a tail the path runs, so that its corners meet no root."""
+
+
+@dataclass(frozen=True, slots=True)
+class RightHalfPlane:
+    """The roots of one function in the right half plane.
+
+    Parameters
+    ----------
+    roots : tuple of Root
+        Those found, on the imaginary axis too.
+    unproved : str
+        Why there may be others; empty where there are none.
+    """
+
+    roots: tuple[Root, ...]
+    unproved: str = ""
+
+
+def search_right(
+    bound: BoundTransferFunction,
+    part: Factored,
+    side: Side,
+    known: Sequence[Root],
+    reached: float,
+    digits: int,
+    budget: Budget,
+) -> RightHalfPlane:
+    """Count the roots of a function with kernels right of the imaginary axis, and find them.
+
+    Parameters
+    ----------
+    bound, part : BoundTransferFunction, Factored
+        The function.
+    side : Side
+        The same, perhaps searched elsewhere.
+    known : sequence of Root
+        Those found already, anywhere, proved.
+    reached : float
+        Up to which abs(s) all roots are known [rad/s]; 0 where that is not so.
+    digits : int
+        Significant digits of every root.
+    budget : Budget
+        Of the search.
+    """
+    if side.is_finite:
+        return RightHalfPlane(tuple(known))
+    if any(hole.right < pi / 2 for hole in side.holes):
+        return RightHalfPlane(tuple(known), ACCUMULATING)
+    radius, unproved = _end(side, reached)
+    # Roots mirror each other in the axis, and a path along it would meet them.
+    is_mirrored = bool(unproved) and side.function.is_even
+    if is_mirrored and radius <= reached:
+        return RightHalfPlane(tuple(known), _up_to(unproved, reached))
+    count: int | None = None
+    try:
+        count = None if is_mirrored else side.count_right(log(radius * MARGIN))
+    except RootOnPathError:
+        pass
+    except BudgetError as error:
+        # Where no end is known, more was looked at than what was asked for.
+        said = _up_to(unproved, reached) if unproved else error.diagnostics[0].message
+        return RightHalfPlane(tuple(known), said)
+    seen = [root for root in known if root.re.contains(0) or is_right(root)]
+    if count is None or count != count_right(seen):
+        limit = Fraction(radius)
+        region = Rectangle(Fraction(0), limit, -limit, limit)
+        again = Side(bound, part, digits, budget)
+        try:
+            again.search(region)
+            # Roots of lossless systems lie on the border, and beyond what was asked for it is not followed.
+            proof = None if is_mirrored else again.prove(region)
+        except BudgetError as error:
+            more = f"{count} are counted, and not all found: " if count else ""
+            said = _up_to(unproved, reached) if is_mirrored else more + error.diagnostics[0].message
+            return RightHalfPlane(tuple(known), said)
+        seen = [root for root in again.roots if root.re.contains(0) or is_right(root)]
+        if proof is None:
+            return RightHalfPlane(tuple(seen), _up_to(unproved, reached))
+        if not proof.is_complete if count is None else count_right(seen) != count:
+            said = _up_to(unproved, reached) if unproved else proof.reason or NOT_COUNTED
+            return RightHalfPlane(tuple(seen), said)
+    return RightHalfPlane(tuple(seen), unproved and _up_to(unproved, radius))
+
+
+def _end(side: Side, reached: float) -> tuple[float, str]:
+    """Return how far roots are to be counted [rad/s], and why there may be others beyond."""
+    start, radius = side.function.frequency_of(1.0), 0.0
+    for factor, exponent in side.function.part.factors:
+        if exponent > 0:
+            tail = right_tail(side.function.bound, (factor,), (acb(1),), start)
+            if tail.radius is None:
+                return max(reached, side.function.frequency_of(WAVES)), tail.reason
+            radius = max(radius, tail.radius)
+    return radius, ""
+
+
+def _up_to(reason: str, radius: float) -> str:
+    """Say how far poles are known."""
+    return f"known up to {radius / (2 * pi):.4g} Hz only: {reason}" if radius > 0 else reason

@@ -1,0 +1,1 @@
+"""Searching the s plane: cells that are counted and cut, and boxes and discs that prove roots in them."""
