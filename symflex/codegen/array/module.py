@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symflex.algebra import modal_amplitudes, mode_values
-from symflex.codegen.array import support as array_support
 from symflex.codegen.array.pieces import ArrayPieces
 from symflex.codegen.members import members_of, verifications
 from symflex.codegen.module_text import COST, ITERATED, default_value
@@ -32,6 +31,7 @@ from symflex.codegen.python_text import (
     parameter_table,
     public_names,
 )
+from symflex.codegen.source_parts import called_parts, parts_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -51,8 +51,6 @@ MEASURED = (
     "The error is that of the same operations in numpy; another library's rounding differs in the last digit."
 )
 
-_CALLS_LARGER = re.compile(r"(?<!\w)_larger\(")
-
 
 @dataclass(frozen=True, slots=True)
 class Dialect:
@@ -66,6 +64,8 @@ class Dialect:
         First lines of the module's docstring.
     imports : str
         Import statements.
+    source : tuple of str
+        Files of the functions that are called.
     space : str
         What functions are looked up in.
     is_argument : bool
@@ -76,28 +76,21 @@ class Dialect:
         What docstrings call an argument.
     returned : tuple of str
         What docstrings call the value, and a sentence about it.
-    numbers, real_numbers, idle, in_front, series, stacked, settled, grown, size : str
-        Support that differs between dialects; ``size`` is empty when magnitudes are differentiated.
+    has_fixed_sizes : bool
+        True to leave magnitudes in conditions out of derivatives.
     """
 
     name: str
     first: str
     imports: str
+    source: tuple[str, ...]
     space: str
     is_argument: bool
     argument: str
     result: str
     array: str
     returned: tuple[str, str]
-    numbers: str
-    real_numbers: str
-    idle: str
-    in_front: str
-    series: str
-    stacked: str
-    settled: str
-    grown: str
-    size: str = ""
+    has_fixed_sizes: bool = False
 
     @property
     def reserved(self) -> frozenset[str]:
@@ -105,29 +98,32 @@ class Dialect:
         modules = {"jax", "sys", "cmath", "math", "importlib", "Any", "Array", "ArrayLike"}
         return frozenset({*keyword.kwlist, *NAMES_IN_USE, *modules, self.space})
 
+    @property
+    def parts(self) -> dict[tuple[str, ...], str]:
+        """What generated code calls."""
+        found: dict[tuple[str, ...], str] = {}
+        for names, text in parts_of(*self.source).items():
+            if "_modal_value" in names:
+                found |= {(f"_{f.__name__}",): private_copy(f) for f in (mode_values, modal_amplitudes)}
+            found[names] = text
+        return found
+
     def support(self, text: str) -> str:
         """Return support in the words of this dialect."""
-        return text if self.is_argument else array_support.for_one_library(text, self.space)
+        return text if self.is_argument else for_one_library(text, self.space)
 
 
 ARRAY_API = Dialect(
     "array-api",
     "Transfer functions of a linear system over any library of arrays with the array API.",
     "import cmath\nimport importlib\nimport sys\nfrom typing import Any\n",
+    ("array_api.py",),
     "xp",
     True,
     "Any",
     "Any",
     "number or array",
     ("array of complex", "Of the same library; a number when numbers alone are given. Not finite at poles."),
-    array_support.NAMESPACE,
-    array_support.REAL_NUMBERS,
-    array_support.IDLE,
-    array_support.IN_FRONT,
-    array_support.SERIES,
-    array_support.STACKED,
-    array_support.SETTLED,
-    array_support.GROWN,
 )
 
 JAX = Dialect(
@@ -135,21 +131,14 @@ JAX = Dialect(
     "Transfer functions of a linear system as functions that jax compiles, maps and differentiates.",
     "import cmath\nimport math\n\nimport jax\nimport jax.numpy as jnp\n"
     "from jax import Array\nfrom jax.typing import ArrayLike\n",
+    ("array_api.py", "jax.py"),
     "jnp",
     False,
     "ArrayLike",
     "Array",
     "array_like",
     ("Array of complex", "Not finite at poles."),
-    array_support.JAX_NUMBERS,
-    array_support.JAX_REAL_NUMBERS,
-    array_support.JAX_IDLE,
-    array_support.JAX_IN_FRONT,
-    array_support.JAX_SERIES,
-    array_support.JAX_STACKED,
-    array_support.JAX_SETTLED,
-    array_support.JAX_GROWN,
-    array_support.JAX_SIZE,
+    has_fixed_sizes=True,
 )
 
 DOUBLE_PRECISION = """\
@@ -252,8 +241,8 @@ def array_module(
         )
     code = ["\n".join(function.code()) for function in printed]
     texts = [f"{function.head()}\n\n\n{own}\n" for function, own in zip(printed, code, strict=True)]
-    used = _support([f.program for f in printed], dialect)
-    used += [array_support.LARGER] if any(_CALLS_LARGER.search(own) for own in code) else []
+    calls = [line for function in printed for line in function.body()]
+    used = called_parts("\n".join([*calls, *code]), dialect.parts, ("_numbers",))
     blocks = [parameter_table(model, names), *texts, *(dialect.support(text) for text in used)]
     blocks.append(function_table("TRANSFER_FUNCTIONS", functions))
     if any(isinstance(member.program, Piecewise) for member in members):
@@ -265,35 +254,6 @@ def array_module(
     lints = f"# ruff: noqa: {LINTS}  (names and texts are the model's)\n\n"
     start = f"{text}{lints}from __future__ import annotations\n\n{dialect.imports}\n"
     return ArrayModule(start + "\n\n".join(blocks), verified)
-
-
-def _support(programs: Sequence[Piecewise], dialect: Dialect) -> list[str]:
-    """Return the functions that generated pieces call, those in use only."""
-    blocks = [dialect.numbers]
-    calls = RuntimeCalls.of(programs)
-    solves = calls.roots or calls.propagation
-    if any(p.is_real for p in programs):
-        blocks += [dialect.real_numbers, array_support.REAL_PIECES]
-    if any(p.conditions for p in programs):
-        blocks.append(array_support.PIECES)
-    if any(p.conditions for p in programs) or solves:
-        blocks.append(dialect.idle)
-        blocks += [dialect.size] if dialect.size else []
-    if calls.series:
-        blocks.append(dialect.series)
-    if calls.means:
-        blocks += [array_support.CIRCLE, dialect.in_front]
-    if solves:
-        blocks += [] if dialect.size else [array_support.SIZE]
-        blocks += [dialect.stacked, array_support.LARGEST]
-    if calls.propagation:
-        blocks += [array_support.PROPAGATED, dialect.grown]
-    if calls.roots:
-        blocks += [array_support.ROOTS, dialect.settled]
-    if calls.modes:
-        copied = (private_copy(function) for function in (mode_values, modal_amplitudes))
-        blocks += [*copied, array_support.MODAL]
-    return blocks
 
 
 @dataclass(frozen=True)
@@ -319,7 +279,6 @@ class _Function:
         """Return the function that a user calls."""
         dialect = self.dialect
         parameters = [(p, self.names[p.name]) for p in self.tf.parameters]
-        arguments = [self.variable, *(name for _, name in parameters)]
         lines = [f"def {self.name}(", f"    {self.variable}: {dialect.argument},"]
         lines += ["    *,"] if parameters or dialect.is_argument else []
         for parameter, name in parameters:
@@ -327,13 +286,18 @@ class _Function:
             lines.append(f"    {name}: {dialect.argument}{f' = {value}' if value else ''},")
         lines += [f"    {dialect.space}: {dialect.argument} = None,"] if dialect.is_argument else []
         lines += [f") -> {dialect.result}:", self._docstring().rstrip("\n")]
+        return "\n".join([*lines, *self.body()])
+
+    def body(self) -> list[str]:
+        """Return its statements."""
+        dialect = self.dialect
+        arguments = [self.variable, *(self.names[p.name] for p in self.tf.parameters)]
         converter = "_real_numbers" if self.program.is_real else "_numbers"
         given = ", ".join([*([dialect.space] if dialect.is_argument else []), *arguments])
         target = f"{dialect.space}, arguments" if dialect.is_argument else "arguments"
-        lines += statement(target, f"{converter}({given})", "    ")
+        lines = statement(target, f"{converter}({given})", "    ")
         leading = f"{dialect.space}, " if dialect.is_argument else ""
-        lines += statement("return", f"_shaped({leading}{self._pieces.call()}, arguments)", "    ")
-        return "\n".join(lines)
+        return [*lines, *statement("return", f"_shaped({leading}{self._pieces.call()}, arguments)", "    ")]
 
     def code(self) -> list[str]:
         """Return the lines of the private functions; they hold no text of the model."""
@@ -351,7 +315,7 @@ class _Function:
             self.values,
             dialect.space,
             dialect.is_argument,
-            bool(dialect.size) and bool(self.program.conditions),
+            dialect.has_fixed_sizes and bool(self.program.conditions),
         )
 
     def _docstring(self) -> str:
@@ -372,3 +336,14 @@ class _Function:
         if self.program.solves:
             notes.append(ITERATED if RuntimeCalls.of([self.program]).roots else COST)
         return function_docstring(self.tf, signature, notes)
+
+
+def for_one_library(text: str, name: str) -> str:
+    """Return the text of functions with the argument ``xp`` replaced by a library's name.
+
+    Examples
+    --------
+    >>> for_one_library("def _f(xp, x): return g(xp, xp.exp(x))", "jnp")
+    'def _f(x): return g(jnp.exp(x))'
+    """
+    return re.sub(r"\bxp\.", f"{name}.", re.sub(r"\bxp, ", "", text))

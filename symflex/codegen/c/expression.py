@@ -47,7 +47,7 @@ REAL_FUNCTIONS = {
 """What C calls each of the elementary functions of a real number, and the magnitude."""
 
 
-LANE_FUNCTIONS = ("tan", "tanh", "exp")
+LANE_FUNCTIONS = ("tan", "exp", "tanh")
 """Functions of real numbers that there are without branches."""
 
 

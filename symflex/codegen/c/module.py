@@ -10,9 +10,9 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from symflex.codegen.c.expression import LANE_FUNCTIONS
 from symflex.codegen.c.functions import Functions
-from symflex.codegen.c.names import KEYWORDS, RESERVED
-from symflex.codegen.c.support import support
+from symflex.codegen.c.names import KEYWORDS, PARTS, RESERVED
 from symflex.codegen.module_text import (
     COST,
     ITERATED,
@@ -23,6 +23,7 @@ from symflex.codegen.module_text import (
 )
 from symflex.codegen.program import Piecewise, Verification, choose_programs, identifiers, inert, wrapped
 from symflex.codegen.program.calls import RuntimeCalls
+from symflex.codegen.source_parts import called_parts
 from symflex.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:
@@ -35,18 +36,6 @@ if TYPE_CHECKING:
 WIDTH = 88
 
 _FILE_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")
-
-COMPLEX_OF = """\
-#ifndef __STDC_NO_COMPLEX__
-static double complex complex_of(cx z)
-{
-    union { double part[2]; double complex whole; } value;
-    value.part[0] = z.re;
-    value.part[1] = z.im;
-    return value.whole;
-}
-#endif
-"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -323,12 +312,11 @@ class _Files:
         printed = {key: functions.text() for key, functions in self.functions.items()}
         # Comments tell nothing about which functions are called.
         called = "\n".join(text for text, _ in printed.values())
-        helpers = support(called, self.structure, max((order for _, order in printed.values()), default=1))
+        below = helpers(called, self.structure, max((order for _, order in printed.values()), default=1))
         code = "\n".join("\n".join([*comment([inert(key)]), "", text]) for key, (text, _) in printed.items())
-        conversion = COMPLEX_OF if self.functions else ""
         signs = {"float": "FLT_EVAL_METHOD", "math": "", "stdint": "uint64_t", "string": "memcpy("}
-        includes = "".join(f"#include <{name}.h>\n" for name, sign in signs.items() if sign in helpers)
-        parts = [includes, self._defaults(), helpers, conversion, code]
+        includes = "".join(f"#include <{name}.h>\n" for name, sign in signs.items() if sign in below)
+        parts = [includes, self._defaults(), below, code]
         return "\n".join(part for part in parts if part)
 
     def _defaults(self) -> str:
@@ -340,3 +328,24 @@ class _Files:
         if not self.model.parameters:
             lines.append("    0")
         return "\n".join([*lines, "};"]) + "\n"
+
+
+def helpers(code: str, parameters: str, order: int) -> str:
+    """Return the functions that some code calls.
+
+    Parameters
+    ----------
+    code : str
+        What calls them.
+    parameters : str
+        Name of the type that holds the parameters.
+    order : int
+        The largest order of a differential equation solved.
+    """
+    always, others = ["cx"], ""
+    if re.search(r"\bLANES\b", code):
+        own = [f for f in LANE_FUNCTIONS if f"lane_{f}(" in code]
+        always += ["ROUNDER", "OTHERWISE"] if own else ["LANES"]
+        others = "".join(f"#define lane_{f} {f}\n" for f in own)
+    text = "\n".join(called_parts(code, PARTS, always)).replace("OTHERWISE\n", others)
+    return text.replace("PARAMETERS", parameters).replace("CX_ORDER", str(max(order, 1)))

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from symflex.codegen.source_parts import parts_of
+
+PARTS = parts_of("c.c")
+
 KEYWORDS = frozenset(
     """
     auto break case char const continue default do double else enum extern float for goto if inline int long
@@ -54,12 +58,9 @@ FUNCTIONS = frozenset(
     main size_t ptrdiff_t
     sqrt exp log log2 ldexp ceil fmax fmin sin cos tan sinh cosh tanh fabs hypot pow copysign
     creal cimag
-    cx cx_of cx_add cx_addr cx_addi cx_sub cx_rsub cx_mul cx_scale cx_turn cx_div cx_neg cx_exp cx_cis
-    cx_sqrt cx_abs cx_over cx_under cx_circle cx_series cx_size cx_matrix cx_propagated cx_step cx_roots
-    cx_mode cx_modes cx_exponent cx_modal complex_of memcpy uint64_t
-    lane_bits lane_div lane_double lane_expm1 lane_exp lane_tan lane_tanh
+    memcpy uint64_t
     """.split()
-)
+).union(*PARTS)
 """What the code calls, and the types it uses."""
 
 LOCALS = frozenset("s p omega n i j w x g re im real imag sign value padded near is_near count".split())

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from symflex.codegen.infix import in_lines
 from symflex.codegen.julia.expression import WIDTH
-from symflex.codegen.julia.pieces import PrivateFunctions, support_of
+from symflex.codegen.julia.pieces import PrivateFunctions
 from symflex.codegen.members import Member, members_of, verifications
 from symflex.codegen.module_text import (
     COST,
@@ -23,6 +23,7 @@ from symflex.codegen.module_text import (
     origin_lines,
 )
 from symflex.codegen.program import Piecewise, Verification, identifiers, inert, wrapped
+from symflex.codegen.source_parts import called_parts, parts_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -138,11 +139,13 @@ def julia_module(
     public = identifiers({m.key: m.wanted for m in members}, taken)
     taken |= set(public.values())
     parameters = identifiers({p.name: p.name for p in model.parameters}, taken)
-    blocks = [_parameter_table(model, parameters)]
+    blocks, code = [_parameter_table(model, parameters)], ""
     for m in members:
         functions = PrivateFunctions(m.program, public[m.key], parameters, taken - {"s"})
-        blocks += [_public(m, functions, digits), *functions.blocks()]
-    called = support_of([m.program for m in members])
+        private = functions.blocks()
+        blocks += [_public(m, functions, digits), *private]
+        code += "\n".join(private)
+    called = called_parts(code, parts_of("julia.jl"))
     blocks += called
     for table, is_real in (("TRANSFER_FUNCTIONS", False), ("FREQUENCY_RESPONSES", True)):
         blocks.append(_function_table(table, [m for m in members if m.program.is_real == is_real], public))

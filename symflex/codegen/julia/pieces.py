@@ -5,10 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from symflex.codegen.julia import support
 from symflex.codegen.julia.expression import JuliaPrinter, head, statement
 from symflex.codegen.program import Assignment, Piece, Piecewise, Program, identifiers
-from symflex.codegen.program.calls import RuntimeCalls
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -140,16 +138,3 @@ def _assigned(assignments: Sequence[Assignment], printer: JuliaPrinter, indent: 
     for assignment in assignments:
         lines += statement(printer.locals[assignment.name], printer.print(assignment.value), indent)
     return lines
-
-
-def support_of(programs: Sequence[Program | Piecewise]) -> list[str]:
-    """Return the functions that the others call, those in use only."""
-    calls = RuntimeCalls.of([p for p in programs if isinstance(p, Piecewise)])
-    wanted = (
-        (calls.means, support.MEAN_OVER_CIRCLE),
-        (calls.series, support.SERIES_SOLUTIONS),
-        (calls.propagation, support.PROPAGATED),
-        (calls.roots, support.CHARACTERISTIC_ROOTS),
-        (calls.modes, support.MODAL),
-    )
-    return [text for is_called, text in wanted if is_called]

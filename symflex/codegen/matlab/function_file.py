@@ -11,9 +11,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symflex.codegen.matlab.expression import WIDTH, continued
-from symflex.codegen.matlab.pieces import LONGEST, LocalFunctions, roles_of, support_of
-from symflex.codegen.matlab.support import NAMES
-from symflex.codegen.matlab.systems import SYSTEM, RationalSystem, system_functions
+from symflex.codegen.matlab.pieces import LONGEST, LocalFunctions, roles_of
+from symflex.codegen.matlab.systems import RationalSystem, system_functions
 from symflex.codegen.members import Member, members_of, verifications
 from symflex.codegen.module_text import (
     COST,
@@ -24,6 +23,7 @@ from symflex.codegen.module_text import (
     origin_lines,
 )
 from symflex.codegen.program import Piecewise, Verification, identifiers, inert, wrapped
+from symflex.codegen.source_parts import called_parts, parts_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -55,6 +55,11 @@ WORDS = frozenset({"s", "G", "given", "value"})
 
 TOOLBOX = frozenset({"tf", "zpk", "ss", "frd", "roots"})
 """What no function of the file may hide."""
+
+PARTS = parts_of("matlab.m")
+
+NAMES = frozenset({"default_parameters"}.union(*PARTS))
+"""Names of the functions that others call."""
 
 RESERVED = KEYWORDS | FUNCTIONS | NAMES | WORDS
 
@@ -163,16 +168,18 @@ def matlab_function_file(
         _main(model, main, members, fields, public, parameters, makers, digits),
         _defaults(model, parameters),
     ]
+    code = ""
     for m in members:
         own = {role: private[f"{m.key} {role}"] for role in roles_of(m.program)}
         functions = LocalFunctions(m.program, own, parameters, taken - WORDS)
-        blocks += [_public(m, public[m.key], functions, digits), *functions.blocks()]
+        local = functions.blocks()
+        blocks += [_public(m, public[m.key], functions, digits), *local]
+        code += "\n".join([*functions.call(), *local])
         if m.key in systems:
             made, read = makers[fields[m.key]]
             blocks += system_functions(systems[m.key], (made, read), parameters, taken, _string)
-    blocks += support_of([m.program for m in members])
-    if systems:
-        blocks.append(SYSTEM)
+    always = ("numbers", "columns", *(["system_of"] if systems else []))
+    blocks += called_parts(code, PARTS, always)
     return MatlabExport("\n".join(blocks), main, verifications(members))
 
 

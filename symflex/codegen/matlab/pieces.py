@@ -5,10 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from symflex.codegen.matlab import support
 from symflex.codegen.matlab.expression import MatlabPrinter, continued, statement
 from symflex.codegen.program import Assignment, Piece, Piecewise, Program, identifiers
-from symflex.codegen.program.calls import RuntimeCalls
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -158,28 +156,3 @@ def _assigned(assignments: Sequence[Assignment], printer: MatlabPrinter, indent:
     for assignment in assignments:
         lines += statement(printer.locals[assignment.name], printer.print(assignment.value), indent)
     return lines
-
-
-def support_of(programs: Sequence[Program | Piecewise]) -> list[str]:
-    """Return the functions that the others call, those in use only."""
-    blocks = [support.NUMBERS, support.COLUMNS]
-    if any(isinstance(p, Program) for p in programs):
-        blocks.append(support.EVERYWHERE)
-    piecewise = [p for p in programs if isinstance(p, Piecewise)]
-    if not piecewise:
-        return blocks
-    if any(not p.is_real for p in piecewise):
-        blocks.append(support.IN_PIECES)
-    if any(p.is_real for p in piecewise):
-        blocks.append(support.IN_REAL_PIECES)
-    blocks.append(support.CHOSEN)
-    calls = RuntimeCalls.of(piecewise)
-    wanted = (
-        (calls.means, support.MEAN_OVER_CIRCLE),
-        (calls.series, support.SERIES_SOLUTIONS),
-        (calls.propagation or calls.roots, support.ROWS),
-        (calls.propagation, support.PROPAGATED),
-        (calls.roots, support.CHARACTERISTIC_ROOTS),
-        (calls.modes, support.MODAL),
-    )
-    return [*blocks, *(text for is_called, text in wanted if is_called)]

@@ -29,33 +29,6 @@ if TYPE_CHECKING:
 
 MOST_COEFFICIENTS: Final = 200
 
-SYSTEM: Final = """\
-function value = system_of(kind, num, den, delay, ends, units)
-%SYSTEM_OF  An object of the Control System Toolbox, or of Octave's package control.
-  switch kind
-    case 'tf'
-      value = tf(num, den);
-    case 'zpk'
-      value = zpk(roots(num), roots(den), num(find(num, 1)) / den(1));
-    case 'ss'
-      value = ss(tf(num, den));
-    otherwise
-      error('symflex:kind', 'a system is of kind ''tf'', ''zpk'' or ''ss''');
-  end
-  value.InputName = ends{1};
-  value.OutputName = ends{2};
-  try
-    value.InputUnit = units{1};
-    value.OutputUnit = units{2};
-  catch
-    % Systems of Octave have no units.
-  end
-  if delay ~= 0
-    value.InputDelay = delay;
-  end
-end
-"""
-
 
 @dataclass(frozen=True, slots=True)
 class RationalSystem:

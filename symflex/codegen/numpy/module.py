@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from symflex.codegen.members import members_of, verifications
 from symflex.codegen.module_text import COST, default_value
 from symflex.codegen.numpy.expression import Printer, statement
-from symflex.codegen.numpy.pieces import LINTS, PiecesText, support
+from symflex.codegen.numpy.pieces import LINTS, PARTS, PiecesText
 from symflex.codegen.program import Piecewise, Program, Verification, identifiers
 from symflex.codegen.python_text import (
     RESERVED,
@@ -23,6 +23,7 @@ from symflex.codegen.python_text import (
     parameter_table,
     public_names,
 )
+from symflex.codegen.source_parts import called_parts
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -44,47 +45,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 """
-
-SUPPORT = '''\
-def _numbers(
-    s: ArrayLike, *parameters: ArrayLike
-) -> tuple[NDArray[np.complex128], ...]:
-    """Return s as complex and every parameter as real or complex numbers."""
-    arrays = [np.asarray(value) for value in (s, *parameters)]
-    for array in arrays:
-        if array.dtype.kind not in "biufc":
-            message = f"numbers or arrays of numbers are wanted, not {array.dtype}"
-            raise TypeError(message)
-    types = [complex, *(complex if a.dtype.kind == "c" else float for a in arrays[1:])]
-    return tuple(
-        a.astype(t, copy=False)[()] for a, t in zip(arrays, types, strict=True)
-    )
-'''
-
-BLOCK = '''\
-BLOCK = 20480
-"""Values computed at once, so that intermediate ones stay in the processor's cache."""
-'''
-
-IN_BLOCKS = '''\
-def _in_blocks(function, arguments):
-    """Return values in the shape of all arguments together: a number if all are."""
-    shape = np.broadcast_shapes(*(np.shape(a) for a in arguments))
-    if not shape:
-        return complex(function(*arguments))
-    value = np.empty(shape, dtype=complex)
-    # Where arrays expand, what depends on one of them alone is computed once.
-    expands = any(np.shape(a) not in ((), shape) for a in arguments)
-    if expands or value.size <= BLOCK:
-        value[...] = function(*arguments)
-        return value
-    flat = value.reshape(-1)
-    columns = [a.reshape(-1) if np.ndim(a) else a for a in arguments]
-    for start in range(0, flat.size, BLOCK):
-        part = slice(start, start + BLOCK)
-        flat[part] = function(*(a[part] if np.ndim(a) else a for a in columns))
-    return value
-'''
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,26 +123,23 @@ def numpy_module(
     members = members_of(tfs, band_hz, samples)
     names = identifiers({p.name: p.name for p in model.parameters}, RESERVED)
     functions, responses = public_names(members, RESERVED)
-    blocks = [parameter_table(model, names)]
+    blocks, code = [parameter_table(model, names)], ""
     for member in members:
         public = (responses if member.program.is_real else functions)[member.tf.name]
         sentence = member.verification.text(digits)
-        blocks.append(_Function(member.tf, member.program, public, names, sentence).text())
+        function = _Function(member.tf, member.program, public, names, sentence)
+        private = "\n".join(function.private())
+        blocks.append(f"{function.text()}\n\n\n{private}\n")
+        code += f"{function.call}\n{private}\n"
     pieces = [member.program for member in members if isinstance(member.program, Piecewise)]
-    rational = [IN_BLOCKS] if len(pieces) < len(members) else []
-    blocks += [SUPPORT, BLOCK, *rational, *support(pieces), function_table("TRANSFER_FUNCTIONS", functions)]
+    blocks += called_parts(code, PARTS, ("_numbers", "BLOCK"))
+    blocks.append(function_table("TRANSFER_FUNCTIONS", functions))
     if pieces:
         blocks.append(function_table("FREQUENCY_RESPONSES", responses))
     lints = f"{LINTS_OF_NAMES}, {LINTS if pieces else LINTS_OF_BLOCKS}"
     verified = verifications(members)
     text = header(FIRST, model, verified[: len(functions)], digits)
     return NumpyExport(f"{text}{IMPORTS.format(lints=lints)}\n" + "\n\n".join(blocks), verified)
-
-
-# ------------------------------------------------------------------------------------------ the module
-
-
-# ---------------------------------------------------------------------------------------- one function
 
 
 @dataclass(frozen=True)
@@ -203,6 +160,7 @@ class _Function:
         return "omega_" if "omega" in self.names.values() else "omega"
 
     def text(self) -> str:
+        """Return the function that a user calls."""
         parameters = [(p, self.names[p.name]) for p in self.tf.parameters]
         values = ", ".join([self.variable, *(name for _, name in parameters)])
         signature = [
@@ -216,7 +174,7 @@ class _Function:
         body = [
             *statement("arguments", f"{'_real' if self.program.is_real else ''}_numbers({values})", "    "),
             '    with np.errstate(all="ignore"):',
-            *statement("return", self._call(), "        "),
+            *statement("return", self.call, "        "),
         ]
         return "\n".join(
             [
@@ -224,23 +182,22 @@ class _Function:
                 ") -> complex | NDArray[np.complex128]:",
                 self._docstring().rstrip("\n"),
                 *body,
-                "",
-                "",
-                *self._kernel([name for _, name in parameters]),
-                "",
             ]
         )
 
     def _pieces(self, program: Piecewise) -> PiecesText:
         return PiecesText(program, self.name, self.variable, self.names, RESERVED)
 
-    def _call(self) -> str:
+    @property
+    def call(self) -> str:
+        """What computes the value of ``arguments``."""
         if isinstance(self.program, Piecewise):
             return self._pieces(self.program).call()
         return f"_in_blocks(_value_of_{self.name}, arguments)"
 
-    def _kernel(self, parameters: Sequence[str]) -> list[str]:
-        """Return the private function that computes with numbers or arrays of any shape."""
+    def private(self) -> list[str]:
+        """Return the lines of what computes with arrays of any shape; no text of the model is in them."""
+        parameters = [self.names[p.name] for p in self.tf.parameters]
         if isinstance(self.program, Piecewise):
             return self._pieces(self.program).functions()
         lines = [f"def _value_of_{self.name}("]

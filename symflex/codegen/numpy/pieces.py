@@ -25,156 +25,11 @@ from symflex.codegen.program import (
     identifiers,
     runtime,
 )
-from symflex.codegen.program.calls import RuntimeCalls
 from symflex.codegen.program.real_axis import needed
+from symflex.codegen.source_parts import parts_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-PIECES_SUPPORT = '''\
-def _in_pieces(tests, pieces, arguments, unit):
-    """Return the value of the piece that serves, element by element.
-
-    Test i adds 2**i to the number of the piece where it holds. The unit, a power
-    of 1j, is a factor that the pieces leave out.
-    """
-    shape = np.broadcast_shapes(*(np.shape(a) for a in arguments))
-    if not shape:
-        number = sum(2**i for i, holds in enumerate(tests(*arguments)) if holds)
-        value = complex(unit * pieces[number](*arguments))
-        if np.isfinite(value):
-            return value
-        # At a pole numbers are divided otherwise than arrays.
-        given = (np.atleast_1d(arguments[0]), *arguments[1:])
-        return complex(_in_pieces(tests, pieces, given, unit)[0])
-    columns = [
-        np.broadcast_to(a, shape).reshape(-1) if np.ndim(a) else a for a in arguments
-    ]
-    value = np.zeros(shape, dtype=complex)
-    flat = value.reshape(-1)
-    line = flat.imag if unit in (1j, -1j) else flat.real
-    for start in range(0, flat.size, BLOCK):
-        part = flat[start : start + BLOCK]
-        given = [a[start : start + BLOCK] if np.ndim(a) else a for a in columns]
-        number, mixed = 0, False
-        held = tests(*given)
-        for i, holds in enumerate(held):
-            if np.all(holds):
-                number += 2**i
-            elif np.any(holds):
-                mixed = True
-        if not mixed:
-            found = pieces[number](*given)
-            if np.iscomplexobj(found):
-                part[:] = found if unit == 1 else unit * found
-            elif unit in (1, 1j):
-                line[start : start + BLOCK] = found
-            else:
-                np.negative(found, out=line[start : start + BLOCK])
-            continue
-        numbers = sum(2**i * holds for i, holds in enumerate(held))
-        for k in np.unique(numbers):
-            where = np.broadcast_to(numbers == k, part.shape)
-            found = pieces[k](*(a[where] if np.ndim(a) else a for a in given))
-            part[where] = unit * found
-    return value
-'''
-
-ARRAY_SUPPORT = '''\
-def _in_array(tests, pieces, arguments):
-    """Return what _in_pieces does, a number as part of an array.
-
-    Matrix exponentials magnify the last bit, which numbers may round differently.
-    """
-    shape = np.broadcast_shapes(*(np.shape(a) for a in arguments))
-    given = (np.atleast_1d(arguments[0]), *arguments[1:])
-    value = _in_pieces(tests, pieces, given, 1).reshape(shape)
-    return value if shape else complex(value[()])
-'''
-
-LEFT_SUPPORT = '''\
-def _is_left(x, scale):
-    """Tell where the real part of a product is negative."""
-    if np.ndim(scale) == 0 and np.imag(scale) == 0.0 and np.real(scale) > 0.0:
-        return np.real(x) < 0.0
-    return np.real(scale * x) < 0.0
-'''
-
-REAL_SUPPORT = '''\
-def _in_real_pieces(limits, sizes, pieces, arguments, unit):
-    """Return the response at angular frequencies of any sign.
-
-    Size i below limit i adds 2**i to the number of the piece where it is. Pieces return
-    numerator and denominator at a positive frequency, without the unit, 1 or 1j; at
-    a negative one the response is conjugate.
-    """
-    shape = np.broadcast_shapes(*(np.shape(a) for a in arguments))
-    bounds = limits(*arguments[1:])
-    if not shape:
-        size = sizes(abs(arguments[0]), *arguments[1:])
-        number = sum(2**i for i, x in enumerate(size) if x < bounds[i])
-        num, den = pieces[number](abs(arguments[0]), *arguments[1:])
-        found = num / den
-        if np.iscomplexobj(num):
-            value = complex(unit * found)
-        else:
-            value = complex(found, 0.0) if unit == 1 else complex(0.0, found)
-        return value.conjugate() if np.signbit(arguments[0]) else value
-    columns, bounds = (
-        [np.broadcast_to(a, shape).reshape(-1) if np.ndim(a) else a for a in group]
-        for group in (arguments, bounds)
-    )
-    value = np.empty(shape, dtype=complex)
-    flat = value.reshape(-1)
-    line = flat.real if unit == 1 else flat.imag
-    block = 2 * BLOCK  # Real values take half the space.
-    for start in range(0, flat.size, block):
-        part, out = flat[start : start + block], line[start : start + block]
-        part[:] = 0.0
-        given, below = (
-            [a[start : start + block] if np.ndim(a) else a for a in group]
-            for group in (columns, bounds)
-        )
-        turned = np.fmin.reduce(np.ravel(given[0])) < 0.0
-        if turned:
-            is_negative = np.signbit(given[0])
-            given[0] = np.abs(given[0])
-        number, mixed = 0, False
-        held = [x < limit for x, limit in zip(sizes(*given), below, strict=True)]
-        for i, holds in enumerate(held):
-            if np.all(holds):
-                number += 2**i
-            elif np.any(holds):
-                mixed = True
-        if not mixed:
-            num, den = pieces[number](*given)
-            if np.iscomplexobj(num):
-                part[:] = unit * (num / den)
-            else:
-                np.divide(num, den, out=out)
-        else:
-            numbers = sum(2**i * holds for i, holds in enumerate(held))
-            for k in np.unique(numbers):
-                where = np.broadcast_to(numbers == k, part.shape)
-                num, den = pieces[k](*(a[where] if np.ndim(a) else a for a in given))
-                if np.iscomplexobj(num):
-                    part[where] = unit * (num / den)
-                else:
-                    out[where] = num / den
-        if turned:
-            np.negative(part.imag, out=part.imag, where=is_negative)
-    return value
-
-
-def _real_numbers(*arguments: ArrayLike) -> tuple[NDArray[np.float64], ...]:
-    """Return real numbers."""
-    arrays = [np.asarray(value) for value in arguments]
-    for array in arrays:
-        if array.dtype.kind not in "biuf":
-            message = f"real numbers or arrays of them are wanted, not {array.dtype}"
-            raise TypeError(message)
-    return tuple(a.astype(float, copy=False)[()] for a in arrays)
-'''
+    from collections.abc import Callable, Mapping
 
 LINTS = "ANN001, ANN201, ANN202, N816, PLR0912, PLR0914, PLR1704, PLR2004"
 """Rules that the private functions of the pieces do not follow."""
@@ -205,29 +60,23 @@ def private_copy(function: Callable[..., object]) -> str:
     return f"def _{found.group(1)}({', '.join(names)}):\n{body}"
 
 
-def support(programs: Sequence[Piecewise]) -> list[str]:
-    """Return the functions that generated pieces call, those in use only."""
-    if not programs:
-        return []
-    blocks = [PIECES_SUPPORT]
-    if any(p.solves for p in programs):
-        blocks.append(ARRAY_SUPPORT)
-    if any(p.is_real for p in programs):
-        blocks.append(REAL_SUPPORT)
-    if any(not c.limit for p in programs if not p.is_real for c in p.conditions):
-        blocks.append(LEFT_SUPPORT)
-    calls = RuntimeCalls.of(programs)
-    nodes = (n for p in programs for piece in p.code for n in piece.code.nodes())
-    has_exponentials = any(isinstance(n, Apply) and n.function == "complex_exp" for n in nodes)
-    wanted: tuple[tuple[bool, tuple[Callable[..., object], ...]], ...] = (
-        (has_exponentials or calls.modes, (runtime.complex_exp,)),
-        (calls.series, (runtime.series_solutions,)),
-        (calls.propagation, (runtime.propagated,)),
-        (calls.roots, (runtime.characteristic_roots,)),
-        (calls.modes, (mode_values, modal_amplitudes, runtime.modal_value)),
-        (calls.means, (runtime.mean_over_circle,)),
-    )
-    return [*blocks, *(private_copy(f) for is_called, functions in wanted if is_called for f in functions)]
+PARTS: dict[tuple[str, ...], str] = {
+    **parts_of("numpy.py"),
+    **{
+        (f"_{function.__name__}",): private_copy(function)
+        for function in (
+            runtime.complex_exp,
+            runtime.series_solutions,
+            runtime.propagated,
+            runtime.characteristic_roots,
+            mode_values,
+            modal_amplitudes,
+            runtime.modal_value,
+            runtime.mean_over_circle,
+        )
+    },
+}
+"""What generated code calls."""
 
 
 @dataclass(frozen=True)

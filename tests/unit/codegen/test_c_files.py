@@ -17,7 +17,7 @@ from flint import acb
 from symflex import pipeline
 from symflex.codegen.c import c_files
 from symflex.codegen.c.expression import Kind, Term, complex_term, difference, product, quotient, total
-from symflex.codegen.c.support import support
+from symflex.codegen.c.module import helpers
 from symflex.codegen.exporters import EXPORTERS
 from symflex.codegen.program import verify
 from symflex.errors import UsageError
@@ -306,7 +306,7 @@ CALL(tan) CALL(tanh) CALL(exp)
 @pytest.fixture(scope="module")
 def elementary(tmp_path_factory):
     folder = tmp_path_factory.mktemp("elementary")
-    code = support("LANES lane_tan( lane_tanh( lane_exp(", "void", 1)
+    code = helpers("LANES lane_tan( lane_tanh( lane_exp(", "void", 1)
     includes = "#include <float.h>\n#include <math.h>\n#include <stdint.h>\n#include <string.h>\n"
     (folder / "lanes.c").write_text(f"{includes}{code}{FUNCTIONS}", encoding="utf-8")
     command = ["gcc", "-std=c99", "-O2", "-shared", "-fPIC", "-o", "lanes.so", "lanes.c", "-lm"]
@@ -512,7 +512,7 @@ ROOTS = np.array(
 
 def test_c_finds_roots_of_any_sizes(tmp_path):
     call = "void run(const cx *c, cx *x)\n{\n    cx_roots(c, 4, x);\n}\n"
-    code = f"#include <math.h>\n#include <string.h>\n{support('cx_roots(', 'void', 4)}\n{call}"
+    code = f"#include <math.h>\n#include <string.h>\n{helpers('cx_roots(', 'void', 4)}\n{call}"
     (tmp_path / "roots.c").write_text(code, encoding="utf-8")
     command = ["gcc", *STRICT, "-shared", "-fPIC", "-o", "roots.so", "roots.c", "-lm"]
     subprocess.run(command, cwd=tmp_path, check=True)
@@ -569,7 +569,7 @@ def test_every_pair_of_kinds_computes_what_complex_numbers_do(tmp_path):
             expected.append(exact(complex(VALUES[x]), complex(OTHERS[y])))
     body = "\n".join(lines)
     run = f"void run(double *value)\n{{\n    cx z;\n{body}\n}}\n"
-    code = f"#include <math.h>\n{support(body, 'void', 1)}\n{run}"
+    code = f"#include <math.h>\n{helpers(body, 'void', 1)}\n{run}"
     (tmp_path / "pairs.c").write_text(code, encoding="utf-8")
     command = ["gcc", "-std=c99", "-shared", "-fPIC", "-o", "pairs.so", "pairs.c", "-lm"]
     subprocess.run(command, cwd=tmp_path, check=True)
@@ -580,7 +580,7 @@ def test_every_pair_of_kinds_computes_what_complex_numbers_do(tmp_path):
 
 @pytest.mark.parametrize("function", ["cx_div", "lane_div"])
 def test_a_quotient_of_numbers_of_any_size_neither_overflows_nor_vanishes(function, tmp_path):
-    code = support(f"{function}(", "void", 1)
+    code = helpers(f"{function}(", "void", 1)
     call = f"void run(const cx *z, const cx *w, cx *q)\n{{\n    *q = {function}(*z, *w);\n}}\n"
     (tmp_path / "quotient.c").write_text(f"#include <math.h>\n{code}\n{call}", encoding="utf-8")
     command = ["gcc", "-std=c99", "-shared", "-fPIC", "-o", "quotient.so", "quotient.c", "-lm"]

@@ -11,7 +11,7 @@ import symflex
 from symflex.codegen.infix import in_lines
 from symflex.codegen.julia import julia_module, module_name
 from symflex.codegen.matlab import main_name, matlab_function_file
-from symflex.codegen.matlab.support import NAMES
+from symflex.codegen.matlab.function_file import NAMES
 from symflex.codegen.program import identifiers
 from tests.house.repository import slow_ones
 from tests.unit.codegen.exportable import DERIVATIONS, derived

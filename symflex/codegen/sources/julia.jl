@@ -1,8 +1,6 @@
-"""The functions that generated Julia code calls, as text."""
+# What generated Julia code calls: parts, each under a line that says what it defines.
 
-from __future__ import annotations
-
-MEAN_OVER_CIRCLE = '''\
+#: _mean_over_circle
 """
 Numerator over denominator, each the mean of its values on a circle.
 
@@ -22,9 +20,8 @@ function _mean_over_circle(parts, s, points)
     end
     return num / den
 end
-'''
 
-SERIES_SOLUTIONS = '''\
+#: _series_solutions
 """
 Solutions of a linear differential equation at 1, by Taylor series.
 
@@ -57,9 +54,8 @@ function _series_solutions(c, terms)
     end
     return found
 end
-'''
 
-PROPAGATED = '''\
+#: _propagated
 """
 h, h', ..., h^(n-1) at 1 for coefficients of any size.
 
@@ -89,9 +85,8 @@ function _propagated(c)
     end
     return [grown[k, n] * largest^float(k - n) for k in 1:n]
 end
-'''
 
-CHARACTERISTIC_ROOTS = '''\
+#: _characteristic_roots _refined
 """
 Roots of x^n + c[n] x^(n-1) + ... + c[1], and the least distance of two.
 
@@ -139,9 +134,8 @@ function _refined(x, i, scaled)
     change = value / (slope - value * away)
     return abs(change) < 1.0 ? x[i] - change : x[i]
 end
-'''
 
-MODAL = '''\
+#: _mode_values _modal_value
 """
 Exponents of all roots at a length, and x^k/chi'(x) of each for k = 0, 1, ...
 
@@ -198,4 +192,3 @@ function _modal_value(modes, coefficients, frames)
     end
     return [total, complex(growth)]
 end
-'''

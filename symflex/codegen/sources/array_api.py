@@ -1,14 +1,13 @@
-"""Functions that modules over any library of arrays contain, as text.
+# What generated code for any library of arrays calls: parts, each under a line that says what
+# it defines. The library is the argument xp.
 
-They are written for the array API, where the library ``xp`` is an argument; for a single library the argument
-is left out.
-"""
+import cmath
+import importlib
+import sys
+from typing import Any
 
-from __future__ import annotations
 
-import re
-
-NAMESPACE = '''\
+#: _namespace _place _numbers _shape _shaped
 def _namespace(arguments):
     """Return the library that arrays belong to: numpy where there are numbers alone."""
     found = {}
@@ -82,9 +81,9 @@ def _shaped(xp, value, arguments):
     if tuple(value.shape) != shape:
         value = xp.broadcast_to(value, shape)
     return complex(value) if not shape and xp.__name__ == "numpy" else value
-'''
 
-REAL_NUMBERS = '''\
+
+#: _real_numbers
 def _real_numbers(xp, *arguments):
     """Return the library, and real numbers."""
     xp, arrays = _numbers(xp, 0.0, *arguments)
@@ -92,41 +91,19 @@ def _real_numbers(xp, *arguments):
         message = "real numbers or arrays of them are wanted"
         raise TypeError(message)
     return xp, arrays[1:]
-'''
-
-JAX_NUMBERS = '''\
-def _numbers(*arguments):
-    """Return s as complex and every parameter as real or complex numbers."""
-    arrays = [jnp.asarray(value) for value in arguments]
-    kinds = [jnp.issubdtype(array.dtype, jnp.complexfloating) for array in arrays]
-    kinds[0] = True
-    return [
-        array.astype(jnp.complex128 if is_complex else jnp.float64)
-        for array, is_complex in zip(arrays, kinds)
-    ]
 
 
-def _shape(arguments):
-    """Return the shape of all arguments together."""
-    return jnp.broadcast_shapes(*(argument.shape for argument in arguments))
+#: _in_real_pieces
+def _in_real_pieces(xp, tests, pieces, arguments):
+    """Return the response at angular frequencies of any sign: conjugate at negative ones."""
+    omega, *parameters = arguments
+    is_negative = omega < 0.0
+    positive = xp.where(is_negative, -omega, omega)
+    value = _in_pieces(xp, tests, pieces, [positive, *parameters])
+    return xp.where(is_negative, xp.conj(value), value)
 
 
-def _shaped(value, arguments):
-    """Return a value in the shape of all arguments together."""
-    return jnp.broadcast_to(value, _shape(arguments))
-'''
-
-JAX_REAL_NUMBERS = '''\
-def _real_numbers(*arguments):
-    """Return real numbers."""
-    arrays = [jnp.asarray(value) for value in arguments]
-    if any(jnp.issubdtype(array.dtype, jnp.complexfloating) for array in arrays):
-        message = "real numbers or arrays of them are wanted"
-        raise TypeError(message)
-    return [array.astype(jnp.float64) for array in arrays]
-'''
-
-PIECES = '''\
+#: _in_pieces _serves
 def _in_pieces(xp, tests, pieces, arguments):
     """Return the value of the piece that serves, element by element.
 
@@ -157,9 +134,9 @@ def _serves(held, cases):
             own = part if own is None else own & part
         serves = own if serves is None else serves | own
     return serves
-'''
 
-IDLE = '''\
+
+#: _is_idle _found
 def _is_idle(xp, serves):
     """Tell that a piece serves no element; False where values are not known yet."""
     try:
@@ -172,83 +149,9 @@ def _is_idle(xp, serves):
 def _found(xp, piece, serves, arguments):
     """Return what a piece computes."""
     return piece(xp, *arguments)
-'''
-
-JAX_IDLE = '''\
-def _is_idle(serves):
-    """Tell that a piece serves no element; False where values are not known yet."""
-    return not isinstance(serves, jax.core.Tracer) and not bool(jnp.any(serves))
 
 
-def _found(piece, serves, arguments):
-    """Return what a piece computes; compiled, zeros where it turns out to serve nothing."""
-    if not isinstance(serves, jax.core.Tracer):
-        return piece(*arguments)
-    shape, kind = _shape(arguments), jnp.result_type(arguments[0], jnp.complex64)
-
-    def whole():
-        return jnp.broadcast_to(piece(*arguments), shape).astype(kind)
-
-    return jax.lax.cond(jnp.any(serves), whole, lambda: jnp.zeros(shape, kind))
-'''
-
-JAX_SIZE = '''\
-def _size(x):
-    """Return the magnitude of what only keeps something else from vanishing."""
-    return jax.lax.stop_gradient(jnp.abs(x))
-'''
-
-LARGER = '''\
-def _larger(xp, middle, product):
-    """Return the larger root of x^2 - 2 middle x + product, without cancellation."""
-    root = xp.sqrt(middle * middle - product)
-    is_opposite = xp.real(root * xp.conj(middle)) < 0.0
-    return middle + xp.where(is_opposite, -root, root)
-'''
-
-REAL_PIECES = '''\
-def _in_real_pieces(xp, tests, pieces, arguments):
-    """Return the response at angular frequencies of any sign: conjugate at negative ones."""
-    omega, *parameters = arguments
-    is_negative = omega < 0.0
-    positive = xp.where(is_negative, -omega, omega)
-    value = _in_pieces(xp, tests, pieces, [positive, *parameters])
-    return xp.where(is_negative, xp.conj(value), value)
-'''
-
-CIRCLE = '''\
-def _mean_over_circle(xp, parts, arguments, points):
-    """Return numerator over denominator, each the mean of its values on a circle.
-
-    Both are analytic, so the mean is the value at the center s, where the formula
-    itself cancels. parts returns numerator, denominator, the logarithm of what both
-    were divided by, and the radius.
-    """
-    s, *parameters = arguments
-    s = xp.broadcast_to(s, _shape(arguments))
-    _, _, center, radius = parts(xp, s, *parameters)
-    turns = [cmath.exp(2j * cmath.pi * (k + 0.5) / points) for k in range(points)]
-    circle = _in_front(xp, turns, s)
-    num, den, growth, _ = parts(xp, s + radius * circle, *parameters)
-    scale = xp.exp(growth - center)
-    return xp.sum(num * scale, axis=0) / xp.sum(den * scale, axis=0)
-'''
-
-IN_FRONT = '''\
-def _in_front(xp, values, array):
-    """Return numbers along an axis in front of those of an array."""
-    made = xp.asarray(values, dtype=xp.complex128, **_place(xp, [array]))
-    return xp.reshape(made, (len(values), *(1 for _ in array.shape)))
-'''
-
-JAX_IN_FRONT = '''\
-def _in_front(values, array):
-    """Return numbers along an axis in front of those of an array."""
-    made = jnp.asarray(values, dtype=jnp.complex128)
-    return jnp.reshape(made, (len(values), *(1 for _ in array.shape)))
-'''
-
-SERIES = '''\
+#: _series_solutions _is_zero
 def _series_solutions(coefficients, terms):
     """Return the solutions of a linear differential equation at 1, by Taylor series.
 
@@ -281,59 +184,49 @@ def _series_solutions(coefficients, terms):
 def _is_zero(x):
     """Tell that a value is the number zero whatever the arguments are."""
     return isinstance(x, float) and x == 0.0
-'''
 
 
-JAX_SERIES = '''\
-def _series_solutions(coefficients, terms):
-    """Return the solutions of a linear differential equation at 1, by Taylor series.
+#: _mean_over_circle
+def _mean_over_circle(xp, parts, arguments, points):
+    """Return numerator over denominator, each the mean of its values on a circle.
 
-    The equation is y^(n) + c_(n-1) y^(n-1) + ... + c_0 y = 0; solution k starts from
-    y^(k)(0) = 1 and zeros for the other derivatives below n.
+    Both are analytic, so the mean is the value at the center s, where the formula
+    itself cancels. parts returns numerator, denominator, the logarithm of what both
+    were divided by, and the radius.
     """
-    n = len(coefficients)
-    given = [jnp.asarray(c, dtype=jnp.complex128) for c in coefficients]
-    stacked = jnp.stack(jnp.broadcast_arrays(*given))
-    shape = (n, n, *stacked.shape[1:])
-    identity = jnp.eye(n, dtype=jnp.complex128)
-    factorials = [math.factorial(m) for m in range(terms)]
-    first = jnp.asarray([1.0 / f for f in factorials[:n]], dtype=jnp.complex128)
-    ones = (1,) * (len(shape) - 2)
-    state = (
-        jnp.broadcast_to(jnp.reshape(identity, (n, n, *ones)), shape),
-        jnp.broadcast_to(jnp.reshape(first, (n, *ones)), shape[1:]),
-        stacked,
-    )
-    later = jnp.asarray([float(f) for f in factorials[n:]], dtype=jnp.float64)
-    (_, total, _), _ = jax.lax.scan(_next_term, state, later)
-    return list(total)
+    s, *parameters = arguments
+    s = xp.broadcast_to(s, _shape(arguments))
+    _, _, center, radius = parts(xp, s, *parameters)
+    turns = [cmath.exp(2j * cmath.pi * (k + 0.5) / points) for k in range(points)]
+    circle = _in_front(xp, turns, s)
+    num, den, growth, _ = parts(xp, s + radius * circle, *parameters)
+    scale = xp.exp(growth - center)
+    return xp.sum(num * scale, axis=0) / xp.sum(den * scale, axis=0)
 
 
-def _next_term(state, factorial):
-    """Add a term to the series of all solutions; a loop is compiled faster than its terms."""
-    derivatives, total, coefficients = state
-    following = -jnp.sum(coefficients[:, None] * derivatives, axis=0)
-    derivatives = jnp.concatenate([derivatives[1:], following[None]])
-    return (derivatives, total + following / factorial, coefficients), None
-'''
+#: _in_front
+def _in_front(xp, values, array):
+    """Return numbers along an axis in front of those of an array."""
+    made = xp.asarray(values, dtype=xp.complex128, **_place(xp, [array]))
+    return xp.reshape(made, (len(values), *(1 for _ in array.shape)))
 
-STACKED = '''\
+
+#: _size
+def _size(xp, x):
+    """Return the magnitude."""
+    return xp.abs(x)
+
+
+#: _stacked
 def _stacked(xp, values):
     """Return numbers and arrays as one array, along a new axis in front."""
     place = _place(xp, [value for value in values if hasattr(value, "dtype")])
     arrays = [xp.asarray(value, dtype=xp.complex128, **place) for value in values]
     shape = _shape(arrays)
     return xp.stack([xp.broadcast_to(array, shape) for array in arrays])
-'''
 
-JAX_STACKED = '''\
-def _stacked(values):
-    """Return numbers and arrays as one array, along a new axis in front."""
-    arrays = [jnp.asarray(value, dtype=jnp.complex128) for value in values]
-    return jnp.stack(jnp.broadcast_arrays(*arrays))
-'''
 
-LARGEST = '''\
+#: _largest _largest_root
 def _largest(xp, values):
     """Return the largest of some real arrays, element by element."""
     found = values[0]
@@ -348,9 +241,70 @@ def _largest_root(xp, rows):
     sizes = [_size(xp, rows[i, ...]) ** (1.0 / (n - i)) for i in range(n)]
     found = _largest(xp, [xp.full_like(sizes[0], 1e-30), *sizes])
     return xp.where(xp.isfinite(sum(sizes)), found, xp.full_like(found, cmath.nan))
-'''
 
-ROOTS = '''\
+
+#: _propagated _matrix_product _squared
+def _propagated(xp, coefficients):
+    """Return h, h', ..., h^(n-1) at 1 for coefficients of any size.
+
+    h solves h^(n) + c_(n-1) h^(n-1) + ... + c_0 h = 0 and starts from h^(n-1)(0) = 1 and
+    zeros. The exponential of the companion matrix, by scaling and squaring: its first
+    two axes are those of the matrix.
+    """
+    n = len(coefficients)
+    rows = _stacked(xp, coefficients)
+    size = _largest_root(xp, rows)
+    one = xp.ones_like(rows[0, ...])
+    companion = [[one * 0.0 for _ in range(n)] for _ in range(n)]
+    for i in range(n - 1):
+        companion[i][i + 1] = one * size
+    companion[n - 1] = [-rows[i, ...] / size ** (n - 1 - i) for i in range(n)]
+    # Each element has its own number of halvings: what others are must not matter.
+    above_one = _largest(xp, [xp.ones_like(size), size])
+    halvings = xp.ceil(xp.log2(above_one)) + 3.0
+    halvings = xp.where(xp.isfinite(halvings), halvings, xp.full_like(halvings, 3.0))
+    share = 2.0**-halvings
+    small = xp.stack([xp.stack([x * share for x in row]) for row in companion])
+    diagonal = [[one * float(i == k) for k in range(n)] for i in range(n)]
+    identity = xp.stack([xp.stack(row) for row in diagonal])
+    grown = _grown(xp, small, identity, halvings)
+    one = xp.ones_like(size)
+    known = xp.where(halvings > _MOST_HALVINGS, one * cmath.nan, one)
+    return [grown[k, n - 1, ...] * size ** (k - n + 1.0) * known for k in range(n)]
+
+
+_MOST_HALVINGS = 32
+"""Of a matrix before its exponential is a series: exponents are below 2**29 then."""
+
+
+def _matrix_product(xp, left, right):
+    """Return the product of matrices whose rows and columns are the first two axes."""
+    total = 0.0
+    for k in range(left.shape[1]):
+        total = total + left[:, k, None, ...] * right[k, None, :, ...]
+    return total
+
+
+def _squared(xp, matrix, is_wanted):
+    """Return squares of matrices where they are wanted."""
+    safe = xp.where(is_wanted, matrix, xp.zeros_like(matrix))
+    return xp.where(is_wanted, _matrix_product(xp, safe, safe), matrix)
+
+
+#: _grown
+def _grown(xp, small, identity, halvings):
+    """Return the exponential of a small matrix, squared as often as each element needs."""
+    grown = identity
+    for m in range(18, 0, -1):
+        grown = identity + _matrix_product(xp, small, grown) / m
+    for k in range(_MOST_HALVINGS):
+        if _is_idle(xp, halvings > k):
+            break
+        grown = _squared(xp, grown, halvings > k)
+    return grown
+
+
+#: _characteristic_roots _first_roots _root_steps _shortened
 def _characteristic_roots(xp, coefficients):
     """Return the roots of x^n + c_(n-1) x^(n-1) + ... + c_0, and the least distance of two.
 
@@ -412,9 +366,9 @@ def _shortened(xp, step):
     """Return steps of a size of one at most."""
     size = _size(xp, step)
     return xp.where(size > 1.0, step / xp.where(size > 1.0, size, xp.ones_like(size)), step)
-'''
 
-SETTLED = '''\
+
+#: _settled
 def _settled(xp, scaled, x):
     """Return roots after as many steps as each element needs."""
     moves = xp.ones_like(xp.real(x[0, ...])) > 0.0
@@ -426,107 +380,9 @@ def _settled(xp, scaled, x):
         if _is_idle(xp, moves):
             break
     return x
-'''
-
-JAX_SETTLED = '''\
-def _settled(scaled, x):
-    """Return roots after as many steps as each element needs, without derivatives."""
-    scaled = [jax.lax.stop_gradient(c) for c in scaled]
-    x = jax.lax.stop_gradient(x)
-
-    def is_on(state):
-        count, moves, _ = state
-        return (count < 60) & jnp.any(moves)
-
-    def moved(state):
-        count, moves, x = state
-        step = _shortened(_root_steps(scaled, x))
-        x = jnp.where(moves, x - step, x)
-        is_far = jnp.any(jnp.abs(step) > 1e-9 * jnp.abs(x), axis=0)
-        return count + 1, moves & is_far, x
-
-    return jax.lax.while_loop(is_on, moved, (0, jnp.ones(x.shape[1:], dtype=bool), x))[2]
-'''
-
-PROPAGATED = '''\
-def _propagated(xp, coefficients):
-    """Return h, h', ..., h^(n-1) at 1 for coefficients of any size.
-
-    h solves h^(n) + c_(n-1) h^(n-1) + ... + c_0 h = 0 and starts from h^(n-1)(0) = 1 and
-    zeros. The exponential of the companion matrix, by scaling and squaring: its first
-    two axes are those of the matrix.
-    """
-    n = len(coefficients)
-    rows = _stacked(xp, coefficients)
-    size = _largest_root(xp, rows)
-    one = xp.ones_like(rows[0, ...])
-    companion = [[one * 0.0 for _ in range(n)] for _ in range(n)]
-    for i in range(n - 1):
-        companion[i][i + 1] = one * size
-    companion[n - 1] = [-rows[i, ...] / size ** (n - 1 - i) for i in range(n)]
-    # Each element has its own number of halvings: what others are must not matter.
-    above_one = _largest(xp, [xp.ones_like(size), size])
-    halvings = xp.ceil(xp.log2(above_one)) + 3.0
-    halvings = xp.where(xp.isfinite(halvings), halvings, xp.full_like(halvings, 3.0))
-    share = 2.0**-halvings
-    small = xp.stack([xp.stack([x * share for x in row]) for row in companion])
-    diagonal = [[one * float(i == k) for k in range(n)] for i in range(n)]
-    identity = xp.stack([xp.stack(row) for row in diagonal])
-    grown = _grown(xp, small, identity, halvings)
-    one = xp.ones_like(size)
-    known = xp.where(halvings > _MOST_HALVINGS, one * cmath.nan, one)
-    return [grown[k, n - 1, ...] * size ** (k - n + 1.0) * known for k in range(n)]
 
 
-_MOST_HALVINGS = 32
-"""Of a matrix before its exponential is a series: exponents are below 2**29 then."""
-
-
-def _matrix_product(xp, left, right):
-    """Return the product of matrices whose rows and columns are the first two axes."""
-    total = 0.0
-    for k in range(left.shape[1]):
-        total = total + left[:, k, None, ...] * right[k, None, :, ...]
-    return total
-
-
-def _squared(xp, matrix, is_wanted):
-    """Return squares of matrices where they are wanted."""
-    safe = xp.where(is_wanted, matrix, xp.zeros_like(matrix))
-    return xp.where(is_wanted, _matrix_product(xp, safe, safe), matrix)
-'''
-
-GROWN = '''\
-def _grown(xp, small, identity, halvings):
-    """Return the exponential of a small matrix, squared as often as each element needs."""
-    grown = identity
-    for m in range(18, 0, -1):
-        grown = identity + _matrix_product(xp, small, grown) / m
-    for k in range(_MOST_HALVINGS):
-        if _is_idle(xp, halvings > k):
-            break
-        grown = _squared(xp, grown, halvings > k)
-    return grown
-'''
-
-JAX_GROWN = '''\
-def _grown(small, identity, halvings):
-    """Return the exponential of a small matrix, squared as often as each element needs."""
-
-    def summed(grown, m):
-        return identity + _matrix_product(small, grown) / m, None
-
-    def squared(grown, k):
-        return jax.lax.cond(
-            jnp.any(halvings > k), lambda: _squared(grown, halvings > k), lambda: grown
-        ), None
-
-    # Loops, because what is written out is computed anew for every use when compiled.
-    grown, _ = jax.lax.scan(summed, identity, jnp.arange(18.0, 0.0, -1.0))
-    return jax.lax.scan(squared, grown, jnp.arange(float(_MOST_HALVINGS)))[0]
-'''
-
-MODAL = '''\
+#: _modal_value
 def _modal_value(xp, modes, coefficients, frames):
     """Return a sum of exponentials over the largest one, and the logarithm of that."""
     found = _modal_amplitudes(modes, coefficients, frames)
@@ -535,21 +391,11 @@ def _modal_value(xp, modes, coefficients, frames):
     for amplitude, exponent in found:
         total = total + amplitude * xp.exp(exponent - growth)
     return [total, growth]
-'''
-
-SIZE = '''\
-def _size(xp, x):
-    """Return the magnitude."""
-    return xp.abs(x)
-'''
 
 
-def for_one_library(text: str, name: str) -> str:
-    """Return the text of functions with the argument ``xp`` replaced by a library's name.
-
-    Examples
-    --------
-    >>> for_one_library("def _f(xp, x): return g(xp, xp.exp(x))", "jnp")
-    'def _f(x): return g(jnp.exp(x))'
-    """
-    return re.sub(r"\bxp\.", f"{name}.", re.sub(r"\bxp, ", "", text))
+#: _larger
+def _larger(xp, middle, product):
+    """Return the larger root of x^2 - 2 middle x + product, without cancellation."""
+    root = xp.sqrt(middle * middle - product)
+    is_opposite = xp.real(root * xp.conj(middle)) < 0.0
+    return middle + xp.where(is_opposite, -root, root)

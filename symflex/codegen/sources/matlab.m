@@ -1,8 +1,6 @@
-"""The functions that generated MATLAB code calls, as text."""
+% What generated MATLAB code calls: parts, each under a line that says what it defines.
 
-from __future__ import annotations
-
-NUMBERS = """\
+%: numbers
 function given = numbers(overrides, names)
 %NUMBERS  Values of parameters: those given, and the defaults for the others.
   values = default_parameters();
@@ -32,9 +30,8 @@ function given = numbers(overrides, names)
     given{k} = double(x);
   end
 end
-"""
 
-COLUMNS = """\
+%: columns
 function [s, given, shape] = columns(s, given)
 %COLUMNS  Arguments of one size as columns, numbers among the parameters as they are.
   if ~(isnumeric(s) || islogical(s))
@@ -54,17 +51,15 @@ function [s, given, shape] = columns(s, given)
     end
   end
 end
-"""
 
-EVERYWHERE = """\
+%: everywhere
 function value = everywhere(formula, s, given)
 %EVERYWHERE  What one formula gives for all elements.
   [s, given, shape] = columns(s, given);
   value = reshape(formula(s, given{:}) .* ones(size(s)), shape);
 end
-"""
 
-IN_PIECES = """\
+%: in_pieces
 function value = in_pieces(number_of, pieces, s, given)
 %IN_PIECES  What the piece that serves gives, element by element.
   [s, given, shape] = columns(s, given);
@@ -77,9 +72,8 @@ function value = in_pieces(number_of, pieces, s, given)
   end
   value = reshape(value, shape);
 end
-"""
 
-IN_REAL_PIECES = """\
+%: in_real_pieces
 function value = in_real_pieces(number_of, pieces, omega, given, is_turned)
 %IN_REAL_PIECES  The response at angular frequencies of any sign.
 %   Pieces give numerator and denominator at a positive frequency, without the
@@ -108,9 +102,8 @@ function value = in_real_pieces(number_of, pieces, omega, given, is_turned)
   value(is_negative) = conj(value(is_negative));
   value = reshape(value, shape);
 end
-"""
 
-CHOSEN = """\
+%: chosen
 function given = chosen(given, where)
 %CHOSEN  Elements of columns; numbers stay as they are.
   for k = 1:numel(given)
@@ -119,9 +112,8 @@ function given = chosen(given, where)
     end
   end
 end
-"""
 
-MEAN_OVER_CIRCLE = """\
+%: mean_over_circle
 function value = mean_over_circle(parts, s, points)
 %MEAN_OVER_CIRCLE  Numerator over denominator, each the mean of its values on a circle.
 %   Both are analytic, so the mean is the value at the center s, where the formula
@@ -139,9 +131,8 @@ function value = mean_over_circle(parts, s, points)
   end
   value = num ./ den;
 end
-"""
 
-SERIES_SOLUTIONS = """\
+%: series_solutions
 function found = series_solutions(c, terms)
 %SERIES_SOLUTIONS  Solutions of a linear differential equation at 1, by Taylor series.
 %   The equation is y^(n) + c{n} y^(n-1) + ... + c{1} y = 0; solution k starts from
@@ -171,9 +162,8 @@ function found = series_solutions(c, terms)
     found{k} = total;
   end
 end
-"""
 
-ROWS = """\
+%: rows_of
 function [rows, largest] = rows_of(c)
 %ROWS_OF  Coefficients as rows of a matrix, and about the largest root of each row.
   n = numel(c);
@@ -188,9 +178,8 @@ function [rows, largest] = rows_of(c)
   largest = max(abs(rows) .^ (1 ./ (n:-1:1)), [], 2);
   largest = max(largest, 1e-30);
 end
-"""
 
-PROPAGATED = """\
+%: propagated
 function found = propagated(c)
 %PROPAGATED  h, h', ..., h^(n-1) at 1 for coefficients of any size.
 %   h solves h^(n) + c{n} h^(n-1) + ... + c{1} h = 0 and starts from h^(n-1)(0) = 1 and
@@ -224,9 +213,8 @@ function found = propagated(c)
     found{k} = values(:, k);
   end
 end
-"""
 
-CHARACTERISTIC_ROOTS = """\
+%: characteristic_roots
 function found = characteristic_roots(c)
 %CHARACTERISTIC_ROOTS  Roots of x^n + c{n} x^(n-1) + ... + c{1}, and the least distance of two.
 %   Eigenvalues of the companion matrix, then steps of Aberth and Ehrlich, which give
@@ -270,9 +258,8 @@ function found = characteristic_roots(c)
   end
   found{n + 1} = least;
 end
-"""
 
-MODAL = """\
+%: mode_values modal_value
 function modes = mode_values(roots, len)
 %MODE_VALUES  Exponents of all roots at a length, and x^k/chi'(x) of each for k = 0, 1, ...
 %   The last of roots is their least distance, which is left out.
@@ -339,11 +326,29 @@ function found = modal_value(modes, coefficients, frames)
   end
   found = {total, growth};
 end
-"""
 
-NAMES = frozenset({
-    "numbers", "columns", "everywhere", "in_pieces", "in_real_pieces", "chosen", "mean_over_circle",
-    "series_solutions", "rows_of", "propagated", "characteristic_roots", "mode_values", "modal_value",
-    "default_parameters", "system_of",
-})  # fmt: skip
-"""Names of these functions, and of the one with the model's values."""
+%: system_of
+function value = system_of(kind, num, den, delay, ends, units)
+%SYSTEM_OF  An object of the Control System Toolbox, or of Octave's package control.
+  switch kind
+    case 'tf'
+      value = tf(num, den);
+    case 'zpk'
+      value = zpk(roots(num), roots(den), num(find(num, 1)) / den(1));
+    case 'ss'
+      value = ss(tf(num, den));
+    otherwise
+      error('symflex:kind', 'a system is of kind ''tf'', ''zpk'' or ''ss''');
+  end
+  value.InputName = ends{1};
+  value.OutputName = ends{2};
+  try
+    value.InputUnit = units{1};
+    value.OutputUnit = units{2};
+  catch
+    % Systems of Octave have no units.
+  end
+  if delay ~= 0
+    value.InputDelay = delay;
+  end
+end

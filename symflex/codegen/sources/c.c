@@ -1,17 +1,9 @@
-"""C functions that generated code calls: complex arithmetic, and what pieces of distributed systems need."""
+// What generated C code calls: parts, each under a line that says what it defines.
 
-from __future__ import annotations
+//: cx
+typedef struct { double re, im; } cx;
 
-import re
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-TYPE = "typedef struct { double re, im; } cx;\n"
-
-FUNCTIONS = {
-    "cx_of": """\
+//: cx_of
 static inline cx cx_of(double re, double im)
 {
     cx z;
@@ -19,74 +11,74 @@ static inline cx cx_of(double re, double im)
     z.im = im;
     return z;
 }
-""",
-    "cx_neg": """\
+
+//: cx_neg
 static inline cx cx_neg(cx z)
 {
     return cx_of(-z.re, -z.im);
 }
-""",
-    "cx_add": """\
+
+//: cx_add
 static inline cx cx_add(cx z, cx w)
 {
     return cx_of(z.re + w.re, z.im + w.im);
 }
-""",
-    "cx_addr": """\
+
+//: cx_addr
 static inline cx cx_addr(cx z, double a)    /* z + a */
 {
     return cx_of(z.re + a, z.im);
 }
-""",
-    "cx_addi": """\
+
+//: cx_addi
 static inline cx cx_addi(cx z, double a)    /* z + j a */
 {
     return cx_of(z.re, z.im + a);
 }
-""",
-    "cx_sub": """\
+
+//: cx_sub
 static inline cx cx_sub(cx z, cx w)
 {
     return cx_of(z.re - w.re, z.im - w.im);
 }
-""",
-    "cx_rsub": """\
+
+//: cx_rsub
 static inline cx cx_rsub(double a, cx z)    /* a - z */
 {
     return cx_of(a - z.re, -z.im);
 }
-""",
-    "cx_scale": """\
+
+//: cx_scale
 static inline cx cx_scale(double a, cx z)    /* a z */
 {
     return cx_of(a * z.re, a * z.im);
 }
-""",
-    "cx_turn": """\
+
+//: cx_turn
 static inline cx cx_turn(double a, cx z)    /* j a z */
 {
     return cx_of(-(a * z.im), a * z.re);
 }
-""",
-    "cx_mul": """\
+
+//: cx_mul
 static inline cx cx_mul(cx z, cx w)
 {
     return cx_of(z.re * w.re - z.im * w.im, z.re * w.im + z.im * w.re);
 }
-""",
-    "cx_over": """\
+
+//: cx_over
 static inline cx cx_over(cx z, double a)    /* z/a */
 {
     return cx_of(z.re / a, z.im / a);
 }
-""",
-    "cx_under": """\
+
+//: cx_under
 static inline cx cx_under(cx z, double a)    /* z/(j a) */
 {
     return cx_of(z.im / a, -z.re / a);
 }
-""",
-    "cx_div": """\
+
+//: cx_div
 /* Smith's method: squares of numbers that can be represented could not be. */
 static inline cx cx_div(cx z, cx w)
 {
@@ -100,8 +92,8 @@ static inline cx cx_div(cx z, cx w)
     d = w.im + w.re * r;
     return cx_of((z.re * r + z.im) / d, (z.im * r - z.re) / d);
 }
-""",
-    "lane_div": """\
+
+//: lane_div
 /* As accurate as Smith's method, and without branches. */
 static inline cx lane_div(cx z, cx w)
 {
@@ -110,14 +102,14 @@ static inline cx lane_div(cx z, cx w)
     const double q = r / (a * a + b * b);
     return cx_of((z.re * a + z.im * b) * q, (z.im * a - z.re * b) * q);
 }
-""",
-    "cx_abs": """\
+
+//: cx_abs
 static inline double cx_abs(cx z)
 {
     return hypot(z.re, z.im);
 }
-""",
-    "cx_sqrt": """\
+
+//: cx_sqrt
 /* The root whose real part is not negative. */
 static inline cx cx_sqrt(cx z)
 {
@@ -130,20 +122,20 @@ static inline cx cx_sqrt(cx z)
     }
     return cx_of(0.5 * fabs(z.im) / t, copysign(t, z.im));
 }
-""",
-    "cx_cis": """\
+
+//: cx_cis
 static inline cx cx_cis(double a)    /* exp(j a) */
 {
     return cx_of(cos(a), sin(a));
 }
-""",
-    "cx_exp": """\
+
+//: cx_exp
 static inline cx cx_exp(cx z)
 {
     return cx_scale(exp(z.re), cx_cis(z.im));
 }
-""",
-    "cx_series": """\
+
+//: cx_series
 /* Solutions y[0], ..., y[n - 1] at 1 of the differential equation
  * y^(n) + c[n - 1] y^(n - 1) + ... + c[0] y = 0 by Taylor series; solution k starts
  * from y^(k)(0) = 1 and zeros for the other derivatives below n.
@@ -175,8 +167,8 @@ static void cx_series(const cx *c, int n, int terms, cx *y)
         }
     }
 }
-""",
-    "cx_size": """\
+
+//: cx_size
 /* About the size of the largest root of x^n + c[n - 1] x^(n - 1) + ... + c[0]. */
 static double cx_size(const cx *c, int n)
 {
@@ -190,8 +182,8 @@ static double cx_size(const cx *c, int n)
     }
     return size;
 }
-""",
-    "cx_matrix": """\
+
+//: cx_matrix
 /* The product of two matrices of n rows, plus that of a number and the unit matrix. */
 static void cx_matrix(const cx *a, const cx *b, int n, double scale, double plus, cx *y)
 {
@@ -205,8 +197,8 @@ static void cx_matrix(const cx *a, const cx *b, int n, double scale, double plus
         }
     }
 }
-""",
-    "cx_propagated": """\
+
+//: cx_propagated
 /* y = h, h', ..., h^(n - 1) at 1 for coefficients of any size; h solves
  * h^(n) + c[n - 1] h^(n - 1) + ... + c[0] h = 0 and starts from h^(n - 1)(0) = 1 and zeros.
  * The exponential of the companion matrix, by scaling and squaring.
@@ -237,8 +229,8 @@ static void cx_propagated(const cx *c, int n, cx *y)
         y[k] = cx_scale(pow(size, k - n + 1), grown[n * k + n - 1]);
     }
 }
-""",
-    "cx_step": """\
+
+//: cx_step
 /* How far x[i] is off a root, by the method of Aberth and Ehrlich; zero if that is unknown. */
 static cx cx_step(const cx *c, int n, const cx *x, int i)
 {
@@ -255,8 +247,8 @@ static cx cx_step(const cx *c, int n, const cx *x, int i)
     const cx step = cx_div(value, cx_sub(slope, cx_mul(value, away)));
     return cx_abs(step) < HUGE_VAL ? step : cx_of(0.0, 0.0);
 }
-""",
-    "cx_roots": """\
+
+//: cx_roots
 /* Roots x[0], ..., x[n - 1] of x^n + c[n - 1] x^(n - 1) + ... + c[0], and in x[n] the least
  * distance of two. Steps of Aberth and Ehrlich from where the sizes of the coefficients say
  * that roots are (Bini 1996).
@@ -312,8 +304,8 @@ static void cx_roots(const cx *c, int n, cx *x)
     }
     x[n] = cx_of(least, 0.0);
 }
-""",
-    "cx_modes": """\
+
+//: cx_modes cx_mode
 /* Exponents of n roots at a length, and per root x^k/chi'(x) for k = 0, ..., n - 1. */
 typedef struct { cx exponent[CX_ORDER], power[CX_ORDER][CX_ORDER]; } cx_mode;
 
@@ -331,8 +323,8 @@ static void cx_modes(const cx *x, int n, cx length, cx_mode *mode)
         }
     }
 }
-""",
-    "cx_exponent": """\
+
+//: cx_exponent
 /* The sum of the exponents of some roots, one of each mode. */
 static cx cx_exponent(const cx_mode *const *modes, const int *slots, int count, const int *roots)
 {
@@ -342,8 +334,8 @@ static cx cx_exponent(const cx_mode *const *modes, const int *slots, int count, 
     }
     return sum;
 }
-""",
-    "cx_modal": """\
+
+//: cx_modal
 /* A sum of exponentials over the largest one, and the logarithm of that. The plan has for
  * every frame: the number of slots and their modes; per slot the number of terms, with the
  * order of the derivative of each and the sum that it becomes part of; the number of
@@ -400,8 +392,8 @@ static void cx_modal(const cx_mode *const *modes, const cx *c, const int *plan, 
     }
     value[1] = cx_of(growth, 0.0);
 }
-""",
-    "cx_circle": """\
+
+//: cx_circle
 /* Numerator over denominator at s, each the mean of its values on a circle around s,
  * because the formula itself is singular near s though they are not. At z, parts gives
  * numerator, denominator, the logarithm of the factor that both were divided by, and
@@ -423,24 +415,21 @@ static cx cx_circle(void (*parts)(cx z, const PARAMETERS *p, cx *value),
     }
     return cx_div(num, den);
 }
-""",
-}
 
-LANES = 32
-"""Frequencies computed at a time in real arithmetic."""
+//: LANES
+#define LANES 32
 
-KERNELS_HEAD = """\
+//: ROUNDER
 /* Elementary functions without branches, so that compilers can compute several values at a time.
  * They need IEEE arithmetic that is not reordered, and double rounded to double.
  */
-#define LANES {LANES}
+#define LANES 32
 #if !defined(__FAST_MATH__) && defined(FLT_EVAL_METHOD) && (FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 1)
 
 /* Added to a number and subtracted again, it rounds to an integer. */
 #define ROUNDER 6755399441055744.0
-"""
 
-KERNELS_BITS = """\
+//: lane_bits lane_double
 static inline uint64_t lane_bits(double x)
 {
     uint64_t u;
@@ -454,16 +443,8 @@ static inline double lane_double(uint64_t u)
     memcpy(&x, &u, sizeof x);
     return x;
 }
-"""
 
-KERNELS_MIDDLE = """\
-#else
-
-"""
-
-KERNELS = {
-    "lane_tan": (
-        """\
+//: lane_tan
 /* Sine and cosine as in fdlibm (Sun Microsystems 1993), of x - k pi/2; they change places if k is odd. */
 static inline double lane_tan(double x)
 {
@@ -483,11 +464,8 @@ static inline double lane_tan(double x)
     const uint64_t sign = odd & (UINT64_C(1) << 63);
     return lane_double(lane_bits(sine) ^ change) / lane_double(lane_bits(cosine) ^ change ^ sign);
 }
-""",
-        "#define lane_tan tan\n",
-    ),
-    "lane_expm1": (
-        """\
+
+//: lane_expm1
 /* exp(x) = *scale (1 + value); beyond |x| = 708 as at 708. */
 static inline double lane_expm1(double x, double *scale)
 {
@@ -506,67 +484,37 @@ static inline double lane_expm1(double x, double *scale)
         + r_2 * (2.4801520792572694e-05 + r * 2.75572680728901e-06)
         + r_4 * (2.762032742826824e-07 + r * 2.5100569275813683e-08)));
 }
-""",
-        "",
-    ),
-    "lane_exp": (
-        """\
+
+//: lane_exp
 static inline double lane_exp(double x)
 {
     double scale;
     const double rest = lane_expm1(x, &scale);
     return scale + scale * rest;
 }
-""",
-        "#define lane_exp exp\n",
-    ),
-    "lane_tanh": (
-        """\
+
+//: lane_tanh
 static inline double lane_tanh(double x)
 {
     double scale;
     const double rest = lane_expm1(-2.0 * x, &scale);
     return ((1.0 - scale) - scale * rest) / ((1.0 + scale) + scale * rest);
 }
-""",
-        "#define lane_tanh tanh\n",
-    ),
+
+//: OTHERWISE
+#else
+
+OTHERWISE
+
+#endif
+
+//: complex_of
+#ifndef __STDC_NO_COMPLEX__
+static double complex complex_of(cx z)
+{
+    union { double part[2]; double complex whole; } value;
+    value.part[0] = z.re;
+    value.part[1] = z.im;
+    return value.whole;
 }
-"""For every function, its text and what takes its place where that would not work."""
-
-_CALL = re.compile(r"\b((?:cx|lane)_\w+)\(")
-
-
-def support(code: str, parameters: str, order: int) -> str:
-    """Return the functions that some code calls, each after those it calls itself.
-
-    Parameters
-    ----------
-    code : str
-        What calls them.
-    parameters : str
-        Name of the type that holds the parameters.
-    order : int
-        The largest order of a differential equation solved.
-    """
-    needed: set[str] = set()
-    pending = _CALL.findall(code)
-    while pending:
-        name = pending.pop()
-        text = FUNCTIONS.get(name) or KERNELS.get(name, ("",))[0]
-        if text and name not in needed:
-            needed.add(name)
-            pending += _CALL.findall(text)
-    texts = [TYPE, *(text for name, text in FUNCTIONS.items() if name in needed)]
-    kernels = [name for name in KERNELS if name in needed]
-    if re.search(r"\bLANES\b", code):
-        texts += _kernels(kernels) if kernels else [f"#define LANES {LANES}\n"]
-    return "\n".join(texts).replace("PARAMETERS", parameters).replace("CX_ORDER", str(max(order, 1)))
-
-
-def _kernels(names: Sequence[str]) -> list[str]:
-    texts = [KERNELS_HEAD.replace("{LANES}", str(LANES))]
-    texts.append(KERNELS_BITS)
-    texts += [KERNELS[name][0] for name in names]
-    others = "".join(KERNELS[name][1] for name in names)
-    return [*texts, f"{KERNELS_MIDDLE}{others}\n#endif\n"]
+#endif

@@ -1,0 +1,148 @@
+# Parts that take the place of those of array_api.py where the library is jax.
+
+import cmath
+import math
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+from jax.typing import ArrayLike
+
+
+#: _numbers _shape _shaped
+def _numbers(*arguments):
+    """Return s as complex and every parameter as real or complex numbers."""
+    arrays = [jnp.asarray(value) for value in arguments]
+    kinds = [jnp.issubdtype(array.dtype, jnp.complexfloating) for array in arrays]
+    kinds[0] = True
+    return [
+        array.astype(jnp.complex128 if is_complex else jnp.float64)
+        for array, is_complex in zip(arrays, kinds)
+    ]
+
+
+def _shape(arguments):
+    """Return the shape of all arguments together."""
+    return jnp.broadcast_shapes(*(argument.shape for argument in arguments))
+
+
+def _shaped(value, arguments):
+    """Return a value in the shape of all arguments together."""
+    return jnp.broadcast_to(value, _shape(arguments))
+
+
+#: _real_numbers
+def _real_numbers(*arguments):
+    """Return real numbers."""
+    arrays = [jnp.asarray(value) for value in arguments]
+    if any(jnp.issubdtype(array.dtype, jnp.complexfloating) for array in arrays):
+        message = "real numbers or arrays of them are wanted"
+        raise TypeError(message)
+    return [array.astype(jnp.float64) for array in arrays]
+
+
+#: _is_idle _found _size
+def _is_idle(serves):
+    """Tell that a piece serves no element; False where values are not known yet."""
+    return not isinstance(serves, jax.core.Tracer) and not bool(jnp.any(serves))
+
+
+def _found(piece, serves, arguments):
+    """Return what a piece computes; compiled, zeros where it turns out to serve nothing."""
+    if not isinstance(serves, jax.core.Tracer):
+        return piece(*arguments)
+    shape, kind = _shape(arguments), jnp.result_type(arguments[0], jnp.complex64)
+
+    def whole():
+        return jnp.broadcast_to(piece(*arguments), shape).astype(kind)
+
+    return jax.lax.cond(jnp.any(serves), whole, lambda: jnp.zeros(shape, kind))
+
+
+def _size(x):
+    """Return the magnitude of what only keeps something else from vanishing."""
+    return jax.lax.stop_gradient(jnp.abs(x))
+
+
+#: _series_solutions _next_term
+def _series_solutions(coefficients, terms):
+    """Return the solutions of a linear differential equation at 1, by Taylor series.
+
+    The equation is y^(n) + c_(n-1) y^(n-1) + ... + c_0 y = 0; solution k starts from
+    y^(k)(0) = 1 and zeros for the other derivatives below n.
+    """
+    n = len(coefficients)
+    given = [jnp.asarray(c, dtype=jnp.complex128) for c in coefficients]
+    stacked = jnp.stack(jnp.broadcast_arrays(*given))
+    shape = (n, n, *stacked.shape[1:])
+    identity = jnp.eye(n, dtype=jnp.complex128)
+    factorials = [math.factorial(m) for m in range(terms)]
+    first = jnp.asarray([1.0 / f for f in factorials[:n]], dtype=jnp.complex128)
+    ones = (1,) * (len(shape) - 2)
+    state = (
+        jnp.broadcast_to(jnp.reshape(identity, (n, n, *ones)), shape),
+        jnp.broadcast_to(jnp.reshape(first, (n, *ones)), shape[1:]),
+        stacked,
+    )
+    later = jnp.asarray([float(f) for f in factorials[n:]], dtype=jnp.float64)
+    (_, total, _), _ = jax.lax.scan(_next_term, state, later)
+    return list(total)
+
+
+def _next_term(state, factorial):
+    """Add a term to the series of all solutions; a loop is compiled faster than its terms."""
+    derivatives, total, coefficients = state
+    following = -jnp.sum(coefficients[:, None] * derivatives, axis=0)
+    derivatives = jnp.concatenate([derivatives[1:], following[None]])
+    return (derivatives, total + following / factorial, coefficients), None
+
+
+#: _in_front
+def _in_front(values, array):
+    """Return numbers along an axis in front of those of an array."""
+    made = jnp.asarray(values, dtype=jnp.complex128)
+    return jnp.reshape(made, (len(values), *(1 for _ in array.shape)))
+
+
+#: _stacked
+def _stacked(values):
+    """Return numbers and arrays as one array, along a new axis in front."""
+    arrays = [jnp.asarray(value, dtype=jnp.complex128) for value in values]
+    return jnp.stack(jnp.broadcast_arrays(*arrays))
+
+
+#: _grown
+def _grown(small, identity, halvings):
+    """Return the exponential of a small matrix, squared as often as each element needs."""
+
+    def summed(grown, m):
+        return identity + _matrix_product(small, grown) / m, None
+
+    def squared(grown, k):
+        return jax.lax.cond(
+            jnp.any(halvings > k), lambda: _squared(grown, halvings > k), lambda: grown
+        ), None
+
+    # Loops, because what is written out is computed anew for every use when compiled.
+    grown, _ = jax.lax.scan(summed, identity, jnp.arange(18.0, 0.0, -1.0))
+    return jax.lax.scan(squared, grown, jnp.arange(float(_MOST_HALVINGS)))[0]
+
+
+#: _settled
+def _settled(scaled, x):
+    """Return roots after as many steps as each element needs, without derivatives."""
+    scaled = [jax.lax.stop_gradient(c) for c in scaled]
+    x = jax.lax.stop_gradient(x)
+
+    def is_on(state):
+        count, moves, _ = state
+        return (count < 60) & jnp.any(moves)
+
+    def moved(state):
+        count, moves, x = state
+        step = _shortened(_root_steps(scaled, x))
+        x = jnp.where(moves, x - step, x)
+        is_far = jnp.any(jnp.abs(step) > 1e-9 * jnp.abs(x), axis=0)
+        return count + 1, moves & is_far, x
+
+    return jax.lax.while_loop(is_on, moved, (0, jnp.ones(x.shape[1:], dtype=bool), x))[2]
