@@ -17,8 +17,8 @@ Examples
 ... X = "x"
 ... ''')
 >>> G = model.transfer_function("X", "F")
->>> print(G.form("polynomial"))
-X/F = 1/(m*s^2 + k)
+>>> str(G.form("polynomial"))
+'X/F = 1/(m*s^2 + k)'
 >>> [complex(p) for p in G.bind().poles()]
 [2j, -2j]
 """

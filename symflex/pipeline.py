@@ -326,7 +326,7 @@ def rational(
     form: str = "product",
     band: tuple[float, float] | None = None,
 ) -> RationalApproximation:
-    """Return a rational approximation with its error; see :func:`symflex.analysis.rational.approximate`."""
+    """Return a rational approximation with its error; see :func:`symflex.analysis.rational.approximation`."""
     from symflex.analysis import rational as rational_room  # imports numpy
 
     return rational_room.approximate(bound, modes, form, band)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from symflex import state_space as state_space_room
     from symflex.state_space.numeric import BoundStateSpace
-    from symflex.state_space.quotients import Vector
+    from symflex.state_space.popov import Vector
 
 
 @dataclass(frozen=True)

@@ -173,7 +173,7 @@ class TransferFunction:
         UsageError
             SF902 for an unknown parameter, or where wavenumbers have no formula.
         """
-        from symflex.analysis.sensitivity.formula import sensitivity_formula  # needs all of SymPy
+        from symflex.analysis.sensitivity.text import sensitivity_formula  # needs all of SymPy
 
         symbols = symbols_of(self.exact.model)
         if parameter not in symbols or of not in ("pole", "zero"):

@@ -26,7 +26,7 @@ from symflex.expressions import (
     names,
 )
 from symflex.transfer.balls import rational_value
-from symflex.transfer.compose import compose_rational
+from symflex.transfer.expansion import compose_rational
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

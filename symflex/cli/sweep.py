@@ -153,7 +153,7 @@ def _check_options(
 def _frequencies(model: Model, band: tuple[str, str] | None, count: int | None) -> list[float]:
     """Return frequencies [Hz] that are equally spaced in their logarithm."""
     from symflex.cli.roots import band_limits
-    from symflex.sweep.frequencies import logarithmic
+    from symflex.sweep.points import logarithmic
 
     if band is not None:
         low, high = band_limits(band, above_zero=True)

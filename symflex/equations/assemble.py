@@ -23,8 +23,7 @@ from symflex.algebra import (
 from symflex.budget import spend
 from symflex.equations.distributed import survey, transfer_matrix
 from symflex.equations.equations import ConstantFunction, Continuum, EquationRow, Equations, OutputRow
-from symflex.equations.evaluate import Evaluator, Opener
-from symflex.equations.realisation import written_denominator
+from symflex.equations.evaluate import Evaluator, Opener, written_denominator
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
 from symflex.expressions import Call, Expression, Name, format_expression, names
 from symflex.library.elements import ElementUse, LinearForm, Stamp, Terminal, Variable
@@ -70,7 +69,7 @@ def assemble(
         True for a ring of any number of names, in which nothing is expanded; not for distributed models. Rows
         are not cleared of denominators then.
     is_joined : bool
-        True to take line elements of one law that meet as one, see :mod:`symflex.equations.chains`.
+        True to take line elements of one law that meet as one, see :mod:`symflex.equations.distributed`.
 
     Raises
     ------

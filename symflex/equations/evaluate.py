@@ -1,4 +1,8 @@
-"""From expressions to linear forms over the exact ring."""
+"""From expressions to linear forms over the exact ring.
+
+Also the states an expression is written with, the product of all denominators in s along its products: what
+cancels between blocks in it is a hidden mode, not nothing.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +12,7 @@ from functools import cached_property
 from math import isqrt
 from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE, Factored, Ring, residue
+from symflex.algebra import LAPLACE, Factored, Ring, degree_in, least_common_multiple, residue
 from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.expressions import (
     Attribute,
@@ -318,3 +322,46 @@ def _product(
     if isinstance(right, LinearForm):
         return right * left
     return left * right
+
+
+def written_denominator(expression: Expression, evaluator: Evaluator) -> Factored:
+    """Return the denominator in s of an expression before anything cancels.
+
+    A product of blocks has the poles of every factor, also where a zero of the next one cancels them; a sum
+    needs those of each term once.
+
+    Parameters
+    ----------
+    expression : Expression
+        As written; it has been evaluated without error before.
+    evaluator : Evaluator
+        For blocks and constant parts.
+    """
+    one = Factored.number(evaluator.ring, 1)
+    match expression:
+        case Name(name) if name in evaluator.blocks and evaluator.is_block(expression):
+            return _in_s(evaluator.blocks[name].denominator())
+        case Negative(operand):
+            return written_denominator(operand, evaluator)
+        case Product(factors):
+            result = one
+            for factor in factors:
+                result = result * written_denominator(factor, evaluator)
+            return result
+        case Quotient(numerator, denominator):
+            below = _in_s(evaluator.constant(denominator).numerator())
+            return written_denominator(numerator, evaluator) * below
+        case Power(base, exponent):
+            n = int(evaluator.constant(exponent).unit)
+            if n >= 0:
+                return written_denominator(base, evaluator) ** n
+            return _in_s(evaluator.constant(base).numerator()) ** -n
+        case Sum(terms):
+            return least_common_multiple(one, (written_denominator(t, evaluator) for t in terms))
+    return one
+
+
+def _in_s(value: Factored) -> Factored:
+    """Return the factors that contain s."""
+    s = value.ring.index[LAPLACE]
+    return value.filter(lambda factor: bool(degree_in(factor, s)))

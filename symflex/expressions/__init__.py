@@ -1,6 +1,5 @@
 """Expressions as text and as trees: read, printed, built and searched."""
 
-from symflex.expressions.build import is_number, negative, number, power, product_of, quotient, sum_of
 from symflex.expressions.format import format_expression
 from symflex.expressions.limits import PROGRAM_LIMITS, USER_LIMITS, Limits
 from symflex.expressions.nodes import (
@@ -17,6 +16,13 @@ from symflex.expressions.nodes import (
     Product,
     Quotient,
     Sum,
+    is_number,
+    negative,
+    number,
+    power,
+    product_of,
+    quotient,
+    sum_of,
 )
 from symflex.expressions.parse import parse, parse_equation
 from symflex.expressions.slips import FUNCTIONS

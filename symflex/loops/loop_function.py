@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     from symflex.roots.functions.exponential_sum import Argument, ExponentialSum, Place
     from symflex.transfer import BoundTransferFunction
+    from symflex.transfer.balls import Value
     from symflex.transfer.enclose_kernels import KernelValues
-    from symflex.transfer.monomials import Value
 
 Powers = tuple[tuple[int, int, int], ...]
 NOTHING = acb(0)

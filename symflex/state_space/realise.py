@@ -23,10 +23,18 @@ from symflex.library.elements import Variable
 from symflex.library.elements.element import ACROSS_UNIT, COMPONENT_UNIT
 from symflex.quantities import unit_of
 from symflex.state_space.opened import opened, with_filters_apart
-from symflex.state_space.popov import Row, SolvedRows, add_term, solve
-from symflex.state_space.quotients import FieldElement, Vector, applied, combined
+from symflex.state_space.popov import (
+    FieldElement,
+    Row,
+    SolvedRows,
+    Vector,
+    add_term,
+    applied,
+    combined,
+    solve,
+)
 from symflex.state_space.state_space import Combination, Signal, State, StateSpace
-from symflex.transfer.nested import nested_transfer
+from symflex.transfer.derive import nested_transfer
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

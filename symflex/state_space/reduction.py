@@ -18,7 +18,7 @@ from flint import nmod_mat
 from symflex.algebra import PRIME, Factored, random_point, residue
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
-from symflex.state_space.quotients import FieldElement, Vector, applied, combined, transposed
+from symflex.state_space.popov import FieldElement, Vector, applied, combined, transposed
 from symflex.state_space.state_space import State
 
 if TYPE_CHECKING:

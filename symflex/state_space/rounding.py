@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from symflex.expressions import Expression
     from symflex.model import ExactValue
-    from symflex.state_space.quotients import FieldElement
+    from symflex.state_space.popov import FieldElement
     from symflex.state_space.state_space import StateSpace
 
 FIRST_BITS, LAST_BITS = 128, 4096

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from symflex.state_space.quotients import FieldElement, Vector
+from symflex.state_space.popov import FieldElement, Vector
 
 if TYPE_CHECKING:
     from symflex.algebra import Ring

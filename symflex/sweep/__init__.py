@@ -6,9 +6,9 @@ workers, nor the order in which they finish, nor a restart in between changes a 
 """
 
 from symflex.sweep.design import Axis, Design, Range
+from symflex.sweep.points import QUANTITIES, solve_chunk
 from symflex.sweep.read import check_design, design_of, read_design
 from symflex.sweep.run import Journal, chunk_size, run_sweep, sweep_key
-from symflex.sweep.solve import QUANTITIES, solve_chunk
 from symflex.sweep.sweep import Labelled, Sweep
 from symflex.sweep.task import Task, fingerprint
 

@@ -17,7 +17,7 @@ from symflex.data.measurement.netcdf import read_netcdf
 from symflex.errors import DataError, Diagnostic, UsageError
 from symflex.files import write
 from symflex.model.spec.read import read_bytes
-from symflex.sweep.point_margins import MARGINS
+from symflex.sweep.points import MARGINS
 from symflex.sweep.sweep import DRAW, FREQUENCY, MODE, SCHEMA, Labelled, Sweep, missing_library
 
 if TYPE_CHECKING:

@@ -13,8 +13,7 @@ import numpy as np
 from symflex.budget import Silent
 from symflex.errors import BudgetError, Diagnostic
 from symflex.sweep.design import points_between, written
-from symflex.sweep.point_roots import PointStatus
-from symflex.sweep.solve import solve_chunk
+from symflex.sweep.points import PointStatus, solve_chunk
 from symflex.sweep.sweep import assembled
 from symflex.sweep.task import fingerprint
 

@@ -10,8 +10,7 @@ import numpy as np
 from symflex.errors import Diagnostic, UsageError
 from symflex.sweep.design import number
 from symflex.sweep.follow import Link, follow, predecessors
-from symflex.sweep.point_margins import MARGINS
-from symflex.sweep.point_roots import PointStatus, RootStatus
+from symflex.sweep.points import MARGINS, PointStatus, RootStatus
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

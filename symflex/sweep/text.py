@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from symflex.sweep.follow import Link
-from symflex.sweep.point_roots import RootStatus
+from symflex.sweep.points import RootStatus
 
 if TYPE_CHECKING:
     from symflex.sweep import Sweep

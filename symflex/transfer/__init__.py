@@ -8,8 +8,7 @@ from symflex.transfer.bind import (
     bind_polynomials,
     coefficients_in_s,
 )
-from symflex.transfer.derive import derive, derive_all
-from symflex.transfer.nested import nested_transfer
+from symflex.transfer.derive import derive, derive_all, nested_transfer
 from symflex.transfer.nested_form import (
     AnyTransferFunction,
     BoundNested,

@@ -1,12 +1,16 @@
-"""Enclosing the value of an expression of constants in a real ball."""
+"""Values in balls: of expressions of constants, of sparse polynomials, and to double precision.
+
+Polynomials are prepared for evaluation: products shared by successive terms are made once.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from fractions import Fraction
-from math import prod
+from math import inf, isfinite, nan, prod
 from typing import TYPE_CHECKING
 
-from flint import arb, fmpq
+from flint import acb, acb_series, arb, ctx, fmpq
 
 from symflex.algebra import FUNCTIONS
 from symflex.errors import Diagnostic, ModelError
@@ -24,9 +28,13 @@ from symflex.expressions import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
+
+    from flint import fmpz_mpoly
 
     from symflex.model import ExactValue
+
+    Ball = Callable[[acb], acb]
 
 
 def ball(value: Fraction) -> arb:
@@ -132,3 +140,129 @@ def _enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) ->
             return FUNCTIONS[name].evaluate(_enclose(argument, values))
     message = f"unexpected expression {type(expression).__name__}"
     raise TypeError(message)
+
+
+Value = acb | acb_series
+"""A number, or a power series in the displacement from one."""
+
+Step = tuple[int, tuple[int, ...], int]
+"""How many factors of the last product stay, which powers follow, and the term's integer."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """How to evaluate one polynomial.
+
+    Parameters
+    ----------
+    powers : tuple of (int, int)
+        Positions of generators, and exponents, that occur.
+    steps : tuple of Step
+        One per term.
+    """
+
+    powers: tuple[tuple[int, int], ...]
+    steps: tuple[Step, ...]
+
+    def value(self, powers: Sequence[Value]) -> Value:
+        """Return the polynomial's value from those of the powers."""
+        products: list[Value] = [acb(1)]
+        total: Value = acb(0)
+        for kept, following, coefficient in self.steps:
+            del products[kept + 1 :]
+            product = products[-1]
+            for i in following:
+                product = product * powers[i]
+                products.append(product)
+            total = total + product * coefficient
+        return total
+
+
+def plan(polynomial: fmpz_mpoly) -> Plan:
+    """Return how to evaluate a polynomial."""
+    numbers: dict[tuple[int, int], int] = {}
+    steps: list[Step] = []
+    last: tuple[int, ...] = ()
+    for monomial, coefficient in polynomial.terms():
+        factors = ((i, int(e)) for i, e in enumerate(monomial) if e)
+        powers = tuple(numbers.setdefault(power, len(numbers)) for power in factors)
+        kept = 0
+        while kept < min(len(last), len(powers)) and last[kept] == powers[kept]:
+            kept += 1
+        steps.append((kept, powers[kept:], int(coefficient)))
+        last = powers
+    return Plan(tuple(numbers), tuple(steps))
+
+
+FIRST_BITS = 96
+LAST_BITS = 6144
+DOUBLE_BITS = 54
+"""One more than the significand of a double."""
+NEAR = (200, 220)
+"""Negative powers of two between which the behaviour at a point is read off, where there is no number."""
+
+
+def double_value(enclosed: Callable[[int], Ball], first: Ball, s: complex, patience: int | None) -> complex:
+    """Return a function's value at one complex frequency [rad/s] to double precision.
+
+    Parameters
+    ----------
+    enclosed : callable
+        Returns the function in balls at a number of bits.
+    first : callable
+        The same at ``FIRST_BITS``.
+    s : complex
+        [rad/s].
+    patience : int or None
+        How often the precision is doubled before a value that is no number is sought as a limit; None for
+        never, where only a pole has none.
+
+    Returns
+    -------
+    complex
+        Nan where ``s`` is not finite, ``inf + nan*1j`` at a pole.
+    """
+    if not (isfinite(s.real) and isfinite(s.imag)):
+        return complex(nan, nan)
+    point, function, bits = acb(s.real, s.imag), first, FIRST_BITS
+    while True:
+        value = function(point)
+        if value.is_finite() and value.rel_accuracy_bits() >= DOUBLE_BITS:
+            return complex(float(value.real.mid()), float(value.imag.mid()))
+        if patience is not None and not value.is_finite() and bits >= FIRST_BITS << patience:
+            return _limit_at(enclosed, s)
+        if bits >= LAST_BITS:
+            return 0j if value.is_finite() else complex(inf, nan)
+        bits *= 2
+        function = enclosed(bits)
+
+
+def _limit_at(enclosed: Callable[[int], Ball], s: complex) -> complex:
+    """Return the value where parts of an expression are no numbers, by continuity."""
+    order, value = order_near(enclosed, s)
+    if value is None or order < 0:
+        return complex(inf, nan)
+    return 0j if order > 0 else complex(float(value.real.mid()), float(value.imag.mid()))
+
+
+def order_near(enclosed: Callable[[int], Ball], s: complex) -> tuple[int, acb | None]:
+    """Return the order of the zero (negative: of the pole) at ``s``, and a value close by if one is found."""
+    near, nearer = (_beside(enclosed, s, -e) for e in NEAR)
+    if near is None or nearer is None:
+        return 0, None
+    with ctx.workprec(LAST_BITS):
+        ratio = abs(nearer / near).log() / arb(2).log() / (NEAR[0] - NEAR[1])
+        return round(float(ratio.mid())), nearer
+
+
+def _beside(enclosed: Callable[[int], Ball], s: complex, exponent: int) -> acb | None:
+    """Return a ball around the value at ``s + 2^exponent``, ``None`` when it is not found."""
+    bits = FIRST_BITS * 8
+    while bits <= LAST_BITS:
+        with ctx.workprec(bits):
+            point = acb(s.real, s.imag) + (arb(2) ** exponent) * max(abs(s), 1.0)
+            value = enclosed(bits)(point)
+            if value.is_finite() and value.rel_accuracy_bits() >= DOUBLE_BITS:
+                return value
+        bits *= 2
+    return None

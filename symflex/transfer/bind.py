@@ -31,14 +31,21 @@ from symflex.errors import Diagnostic, ModelError, Source, Span, Text, UsageErro
 from symflex.errors.diagnostic import nearest
 from symflex.model import ExactValue, with_numbers
 from symflex.quantities import parse_quantity, unit_of
-from symflex.transfer.balls import ball, enclosure, later, rational_value
-from symflex.transfer.cancel import cancel
-from symflex.transfer.derive import derive
+from symflex.transfer.balls import (
+    FIRST_BITS,
+    Plan,
+    ball,
+    double_value,
+    enclosure,
+    later,
+    order_near,
+    plan,
+    rational_value,
+)
+from symflex.transfer.derive import derive, nested_transfer
 from symflex.transfer.distributed import embedded_table
-from symflex.transfer.double_value import FIRST_BITS, double_value, order_near
 from symflex.transfer.enclose_kernels import KernelValues, expansion
-from symflex.transfer.monomials import Plan, plan
-from symflex.transfer.nested import nested_transfer
+from symflex.transfer.lowest_terms import cancel
 from symflex.transfer.transfer_function import HiddenFactor, TransferFunction
 
 if TYPE_CHECKING:

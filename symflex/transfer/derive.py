@@ -2,6 +2,8 @@
 
 Input: :class:`symflex.equations.Equations`.
 Output: :class:`TransferFunction` for every pair asked for, reduced exactly.
+
+A ``model`` block stands for a transfer function of its own model, over the ring of the model that uses it.
 """
 
 from __future__ import annotations
@@ -10,12 +12,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, NO_KERNELS, Factored, KernelTable, degree_in
+from symflex.equations import assemble
 from symflex.equations.elimination import Determinants, explain_singular
-from symflex.transfer.cancel import cancel
-from symflex.transfer.coprimality import Images
+from symflex.errors import Diagnostic, ModelError
 from symflex.transfer.distributed import KernelReduction, embedded_table
 from symflex.transfer.expansion import Expansion, Opening
-from symflex.transfer.line import DeterminantsOnLine
+from symflex.transfer.lowest_terms import DeterminantsOnLine, Images, cancel
 from symflex.transfer.quantity import name_quantity, unit_of_quotient
 from symflex.transfer.transfer_function import ClosedForm, HiddenFactor, TransferFunction
 
@@ -24,9 +26,9 @@ if TYPE_CHECKING:
 
     from flint import fmpz, fmpz_mpoly
 
-    from symflex.algebra import Propagation
+    from symflex.algebra import Propagation, Ring
     from symflex.equations import Equations, OutputRow
-    from symflex.model import Input, Output
+    from symflex.model import Input, Output, PlacedBlock
 
 
 def derive(equations: Equations, output: str, source: str) -> TransferFunction:
@@ -233,3 +235,24 @@ class _Workshop:
 
 def _integer_content(polynomial: fmpz_mpoly) -> fmpz:
     return polynomial.term_content().leading_coefficient()
+
+
+def nested_transfer(block: PlacedBlock, ring: Ring) -> Factored:
+    """Return the transfer function of a ``model`` block over the outer model's ring.
+
+    Raises
+    ------
+    ModelError
+        SF910 when the block stands for a distributed system.
+    """
+    if block.submodel is None or block.tf is None:
+        message = f"block '{block.name}' holds no model"
+        raise ValueError(message)
+    tf = derive(assemble(block.submodel, nested_transfer), *block.tf)
+    if tf.is_distributed:
+        message = f"block '{block.name}' stands for a distributed system, whose kernels cannot be taken over"
+        hint = "bring its elements and fields into this file"
+        raise ModelError(Diagnostic("SF910", message, block.span, hint))
+    inner = tf.ratio
+    images = [ring.generator(name) for name in inner.ring.names]
+    return inner.map_factors(ring, lambda factor: Factored.polynomial(ring, ring.compose(factor, images)))

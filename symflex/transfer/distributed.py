@@ -28,8 +28,8 @@ from symflex.algebra.origin import OriginSeries
 from symflex.algebra.vanishing import Vanishing
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
-from symflex.transfer.cancel import cancel
 from symflex.transfer.kernel_images import KernelImages
+from symflex.transfer.lowest_terms import cancel
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence

@@ -19,9 +19,8 @@ from symflex.budget import spend
 from symflex.equations.elimination import Step, StraightLine, eliminate
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import Name, names
-from symflex.transfer.balls import ball, enclosure, later
+from symflex.transfer.balls import FIRST_BITS, ball, double_value, enclosure, later
 from symflex.transfer.bind import read_values
-from symflex.transfer.double_value import FIRST_BITS, double_value
 from symflex.transfer.quantity import name_quantity, unit_of_quotient
 from symflex.transfer.transfer_function import TransferFunction
 

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, Factored, degree_in
 from symflex.algebra.propagators import EXPONENTIAL
-from symflex.transfer.cancel import cancel
-from symflex.transfer.compose import compose_rational
+from symflex.transfer.expansion import compose_rational
+from symflex.transfer.lowest_terms import cancel
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

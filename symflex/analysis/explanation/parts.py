@@ -13,7 +13,7 @@ from symflex.algebra import LAPLACE, degree_in
 from symflex.analysis.explanation.comparison import opened, varying
 from symflex.equations.elimination import Determinants
 from symflex.library.elements import LinearForm, Variable
-from symflex.library.elements.constraint import Fixed, Pin, Slider
+from symflex.library.elements.rigid import Fixed, Pin, Slider
 from symflex.model.nodes import variable_of
 
 if TYPE_CHECKING:

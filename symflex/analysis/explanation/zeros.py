@@ -17,11 +17,10 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 from symflex.algebra import LAPLACE, Factored, degree_in
-from symflex.analysis.explanation.bending import bending_between
 from symflex.analysis.explanation.comparison import Relation, agree, relate, varying
 from symflex.analysis.explanation.constraints import Constraint, hold, open_circuit, replace_condition
 from symflex.analysis.explanation.coordinates import acting, measured
-from symflex.analysis.explanation.ends import ends_of_element, ends_of_field, is_line
+from symflex.analysis.explanation.ends import bending_between, ends_of_element, ends_of_field, is_line
 from symflex.analysis.explanation.joints import in_one_way, seen_at_the_input
 from symflex.analysis.explanation.parts import Part, Separation, separate
 from symflex.analysis.explanation.text import explanation_json, explanation_text
@@ -33,13 +32,13 @@ from symflex.model import with_numbers
 from symflex.print.forms.arrange import Arranger
 from symflex.roots.locate import locate
 from symflex.transfer import bind, derive_all
-from symflex.transfer.cancel import cancel
+from symflex.transfer.lowest_terms import cancel
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from symflex.algebra import Ring
-    from symflex.analysis.explanation.bending import Bending
+    from symflex.analysis.explanation.ends import Bending
     from symflex.equations import Equations
     from symflex.model import Input, Model, Output, PlacedBlock
     from symflex.roots import PoleZeroMap, Root

@@ -14,9 +14,8 @@ from typing import TYPE_CHECKING
 from flint import acb, acb_mat
 
 from symflex.analysis.modes.bound_equations import BoundEquations
-from symflex.analysis.modes.normalise import normalised
 from symflex.analysis.modes.null_space import null_space
-from symflex.analysis.modes.shape import ModeShape, Motion
+from symflex.analysis.modes.shape import ModeShape, Motion, normalised
 from symflex.budget import spend
 from symflex.equations import assemble
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError, UsageError

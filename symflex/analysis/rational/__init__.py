@@ -4,8 +4,13 @@ from symflex.analysis.rational.approximate import approximate
 from symflex.analysis.rational.approximation import RationalApproximation
 from symflex.analysis.rational.approximation_error import BandError, ErrorScan
 from symflex.analysis.rational.forms import FORMS
-from symflex.analysis.rational.laurent import LaurentSeries, expand_at_pole, expand_at_zero
-from symflex.analysis.rational.residues import Residue, find_residues
+from symflex.analysis.rational.laurent import (
+    LaurentSeries,
+    Residue,
+    expand_at_pole,
+    expand_at_zero,
+    find_residues,
+)
 
 __all__ = [
     "FORMS",

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import sympy
 
     from symflex.analysis.rational.approximation_error import BandError, ErrorScan
-    from symflex.analysis.rational.residues import Residue
+    from symflex.analysis.rational.laurent import Residue
     from symflex.transfer import BoundTransferFunction
 
 

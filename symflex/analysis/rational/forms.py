@@ -14,8 +14,7 @@ import numpy as np
 from flint import acb, acb_poly, arb, ctx
 
 from symflex.analysis.rational.approximation import Evaluator, PoleZeroGain
-from symflex.analysis.rational.laurent import about_zero, expand_at_zero
-from symflex.analysis.rational.residues import residues_at
+from symflex.analysis.rational.laurent import about_zero, expand_at_zero, residues_at
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots import precision
 from symflex.roots.multiprecision import to_complex_mpmath, to_mpmath
@@ -24,7 +23,7 @@ from symflex.transfer.bind import EnclosedTransferFunction
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.analysis.rational.residues import Residue
+    from symflex.analysis.rational.laurent import Residue
     from symflex.analysis.rational.truncation import Truncation
     from symflex.roots import Root
     from symflex.transfer import BoundTransferFunction

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from symflex.algebra import Dispersion, Kernel
+    from symflex.transfer.balls import Value
     from symflex.transfer.enclose_kernels import KernelValues
-    from symflex.transfer.monomials import Value
 
 BRANCHES = 4
 """Of a wavenumber about a point where it vanishes."""

@@ -22,7 +22,7 @@ from symflex.roots.multiprecision import to_complex_mpmath
 from symflex.state_space import Signal, minimal, not_rational, realise, realise_quotient
 from symflex.state_space.cascade import cascade
 from symflex.state_space.numeric import BoundState, BoundStateSpace, bound_state_space, not_installed
-from symflex.state_space.quotients import FieldElement
+from symflex.state_space.popov import FieldElement
 from symflex.state_space.rounding import Rounding
 
 if TYPE_CHECKING:

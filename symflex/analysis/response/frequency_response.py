@@ -1,11 +1,30 @@
-"""A frequency response: values of a transfer function on the imaginary axis."""
+"""A frequency response: values of a transfer function on the imaginary axis.
+
+Input: a :class:`BoundTransferFunction` and frequencies. Output: a :class:`FrequencyResponse`.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import inf, nan
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
+from flint import acb, ctx
+
+from symflex.analysis.response.phase import count_turns, follow_phase
+from symflex.roots.functions.vanishing import without_lengths_of_zero
+from symflex.roots.locate import locate
+from symflex.transfer.bind import EnclosedDistributed
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy.typing as npt
+
+    from symflex.roots import PoleZeroMap
+    from symflex.transfer import BoundTransferFunction, EnclosedTransferFunction
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,8 +43,8 @@ class FrequencyResponse:
         ``receptance``, ``mobility``, ...; SI unit, empty when unknown.
     turns : array of int, shape (n,), optional
         Whole turns between the principal value of the phase and the phase, which
-        :func:`~symflex.analysis.response.respond` knows from the poles and zeros. Without them, as for
-        measured values, :attr:`phase` is unwrapped
+        :func:`respond` knows from the poles and zeros. Without them, as for measured
+        values, :attr:`phase` is unwrapped
         from point to point, which is right only on a grid fine enough.
 
     Notes
@@ -90,3 +109,121 @@ class FrequencyResponse:
 def _frozen(array: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
     array.setflags(write=False)
     return array
+
+
+FIRST_BITS = 96
+LAST_BITS = 6144
+DOUBLE_BITS = 54
+
+
+def respond(
+    bound: BoundTransferFunction, omega: npt.ArrayLike, roots: PoleZeroMap | None = None
+) -> FrequencyResponse:
+    """Evaluate a transfer function on the imaginary axis to double precision.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        With numbers.
+    omega : array_like of float, shape (n,)
+        Angular frequencies [rad/s], finite.
+    roots : PoleZeroMap, optional
+        All poles and zeros, when they are known already; those of a distributed system do not matter.
+
+    Returns
+    -------
+    FrequencyResponse
+        Each value is right to the last bits of its absolute value; ``inf + nan*1j`` at a pole. The phase is
+        counted from the poles and zeros, for a distributed system followed from s = 0, so it does not depend
+        on how fine the grid is.
+
+    Raises
+    ------
+    ValueError
+        When ``omega`` is not one-dimensional or not finite.
+
+    Examples
+    --------
+    >>> from symflex.errors import Source
+    >>> from symflex.model import load_model
+    >>> from symflex.equations import assemble
+    >>> from symflex.transfer import bind, derive
+    >>> text = '''
+    ... symflex = 1
+    ... elements.load = { type = "mass", at = "x", m = "2 kg" }
+    ... inputs.F = { force = "x" }
+    ... outputs.X = "x"
+    ... '''
+    >>> inertia = bind(derive(assemble(load_model(Source("mass.toml", text))), "X", "F"))
+    >>> response = respond(inertia, [0.5, 1.0])
+    >>> response.values.real.tolist(), np.degrees(response.phase).tolist(), response.unit
+    ([-2.0, -0.5], [-180.0, -180.0], 'm/N')
+    """
+    grid = np.atleast_1d(np.array(omega, dtype=np.float64))
+    if grid.ndim != 1 or not np.isfinite(grid).all():
+        message = "omega must be a one-dimensional array of finite numbers"
+        raise ValueError(message)
+    settled = without_lengths_of_zero(bound)
+    if settled is not bound:
+        bound, roots = settled, None
+    quantity, unit = bound.source.quantity, bound.source.unit
+    if bound.ratio.is_zero:
+        return FrequencyResponse(bound.name, grid, np.zeros(grid.shape, np.complex128), quantity, unit)
+    values = evaluate(bound, grid)
+    if bound.is_distributed:
+        turns = _follow_turns(bound, grid, values)
+    else:
+        turns = count_turns(grid, values, locate(bound) if roots is None else roots)
+    return FrequencyResponse(bound.name, grid, values, quantity, unit, turns)
+
+
+def _follow_turns(
+    bound: BoundTransferFunction, omega: npt.NDArray[np.float64], values: npt.NDArray[np.complex128]
+) -> npt.NDArray[np.int64]:
+    """Return the whole turns that the principal values of a distributed system's phase lack."""
+    steps, places = np.unique(np.abs(omega), return_inverse=True)
+    phase = np.zeros(steps.shape)
+    moving = steps > 0
+    phase[moving] = follow_phase(bound, steps[moving])
+    usable = np.isfinite(values) & (values != 0)
+    principal = np.angle(np.where(usable, values, 1))
+    wanted = np.where(omega < 0, -1, 1) * phase[places]
+    usable &= np.isfinite(wanted) & (omega != 0)
+    turns = np.rint((np.where(usable, wanted, principal) - principal) / (2 * np.pi))
+    return turns.astype(np.int64)
+
+
+def evaluate(bound: BoundTransferFunction, omega: npt.NDArray[np.float64]) -> npt.NDArray[np.complex128]:
+    """Return the values at angular frequencies, with more bits where cancellation asks for them."""
+    values = np.zeros(omega.shape, np.complex128)
+    pending, bits = list(enumerate(omega.tolist())), FIRST_BITS
+    if bound.is_distributed:
+        # Where wavenumbers vanish, there is a limit but no value.
+        values[omega == 0] = bound(0j)
+        pending = [(i, value) for i, value in pending if value]
+    while pending:
+        balls = _enclose(bound.enclosed(bits), [value for _, value in pending])
+        unsettled = []
+        for point, ball in zip(pending, balls, strict=True):
+            if ball.is_finite() and ball.rel_accuracy_bits() >= DOUBLE_BITS:
+                values[point[0]] = complex(ball)
+            elif bits < LAST_BITS:
+                unsettled.append(point)
+            elif not ball.is_finite():
+                # Where wavenumbers vanish or meet, there is a limit.
+                values[point[0]] = bound(1j * point[1]) if bound.is_distributed else complex(inf, nan)
+        pending, bits = unsettled, 2 * bits
+    return values
+
+
+def _enclose(function: EnclosedTransferFunction | EnclosedDistributed, omega: Sequence[float]) -> list[acb]:
+    """Return balls around the values, one polynomial after the other, for all points at once."""
+    with ctx.workprec(function.bits):
+        points = [acb(0, value) for value in omega]
+        if isinstance(function, EnclosedDistributed):
+            return [function(point) for point in points]
+        values = [function.unit] * len(points)
+        for polynomial, exponent in function.factors:
+            factor = polynomial.evaluate(points, "iter")
+            values = [value * ball**exponent for value, ball in zip(values, factor, strict=True)]
+        return values

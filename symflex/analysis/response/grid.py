@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from symflex.analysis.response.respond import evaluate
+from symflex.analysis.response.frequency_response import evaluate
 from symflex.errors import Diagnostic, SymflexError, UsageError
 from symflex.roots import Band, Certificate, Everything, PoleZeroMap
 from symflex.roots.locate import locate

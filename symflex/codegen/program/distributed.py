@@ -36,7 +36,7 @@ from symflex.codegen.program.real_axis import RealAxis
 from symflex.codegen.program.schedule import straight
 from symflex.codegen.program.site import Site
 from symflex.errors import BudgetError, Diagnostic
-from symflex.transfer.cancel import cancel
+from symflex.transfer.lowest_terms import cancel
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.state_space import State, StateSpace
-    from symflex.state_space.quotients import FieldElement, Vector
+    from symflex.state_space.popov import FieldElement, Vector
 
 ZERO = "0"
 

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from symflex.data.fitting.dead_time import with_delays
-from symflex.data.fitting.noise import with_noise, with_rough_noise
 from symflex.data.fitting.order import (
     CRITERIA,
     STARTS,
@@ -25,8 +23,9 @@ from symflex.data.fitting.order import (
     with_own_noise,
 )
 from symflex.data.fitting.phase_test import PhaseTest, judge_phase
-from symflex.data.fitting.problem import FitProblem, fit_problem
+from symflex.data.fitting.problem import FitProblem, fit_problem, with_noise, with_rough_noise
 from symflex.data.fitting.resonances import MILLISECOND, Free
+from symflex.data.fitting.starts import with_delays
 from symflex.errors import DataError, Diagnostic, FitError, UsageError
 from symflex.errors.diagnostic import nearest
 

@@ -23,7 +23,7 @@ import numpy.typing as npt
 from scipy.optimize import least_squares
 
 from symflex.budget import spend
-from symflex.data.fitting.line_errors import score_covariance
+from symflex.data.fitting.observation import score_covariance
 
 if TYPE_CHECKING:
     from symflex.data.fitting.problem import FitProblem, FittedLines

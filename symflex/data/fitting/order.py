@@ -9,11 +9,16 @@ import numpy as np
 from scipy.stats import f
 
 from symflex.data.fitting.least_squares import STEPS, Refined, refine, refine_directly
-from symflex.data.fitting.noise import estimated
 from symflex.data.fitting.numerator import STRANGE, over_poles, strange
-from symflex.data.fitting.peaks import find_modes, start_from_peaks
-from symflex.data.fitting.rational_start import poles_from_aaa, poles_from_vector_fitting, relocated
+from symflex.data.fitting.problem import estimated
 from symflex.data.fitting.resonances import Resonances
+from symflex.data.fitting.starts import (
+    find_modes,
+    poles_from_aaa,
+    poles_from_vector_fitting,
+    relocated,
+    start_from_peaks,
+)
 from symflex.errors import Diagnostic, FitError
 
 if TYPE_CHECKING:

@@ -1,8 +1,7 @@
 """Measured frequency responses: reading, writing, and making synthetic ones."""
 
 from symflex.data.measurement.measured_response import MeasuredResponse
-from symflex.data.measurement.prepare import prepared
-from symflex.data.measurement.read import READERS, read_measurement
+from symflex.data.measurement.read import READERS, prepared, read_measurement
 from symflex.data.measurement.synthesise import MeasurementPlan, synthesise
 from symflex.data.measurement.write import WRITERS, measurement_bytes
 

@@ -9,6 +9,8 @@ import numpy as np
 
 from symflex.data.measurement.archive import read_archive
 from symflex.data.measurement.checks import (
+    MAX_BYTES,
+    MAX_RESPONSES,
     averages_of,
     checked_response,
     listed_names,
@@ -16,7 +18,6 @@ from symflex.data.measurement.checks import (
     unit_of,
     window_of,
 )
-from symflex.data.measurement.limits import MAX_BYTES, MAX_RESPONSES
 from symflex.data.measurement.matlab_file import NewerFileError, read_variables
 from symflex.data.measurement.measured_response import MeasuredResponse
 from symflex.errors import DataError, Diagnostic

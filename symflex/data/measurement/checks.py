@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from symflex.data.measurement.limits import MAX_ERRORS, MAX_LINES
 from symflex.data.measurement.measured_response import MeasuredResponse
 from symflex.errors import DataError, Diagnostic, Source, Span, SpecError, Text
 from symflex.quantities import parse_unit
@@ -16,6 +15,10 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
+MAX_BYTES: Final = 50_000_000
+MAX_LINES: Final = 1_000_000
+MAX_RESPONSES: Final = 100
+MAX_ERRORS: Final = 20
 FEWEST_LINES = 3
 MOST_AVERAGES = 1e9
 SHOWN_NAMES = 8

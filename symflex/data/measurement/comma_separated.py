@@ -13,8 +13,14 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from symflex.data.measurement.checks import averages_of, checked_response, unit_of, window_of
-from symflex.data.measurement.limits import MAX_ERRORS, MAX_LINES
+from symflex.data.measurement.checks import (
+    MAX_ERRORS,
+    MAX_LINES,
+    averages_of,
+    checked_response,
+    unit_of,
+    window_of,
+)
 from symflex.data.measurement.measured_response import MeasuredResponse
 from symflex.errors import DataError, Diagnostic, Source, Span
 from symflex.errors.diagnostic import nearest

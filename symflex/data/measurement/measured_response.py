@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
+
+if TYPE_CHECKING:
+    pass
+
 
 SMALLEST_NOISE = 1e-6
 """The least share of incoherent power assumed: a coherence rounded to 1 does not make a line exact."""

@@ -1,22 +1,27 @@
-"""Reading a data file: which reader its name asks for, and no more of it than the limit."""
+"""Reading a data file: which reader its name asks for, and no more of it than the limit.
+
+What a user knows of responses besides what their files say is added to them afterwards.
+"""
 
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symflex.data.measurement.arrays import read_mat, read_npz
+from symflex.data.measurement.checks import MAX_BYTES, MOST_AVERAGES
 from symflex.data.measurement.comma_separated import read_columns
-from symflex.data.measurement.limits import MAX_BYTES
 from symflex.data.measurement.universal_file import read_universal_file
 from symflex.errors import DataError, Diagnostic, UsageError
 from symflex.model.spec.read import read_bytes
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from symflex.data.measurement.measured_response import MeasuredResponse
+
 
 READERS: Mapping[str, Callable[[str, bytes, str], tuple[MeasuredResponse, ...]]] = {
     ".csv": read_columns,
@@ -73,3 +78,59 @@ def read_measurement(path: str | Path) -> tuple[MeasuredResponse, ...]:
 
 def _unreadable(name: str, reason: str) -> UsageError:
     return UsageError(Diagnostic("SF901", f"cannot read '{name}': {reason}"))
+
+
+def prepared(
+    responses: Sequence[MeasuredResponse],
+    band: tuple[float, float] | None = None,
+    averages: float | None = None,
+    window: str | None = None,
+) -> tuple[MeasuredResponse, ...]:
+    """Return responses with what is known of them, and the lines in a band alone.
+
+    Parameters
+    ----------
+    responses : sequence of MeasuredResponse
+        As read.
+    band : (float, float), optional
+        The lowest and the highest frequency kept [Hz].
+    averages : float, optional
+        Independent averages.
+    window : str, optional
+        ``hann`` or ``none``.
+
+    Raises
+    ------
+    UsageError
+        SF902 a band whose ends are not in order, an unknown window, or no number of averages.
+    DataError
+        SF605 when a response has no lines in the band.
+
+    Examples
+    --------
+    >>> from symflex.data.measurement import MeasuredResponse
+    >>> (one,) = prepared([MeasuredResponse("A/F", [1.0, 2.0, 3.0], [1, 2, 3])], (1.5, 9.0), averages=8)
+    >>> one.frequency_hz.tolist(), one.averages
+    ([2.0, 3.0], 8)
+    """
+    if window not in (None, "hann", "none"):
+        raise UsageError(Diagnostic("SF902", f"the window '{window[:40]}' is neither hann nor none"))
+    if averages is not None and not 1 <= averages <= MOST_AVERAGES:
+        message = f"the number of averages is {averages:g}; it lies between 1 and {MOST_AVERAGES:g}"
+        raise UsageError(Diagnostic("SF902", message))
+    if band is not None and not 0 <= band[0] < band[1]:
+        raise UsageError(Diagnostic("SF902", "a band is two frequencies in Hz, the lower one first"))
+    found = []
+    for response in responses:
+        known = response
+        if averages is not None:
+            known = replace(known, averages=averages)
+        if window is not None:
+            known = replace(known, window=window.replace("none", ""))
+        if band is not None:
+            known = known.between(*band)
+            if not known.values.size:
+                message = f"'{response.name}' has no lines between {band[0]:g} and {band[1]:g} Hz"
+                raise DataError(Diagnostic("SF605", message))
+        found.append(known)
+    return tuple(found)

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from symflex.data.measurement.checks import checked_response, nowhere
-from symflex.data.measurement.limits import MAX_LINES, MAX_RESPONSES
+from symflex.data.measurement.checks import MAX_LINES, MAX_RESPONSES, checked_response, nowhere
 from symflex.data.measurement.measured_response import MeasuredResponse
 from symflex.errors import DataError, Diagnostic, UsageError
 

@@ -1,7 +1,8 @@
 """Blocks usable as factors in expressions. A new block is one class and one line in ``BLOCKS``."""
 
-from symflex.library.blocks.block import Block, BlockParameter
 from symflex.library.blocks.library import (
+    Block,
+    BlockParameter,
     Delay,
     Integrator,
     Lag,

@@ -1,10 +1,8 @@
 """The element library. A new element is one file and one line in ``ELEMENTS``."""
 
 from symflex.library.elements.axial import Rod, Shaft, String
-from symflex.library.elements.beam import Beam
-from symflex.library.elements.constraint import Fixed, Pin, Slider
+from symflex.library.elements.beam import Beam, MasslessBeam
 from symflex.library.elements.coupling import Gyrator, Transformer
-from symflex.library.elements.dc_motor import DcMotor
 from symflex.library.elements.electrical import Capacitor, Inductor, Resistor
 from symflex.library.elements.element import (
     ACROSS_UNIT,
@@ -28,11 +26,10 @@ from symflex.library.elements.element import (
     Variable,
 )
 from symflex.library.elements.line import LineElement
-from symflex.library.elements.massless_beam import MasslessBeam
-from symflex.library.elements.piezo import Piezo
-from symflex.library.elements.rigid import RigidBody, RigidLink
+from symflex.library.elements.rigid import Fixed, Pin, RigidBody, RigidLink, Slider
 from symflex.library.elements.rotation import Inertia, RotaryDamper, TorsionSpring
 from symflex.library.elements.source import CurrentSource, ForceSource, TorqueSource, VoltageSource
+from symflex.library.elements.transducers import DcMotor, Piezo
 from symflex.library.elements.translation import Damper, Mass, Spring
 
 ELEMENTS: dict[str, Element] = {

@@ -3,12 +3,9 @@
 A new theory is one function and one line in :data:`FIELDS`.
 """
 
-from symflex.library.fields.axial import rod, shaft, string
 from symflex.library.fields.characteristic import Component, components
-from symflex.library.fields.euler_bernoulli import euler_bernoulli, rayleigh
-from symflex.library.fields.reduction import FieldEquation, first_order
-from symflex.library.fields.system import FieldSystem, FieldTheory, Matrix
-from symflex.library.fields.timoshenko import timoshenko
+from symflex.library.fields.system import FieldEquation, FieldSystem, FieldTheory, Matrix, first_order
+from symflex.library.fields.theories import euler_bernoulli, rayleigh, rod, shaft, string, timoshenko
 
 FIELDS: dict[str, FieldTheory] = {
     "euler-bernoulli": euler_bernoulli,

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 from symflex.errors import Diagnostic, Span, SpecError
 from symflex.model.spec.diagnose import diagnose_toml, diagnose_unclosed
-from symflex.model.spec.limits import MAX_ERRORS
 from symflex.model.spec.positions import Document, Literal, decode_key, locate
+from symflex.model.spec.read import MAX_ERRORS
 from symflex.model.spec.scan import KEY, KEY_PART, Scan, Statement, scan
 from symflex.model.spec.values import Spec
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import NoReturn
 
 from symflex.errors import Diagnostic, Source, Span, SpecError
-from symflex.model.spec.limits import (
+from symflex.model.spec.read import (
     MAX_BYTES,
     MAX_ENTRIES,
     MAX_KEY_PARTS,

@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import Any, Final
 
 from symflex.errors import Diagnostic, SpecError
-from symflex.model.spec.limits import MAX_LITERAL, MAX_NESTING, number_problem
+from symflex.model.spec.read import MAX_LITERAL, MAX_NESTING, number_problem
 
 INLINE_SECTIONS: Final = frozenset({"parameters", "elements", "inputs", "outputs", "blocks"})
 

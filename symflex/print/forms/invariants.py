@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from symflex.algebra import Factored, KernelTable, Ring
 from symflex.algebra.normal_form import NormalForm, split
 from symflex.print.forms.notation import angles_of, coefficient_name
-from symflex.transfer.compose import compose_rational
+from symflex.transfer.expansion import compose_rational
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from symflex.roots.functions.exponential_sum import Argument, ExponentialSum
     from symflex.roots.functions.kernel_function import KernelFunction
     from symflex.transfer import BoundTransferFunction
-    from symflex.transfer.monomials import Value
+    from symflex.transfer.balls import Value
 
 LOSSLESS: Mapping[str, int] = {"bending": LINEAR, "wave": QUADRATIC}
 """Power of x that wavenumbers are proportional to, by kind of dispersion."""

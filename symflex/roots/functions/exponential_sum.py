@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.algebra import Factored, KernelTable, Ring
+    from symflex.transfer.balls import Value
     from symflex.transfer.enclose_kernels import KernelValues
-    from symflex.transfer.monomials import Value
 
 MOST_EXPONENTIALS = 1500
 NOTHING = -1

@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from symflex.algebra import Dispersion, KernelTable
     from symflex.roots.functions.exponential_sum import Argument, ExponentialSum
     from symflex.transfer import BoundTransferFunction
+    from symflex.transfer.balls import Value
     from symflex.transfer.enclose_kernels import KernelValues
-    from symflex.transfer.monomials import Value
 
 FIRST_BITS = 64
 LAST_BITS = 4096

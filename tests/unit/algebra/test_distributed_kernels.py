@@ -15,8 +15,8 @@ from symflex.algebra.origin import OriginSeries
 from symflex.algebra.taylor import TaylorField, primes, square_root
 from symflex.algebra.vanishing import Vanishing
 from symflex.errors import BudgetError
-from symflex.transfer.cancel import cancel
 from symflex.transfer.distributed import embedded_table
+from symflex.transfer.lowest_terms import cancel
 
 BASE = Ring(("s", "r", "p", "l", "x"))
 S, R, P, L, X = (Factored.generator(BASE, name) for name in BASE.names)

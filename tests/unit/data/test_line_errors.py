@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from symflex.data.fitting.line_errors import score_covariance
+from symflex.data.fitting.observation import score_covariance
 from symflex.data.fitting.problem import fit_problem
 from symflex.data.fitting.resonances import Free, Resonances
 from symflex.data.measurement import MeasuredResponse

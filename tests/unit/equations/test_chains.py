@@ -7,7 +7,7 @@ import pytest
 from symflex import pipeline, transfer
 from symflex.algebra import Factored, Ring
 from symflex.equations import assemble
-from symflex.equations.chains import _links
+from symflex.equations.distributed import _links
 from tests.house.repository import slow_ones
 
 BEAM = 'type = "beam", E = 7e10, I = 1.2e-9, rho = 2700, A = 1.5e-4, k_f = 1e4, c_f = 3'

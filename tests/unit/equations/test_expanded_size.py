@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from symflex.algebra import Factored, Ring
-from symflex.equations.elimination.expanded_size import LARGEST, _forests, _monomials, expanded_terms
+from symflex.equations.elimination.determinants import LARGEST, _forests, _monomials, expanded_terms
 from symflex.equations.elimination.straight_line import Step
 
 RING = Ring(("s", "k", "m", "pi"))

@@ -11,7 +11,7 @@ import pytest
 
 from symflex.algebra import Ring
 from symflex.equations.elimination import minors as module
-from symflex.equations.elimination.minors import DegreeBounds, Minors, expansion_order
+from symflex.equations.elimination.determinants import DegreeBounds, Minors, expansion_order
 from symflex.errors import BudgetError
 
 RING = Ring(("s", "a", "b"))

@@ -6,7 +6,7 @@ import pytest
 
 from symflex.algebra import Ring
 from symflex.equations.elimination import eliminate_unit_pivots
-from symflex.equations.elimination.unit_pivots import _cheapest
+from symflex.equations.elimination.closing import _cheapest
 
 RING = Ring(("s", "a", "b"))
 s, a, b = (RING.generator(n) for n in RING.names)

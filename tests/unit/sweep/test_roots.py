@@ -10,7 +10,7 @@ from symflex import pipeline
 from symflex.errors import UsageError
 from symflex.roots import Modes
 from symflex.sweep.follow import Link
-from symflex.sweep.point_roots import PointStatus, RootSolver, RootStatus
+from symflex.sweep.points import PointStatus, RootSolver, RootStatus
 from symflex.transfer.bind import read_values
 from tests.unit.sweep.models import ALGEBRAIC, BEAM, SLIDING_FREE, TWO_RESONANCES, oscillator
 

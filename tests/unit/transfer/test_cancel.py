@@ -9,7 +9,7 @@ import pytest
 import sympy
 
 from symflex.algebra import Factored, Ring
-from symflex.transfer.cancel import cancel
+from symflex.transfer.lowest_terms import cancel
 
 RING = Ring(("s", "k", "b"))
 SYMBOLS = sympy.symbols("s k b")

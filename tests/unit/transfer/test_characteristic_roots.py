@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from flint import acb, acb_series, arb
 
-from symflex.transfer.characteristic_roots import characteristic_roots
-from symflex.transfer.square_root import square_root
+from symflex.transfer.enclose_kernels import characteristic_roots, square_root
 
 
 def coefficients(s):

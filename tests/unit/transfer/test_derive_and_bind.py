@@ -14,7 +14,7 @@ from flint import acb, arb, ctx
 from symflex import pipeline
 from symflex.algebra import Factored, Ring
 from symflex.errors import ModelError, SpecError, UsageError
-from symflex.transfer.cancel import cancel
+from symflex.transfer.lowest_terms import cancel
 
 HEADER = "symflex = 1\n[parameters]\n"
 SYMMETRIC = (

@@ -7,7 +7,7 @@ from math import inf, isnan, nan
 import pytest
 from flint import acb, arb, ctx
 
-from symflex.transfer.double_value import (
+from symflex.transfer.balls import (
     DOUBLE_BITS,
     FIRST_BITS,
     LAST_BITS,

@@ -14,7 +14,7 @@ from symflex.equations.elimination import Determinants
 from symflex.errors import BudgetError
 from symflex.print.forms import print_form
 from symflex.transfer.expansion import Expansion
-from symflex.transfer.line import DeterminantsOnLine
+from symflex.transfer.lowest_terms import DeterminantsOnLine
 
 BODY = """
 inputs = { F = { force = "x" } }

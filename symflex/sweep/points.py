@@ -1,10 +1,16 @@
-"""Poles or zeros at one point of a sweep, certified and rounded to doubles."""
+"""What can be computed at the points of a sweep: poles, zeros, responses, margins.
+
+Roots are certified and rounded to doubles. A worker runs :func:`solve_chunk` on one chunk of points.
+"""
 
 from __future__ import annotations
 
+import pickle
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import lru_cache
 from hashlib import sha256
+from math import inf, nan, pi
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -12,23 +18,30 @@ from flint import arb
 
 from symflex.budget import spend
 from symflex.errors import SymflexError
+from symflex.loops import characteristic_loop, find_stable_gains, pick_gain
+from symflex.loops.stability_map import degrees, hertz
+from symflex.model import ExactValue
 from symflex.roots import Everything, Modes, precision
 from symflex.roots.functions.vanishing import without_lengths_of_zero
 from symflex.roots.locate import locate
-from symflex.sweep.rounding import Doubles, doubles
+from symflex.sweep.design import Range, between
+from symflex.sweep.rounding import Doubles, doubles, rounded
 from symflex.sweep.similarity import Similarities
 from symflex.sweep.task import codes_of, derived
 from symflex.transfer import bind
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
+    from fractions import Fraction
 
+    from symflex.loops import StabilityMap
     from symflex.model import ExactValue
     from symflex.roots import PoleZeroMap, Region, Root
     from symflex.sweep.design import Point
     from symflex.sweep.similarity import Similarity
     from symflex.sweep.task import Rows, Solver, Task
     from symflex.transfer import BoundTransferFunction, TransferFunction
+
 
 RootKind = Literal["poles", "zeros"]
 LADDER = (20, 40, 80)
@@ -263,3 +276,123 @@ def _rows(found: Sequence[PointRoots]) -> Rows:
         "family": np.array([point.family for point in found], np.int64),
         "code": codes_of([point.code for point in found]),
     }
+
+
+def solve_response(task: Task) -> Solver:
+    """Return what evaluates the task's transfer function to double precision; ``inf + nan*1j`` at a pole."""
+    tf = derived(task)
+    omega = [2 * pi * frequency for frequency in task.frequencies]
+
+    def solve(points: Sequence[Point]) -> Rows:
+        values = np.full((len(points), len(omega)), complex(nan, nan))
+        status, codes = np.zeros(len(points), np.int8), [""] * len(points)
+        for i, point in enumerate(points):
+            spend()
+            try:
+                bound = bind(tf, dict(zip(task.names, point, strict=True)))
+                values[i] = [bound(complex(0, w)) for w in omega]
+            except SymflexError as error:
+                spend()  # that the time is over says nothing of a point
+                status[i], codes[i] = PointStatus.FAILED, error.diagnostics[0].code
+        return {
+            "re": values.real.copy(),
+            "im": values.imag.copy(),
+            "point_status": status,
+            "code": codes_of(codes),
+        }
+
+    return solve
+
+
+MARGINS = ("gain_margin_up", "gain_margin_down", "phase_margin", "crossover")
+Pair = tuple[float, float]
+"""Centre and radius."""
+
+
+def solve_margins(task: Task) -> Solver:
+    """Return what finds gain and phase margins of the loop closed with the task's gain."""
+    parameter = pick_gain(task.model.parameters, task.gain)
+    tf = derived(task, task.gain)
+
+    def solve(points: Sequence[Point]) -> Rows:
+        values = {name: np.full(len(points), np.nan) for name in MARGINS}
+        radii = {name: np.full(len(points), np.nan) for name in MARGINS}
+        stable = np.full(len(points), -1, np.int8)
+        status, codes = np.zeros(len(points), np.int8), [""] * len(points)
+        for i, point in enumerate(points):
+            spend()
+            try:
+                loop = characteristic_loop(tf, parameter, dict(zip(task.names, point, strict=True)))
+                found = find_stable_gains(loop)
+            except SymflexError as error:
+                spend()
+                status[i], codes[i] = PointStatus.FAILED, error.diagnostics[0].code
+                continue
+            status[i] = PointStatus.CERTIFIED if found.certified else PointStatus.NOT_CERTIFIED
+            stable[i] = -1 if found.is_stable is None else int(found.is_stable)
+            for name, (centre, radius) in _margins_of(found).items():
+                values[name][i], radii[name][i] = centre, radius
+        return {
+            **values,
+            **{f"{name}_radius": radii[name] for name in MARGINS},
+            "stable": stable,
+            "point_status": status,
+            "code": codes_of(codes),
+        }
+
+    return solve
+
+
+def _margins_of(found: StabilityMap) -> dict[str, Pair]:
+    """Return the margins of a stable loop; an infinite gain margin is inf, or 0 downwards."""
+    if not found.is_stable:
+        return {}
+    result: dict[str, Pair] = {"gain_margin_up": (inf, 0.0), "gain_margin_down": (0.0, 0.0)}
+    for margin in found.gain_margins:
+        name = "gain_margin_up" if margin.factor > 1 else "gain_margin_down"
+        result[name] = rounded(margin.factor)[:2]
+    worst = found.phase_margin
+    if worst is not None:
+        result["phase_margin"] = rounded(degrees(worst.angle))[:2]
+        result["crossover"] = rounded(hertz(worst.frequency))[:2]
+    return result
+
+
+def logarithmic(low: Fraction, high: Fraction, count: int) -> list[float]:
+    """Return frequencies between two, equally spaced in their logarithm, the same on every computer.
+
+    Examples
+    --------
+    >>> from fractions import Fraction
+    >>> logarithmic(Fraction(1), Fraction(100), 3)
+    [1.0, 10.0, 100.0]
+    """
+    limits = Range("frequency", ExactValue(low), ExactValue(high), "log")
+    return [float(value.rational) for value in between(limits, count)]
+
+
+QUANTITIES: dict[str, Callable[[Task], Solver]] = {
+    "poles": solve_poles,
+    "zeros": solve_zeros,
+    "response": solve_response,
+    "margins": solve_margins,
+}
+
+
+def solve_chunk(pickled: bytes, points: Sequence[Point]) -> Rows:
+    """Return the results at some points; the model is derived once in each process.
+
+    Parameters
+    ----------
+    pickled : bytes
+        A :class:`~symflex.sweep.task.Task`, as the process that started the sweep wrote it.
+    points : sequence of Point
+        Any.
+    """
+    return _solver(pickled)(points)
+
+
+@lru_cache(maxsize=4)
+def _solver(pickled: bytes) -> Solver:
+    task: Task = pickle.loads(pickled)
+    return QUANTITIES[task.of](task)

@@ -1,4 +1,6 @@
-"""Proving numerator and denominator coprime on a line, before either is expanded.
+"""Lowest terms: exact cancellation of common factors, and proofs on a line that there are none.
+
+    (k*s + k*c) / (s^2 + c*s)   ->   k/s, and the common factor s + c
 
 Every generator x_i of the ring without sums and definitions is set to ``a_i + b_i*t`` with random integers. A
 common factor of two polynomials becomes a common factor of their images; it could become a number only if its
@@ -9,12 +11,15 @@ polynomials coprime. The images of determinants come from the images of their en
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
 from random import Random
 from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE
-from symflex.equations.elimination.minors import DegreeBounds, Minors
-from symflex.transfer.coprimality import LINE
+from symflex.algebra import LAPLACE, Factored, PolynomialMemo, Ring, degree_in
+from symflex.budget import spend
+from symflex.equations.elimination.determinants import DegreeBounds, Minors
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -23,6 +28,130 @@ if TYPE_CHECKING:
 
     from symflex.algebra import Factored, Ring
     from symflex.equations.elimination import Determinants
+
+
+def cancel(
+    numerator: Factored, denominator: Factored, images: Images | None = None
+) -> tuple[Factored, Factored]:
+    """Return numerator/denominator in lowest terms, and the common factor that was found.
+
+    Both may be rational; equal factors cancel at once, the others pairwise by exact greatest common divisors.
+    ``images`` may be shared by calls over one ring, so that an image is made once.
+    """
+    ring = numerator.ring
+    quotient = numerator / denominator
+    if quotient.is_zero:
+        return quotient, Factored.number(ring, 1)
+    shared = Factored.number(ring, 1)
+    for factor, exponent in numerator.factors:
+        other = denominator.exponent_of(factor)
+        if exponent > 0 and other > 0:
+            shared = shared * Factored(ring, Fraction(1), ((factor, min(exponent, other)),))
+    above = [(f, e) for f, e in quotient.factors if e > 0]
+    below = [(f, -e) for f, e in quotient.factors if e < 0]
+    images = images or Images(ring)
+    i, changed = 0, False
+    while i < len(above):
+        j = 0
+        while j < len(below):
+            spend()
+            f, m = above[i]
+            g, n = below[j]
+            if images.prove_coprime(f, g) or (common := f.gcd(g)).is_constant():
+                j += 1
+                continue
+            power = min(m, n)
+            piece = Factored.polynomial(ring, common)
+            shared, changed = shared * piece**power, True
+            above[i : i + 1] = _pieces(f, common, m, power)
+            below[j : j + 1] = _pieces(g, common, n, power)
+            if i >= len(above):
+                break
+            j = 0
+        i += 1
+    if not changed:
+        return quotient, shared
+    result = Factored.number(ring, quotient.unit)
+    for f, e in above:
+        result = result * Factored.polynomial(ring, f) ** e
+    for f, e in below:
+        result = result / Factored.polynomial(ring, f) ** e
+    return result, shared
+
+
+def _pieces(
+    factor: fmpz_mpoly, common: fmpz_mpoly, exponent: int, power: int
+) -> list[tuple[fmpz_mpoly, int]]:
+    """Return ``factor**exponent / common**power`` as factors with positive exponents."""
+    rest = factor / common
+    pieces = [(rest, exponent), (common, exponent - power)]
+    return [(f, e) for f, e in pieces if e > 0 and not f.is_constant()]
+
+
+LARGE = 40
+"""Number of terms of the larger polynomial from which the proof is tried first."""
+LINE = Ring((LAPLACE,))
+
+
+@dataclass
+class Images:
+    """The images of polynomials with every generator but s set to an integer, each made once.
+
+    Parameters
+    ----------
+    ring : Ring
+        Where the polynomials live; s is its first generator.
+    """
+
+    ring: Ring
+
+    def prove_coprime(self, f: fmpz_mpoly, g: fmpz_mpoly) -> bool:
+        """Tell whether two factors are proved coprime; False decides nothing.
+
+        A generator and a polynomial without monomial factor are coprime. Otherwise: a common factor that
+        contains s would survive setting all other generators to integers, as long as neither degree in s
+        drops; a common factor without s divides every coefficient of both, also their leading ones. Neither
+        exists when the images are coprime and so are the leading coefficients.
+        """
+        if len(f) == 1 or len(g) == 1:
+            return f != g
+        if max(len(f), len(g)) < LARGE or not degree_in(f, 0) or not degree_in(g, 0):
+            return False
+        leading_f, image_f = self._image(f)
+        leading_g, image_g = self._image(g)
+        if image_f is None or image_g is None or not leading_f.gcd(leading_g).is_constant():
+            return False
+        return bool(image_f.gcd(image_g).is_constant())
+
+    @cached_property
+    def _point(self) -> tuple[fmpz_mpoly, ...]:
+        random = Random(1)
+        numbers = [LINE.constant(random.randrange(2**20, 2**21)) for _ in self.ring.names[1:]]
+        return (LINE.generator(LAPLACE), *numbers)
+
+    @cached_property
+    def _image(self) -> PolynomialMemo[tuple[fmpz_mpoly, fmpz_mpoly | None]]:
+        return PolynomialMemo(self._made)
+
+    def _made(self, f: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly | None]:
+        """Return the leading coefficient in s, and the image unless its degree drops."""
+        image = f.compose(*self._point, ctx=LINE.context)
+        kept = degree_in(image, 0) == degree_in(f, 0)
+        return _leading_coefficient(self.ring, f), image if kept else None
+
+
+def _leading_coefficient(ring: Ring, f: fmpz_mpoly) -> fmpz_mpoly:
+    """Return the coefficient of the highest power of s, a polynomial in the other generators."""
+    highest = degree_in(f, 0)
+    terms = {}
+    # Terms stand in lexicographic order, s first: the wanted ones lead.
+    for i in range(len(f)):
+        monomial = f.monomial(i)
+        if monomial[0] != highest:
+            break
+        terms[(0, *monomial[1:])] = f.coefficient(i)
+    return ring.context.from_dict(terms)
+
 
 Image = tuple["fmpz_mpoly", int]
 """A polynomial in the parameter of the line, and the degree it can have at most."""
