@@ -213,7 +213,7 @@ def test_a_chain_may_be_longer_than_calls_may_be_deep():
 
 
 def test_a_dense_matrix_with_too_many_minors_is_refused(monkeypatch):
-    monkeypatch.setattr("symflex.equations.elimination.minors.MINOR_LIMIT", 50)
+    monkeypatch.setattr("symflex.equations.elimination.determinants.MINOR_LIMIT", 50)
     rows = tuple({j: RING.generator("a") + i + j for j in range(8)} for i in range(8))
     with pytest.raises(BudgetError) as caught:
         Minors(rows, ring=RING).determinant(255)

@@ -10,7 +10,7 @@ from random import Random
 import pytest
 
 from symflex.algebra import Ring
-from symflex.equations.elimination import minors as module
+from symflex.equations.elimination import determinants as module
 from symflex.equations.elimination.determinants import DegreeBounds, Minors, expansion_order
 from symflex.errors import BudgetError
 
