@@ -21,7 +21,8 @@ from mpmath import mp, mpc, mpf
 
 import symflex
 from benchmarks.measure import Claim, Measurement, run_snippet
-from symflex.roots import ROOT_FINDERS, KernelProblem, Mode, Modes, Rectangle
+from symflex.roots import Budget, Mode, Modes, Position, Rectangle
+from symflex.roots.distributed.side import Side
 from symflex.roots.locate import locate
 from symflex.roots.root import exact_fraction
 
@@ -81,7 +82,15 @@ def solve_one(model: BoundTransferFunction, mode: int, digits: int) -> Root:
 
 
 def _poles(engine: str, model: BoundTransferFunction, region: Region, digits: int) -> tuple[Root, ...]:
-    return ROOT_FINDERS[engine].find(KernelProblem(model, model.den), region, digits)
+    side = Side(model, model.den, digits, Budget(), engines=(engine,))
+    if isinstance(region, Mode):
+        side.numbered(region.number)
+        return side.in_order()
+    side.search(region)
+    assert side.prove(region).is_complete
+    ordered = side.in_order()
+    inside = zip(ordered, region.classify(ordered), strict=True)
+    return tuple(root for root, position in inside if position is not Position.OUTSIDE)
 
 
 # ------------------------------------------------------------------------------------------- the models

@@ -10,7 +10,7 @@ from flint import acb, arb
 from symflex.algebra import Factored
 from symflex.roots import RootProblem, find_polynomial_roots, precision
 from symflex.roots.counting.tail import right_tail
-from symflex.roots.distributed.side import polynomial_in_s
+from symflex.roots.problem import polynomial_in_s
 
 if TYPE_CHECKING:
     from fractions import Fraction

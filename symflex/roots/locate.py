@@ -4,21 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from flint import fmpz_mpoly_ctx
-
 from symflex.budget import Budget, entered_budget
 from symflex.roots.distributed.distributed import locate_distributed
 from symflex.roots.functions.vanishing import without_lengths_of_zero
 from symflex.roots.pole_zero_map import PoleZeroMap, find_pole_zero_map
-from symflex.roots.problem import PolynomialInS, RealConstant, RootProblem
-from symflex.transfer import BoundTransferFunction, coefficients_in_s
+from symflex.roots.problem import problem_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from flint import fmpz_mpoly
-
     from symflex.roots.region import Region
+    from symflex.transfer import BoundTransferFunction
 
 
 def locate(
@@ -55,25 +49,10 @@ def locate(
     hidden = [(f.polynomial, f.multiplicity) for f in bound.hidden]
     return find_pole_zero_map(
         bound.name,
-        _problem(bound, below),
-        _problem(bound, above),
+        problem_of(bound, below),
+        problem_of(bound, above),
         region,
         digits,
-        [(_problem(bound, [factor]), "cancelled") for factor in hidden],
+        [(problem_of(bound, [factor]), "cancelled") for factor in hidden],
         budget=budget,
     )
-
-
-def _problem(bound: BoundTransferFunction, factors: Sequence[tuple[fmpz_mpoly, int]]) -> RootProblem:
-    polynomials = [(_polynomial(bound, f), e) for f, e in factors]
-    return RootProblem(tuple((p, e) for p, e in polynomials if p.degree > 0))
-
-
-def _polynomial(bound: BoundTransferFunction, factor: fmpz_mpoly) -> PolynomialInS:
-    coefficients = coefficients_in_s(factor, bound.constant_ring)
-    if all(c.is_constant() for c in coefficients):
-        integers = fmpz_mpoly_ctx.get([], "lex")
-        numbers = (int(c.leading_coefficient()) if len(c) else 0 for c in coefficients)
-        return PolynomialInS(tuple(integers.constant(n) for n in numbers), integers)
-    constants = tuple(RealConstant(name, evaluate) for name, evaluate in bound.constants)
-    return PolynomialInS(coefficients, bound.constant_ring.context, constants)

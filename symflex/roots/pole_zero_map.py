@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Self
 
 from symflex.errors import BudgetError, Diagnostic
-from symflex.roots.polynomial_roots import POLYNOMIAL
+from symflex.roots.engines import POLYNOMIAL
+from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.region import Everything, Mode, Modes, Position, Region
 from symflex.roots.root import Root, overlap
 from symflex.roots.verdict import NOT_EXAMINED, StabilityVerdict, is_right, judge
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.budget import Budget
-    from symflex.roots.finder import RootFinder
     from symflex.roots.problem import RootProblem
 
 SCHEMA = "symflex.roots/1"
@@ -195,7 +195,6 @@ def find_pole_zero_map(
     region: Region | None = None,
     digits: int = 30,
     hidden: Sequence[tuple[RootProblem, str]] = (),
-    finder: RootFinder = POLYNOMIAL,
     budget: Budget | None = None,
 ) -> PoleZeroMap:
     """Find poles and zeros in a region.
@@ -213,8 +212,6 @@ def find_pole_zero_map(
     hidden : sequence of (RootProblem, str)
         Cancelled factors, each with its cause. All their roots are reported when the region is a number of
         modes, else those in the region.
-    finder : RootFinder
-        The engine.
     budget : Budget, optional
         When it is exceeded, what was proved so far is returned.
 
@@ -242,7 +239,7 @@ def find_pole_zero_map(
     for i, (problem, within) in enumerate(sought):
         if budget is not None:
             budget.progress.report(i / len(sought), f"polynomial {i + 1} of {len(sought)}")
-        roots, everywhere, exceeded = _locate(problem, within, digits, finder, budget)
+        roots, everywhere, exceeded = _locate(problem, within, digits, budget)
         located.append(roots)
         every.append(everywhere)
         found += sum(root.multiplicity for root in everywhere)
@@ -260,7 +257,7 @@ def find_pole_zero_map(
     elif reason is None and not apart:
         reason = "some roots could not be told apart; each such group is enclosed as one"
     certificate = Certificate(
-        finder.name,
+        POLYNOMIAL,
         reason is None,
         counted,
         found,
@@ -296,7 +293,7 @@ def right_beyond(roots: Sequence[Root], shown: Sequence[Root]) -> tuple[Root, ..
 
 
 def _locate(
-    problem: RootProblem, region: Region, digits: int, finder: RootFinder, budget: Budget | None
+    problem: RootProblem, region: Region, digits: int, budget: Budget | None
 ) -> tuple[tuple[Root, ...], tuple[Root, ...], Diagnostic | None]:
     """Return the roots in the region, all roots, and what failed."""
     roots: tuple[Root, ...] = ()
@@ -306,7 +303,7 @@ def _locate(
         try:
             if budget is not None:
                 budget.spend()
-            roots = finder.find(problem, region, digits << doubling, budget)
+            roots = find_polynomial_roots(problem, digits << doubling, budget=budget)
         except BudgetError as error:
             exceeded = error.diagnostics[0]
             if doubling == 0:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cmp_to_key
 from typing import TYPE_CHECKING
 
@@ -10,65 +10,26 @@ from flint import acb, arb
 
 from symflex.budget import Budget, entered_budget
 from symflex.errors import BudgetError
+from symflex.roots.engines import proposers_for
 from symflex.roots.polynomials.discs import Disc, connected
-from symflex.roots.polynomials.durand_kerner import propose_by_durand_kerner
 from symflex.roots.polynomials.isolation import first_bits, isolations
-from symflex.roots.polynomials.laguerre import within_budget
 from symflex.roots.polynomials.singly import differs_from_zero, prove_singly
 from symflex.roots.polynomials.squarefree import Splitting, SquareFreePart, split
 from symflex.roots.precision import bits_for_digits, precision
-from symflex.roots.problem import RootProblem
 from symflex.roots.root import GUARD_BITS, Root
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.roots.polynomials.discs import Proposer
-    from symflex.roots.problem import Problem
-    from symflex.roots.region import Region
+    from symflex.roots.problem import RootProblem
 
-DURAND_KERNER_DEGREE = 12
-LARGEST_DURAND_KERNER_DEGREE = 64
 DISTINCTION_ROUNDS = 5
 SEARCH_SHARE = 0.8
 """Of the time given; the rest is for proving one by one what a search that takes longer leaves."""
 SINGLE_DIGITS = 50
 """Most digits of a root proved on its own: more roots say more than more digits do."""
 ROUNDING = 1e-12
-
-
-@dataclass(frozen=True, slots=True)
-class PolynomialRootFinder:
-    """A root finder for polynomials, around engines that guess.
-
-    Parameters
-    ----------
-    name : str
-        As in the registry.
-    proposers : tuple of callables
-        Asked in turn; empty to choose by degree.
-    """
-
-    name: str
-    proposers: tuple[Proposer, ...] = ()
-
-    def accepts(self, problem: Problem) -> bool:
-        """Return whether the engine can solve the problem; every product of polynomials will do."""
-        return isinstance(problem, RootProblem)
-
-    def find(
-        self, problem: Problem, region: Region, digits: int, budget: Budget | None = None
-    ) -> tuple[Root, ...]:
-        """Return all roots of the problem, those outside the region too: polynomials have finitely many."""
-        del region
-        if not isinstance(problem, RootProblem):
-            message = f"{self.name} is for products of polynomials"
-            raise TypeError(message)
-        return find_polynomial_roots(problem, digits, self.proposers, budget)
-
-
-#: Chooses its engine by degree.
-POLYNOMIAL = PolynomialRootFinder("polynomial")
 
 
 def find_polynomial_roots(
@@ -102,11 +63,6 @@ def find_polynomial_roots(
         SF401 when a leading coefficient cannot be told from zero, SF404 when roots do not separate.
     BudgetError
         SF506 when the time is over; ``found`` is a tuple of the roots proved until then.
-
-    Notes
-    -----
-    Measured: FLINT's Durand-Kerner takes 19 s for a damped chain of 200 masses (degree 400), Laguerre with
-    proof at 50 digits 0.6 s; below degree 12 neither takes a millisecond.
 
     Examples
     --------
@@ -154,11 +110,12 @@ class _PolynomialSearch:
 
     def _solve(self, i: int, digits: int, budget: Budget) -> None:
         part = self.splitting.parts[i]
-        proposers = self.proposers or _by_degree(part.polynomial.degree, budget)
-        for discs in isolations(
-            part.polynomial, digits, in_square=part.in_square, proposers=proposers, budget=budget
-        ):
-            self.solved[i] = _roots_of(part, discs, digits)
+        proposers = self.proposers or proposers_for(part.polynomial.degree)
+        with budget.entered():
+            for discs in isolations(
+                part.polynomial, digits, in_square=part.in_square, proposers=proposers, budget=budget
+            ):
+                self.solved[i] = _roots_of(part, discs, digits)
 
     def _prove_singly(self) -> None:
         """Prove roots of the parts that are not solved, as long as there is time."""
@@ -204,15 +161,6 @@ def _is_apart(root: Root, others: Sequence[SquareFreePart], digits: int) -> bool
         if not differs_from_zero(part.polynomial, place, bits):
             return False
     return True
-
-
-def _by_degree(degree: int, budget: Budget) -> tuple[Proposer, ...]:
-    laguerre = within_budget(budget)
-    if degree <= DURAND_KERNER_DEGREE:
-        return (propose_by_durand_kerner, laguerre)
-    if degree <= LARGEST_DURAND_KERNER_DEGREE:
-        return (laguerre, propose_by_durand_kerner)
-    return (laguerre,)
 
 
 def _roots_of(part: SquareFreePart, discs: Sequence[Disc], digits: int) -> list[Root]:

@@ -1,4 +1,4 @@
-"""The input of root finders: a product of polynomials in s with exact coefficients, or one with kernels."""
+"""A product of polynomials in s with exact coefficients."""
 
 from __future__ import annotations
 
@@ -8,15 +8,17 @@ from typing import TYPE_CHECKING
 
 from flint import arb, arb_poly, fmpz_mpoly, fmpz_mpoly_ctx
 
+from symflex.algebra import Ring, degree_in
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.roots.precision import precision
+from symflex.transfer import coefficients_in_s
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
     from fractions import Fraction
 
-    from symflex.algebra import Factored
     from symflex.transfer import BoundTransferFunction
+
 
 ZERO_TEST_BITS = (64, 256, 1024, 4096)
 
@@ -185,20 +187,20 @@ class RootProblem:
         return sum(polynomial.degree * exponent for polynomial, exponent in self.factors)
 
 
-@dataclass(frozen=True)
-class KernelProblem:
-    """A product of powers of polynomials in s, wavenumbers and kernels, entire in s.
-
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        Whose kernels they are.
-    part : Factored
-        Its numerator or denominator.
-    """
-
-    bound: BoundTransferFunction
-    part: Factored
+def polynomial_in_s(bound: BoundTransferFunction, factor: fmpz_mpoly) -> PolynomialInS:
+    """Return a factor without wavenumbers and kernels as a polynomial in s."""
+    constants = tuple(RealConstant(name, evaluate) for name, evaluate in bound.constants)
+    ring = bound.ratio.ring
+    used = tuple(c for c in constants if degree_in(factor, ring.index[c.name]))
+    small = Ring(("s", *(c.name for c in used)))
+    places = [ring.index[name] for name in small.names]
+    terms = {tuple(int(m[i]) for i in places): int(c) for m, c in factor.terms()}
+    coefficients = Ring(small.names[1:])
+    polynomial = small.context.from_dict(terms)
+    return PolynomialInS(coefficients_in_s(polynomial, coefficients), coefficients.context, used)
 
 
-Problem = RootProblem | KernelProblem
+def problem_of(bound: BoundTransferFunction, factors: Iterable[tuple[fmpz_mpoly, int]]) -> RootProblem:
+    """Return what roots powers of factors without wavenumbers and kernels have, those that depend on s."""
+    polynomials = [(polynomial_in_s(bound, f), e) for f, e in factors]
+    return RootProblem(tuple((p, e) for p, e in polynomials if p.degree > 0))

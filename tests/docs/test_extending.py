@@ -37,8 +37,9 @@ rod = { type = "love_rod", between = ["ground", "q"], E = "E", A = "A", rho = "r
     l = "l" }
 """
 ROOTS = """
-from symflex.roots import ROOT_FINDERS, Everything, RootProblem
-found = ROOT_FINDERS["eigenvalues"].find(RootProblem.from_rationals([25, 6, 1]), Everything(), 10)
+from symflex.roots import RootProblem, find_polynomial_roots
+from symflex.roots.engines import GUESSES
+found = find_polynomial_roots(RootProblem.from_rationals([25, 6, 1]), 10, [GUESSES["eigenvalues"].propose])
 print([(root.decimal(3).re, root.decimal(3).im, root.certified) for root in found])
 """
 pytestmark = pytest.mark.needs_tool("git")

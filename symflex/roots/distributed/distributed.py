@@ -15,18 +15,13 @@ from symflex.algebra import Factored
 from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.model.passive import is_passive
+from symflex.roots.distributed.proof import ROUNDING
 from symflex.roots.distributed.right_half_plane import DEGENERATE, PASSIVE, search_right
-from symflex.roots.distributed.side import (
-    ACCUMULATION_DIGITS,
-    LOSSLESS,
-    ROUNDING,
-    Side,
-    groups,
-    polynomial_roots,
-)
+from symflex.roots.distributed.side import ACCUMULATION_DIGITS, Side, groups, polynomial_roots
+from symflex.roots.engines import LOSSLESS, POLYNOMIAL
 from symflex.roots.plane.search import HIGHEST
 from symflex.roots.pole_zero_map import Certificate, Exclusion, HiddenRoot, PoleZeroMap, right_beyond
-from symflex.roots.polynomial_roots import POLYNOMIAL, in_order
+from symflex.roots.polynomial_roots import in_order
 from symflex.roots.region import Band, Everything, Mode, Modes, Position
 from symflex.roots.root import overlap
 from symflex.roots.verdict import is_right, judge
@@ -98,7 +93,7 @@ def locate_distributed(
     if reason is None and not all(root.certified for root in every):
         reason = "some roots could not be told apart"
     missing = sum(side.missing for side in searched.sides)
-    engines = sorted({side.engine for side in searched.sides if not side.is_finite}) or [POLYNOMIAL.name]
+    engines = sorted({side.engine for side in searched.sides if not side.is_finite}) or [POLYNOMIAL]
     excluded = {hole for side in searched.sides for hole in side.excluded()}
     try:
         if code is not None:

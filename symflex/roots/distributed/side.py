@@ -6,82 +6,42 @@ shows that none is missing. Where that fails, the subdivision is repeated with e
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import inf, pi
 from typing import TYPE_CHECKING
 
-from flint import acb, arb
+from flint import acb
 
-from symflex.algebra import Factored, Ring, degree_in
-from symflex.algebra.origin import OriginSeries
-from symflex.errors import BudgetError, Diagnostic, UncertifiedError
-from symflex.roots.axes.lossless import LosslessSearch, lossless_search
+from symflex.algebra import Factored
+from symflex.errors import BudgetError, Diagnostic
+from symflex.roots.axes.lossless import LosslessSearch
 from symflex.roots.counting.argument_principle import CertifiedWinding
-from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
+from symflex.roots.counting.winding import Cell, RootOnPathError
+from symflex.roots.distributed.origin import roots_at_zero
+from symflex.roots.distributed.proof import TOUCHING, UNPROVED, Count, Proof, are_apart
+from symflex.roots.engines import SEARCHES, SUBDIVISION, Sought
 from symflex.roots.functions.kernel_function import KernelFunction, has_kernels, split_off_kernels
 from symflex.roots.functions.square_free_kernels import without_squares
 from symflex.roots.plane.branch_points import prove_together
-from symflex.roots.plane.domains import WIDER, decider, holes_about, is_whole_ring, limits, parts
+from symflex.roots.plane.domains import WIDER, holes_about, is_whole_ring, limits
 from symflex.roots.plane.krawczyk import prove_simple
 from symflex.roots.plane.search import HIGHEST, MODES_LIMIT, RootSearch
 from symflex.roots.polynomial_roots import find_polynomial_roots, in_order
 from symflex.roots.precision import precision
-from symflex.roots.problem import PolynomialInS, RealConstant, RootProblem
+from symflex.roots.problem import problem_of
 from symflex.roots.region import Modes
 from symflex.roots.root import FLOAT_BITS, Root, mirror_images, overlap
-from symflex.transfer import coefficients_in_s
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from flint import fmpz_mpoly
+    from collections.abc import Iterable, Sequence
 
     from symflex.budget import Budget
     from symflex.roots.region import Region
     from symflex.transfer import BoundTransferFunction
 
-GUESS_AND_PROVE = "guess-and-prove"
-SUBDIVISION = "subdivision"
-LOSSLESS = "lossless"
-ENGINES = (LOSSLESS, GUESS_AND_PROVE, SUBDIVISION)
-UNPROVED = "the number of roots could not be proved"
-TOUCHING = "some roots could not be told apart"
 ACCUMULATION_DIGITS = 20
 FEW = 40
-ROUNDING = 1e-15
 MORE_DIGITS = 30
-ORIGIN_TERMS = (20, 80)
-"""Lengths of the series about 0 in which the first term is sought."""
-ORIGIN_DEPTHS = (1.0, 4.0, 16.0, 64.0)
-"""How far below the lowest root, in ln, circles about 0 are counted where the order is not known exactly."""
-
-
-@dataclass(frozen=True, slots=True)
-class Proof:
-    """Whether the roots of one side are all there.
-
-    Parameters
-    ----------
-    counted : int
-        Roots in the domain searched, by a certified count; those found where there is none.
-    found : int
-        Roots proved there.
-    reason : str, optional
-        Why the count is not certified.
-    """
-
-    counted: int
-    found: int
-    reason: str | None = None
-
-    @property
-    def is_complete(self) -> bool:
-        """The count is certified, and every root was found."""
-        return self.reason is None and self.counted == self.found
-
-
-class NoEngineError(TypeError):
-    """None of the engines allowed can search a function."""
 
 
 class Side:
@@ -104,7 +64,7 @@ class Side:
 
     Raises
     ------
-    NoEngineError
+    TypeError
         When none of them can.
 
     Attributes
@@ -125,7 +85,7 @@ class Side:
         budget: Budget,
         *,
         is_hidden: bool = False,
-        engines: Sequence[str] = ENGINES,
+        engines: Iterable[str] = SEARCHES,
     ) -> None:
         self._bound = bound
         self._engines = tuple(engines)
@@ -140,71 +100,25 @@ class Side:
         self._innermost: float | None = None
         self._known: Proof | None = None
         self._scans = False
-        self._tried = 0
         self.engine = self._engines[0]
         self._lossless: LosslessSearch | None = None
         if is_kernel := has_kernels(mixed, bound.kernels):
             # Kernels may have poles where polynomials vanish: only together are they entire.
             self.function = KernelFunction(*without_squares(bound, _without_laplace(plain) * mixed))
             self._winding = CertifiedWinding(self.function, budget)
-            self._origin, self._order = self._roots_at_zero(part, is_hidden=is_hidden)
+            self._origin, self._order = roots_at_zero(
+                self._winding, part, self._left, self.holes, is_hidden=is_hidden
+            )
+            self._sought = Sought(self.function, self._winding, self._order, self.holes, digits, budget)
+            self._attempts = ((e, attempt) for e in self._engines for attempt in SEARCHES[e](self._sought))
             self._next_search()
             if self.is_finite:
                 message = f"not for the engine {', '.join(self._engines)}"
-                raise NoEngineError(message)
+                raise TypeError(message)
         self._exact = polynomial_roots(bound, _without_laplace(plain) if is_kernel else plain, digits)
         self._located = self._origin if is_kernel else self._exact
         self.roots = list(self._located)
         self.missing = 0
-
-    def _searching(self, winding: Winding) -> RootSearch:
-        return RootSearch(winding, self._winding, self.holes, self._digits)
-
-    def _roots_at_zero(self, part: Factored, *, is_hidden: bool) -> tuple[list[Root], int]:
-        """Return the root at s = 0, and how often the function without powers of s winds about 0 there."""
-        power, zero = self.function.power, arb(0)
-        powers = part.exponent_of(part.ring.context.gen(0))
-        exact = None
-        for terms in ORIGIN_TERMS:
-            exact = OriginSeries(part.ring, self.function.bound.kernels, terms=terms).order(
-                self.function.part**power
-            )
-            if exact is not None:
-                break
-        if exact is not None and (is_hidden or exact % power == 0):
-            total = powers if is_hidden else powers + exact // power
-            root = Root(zero, zero, total, on_imaginary_axis=True, is_real=True)
-            return [root for _ in range(total >= 1)], exact
-        z, turns = self._turns_about_zero(power)
-        # Kernels without a formula: so many roots lie this close to 0, and nothing says that they are 0.
-        with precision(FLOAT_BITS):
-            box = arb(0, arb(z).exp().upper())
-        total = powers if is_hidden else powers + turns
-        if not turns or is_hidden:
-            box = zero
-        is_zero = bool(box == 0)
-        certified = is_zero or total == 1
-        root = Root(box, box, total, on_imaginary_axis=is_zero, is_real=is_zero, certified=certified)
-        return [root for _ in range(total >= 1)], turns * power
-
-    def _turns_about_zero(self, power: int) -> tuple[float, int]:
-        """Return ln of a small radius, and how many roots are proved to lie within it."""
-        left = pi / 2 if self.function.is_even else pi
-        lowest = self._winding.smallest(left, self.holes)
-        found: tuple[float, int] | None = None
-        for depth in ORIGIN_DEPTHS:
-            try:
-                turns, rest = divmod(self._winding.count_within(lowest - depth, left), power)
-            except RootOnPathError:
-                continue
-            if not rest:
-                found = (lowest - depth, turns)
-            if not turns:
-                break
-        if found is None:
-            message = f"the order of the root of {self._bound.name} at s = 0 cannot be told"
-            raise UncertifiedError(Diagnostic("SF404", message))
-        return found
 
     @property
     def is_finite(self) -> bool:
@@ -241,6 +155,16 @@ class Side:
             finally:
                 self._take(search)
 
+    def _next_search(self) -> None:
+        """Turn to a search that also finds what the last one did not."""
+        self._scans = False
+        following = next(self._attempts, None)
+        if following is not None:
+            self.engine, attempt = following
+            self._search, self._scans = attempt.search, attempt.scans
+            if isinstance(attempt.search, LosslessSearch):
+                self._lossless = attempt.search
+
     def _scanned(self, search: RootSearch | LosslessSearch, modes: int, radius: float) -> bool:
         """Look for roots on the axes; tell whether these are all."""
 
@@ -253,37 +177,6 @@ class Side:
         except BudgetError:
             self._take(search)
             raise
-
-    def _next_search(self) -> None:
-        """Turn to a search that also finds what the last one did not."""
-        if self._scans and isinstance(self._search, RootSearch):
-            # Samples next to the axes come before cells of the plane.
-            self._scans = False
-            self._search = self._searching(Winding(self.function, self._budget))
-            return
-        for name in self._engines[self._tried :]:
-            self._tried += 1
-            if name == LOSSLESS:
-                self._lossless = self._lossless_search()
-                if self._lossless is not None:
-                    self.engine, self._search, self._scans = name, self._lossless, True
-                    return
-            elif name == GUESS_AND_PROVE:
-                self.engine, self._search = name, self._searching(Winding(self.function, self._budget))
-                self._scans = self._mirrors
-                return
-            else:
-                self.engine, self._search, self._scans = name, self._searching(self._winding), False
-                return
-        self._scans = False
-
-    @property
-    def _mirrors(self) -> bool:
-        # Samples next to the axis are of one branch only if all branches are alike.
-        return self.function.is_even and self.function.power == 1 and not self.holes
-
-    def _lossless_search(self) -> LosslessSearch | None:
-        return lossless_search(self.function, self._order, self._digits) if self._mirrors else None
 
     def _take(self, search: RootSearch | LosslessSearch) -> None:
         self.missing = search.missing
@@ -303,7 +196,7 @@ class Side:
         self._innermost = smallest if low < smallest else None
         low, high = max(low, smallest), max(self._search.passing(high), smallest + WIDER)
         is_part = low > smallest or right > 0 or left < self._search.left
-        if is_part and not self.holes and self._is_sparse(self._search, high):
+        if is_part and not self.holes and self._is_sparse(high):
             low, right, left, self._innermost = smallest, 0.0, pi, smallest
         while self._scans and right <= 0 and left >= self._search.left:
             # A little beyond, so that roots at the limits are met.
@@ -362,13 +255,13 @@ class Side:
         self.roots = []
         return None
 
-    def _is_sparse(self, search: RootSearch | LosslessSearch, high: float) -> bool:
+    def _is_sparse(self, high: float) -> bool:
         """Tell whether a whole disc holds so few roots that it is searched rather than a part of it.
 
         Close to 0, where functions with kernels are differences of large terms, paths are hard to follow.
         """
         try:
-            turns = self._count_within(high + WIDER, search.left)
+            turns = self._count.within(high + WIDER)
         except RootOnPathError:
             return False
         return turns <= FEW * self.function.power
@@ -388,33 +281,20 @@ class Side:
     def _subdivide(self, region: Region) -> None:
         """Search again, every count proved."""
         reached, modes = self.reached, self.modes
-        self._scans, self.engine, self._search = False, SUBDIVISION, self._searching(self._winding)
+        self._scans, self.engine, self._search = False, SUBDIVISION, self._sought.search(self._winding)
         if isinstance(region, Modes):
             self.extend(modes, reached)
         else:
             self.search(region)
-
-    def _is_empty_inside(self) -> bool:
-        """Tell whether it is proved that no roots but those at 0 lie in the disc that was not searched."""
-        if self._innermost is None:
-            return True
-        try:
-            return self._winding.count_within(self._innermost, self._left) == self._order
-        except RootOnPathError:
-            return False
-
-    @property
-    def _left(self) -> float:
-        return pi / 2 if self.function.is_even else pi
 
     def _subdivided(self) -> Proof:
         """Return what was found in cells that were all counted with proof."""
         found = sum(root.multiplicity for root in self._located)
         if not isinstance(self._search, RootSearch):
             return Proof(found, found, UNPROVED)
-        if not self._is_empty_inside():
+        if not self._count.is_empty_within(self._innermost):
             return Proof(found, found, UNPROVED)
-        if not _are_apart(self._located):
+        if not are_apart(self._located):
             return Proof(found, found, TOUCHING)
         reason = None if not self.missing else f"{self.missing} roots were counted but not found"
         return Proof(found + self.missing, found, reason)
@@ -467,89 +347,23 @@ class Side:
 
     def counted(self) -> Proof:
         """Count the domain that was searched by its boundary."""
+        if self._domain is None:
+            return Proof(0, 0, "nothing was searched")
         if self._known is None:
-            self._known = self._counted()
+            self._known = self._count.proof(self._domain, self._located, self._origin, self._innermost)
         return self._known
 
-    def _counted(self) -> Proof:
-        search = self._search
-        if search is None or self._domain is None:
-            return Proof(0, 0, "nothing was searched")
-        if not _are_apart(self._located):
-            found = sum(root.multiplicity for root in self._located)
-            return Proof(found, found, TOUCHING)
-        cells, holes = parts(self._domain, search.left, self.holes)
-        found, unsure = 0, False
-        deciders, hole_deciders = [decider(cell) for cell in cells], [decider(hole) for hole in holes]
-        for root in self._located:
-            positions = [is_inside(root) for is_inside in deciders]
-            unsure = unsure or (not any(positions) and None in positions)
-            if any(positions) and not any(is_inside(root) for is_inside in hole_deciders):
-                found += root.multiplicity
-        if unsure:
-            return Proof(found, found, "a root lies on the boundary of what was searched")
-        try:
-            turns = self._turns(self._domain, cells, holes, search)
-        except RootOnPathError:
-            return Proof(found, found, UNPROVED)
-        if self._domain.low == -inf:
-            turns -= self._order
-        elif not self._is_empty_inside():
-            return Proof(found, found, UNPROVED)
-        counted, rest = divmod(turns, self.function.power)
-        if rest:
-            return Proof(found, found, UNPROVED)
-        if self._domain.low == -inf:
-            counted += sum(root.multiplicity for root in self._origin)
-        return Proof(counted, found)
+    @property
+    def _left(self) -> float:
+        return pi / 2 if self.function.is_even else pi
+
+    @property
+    def _count(self) -> Count:
+        return Count(self._winding, self._order, self.holes, self._left, self._lossless)
 
     def count_right(self, high: float) -> int:
-        """Return how many roots lie right of the imaginary axis, with ln(abs(s)) below ``high``: proved.
-
-        Raises
-        ------
-        RootOnPathError
-            A root lies on the path, which follows the imaginary axis, or too close to it.
-        BudgetError
-            SF505, SF506.
-        """
-        winding = CertifiedWinding(self.function, self._budget, tries_series=True)
-        low = min(winding.smallest(pi, self.holes), high - 1.0)
-        if winding.count_within(low, pi) != self._order:
-            raise RootOnPathError
-        counted, rest = divmod(winding.count(Cell(low, high, -pi / 2, pi / 2)), self.function.power)
-        if rest:
-            raise RootOnPathError
-        return counted
-
-    def _count_within(self, z: float, left: float) -> int:
-        if self._lossless is not None:
-            return self._lossless.count(z) + self._order
-        return self._winding.count_within(z, left)
-
-    def _turns(
-        self, domain: Cell, cells: Sequence[Cell], holes: Sequence[Cell], search: RootSearch | LosslessSearch
-    ) -> int:
-        if not is_whole_ring(domain, search.left, self.holes):
-            return sum(self._winding.count(cell) for cell in cells)
-        turns = self._count_within(domain.high, search.left)
-        if domain.low > -inf:
-            turns -= self._count_within(domain.low, search.left)
-        return turns - sum(self._winding.count(hole) for hole in holes)
-
-
-def _are_apart(roots: Sequence[Root]) -> bool:
-    """Tell whether no two enclosures overlap."""
-    sizes = ((root.natural_frequency(), root) for root in roots)
-    spans = [(float(f.lower()) * (1 - ROUNDING), float(f.upper()) * (1 + ROUNDING), r) for f, r in sizes]
-    spans.sort(key=lambda span: span[0])
-    near: list[tuple[float, Root]] = []
-    for low, high, root in spans:
-        near = [(end, other) for end, other in near if end >= low]
-        if any(overlap(root, other) for _, other in near):
-            return False
-        near.append((high, root))
-    return True
+        """Return how many roots lie right of the imaginary axis, with ln(abs(s)) below ``high``: proved."""
+        return self._count.right(high, self._budget)
 
 
 def groups(roots: Sequence[Root]) -> list[list[Root]]:
@@ -570,22 +384,8 @@ def _without_laplace(value: Factored) -> Factored:
 
 def polynomial_roots(bound: BoundTransferFunction, part: Factored, digits: int) -> list[Root]:
     """Return the roots of the factors with positive exponents."""
-    polynomials = [(polynomial_in_s(bound, f), e) for f, e in part.factors if e > 0]
-    problem = RootProblem(tuple((p, e) for p, e in polynomials if p.degree > 0))
+    problem = problem_of(bound, [(f, e) for f, e in part.factors if e > 0])
     return list(find_polynomial_roots(problem, digits)) if problem.degree else []
-
-
-def polynomial_in_s(bound: BoundTransferFunction, factor: fmpz_mpoly) -> PolynomialInS:
-    """Return a factor without wavenumbers and kernels as a polynomial in s."""
-    constants = tuple(RealConstant(name, evaluate) for name, evaluate in bound.constants)
-    ring = bound.ratio.ring
-    used = tuple(c for c in constants if degree_in(factor, ring.index[c.name]))
-    small = Ring(("s", *(c.name for c in used)))
-    places = [ring.index[name] for name in small.names]
-    terms = {tuple(int(m[i]) for i in places): int(c) for m, c in factor.terms()}
-    coefficients = Ring(small.names[1:])
-    polynomial = small.context.from_dict(terms)
-    return PolynomialInS(coefficients_in_s(polynomial, coefficients), coefficients.context, used)
 
 
 def accumulation_points(bound: BoundTransferFunction) -> tuple[complex, ...]:

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
-    from symflex.roots.polynomials.discs import Proposer
 
 ITERATIONS = 80
 CONVERGED = 1e-13
@@ -40,7 +39,7 @@ DOUBLE_BITS = 64
 
 
 def propose_by_laguerre(polynomial: acb_poly) -> tuple[acb, ...] | None:
-    """Guess the roots of a real polynomial of positive degree.
+    """Guess the roots of a real polynomial of positive degree; the budget entered is heeded before each step.
 
     Parameters
     ----------
@@ -57,28 +56,9 @@ def propose_by_laguerre(polynomial: acb_poly) -> tuple[acb, ...] | None:
     >>> [f"{float(g.imag):.12f}" for g in propose_by_laguerre(acb_poly([-2, 1, -2, 1]))]
     ['1.000000000000', '0.000000000000']
     """
-    return within_budget(entered_budget())(polynomial)
-
-
-def within_budget(budget: Budget) -> Proposer:
-    """Return :func:`propose_by_laguerre` with a limit on its time, heeded before each step.
-
-    Examples
-    --------
-    >>> propose = within_budget(Budget(seconds=0, clock=iter([0, 1]).__next__))
-    >>> propose(acb_poly([-2, 1, -2, 1]))
-    Traceback (most recent call last):
-    ...
-    symflex.errors.exceptions.BudgetError: error[SF506]: the time given is over
-      hint: allow more time, or ask for less
-    """
-
-    def propose(polynomial: acb_poly) -> tuple[acb, ...] | None:
-        guesses = tuple(guess_by_laguerre(polynomial, budget))
-        found = sum(1 if guess.imag == 0 else 2 for guess in guesses)
-        return guesses if found == polynomial.degree() else None
-
-    return propose
+    guesses = tuple(guess_by_laguerre(polynomial, entered_budget()))
+    found = sum(1 if guess.imag == 0 else 2 for guess in guesses)
+    return guesses if found == polynomial.degree() else None
 
 
 def guess_by_laguerre(polynomial: acb_poly, budget: Budget) -> Iterator[acb]:

@@ -6,10 +6,13 @@ from flint import arb
 
 from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic
+from symflex.roots import Mode, Position
 from symflex.roots.distributed.side import Side
+from symflex.roots.engines import LOSSLESS
 from symflex.roots.root import Root
 from tests.unit.roots.distributed import ROD, bound
 
+UNLIMITED = Budget()
 OVER = BudgetError(Diagnostic("SF506", "the time given is over"))
 
 
@@ -27,6 +30,20 @@ def root(re, im=0.0, times=1, size=0.0, *, certified=True):
 
 def places(roots):
     return [(float(r.re), float(r.im), r.multiplicity) for r in roots]
+
+
+def poles_by(engine, source, region, digits, budget=UNLIMITED):
+    """Return the poles in a region that one engine finds, none where it does not prove that they are all."""
+    one = Side(source, source.den, digits, budget, engines=(engine,))
+    if isinstance(region, Mode):
+        one.numbered(region.number)
+        return one.in_order() if one.engine == LOSSLESS else ()
+    one.search(region)
+    if not one.prove(region).is_complete:
+        return ()
+    ordered = one.in_order()
+    positions = zip(ordered, region.classify(ordered), strict=True)
+    return tuple(root for root, position in positions if position is not Position.OUTSIDE)
 
 
 def side(text=ROD, **options):

@@ -10,11 +10,12 @@ import pytest
 from mpmath import cos, findroot, mp, mpf, sin, sinh, sqrt, tan, tanh
 
 from symflex.budget import Budget
-from symflex.roots import ROOT_FINDERS, KernelProblem, Modes
+from symflex.roots import Modes
 from symflex.roots.axes.axis_scan import sign_changes
 from symflex.roots.counting.winding import Winding
 from symflex.roots.functions.kernel_function import KernelFunction
 from tests.unit.roots.distributed import ROD, SLIDING_FREE, bound
+from tests.unit.roots.stand_ins import poles_by
 
 CLOSE = 1e-6
 """Relative, of guesses on a grid."""
@@ -84,7 +85,7 @@ F = {{ force = "x" }}
 X = "x"
 """
     source = bound(text, 0)
-    found = ROOT_FINDERS["guess-and-prove"].find(KernelProblem(source, source.den), Modes(6), 20)
+    found = poles_by("guess-and-prove", source, Modes(6), 20)
     upper = sorted(float(root.im.mid()) for root in found if root.im > 0)
     alone = [(n - 0.5) * pi for n in (1, 2, 3)]
     # In phase the spring does not work; against each other it does twice: omega cot omega = -2 k.

@@ -1,11 +1,13 @@
-"""Every registered root finder finds known roots."""
+"""Every registered engine that guesses finds known roots."""
 
 from __future__ import annotations
 
 import pytest
 from flint import fmpz_poly
 
-from symflex.roots import ROOT_FINDERS, Everything, PolynomialRootFinder
+from symflex.roots import find_polynomial_roots
+from symflex.roots.engines import GUESSES
+from symflex.roots.polynomials.laguerre import propose_by_laguerre
 from tests.unit.roots.polynomials import chain, from_roots, problem, problem_of, with_root_of_two
 
 PROBLEMS = {
@@ -19,45 +21,34 @@ PROBLEMS = {
 }
 
 
-@pytest.fixture(
-    params=sorted(name for name, f in ROOT_FINDERS.items() if isinstance(f, PolynomialRootFinder))
-)
-def finder(request):
-    return ROOT_FINDERS[request.param]
-
-
-def test_registry_keys_are_names():
-    assert all(finder.name == name for name, finder in ROOT_FINDERS.items())
+@pytest.fixture(params=sorted(GUESSES))
+def proposers(request):
+    return (GUESSES[request.param].propose,)
 
 
 @pytest.mark.parametrize("name", sorted(PROBLEMS))
-def test_the_number_of_roots_is_the_degree(finder, name):
-    roots = finder.find(PROBLEMS[name], Everything(), 20)
+def test_the_number_of_roots_is_the_degree(proposers, name):
+    roots = find_polynomial_roots(PROBLEMS[name], 20, proposers)
     assert sum(root.multiplicity for root in roots) == PROBLEMS[name].degree
 
 
 @pytest.mark.parametrize("name", sorted(PROBLEMS))
-def test_the_polynomial_vanishes_on_every_enclosure(finder, name):
+def test_the_polynomial_vanishes_on_every_enclosure(proposers, name):
     (polynomial, _), *_ = PROBLEMS[name].factors
     value = fmpz_poly(list(polynomial.integers()))
-    for root in finder.find(PROBLEMS[name], Everything(), 20):
+    for root in find_polynomial_roots(PROBLEMS[name], 20, proposers):
         assert value(root.enclosure()).contains(0)
 
 
 @pytest.mark.parametrize("name", sorted(PROBLEMS))
-def test_engines_agree_on_the_digits(finder, name):
-    expected = ROOT_FINDERS["polynomial"].find(PROBLEMS[name], Everything(), 20)
-    roots = finder.find(PROBLEMS[name], Everything(), 20)
+def test_engines_agree_on_the_digits(proposers, name):
+    expected = find_polynomial_roots(PROBLEMS[name], 20)
+    roots = find_polynomial_roots(PROBLEMS[name], 20, proposers)
     assert len(roots) == len(expected)
     assert all(a.enclosure().overlaps(b.enclosure()) for a, b in zip(roots, expected, strict=True))
 
 
-@pytest.mark.parametrize("name", sorted(PROBLEMS))
-def test_polynomials_are_accepted(finder, name):
-    assert finder.accepts(PROBLEMS[name])
-
-
 def test_constants_with_a_hidden_relation_need_an_engine_that_bears_double_roots():
     polynomial = with_root_of_two(lambda root, one: (2 * one, -2 * root, one))
-    roots = ROOT_FINDERS["laguerre"].find(type(PROBLEMS["real"])(((polynomial, 1),)), Everything(), 10)
+    roots = find_polynomial_roots(type(PROBLEMS["real"])(((polynomial, 1),)), 10, (propose_by_laguerre,))
     assert [root.multiplicity for root in roots] == [2]

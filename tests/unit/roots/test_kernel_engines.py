@@ -7,22 +7,14 @@ from fractions import Fraction
 import pytest
 from mpmath import findroot, mp, mpf, pi, tan, tanh
 
-from symflex.roots import (
-    ROOT_FINDERS,
-    Band,
-    Everything,
-    KernelProblem,
-    KernelRootFinder,
-    Mode,
-    Modes,
-    Rectangle,
-    RootProblem,
-)
+from symflex.roots import Band, Mode, Modes, Rectangle
+from symflex.roots.engines import GUESS_AND_PROVE, LOSSLESS, SEARCHES
 from symflex.roots.locate import locate
-from tests.unit.roots.distributed import DELAY_LOOP, FREE, KELVIN_VOIGT, ROD, SLIDING_FREE, bound
+from tests.unit.roots.distributed import DELAY_LOOP, FREE, KELVIN_VOIGT, SLIDING_FREE, bound
+from tests.unit.roots.stand_ins import poles_by, side
 
 DIGITS = 40
-KERNEL_ENGINES = sorted(name for name, f in ROOT_FINDERS.items() if isinstance(f, KernelRootFinder))
+KERNEL_ENGINES = sorted(SEARCHES)
 
 
 @pytest.fixture(autouse=True)
@@ -32,8 +24,7 @@ def digits():
 
 
 def poles_of(text, region, engine, number=0):
-    source = bound(text, number)
-    return ROOT_FINDERS[engine].find(KernelProblem(source, source.den), region, DIGITS)
+    return poles_by(engine, bound(text, number), region, DIGITS)
 
 
 def sliding_free(n):
@@ -73,38 +64,11 @@ def test_every_engine_keeps_to_a_band(engine):
 
 
 @pytest.mark.parametrize("text", [KELVIN_VOIGT, DELAY_LOOP], ids=["loss", "delay"])
-def test_what_has_losses_or_delays_is_not_for_the_lossless_engine(text):
-    source = bound(text, 0)
-    problem = KernelProblem(source, source.den)
-    assert not ROOT_FINDERS["lossless"].accepts(problem)
-    assert ROOT_FINDERS["guess-and-prove"].accepts(problem)
-
-
-@pytest.mark.parametrize("engine", KERNEL_ENGINES)
-def test_polynomials_are_for_other_engines(engine):
-    problem = RootProblem.from_rationals([1, 0, 1])
-    assert not ROOT_FINDERS[engine].accepts(problem)
-    with pytest.raises(TypeError, match="kernels"):
-        ROOT_FINDERS[engine].find(problem, Everything(), 10)
-
-
-def test_functions_with_kernels_are_not_for_the_engines_of_polynomials():
-    source = bound(ROD, 0)
-    problem = KernelProblem(source, source.den)
-    assert not ROOT_FINDERS["polynomial"].accepts(problem)
-    with pytest.raises(TypeError, match="polynomials"):
-        ROOT_FINDERS["polynomial"].find(problem, Everything(), 10)
-
-
-@pytest.mark.parametrize("engine", KERNEL_ENGINES)
-def test_infinitely_many_roots_are_not_asked_for(engine):
-    with pytest.raises(ValueError, match="infinitely many"):
-        poles_of(ROD, Everything(), engine)
-
-
-def test_no_other_engine_has_a_name():
-    with pytest.raises(ValueError, match="no engine is called magic"):
-        KernelRootFinder("magic")
+def test_what_has_losses_or_delays_is_left_to_the_next_engine(text):
+    one = side(text)
+    assert one.engine == GUESS_AND_PROVE
+    with pytest.raises(TypeError, match=r"^not for the engine lossless$"):
+        side(text, engines=(LOSSLESS,))
 
 
 def test_two_hundred_modes_are_complete_and_on_the_axis():

@@ -9,12 +9,12 @@ import pytest
 
 from symflex.budget import Budget
 from symflex.errors import BudgetError, ModelError
-from symflex.roots import Band, KernelProblem, Modes
-from symflex.roots.distributed.side import ENGINES
+from symflex.roots import Band, Modes
+from symflex.roots.engines import SEARCHES
 from symflex.roots.functions.vanishing import _value, without_lengths_of_zero
-from symflex.roots.kernel_finder import KernelRootFinder
 from symflex.roots.locate import locate
 from tests.unit.roots.distributed import DELAY_LOOP, ROD, bound
+from tests.unit.roots.stand_ins import poles_by
 
 
 def of(formula, *, signals=""):
@@ -59,16 +59,14 @@ def test_an_engine_heeds_its_budget():
     clock = iter(range(10**6)).__next__
     source = bound(DELAY_LOOP)
     with pytest.raises(BudgetError, match="SF506"):
-        KernelRootFinder("guess-and-prove").find(
-            KernelProblem(source, source.den), Modes(3), 15, Budget(seconds=1, clock=clock)
-        )
+        poles_by("guess-and-prove", source, Modes(3), 15, Budget(seconds=1, clock=clock))
 
 
-@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("engine", SEARCHES)
 def test_an_engine_returns_what_lies_in_a_band(engine):
     # x tan x = 2: 1.08, 3.64, 6.58 rad/s
     source = bound(ROD)
-    found = KernelRootFinder(engine).find(KernelProblem(source, source.den), Band(0, 1), 15)
+    found = poles_by(engine, source, Band(0, 1), 15)
     assert [round(abs(float(r.im)), 2) for r in found] == [1.08, 1.08, 3.64, 3.64]
 
 

@@ -9,13 +9,14 @@ import pytest
 from flint import acb, arb, ctx
 from mpmath import exp, findroot, mp, mpf, sin
 
-from symflex.roots import ROOT_FINDERS, KernelProblem, Mode, Modes
+from symflex.roots import Mode, Modes
 from symflex.roots.axes.arc_sum import ArcSum, ArcTerm
 from symflex.roots.axes.axis_function import IMAGINARY, REAL, AxisFunction, AxisWave, Enclosures
 from symflex.roots.axes.axis_root import AxisNewton, bits_of, bracketed, changes_sign
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.precision import precision
 from tests.unit.roots.distributed import FREE, PINNED_IN_THE_MIDDLE, ROD, SLIDING_FREE, bound
+from tests.unit.roots.stand_ins import poles_by
 
 SAMPLES = 60_000
 DIGITS = 30
@@ -134,12 +135,10 @@ def test_nothing_is_enclosed_where_no_root_is():
 @pytest.mark.parametrize("text", [ROD, FREE, SLIDING_FREE, PINNED_IN_THE_MIDDLE])
 def test_modes_by_number_are_those_of_the_list(text):
     source = bound(text, 0)
-    find = ROOT_FINDERS["lossless"].find
-    problem = KernelProblem(source, source.den)
-    listed = [root for root in find(problem, Modes(12), DIGITS) if root.im > 0]
+    listed = [root for root in poles_by("lossless", source, Modes(12), DIGITS) if root.im > 0]
     assert len(listed) == 12
     for number, root in enumerate(listed, 1):
-        alone = [root for root in find(problem, Mode(number), DIGITS) if root.im > 0]
+        alone = [root for root in poles_by("lossless", source, Mode(number), DIGITS) if root.im > 0]
         assert [r.decimal(20).im for r in alone] == [root.decimal(20).im]
 
 
@@ -147,8 +146,6 @@ def test_a_very_high_mode_of_a_rod_with_a_tip_mass():
     # x tan x = 2, and omega = x.
     with mp.workdps(50):
         number = 10**9
-        (root, _) = ROOT_FINDERS["lossless"].find(
-            KernelProblem(bound(ROD, 0), bound(ROD, 0).den), Mode(number), DIGITS
-        )
+        (root, _) = poles_by("lossless", bound(ROD, 0), Mode(number), DIGITS)
         x = findroot(lambda x: x * mp.sin(x) - 2 * mp.cos(x), (number - 1) * mp.pi + mpf(2) / number)
         assert abs(mpf(root.decimal(DIGITS).im) - x) < mpf(10) ** (12 - DIGITS)

@@ -11,7 +11,6 @@ from flint import arb
 from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots import (
-    ROOT_FINDERS,
     Band,
     Mode,
     Modes,
@@ -19,6 +18,7 @@ from symflex.roots import (
     Rectangle,
     RootProblem,
     find_pole_zero_map,
+    pole_zero_map,
 )
 from symflex.roots.pole_zero_map import Certificate, Exclusion, PoleZeroMap, right_beyond
 from symflex.roots.region import Everything
@@ -91,11 +91,6 @@ def test_a_cluster_makes_the_map_uncertified_and_says_why():
     assert "told apart" in certificate.reason
 
 
-def test_the_engine_is_named():
-    finder = ROOT_FINDERS["laguerre"]
-    assert find_pole_zero_map("x/F", POLES, ZEROS, finder=finder).certificate.engine == "laguerre"
-
-
 def test_a_numerator_without_s_has_no_zeros():
     assert find_pole_zero_map("x/F", POLES, RootProblem(((PolynomialInS.from_integers([7]), 1),))).zeros == ()
 
@@ -114,16 +109,14 @@ def real(*places, certified=True):
 
 
 class StandIn:
-    """A finder that returns, for one problem after the other, what it was given, or raises it."""
-
-    name = "stand-in"
+    """Returns, for one problem after the other, what it was given, or raises it."""
 
     def __init__(self, *answers):
         self.answers = list(answers)
         self.digits = []
         self.budgets = []
 
-    def find(self, problem, region, digits, budget=None):
+    def __call__(self, problem, digits, budget=None):
         self.digits.append(digits)
         self.budgets.append(budget)
         answer = self.answers.pop(0)
@@ -136,13 +129,15 @@ def mapped(*answers, degrees=(2, 1), hidden=(), region=None, budget=None):
     poles, zeros, *others = (problem(*([1] * (n + 1))) for n in (*degrees, *hidden))
     finder = StandIn(*answers)
     causes = [(each, f"cause {i}") for i, each in enumerate(others)]
-    shown = find_pole_zero_map("x/F", poles, zeros, region, 10, causes, finder, budget)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(pole_zero_map, "find_polynomial_roots", finder)
+        shown = find_pole_zero_map("x/F", poles, zeros, region, 10, causes, budget)
     return shown, finder
 
 
 def test_all_found_and_apart_is_certified():
     shown, _ = mapped(real(-1, 2), real(-3))
-    assert shown.certificate == Certificate("stand-in", True, 3, 3)
+    assert shown.certificate == Certificate("polynomial", True, 3, 3)
     assert (shown.verdict.word, shown.verdict.right) == ("unstable", 1)
 
 
@@ -151,7 +146,7 @@ def test_a_root_that_is_not_found_is_counted(missing):
     answers = [real(-1, -2), real(-3)]
     answers[missing] = answers[missing][1:]
     shown, _ = mapped(*answers)
-    assert shown.certificate == Certificate("stand-in", False, 3, 2, "3 roots exist, 2 were found")
+    assert shown.certificate == Certificate("polynomial", False, 3, 2, "3 roots exist, 2 were found")
     assert shown.verdict.reason == "3 roots exist, 2 were found"
 
 
@@ -214,7 +209,7 @@ def test_what_was_proved_until_the_budget_was_spent_is_shown_with_its_code():
     shown, finder = mapped(failed, hidden=(1,))
     assert [float(root.re) for root in shown.poles] == [-1]
     assert (shown.zeros, shown.hidden, finder.digits) == ((), (), [10])
-    expected = Certificate("stand-in", False, 4, 1, "too many steps", is_exceeded=True, code="SF505")
+    expected = Certificate("polynomial", False, 4, 1, "too many steps", is_exceeded=True, code="SF505")
     assert shown.certificate == expected
     assert shown.verdict.reason == "too many steps"
 

@@ -10,10 +10,9 @@ import pytest
 from flint import acb, arb, fmpq
 
 from symflex.budget import Budget
-from symflex.roots import POLYNOMIAL, Everything, PolynomialInS, Root, RootProblem, precision
+from symflex.roots import PolynomialInS, Root, RootProblem, precision
+from symflex.roots.engines import proposers_for
 from symflex.roots.polynomial_roots import (
-    PolynomialRootFinder,
-    _by_degree,
     _conjugates,
     _hull,
     _is_apart,
@@ -270,18 +269,14 @@ def test_roots_whose_frequencies_are_not_told_apart_stand_by_their_real_parts(si
 
 @pytest.mark.parametrize(("degree", "places"), [(1, 0), (12, 0), (13, 1), (64, 1), (65, None), (200, None)])
 def test_the_engine_of_small_degrees_comes_second_for_larger_ones_and_then_not_at_all(degree, places):
-    engines = _by_degree(degree, Budget())
+    engines = proposers_for(degree)
     found = engines.index(propose_by_durand_kerner) if propose_by_durand_kerner in engines else None
     assert (found, len(engines)) == (places, 1 if places is None else 2)
 
 
-def test_digits_and_problems_that_are_none_are_refused():
+def test_digits_that_are_none_are_refused():
     with pytest.raises(ValueError, match="digits must be at least 1, not 0"):
         find_polynomial_roots(RootProblem(()), 0)
-    with pytest.raises(TypeError, match="polynomial is for products of polynomials"):
-        POLYNOMIAL.find(None, Everything(), 10)
-    assert not POLYNOMIAL.accepts(None)
-    assert POLYNOMIAL.accepts(RootProblem(()))
     assert find_polynomial_roots(RootProblem(()), 1) == ()
 
 
@@ -319,7 +314,7 @@ def test_an_engine_given_is_the_one_that_is_asked():
         asked.append(polynomial)
         return propose_by_durand_kerner(polynomial)
 
-    found = PolynomialRootFinder("named", (propose,)).find(product_of(((1, -7, 30), 1)), Everything(), 10)
+    found = find_polynomial_roots(product_of(((1, -7, 30), 1)), 10, (propose,))
     assert len(asked) >= 1
     assert [round(float(r.re.mid()), 6) for r in found] == [1, -7, 30]
 

@@ -15,11 +15,11 @@ from symflex.roots import Band, Everything, Mode, Modes, Rectangle
 from symflex.roots.counting.winding import Cell
 from symflex.roots.distributed import distributed
 from symflex.roots.distributed.distributed import _degenerate_points, _Searched, locate_distributed
+from symflex.roots.distributed.proof import Proof
 from symflex.roots.distributed.right_half_plane import DEGENERATE, PASSIVE, RightHalfPlane
-from symflex.roots.distributed.side import LOSSLESS, Proof
+from symflex.roots.engines import LOSSLESS, POLYNOMIAL
 from symflex.roots.plane.search import HIGHEST
 from symflex.roots.pole_zero_map import HiddenRoot
-from symflex.roots.polynomial_roots import POLYNOMIAL
 from symflex.transfer import HiddenFactor
 from tests.unit.roots.distributed import DELAY_LOOP, LINE, ON_A_FOUNDATION, ROD, bound
 from tests.unit.roots.stand_ins import OVER, places, root
@@ -229,7 +229,7 @@ def test_a_function_that_is_zero_has_hidden_modes_only(world):
 def test_a_search_of_polynomials_only_says_so(world):
     for side in world.sides.values():
         side.is_finite = True
-    assert world.locate().certificate.engine == POLYNOMIAL.name
+    assert world.locate().certificate.engine == POLYNOMIAL
 
 
 def test_neighbourhoods_left_out_are_told_once_from_the_inside_outwards(world):

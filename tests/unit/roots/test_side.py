@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import exp, inf, log, pi
+from types import SimpleNamespace
 
 import mpmath
 import pytest
@@ -14,21 +15,13 @@ from symflex.budget import Budget
 from symflex.errors import BudgetError, UncertifiedError
 from symflex.roots import Band, Modes, Rectangle
 from symflex.roots.counting.winding import Cell, RootOnPathError
-from symflex.roots.distributed.side import (
-    GUESS_AND_PROVE,
-    LOSSLESS,
-    SUBDIVISION,
-    TOUCHING,
-    UNPROVED,
-    NoEngineError,
-    Proof,
-    Side,
-    _are_apart,
-    accumulation_points,
-    groups,
-    polynomial_in_s,
-)
+from symflex.roots.distributed import origin
+from symflex.roots.distributed.origin import roots_at_zero, turns_about_zero
+from symflex.roots.distributed.proof import TOUCHING, UNPROVED, Proof, are_apart
+from symflex.roots.distributed.side import Side, accumulation_points, groups
+from symflex.roots.engines import GUESS_AND_PROVE, LOSSLESS, SUBDIVISION
 from symflex.roots.plane.search import MODES_LIMIT
+from symflex.roots.problem import polynomial_in_s
 from tests.unit.roots.distributed import DELAY_LOOP, FREE, KELVIN_VOIGT, ROD, bound
 from tests.unit.roots.stand_ins import root, side
 
@@ -110,8 +103,8 @@ def test_a_root_on_the_circle_is_no_proof():
     one._domain = Cell(-inf, log(edge), 0.0, pi)
     one._known = None
     assert one.counted() == Proof(0, 0, "a root lies on the boundary of what was searched")
-    one._located = []
-    assert one._counted() == Proof(0, 0, UNPROVED)
+    one._located, one._known = [], None
+    assert one.counted() == Proof(0, 0, UNPROVED)
 
 
 def test_before_a_search_nothing_is_proved():
@@ -228,11 +221,6 @@ def test_too_many_modes_are_not_searched():
     assert diagnostic.message.endswith(f"are searched, not {MODES_LIMIT + 1}")
 
 
-def test_what_no_engine_allowed_can_search_is_refused():
-    with pytest.raises(NoEngineError, match=r"^not for the engine lossless$"):
-        side(DELAY_LOOP, engines=(LOSSLESS,))
-
-
 def test_a_root_is_refined_to_more_than_twice_its_digits():
     one = side(ROD)
     one.extend(1)
@@ -284,7 +272,7 @@ def test_poles_accumulate_where_a_lossy_beam_no_longer_resists():
     ],
 )
 def test_enclosures_are_apart_when_none_meets_another(roots, apart):
-    assert _are_apart(roots) is apart
+    assert are_apart(roots) is apart
 
 
 def test_roots_that_mirror_each_other_are_one_group():
@@ -328,10 +316,10 @@ def test_inside_of_a_ring_no_roots_are_left_unseen():
     one.extend(3)
     one._located = [r for r in one._located if abs(float(r.im)) > rod(1) + 0.1]
     one._domain = Cell((log(rod(1)) + log(rod(2))) / 2, one._domain.high, 0.0, pi)
-    one._innermost = None
-    assert one._counted() == Proof(4, 4)
-    one._innermost = one._domain.low
-    assert one._counted() == Proof(4, 4, UNPROVED)
+    one._innermost, one._known = None, None
+    assert one.counted() == Proof(4, 4)
+    one._innermost, one._known = one._domain.low, None
+    assert one.counted() == Proof(4, 4, UNPROVED)
 
 
 def test_roots_of_a_polynomial_factor_are_those_of_the_polynomial():
@@ -351,8 +339,9 @@ outputs.y = "u/((s + 1)*(s + 4)*(s + 2*D))"
 class Circles:
     """Counts about 0, by how far below a radius of 1 they are."""
 
-    def __init__(self, *counts):
+    def __init__(self, *counts, power):
         self.counts = list(counts)
+        self.function = SimpleNamespace(power=power, bound=SimpleNamespace(name="X/F"))
 
     def smallest(self, left, holes):
         return 0.0
@@ -376,18 +365,14 @@ class Circles:
     ],
 )
 def test_the_smallest_circle_that_could_be_counted_tells_the_roots_next_to_0(counts, power, found):
-    one = side(ROD)
-    one._winding = Circles(*counts)
-    assert one._turns_about_zero(power) == found
+    assert turns_about_zero(Circles(*counts, power=power), pi / 2, ()) == found
 
 
 def test_an_order_at_0_that_cannot_be_told_is_an_error():
-    one = side(ROD)
-    one._winding = Circles(None, 3, None, 5)
     with pytest.raises(
         UncertifiedError, match=r"SF404.*the order of the root of \S+ at s = 0 cannot be told"
     ):
-        one._turns_about_zero(2)
+        turns_about_zero(Circles(None, 3, None, 5, power=2), pi / 2, ())
 
 
 @pytest.mark.parametrize(
@@ -404,8 +389,8 @@ def test_roots_next_to_0_of_functions_without_a_formula_are_in_a_small_box(
 ):
     one = side(ROD)
     monkeypatch.setattr(OriginSeries, "order", lambda self, part: None)
-    monkeypatch.setattr(one, "_turns_about_zero", lambda power: (-5.0, turns))
-    roots, order = one._roots_at_zero(bound(ROD).den, is_hidden=hidden)
+    monkeypatch.setattr(origin, "turns_about_zero", lambda *given: (-5.0, turns))
+    roots, order = roots_at_zero(one._winding, bound(ROD).den, pi / 2, (), is_hidden=hidden)
     assert order == turns
     assert [(r.multiplicity, r.certified, r.re.contains(0) and r.im.contains(0)) for r in roots] == expected
     for each in roots:
@@ -416,10 +401,12 @@ def test_roots_next_to_0_of_functions_without_a_formula_are_in_a_small_box(
 def test_a_power_of_s_alone_is_a_root_at_0_whatever_lies_next_to_it(monkeypatch):
     one = side(ROD)
     monkeypatch.setattr(OriginSeries, "order", lambda self, part: None)
-    monkeypatch.setattr(one, "_turns_about_zero", lambda power: (-5.0, 0))
+    monkeypatch.setattr(origin, "turns_about_zero", lambda *given: (-5.0, 0))
     part = bound(ROD).den
     s = part.ring.context.gen(0)
-    ((zero,), order) = one._roots_at_zero(part * Factored.polynomial(part.ring, s**3), is_hidden=False)
+    ((zero,), order) = roots_at_zero(
+        one._winding, part * Factored.polynomial(part.ring, s**3), pi / 2, (), is_hidden=False
+    )
     assert (zero.is_zero, zero.multiplicity, zero.certified, order) == (True, 3, True, 0)
 
 

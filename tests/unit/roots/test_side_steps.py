@@ -12,8 +12,10 @@ from symflex.roots import Band, Modes, Rectangle
 from symflex.roots.axes.lossless import LosslessSearch
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
-from symflex.roots.distributed import side as side_module
-from symflex.roots.distributed.side import FEW, GUESS_AND_PROVE, LOSSLESS, SUBDIVISION, Proof
+from symflex.roots.distributed import proof
+from symflex.roots.distributed.proof import Proof
+from symflex.roots.distributed.side import FEW
+from symflex.roots.engines import GUESS_AND_PROVE, LOSSLESS, SUBDIVISION
 from symflex.roots.plane.domains import WIDER
 from symflex.roots.plane.search import HIGHEST, Found, RootSearch
 from tests.unit.roots.distributed import DELAY_LOOP, KELVIN_VOIGT
@@ -411,7 +413,8 @@ def test_the_right_half_plane_is_counted_between_two_half_circles(
     monkeypatch, within, right, power, smallest, count
 ):
     one, used = side(DELAY_LOOP), Right(within, right, smallest)
-    monkeypatch.setattr(side_module, "CertifiedWinding", lambda *given, tries_series: used)
+    used.function = one.function
+    monkeypatch.setattr(proof, "CertifiedWinding", lambda *given, tries_series: used)
     one.function.power, one._order = power, 0
     if count is None:
         with pytest.raises(RootOnPathError):
@@ -424,29 +427,25 @@ def test_the_right_half_plane_is_counted_between_two_half_circles(
 
 
 def test_a_ring_holds_what_its_outer_circle_does_but_for_its_inner_circle_and_holes(monkeypatch):
-    one = side()
-    monkeypatch.setattr(side_module, "is_whole_ring", lambda *given: True)
-    one._count_within = lambda z, left: {(5.0, 1.5): 20, (1.0, 1.5): 6}[z, left]
-    one._winding = Right(0, 3)
-    search = InPlane()
-    search.left = 1.5
-    holes = [Cell(2, 3, 0, 1), Cell(3, 4, 0, 1)]
-    assert one._turns(Cell(1.0, 5.0, 0.0, pi), [], holes, search) == 20 - 6 - 2 * 3
-    assert one._turns(Cell(-inf, 5.0, 0.0, pi), [], [], search) == 20
-    monkeypatch.setattr(side_module, "is_whole_ring", lambda *given: False)
-    assert one._turns(Cell(1.0, 5.0, 0.0, pi), holes, [], search) == 2 * 3
+    monkeypatch.setattr(proof, "is_whole_ring", lambda *given: True)
+    monkeypatch.setattr(proof.Count, "within", lambda self, z: {(5.0, 1.5): 20, (1.0, 1.5): 6}[z, self.left])
+    count = proof.Count(Right(0, 3), 0, (), 1.5)
+    cells = [Cell(2, 3, 0, 1), Cell(3, 4, 0, 1)]
+    monkeypatch.setattr(proof, "parts", lambda *given: ([], cells))
+    assert count.turns(Cell(1.0, 5.0, 0.0, pi)) == 20 - 6 - 2 * 3
+    monkeypatch.setattr(proof, "parts", lambda *given: ([], []))
+    assert count.turns(Cell(-inf, 5.0, 0.0, pi)) == 20
+    monkeypatch.setattr(proof, "is_whole_ring", lambda *given: False)
+    monkeypatch.setattr(proof, "parts", lambda *given: (cells, []))
+    assert count.turns(Cell(1.0, 5.0, 0.0, pi)) == 2 * 3
 
 
 def test_without_losses_roots_within_a_circle_are_counted_along_the_axis():
-    one = side()
-    one._order = 2
-
     class Counts:
         def count(self, z):
             return 5 if z == 1.5 else 0
 
-    one._lossless = Counts()
-    assert one._count_within(1.5, pi) == 7
-    one._lossless, one._winding = None, Circle(9)
-    assert one._count_within(1.5, 0.7) == 9
-    assert one._winding.asked == [(1.5, 0.7)]
+    circle = Circle(9)
+    assert proof.Count(circle, 2, (), pi, Counts()).within(1.5) == 7
+    assert proof.Count(circle, 2, (), 0.7).within(1.5) == 9
+    assert circle.asked == [(1.5, 0.7)]

@@ -14,8 +14,8 @@ from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.counting.tail import Tail
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.distributed import right_half_plane
+from symflex.roots.distributed.proof import Proof
 from symflex.roots.distributed.right_half_plane import ACCUMULATING, NOT_COUNTED, RightHalfPlane, search_right
-from symflex.roots.distributed.side import Proof
 from symflex.roots.verdict import NOT_EXAMINED, ON_AXIS, StabilityVerdict, judge
 from tests.unit.roots.stand_ins import root as pole
 

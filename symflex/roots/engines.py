@@ -1,0 +1,155 @@
+"""All engines that find roots, in the order in which they are asked.
+
+    s^2 + 6 s + 5                      guessed by durand-kerner, where that fails by laguerre
+    a chain of 200 masses, degree 400  guessed by laguerre
+    a beam without losses              lossless: sign changes on the axes, and a count on an arc
+    the same with a dashpot            guess-and-prove: cells counted in doubles, every root found proved, one
+                                       certified count of all of them
+    where that count says otherwise    subdivision: every cell is counted with proof
+
+Every root is proved whoever found it; a poor engine costs time and never a wrong root.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+from typing import TYPE_CHECKING
+
+from symflex.roots.axes.lossless import LosslessSearch, lossless_search
+from symflex.roots.counting.winding import Winding
+from symflex.roots.plane.search import RootSearch
+from symflex.roots.polynomials.durand_kerner import propose_by_durand_kerner
+from symflex.roots.polynomials.laguerre import propose_by_laguerre
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from symflex.budget import Budget
+    from symflex.roots.counting.argument_principle import CertifiedWinding
+    from symflex.roots.counting.winding import Cell
+    from symflex.roots.functions.kernel_function import KernelFunction
+    from symflex.roots.polynomials.discs import Proposer
+
+    Start = Callable[["Sought"], Iterator["Attempt"]]
+
+POLYNOMIAL = "polynomial"
+"""What stands in a certificate where engines are chosen by degree."""
+LOSSLESS = "lossless"
+GUESS_AND_PROVE = "guess-and-prove"
+SUBDIVISION = "subdivision"
+
+
+@dataclass(frozen=True, slots=True)
+class Guess:
+    """An engine that guesses all roots of a polynomial.
+
+    Parameters
+    ----------
+    propose : callable
+        Returns one guess per root in the closed upper half plane, ``None`` where it does not settle.
+    best_to : float
+        Degree up to which it is asked in its turn; beyond, after all others.
+    largest : float
+        Degree beyond which it is not asked.
+    """
+
+    propose: Proposer
+    best_to: float = inf
+    largest: float = inf
+
+
+@dataclass(frozen=True, slots=True)
+class Sought:
+    """A function with kernels whose roots are searched.
+
+    Parameters
+    ----------
+    function : KernelFunction
+        The function.
+    winding : CertifiedWinding
+        Counts its roots with proof.
+    order : int
+        To which it vanishes at s = 0.
+    holes : tuple of Cell
+        Neighbourhoods of points where roots accumulate, left out.
+    digits : int
+        Significant digits of every root.
+    budget : Budget
+        Of the search.
+    """
+
+    function: KernelFunction
+    winding: CertifiedWinding
+    order: int
+    holes: tuple[Cell, ...]
+    digits: int
+    budget: Budget
+
+    @property
+    def mirrors(self) -> bool:
+        """Whether samples on the axes are of one branch, as all branches are alike: their signs then tell."""
+        return self.function.is_even and self.function.power == 1 and not self.holes
+
+    def search(self, winding: Winding) -> RootSearch:
+        """Return a search of the plane that counts as told."""
+        return RootSearch(winding, self.winding, self.holes, self.digits)
+
+
+@dataclass(frozen=True, slots=True)
+class Attempt:
+    """One search of a function.
+
+    Parameters
+    ----------
+    search : RootSearch or LosslessSearch
+        What finds roots.
+    scans : bool
+        It begins with the axes, and is done if all roots are there.
+    """
+
+    search: RootSearch | LosslessSearch
+    scans: bool
+
+
+def without_losses(sought: Sought) -> Iterator[Attempt]:
+    """Isolate the roots of a function without losses in one dimension, on both axes; others are refused."""
+    found = lossless_search(sought.function, sought.order, sought.digits) if sought.mirrors else None
+    if found is not None:
+        yield Attempt(found, scans=True)
+
+
+def guess_and_prove(sought: Sought) -> Iterator[Attempt]:
+    """Look for sign changes on both axes where roots mirror each other, then in cells of the whole plane."""
+    for scans in (True, False) if sought.mirrors else (False,):
+        yield Attempt(sought.search(Winding(sought.function, sought.budget)), scans)
+
+
+def subdivide(sought: Sought) -> Iterator[Attempt]:
+    """Cut cells of the plane, every count proved."""
+    yield Attempt(sought.search(sought.winding), scans=False)
+
+
+GUESSES: Mapping[str, Guess] = {
+    # Measured: FLINT's takes 19 s for degree 400, Laguerre's 0.6 s; below 12 neither takes a millisecond.
+    "durand-kerner": Guess(propose_by_durand_kerner, best_to=12, largest=64),
+    "laguerre": Guess(propose_by_laguerre),
+}
+SEARCHES: Mapping[str, Start] = {
+    LOSSLESS: without_losses,
+    GUESS_AND_PROVE: guess_and_prove,
+    SUBDIVISION: subdivide,
+}
+ROOT_FINDERS: Mapping[str, Guess | Start] = {**GUESSES, **SEARCHES}
+
+
+def proposers_for(degree: int) -> tuple[Proposer, ...]:
+    """Return what guesses the roots of a polynomial, one after the other until one settles.
+
+    Examples
+    --------
+    >>> [len(proposers_for(degree)) for degree in (4, 40, 400)]
+    [2, 2, 1]
+    """
+    asked = [guess for guess in GUESSES.values() if degree <= guess.largest]
+    return tuple(guess.propose for guess in sorted(asked, key=lambda guess: degree > guess.best_to))
