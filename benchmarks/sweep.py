@@ -13,12 +13,14 @@ import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from benchmarks.measure import Claim, Measurement, run_snippet
 from symflex import pipeline
+from symflex.options import SweepOptions
 from symflex.roots import Modes
 from symflex.sweep import Sweep, read_design
 from symflex.sweep.executors import open_executor
@@ -43,10 +45,11 @@ def time_sweep(points: int) -> float:
     """Return the seconds for a sweep of so many points on two processes, file and all."""
     begin = time.perf_counter()
     model = pipeline.load(BEAM)
-    design = read_design(model.parameters, OVER, points)
-    task = pipeline.sweep_task(model, model.transfer_functions[0], design, "poles", Modes(MODES))
+    given = SweepOptions(OVER, points, modes=MODES)
+    task, design = pipeline.plan_sweep(model, given)
     with tempfile.TemporaryDirectory() as folder, open_executor(WORKERS) as (executor, size):
-        found = pipeline.sweep(task, design, Path(folder) / "a.nc", executor, workers=size)
+        asked = replace(given, output=Path(folder) / "a.nc")
+        found = pipeline.sweep(task, design, asked, executor, workers=size)
     taken = time.perf_counter() - begin
     _check(found, points)
     return taken

@@ -11,16 +11,18 @@ from symflex.api.budget import budget_of
 from symflex.api.mode import Mode, plain_mode
 from symflex.api.mode_shape import ModeShape
 from symflex.api.pole_zero_map import PoleZeroMap
-from symflex.api.regions import chosen_region
 from symflex.api.residue import Residue
 from symflex.api.root import Root
 from symflex.api.sensitivity import Sensitivity
+from symflex.options import RootsOptions
+from symflex.roots.region import region_of
 
 if TYPE_CHECKING:
     import numpy as np
     import sympy
     from numpy.typing import ArrayLike, NDArray
 
+    from symflex import roots as roots_room
     from symflex import transfer as transfer_room
     from symflex.analysis import rational as rational_room
     from symflex.analysis.explanation import ZeroExplanation
@@ -132,7 +134,7 @@ class BoundTransferFunction:
         >>> [round(float(p.im), 6) for p in poles]
         [1.570796, -1.570796, 4.712389, -4.712389]
         """
-        found = self._found(digits, modes=modes, mode=mode, band=band, budget=budget)
+        found = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
         return tuple(Root(r) for r in found.all_poles)
 
     def zeros(
@@ -145,21 +147,16 @@ class BoundTransferFunction:
         budget: float | None = None,
     ) -> tuple[Root, ...]:
         """Return the zeros; see :meth:`poles`."""
-        found = self._found(digits, modes=modes, mode=mode, band=band, budget=budget)
+        found = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
         return tuple(Root(r) for r in found.zeros)
 
-    def _found(
-        self,
-        digits: int,
-        *,
-        modes: int | None,
-        mode: int | None,
-        band: tuple[float, float] | None,
-        budget: float | None,
-    ) -> PoleZeroMap:
+    def _found(self, given: RootsOptions, budget: float | None) -> PoleZeroMap:
         """Return the map if the budget suffices: a tuple of roots could not say that it did not."""
-        found = self.pole_zero_map(digits, modes=modes, mode=mode, band=band, budget=budget)
-        return PoleZeroMap.of(found.complete())
+        return PoleZeroMap.of(self._map(given, budget).complete())
+
+    def _map(self, given: RootsOptions, budget: float | None) -> roots_room.PoleZeroMap:
+        digits = 15 if given.digits is None else given.digits
+        return pipeline.roots(self.bound, region_of(given), digits, budget_of(budget))
 
     def pole_zero_map(
         self,
@@ -205,9 +202,7 @@ class BoundTransferFunction:
         >>> [root.decimal(6).im for root in found.poles], found.certificate.is_exceeded
         (['3.00000', '-3.00000'], False)
         """
-        time = budget_of(budget)
-        found = pipeline.roots(self.bound, chosen_region(modes, band, region, mode), digits, time)
-        return PoleZeroMap.of(found)
+        return PoleZeroMap.of(self._map(RootsOptions(None, modes, mode, band, region, digits), budget))
 
     def residues(
         self,
@@ -247,7 +242,7 @@ class BoundTransferFunction:
         >>> [complex(r) for r in loop.transfer_function("y", "u").bind().residues(mode=2)]
         [(-0.5+0j)]
         """
-        region = chosen_region(modes, band, None, mode)
+        region = region_of(RootsOptions(None, modes, mode, band))
         return tuple(Residue(r) for r in pipeline.residues(self.bound, region, digits, budget_of(budget)))
 
     def rational(
@@ -307,7 +302,7 @@ class BoundTransferFunction:
         BudgetError
             As for :meth:`poles`.
         """
-        found = self._found(digits, modes=modes, mode=mode, band=band, budget=budget)
+        found = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
         model = self.bound.source.model
         return tuple(
             Sensitivity(m) for m in pipeline.sensitivities(model, self.bound, found, parameters, digits)
@@ -334,7 +329,7 @@ class BoundTransferFunction:
         BudgetError
             As for :meth:`poles`.
         """
-        found = self._found(digits, modes=modes, mode=mode, band=band, budget=budget)
+        found = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
         return pipeline.explain_zeros(self.bound.source.model, self.bound, found)
 
     def mode_shape(self, mode: Mode, digits: int = 15) -> ModeShape:

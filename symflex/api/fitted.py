@@ -12,6 +12,7 @@ import numpy as np
 from symflex import pipeline
 from symflex.api.model import Model, loads
 from symflex.data.measurement import MeasuredResponse, prepared, read_measurement
+from symflex.options import FitOptions
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -182,19 +183,17 @@ def fit(
     responses: list[MeasuredResponse] = []
     for one in given:
         responses += [one] if isinstance(one, MeasuredResponse) else read_measurement(one)
-    return Fit(
-        pipeline.fit(
-            prepared(responses, band, averages, window),
-            base,
-            [tf] if isinstance(tf, str) else list(tf),
-            modes=modes,
-            start=start,
-            criterion=criterion,
-            is_gain_free=gain,
-            is_lag_free=bool(lag),
-            is_lag_signed=lag == "signed",
-            is_delay_free=delay,
-            slope=slope,
-            allow_outside=allow_outside,
-        )
+    asked = FitOptions(
+        base=base,
+        tfs=[tf] if isinstance(tf, str) else list(tf),
+        modes=modes,
+        start=start,
+        criterion=criterion,
+        is_gain_free=gain,
+        is_lag_free=bool(lag),
+        is_lag_signed=lag == "signed",
+        is_delay_free=delay,
+        slope=slope,
+        allow_outside=allow_outside,
     )
+    return Fit(pipeline.fit(prepared(responses, band, averages, window), asked))

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from decimal import Decimal
-from fractions import Fraction
-from math import isinf, pi
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,6 +14,7 @@ from symflex.api.stability import Stability
 from symflex.api.state_space import StateSpace
 from symflex.api.transfer_function import Number, TransferFunction
 from symflex.model.spec import write
+from symflex.options import ColocationOptions, MeasureOptions, StabilityOptions, SweepOptions
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -281,11 +279,8 @@ class Model:
         >>> model.stability("K")
         <Stability: 0.0 < K < 6.0, certified>
         """
-        exact = None if limits is None else (_exact(limits[0]), _exact(limits[1]))
-        radians = None if up_to_hz is None else 2 * pi * up_to_hz
-        return Stability(
-            pipeline.stability(self.resolved, gain, values, exact, digits, budget_of(budget), radians)
-        )
+        given = StabilityOptions(gain, limits, up_to_hz, digits)
+        return Stability(pipeline.stability(self.resolved, given, values, budget_of(budget)))
 
     def colocation(
         self,
@@ -324,9 +319,8 @@ class Model:
         >>> print(model.colocation("Y", "X", "F", band=(0.01, 1)))
         Y/F within 10 deg and 1 dB of X/F: up to 0.104969441593 Hz, where the magnitude differs by more
         """
-        return pipeline.colocation(
-            self.resolved, f"{output}/{input}", f"{reference}/{input}", phase, magnitude, band
-        )
+        given = ColocationOptions(f"{output}/{input}", f"{reference}/{input}", phase, magnitude, band)
+        return pipeline.colocation(self.resolved, given)
 
     def measure(
         self,
@@ -382,11 +376,8 @@ class Model:
         >>> symflex.fit(data, modes=1, slope=2)
         <Fit to synthetic data: 10.1 Hz>
         """
-        from symflex.data.measurement import MeasurementPlan  # imports numpy
-
-        (pair,) = pipeline.pick_pairs(self.resolved, [f"{output}/{input}"])
-        plan = MeasurementPlan(band[0], band[1], spacing, averages, noise, rolloff, seed)
-        return pipeline.measure(self.resolved, pair, plan)
+        given = MeasureOptions(f"{output}/{input}", "", band, spacing, averages, noise, rolloff, seed)
+        return pipeline.measure(self.resolved, given)
 
     def sweep(
         self,
@@ -463,24 +454,15 @@ class Model:
         """
         from symflex import sweep as sweep_room  # imports numpy and scipy
         from symflex.errors import Diagnostic, UsageError
-        from symflex.roots import Band, Modes
 
         if of not in sweep_room.QUANTITIES:
             hint = "choose from: " + ", ".join(sweep_room.QUANTITIES)
             raise UsageError(Diagnostic("SF902", f"nothing is called '{of[:64]}' in a sweep", None, hint))
         if of == "response" and not len(frequencies):
             raise UsageError(Diagnostic("SF902", "a response needs frequencies"))
-        region = (
-            Modes(modes)
-            if modes is not None
-            else None
-            if band is None
-            else Band(_limit(band[0]), _limit(band[1]))
-        )
-        design = sweep_room.design_of(self.resolved.parameters, over, draws, seed)
-        pair = pipeline.pick_pairs(self.resolved, [] if tf is None else [tf])[0]
-        task = pipeline.sweep_task(self.resolved, pair, design, of, region, frequencies, gain)
-        return pipeline.sweep(task, design, output, executor, workers=workers, is_fresh=fresh)
+        given = SweepOptions(over, draws, seed, of, tf, modes, band, gain=gain, output=output, fresh=fresh)
+        task, design = pipeline.plan_sweep(self.resolved, given, frequencies)
+        return pipeline.sweep(task, design, given, executor, workers=workers)
 
     def export_numpy(self) -> str:
         """Return a numpy module with a function per transfer function."""
@@ -530,16 +512,6 @@ class Model:
         from symflex.codegen.exporters import EXPORTERS  # the numeric exporters import numpy
 
         return EXPORTERS[target].export(self.resolved, pipeline.derive_all(self.resolved), name).text
-
-
-def _exact(number: float | None) -> Fraction | None:
-    """Return the shortest decimal that prints a number, ``None`` for an infinite one."""
-    return None if number is None or isinf(number) else _limit(number)
-
-
-def _limit(number: float) -> Fraction:
-    """Return the shortest decimal that prints a number."""
-    return Fraction(Decimal(repr(float(number))))
 
 
 def load(

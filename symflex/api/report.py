@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symflex.budget import Silent
+from symflex.options import ReportOptions
 
 if TYPE_CHECKING:
     from datetime import date
@@ -74,17 +75,15 @@ def write_report(
     ...     written.page.name, written.is_certified, written.warnings
     ('index.html', True, ())
     """
-    from symflex import report
+    from symflex.report import written
 
-    paths = [Path(one) for one in ([specs] if isinstance(specs, str | Path) else specs)]
-    target = Path(folder)
-    named = report.name_specifications(report.find_specifications(paths, target))
-    publications = report.find_claims(named.values())
-    measured, left_out = report.find_measurements(paths, target)
-    report.check_folder(target)
-    chapters = report.write_chapters(named, jobs if jobs > 1 else 0, Silent(), measured)
-    composed = report.compose(chapters, "" if day is None else day.isoformat(), publications)
-    published = report.publish(composed, target, Silent(), pdf=pdf)
+    given = ReportOptions(
+        specs=[specs] if isinstance(specs, str | Path) else specs,
+        output=folder,
+        pdf=pdf,
+        day=None if day is None else day.isoformat(),
+        jobs=jobs if jobs > 1 else 0,
+    )
+    published, report = written(given, Silent(), lambda _: None)
     problems = (published.problem,) if published.problem else ()
-    warnings = (*left_out, *composed.warnings, *problems)
-    return WrittenReport(published.page, published.pdf, warnings, composed.code == 0)
+    return WrittenReport(published.page, published.pdf, (*report.warnings, *problems), report.code == 0)

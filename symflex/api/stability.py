@@ -122,7 +122,7 @@ class Stability:
         return float(hertz(found.frequency).mid())
 
     def to_json_dict(self) -> dict[str, object]:
-        """Return the result in the schema ``symflex.loops/1``."""
+        """Return the result in the schema ``symflex.stability/1``."""
         return self.proved.to_json_dict()
 
     def __str__(self) -> str:

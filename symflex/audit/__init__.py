@@ -5,7 +5,7 @@ Output: an :class:`Audit`.
 """
 
 from symflex.audit.corrections import Change, Correction
-from symflex.audit.judge import Audit, judge
+from symflex.audit.judge import Audit, audit, check_published, judge
 from symflex.audit.laws import LawCheck
 from symflex.audit.numeric import Comparison, Deviation
 from symflex.audit.reading import Formula, formula_of
@@ -18,6 +18,8 @@ __all__ = [
     "Deviation",
     "Formula",
     "LawCheck",
+    "audit",
+    "check_published",
     "formula_of",
     "judge",
 ]

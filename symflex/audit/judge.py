@@ -12,11 +12,15 @@ from symflex.audit.notation import derived_in_symbols, monomial_expression
 from symflex.audit.numeric import Comparison, Deviation, Numbers, compare, largest_deviation, numbers_of
 from symflex.audit.reading import Formula, Reading, formula_of, read
 from symflex.budget import spend
-from symflex.errors import BudgetError
+from symflex.errors import BudgetError, Diagnostic, SpecError, UsageError
+from symflex.errors.diagnostic import nearest
+from symflex.transfer.of_model import derive_all
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from symflex.expressions import Expression
-    from symflex.model import Published
+    from symflex.model import Model, Published
     from symflex.transfer import TransferFunction
 
 Verdict = Literal["equal", "differs", "agrees", "undecided"]
@@ -166,3 +170,36 @@ def _difference(audit: Audit, reading: Reading | None, numbers: Numbers) -> Audi
         None if measured is None or vanishes else largest_deviation(measured),
         () if vanishes else check_laws(reading, measured),
     )
+
+
+def audit(model: Model, names: Sequence[str] = ()) -> tuple[Audit, ...]:
+    """Return what is found about the model's printed formulas, those named "OUT/IN" or all.
+
+    Raises
+    ------
+    UsageError
+        SF902 for a name without a printed formula.
+    SpecError
+        With every problem of all formulas, each at its place.
+    """
+    printed = {"/".join(p.tf): p for p in model.published}
+    for name in names:
+        if name not in printed:
+            hint = nearest(name, printed) or "published: " + ", ".join(list(printed)[:8])
+            raise UsageError(Diagnostic("SF902", f"nothing is published for '{name[:100]}'", None, hint))
+    chosen = tuple(printed[name] for name in names) if names else model.published
+    check_published(model, chosen)
+    derived = derive_all(model, tuple(p.tf for p in chosen)) if chosen else ()
+    return tuple(judge(tf, p) for tf, p in zip(derived, chosen, strict=True))
+
+
+def check_published(model: Model, formulas: Sequence[Published]) -> None:
+    """Raise what is wrong with printed formulas of a model, each problem at its place."""
+    problems: list[Diagnostic] = []
+    for published in formulas:
+        try:
+            formula_of(published, model)
+        except SpecError as error:
+            problems += error.diagnostics
+    if problems:
+        raise SpecError(*problems)

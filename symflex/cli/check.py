@@ -2,25 +2,15 @@
 
 from __future__ import annotations
 
-import click
-
-from symflex.cli.budgeting import budgeted
-from symflex.cli.reporting import diagnostic_json, emit_json, listed, outside, reporting, say, setting, show
+from symflex.cli.command import Specification, command_of
+from symflex.cli.reporting import diagnostic_json, emit_json, listed, say, show
 from symflex.errors import SymflexError
 from symflex.errors.diagnostic import printable
+from symflex.options import CheckOptions
 
 
-@click.command("check")
-@click.argument("spec", type=click.Path())
-@outside
-@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
-@click.option("--strict", is_flag=True, help="Exit with code 3 where there is a warning.")
-@budgeted
-@reporting
-@setting
-def command(
-    spec: str, *, allow_outside: tuple[str, ...], settings: dict[str, str], as_json: bool, strict: bool
-) -> int:
+@command_of("check", CheckOptions)
+def command(spec: Specification, given: CheckOptions) -> int:
     """Parse and resolve SPEC; report every problem at once.
 
     Names, units, ports, linearity and solvability are checked; nothing is derived.
@@ -32,19 +22,19 @@ def command(
     from symflex import pipeline
 
     try:
-        model = pipeline.load(spec, allow_outside, settings)
+        model = pipeline.load(spec.path, spec.allow_outside, spec.settings)
         equations = pipeline.assemble(model)
         pipeline.check_solvable(equations)
     except SymflexError as error:
-        if not as_json:
+        if not given.as_json:
             raise
         problems = [diagnostic_json(d) for d in error.diagnostics]
         emit_json({"schema": "symflex.check/1", "ok": False, "problems": problems, "warnings": []})
         return error.exit_code
     warnings = pipeline.warnings(model, equations)
-    code = 3 if strict and warnings else 0
+    code = 3 if given.strict and warnings else 0
     names = ["/".join(pair) for pair in model.transfer_functions]
-    if as_json:
+    if given.as_json:
         document = {
             "problems": [],
             "warnings": [diagnostic_json(w) for w in warnings],
@@ -67,7 +57,7 @@ def command(
         if group
     )
     said = f", {len(warnings)} warning{'' if len(warnings) == 1 else 's'}" if warnings else ""
-    say(f"{printable(spec)}: ok{said}")
+    say(f"{printable(spec.path)}: ok{said}")
     if model.title:
         say(listed("", printable(model.title).split(), " "))
     say(listed("", counts.split(), " "))

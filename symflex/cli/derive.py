@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import click
-
-from symflex.cli.budgeting import budgeted
-from symflex.cli.reporting import emit_json, load, note, outside, reporting, say, setting, terminal_width
+from symflex.cli.command import Specification, command_of
+from symflex.cli.reporting import emit_json, note, say, terminal_width
 from symflex.errors import Diagnostic, UsageError
+from symflex.options import DeriveOptions
 
 LONG = 5_000
 """Terms beyond which a print is announced: it takes seconds, or minutes."""
@@ -29,50 +28,8 @@ def chosen_representation(representation: str, form: str | None) -> str:
     return wanted
 
 
-@click.command("derive")
-@click.argument("spec", type=click.Path())
-@outside
-@click.option("--tf", "tfs", multiple=True, metavar="OUT/IN", help="Only this transfer function; repeatable.")
-@click.option(
-    "--form",
-    metavar="FORM",
-    help="polynomial, monic, constant, factored, definitions, zpk, frequency; for beams, rods and delays "
-    "also hyperbolic, krylov, vaughan; nested is that representation. The shortest symbolic form by default.",
-)
-@click.option(
-    "--format", "format_", type=click.Choice(["text", "latex", "json"]), default="text", show_default=True
-)
-@click.option(
-    "--width",
-    metavar="ieee|a4|MM",
-    help="Column that equations in LaTeX are broken to, in type of ten points; not broken by default.",
-)
-@click.option(
-    "--representation",
-    type=click.Choice(["auto", "expanded", "nested"]),
-    default="auto",
-    show_default=True,
-    help="Quotients of polynomials, or straight-line programs of named sub-impedances; auto takes the latter "
-    "where expansion would explode, and says so.",
-)
-@click.option("--json", "as_json", is_flag=True, help="The same as --format json.")
-@click.option("--digits", type=click.IntRange(1, 1000), default=6, show_default=True, help="Digits of zpk.")
-@budgeted
-@reporting
-@setting
-def command(
-    spec: str,
-    *,
-    allow_outside: tuple[str, ...],
-    settings: dict[str, str],
-    tfs: tuple[str, ...],
-    form: str | None,
-    format_: str,
-    width: str | None,
-    representation: str,
-    as_json: bool,
-    digits: int,
-) -> int:
+@command_of("derive", DeriveOptions)
+def command(spec: Specification, given: DeriveOptions) -> int:
     """Print the transfer functions of SPEC in closed form.
 
     All of them by default. JSON strings are in the specification's own expression grammar.
@@ -80,32 +37,32 @@ def command(
     from symflex import pipeline
     from symflex.print.forms import print_forms, terms_to_print
 
-    if width is not None and (as_json or format_ != "latex"):
+    if given.width is not None and (given.as_json or given.format != "latex"):
         raise UsageError(Diagnostic("SF902", "--width is for --format latex"))
     column = None
-    if width is not None:
+    if given.width is not None:
         from symflex.print.latex import column_width
 
-        column = column_width(width)
-    model = load(spec, allow_outside, settings)
+        column = column_width(given.width)
+    model = spec.load()
     derived, reason = pipeline.derive_as(
-        model, pipeline.pick_pairs(model, tfs), chosen_representation(representation, form)
+        model, pipeline.pick_pairs(model, given.tfs), chosen_representation(given.representation, given.form)
     )
     if reason:
         note(reason)
     for tf in derived:
-        if (terms := terms_to_print(tf, form)) > LONG:
+        if (terms := terms_to_print(tf, given.form)) > LONG:
             note(f"printing {tf.name}: about {terms} terms; --representation nested is shorter")
-    forms, sentences = print_forms(derived, form, digits)
+    forms, sentences = print_forms(derived, given.form, given.digits)
     for sentence in sentences:
         note(sentence)
     entries = list(zip(derived, forms, strict=True))
     # Each format is imported where it is printed, so that a terminal does not wait for LaTeX.
-    if as_json or format_ == "json":
+    if given.as_json or given.format == "json":
         from symflex.print.json_format import derive_document
 
         emit_json(derive_document(entries))
-    elif format_ == "latex":
+    elif given.format == "latex":
         from symflex.print.latex import transfer_function_latex
 
         verdicts = (f"% {printed.stability.headline}\n" if printed.stability else "" for printed in forms)

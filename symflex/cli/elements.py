@@ -45,7 +45,7 @@ def command(name: str | None, *, as_json: bool) -> int:
     if as_json:
         emit_json(
             {
-                "schema": "symflex.library.elements/1",
+                "schema": "symflex.elements/1",
                 "elements": [_element_json(e) for e in elements],
                 "blocks": [_block_json(b) for b in blocks],
             }

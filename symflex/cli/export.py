@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from symflex.cli.budgeting import budgeted
+from symflex.cli.command import Specification, command_of
 from symflex.cli.derive import chosen_representation
-from symflex.cli.reporting import load, note, outside, reporting, say, setting
+from symflex.cli.reporting import note, say
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
+from symflex.options import ExportOptions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -35,42 +36,8 @@ class ExportCommand(click.Command):
             formatter.write_dl([(name, exporter.summary) for name, exporter in EXPORTERS.items()])
 
 
-@click.command("export", cls=ExportCommand)
-@click.argument("spec", type=click.Path())
-@outside
-@click.option("--to", "target", required=True, metavar="TARGET", help="One of the targets below.")
-@click.option("--tf", "tfs", multiple=True, metavar="OUT/IN", help="Only this transfer function; repeatable.")
-@click.option("--form", metavar="FORM", help="latex: form of the functions, as for derive.")
-@click.option("--width", metavar="ieee|a4|MM", help="latex: width of the column; a4 (170 mm) by default.")
-@click.option("--no-figures", "no_figures", is_flag=True, help="latex: a folder without figures.")
-@click.option(
-    "--representation",
-    type=click.Choice(["auto", "expanded", "nested"]),
-    default="auto",
-    show_default=True,
-    help="Quotients of polynomials or nested expressions, as for derive.",
-)
-@click.option("-o", "--output", type=click.Path(), help="File to write; standard output by default.")
-@click.option("--minimal", "is_minimal", is_flag=True, help="state-space: without hidden states.")
-@click.option("--strict", is_flag=True, help="Exit with 4 when the verified accuracy falls short.")
-@budgeted
-@reporting
-@setting
-def command(
-    spec: str,
-    *,
-    allow_outside: tuple[str, ...],
-    settings: dict[str, str],
-    target: str,
-    tfs: tuple[str, ...],
-    form: str | None,
-    width: str | None,
-    no_figures: bool,
-    representation: str,
-    output: str | None,
-    is_minimal: bool,
-    strict: bool,
-) -> int:
+@command_of("export", ExportOptions, cls=ExportCommand)
+def command(spec: Specification, given: ExportOptions) -> int:
     """Write the transfer functions of SPEC for another program.
 
     Numeric code is verified against ball arithmetic before it is written; the worst error stands in its
@@ -90,56 +57,54 @@ def command(
     from symflex.codegen.targets.latex import LatexExporter
     from symflex.files.write import check_folder, check_writable, write_atomically
 
-    if target not in EXPORTERS:
-        hint = nearest(target, EXPORTERS) or "targets: " + ", ".join(EXPORTERS)
-        raise UsageError(Diagnostic("SF902", f"there is no export target '{target[:64]}'", None, hint))
-    exporter = _chosen(EXPORTERS[target], form, width, no_figures=no_figures, is_minimal=is_minimal)
-    is_folder = isinstance(exporter, LatexExporter) and bool(output) and _is_folder(output or "")
-    if output:
-        (check_folder if is_folder else check_writable)(Path(output))
-    model = load(spec, allow_outside, settings)
+    if given.target not in EXPORTERS:
+        hint = nearest(given.target, EXPORTERS) or "targets: " + ", ".join(EXPORTERS)
+        raise UsageError(Diagnostic("SF902", f"there is no export target '{given.target[:64]}'", None, hint))
+    exporter = _chosen(EXPORTERS[given.target], given)
+    is_folder = isinstance(exporter, LatexExporter) and bool(given.output) and _is_folder(given.output or "")
+    if given.output:
+        (check_folder if is_folder else check_writable)(Path(given.output))
+    model = spec.load()
     derived, reason = pipeline.derive_as(
-        model, pipeline.pick_pairs(model, tfs), chosen_representation(representation, form)
+        model, pipeline.pick_pairs(model, given.tfs), chosen_representation(given.representation, given.form)
     )
     if reason:
         note(reason)
-    if isinstance(exporter, LatexExporter) and output and is_folder:
-        return _write_fragments(exporter, model, derived, output, strict=strict)
-    stem = Path(output).stem if output else identifiers({"": Path(spec).stem}, ())[""]
-    made = exporter.export(model, derived, stem, is_alone=not output)
+    if isinstance(exporter, LatexExporter) and given.output and is_folder:
+        return _write_fragments(exporter, model, derived, given.output, strict=given.strict)
+    stem = Path(given.output).stem if given.output else identifiers({"": Path(spec.path).stem}, ())[""]
+    made = exporter.export(model, derived, stem, is_alone=not given.output)
     for warning in made.warnings:
         note(f"warning: {warning}")
-    if output:
-        path = Path(output)
+    if given.output:
+        path = Path(given.output)
         files = {path: made.text} | {path.with_suffix(s): text for s, text in made.companions.items()}
         if len(files) <= len(made.companions):
-            message = f"'{output}' is the name of a file that belongs beside it"
-            hint = f"end its name with {EXPORTERS[target].suffix}"
+            message = f"'{given.output}' is the name of a file that belongs beside it"
+            hint = f"end its name with {EXPORTERS[given.target].suffix}"
             raise UsageError(Diagnostic("SF902", message, None, hint))
         for file, text in files.items():
             write_atomically(file, text.encode())
             note(f"wrote {file}")
     else:
         say(made.text, nl=False)
-    return 4 if strict and made.warnings else 0
+    return 4 if given.strict and made.warnings else 0
 
 
-def _chosen(
-    exporter: Exporter, form: str | None, width: str | None, *, no_figures: bool, is_minimal: bool
-) -> Exporter:
+def _chosen(exporter: Exporter, given: ExportOptions) -> Exporter:
     """Return an exporter with the options that are its own."""
     from symflex.codegen.targets.latex import LatexExporter
     from symflex.codegen.targets.state_space import StateSpaceExporter
     from symflex.print.latex import column_width
 
     if isinstance(exporter, LatexExporter):
-        column = column_width(width or "a4")
-        exporter = replace(exporter, form=form, width_mm=column, has_figures=not no_figures)
-    elif form is not None or width is not None or no_figures:
+        column = column_width(given.width or "a4")
+        exporter = replace(exporter, form=given.form, width_mm=column, has_figures=not given.no_figures)
+    elif given.form is not None or given.width is not None or given.no_figures:
         raise UsageError(Diagnostic("SF902", "--form, --width and --no-figures are for --to latex"))
     if isinstance(exporter, StateSpaceExporter):
-        exporter = replace(exporter, is_minimal=is_minimal)
-    elif is_minimal:
+        exporter = replace(exporter, is_minimal=given.is_minimal)
+    elif given.is_minimal:
         raise UsageError(Diagnostic("SF902", "--minimal is for --to state-space"))
     return exporter
 

@@ -4,46 +4,20 @@ from __future__ import annotations
 
 import os
 import re
+from dataclasses import replace
 from datetime import UTC, date, datetime
 from pathlib import Path
 
-import click
-
-from symflex.cli.budgeting import budgeted
-from symflex.cli.reporting import note, outside, reporting, say
+from symflex.cli.command import bare_command
+from symflex.cli.reporting import note, say
 from symflex.errors import Diagnostic, UsageError
+from symflex.options import ReportOptions
 
 EPOCH_VARIABLE = "SOURCE_DATE_EPOCH"
 
 
-@click.command("report")
-@click.argument("specs", nargs=-1, required=True, type=click.Path(), metavar="SPEC...")
-@outside
-@click.option("-o", "--output", default="report", show_default=True, type=click.Path(), metavar="DIR",
-              help="Folder to write; what is in it stays, but for files of the same name.")  # fmt: skip
-@click.option(
-    "--pdf/--no-pdf", "pdf", default=None, help="With report.pdf; by default where pdflatex is there."
-)
-@click.option(
-    "--date", "day", metavar="YYYY-MM-DD", help="Date printed; today, or SOURCE_DATE_EPOCH. 'none' for none."
-)
-@click.option(
-    "-j",
-    "--jobs",
-    type=click.IntRange(1, 64),
-    help="Models computed at once; as many as there are processors.",
-)
-@budgeted
-@reporting
-def command(
-    specs: tuple[str, ...],
-    *,
-    allow_outside: tuple[str, ...],
-    output: str,
-    pdf: bool | None,
-    day: str | None,
-    jobs: int | None,
-) -> int:
+@bare_command("report", ReportOptions)
+def command(given: ReportOptions) -> int:
     """Write a report on models: equations, poles and zeros, figures, comparison, code.
 
     A SPEC that is a folder stands for all specifications in it and below; measured responses (.csv, .uff,
@@ -60,34 +34,18 @@ def command(
     report is written then, and says where.
     """
     from symflex.cli.progress import ProgressBar
-    from symflex.report import (
-        check_folder,
-        compose,
-        find_claims,
-        find_measurements,
-        find_specifications,
-        name_specifications,
-        publish,
-        write_chapters,
-    )
+    from symflex.report import written
 
-    shown = _date(day)
-    folder = Path(output)
-    check_folder(folder)
-    paths = [Path(spec) for spec in specs]
-    folders = (*map(Path, allow_outside), *(path for path in paths if path.is_dir()))
-    named = name_specifications(find_specifications(paths, folder, folders))
-    publications = find_claims(named.values(), folders)
-    measured, left_out = find_measurements(paths, folder, folders)
-    data = f", {len(measured)} measured response{'s' if len(measured) > 1 else ''}" if measured else ""
-    note(f"{len(named)} model{'s' if len(named) > 1 else ''}{data}")
+    # What stands in a folder that is reported on may be read by the models there.
+    folders = (*given.allow_outside, *(spec for spec in given.specs if Path(spec).is_dir()))
+    asked = replace(
+        given, allow_outside=folders, day=_date(given.day), jobs=given.jobs or os.cpu_count() or 1
+    )
     with ProgressBar() as bar:
-        chapters = write_chapters(named, jobs or os.cpu_count() or 1, bar, measured, folders)
-        report = compose(chapters, shown, publications)
-        published = publish(report, folder, bar, pdf=pdf)
+        published, report = written(asked, bar, note)
     if published.problem:
         note(published.problem)
-    for warning in (*left_out, *report.warnings):
+    for warning in report.warnings:
         note(f"warning: {warning}")
     say(f"open {published.page}")
     return max(published.code, report.code)

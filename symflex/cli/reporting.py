@@ -18,40 +18,10 @@ from symflex.errors.diagnostic import printable
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
-    from symflex.model import Model
-
 P = ParamSpec("P")
 SMALLER = "ask for fewer transfer functions, roots or points, or give parameters numbers in place of symbols"
 LAYOUT = "\n\t" + "".join(map(chr, (0xA0, 0x1680, *range(0x2000, 0x200B), 0x202F, 0x205F, 0x3000)))
 """Ends of lines and blanks, which Python does not count as printable and terminals show."""
-
-
-outside = click.option(
-    "--allow-outside",
-    multiple=True,
-    type=click.Path(exists=True, file_okay=False),
-    metavar="FOLDER",
-    help="Let model blocks read this folder too, besides that of SPEC; repeatable.",
-)
-
-
-def setting(command: Callable[..., int | None]) -> Callable[..., int]:
-    """Give a command the option ``--set``; it gets what that says as ``settings``, by name."""
-
-    @wraps(command)
-    def run(*args: object, settings: tuple[str, ...], **kwargs: object) -> int:
-        from symflex.model import read_settings  # a command's help needs none of it
-
-        return command(*args, settings=read_settings(settings), **kwargs) or 0
-
-    option = click.option(
-        "--set",
-        "settings",
-        multiple=True,
-        metavar="NAME=VALUE",
-        help="Another value of a parameter: k='80 kN/m', or SI units; repeatable.",
-    )
-    return option(run)
 
 
 def reporting(command: Callable[P, int | None]) -> Callable[P, int]:
@@ -99,15 +69,6 @@ def show(diagnostics: Iterable[Diagnostic]) -> None:
             colour = "red" if diagnostic.severity == "error" else "yellow"
             text = text.replace(diagnostic.mark, click.style(diagnostic.mark, fg=colour, bold=True), 1)
         _print(text, err=True)
-
-
-def load(spec: str, allow_outside: tuple[str, ...] = (), settings: Mapping[str, str] | None = None) -> Model:
-    """Read a specification, and print its warnings to stderr."""
-    from symflex import pipeline
-
-    model = pipeline.load(spec, allow_outside, settings)
-    show(pipeline.warnings(model))
-    return model
 
 
 def check_place(name: str, endings: Collection[str]) -> None:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from symflex.loops.bandwidth import AllowedBandwidth
     from symflex.loops.crossing import Crossing, PoleCount
 
-SCHEMA = "symflex.loops/1"
+SCHEMA = "symflex.stability/1"
 BITS = 128
 
 
@@ -178,7 +178,7 @@ class StabilityMap:
         return min(self.phase_margins, key=lambda m: abs(float(m.angle.mid())), default=None)
 
     def to_json_dict(self) -> dict[str, object]:
-        """Return the map in the schema ``symflex.loops/1``, ready for :func:`json.dumps`."""
+        """Return the map in the schema ``symflex.stability/1``, ready for :func:`json.dumps`."""
         worst = self.phase_margin
         return {
             "schema": SCHEMA,

@@ -13,7 +13,7 @@ from symflex.report.article import report_article
 from symflex.report.folder import write_tree
 from symflex.report.page import report_page
 from symflex.report.pdf import compile_pdf, has_compiler
-from symflex.report.published import PublishedReport, publish
+from symflex.report.published import PublishedReport, publish, written
 from symflex.report.report import (
     Report,
     compose,
@@ -40,4 +40,5 @@ __all__ = [
     "report_page",
     "write_chapters",
     "write_tree",
+    "written",
 ]

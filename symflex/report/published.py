@@ -2,19 +2,30 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, date, datetime
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symflex.errors import SymflexError
+from symflex.files.write import check_folder
 from symflex.report.article import report_article
 from symflex.report.folder import write_tree
 from symflex.report.page import report_page
 from symflex.report.pdf import HOW_TO, compile_pdf, has_compiler
+from symflex.report.report import (
+    compose,
+    find_claims,
+    find_measurements,
+    find_specifications,
+    name_specifications,
+    write_chapters,
+)
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from collections.abc import Callable
 
+    from symflex.options import ReportOptions
     from symflex.report.report import Report
     from symflex.roots import Progress
 
@@ -39,6 +50,46 @@ class PublishedReport:
     pdf: Path | None
     problem: str
     code: int
+
+
+def written(
+    given: ReportOptions, progress: Progress, said: Callable[[str], None]
+) -> tuple[PublishedReport, Report]:
+    """Write the report that options ask for.
+
+    Parameters
+    ----------
+    given : ReportOptions
+        With the day that is printed, and ``jobs``: 0 for all models in this process.
+    progress : Progress
+        Told of each step.
+    said : callable
+        Told how many models and measured responses there are.
+
+    Returns
+    -------
+    tuple of PublishedReport and Report
+        What was written; the warnings of the report name what was left out, too.
+
+    Raises
+    ------
+    SpecError, ModelError
+        With every problem of all files that are no solvable models, before anything is computed.
+    UsageError
+        SF902 no specification; SF903 a file cannot be written.
+    """
+    folder, paths = Path(given.output), [Path(spec) for spec in given.specs]
+    check_folder(folder)
+    outside = tuple(map(Path, given.allow_outside))
+    named = name_specifications(find_specifications(paths, folder, outside))
+    publications = find_claims(named.values(), outside)
+    measured, left_out = find_measurements(paths, folder, outside)
+    data = f", {len(measured)} measured response{'s' if len(measured) > 1 else ''}" if measured else ""
+    said(f"{len(named)} model{'s' if len(named) > 1 else ''}{data}")
+    chapters = write_chapters(named, given.jobs or 0, progress, measured, outside)
+    report = compose(chapters, given.day or "", publications)
+    published = publish(report, folder, progress, pdf=given.pdf)
+    return published, replace(report, warnings=(*left_out, *report.warnings))
 
 
 def publish(report: Report, folder: Path, progress: Progress, *, pdf: bool | None = None) -> PublishedReport:

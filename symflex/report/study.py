@@ -12,6 +12,7 @@ from symflex.budget import entered_budget
 from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.loops import find_stable_gains
 from symflex.model import with_numbers
+from symflex.options import ColocationOptions
 from symflex.print.forms import print_forms
 from symflex.report.data_comparison import compared
 from symflex.report.facts import facts_of
@@ -260,7 +261,7 @@ class Study:
         return tuple(found)
 
     def _colocation(self, name: str, joint: str) -> Callable[[], DynamicColocation]:
-        return lambda: pipeline.colocation(self.model, name, joint)
+        return lambda: pipeline.colocation(self.model, ColocationOptions(name, joint))
 
     def rational(self, tf: TransferFunction) -> RationalApproximation | None:
         """Return the product of the lowest modes of a function, None where there is no such approximation."""

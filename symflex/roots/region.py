@@ -8,12 +8,15 @@ from typing import TYPE_CHECKING
 
 from flint import arb, fmpq
 
+from symflex.errors import Diagnostic, UsageError
+from symflex.options import band_ends, frequency
 from symflex.roots.precision import precision
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from fractions import Fraction
 
+    from symflex.options import RootsOptions
     from symflex.roots.root import Root
 
 
@@ -177,6 +180,46 @@ class Mode:
 
 
 Region = Everything | Band | Rectangle | Modes | Mode
+
+
+def region_of(given: RootsOptions, mark: str = "") -> Region | None:
+    """Return the region that options say, None when they say nothing.
+
+    Parameters
+    ----------
+    given : RootsOptions
+        At most one of ``modes``, ``mode``, ``band`` and ``region``.
+    mark : str
+        What stands before their names in messages.
+
+    Raises
+    ------
+    UsageError
+        SF902 for more than one of them, limits that are none, or a number of a mode below 1.
+
+    Examples
+    --------
+    >>> from symflex.options import RootsOptions
+    >>> region_of(RootsOptions(band=(0.1, 20)))
+    Band(low=Fraction(1, 10), high=Fraction(20, 1))
+    """
+    if sum(choice is not None for choice in (given.modes, given.mode, given.band, given.region)) > 1:
+        names = f"{mark}modes, {mark}mode, {mark}band and {mark}region"
+        raise UsageError(Diagnostic("SF902", f"give only one of {names}"))
+    if given.modes is not None:
+        return Modes(given.modes)
+    if given.mode is not None:
+        if given.mode < 1:
+            raise UsageError(Diagnostic("SF902", f"modes are numbered from 1, not {given.mode}"))
+        return Mode(given.mode)
+    if given.band is not None:
+        return Band(*band_ends(given.band))
+    if given.region is None:
+        return None
+    sides = [frequency(side, "--region", "-10 or '3 rad/s'") for side in given.region]
+    if isinstance(given.region[0], str) and (sides[0] > sides[1] or sides[2] > sides[3]):
+        raise UsageError(Diagnostic("SF902", "--region takes RE0 <= RE1 and IM0 <= IM1"))
+    return Rectangle(*sides)
 
 
 def _numbered(roots: Sequence[Root], first: int, last: int, *, at_zero: Position) -> tuple[Position, ...]:

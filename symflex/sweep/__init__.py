@@ -6,6 +6,7 @@ workers, nor the order in which they finish, nor a restart in between changes a 
 """
 
 from symflex.sweep.design import Axis, Design, Range
+from symflex.sweep.of_model import plan_sweep, sweep, sweep_task
 from symflex.sweep.points import QUANTITIES, solve_chunk
 from symflex.sweep.read import check_design, design_of, read_design
 from symflex.sweep.run import Journal, chunk_size, run_sweep, sweep_key
@@ -25,8 +26,11 @@ __all__ = [
     "chunk_size",
     "design_of",
     "fingerprint",
+    "plan_sweep",
     "read_design",
     "run_sweep",
     "solve_chunk",
+    "sweep",
     "sweep_key",
+    "sweep_task",
 ]

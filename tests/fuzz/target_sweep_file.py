@@ -9,7 +9,8 @@ from pathlib import Path
 
 from symflex import pipeline
 from symflex.errors import SymflexError
-from symflex.sweep import read_design
+from symflex.options import SweepOptions
+from symflex.sweep import read_design, sweep_task
 from symflex.sweep.files import netcdf_bytes, npz_bytes, read_sweep
 from symflex.sweep.text import sweep_json, sweep_text
 from tests.fuzz.target_numpy_archive import packed, unpacked
@@ -33,10 +34,8 @@ def seeds():
     design = read_design(model.parameters, ["k=1,2"])
     found = []
     for of, frequencies in (("poles", ()), ("zeros", ()), ("response", (0.1, 1.0)), ("margins", ())):
-        task = pipeline.sweep_task(
-            model, ("X", "F"), design, of, None, frequencies, "K" if of == "margins" else ""
-        )
-        sweep = pipeline.sweep(task, design)
+        task = sweep_task(model, ("X", "F"), design, of, None, frequencies, "K" if of == "margins" else "")
+        sweep = pipeline.sweep(task, design, SweepOptions())
         found += [netcdf_bytes(sweep), unpacked(npz_bytes(sweep))]
     return found
 

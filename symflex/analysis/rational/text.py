@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from symflex.analysis.rational import RationalApproximation
     from symflex.roots import Root
 
-SCHEMA = "symflex.analysis.rational/1"
+SCHEMA = "symflex.rational/1"
 INDENT = "  "
 DIGITS = 10
 JSON_DIGITS = 17
@@ -152,7 +152,7 @@ def _aligned(rows: Sequence[Row]) -> list[str]:
 
 
 def rational_json(found: RationalApproximation) -> dict[str, object]:
-    """Return an approximation in the schema ``symflex.analysis.rational/1``, ready for :func:`json.dumps`."""
+    """Return an approximation in the schema ``symflex.rational/1``, ready for :func:`json.dumps`."""
     error, scan = found.error, found.scan
     return {
         "schema": SCHEMA,

@@ -28,6 +28,7 @@ from symflex.data.fitting.resonances import MILLISECOND, Free
 from symflex.data.fitting.starts import with_delays
 from symflex.errors import DataError, Diagnostic, FitError, UsageError
 from symflex.errors.diagnostic import nearest
+from symflex.options import FitOptions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -46,6 +47,7 @@ WEAK = 0.5
 LARGE = 2.0
 OVERDAMPED = 2.0
 LEAST_DAMPING = 0.05
+DEFAULTS = FitOptions()
 SMOOTH = 3.0
 """A Hann window makes this 2, see :attr:`symflex.data.fitting.least_squares.Refined.correlation`."""
 
@@ -187,15 +189,7 @@ class Fit:
 def fit_resonances(
     measured: Sequence[MeasuredResponse],
     bases: Sequence[Base] | None = None,
-    *,
-    modes: int | None = None,
-    start: str = "auto",
-    criterion: str = "bic",
-    is_gain_free: bool | None = None,
-    is_lag_free: bool = False,
-    is_lag_signed: bool = False,
-    is_delay_free: bool = False,
-    slope: int | None = None,
+    given: FitOptions = DEFAULTS,
 ) -> Fit:
     """Fit simple resonances, in cascade with a known base, to one or several measured responses.
 
@@ -205,22 +199,11 @@ def fit_resonances(
         Responses that share their poles.
     bases : sequence of Base, optional
         The known factor of each. Without it, a gain times a power of s, the same for all.
-    modes : int, optional
-        How many resonances; by default what the criterion prefers.
-    start : str
-        A key of :data:`symflex.data.fitting.order.STARTS`, or ``auto`` for the best of all.
-    criterion : str
-        ``bic`` or ``aicc``.
-    is_gain_free : bool, optional
-        Whether a gain is fitted too; by default only without a base.
-    is_lag_free : bool
-        Whether a lag of each sensor, 1/(1 + T s), is fitted too.
-    is_lag_signed : bool
-        Whether that lag may be negative, a lead.
-    is_delay_free : bool
-        Whether a dead time of each response, exp(-T s) with T >= 0, is fitted too.
-    slope : int, optional
-        The power of s of a fit without base; by default the one with the lowest criterion.
+    given : FitOptions
+        How many resonances, from which start, chosen by which criterion, and what is fitted besides: its
+        ``modes``, ``start`` (a key of :data:`symflex.data.fitting.order.STARTS`, or ``auto`` for the best of
+        all), ``criterion``, ``is_gain_free`` (always so without bases), ``is_lag_free``, ``is_lag_signed``,
+        ``is_delay_free``; and ``slope``, the power of s of a fit without bases.
 
     Raises
     ------
@@ -239,38 +222,42 @@ def fit_resonances(
     >>> frequency = np.arange(5.0, 20.0, 0.05)
     >>> omega = 2 * np.pi * frequency
     >>> data = 3.0 * Resonances.of([(62.8, 0.02, 75.4, 0.03)]).factor(0, omega)
-    >>> fit = fit_resonances([MeasuredResponse("y/u", frequency, data)], modes=1)
+    >>> asked = FitOptions(modes=1)
+    >>> fit = fit_resonances([MeasuredResponse("y/u", frequency, data)], None, asked)
     >>> print(fit.resonances.omega_p.round(6), fit.resonances.zeta_p.round(6), fit.resonances.gain.round(6))
     [62.8] [0.02] [3.]
     """
-    for given, known, what in ((start, ("auto", *STARTS), "start"), (criterion, CRITERIA, "criterion")):
-        if given not in known:
-            hint = nearest(given, known) or f"choose from: {', '.join(known)}"
-            raise UsageError(Diagnostic("SF902", f"there is no {what} '{given[:64]}'", None, hint))
-    if bases is not None and slope is not None:
+    for name, known, what in (
+        (given.start, ("auto", *STARTS), "start"),
+        (given.criterion, CRITERIA, "criterion"),
+    ):
+        if name not in known:
+            hint = nearest(name, known) or f"choose from: {', '.join(known)}"
+            raise UsageError(Diagnostic("SF902", f"there is no {what} '{name[:64]}'", None, hint))
+    if bases is not None and given.slope is not None:
         raise UsageError(Diagnostic("SF902", "a power of s is for fits without a base"))
     for response in measured:
-        needed = max(FEWEST_LINES, 4 * (modes or 1) + 2)
+        needed = max(FEWEST_LINES, 4 * (given.modes or 1) + 2)
         if response.values.size < needed:
             message = f"'{response.name}' has {response.values.size} lines; such a fit needs {needed} or more"
             raise DataError(Diagnostic("SF605", message))
-    free = Free(bases is None or bool(is_gain_free), is_lag_free, is_delay_free, is_lag_signed)
     if bases is not None:
-        return _fit(measured, tuple(bases), modes, start, criterion, free, (0,))
+        return _fit(measured, tuple(bases), given, (0,))
     same = tuple(Base.power(0) for _ in measured)
-    return _fit(measured, same, modes, start, criterion, free, SLOPES if slope is None else (slope,))
+    slopes = SLOPES if given.slope is None else (given.slope,)
+    return _fit(measured, same, replace(given, is_gain_free=True), slopes)
 
 
 def _fit(
     measured: Sequence[MeasuredResponse],
     bases: tuple[Base, ...],
-    modes: int | None,
-    start: str,
-    criterion: str,
-    free: Free,
+    given: FitOptions,
     slopes: tuple[int, ...],
 ) -> Fit:
     has_base = any(base.tf for base in bases)
+    modes, start = given.modes, given.start
+    is_lag_free = given.is_lag_free or given.is_lag_signed
+    free = Free(given.is_gain_free, is_lag_free, given.is_delay_free, given.is_lag_signed)
     problem = fit_problem(measured, [base.function for base in bases], free, has_base=has_base, slopes=slopes)
     for line, base in zip(problem.lines, bases, strict=True):
         wrong = ~np.isfinite(line.base) | (line.base == 0)
@@ -283,7 +270,7 @@ def _fit(
     problem = with_noise(with_delays(with_rough_noise(problem), modes), modes)
     scores: tuple[Score, ...] = ()
     if modes is None:
-        candidate, scores = chosen_order(problem, start, criterion)
+        candidate, scores = chosen_order(problem, start, given.criterion)
     else:
         found = best_of_starts(problem, modes, start)
         if found is None:
@@ -296,7 +283,7 @@ def _fit(
     if not has_base:
         bases = tuple(Base.power(int(power)) for power in candidate.refined.resonances.slope)
     tests = tuple(judge_phase(problem, r, candidate.refined.resonances) for r in range(len(measured)))
-    fit = Fit(problem, bases, candidate, scores, criterion, tests, ())
+    fit = Fit(problem, bases, candidate, scores, given.criterion, tests, ())
     return replace(fit, warnings=_warnings(fit), poor=_poor(fit, is_ambiguous=is_ambiguous))
 
 

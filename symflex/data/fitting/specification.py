@@ -7,14 +7,20 @@ its sections stand in the new file, and the resonances multiply its outputs ther
 from __future__ import annotations
 
 import os
+import re
+import tomllib
 from dataclasses import dataclass
+from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from symflex.model.spec import write
+from symflex.errors import Diagnostic, FitError, Source, SymflexError
+from symflex.model import load_with
+from symflex.model.spec import read, write
+from symflex.transfer.of_model import assemble, check_solvable
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
@@ -28,7 +34,44 @@ COPIED = ("parameters", "definitions", "elements", "signals", "blocks", "fields"
 """Sections of a base that are copied; its outputs are multiplied, and its figures show another model."""
 
 
-def fit_specification(
+def fit_specification(found: Fit, folder: str | Path) -> str:
+    """Return the specification of a fit that will stand in a folder.
+
+    It has been read, resolved and assembled as ``symflex check`` does. A base that a ``model`` block can
+    stand for is referred to; any other, and one that does not stand at or below the folder, is copied.
+
+    Raises
+    ------
+    FitError
+        SF617 where neither way gives a specification that is accepted.
+    """
+    bases = tuple(dict.fromkeys(Path(base.path) for base in found.bases if base.path))
+    allowed = tuple(place for base in found.bases for place in base.folders)
+    taken = {name for base in found.bases for name in base.taken}
+    ways: list[Mapping[str, object] | None] = [None]
+    if len(bases) == 1:
+        source = read(bases[0])
+        whole = tomllib.loads(source.text, parse_float=Decimal)
+        own = found.bases[0].tf.split("/")[1]
+        # Other inputs of the base are left out, unless something there needs them.
+        ways += [whole | {"inputs": {own: whole["inputs"][own]}}, whole]
+        words = taken | set(re.findall(r"\w+", source.text))
+    # A file that needs --allow-outside is the last resort: where the base itself needs it.
+    for outside in ((), allowed):
+        for copied in ways:
+            text = _written(found, folder, taken if copied is None else words, copied)
+            try:
+                model = load_with(Source(str(Path(folder) / "fitted.toml"), text), {}, allow_outside=outside)
+                check_solvable(assemble(model))
+            except SymflexError as error:
+                refused = error.diagnostics[0]
+            else:
+                return text
+    message = f"the fit cannot be written as a specification: {refused.message}"
+    raise FitError(Diagnostic("SF617", message, None, refused.hint))
+
+
+def _written(
     fit: Fit,
     folder: str | Path,
     taken: Collection[str] = (),

@@ -19,6 +19,9 @@ from symflex.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from fractions import Fraction
+
+    from symflex.options import MeasureOptions
 
 Real = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
@@ -65,6 +68,24 @@ class MeasurementPlan:
     noise: float = 0.03
     rolloff_hz: float | None = 5000.0
     seed: int = 1
+
+    @staticmethod
+    def of(given: MeasureOptions, band: tuple[Fraction, Fraction] | None) -> MeasurementPlan:
+        """Return the plan that options say, over a band [Hz] where they say none.
+
+        Raises
+        ------
+        UsageError
+            SF902 where there is none at all, and for a plan that cannot be meant.
+        """
+        if given.band is None and band is None:
+            message = "the specification has no [analysis] band"
+            raise UsageError(Diagnostic("SF902", message, None, "give one with --band LO HI"))
+        low, high = (float(end) for end in given.band or band or ())
+        spacing = high / 800 if given.spacing is None else given.spacing
+        plan = MeasurementPlan(low, high, spacing, given.averages, given.noise, given.rolloff, given.seed)
+        plan.check()
+        return plan
 
     @property
     def record(self) -> int:

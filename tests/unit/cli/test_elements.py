@@ -26,7 +26,7 @@ def test_every_entry_is_described_with_all_its_keys(shell, name):
 
 def test_json_lists_the_library(shell):
     document = shell("elements", "--json").json
-    assert document["schema"] == "symflex.library.elements/1"
+    assert document["schema"] == "symflex.elements/1"
     assert [e["type"] for e in document["elements"]] == list(ELEMENTS)
     assert [b["type"] for b in document["blocks"]] == list(BLOCKS)
 

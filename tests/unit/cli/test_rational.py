@@ -24,7 +24,7 @@ def test_json_has_the_documented_keys(rod, form):
     assert (done.code, done.err) == (0, "")
     assert set(done.json) == KEYS
     page = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
-    section = page.partition("### `symflex.analysis.rational/1`")[2].partition("\n#")[0]
+    section = page.partition("### `symflex.rational/1`")[2].partition("\n#")[0]
     assert all(f"`{key}`" in section for key in KEYS - {"schema"})
 
 

@@ -59,7 +59,7 @@ def test_a_stable_range_is_printed(files):
 def test_json_has_a_schema(files):
     done = files("stability", "loop.toml", "--gain", "K", "--range", "0", "20", "--digits", "30", "--json")
     document = json.loads(done.out)
-    assert document["schema"] == "symflex.loops/1"
+    assert document["schema"] == "symflex.stability/1"
     assert document["boundaries"][0]["gain"]["value"] == "3.14159265358979323846264338328"
 
 

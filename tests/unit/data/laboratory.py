@@ -220,6 +220,7 @@ def study(count, seed=1, *, modes_given=True, show=None, first=0):
     from symflex.data.fitting import fit_resonances
     from symflex.data.measurement import MeasuredResponse
     from symflex.errors import SymflexError
+    from symflex.options import FitOptions
 
     results = []
     for number in range(first, first + count):
@@ -227,7 +228,9 @@ def study(count, seed=1, *, modes_given=True, show=None, first=0):
         data = MeasuredResponse("y/u", case.frequency_hz, case.values)
         more = {"is_delay_free": True} if case.delay is not None else {}
         try:
-            fit = fit_resonances([data], modes=len(case.poles) if modes_given else None, **more)
+            fit = fit_resonances(
+                [data], None, FitOptions(modes=len(case.poles) if modes_given else None, **more)
+            )
             off, poor = judged(case, fit)
             words = "; ".join(fit.poor)
         except SymflexError as error:

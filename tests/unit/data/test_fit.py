@@ -8,6 +8,7 @@ import pytest
 from symflex.data.fitting import STARTS, Base, fit_resonances
 from symflex.data.measurement import MeasuredResponse
 from symflex.errors import DataError, FitError, UsageError
+from symflex.options import FitOptions
 from tests.unit.data.analyser import System, measured, rigid
 
 # The modes of the paper with its typical ratio and damping; the zero of 38 Hz lies between it and 44 Hz.
@@ -28,7 +29,7 @@ def noisy(system, seed=1, **more):
 
 @pytest.mark.parametrize("start", [*STARTS, "auto"])
 def test_every_start_leads_to_the_paper_s_modes(start):
-    fit = fit_resonances([exact(PAPER)], UNIT, modes=5, start=start)
+    fit = fit_resonances([exact(PAPER)], UNIT, FitOptions(modes=5, start=start))
     assert fit.resonances.omega_p / (2 * np.pi) == pytest.approx(PAPER.f_p, rel=1e-6)
     assert fit.resonances.zeta_p == pytest.approx(PAPER.zeta_p, rel=1e-5)
     assert fit.resonances.omega_z[0] / (2 * np.pi) == pytest.approx(PAPER.f_z, rel=1e-6)
@@ -44,14 +45,14 @@ def test_the_close_pair_is_not_swapped_and_five_modes_are_chosen():
 
 def test_without_coherence_all_lines_weigh_alike():
     data = replace(noisy(PAPER), coherence=None)
-    fit = fit_resonances([data], UNIT, modes=5)
+    fit = fit_resonances([data], UNIT, FitOptions(modes=5))
     assert fit.resonances.omega_p / (2 * np.pi) == pytest.approx(PAPER.f_p, rel=0.01)
 
 
 def test_without_a_base_gain_and_power_of_s_are_found():
     omega = 2 * np.pi * FREQUENCY
     data = MeasuredResponse("y/u", FREQUENCY, -0.3 * (1j * omega) ** 2 * ONE(FREQUENCY))
-    fit = fit_resonances([data], modes=1)
+    fit = fit_resonances([data], None, FitOptions(modes=1))
     assert fit.bases[0].slope == 2
     assert fit.resonances.gain[0] == pytest.approx(-0.3)
     assert fit.resonances.zeta_z[0, 0] == pytest.approx(0.03)
@@ -59,25 +60,25 @@ def test_without_a_base_gain_and_power_of_s_are_found():
 
 def test_a_lag_of_the_sensor_is_found():
     data = MeasuredResponse("y/u", FREQUENCY, ONE(FREQUENCY) / (1 + 2j * np.pi * FREQUENCY * 2e-4))
-    fit = fit_resonances([data], UNIT, modes=1, is_lag_free=True)
+    fit = fit_resonances([data], UNIT, FitOptions(modes=1, is_lag_free=True))
     assert fit.resonances.lag[0] == pytest.approx(2e-4)
 
 
 def test_responses_share_their_poles():
     other = replace(PAPER, f_z=1.05 * PAPER.f_p, zeta_z=np.full(5, 0.03))
-    fit = fit_resonances([exact(PAPER, "a/u"), exact(other, "b/u")], UNIT * 2, modes=5)
+    fit = fit_resonances([exact(PAPER, "a/u"), exact(other, "b/u")], UNIT * 2, FitOptions(modes=5))
     assert fit.resonances.omega_p / (2 * np.pi) == pytest.approx(PAPER.f_p, rel=1e-6)
     assert fit.resonances.omega_z[1] / (2 * np.pi) == pytest.approx(other.f_z, rel=1e-6)
     assert fit.resonances.zeta_z[1] == pytest.approx(other.zeta_z, rel=1e-5)
 
 
 def test_a_minimum_phase_function_passes_the_phase_test():
-    assert fit_resonances([noisy(PAPER)], UNIT, modes=5).phase_tests[0].is_minimum_phase
+    assert fit_resonances([noisy(PAPER)], UNIT, FitOptions(modes=5)).phase_tests[0].is_minimum_phase
 
 
 def test_zeros_in_the_right_half_plane_are_found_and_fail_the_phase_test():
     mirrored = replace(PAPER, zeta_z=np.array([0.05, 0.05, 0.05, -0.05, 0.05]))
-    fit = fit_resonances([noisy(mirrored)], UNIT, modes=5)
+    fit = fit_resonances([noisy(mirrored)], UNIT, FitOptions(modes=5))
     assert fit.resonances.zeta_z[0] == pytest.approx(mirrored.zeta_z, abs=0.005)
     (worst, *_) = sorted(fit.phase_tests[0].bands, key=lambda band: -abs(band.worst_degrees))
     # At its own frequency a mirrored pair of zeros stands 180 degrees beside the other.
@@ -103,20 +104,20 @@ def driven(seed, noise, **more):
 @pytest.mark.parametrize(("seed", "noise"), [(1, 0.0), (2, 0.003)])
 def test_a_passive_driving_point_is_minimum_phase(seed, noise):
     # Every driving point of a passive structure is positive real, and has no zeros in the right half plane.
-    (test,) = fit_resonances([driven(seed, noise)], slope=2, modes=3).phase_tests
+    (test,) = fit_resonances([driven(seed, noise)], None, FitOptions(slope=2, modes=3)).phase_tests
     assert test.verdict == "minimum"
 
 
 @pytest.mark.parametrize("damping", [-0.01, -0.1, -0.5, -1.5])
 def test_damped_zeros_in_the_right_half_plane_are_not_explained_away(damping):
     data = noisy(replace(ONE, zeta_z=np.array([damping])))
-    assert fit_resonances([data], UNIT, modes=1).phase_tests[0].verdict == "nonminimum"
+    assert fit_resonances([data], UNIT, FitOptions(modes=1)).phase_tests[0].verdict == "nonminimum"
 
 
 def test_a_delay_that_could_be_a_sensor_s_is_undetermined_and_a_long_one_is_not():
     def verdict(delay):
         data = noisy(lambda f: ONE(f) * np.exp(-2j * np.pi * f * delay))
-        return fit_resonances([data], UNIT, modes=1).phase_tests[0]
+        return fit_resonances([data], UNIT, FitOptions(modes=1)).phase_tests[0]
 
     assert verdict(5e-4).verdict == "undetermined"
     assert verdict(5e-4).lag_s == pytest.approx(5e-4, rel=0.1)
@@ -132,7 +133,7 @@ def test_the_tip_of_a_bending_beam_is_not_minimum_phase():
     data = MeasuredResponse("X_tip/F", f, (1 + (f / 28.072) ** 2) / (modes[0] * modes[1] * -(f**2)))
     rough = 0.003 * np.random.default_rng(1).standard_normal((2, f.size))
     data = replace(data, values=data.values * (1 + rough[0] + 1j * rough[1]))
-    (test,) = fit_resonances([data], modes=2, slope=-2).phase_tests
+    (test,) = fit_resonances([data], None, FitOptions(modes=2, slope=-2)).phase_tests
     assert test.verdict == "nonminimum"
 
 
@@ -141,7 +142,7 @@ def test_zeros_that_stand_for_a_power_of_s_are_said_and_turn_no_verdict():
     # zero near 0 and one far above, whose product is s in the band, with either sign of the gain.
     two = System(np.array([20.0, 60.0]), np.full(2, 0.02), np.array([25.0, 1e5]), np.array([0.03, 0.0]))
     data = noisy(lambda f: -(f**2) * two(f), noise=0.003)
-    fit = fit_resonances([data], modes=2, slope=1, start="vector")
+    fit = fit_resonances([data], None, FitOptions(modes=2, slope=1, start="vector"))
     assert np.abs(fit.resonances.zeta_z).max() > 2
     assert any("two real zeros" in warning or "not determined" in warning for warning in fit.warnings)
     assert fit.phase_tests[0].verdict != "nonminimum"
@@ -150,7 +151,7 @@ def test_zeros_that_stand_for_a_power_of_s_are_said_and_turn_no_verdict():
 def test_where_no_resonances_describe_the_magnitude_its_phase_says_nothing():
     # One resonance for data with a real zero in the right half plane at 30 Hz: 4 dB are left.
     data = noisy(lambda f: ONE(f) * (1 - 1j * f / 30))
-    (test,) = fit_resonances([data], UNIT, modes=1).phase_tests
+    (test,) = fit_resonances([data], UNIT, FitOptions(modes=1)).phase_tests
     assert test.verdict == "undetermined"
     assert test.magnitude_db > 2
 
@@ -167,35 +168,35 @@ def test_data_without_a_resonance_are_refused():
 
 def test_more_peaks_than_there_are_is_an_error():
     with pytest.raises(FitError) as caught:
-        fit_resonances([exact(ONE)], UNIT, modes=4, start="peaks")
+        fit_resonances([exact(ONE)], UNIT, FitOptions(modes=4, start="peaks"))
     assert code_of(caught) == ["SF611"]
 
 
 def test_a_pole_that_leaves_the_band_is_an_error():
     above = System(np.array([130.0]), np.array([0.02]), np.array([160.0]), np.array([0.02]))
     with pytest.raises(FitError) as caught:
-        fit_resonances([noisy(above, noise=0.001)], UNIT, modes=1, start="vector")
+        fit_resonances([noisy(above, noise=0.001)], UNIT, FitOptions(modes=1, start="vector"))
     assert code_of(caught) == ["SF614"]
 
 
 def test_parameters_the_data_do_not_determine_are_an_error():
     with pytest.raises(FitError) as caught:
-        fit_resonances([exact(ONE)], UNIT, modes=3, start="vector")
+        fit_resonances([exact(ONE)], UNIT, FitOptions(modes=3, start="vector"))
     assert code_of(caught)[0] in ("SF612", "SF613", "SF614")
 
 
 def test_a_base_with_a_zero_in_the_band_is_an_error():
     with pytest.raises(FitError) as caught:
-        fit_resonances([exact(ONE)], [Base(lambda omega: omega - omega[3] + 0j)], modes=1)
+        fit_resonances([exact(ONE)], [Base(lambda omega: omega - omega[3] + 0j)], FitOptions(modes=1))
     assert code_of(caught) == ["SF615"]
 
 
 def test_too_few_lines_are_an_error():
     with pytest.raises(DataError) as caught:
-        fit_resonances([exact(ONE).between(10, 13)], UNIT, modes=3)
+        fit_resonances([exact(ONE).between(10, 13)], UNIT, FitOptions(modes=3))
     assert code_of(caught) == ["SF605"]
 
 
 def test_an_unknown_start_is_a_usage_error():
     with pytest.raises(UsageError, match="vector"):
-        fit_resonances([exact(ONE)], UNIT, start="vectro")
+        fit_resonances([exact(ONE)], UNIT, FitOptions(start="vectro"))

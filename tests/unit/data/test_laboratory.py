@@ -7,6 +7,7 @@ import pytest
 
 from symflex.data.fitting import STARTS, fit_resonances
 from symflex.data.measurement import MeasuredResponse
+from symflex.options import FitOptions
 from tests.unit.data.laboratory import SHAPES, deviations, pair, study, summary
 
 OMEGA = 2 * np.pi
@@ -25,7 +26,7 @@ def two_modes(seed, gain=2.5, noise=0.03):
 
 @pytest.mark.parametrize("start", [*STARTS, "auto"])
 def test_two_modes_with_three_percent_noise_are_found_from_every_start(start):
-    fit = fit_resonances([two_modes(1)], modes=2, start=start)
+    fit = fit_resonances([two_modes(1)], None, FitOptions(modes=2, start=start))
     found, errors = fit.resonances, fit.standard_errors()
     assert fit.poor == ()
     assert found.omega_p / OMEGA == pytest.approx([14, 32], rel=0.001)
@@ -34,19 +35,19 @@ def test_two_modes_with_three_percent_noise_are_found_from_every_start(start):
 
 
 def test_the_sign_of_a_gain_is_found():
-    assert fit_resonances([two_modes(2, gain=-2.5)], modes=2).resonances.gain[0] == pytest.approx(
-        -2.5, rel=0.02
-    )
+    assert fit_resonances([two_modes(2, gain=-2.5)], None, FitOptions(modes=2)).resonances.gain[
+        0
+    ] == pytest.approx(-2.5, rel=0.02)
 
 
 def test_too_few_resonances_are_called_poor():
-    assert fit_resonances([two_modes(3)], modes=1).poor != ()
+    assert fit_resonances([two_modes(3)], None, FitOptions(modes=1)).poor != ()
 
 
 def test_responses_measured_as_different_quantities_have_powers_of_s_of_their_own():
     one, other = two_modes(4), two_modes(5)
     other = MeasuredResponse("z/u", other.frequency_hz, other.values * (OMEGA * 1j * other.frequency_hz) ** 2)
-    fit = fit_resonances([one, other], modes=2)
+    fit = fit_resonances([one, other], None, FitOptions(modes=2))
     assert [base.slope for base in fit.bases] == [0, 2]
     assert fit.resonances.gain == pytest.approx([2.5, 2.5], rel=0.01)
 

@@ -11,6 +11,7 @@ from scipy.linalg import eigh
 from symflex.data.fitting import Base, fit_resonances, mode_shapes
 from symflex.data.measurement import MeasuredResponse
 from symflex.errors import DataError, FitError, UsageError
+from symflex.options import FitOptions
 
 # Three masses between two walls.
 MASS = np.diag([2.0, 3.0, 1.5])
@@ -43,7 +44,7 @@ def expected():
 
 def shapes_of(data, driving=DRIVEN, **asked):
     asked = {"modes": 3, **asked}
-    return mode_shapes(fit_resonances([data[driving]], **asked), data)
+    return mode_shapes(fit_resonances([data[driving]], None, FitOptions(**asked)), data)
 
 
 @pytest.mark.parametrize(
@@ -86,6 +87,8 @@ def test_a_response_without_the_unit_of_a_motion_over_a_force_is_refused(unit):
 
 def test_a_fit_of_several_responses_or_with_a_base_is_refused():
     data = responses(0, "m/N")
-    fit = fit_resonances([data[1]], [Base(np.ones_like, "y/F", "base.toml")], modes=3, is_gain_free=True)
+    fit = fit_resonances(
+        [data[1]], [Base(np.ones_like, "y/F", "base.toml")], FitOptions(modes=3, is_gain_free=True)
+    )
     with pytest.raises(UsageError, match="driven point alone"):
         mode_shapes(fit, data)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from symflex.data.fitting import Base, fit_resonances
+from symflex.options import FitOptions
 from tests.unit.data.analyser import measured, random_system, rigid
 
 BASE = [Base(rigid)]
@@ -18,7 +19,7 @@ def recover(count, seed, **settings):
         random = np.random.default_rng([seed, k])
         system = random_system(random)
         data = measured(lambda f, system=system: system(f) * rigid(2 * np.pi * f), random, **settings)
-        fit = fit_resonances([data], BASE, modes=5)
+        fit = fit_resonances([data], BASE, FitOptions(modes=5))
         found, spread = fit.resonances, fit.standard_errors()
         true = (2 * np.pi * system.f_p, system.zeta_p, 2 * np.pi * system.f_z, system.zeta_z)
         got = (found.omega_p, found.zeta_p, found.omega_z[0], found.zeta_z[0])
@@ -59,9 +60,9 @@ def test_without_the_window_damping_comes_out_too_large():
     system = random_system(random, 1)
     narrow = type(system)(np.array([20.0]), np.array([0.01]), np.array([26.0]), np.array([0.01]))
     data = measured(narrow, random, record=2.0, records=400, noise=0.01)
-    with_window = fit_resonances([data], [Base(np.ones_like)], modes=1).resonances.zeta_p[0]
+    with_window = fit_resonances([data], [Base(np.ones_like)], FitOptions(modes=1)).resonances.zeta_p[0]
     plain = type(data)(data.name, data.frequency_hz, data.values, data.coherence, data.averages)
-    without = fit_resonances([plain], [Base(np.ones_like)], modes=1)
+    without = fit_resonances([plain], [Base(np.ones_like)], FitOptions(modes=1))
     assert with_window == pytest.approx(0.01, rel=0.03)
     assert without.resonances.zeta_p[0] > 1.1 * with_window
     assert any("Hann" in warning for warning in without.warnings)

@@ -10,6 +10,7 @@ from flint import arb
 import symflex
 from symflex.errors import ModelError, UsageError
 from symflex.loops import DynamicColocation
+from symflex.options import ColocationOptions
 
 MASSES = {
     "a": {"type": "mass", "at": "x", "m": "1 kg"},
@@ -77,7 +78,7 @@ def test_inputs_must_be_the_same():
     from symflex import pipeline
 
     with pytest.raises(UsageError, match="SF805"):
-        pipeline.colocation(model().resolved, "Y/F", "X/G")
+        pipeline.colocation(model().resolved, ColocationOptions("Y/F", "X/G"))
 
 
 def test_a_band_is_needed():

@@ -179,7 +179,7 @@ def test_the_budget_is_kept(loop):
 
 def test_the_document_is_json(loop):
     document = json.loads(json.dumps(loop("K/(s*(s + 1)*(s + 2))").stability("K").to_json_dict()))
-    assert document["schema"] == "symflex.loops/1"
+    assert document["schema"] == "symflex.stability/1"
     assert document["boundaries"][0]["gain"]["value"].startswith("6.0000")
     assert document["intervals"][1]["right_half_plane_poles"] == 2
     assert document["certified"] is True

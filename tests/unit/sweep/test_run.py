@@ -12,9 +12,8 @@ import numpy as np
 import pytest
 
 import symflex
-from symflex import pipeline
 from symflex.errors import BudgetError, UsageError
-from symflex.sweep import chunk_size, read_design, run_sweep, sweep_key
+from symflex.sweep import chunk_size, read_design, run_sweep, sweep_key, sweep_task
 from symflex.sweep.files import npz_bytes
 from symflex.sweep.journal import open_journal
 from tests.house.repository import ROOT
@@ -43,7 +42,7 @@ class Backwards(Executor):
 def task_and_design(count):
     model = oscillator().resolved
     design = read_design(model.parameters, [f"k=1:100:log:{count}"])
-    return pipeline.sweep_task(model, ("X", "F"), design), design
+    return sweep_task(model, ("X", "F"), design), design
 
 
 def test_the_order_in_which_chunks_come_back_does_not_matter():
@@ -138,7 +137,7 @@ def test_a_folder_that_is_no_journal_is_left_alone(tmp_path):
 def test_keys_tell_sweeps_apart():
     task, design = task_and_design(5)
     other = read_design(task.model.parameters, ["k=1:100:lin:5"])
-    zeros = pipeline.sweep_task(task.model, ("X", "F"), design, "zeros")
+    zeros = sweep_task(task.model, ("X", "F"), design, "zeros")
     keys = [sweep_key(task, design, "1"), sweep_key(task, other, "1"), sweep_key(zeros, design, "1")]
     keys.append(sweep_key(task, design, "2"))
     assert len(set(keys)) == 4

@@ -1,0 +1,84 @@
+"""Measured responses of a model: made of it, or fitted on top of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from symflex.analysis.response import respond
+from symflex.data.fitting import Base, fit_resonances
+from symflex.data.measurement import MeasurementPlan, synthesise
+from symflex.errors import Diagnostic, UsageError
+from symflex.model import load_with
+from symflex.model.spec import read
+from symflex.roots import Band
+from symflex.roots.locate import locate
+from symflex.transfer.of_model import derive_bound, pick_pairs
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy as np
+    import numpy.typing as npt
+
+    from symflex.data.fitting import Fit
+    from symflex.data.measurement import MeasuredResponse
+    from symflex.model import Model
+    from symflex.options import FitOptions, MeasureOptions
+    from symflex.transfer import BoundTransferFunction
+
+
+def fit(measured: Sequence[MeasuredResponse], given: FitOptions) -> Fit:
+    """Fit resonances to measured responses, which share their poles; see :func:`.fitting.fit_resonances`.
+
+    Raises
+    ------
+    UsageError
+        SF902 for a name the base does not have, or more or fewer of them than responses.
+    """
+    if given.base is None:
+        return fit_resonances(measured, None, given)
+    bases = _bases(len(measured), given.base, given)
+    return fit_resonances(measured, bases, replace(given, slope=None))
+
+
+def _bases(count: int, path: str | Path, given: FitOptions) -> list[Base]:
+    """Return what the resonances of each response are multiplied by."""
+    model = load_with(read(Path(path)), {}, allow_outside=given.allow_outside)
+    taken, folders = tuple(p.name for p in model.parameters), (Path(path).parent, *given.allow_outside)
+    pairs = pick_pairs(model, given.tfs)[: None if given.tfs else 1]
+    if len(pairs) == 1:
+        pairs = pairs * count
+    if len(pairs) != count:
+        message = f"{count} responses and {len(pairs)} transfer functions of the base"
+        raise UsageError(Diagnostic("SF902", message, None, "name one with --tf for each response"))
+    bounds = dict(zip(pairs, derive_bound(model, pairs), strict=True))
+
+    def base_of(bound: BoundTransferFunction) -> Base:
+        def function(omega: npt.NDArray[np.float64]) -> npt.NDArray[np.complex128]:
+            return respond(bound, omega).values
+
+        return Base(function, bound.name, str(path), bound.source.unit, taken=taken, folders=folders)
+
+    return [base_of(bounds[pair]) for pair in pairs]
+
+
+def measure(model: Model, given: MeasureOptions) -> MeasuredResponse:
+    """Return a synthetic measurement of one transfer function; see :func:`.measurement.synthesise`.
+
+    Raises
+    ------
+    UsageError
+        SF902 when a pole is undamped, which has no stationary response, or the plan cannot be meant.
+    """
+    plan = MeasurementPlan.of(given, model.analysis.band)
+    (bound,) = derive_bound(model, pick_pairs(model, [given.tf] if given.tf else [])[:1])
+    band = Band(Fraction(plan.low_hz) / 2, Fraction(plan.high_hz) * 2)
+    for pole in locate(bound, band if bound.is_distributed else None).poles:
+        if pole.on_imaginary_axis and not pole.is_zero:
+            message = f"{bound.name} has an undamped pole at {pole.frequency_hz():.4g} Hz"
+            hint = "only damped systems have a stationary response"
+            raise UsageError(Diagnostic("SF902", message, None, hint))
+    return synthesise(bound.name, lambda omega: respond(bound, omega).values, plan, bound.source.unit)

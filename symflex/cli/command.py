@@ -1,0 +1,144 @@
+"""A command made of a function and a dataclass of :mod:`symflex.options`.
+
+    symflex rational SPEC --modes 3 --set K=2
+
+calls the function below ``@command_of("rational", RationalOptions)`` with
+``Specification("SPEC", (), {"K": "2"})`` and ``RationalOptions(modes=3)``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from symflex.cli.budgeting import budgeted
+from symflex.cli.reporting import note, reporting, show
+from symflex.options import OUTSIDE, option
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from dataclasses import Field
+
+    from symflex.model import Model
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class _Reading:
+    """What every command that reads a specification is asked."""
+
+    spec: str = option("", is_path=True)
+    allow_outside: tuple[str, ...] = option((), "--allow-outside", **OUTSIDE)
+
+
+@dataclass(frozen=True)
+class _Setting:
+    """The values that stand in place of declared ones; last in the help."""
+
+    settings: tuple[str, ...] = option(
+        (),
+        "--set",
+        multiple=True,
+        metavar="NAME=VALUE",
+        help="Another value of a parameter: k='80 kN/m', or SI units; repeatable.",
+    )
+
+
+@dataclass(frozen=True)
+class Specification:
+    """Which file a command reads, and with which values.
+
+    Parameters
+    ----------
+    path : str
+        The file.
+    allow_outside : tuple of str
+        Folders that its ``model`` blocks may read besides its own.
+    settings : mapping of str to str
+        Other values of parameters.
+    """
+
+    path: str
+    allow_outside: tuple[str, ...]
+    settings: Mapping[str, str]
+
+    def load(self) -> Model:
+        """Read the specification, and print its warnings to stderr."""
+        from symflex import pipeline
+
+        model = pipeline.load(self.path, self.allow_outside, self.settings)
+        show(pipeline.warnings(model))
+        return model
+
+
+def command_of(
+    name: str, options: type[T], cls: type[click.Command] = click.Command
+) -> Callable[[Callable[[Specification, T], int | None]], click.Command]:
+    """Make a command of a function of a specification and options."""
+
+    def made(run: Callable[[Specification, T], int | None]) -> click.Command:
+        def called(
+            spec: str, allow_outside: tuple[str, ...], settings: tuple[str, ...], **given: object
+        ) -> int:
+            from symflex.model import read_settings  # a command's help needs none of it
+
+            return run(Specification(spec, allow_outside, read_settings(settings)), options(**given)) or 0
+
+        called.__doc__ = run.__doc__
+        faced = budgeted(with_parameters(_Setting, reporting(called)))
+        return click.command(name, cls=cls)(with_parameters(_Reading, with_parameters(options, faced)))
+
+    return made
+
+
+def bare_command(name: str, options: type[T]) -> Callable[[Callable[[T], int]], click.Command]:
+    """Make a command of a function of options alone, among which is what it reads."""
+
+    def made(run: Callable[[T], int]) -> click.Command:
+        def called(**given: object) -> int:
+            return run(options(**given))
+
+        called.__doc__ = run.__doc__
+        return click.command(name)(with_parameters(options, budgeted(reporting(called))))
+
+    return made
+
+
+def with_parameters(options: type, run: Callable[..., int]) -> Callable[..., int]:
+    """Give a function the parameters that the fields of a dataclass stand for, in their order."""
+    for one in reversed(fields(options)):
+        run = _parameter(one)(run)
+    return run
+
+
+def _parameter(one: Field[Any]) -> Callable[[Callable[..., int]], Callable[..., int]]:
+    said = dict(one.metadata)
+    flags = said.pop("flags")
+    if "choices" in said:
+        said["type"] = click.Choice(said.pop("choices"))
+    elif "least" in said:
+        kind = click.FloatRange if said.get("type") is float else click.IntRange
+        said["type"] = kind(said.pop("least"), said.pop("most", None))
+    elif said.pop("is_path", False):
+        said["type"] = click.Path()
+    elif said.pop("is_folder", False):
+        said["type"] = click.Path(exists=True, file_okay=False)
+    if not flags:
+        return click.argument(one.name, **said)
+    if not said.get("required"):
+        said["default"] = one.default
+    return click.option(*flags, one.name, **said)
+
+
+def first_pair(model: Model, tf: str | None, doing: str) -> tuple[str, str]:
+    """Return the transfer function that is named, or the first one, and then say which others there are."""
+    from symflex import pipeline
+
+    pairs = pipeline.pick_pairs(model, [tf] if tf else [])
+    if tf is None and len(pairs) > 1:
+        others = ", ".join("/".join(pair) for pair in pairs[1:])
+        note(f"{doing} {'/'.join(pairs[0])}; choose with --tf: {others}")
+    return pairs[0]

@@ -1,0 +1,77 @@
+"""Loops of a model as it is asked for: its characteristic function, its stable gains, its colocated band."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import TYPE_CHECKING
+
+from symflex.loops import loop as loop_room
+from symflex.loops.colocation import dynamic_colocation
+from symflex.loops.find import find_stable_gains
+from symflex.loops.loop import pick_gain
+from symflex.model import with_numbers
+from symflex.options import band_ends, gain_ends, highest_frequency, tolerance
+from symflex.transfer.of_model import assemble, derive_all, derive_bound, pick_pairs
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from symflex.budget import Budget
+    from symflex.loops.colocation import DynamicColocation
+    from symflex.loops.loop import Loop
+    from symflex.loops.stability_map import StabilityMap
+    from symflex.model import Model
+    from symflex.options import ColocationOptions, StabilityOptions
+    from symflex.transfer import Given
+
+
+def characteristic_loop(model: Model, gain: str, values: Mapping[str, Given] | None = None) -> Loop:
+    """Return the characteristic function in a gain; see :func:`.loop.characteristic_loop`.
+
+    Raises
+    ------
+    UsageError
+        SF902 when there is no such parameter.
+    """
+    parameter = pick_gain(model.parameters, gain)
+    given = dict(values or {})
+    for name in given:
+        pick_gain(model.parameters, name)
+    # Parameters that are given another value stay symbols until that is put in.
+    prepared = with_numbers(model, (gain, *given))
+    equations = assemble(prepared)
+    plain = {row.name for row in equations.outputs if row.divisor.is_one}
+    pair = next((p for p in model.transfer_functions if p[0] in plain), model.transfer_functions[0])
+    (tf,) = derive_all(prepared, [pair])
+    return loop_room.characteristic_loop(tf, parameter, given)
+
+
+def stability(
+    model: Model,
+    given: StabilityOptions,
+    values: Mapping[str, Given] | None = None,
+    budget: Budget | None = None,
+) -> StabilityMap:
+    """Return for which values of a gain the model is stable; see :func:`symflex.loops.find_stable_gains`.
+
+    Raises
+    ------
+    UsageError
+        SF902 when there is no such parameter.
+    ModelError
+        SF801 when no pole depends on it.
+    """
+    limits = gain_ends(given.limits, pick_gain(model.parameters, given.gain))
+    radians = None if given.up_to is None else 2 * pi * highest_frequency(given.up_to)
+    loop = characteristic_loop(model, given.gain, values)
+    return find_stable_gains(loop, limits, given.digits or model.analysis.digits or 15, budget, radians)
+
+
+def colocation(model: Model, given: ColocationOptions, budget: Budget | None = None) -> DynamicColocation:
+    """Return up to which frequency one output moves with another; see :func:`.loops.dynamic_colocation`."""
+    band = None if given.band is None else band_ends(given.band, above_zero=True)
+    tip, joint = derive_bound(model, pick_pairs(model, [given.tf, given.reference]))
+    phase = tolerance(given.phase, "--phase", ("deg", "°"), "10 deg")
+    magnitude = tolerance(given.magnitude, "--magnitude", ("dB",), "1 dB")
+    limits = None if band is None else (float(band[0]), float(band[1]))
+    return dynamic_colocation(tip, joint, phase, magnitude, limits, budget)

@@ -1,0 +1,588 @@
+"""What each command is asked: one frozen dataclass a command, made by the command line and by Python alike.
+
+        symflex roots beam.toml --modes 3 --digits 20      RootsOptions(modes=3, digits=20)
+    bound.poles(3, digits=20)                          RootsOptions(modes=3, digits=20)
+
+A field has its default, its names on the command line and what the help says of it, and the command line is
+made of the fields, in their order. What may have a unit is a text there and a number in Python; it is kept as
+it was given, and read by the functions at the end.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from decimal import Decimal
+from fractions import Fraction
+from math import inf, isfinite, isinf, nan
+from typing import TYPE_CHECKING, Any, Final, TypeVar
+
+from symflex.errors import Diagnostic, Source, Span, SpecError, Text, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from symflex.model import Parameter
+    from symflex.quantities import Quantity
+
+    Stated = float | Fraction | str
+    """A number, or a text with or without a unit."""
+    Ends = tuple[Stated, Stated]
+    Places = Sequence[str | Path]
+
+T = TypeVar("T")
+
+FREQUENCIES: Final = 200
+"""Of a swept response, where nothing else is said."""
+UNBOUNDED: Final = ("inf", "-inf", "+inf")
+
+
+def option(default: T, *flags: str, **said: object) -> T:
+    """Return a field: its default, its names on the command line (none for an argument), what is said of it.
+
+    That is ``help``, ``metavar``, ``nargs`` and other words of :func:`click.option`, or in place of its
+    ``type``: ``least`` and ``most``, ``choices``, ``is_path``, ``is_folder`` (one that exists).
+    """
+    found: Any = field(default=default, metadata={"flags": flags, **said})
+    return found  # type: ignore[no-any-return]
+
+
+ONE_TF: Final = {"metavar": "OUT/IN", "help": "The transfer function; the first one by default."}
+SOME_TFS: Final = {"metavar": "OUT/IN", "multiple": True, "help": "Only this transfer function; repeatable."}
+JSON: Final = {"is_flag": True, "help": "Print the result as JSON."}
+OUTSIDE: Final = {
+    "multiple": True,
+    "is_folder": True,
+    "metavar": "FOLDER",
+    "help": "Let model blocks read this folder too, besides that of SPEC; repeatable.",
+}
+TWO: Final = {"nargs": 2, "metavar": "LO HI"}
+SHOWN: Final = {"show_default": True}
+REPRESENTATIONS: Final = ("auto", "expanded", "nested")
+WIDTHS: Final = "ieee|a4|MM"
+
+
+@dataclass(frozen=True)
+class CheckOptions:
+    """Of ``symflex check``."""
+
+    as_json: bool = option(False, "--json", **JSON)
+    strict: bool = option(False, "--strict", is_flag=True, help="Exit with code 3 where there is a warning.")
+
+
+@dataclass(frozen=True)
+class DeriveOptions:
+    """Of ``symflex derive``."""
+
+    tfs: Sequence[str] = option((), "--tf", **SOME_TFS)
+    form: str | None = option(
+        None,
+        "--form",
+        metavar="FORM",
+        help="polynomial, monic, constant, factored, definitions, zpk, frequency; for beams, rods and delays "
+        "also hyperbolic, krylov, vaughan; nested is that representation. The shortest symbolic form by "
+        "default.",
+    )
+    format: str = option("text", "--format", choices=("text", "latex", "json"), **SHOWN)
+    width: str | None = option(
+        None,
+        "--width",
+        metavar=WIDTHS,
+        help="Column that equations in LaTeX are broken to, in type of ten points; not broken by default.",
+    )
+    representation: str = option(
+        "auto",
+        "--representation",
+        choices=REPRESENTATIONS,
+        **SHOWN,
+        help="Quotients of polynomials, or straight-line programs of named sub-impedances; auto takes the "
+        "latter where expansion would explode, and says so.",
+    )
+    as_json: bool = option(False, "--json", is_flag=True, help="The same as --format json.")
+    digits: int = option(6, "--digits", least=1, most=1000, **SHOWN, help="Digits of zpk.")
+
+
+@dataclass(frozen=True)
+class ExportOptions:
+    """Of ``symflex export``."""
+
+    target: str = option("", "--to", required=True, metavar="TARGET", help="One of the targets below.")
+    tfs: Sequence[str] = option((), "--tf", **SOME_TFS)
+    form: str | None = option(
+        None, "--form", metavar="FORM", help="latex: form of the functions, as for derive."
+    )
+    width: str | None = option(
+        None, "--width", metavar=WIDTHS, help="latex: width of the column; a4 (170 mm) by default."
+    )
+    no_figures: bool = option(False, "--no-figures", is_flag=True, help="latex: a folder without figures.")
+    representation: str = option(
+        "auto",
+        "--representation",
+        choices=REPRESENTATIONS,
+        **SHOWN,
+        help="Quotients of polynomials or nested expressions, as for derive.",
+    )
+    output: str | None = option(
+        None, "-o", "--output", is_path=True, help="File to write; standard output by default."
+    )
+    is_minimal: bool = option(False, "--minimal", is_flag=True, help="state-space: without hidden states.")
+    strict: bool = option(
+        False, "--strict", is_flag=True, help="Exit with 4 when the verified accuracy falls short."
+    )
+
+
+@dataclass(frozen=True)
+class RootsOptions:
+    """Of ``symflex roots``, and of what Python finds at poles and zeros.
+
+    Python gives ``band`` in Hz and ``region`` in rad/s.
+    """
+
+    tf: str | None = option(None, "--tf", **ONE_TF)
+    modes: int | None = option(
+        None, "--modes", least=1, help="Only the N lowest modes, with roots at the origin."
+    )
+    mode: int | None = option(None, "--mode", least=1, help="Only mode number N, by natural frequency.")
+    band: Ends | None = option(
+        None, "--band", **TWO, help='Only natural frequencies in a band: 0.1 1000, "1 kHz".'
+    )
+    region: tuple[Stated, Stated, Stated, Stated] | None = option(
+        None,
+        "--region",
+        nargs=4,
+        metavar="RE0 RE1 IM0 IM1",
+        help="Only a rectangle of the s plane [rad/s].",
+    )
+    digits: int | None = option(
+        None, "--digits", least=1, most=10_000, help="Correct significant digits.  [default: 15]"
+    )
+    explain: bool = option(
+        False, "--explain", is_flag=True, help="Say which constrained system's poles the zeros are."
+    )
+    sensitivity: Sequence[str] = option(
+        (),
+        "--sensitivity",
+        metavar="[PARAM]",
+        multiple=True,
+        is_flag=False,
+        flag_value="",
+        help="How roots move with a parameter, all of them when none is named; may be repeated.",
+    )
+    strict: bool = option(
+        False, "--strict", is_flag=True, help="Exit with code 4 also when a part of the region is left out."
+    )
+    as_json: bool = option(False, "--json", **JSON)
+
+
+@dataclass(frozen=True)
+class RationalOptions:
+    """Of ``symflex rational``."""
+
+    tf: str | None = option(None, "--tf", **ONE_TF)
+    modes: int | None = option(
+        None, "--modes", least=0, help="How many modes are kept.  [default: those of [analysis], or 5]"
+    )
+    form: str = option(
+        "product", "--form", choices=("product", "modal"), **SHOWN, help="Poles and zeros, or residues."
+    )
+    as_json: bool = option(False, "--json", **JSON)
+
+
+@dataclass(frozen=True)
+class SweepOptions:
+    """Of ``symflex sweep``. Python gives the values of each parameter as a mapping, and the frequencies."""
+
+    over: Sequence[str] | Mapping[str, str | Sequence[Stated | Decimal]] = option(
+        (),
+        "--over",
+        multiple=True,
+        metavar="NAME=VALUES",
+        help="k=1e4:1e6:log:200, k=1:5:lin:9, m=1,2,5; to draw from: k=1e4:1e6[:log], k=+-5%. Repeatable.",
+    )
+    draws: int | None = option(None, "--monte-carlo", least=1, metavar="N", help="Draw N points.")
+    seed: int = option(1, "--seed", least=0, **SHOWN, help="Of the random numbers.")
+    of: str = option(
+        "poles",
+        "--of",
+        choices=("poles", "zeros", "response", "margins"),
+        **SHOWN,
+        help="What is computed.",
+    )
+    tf: str | None = option(None, "--tf", **ONE_TF)
+    modes: int | None = option(None, "--modes", least=1, help="Only the N lowest modes.")
+    band: Ends | None = option(
+        None, "--band", **TWO, help='Roots, or a response, in a band of frequencies: 0.1 1000, "1 kHz".'
+    )
+    count: int | None = option(
+        None,
+        "--count",
+        least=2,
+        most=100_000,
+        help=f"Frequencies of a response.  [default: {FREQUENCIES}]",
+    )
+    gain: str | None = option(None, "--gain", metavar="K", help="The gain that closes the loop, for margins.")
+    output: str | Path | None = option(
+        None, "-o", "--output", is_path=True, help="File to write: .nc, .npz, .csv or .parquet."
+    )
+    fresh: bool = option(
+        False, "--fresh", is_flag=True, help="Discard what an earlier run kept in FILE.part."
+    )
+    workers: int | None = option(
+        None, "--workers", least=1, most=1024, help="Processes.  [default: one per processor]"
+    )
+    scheduler: str | None = option(
+        None, "--scheduler", metavar="tcp://HOST:PORT", help="Work on a dask.distributed cluster."
+    )
+    as_json: bool = option(False, "--json", is_flag=True, help="Print a summary as JSON.")
+
+
+@dataclass(frozen=True)
+class StabilityOptions:
+    """Of ``symflex stability``. Python gives ``limits`` in SI units, None for none, and ``up_to`` in Hz."""
+
+    gain: str = option(
+        "", "--gain", required=True, metavar="K", help="The parameter that is the loop's gain."
+    )
+    limits: tuple[Stated | None, Stated | None] | None = option(
+        None,
+        "--range",
+        **TWO,
+        help='Only gains between two values: 0 1e4, "1 kN/m" inf.  [default: all of the sign assumed of it; '
+        "with beams, rods or delays up to 100 times its value]",
+    )
+    up_to: Stated | None = option(
+        None,
+        "--up-to",
+        metavar="FREQUENCY",
+        help="Where poles have no end: how far they are counted, in Hz or with a unit.",
+    )
+    digits: int | None = option(
+        None, "--digits", least=1, most=1000, help="Correct significant digits.  [default: 15]"
+    )
+    as_json: bool = option(False, "--json", **JSON)
+
+
+@dataclass(frozen=True)
+class ColocationOptions:
+    """Of ``symflex colocation``. Python gives degrees, decibels and Hz."""
+
+    tf: str = option(
+        "", "--tf", required=True, metavar="OUT/IN", help="The output that is away from the actuator."
+    )
+    reference: str = option("", "--with", required=True, metavar="OUT2/IN", help="The colocated output.")
+    phase: Stated = option("10 deg", "--phase", **SHOWN, help="Largest difference of phase.")
+    magnitude: Stated = option("1 dB", "--magnitude", **SHOWN, help="Largest difference of magnitude.")
+    band: Ends | None = option(
+        None, "--band", **TWO, help="Frequencies examined; by default those of [analysis]."
+    )
+    as_json: bool = option(False, "--json", **JSON)
+
+
+@dataclass(frozen=True)
+class PlotOptions:
+    """Of ``symflex plot``."""
+
+    kind: str = option("")
+    tfs: Sequence[str] = option(
+        (), "--tf", multiple=True, metavar="OUT/IN", help="Draw this transfer function; repeatable."
+    )
+    gain: str | None = option(
+        None, "--gain", metavar="K", help="Draw a locus, or a Nyquist plot, of the loop with this gain."
+    )
+    band: Ends | None = option(None, "--band", **TWO, help='Frequencies shown: 0.1 1000, "1 kHz".')
+    xlim: Ends | None = option(None, "--xlim", **TWO, help="Ends of the axis across; rad/s in an s plane.")
+    ylim: Ends | None = option(None, "--ylim", **TWO, help="Ends of the axis upwards; dB of a Bode plot.")
+    phase: Ends | None = option(None, "--phase", **TWO, help="Ends of the phases of a Bode plot [deg].")
+    limits: Ends | None = option(None, "--range", **TWO, help="First and last gain of a locus.")
+    modes: int | None = option(None, "--modes", least=1, help="How many modes are shown, the lowest ones.")
+    output: str | None = option(
+        None, "-o", "--output", is_path=True, help="File to write: .pdf, .pgf, .svg or .png."
+    )
+    width: str | None = option(
+        None, "--width", metavar=WIDTHS, help="Width of the figure: 88.5, 170 or so many mm."
+    )
+    font: str | None = option(None, "--font", metavar="FONT", help="times (the default), latex or sans.")
+
+
+@dataclass(frozen=True)
+class AuditOptions:
+    """Of ``symflex audit``."""
+
+    tfs: Sequence[str] = option(
+        (), "--tf", multiple=True, metavar="OUT/IN", help="Only this formula; repeatable."
+    )
+    strict: bool = option(
+        False, "--strict", is_flag=True, help="Exit with code 4 unless every formula is proved equal."
+    )
+    as_json: bool = option(False, "--json", **JSON)
+
+
+@dataclass(frozen=True)
+class FitOptions:
+    """Of ``symflex fit``. Python gives data in place of their paths, too."""
+
+    data: Sequence[object] = option((), nargs=-1, required=True, is_path=True)
+    base: str | Path | None = option(
+        None, "--base", is_path=True, help="Specification whose function the resonances multiply."
+    )
+    allow_outside: Places = option((), "--allow-outside", **OUTSIDE)
+    tfs: Sequence[str] = option(
+        (), "--tf", multiple=True, metavar="OUT/IN", help="That function; repeat it, one per response."
+    )
+    modes: int | None = option(
+        None, "--modes", least=1, most=50, help="How many resonances; chosen by --criterion if absent."
+    )
+    start: str = option(
+        "auto",
+        "--start",
+        choices=("auto", "peaks", "vector", "aaa"),
+        **SHOWN,
+        help="Where the fit begins; auto tries all and keeps the best.",
+    )
+    criterion: str = option(
+        "bic", "--criterion", choices=("bic", "aicc"), **SHOWN, help="Chooses the number of resonances."
+    )
+    band: tuple[float, float] | None = option(
+        None, "--band", type=float, **TWO, help="Only the lines between these frequencies [Hz]."
+    )
+    is_gain_free: bool = option(False, "--gain", is_flag=True, help="Fit a gain besides the base too.")
+    is_lag_free: bool = option(False, "--lag", is_flag=True, help="Fit a lag of the sensor, 1/(1 + T s).")
+    is_lag_signed: bool = option(
+        False, "--signed-lag", is_flag=True, help="The same, and it may be negative, a lead."
+    )
+    is_delay_free: bool = option(
+        False, "--delay", is_flag=True, help="Fit a dead time, exp(-T s), T not negative."
+    )
+    slope: int | None = option(
+        None, "--slope", least=-6, most=6, help="Without --base: the power of s; chosen if absent."
+    )
+    averages: float | None = option(
+        None, "--averages", type=float, least=1, help="Independent averages, where the file does not say."
+    )
+    window: str | None = option(
+        None,
+        "--window",
+        choices=("hann", "none"),
+        help="Time window of the estimate, if the file does not say.",
+    )
+    driving: str | None = option(
+        None,
+        "--driving",
+        metavar="OUT/IN",
+        help="The response at the driven point: it is fitted, and all give mass-normalised mode shapes.",
+    )
+    output: str | None = option(None, "-o", "--output", is_path=True, help="Specification to write.")
+    figure: str | None = option(None, "--plot", is_path=True, help="Figure to write: .pdf, .svg or .png.")
+    strict: bool = option(
+        False, "--strict", is_flag=True, help="A fit that is poor is exit code 4, and nothing is written."
+    )
+    as_json: bool = option(False, "--json", **JSON)
+
+
+@dataclass(frozen=True)
+class MeasureOptions:
+    """Of ``symflex measure``."""
+
+    tf: str | None = option(None, "--tf", **ONE_TF)
+    output: str = option(
+        "", "-o", "--output", is_path=True, required=True, help="File to write: .csv, .npz or .uff."
+    )
+    band: tuple[float, float] | None = option(
+        None, "--band", type=float, **TWO, help="Lines shown [Hz].  [default: [analysis] band]"
+    )
+    spacing: float | None = option(
+        None, "--spacing", type=float, help="Distance of lines [Hz].  [default: HI/800]"
+    )
+    averages: int = option(40, "--averages", least=1, **SHOWN, help="Records averaged.")
+    noise: float = option(
+        0.03, "--noise", type=float, least=0, **SHOWN, help="Sensor noise over its signal, rms."
+    )
+    rolloff: float | None = option(
+        5000.0,
+        "--rolloff",
+        type=float,
+        least=0,
+        **SHOWN,
+        help="Corner of the accelerometer [Hz]; 0 for none.",
+    )
+    seed: int = option(1, "--seed", least=0, **SHOWN, help="Of the random numbers.")
+
+
+@dataclass(frozen=True)
+class ReportOptions:
+    """Of ``symflex report``."""
+
+    specs: Places = option((), nargs=-1, required=True, is_path=True, metavar="SPEC...")
+    allow_outside: Places = option((), "--allow-outside", **OUTSIDE)
+    output: str | Path = option(
+        "report",
+        "-o",
+        "--output",
+        **SHOWN,
+        is_path=True,
+        metavar="DIR",
+        help="Folder to write; what is in it stays, but for files of the same name.",
+    )
+    pdf: bool | None = option(
+        None, "--pdf/--no-pdf", help="With report.pdf; by default where pdflatex is there."
+    )
+    day: str | None = option(
+        None,
+        "--date",
+        metavar="YYYY-MM-DD",
+        help="Date printed; today, or SOURCE_DATE_EPOCH. 'none' for none.",
+    )
+    jobs: int | None = option(
+        None,
+        "-j",
+        "--jobs",
+        least=1,
+        most=64,
+        help="Models computed at once; as many as there are processors.",
+    )
+
+
+def exact(number: float | Fraction) -> Fraction:
+    """Return the shortest decimal that prints a number.
+
+    Examples
+    --------
+    >>> exact(0.1)
+    Fraction(1, 10)
+    """
+    return number if isinstance(number, Fraction) else Fraction(Decimal(repr(float(number))))
+
+
+def band_ends(band: Ends, *, above_zero: bool = False) -> tuple[Fraction, Fraction]:
+    """Return the ends of a band [Hz].
+
+    Numbers are checked where they are used.
+
+    Raises
+    ------
+    UsageError
+        SF902 for a text that is no frequency, where the first is not the lower one, and for 0 where
+        frequencies are equally spaced in their logarithm.
+
+    Examples
+    --------
+    >>> band_ends(("0.1", "1 kHz"))
+    (Fraction(1, 10), Fraction(1000, 1))
+    """
+    low, high = (frequency(end, "--band", "0.1 or '1 kHz'", is_hertz=True) for end in band)
+    if isinstance(band[0], str) and (not 0 <= low < high or (above_zero and not low)):
+        above = " above 0" if above_zero else ""
+        message = f"--band takes two frequencies in Hz{above}, the lower one first"
+        raise UsageError(Diagnostic("SF902", message))
+    return low, high
+
+
+def frequency(given: Stated, flag: str, example: str, *, is_hertz: bool = False) -> Fraction:
+    """Return a frequency in Hz, or in rad/s, from a number or a quantity that counts per second."""
+    if not isinstance(given, str):
+        return exact(given)
+    from symflex.model.analysis import PER_SECOND, PI_NEARLY, in_limits
+
+    wrong = UsageError(Diagnostic("SF902", f"{flag} takes numbers such as {example}, found '{given[:60]}'"))
+    quantity = _quantity(given, flag, wrong)
+    if quantity.unit and quantity.dimension != PER_SECOND:
+        raise wrong
+    number = in_limits(quantity)
+    if not quantity.unit or bool(quantity.cycles) == is_hertz:
+        return number
+    return number / (2 * PI_NEARLY) if is_hertz else number * 2 * PI_NEARLY
+
+
+def highest_frequency(given: Stated) -> float:
+    """Return a positive frequency [Hz]; a number is checked where it is used."""
+    value = float(frequency(given, "--up-to", "100 or '1 kHz'", is_hertz=True))
+    if isinstance(given, str) and not value > 0:
+        raise UsageError(Diagnostic("SF902", "--up-to takes a positive frequency"))
+    return value
+
+
+def plain_number(given: Stated, units: tuple[str, ...]) -> float:
+    """Return the number a text says, with or without one of some units; not a number where it says none."""
+    if not isinstance(given, str):
+        return float(given)
+    for unit in units:
+        given = given.strip().removesuffix(unit)
+    try:
+        return float(given)
+    except ValueError:
+        return nan
+
+
+def tolerance(given: Stated, flag: str, units: tuple[str, ...], example: str) -> float:
+    """Return a largest difference; a number is checked where it is used.
+
+    Raises
+    ------
+    UsageError
+        SF902 for a text that is no positive number.
+    """
+    value = plain_number(given, units)
+    if isinstance(given, str) and not 0 < value < inf:
+        message = f"{flag} takes a positive number such as '{example}', found '{given[:40]}'"
+        raise UsageError(Diagnostic("SF902", message))
+    return value
+
+
+def axis_ends(given: Ends | None, flag: str, *, is_frequency: bool = False) -> tuple[float, float] | None:
+    """Return the ends of an axis: numbers, or frequencies [rad/s].
+
+    Raises
+    ------
+    UsageError
+        SF902 for what is no number, and where the first is not the lower one.
+    """
+    if given is None:
+        return None
+    if is_frequency:
+        low, high = (float(frequency(end, flag, "-10 or '3 rad/s'")) for end in given)
+    else:
+        low, high = (plain_number(end, ("dB", "deg", "°")) for end in given)
+        for text, end in zip(given, (low, high), strict=True):
+            if not isfinite(end):
+                message = f"{flag} takes numbers such as -60, found '{str(text)[:40]}'"
+                raise UsageError(Diagnostic("SF902", message))
+    if not low < high:
+        raise UsageError(Diagnostic("SF902", f"{flag} takes two numbers, the lower one first"))
+    return low, high
+
+
+def gain_ends(
+    limits: tuple[Stated | None, Stated | None] | None, parameter: Parameter
+) -> tuple[Fraction | None, Fraction | None] | None:
+    """Return the range of a gain in SI units, None for an end that is infinite."""
+    return None if limits is None else (_gain(limits[0], parameter), _gain(limits[1], parameter))
+
+
+def _gain(given: Stated | None, parameter: Parameter) -> Fraction | None:
+    if given is None or not isinstance(given, str):
+        return None if given is None or isinf(given) else exact(given)
+    if given.strip().lower() in UNBOUNDED:
+        return None
+    from symflex.quantities import unit_of
+
+    said = f"--range takes values such as 0, 1e4 or inf, found '{given[:60]}'"
+    wrong = UsageError(Diagnostic("SF902", said))
+    quantity = _quantity(given, "--range", wrong)
+    known = unit_of(parameter.unit).dimension if parameter.unit else None
+    if quantity.unit and quantity.dimension != known:
+        own = f"is in '{parameter.unit}'" if parameter.unit else "is a number without a unit"
+        message = f"'{parameter.name}' {own}, the range is in '{quantity.unit}'"
+        raise UsageError(Diagnostic("SF203", message))
+    number, pi_power = quantity.cyclic() if parameter.cycles else quantity.angular()
+    if pi_power:
+        raise wrong
+    return number
+
+
+def _quantity(given: str, flag: str, wrong: UsageError) -> Quantity:
+    from symflex.quantities import parse_quantity
+
+    try:
+        return parse_quantity(Text(given, Span(Source(flag, given), 0, len(given))))
+    except SpecError:
+        raise wrong from None

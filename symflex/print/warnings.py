@@ -1,0 +1,68 @@
+"""What a specification says that may not be meant: what nothing uses, prints included."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symflex.equations.elimination import is_singular, unreached
+from symflex.errors import Diagnostic, SymflexError
+from symflex.expressions import Sum
+from symflex.model.unused import unnamed_definitions, unused_name
+from symflex.transfer.of_model import NEVER_LARGE, assemble, derive_all
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from symflex.equations import Equations
+    from symflex.model import Model
+
+MOST_WARNINGS = 100
+"""As many as problems, of which a reader stops at as many too."""
+
+
+def warnings(model: Model, equations: Equations | None = None) -> tuple[Diagnostic, ...]:
+    """Return what a specification says that may not be meant.
+
+    Parameters
+    ----------
+    model : Model
+        Resolved.
+    equations : Equations, optional
+        Of the model, where they are there already.
+
+    Returns
+    -------
+    tuple of Diagnostic
+        What nothing uses, how frequencies were read, and, where the equations have a unique solution, inputs,
+        outputs and elements without effect. Those of the model's own text come first.
+    """
+    try:
+        equations = equations or assemble(model)
+        is_solvable = not is_singular(equations)
+        found = (*unreached(equations), *_unused_definitions(model)) if is_solvable else ()
+    except SymflexError:
+        found = ()  # what is wrong with the equations is said by what derives
+    own = model.outputs[0].span.source if model.outputs[0].span else None
+
+    def place(warning: Diagnostic) -> tuple[bool, str, int]:
+        span = warning.span
+        return (True, "", 0) if span is None else (span.source is not own, span.source.name, span.start)
+
+    ordered = sorted((*model.warnings, *found), key=place)
+    if len(ordered) > MOST_WARNINGS:
+        more = f"{len(ordered) - MOST_WARNINGS} more warnings"
+        ordered[MOST_WARNINGS:] = [Diagnostic(ordered[MOST_WARNINGS].code, more, severity="warning")]
+    return tuple(ordered)
+
+
+def _unused_definitions(model: Model) -> Iterator[Diagnostic]:
+    """Yield the definitions that no expression names and no print shows."""
+    unnamed = unnamed_definitions(model)
+    sums = [d for d in unnamed if isinstance(d.expression, Sum)]
+    shown = {d.name for d in sums}
+    if sums and not model.is_distributed and len(model.elements) <= NEVER_LARGE:
+        from symflex.print.forms import print_forms  # hardly ever needed
+
+        printed, _ = print_forms(derive_all(model), "definitions")
+        shown = {name for form in printed for name, _ in form.where}
+    yield from (unused_name("definition", d.name, d.span) for d in unnamed if d.name not in shown)
