@@ -20,7 +20,7 @@ from symflex.model import with_numbers
 from symflex.transfer import nested_form
 from symflex.transfer.bind import bind
 from symflex.transfer.derive import derive_all as derive_from
-from symflex.transfer.nested import nested_transfer
+from symflex.transfer.derive import nested_transfer
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
