@@ -20,7 +20,7 @@ import symflex
 from benchmarks.generated import imported
 from benchmarks.measure import Claim, Measurement, taking_turns, typical_ratio
 from symflex import pipeline
-from symflex.codegen.numpy.module import numpy_module
+from symflex.codegen.python import NUMPY
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -95,7 +95,7 @@ def _ways(s: NDArray[Any], omega: NDArray[Any]) -> dict[str, Callable[[], Any]]:
 def exported_module() -> Any:  # noqa: ANN401
     """Return the exported module, imported."""
     model = pipeline.load(SPECIFICATION)
-    return imported(numpy_module(pipeline.derive_all(model), model).text, "exported_beam")
+    return imported(NUMPY.export(model, pipeline.derive_all(model)).text, "exported_beam")
 
 
 def _closed_form() -> tuple[sympy.Expr, list[sympy.Symbol]]:

@@ -21,7 +21,7 @@ from benchmarks.distributed import AGREEMENT, BAND_HZ, POINTS, ROUNDS, SPECIFICA
 from benchmarks.generated import FLAGS, loaded, pointer
 from benchmarks.measure import Claim, Measurement, fastest
 from symflex import pipeline
-from symflex.codegen.c import c_files
+from symflex.codegen.c import C99
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -107,8 +107,8 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
 def _ways(omega: NDArray[Any]) -> dict[str, Callable[[], NDArray[Any]]]:
     """Return the ways to compute the imaginary parts, without arguments."""
     model = pipeline.load(SPECIFICATION)
-    made = c_files(pipeline.derive_all(model), model, name="exported_beam")
-    files = {"exported_beam.c": made.source, "exported_beam.h": made.header, "by_hand.c": BY_HAND}
+    made = C99.export(model, pipeline.derive_all(model), stem="exported_beam", is_alone=False)
+    files = {"exported_beam.c": made.text, "exported_beam.h": made.companions[".h"], "by_hand.c": BY_HAND}
     module = exported_module()
     s = 1j * omega
     ways: dict[str, Callable[[], NDArray[Any]]] = {

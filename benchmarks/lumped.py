@@ -24,9 +24,9 @@ import symflex
 from benchmarks.generated import FLAGS, imported, loaded, pointer
 from benchmarks.measure import Claim, Measurement, fastest
 from symflex import pipeline
-from symflex.codegen.c import c_files
-from symflex.codegen.numpy.module import numpy_module
+from symflex.codegen.c import C99
 from symflex.codegen.program import measure_values
+from symflex.codegen.python import NUMPY
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -136,7 +136,7 @@ def _ways() -> dict[str, Way]:
     model = pipeline.load(SPECIFICATION)
     tfs = pipeline.derive_all(model)
     bound = symflex.load(SPECIFICATION).transfer_function("V_tip", "F").bind()
-    module = imported(numpy_module(tfs, model).text, "exported_chain")
+    module = imported(NUMPY.export(model, tfs).text, "exported_chain")
     system: Any = bound.to_control()
     num, den = system.num[0][0], system.den[0][0]
     roots: Any = bound.to_scipy()
@@ -154,8 +154,8 @@ def _ways() -> dict[str, Way]:
     if shutil.which("cc") is None:
         print("skipped, there is no C compiler `cc`: exported C of six masses", file=sys.stderr)
         return ways
-    made = c_files(tfs, model, name="six")
-    files = {"six.c": made.source, "six.h": made.header, "by_hand.c": BY_HAND}
+    made = C99.export(model, tfs, stem="six", is_alone=False)
+    files = {"six.c": made.text, "six.h": made.companions[".h"], "by_hand.c": BY_HAND}
     chain = [(ctypes.c_double * len(row))(*row) for row in (m, k, b)]
     for name, flags in FLAGS.items():
         library = loaded(files, flags)

@@ -1,20 +1,31 @@
-"""What an export target is, what it makes, and what the user is told of its accuracy."""
+"""What an export target is, and the one driver of all languages that numeric code is printed in.
+
+Input: the transfer functions of a model.
+Output: an :class:`Export`. For numeric code a program is chosen for each function and measured against ball
+arithmetic; what a language prints is made of these :class:`Contents` alone.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import isfinite
 from typing import TYPE_CHECKING, Protocol
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+from symflex.codegen.program import choose_programs
 
-    from symflex.codegen.program import Verification
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+    from fractions import Fraction
+
+    from symflex.codegen.program import Piecewise, Program, Verification
     from symflex.model import Model
     from symflex.transfer import AnyTransferFunction
 
 ACCURACY = 1e-13
 """Relative error of exported code above which the user is warned."""
+
+SAMPLES = 400
+"""Frequencies at which the error is measured, besides those around poles and zeros."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,11 +40,18 @@ class Export:
         What the user should know, for instance an accuracy that was not reached.
     companions : mapping of str to str
         Files that belong beside it, by suffix.
+    name : str
+        Of the module or main function, where the language has such.
+    verified : tuple of Verification
+        How well the functions agree with ball arithmetic: one for each function of s, in order, then one for
+        each frequency response in real arithmetic.
     """
 
     text: str
     warnings: tuple[str, ...] = ()
     companions: Mapping[str, str] = field(default_factory=dict)
+    name: str = ""
+    verified: tuple[Verification, ...] = ()
 
 
 class Exporter(Protocol):
@@ -66,6 +84,165 @@ class Exporter(Protocol):
             There can be no other files beside it: it has to serve without companions.
         """
         ...
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """One function of a file.
+
+    Parameters
+    ----------
+    tf : TransferFunction or NestedTransferFunction
+        Whose values it computes.
+    program : Program or Piecewise
+        Of s; of the angular frequency where it is real.
+    wanted : str
+        The name it has where the language and the other names admit it.
+    verification : Verification
+        How well it agrees with ball arithmetic.
+    """
+
+    tf: AnyTransferFunction
+    program: Program | Piecewise
+    wanted: str
+    verification: Verification
+
+    @property
+    def key(self) -> str:
+        """Tells it from the other members."""
+        return f"{'at' if self.program.is_real else 'of'} {self.tf.name}"
+
+
+@dataclass(frozen=True, slots=True)
+class Contents:
+    """What a file of numeric code consists of, in no language yet.
+
+    Parameters
+    ----------
+    model : Model
+        Title, source and parameters.
+    members : tuple of Member
+        One for each transfer function, each followed by its response in real arithmetic where there is one.
+    stem : str
+        The file's name without suffix; empty where that is not known.
+    is_alone : bool
+        There can be no other files beside it.
+    digits : int
+        Significant digits of printed errors.
+    """
+
+    model: Model
+    members: tuple[Member, ...]
+    stem: str
+    is_alone: bool
+    digits: int
+
+    @property
+    def verified(self) -> tuple[Verification, ...]:
+        """How well members agree with ball arithmetic: functions of s, then responses."""
+        ordered = sorted(self.members, key=lambda member: member.program.is_real)
+        return tuple(member.verification for member in ordered)
+
+
+@dataclass(frozen=True, slots=True)
+class Language:
+    """A language that numeric code is exported to: the exporter that prints verified programs.
+
+    Every file has one function ``OUT_over_IN`` of s and the parameters for each transfer function. Lossless
+    distributed systems get a second one, ``OUT_over_IN_at``: the frequency response in real arithmetic.
+
+    Parameters
+    ----------
+    suffix : str
+        Of the file's name.
+    summary : str
+        What is made, in a line.
+    print : callable
+        Makes the file of its contents.
+    """
+
+    suffix: str
+    summary: str
+    print: Callable[[Contents], Export]
+
+    def export(
+        self,
+        model: Model,
+        tfs: Sequence[AnyTransferFunction],
+        stem: str = "",
+        *,
+        is_alone: bool = True,
+        band_hz: tuple[Fraction, Fraction] | None = None,
+        samples: int = SAMPLES,
+        digits: int = 2,
+    ) -> Export:
+        """Return the file; accuracy that was not reached is a warning.
+
+        Parameters
+        ----------
+        model, tfs, stem, is_alone
+            As for :class:`Exporter`; a transfer function given twice is written once.
+        band_hz : tuple of Fraction, optional
+            Where the error is measured [Hz]; by default the model's ``[analysis]`` band, else 0.1 Hz to
+            10 kHz.
+        samples : int
+            Number of frequencies at which it is measured, besides those around poles and zeros.
+        digits : int
+            Significant digits of the printed error.
+
+        Returns
+        -------
+        Export
+            The same text on every run. Names that cannot be the language's are altered; text of the model
+            stands in it only as inert strings and comments.
+
+        Raises
+        ------
+        BudgetError
+            SF503 when a function's text would be too long.
+        ModelError
+            SF233 when a number does not fit in double precision.
+        UsageError
+            SF902 when ``stem`` cannot be the name of a companion.
+
+        Examples
+        --------
+        >>> from symflex import pipeline
+        >>> from symflex.codegen.exporters import EXPORTERS
+        >>> model = pipeline.loads('''
+        ... symflex = 1
+        ... parameters = {m = "2 kg", b = "3 N*s/m"}
+        ... elements.body = {type = "mass", at = "x", m = "m"}
+        ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
+        ... inputs.F = {force = "x"}
+        ... outputs.V = "s*x"
+        ... ''')
+        >>> def first(target):
+        ...     text = EXPORTERS[target].export(model, pipeline.derive_all(model), "cart").text
+        ...     return next(line for line in text.splitlines() if "V_over_F(" in line and "(s" in line)
+        >>> first("julia")
+        'function V_over_F(s::Number; m::Number = 2.0, b::Number = 3.0)'
+        >>> first("c")
+        'double complex model_V_over_F(double complex s, const model_parameters *p);'
+        """
+        members = _members(tfs, band_hz or model.analysis.band, samples)
+        contents = Contents(model, members, stem, is_alone, digits)
+        made = self.print(contents)
+        warnings = (*shortfalls(contents.verified), *made.warnings)
+        return replace(made, warnings=warnings, verified=contents.verified)
+
+
+def _members(
+    tfs: Sequence[AnyTransferFunction], band_hz: tuple[Fraction, Fraction] | None, samples: int
+) -> tuple[Member, ...]:
+    found: list[Member] = []
+    for tf in {tf.name: tf for tf in tfs}.values():
+        (program, verification), real = choose_programs(tf, band_hz, samples)
+        wanted = f"{tf.output.name}_over_{tf.input.name}"
+        found.append(Member(tf, program, wanted, verification))
+        if real is not None:
+            found.append(Member(tf, real[0], f"{wanted}_at", real[1]))
+    return tuple(found)
 
 
 def shortfalls(verified: Sequence[Verification]) -> tuple[str, ...]:

@@ -1,27 +1,26 @@
-"""Targets of ``symflex export``. A new target is one module in ``targets`` and one line in ``EXPORTERS``."""
+"""Targets of ``symflex export``. A new target is one line in ``EXPORTERS`` and what prints it."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symflex.codegen.targets.array import ARRAY_API_EXPORTER, JAX_EXPORTER
-from symflex.codegen.targets.c import CExporter
-from symflex.codegen.targets.julia import JuliaExporter
+from symflex.codegen.c import C99
+from symflex.codegen.julia import JULIA
+from symflex.codegen.matlab import MATLAB
+from symflex.codegen.python import ARRAY_API, JAX, NUMPY
 from symflex.codegen.targets.latex import LatexExporter
-from symflex.codegen.targets.matlab import MatlabExporter
-from symflex.codegen.targets.numpy import NumpyExporter
 from symflex.codegen.targets.state_space import StateSpaceExporter
 
 if TYPE_CHECKING:
     from symflex.codegen.export import Exporter
 
 EXPORTERS: dict[str, Exporter] = {
-    "numpy": NumpyExporter(),
-    "array-api": ARRAY_API_EXPORTER,
-    "jax": JAX_EXPORTER,
-    "c": CExporter(),
-    "matlab": MatlabExporter(),
-    "julia": JuliaExporter(),
+    "numpy": NUMPY,
+    "array-api": ARRAY_API,
+    "jax": JAX,
+    "c": C99,
+    "matlab": MATLAB,
+    "julia": JULIA,
     "state-space": StateSpaceExporter(),
     "latex": LatexExporter(),
 }

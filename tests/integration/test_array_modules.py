@@ -16,8 +16,7 @@ import sympy
 from flint import acb
 
 from symflex import pipeline
-from symflex.codegen.array.module import ARRAY_API, JAX, array_module
-from symflex.codegen.numpy.module import numpy_module
+from symflex.codegen.exporters import EXPORTERS
 from tests.house.repository import slow_ones, specifications
 from tests.unit.codegen.against_balls import axis_points, worst_errors
 from tests.unit.codegen.exportable import MASSLESS, PIPE
@@ -57,11 +56,8 @@ def model_of(name):
 def made(name, dialect, folder):
     """Export a derivation, or a specification given as text, and import what comes of it."""
     model = model_of(name)
-    write = numpy_module if dialect is None else array_module
-    arguments = () if dialect is None else (dialect,)
-    text = write(pipeline.derive_all(model), model, *arguments, samples=10).text
-    kind = "numpy" if dialect is None else dialect.space
-    stem = f"over_{kind}_{name if name in SPECS else abs(hash(name))}"
+    text = EXPORTERS[dialect].export(model, pipeline.derive_all(model), samples=10).text
+    stem = f"over_{dialect.replace('-', '_')}_{name if name in SPECS else abs(hash(name))}"
     path = folder / f"{stem}.py"
     path.write_text(text, encoding="utf-8")
     spec = importlib.util.spec_from_file_location(stem, path)
@@ -78,17 +74,17 @@ def folder(tmp_path_factory):
 
 @pytest.fixture
 def over_any(folder):
-    return lambda name: made(name, ARRAY_API, folder)
+    return lambda name: made(name, "array-api", folder)
 
 
 @pytest.fixture
 def over_jax(jnp, folder):
-    return lambda name: made(name, JAX, folder)
+    return lambda name: made(name, "jax", folder)
 
 
 @pytest.fixture
 def over_numpy(folder):
-    return lambda name: made(name, None, folder)
+    return lambda name: made(name, "numpy", folder)
 
 
 @pytest.fixture
@@ -578,14 +574,14 @@ def test_single_precision_is_told_of(over_jax, jax):
 @pytest.mark.parametrize(
     ("dialect", "roots"),
     [
-        (ARRAY_API, {"__future__", "cmath", "importlib", "sys", "typing"}),
-        (JAX, {"__future__", "cmath", "jax", "math"}),
+        ("array-api", {"__future__", "cmath", "importlib", "sys", "typing"}),
+        ("jax", {"__future__", "cmath", "jax", "math"}),
     ],
     ids=["array-api", "jax"],
 )
 def test_a_module_imports_what_it_is_for_only(dialect, roots):
     model = model_of("timoshenko_cantilever")
-    text = array_module(pipeline.derive_all(model), model, dialect, samples=2).text
+    text = EXPORTERS[dialect].export(model, pipeline.derive_all(model), samples=2).text
     found = set()
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Import):
@@ -598,6 +594,6 @@ def test_a_module_imports_what_it_is_for_only(dialect, roots):
 
 def test_the_docstring_says_whose_arithmetic_was_verified():
     model = model_of("two_mass")
-    text = " ".join(array_module(pipeline.derive_all(model), model).text.split())
+    text = " ".join(EXPORTERS["array-api"].export(model, pipeline.derive_all(model)).text.split())
     assert "against ball arithmetic" in text
     assert "The error is that of the same operations in numpy" in text

@@ -8,7 +8,7 @@ import shutil
 import numpy as np
 import pytest
 
-from symflex.codegen.julia import julia_module
+from symflex.codegen.julia import JULIA
 from symflex.codegen.program.verify import doubles
 from symflex.transfer import bind
 from tests.house.repository import slow_ones
@@ -32,7 +32,7 @@ def julia(tmp_path):
 
 def exported(name, samples=400):
     model, tfs = derived(name)
-    return tfs, julia_module(tfs, model, name, samples=samples)
+    return tfs, JULIA.export(model, tfs, name, samples=samples)
 
 
 def read(function, tf, points):

@@ -9,12 +9,12 @@ from dataclasses import replace
 import pytest
 
 from symflex import pipeline
-from symflex.codegen.julia import julia_module, module_name
+from symflex.codegen.julia import JULIA, module_name
 from tests.integration.julia import Julia
 from tests.integration.julia_in_python import functions_of
 from tests.unit.codegen.test_numpy_hostile import HOSTILE, NAMES, SPEC, model_of, renamed, ring_takes
 
-JULIA = [
+PHRASES = [
     "$(run(`ls`))",
     "$x",
     "\\$(exit())",
@@ -42,7 +42,7 @@ JULIA_NAMES = [
     "Dict", "String", "NamedTuple", "LinearAlgebra", "PARAMETERS", "TRANSFER_FUNCTIONS", "X_over_F",
     "_X_over_F", "Hostile", "s", "z", "number", "eval", "include", "k", "p",
 ]  # fmt: skip
-TEXTS = [*HOSTILE, *JULIA]
+TEXTS = [*HOSTILE, *PHRASES]
 CALLED = list(dict.fromkeys([*NAMES, *JULIA_NAMES, *HOSTILE]))
 PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 STRING = re.compile(r'"""(?:[^"\\]|\\.|"(?!""))*"""|"(?:[^"\\\n]|\\.)*"')
@@ -50,7 +50,7 @@ BARE_DOLLAR = re.compile(r"(?<!\\)(?:\\\\)*\$")
 
 
 def written(model, tfs=None, name="hostile"):
-    return julia_module(tfs or pipeline.derive_all(model), model, name, samples=5).text
+    return JULIA.export(model, tfs or pipeline.derive_all(model), name, samples=5).text
 
 
 def code_of(text):

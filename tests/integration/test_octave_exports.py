@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from symflex import pipeline
-from symflex.codegen.matlab import matlab_function_file
+from symflex.codegen.matlab import MATLAB
 from symflex.transfer import bind
 from tests.integration.octave import Octave
 from tests.unit.codegen.against_balls import axis_points, worst_errors
@@ -25,7 +25,7 @@ def octave(tmp_path):
 def exported(octave, name, samples=400):
     """Write the function file of a model, call its main function, and return its transfer functions."""
     model, tfs = derived(name)
-    made = matlab_function_file(tfs, model, name, samples=samples)
+    made = MATLAB.export(model, tfs, name, samples=samples)
     octave.write(name, made.text)
     octave.do(f"G = {name}();")
     return tfs, {v.name for v in made.verified if v.form == "real"}
@@ -153,7 +153,7 @@ inputs.F = { force = "x" }
 outputs.X = "x"
 """
     model = pipeline.loads(text)
-    octave.write("held_mass", matlab_function_file(pipeline.derive_all(model), model, "held_mass").text)
+    octave.write("held_mass", MATLAB.export(model, pipeline.derive_all(model), "held_mass").text)
     octave.do("G = held_mass(); disp(isempty(G.parameters.k)); disp(G.X_over_F(1, 'k', 8));")
     octave.do("try, G.X_over_F(1); catch problem, disp(problem.message); end")
     assert octave.run().split("\n")[:3] == ["1", "0.1000", "parameter 'k' has no value"]

@@ -8,11 +8,11 @@ from dataclasses import replace
 import pytest
 
 from symflex import pipeline
-from symflex.codegen.matlab import main_name, matlab_function_file
+from symflex.codegen.matlab import MATLAB, main_name
 from tests.integration.octave import Octave
 from tests.unit.codegen.test_numpy_hostile import HOSTILE, NAMES, SPEC, model_of, renamed, ring_takes
 
-MATLAB = [
+PHRASES = [
     "%{",
     "%}",
     "%{\nunlink('x')\n%}",
@@ -40,7 +40,7 @@ MATLAB_NAMES = [
     "varargin", "nargin", "numbers", "columns", "everywhere", "given", "value", "G", "s", "p", "k", "number",
     "X_over_F_value", "X_over_F", "default_parameters", "model", "z", "x" * 63, "x" * 64, "x" * 200,
 ]  # fmt: skip
-TEXTS = [*HOSTILE, *MATLAB]
+TEXTS = [*HOSTILE, *PHRASES]
 CALLED = list(dict.fromkeys([*NAMES, *MATLAB_NAMES, *HOSTILE]))
 PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
 LINK = re.compile(r"<(?!U\+)[a-zA-Z/]")
@@ -48,7 +48,7 @@ STRING = re.compile(r"'(?:[^'\n]|'')*'")
 
 
 def written(model, tfs=None, name="hostile"):
-    return matlab_function_file(tfs or pipeline.derive_all(model), model, name, samples=5).text
+    return MATLAB.export(model, tfs or pipeline.derive_all(model), name, samples=5).text
 
 
 def code_of(text):

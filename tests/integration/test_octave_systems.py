@@ -9,7 +9,7 @@ from __future__ import annotations
 import pytest
 
 from symflex import pipeline
-from symflex.codegen.matlab import matlab_function_file
+from symflex.codegen.matlab import MATLAB
 from tests.integration.octave import Octave
 
 pytestmark = pytest.mark.needs_tool("octave")
@@ -47,7 +47,7 @@ KEEPERS = {
 def values(tmp_path_factory):
     octave = Octave(tmp_path_factory.mktemp("systems"))
     model = pipeline.loads(OSCILLATOR)
-    octave.write("osc", matlab_function_file(pipeline.derive_all(model), model, "osc", samples=20).text)
+    octave.write("osc", MATLAB.export(model, pipeline.derive_all(model), "osc", samples=20).text)
     for name, text in KEEPERS.items():
         octave.write(name, text)
     octave.do("G = osc(); a = G.systems.X_over_F(); z = G.systems.X_over_F('zpk'); y = G.systems.Y_over_F();")

@@ -1,5 +1,5 @@
 """The export target ``c``: C99 source and header."""
 
-from symflex.codegen.c.module import CExport, c_files
+from symflex.codegen.c.module import C99
 
-__all__ = ["CExport", "c_files"]
+__all__ = ["C99"]

@@ -1,18 +1,18 @@
 """Transfer functions as a C99 source file and its header.
 
-Input: transfer functions and the model they come from.
-Output: a :class:`CExport`, the texts of both files and how well each function agrees with ball arithmetic.
+Input: the contents of the files.
+Output: the texts of both files.
 """
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symflex.codegen.c.expression import LANE_FUNCTIONS
 from symflex.codegen.c.functions import Functions
 from symflex.codegen.c.names import KEYWORDS, PARTS, RESERVED
+from symflex.codegen.export import Export, Language
 from symflex.codegen.module_text import (
     COST,
     ITERATED,
@@ -21,103 +21,38 @@ from symflex.codegen.module_text import (
     origin_lines,
     value_as_written,
 )
-from symflex.codegen.program import Piecewise, Verification, choose_programs, identifiers, inert, wrapped
+from symflex.codegen.program import Piecewise, identifiers, inert, wrapped
 from symflex.codegen.program.calls import RuntimeCalls
 from symflex.codegen.source_parts import called_parts
 from symflex.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from fractions import Fraction
 
-    from symflex.model import Model
-    from symflex.transfer import AnyTransferFunction
+    from symflex.codegen.export import Contents
 
 WIDTH = 88
 
 _FILE_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")
 
 
-@dataclass(frozen=True, slots=True)
-class CExport:
-    """Generated files.
+def c_files(contents: Contents) -> Export:
+    """Return C99 source and header with functions of s and of arrays of frequencies.
 
-    Parameters
-    ----------
-    source, header : str
-        Their texts. Without a file name the header is empty, and the source holds its declarations.
-    verified : tuple of Verification
-        One per transfer function, in the order of the files, then one per frequency response in real
-        arithmetic.
-    """
-
-    source: str
-    header: str
-    verified: tuple[Verification, ...]
-
-
-def c_files(
-    tfs: Sequence[AnyTransferFunction],
-    model: Model,
-    band_hz: tuple[Fraction, Fraction] | None = None,
-    *,
-    name: str | None = None,
-    samples: int = 400,
-    digits: int = 2,
-) -> CExport:
-    """Return C99 files with two functions per transfer function: of s, and of arrays of frequencies.
-
-    Parameters
-    ----------
-    tfs : sequence of TransferFunction
-        Of ``model``; a transfer function given twice is written once.
-    model : Model
-        Title, source and parameters.
-    band_hz : tuple of Fraction, optional
-        Where the error is measured [Hz]; by default the model's ``[analysis]`` band, else 0.1 Hz to 10 kHz.
-    name : str, optional
-        Of the files, without suffix; all public names begin with it. Without one they begin with ``model``,
-        and everything is one file.
-    samples : int
-        Number of frequencies at which the error is measured, besides those around poles and zeros.
-    digits : int
-        Significant digits of the printed error.
-
-    Returns
-    -------
-    CExport
-        The same texts on every run. Names that cannot be C's are altered; text of the model stands in them
-        only in comments, where it is inert.
+    All public names begin with the file's. Where there can be no header, they begin with ``model``, and
+    everything is one file.
 
     Raises
     ------
-    BudgetError
-        SF503 when a function's text would be too long.
-    ModelError
-        SF233 when a number does not fit in double precision.
     UsageError
-        SF902 when ``name`` cannot stand in an include directive.
-
-    Examples
-    --------
-    >>> from symflex import pipeline
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... parameters = {m = "2 kg", b = "3 N*s/m"}
-    ... elements.body = {type = "mass", at = "x", m = "m"}
-    ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
-    ... inputs.F = {force = "x"}
-    ... outputs.V = "s*x"
-    ... ''')
-    >>> files = c_files(pipeline.derive_all(model), model, name="cart")
-    >>> "double complex cart_V_over_F(double complex s, const cart_parameters *p);" in files.header
-    True
+        SF902 when the file's name cannot stand in an include directive.
     """
+    name = None if contents.is_alone else contents.stem
     if name is not None and not _FILE_NAME.fullmatch(name):
         message = f"'{inert(name)[:64]}' cannot be the name of a C header"
         hint = "letters, digits and _ . + - of ASCII can stand in an include directive everywhere"
         raise UsageError(Diagnostic("SF902", message, None, hint))
-    return _Files(tfs, model, band_hz, name, samples, digits).made()
+    return _Files(contents, name).made()
 
 
 def _prefix(name: str | None) -> str:
@@ -164,39 +99,29 @@ def _harmless(line: str) -> str:
 
 
 class _Files:
-    def __init__(
-        self,
-        tfs: Sequence[AnyTransferFunction],
-        model: Model,
-        band_hz: tuple[Fraction, Fraction] | None,
-        name: str | None,
-        samples: int,
-        digits: int,
-    ) -> None:
-        self.model = model
+    def __init__(self, contents: Contents, name: str | None) -> None:
+        self.model = contents.model
         self.name = name
-        self.digits = digits
+        self.digits = contents.digits
         self.prefix = _prefix(name)
         self.structure = f"{self.prefix}_parameters"
-        self.members = identifiers({p.name: p.name for p in model.parameters}, RESERVED)
-        self.tfs = {tf.name: tf for tf in tfs}
-        self.chosen = {key: choose_programs(tf, band_hz, samples) for key, tf in self.tfs.items()}
-        names = _function_names({k: f"{tf.output.name}_over_{tf.input.name}" for k, tf in self.tfs.items()})
-        self.functions = {key: self._functions(key, names[key]) for key in self.tfs}
+        self.members = identifiers({p.name: p.name for p in self.model.parameters}, RESERVED)
+        self.of_s = {m.tf.name: m for m in contents.members if not m.program.is_real}
+        self.on_axis = {m.tf.name: m for m in contents.members if m.program.is_real}
+        names = _function_names({key: member.wanted for key, member in self.of_s.items()})
+        self.functions = {key: self._functions(key, names[key]) for key in self.of_s}
 
     def _functions(self, key: str, name: str) -> Functions:
-        (program, _), axis = self.chosen[key]
-        real = None if axis is None else axis[0]
-        return Functions(name, self.prefix, self.structure, self.members, program, real)
+        real = self.on_axis[key].program if key in self.on_axis else None
+        axis = real if isinstance(real, Piecewise) else None
+        return Functions(name, self.prefix, self.structure, self.members, self.of_s[key].program, axis)
 
-    def made(self) -> CExport:
-        verified = [verification for (_, verification), _ in self.chosen.values()]
-        verified += [axis[1] for _, axis in self.chosen.values() if axis is not None]
+    def made(self) -> Export:
         header, body = self._header(), self._source()
         if self.name is None:
-            return CExport(f"{header}\n{body}", "", tuple(verified))
+            return Export(f"{header}\n{body}")
         first = "\n".join(comment([f"{self.name}.c: the functions that {self.name}.h declares."]))
-        return CExport(f'{first}\n\n#include "{self.name}.h"\n\n{body}', header, tuple(verified))
+        return Export(f'{first}\n\n#include "{self.name}.h"\n\n{body}', companions={".h": header})
 
     # ---------------------------------------------------------------------------------------- the header
 
@@ -290,15 +215,16 @@ class _Files:
         ]
 
     def _described(self, key: str) -> list[str]:
-        tf = self.tfs[key]
+        member = self.of_s[key]
+        tf, program = member.tf, member.program
         unit = f" [{tf.unit}]" if tf.unit else ""
         lines = [inert(f"{tf.quantity[:1].upper()}{tf.quantity[1:]} {tf.name}{unit}."), ""]
         lines += [f"  {line}" if line else "" for line in formula_lines(tf, WIDTH - 5)]
-        (program, verification), axis = self.chosen[key]
-        sentences = [f"At s = j omega, {verification.text(self.digits)}."]
-        if axis is not None:
-            sentences = [f"Of s, {verification.text(self.digits)}."]
-            sentences.append(f"At s = j omega, in real arithmetic, {axis[1].text(self.digits)}.")
+        said = member.verification.text(self.digits)
+        sentences = [f"At s = j omega, {said}."]
+        if key in self.on_axis:
+            real = self.on_axis[key].verification.text(self.digits)
+            sentences = [f"Of s, {said}.", f"At s = j omega, in real arithmetic, {real}."]
         if isinstance(program, Piecewise) and program.solves:
             sentences.append(ITERATED if RuntimeCalls.of([program]).roots else COST)
         lines.append("")
@@ -349,3 +275,8 @@ def helpers(code: str, parameters: str, order: int) -> str:
         others = "".join(f"#define lane_{f} {f}\n" for f in own)
     text = "\n".join(called_parts(code, PARTS, always)).replace("OTHERWISE\n", others)
     return text.replace("PARAMETERS", parameters).replace("CX_ORDER", str(max(order, 1)))
+
+
+C99 = Language(
+    ".c", "C99 source and header, values at s and arrays of frequencies, verified likewise", c_files
+)

@@ -1,5 +1,5 @@
 """Transfer functions as a Julia module."""
 
-from symflex.codegen.julia.module import JuliaExport, julia_module, module_name
+from symflex.codegen.julia.module import JULIA, module_name
 
-__all__ = ["JuliaExport", "julia_module", "module_name"]
+__all__ = ["JULIA", "module_name"]

@@ -1,19 +1,18 @@
 """Transfer functions as a Julia module without dependencies.
 
-Input: transfer functions and the model they come from.
-Output: a :class:`JuliaExport`, the module's text and how well each function agrees with ball arithmetic.
+Input: the contents of a module.
+Output: its text.
 """
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from symflex.codegen.export import Export, Language
 from symflex.codegen.infix import in_lines
 from symflex.codegen.julia.expression import WIDTH
 from symflex.codegen.julia.pieces import PrivateFunctions
-from symflex.codegen.members import Member, members_of, verifications
 from symflex.codegen.module_text import (
     COST,
     default_value,
@@ -22,15 +21,14 @@ from symflex.codegen.module_text import (
     headline,
     origin_lines,
 )
-from symflex.codegen.program import Piecewise, Verification, identifiers, inert, wrapped
+from symflex.codegen.program import Piecewise, identifiers, inert, wrapped
 from symflex.codegen.source_parts import called_parts, parts_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from fractions import Fraction
 
+    from symflex.codegen.export import Contents, Member
     from symflex.model import Model
-    from symflex.transfer import AnyTransferFunction
 
 LAST_OF_FOUR_DIGITS = 0xFFFF
 """The last character that ``\\u`` names."""
@@ -55,86 +53,13 @@ RESERVED = KEYWORDS | NAMES | {"s"}
 WORDS_OF_TITLE = 4
 
 
-@dataclass(frozen=True, slots=True)
-class JuliaExport:
-    """A generated module.
-
-    Parameters
-    ----------
-    text : str
-        The module's source.
-    name : str
-        Of the module.
-    verified : tuple of Verification
-        One per transfer function, in order, then one per frequency response.
-    """
-
-    text: str
-    name: str
-    verified: tuple[Verification, ...]
-
-
-def julia_module(
-    tfs: Sequence[AnyTransferFunction],
-    model: Model,
-    name: str = "",
-    band_hz: tuple[Fraction, Fraction] | None = None,
-    *,
-    samples: int = 400,
-    digits: int = 2,
-) -> JuliaExport:
+def julia_module(contents: Contents) -> Export:
     """Return a module with one function ``OUT_over_IN(s; parameter = default, ...)`` per transfer function.
 
-    Lossless distributed systems get a second one each, ``OUT_over_IN_at(omega; ...)``: the frequency response
-    in real arithmetic.
-
-    Parameters
-    ----------
-    tfs : sequence of TransferFunction
-        Of ``model``; a transfer function given twice is written once.
-    model : Model
-        Title, source and parameters.
-    name : str
-        From which the module's name is made, as a rule the file's name without suffix. By default the title.
-    band_hz : tuple of Fraction, optional
-        Where the error is measured [Hz]; by default the model's ``[analysis]`` band, else 0.1 Hz to 10 kHz.
-    samples : int
-        Number of frequencies at which it is measured, besides those around poles and zeros.
-    digits : int
-        Significant digits of the printed error.
-
-    Returns
-    -------
-    JuliaExport
-        The same text on every run. Names that cannot be Julia's are altered; text of the model stands in it
-        only as inert strings.
-
-    Raises
-    ------
-    BudgetError
-        SF503 when a function's text would be too long.
-    ModelError
-        SF233 when a number does not fit in double precision.
-
-    Examples
-    --------
-    >>> from symflex import pipeline
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... parameters = {m = "2 kg", b = "3 N*s/m"}
-    ... elements.body = {type = "mass", at = "x", m = "m"}
-    ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
-    ... inputs.F = {force = "x"}
-    ... outputs.V = "s*x"
-    ... ''')
-    >>> export = julia_module(pipeline.derive_all(model), model, "sliding_mass")
-    >>> export.name
-    'SlidingMass'
-    >>> "function V_over_F(s::Number; m::Number = 2.0, b::Number = 3.0)" in export.text
-    True
+    Its name is made from the file's, or from the model's title.
     """
-    members = members_of(tfs, band_hz, samples)
-    main = module_name(name or model.title)
+    model, members, digits = contents.model, contents.members, contents.digits
+    main = module_name(contents.stem or model.title)
     taken = RESERVED | {main}
     public = identifiers({m.key: m.wanted for m in members}, taken)
     taken |= set(public.values())
@@ -155,7 +80,7 @@ def julia_module(
     if public:
         header += [*_exported(list(public.values())), ""]
     text = "\n".join([*header, "\n".join(blocks), f"end # module {main}", ""])
-    return JuliaExport(text, main, verifications(members))
+    return Export(text, name=main)
 
 
 def module_name(text: str) -> str:
@@ -275,3 +200,6 @@ def _public(member: Member, functions: PrivateFunctions, digits: int) -> str:
         inside = [f"        {a}," for a in arguments[:-1]] + [f"        {arguments[-1]}))"]
         body = "\n".join([f"    return complex(_value_of_{functions.name}(", *inside])
     return "\n".join([*_docstring(lines), *first, body, "end", ""])
+
+
+JULIA = Language(".jl", "Julia module, one function per transfer function, verified likewise", julia_module)

@@ -1,5 +1,5 @@
-"""Transfer functions as a MATLAB function file, which Octave runs as well."""
+"""Transfer functions as a function file for MATLAB and Octave."""
 
-from symflex.codegen.matlab.function_file import MatlabExport, main_name, matlab_function_file
+from symflex.codegen.matlab.function_file import MATLAB, main_name
 
-__all__ = ["MatlabExport", "main_name", "matlab_function_file"]
+__all__ = ["MATLAB", "main_name"]

@@ -1,19 +1,18 @@
 """Transfer functions as one function file that MATLAB and Octave run.
 
-Input: transfer functions and the model they come from.
-Output: a :class:`MatlabExport`, the file's text and how well each function agrees with ball arithmetic.
+Input: the contents of a file.
+Output: its text.
 """
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from symflex.codegen.export import Export, Language
 from symflex.codegen.matlab.expression import WIDTH, continued
 from symflex.codegen.matlab.pieces import LONGEST, LocalFunctions, roles_of
 from symflex.codegen.matlab.systems import RationalSystem, system_functions
-from symflex.codegen.members import Member, members_of, verifications
 from symflex.codegen.module_text import (
     COST,
     default_value,
@@ -22,15 +21,14 @@ from symflex.codegen.module_text import (
     headline,
     origin_lines,
 )
-from symflex.codegen.program import Piecewise, Verification, identifiers, inert, wrapped
+from symflex.codegen.program import Piecewise, identifiers, inert, wrapped
 from symflex.codegen.source_parts import called_parts, parts_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from fractions import Fraction
 
+    from symflex.codegen.export import Contents, Member
     from symflex.model import Model
-    from symflex.transfer import AnyTransferFunction
 
 KEYWORDS = frozenset(
     "__FILE__ __LINE__ arguments break case catch classdef continue do else elseif end end_try_catch "
@@ -65,6 +63,9 @@ RESERVED = KEYWORDS | FUNCTIONS | NAMES | WORDS
 
 TITLE_LENGTH = 30
 
+LONGEST_STEM = 64
+"""Characters of a file's name that a message shows."""
+
 EXPANSION = (
     "s and parameters are expanded against each other, as operators expand them. "
     "Values are not finite at poles."
@@ -73,86 +74,15 @@ EXPANSION = (
 _LINK = re.compile(r"<(?=[A-Za-z/])")
 
 
-@dataclass(frozen=True, slots=True)
-class MatlabExport:
-    """A generated function file.
-
-    Parameters
-    ----------
-    text : str
-        The file's content.
-    name : str
-        Of its main function; MATLAB calls it by the name of the file, which has to be the same.
-    verified : tuple of Verification
-        One per transfer function, in order, then one per frequency response.
-    """
-
-    text: str
-    name: str
-    verified: tuple[Verification, ...]
-
-
-def matlab_function_file(
-    tfs: Sequence[AnyTransferFunction],
-    model: Model,
-    name: str = "",
-    band_hz: tuple[Fraction, Fraction] | None = None,
-    *,
-    samples: int = 400,
-    digits: int = 2,
-) -> MatlabExport:
+def matlab_function_file(contents: Contents) -> Export:
     """Return a function file; the struct that its main function returns has a handle per transfer function.
 
-    Lossless distributed systems have a second one each, ``OUT_over_IN_at``, of the angular frequency: the
-    response in real arithmetic.
-
-    Parameters
-    ----------
-    tfs : sequence of TransferFunction
-        Of ``model``; a transfer function given twice is written once.
-    model : Model
-        Title, source and parameters.
-    name : str
-        What the main function shall be called: the file's name without suffix. By default the title.
-    band_hz : tuple of Fraction, optional
-        Where the error is measured [Hz]; by default the model's ``[analysis]`` band, else 0.1 Hz to 10 kHz.
-    samples : int
-        Number of frequencies at which it is measured, besides those around poles and zeros.
-    digits : int
-        Significant digits of the printed error.
-
-    Returns
-    -------
-    MatlabExport
-        The same text on every run. Names that cannot be MATLAB's are altered; text of the model stands in it
-        only in comments and as inert strings.
-
-    Raises
-    ------
-    BudgetError
-        SF503 when a function's text would be too long.
-    ModelError
-        SF233 when a number does not fit in double precision.
-
-    Examples
-    --------
-    >>> from symflex import pipeline
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... parameters = {m = "2 kg", b = "3 N*s/m"}
-    ... elements.body = {type = "mass", at = "x", m = "m"}
-    ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
-    ... inputs.F = {force = "x"}
-    ... outputs.V = "s*x"
-    ... ''')
-    >>> export = matlab_function_file(pipeline.derive_all(model), model, "sliding_mass")
-    >>> export.text.splitlines()[0]
-    'function G = sliding_mass()'
-    >>> "G.V_over_F = @V_over_F;" in export.text
-    True
+    Its main function is called as the file is, or from the model's title. A warning says so when MATLAB
+    cannot call a file of that name.
     """
-    members = members_of(tfs, band_hz, samples)
-    main = main_name(name or model.title)
+    model, members, digits = contents.model, contents.members, contents.digits
+    stem = contents.stem
+    main = main_name(stem or model.title)
     fields = identifiers({m.key: m.wanted for m in members}, RESERVED | _OTHER_FIELDS, LONGEST)
     taken = RESERVED | {main}
     public = identifiers({m.key: fields[m.key] for m in members}, taken | TOOLBOX, LONGEST)
@@ -180,7 +110,9 @@ def matlab_function_file(
             blocks += system_functions(systems[m.key], (made, read), parameters, taken, _string)
     always = ("numbers", "columns", *(["system_of"] if systems else []))
     blocks += called_parts(code, PARTS, always)
-    return MatlabExport("\n".join(blocks), main, verifications(members))
+    shown = inert(stem[:LONGEST_STEM])
+    warning = f"MATLAB cannot call a file '{shown}.m': name it '{main}.m', as its function"
+    return Export("\n".join(blocks), (warning,) if stem and main != stem else (), name=main)
 
 
 _OTHER_FIELDS = frozenset(
@@ -359,3 +291,10 @@ def _public(member: Member, name: str, functions: LocalFunctions, digits: int) -
     names = ", ".join(f"'{functions.parameters[p]}'" for p in member.program.parameters)
     lines += continued(f"given = numbers(varargin, {{{names}}});", "  ")
     return "\n".join([*lines, *functions.call(), "end", ""])
+
+
+MATLAB = Language(
+    ".m",
+    "MATLAB and Octave function file, a handle per transfer function, verified likewise",
+    matlab_function_file,
+)

@@ -382,6 +382,9 @@ def _settled(xp, scaled, x):
     return x
 
 
+#: copies
+
+
 #: _modal_value
 def _modal_value(xp, modes, coefficients, frames):
     """Return a sum of exponentials over the largest one, and the logarithm of that."""

@@ -189,3 +189,6 @@ def _is_left(x, scale):
     if np.ndim(scale) == 0 and np.imag(scale) == 0.0 and np.real(scale) > 0.0:
         return np.real(x) < 0.0
     return np.real(scale * x) < 0.0
+
+
+#: copies

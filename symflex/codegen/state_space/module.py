@@ -1,20 +1,19 @@
 """State equations as one self-contained Python module that imports numpy only.
 
 Input: a realisation, and the transfer functions it is measured against.
-Output: a :class:`StateSpaceExport`, the module's text and how well its numbers agree with ball arithmetic.
+Output: an :class:`Export`, the module's text and how well its numbers agree with ball arithmetic.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from symflex.codegen.export import Export, shortfalls
 from symflex.codegen.module_text import default_value, described
-from symflex.codegen.numpy.expression import WIDTH, Printer, statement
 from symflex.codegen.program import (
     Add,
     Apply,
@@ -35,7 +34,9 @@ from symflex.codegen.program import (
     wrapped,
 )
 from symflex.codegen.program import Parameter as ParameterNode
-from symflex.codegen.python_text import RESERVED, docstring, literal, origin, parameter_table
+from symflex.codegen.python.dialects import NUMPY_DIALECT
+from symflex.codegen.python.expression import WIDTH, PythonPrinter, statement
+from symflex.codegen.python.text import docstring, literal, origin, parameter_table
 from symflex.codegen.state_space.equations import StateEquations
 from symflex.errors import BudgetError, Diagnostic
 from symflex.expressions import (
@@ -88,22 +89,6 @@ from numpy.typing import NDArray
 LETTERS = ("A", "B", "C", "D")
 
 
-@dataclass(frozen=True, slots=True)
-class StateSpaceExport:
-    """A generated module.
-
-    Parameters
-    ----------
-    text : str
-        The module's source.
-    verified : tuple of Verification
-        One per transfer function.
-    """
-
-    text: str
-    verified: tuple[Verification, ...]
-
-
 def state_space_module(
     system: StateSpace,
     tfs: Sequence[AnyTransferFunction],
@@ -111,7 +96,7 @@ def state_space_module(
     *,
     samples: int = 400,
     digits: int = 2,
-) -> StateSpaceExport:
+) -> Export:
     """Return a module with a function ``state_space(*, parameter=default, ...)`` that returns A, B, C, D.
 
     ``STATES``, ``INPUTS`` and ``OUTPUTS`` list names and units in the order of rows and columns.
@@ -157,7 +142,7 @@ def state_space_module(
         raise BudgetError(Diagnostic("SF503", message, None, "give parameters numbers: bind() first"))
     module = _Module(system, StateEquations(system))
     verified = tuple(module.measured(tf, band_hz, samples) for tf in tfs)
-    return StateSpaceExport(module.text(verified, digits), verified)
+    return Export(module.text(verified, digits), shortfalls(verified), verified=verified)
 
 
 class _Module:
@@ -183,8 +168,8 @@ class _Module:
             if isinstance(n, Name)
         }
         self._parameters = [p for p in system.model.parameters if p.name in used]
-        self._names = identifiers({p.name: p.name for p in system.model.parameters}, RESERVED)
-        taken = {*RESERVED, *self._names.values()}
+        self._names = identifiers({p.name: p.name for p in system.model.parameters}, NUMPY_DIALECT.reserved)
+        taken = {*NUMPY_DIALECT.reserved, *self._names.values()}
         self._letters = identifiers({letter: letter for letter in LETTERS}, taken)
 
     # ------------------------------------------------------------------------------------ numbers
@@ -270,7 +255,7 @@ class _Module:
         floats = "NDArray[np.float64]"
         returned = f") -> tuple[{floats}, {floats}, {floats}, {floats}]:"
         lines = [*signature, returned, docstring(self._docstring(), "    ").rstrip("\n")]
-        printer = Printer(self._names, {}, "s")
+        printer = PythonPrinter(self._names, {}, "s")
         for letter, _, shape in self._system.matrices:
             own = self._letters[letter]
             lines.append(f"    {own} = np.zeros({shape})")

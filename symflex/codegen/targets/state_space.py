@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from symflex.codegen.export import Export, shortfalls
 from symflex.codegen.state_space.module import state_space_module
 from symflex.state_space import minimal, realise
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from symflex.codegen.export import Export
     from symflex.model import Model
     from symflex.transfer import AnyTransferFunction
 
@@ -36,5 +36,4 @@ class StateSpaceExporter:
     ) -> Export:
         """Return the module; accuracy that was not reached is a warning."""
         system = realise(model, [(tf.output.name, tf.input.name) for tf in tfs])
-        made = state_space_module(minimal(system) if self.is_minimal else system, tfs, model.analysis.band)
-        return Export(made.text, shortfalls(made.verified))
+        return state_space_module(minimal(system) if self.is_minimal else system, tfs, model.analysis.band)

@@ -10,7 +10,7 @@ from functools import cache
 import pytest
 
 from symflex import pipeline
-from symflex.codegen.array.module import ARRAY_API, JAX, array_module
+from symflex.codegen.python import ARRAY_API, JAX
 from tests.unit.codegen.test_numpy_hostile import HOSTILE, NAMES, model_of, renamed, ring_takes, skeleton
 
 DIALECTS = {"array-api": ARRAY_API, "jax": JAX}
@@ -34,7 +34,7 @@ X = "x"
 
 
 def export(model, dialect, tfs=None):
-    return array_module(tfs or pipeline.derive_all(model), model, DIALECTS[dialect], samples=3).text
+    return DIALECTS[dialect].export(model, tfs or pipeline.derive_all(model), samples=3).text
 
 
 @cache

@@ -15,7 +15,7 @@ import pytest
 from flint import acb
 
 from symflex import pipeline
-from symflex.codegen.c import c_files
+from symflex.codegen.c import C99
 from symflex.codegen.c.expression import Kind, Term, complex_term, difference, product, quotient, total
 from symflex.codegen.c.module import helpers
 from symflex.codegen.exporters import EXPORTERS
@@ -39,9 +39,9 @@ POINTER = ctypes.POINTER(ctypes.c_double)
 
 def compiled(folder, files, name="plant", flags=("-O1",)):
     """Compile exported files into a library, with functions that take arrays for ctypes."""
-    (folder / f"{name}.c").write_text(files.source, encoding="utf-8")
-    (folder / f"{name}.h").write_text(files.header, encoding="utf-8")
-    functions = re.findall(r"^double complex (\w+)\(", files.header, re.MULTILINE)
+    (folder / f"{name}.c").write_text(files.text, encoding="utf-8")
+    (folder / f"{name}.h").write_text(files.companions[".h"], encoding="utf-8")
+    functions = re.findall(r"^double complex (\w+)\(", files.companions[".h"], re.MULTILINE)
     lines = [f'#include "{name}.h"', "#include <string.h>"]
     for i, function in enumerate(functions):
         lines.append(f"""
@@ -100,7 +100,7 @@ def errors(enclosed, s, *found):
 
 def exported(text, **options):
     model = pipeline.loads(text)
-    return c_files(pipeline.derive_all(model), model, name="plant", samples=5, **options)
+    return C99.export(model, pipeline.derive_all(model), stem="plant", is_alone=False, samples=5, **options)
 
 
 # ------------------------------------------------------------------------------------------ values
@@ -112,7 +112,7 @@ def test_values_agree_with_balls_over_the_band_and_beside_resonances(path, tmp_p
     tfs = pipeline.derive_all(model)
     # The program that is exported is chosen by fewer samples than usual: the samples are below.
     monkeypatch.setattr(verify, "MOST_EXTREMES", 6)
-    files = c_files(tfs, model, name="plant", samples=5)
+    files = C99.export(model, tfs, stem="plant", is_alone=False, samples=5)
     monkeypatch.undo()
     library, functions = compiled(tmp_path, files)
     assert len(functions) == len(tfs)
@@ -155,7 +155,7 @@ KINDS = {
 def test_other_kinds_of_kernels_agree_with_balls(kind, tmp_path):
     model = pipeline.loads(KINDS[kind])
     tfs = pipeline.derive_all(model)[:1]
-    library, _ = compiled(tmp_path, c_files(tfs, model, name="plant", samples=5))
+    library, _ = compiled(tmp_path, C99.export(model, tfs, stem="plant", is_alone=False, samples=5))
     enclosed = bind(tfs[0]).enclosed(192)
     omega = np.geomspace(1e-2, 1e5, 150)
     found, negative = response(library, 0, omega), response(library, 0, -omega)
@@ -284,7 +284,7 @@ def chain(count):
 
 def test_powers_of_s_that_would_overflow_are_divided_out(tmp_path):
     files = exported(chain(8))
-    assert "if (cx_abs(s) > " in files.source
+    assert "if (cx_abs(s) > " in files.text
     library, _ = compiled(tmp_path, files)
     omega = np.array([1e3, 1e12, 1e15])
     # |X_8/F| -> k^7 / (m^8 omega^16)
@@ -344,7 +344,7 @@ def test_functions_without_branches_are_accurate_to_a_few_units(elementary, name
 def files_of(name):
     (path,) = [p for p in SPECS if p.stem == name]
     model = pipeline.load(path)
-    return c_files(pipeline.derive_all(model), model, name=name, samples=5)
+    return C99.export(model, pipeline.derive_all(model), stem=name, is_alone=False, samples=5)
 
 
 MIXED = ("six_mass", "sliding_free_beam", "timoshenko_cantilever", "robot_axis")
@@ -355,8 +355,8 @@ MIXED = ("six_mass", "sliding_free_beam", "timoshenko_cantilever", "robot_axis")
 def written(tmp_path):
     for name in MIXED:
         files = files_of(name)
-        (tmp_path / f"{name}.c").write_text(files.source, encoding="utf-8")
-        (tmp_path / f"{name}.h").write_text(files.header, encoding="utf-8")
+        (tmp_path / f"{name}.c").write_text(files.text, encoding="utf-8")
+        (tmp_path / f"{name}.h").write_text(files.companions[".h"], encoding="utf-8")
     return tmp_path
 
 
@@ -421,7 +421,7 @@ def test_without_a_name_everything_is_one_file_that_compiles(tmp_path):
 
 
 def test_the_header_tells_the_verified_error_units_and_what_omega_is():
-    header = files_of("sliding_free_beam").header
+    header = files_of("sliding_free_beam").companions[".h"]
     assert "against ball arithmetic" in " ".join(header.replace("*", " ").split())
     assert "2 pi times the frequency in Hz" in " ".join(header.replace("*", " ").split())
     assert re.search(r"double rho; +/\* density \[kg/m\^3\] \*/", header)
@@ -431,21 +431,23 @@ def test_the_header_tells_the_verified_error_units_and_what_omega_is():
 
 def test_the_text_is_the_same_each_time():
     first, second = exported(BEAM), exported(BEAM)
-    assert (first.source, first.header) == (second.source, second.header)
+    assert (first.text, first.companions[".h"]) == (second.text, second.companions[".h"])
 
 
 def test_a_transfer_function_given_twice_is_written_once():
     model = pipeline.loads(SMALL)
     tfs = pipeline.derive_all(model)
-    once, twice = (c_files(given, model, name="plant", samples=5) for given in (tfs, [*tfs, *tfs]))
-    assert once.source == twice.source
+    once, twice = (
+        C99.export(model, given, stem="plant", is_alone=False, samples=5) for given in (tfs, [*tfs, *tfs])
+    )
+    assert once.text == twice.text
 
 
 @pytest.mark.parametrize("name", ["", "a b", 'a"b', "../a", "a\nb", "é", "a>b", "-a"])
 def test_a_name_that_cannot_be_included_is_refused(name):
     model = pipeline.loads(SMALL)
     with pytest.raises(UsageError, match="cannot be the name of a C header"):
-        c_files(pipeline.derive_all(model), model, name=name, samples=5)
+        C99.export(model, pipeline.derive_all(model), stem=name, is_alone=False, samples=5)
 
 
 NAMELESS = """
@@ -474,7 +476,7 @@ NAMELESS_SPECS = {"unsymmetric": (NAMELESS, 1e-13), "pipe": (PIPE, 1e-13), "mass
 def nameless(name):
     model = pipeline.loads(NAMELESS_SPECS[name][0])
     (tf,) = pipeline.derive_all(model)
-    return tf, c_files([tf], model, name="plant", samples=5)
+    return tf, C99.export(model, [tf], stem="plant", is_alone=False, samples=5)
 
 
 @pytest.mark.parametrize("name", [pytest.param("unsymmetric", marks=pytest.mark.slow), "pipe", "massless"])
@@ -494,7 +496,7 @@ def test_roots_that_nearly_meet_cost_c_code_no_digits(tmp_path):
     # x^4 + 400 x^2 + s^2 has double roots at s = 200, which c takes apart a little.
     model = pipeline.loads(COMPRESSED)
     (tf,) = pipeline.derive_all(model)
-    library, _ = compiled(tmp_path, c_files([tf], model, name="plant", samples=5))
+    library, _ = compiled(tmp_path, C99.export(model, [tf], stem="plant", is_alone=False, samples=5))
     s = np.array([200.0, 200.0001, 199.9 + 0.05j, 201.0, 190 - 3j, 260.0])
     assert worst_errors(tf, s, value_at(library, 0, s))[0] < 1e-11
 
@@ -532,8 +534,8 @@ def test_c_finds_roots_of_any_sizes(tmp_path):
 
 def test_only_functions_that_are_called_are_in_the_file():
     two_mass = pipeline.load(ROOT / "derivations" / "eppinger1988" / "two_mass.toml")
-    lumped = c_files(pipeline.derive_all(two_mass), two_mass, name="plant", samples=5).source
-    massless, pipe = (nameless(name)[1].source for name in ("massless", "pipe"))
+    lumped = C99.export(two_mass, pipeline.derive_all(two_mass), stem="plant", is_alone=False, samples=5).text
+    massless, pipe = (nameless(name)[1].text for name in ("massless", "pipe"))
     for name, texts in {"cx_roots": [pipe], "cx_modal": [pipe], "cx_propagated": [massless]}.items():
         assert [name in text for text in (lumped, massless, pipe)] == [
             text in texts for text in (lumped, massless, pipe)
@@ -606,8 +608,8 @@ def test_the_example_of_the_page_prints_what_it_says(tmp_path):
     (commands,) = [block.text.splitlines() for block in page if block.language == "sh"]
     specification = commands[0].split()[2]
     model = pipeline.load(ROOT / specification)
-    files = c_files(pipeline.derive_all(model), model, name="beam", samples=5)
-    for name, text in (("beam.c", files.source), ("beam.h", files.header), ("main.c", program)):
+    files = C99.export(model, pipeline.derive_all(model), stem="beam", is_alone=False, samples=5)
+    for name, text in (("beam.c", files.text), ("beam.h", files.companions[".h"]), ("main.c", program)):
         (tmp_path / name).write_text(text, encoding="utf-8")
     subprocess.run(commands[1].split(), cwd=tmp_path, check=True)
     done = subprocess.run(["./main"], cwd=tmp_path, capture_output=True, text=True, check=True)

@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 
 from symflex import pipeline
-from symflex.codegen.c import c_files
+from symflex.codegen.c import C99
 from symflex.codegen.c.names import FUNCTIONS, KEYWORDS, LOCALS, MACROS, RESERVED
 from tests.unit.codegen.test_numpy_hostile import HOSTILE, NAMES, SPEC, model_of, renamed, ring_takes
 
@@ -42,7 +42,7 @@ TOKEN = re.compile(r"[A-Za-z_]\w*|\.?\d[\w.]*(?:e[+-]\d+)?|\"[^\"\n]*\"|#\w+|[^\
 
 
 def files_of(model, tfs=None, name="plant"):
-    return c_files(tfs or pipeline.derive_all(model), model, name=name, samples=3)
+    return C99.export(model, tfs or pipeline.derive_all(model), stem=name, is_alone=False, samples=3)
 
 
 def tokens(text):
@@ -68,7 +68,7 @@ def tokens(text):
 
 
 def skeleton(files):
-    return tokens(files.header), tokens(files.source)
+    return tokens(files.companions[".h"]), tokens(files.text)
 
 
 def structure(files):
@@ -94,7 +94,7 @@ TAME = files_of(model_of())
 def test_prose_changes_no_token(text):
     files = files_of(dressed(text))
     assert skeleton(files) == skeleton(TAME)
-    for part in (files.header, files.source):
+    for part in (files.companions[".h"], files.text):
         assert all(line.isprintable() for line in part.split("\n"))
         part.encode("utf-8")
 
@@ -103,8 +103,8 @@ def test_prose_changes_no_token(text):
 def test_compilers_take_all_prose_without_a_warning(tmp_path):
     for i, text in enumerate(IN_COMMENTS):
         files = files_of(dressed(text), name=f"prose_{i}")
-        (tmp_path / f"prose_{i}.c").write_text(files.source, encoding="utf-8")
-        (tmp_path / f"prose_{i}.h").write_text(files.header, encoding="utf-8")
+        (tmp_path / f"prose_{i}.c").write_text(files.text, encoding="utf-8")
+        (tmp_path / f"prose_{i}.h").write_text(files.companions[".h"], encoding="utf-8")
     _compile(tmp_path)
 
 
@@ -126,10 +126,10 @@ def test_a_parameter_or_output_of_any_name_keeps_the_structure_and_compiles(tmp_
         tfs = (replace(tfs[0], output=replace(tfs[0].output, name=name)), *tfs[1:])
         files = files_of(model, tfs, name=f"name_{i}")
         assert structure(files) == structure(TAME), name
-        member = re.findall(r"^    double (\w+);", files.header, re.MULTILINE)[1]
+        member = re.findall(r"^    double (\w+);", files.companions[".h"], re.MULTILINE)[1]
         assert member not in RESERVED
-        (tmp_path / f"name_{i}.c").write_text(files.source, encoding="utf-8")
-        (tmp_path / f"name_{i}.h").write_text(files.header, encoding="utf-8")
+        (tmp_path / f"name_{i}.c").write_text(files.text, encoding="utf-8")
+        (tmp_path / f"name_{i}.h").write_text(files.companions[".h"], encoding="utf-8")
     _compile(tmp_path)
 
 
@@ -137,7 +137,7 @@ def test_a_parameter_or_output_of_any_name_keeps_the_structure_and_compiles(tmp_
     "pair", [("I", "I_"), ("I_", "I"), ("complex", "complex_"), ("a-b", "a_b"), ("a b", "a-b"), ("_y", "y")]
 )
 def test_two_parameters_never_share_a_member(pair):
-    header = files_of(renamed(model_of(), {"m": pair[0], "b": pair[1]})).header
+    header = files_of(renamed(model_of(), {"m": pair[0], "b": pair[1]})).companions[".h"]
     members = re.findall(r"^    double (\w+);", header, re.MULTILINE)
     assert len(set(members)) == len(members) == 3
 
@@ -159,17 +159,17 @@ def test_functions_whose_names_run_together_stay_apart(names):
         for y, u in names
     ]
     files = files_of(model, tfs)
-    declared = re.findall(r"\b(plant_\w+)\(", "\n".join(files.header.split("#ifndef PLANT_H")[1:]))
+    declared = re.findall(r"\b(plant_\w+)\(", "\n".join(files.companions[".h"].split("#ifndef PLANT_H")[1:]))
     assert len(declared) == len(set(declared)) == 2 * len(names)
 
 
 @pytest.mark.parametrize("name", ["value_of", "piece_0_of", "cx", "int", "_x", "2dof", "a.b-c+d", "I"])
 def test_a_file_of_any_name_has_public_names_of_its_own(name):
     files = files_of(model_of(), name=name)
-    functions = re.findall(r"^[a-z][\w ]* (\w+)\([^;{]*\)[^;{]*\n\{", files.source, re.MULTILINE)
+    functions = re.findall(r"^[a-z][\w ]* (\w+)\([^;{]*\)[^;{]*\n\{", files.text, re.MULTILINE)
     assert len(functions) == len(set(functions))
     assert all(re.fullmatch(r"[A-Za-z]\w*", f) and f not in RESERVED for f in functions)
-    assert f'#include "{name}.h"' in files.source
+    assert f'#include "{name}.h"' in files.text
 
 
 def test_a_definition_cannot_hide_a_parameter_or_a_name_of_the_code():
@@ -177,7 +177,7 @@ def test_a_definition_cannot_hide_a_parameter_or_a_name_of_the_code():
         "elements.body",
         'definitions = { num = "m*s^2 + k", g = "2*m", omega = "b*s", cx_mul = "3*m" }\nelements.body',
     )
-    source = files_of(model_of(text.replace('V = "s*x"', 'V = "num*x*g*omega*cx_mul"'))).source
+    source = files_of(model_of(text.replace('V = "s*x"', 'V = "num*x*g*omega*cx_mul"'))).text
     bodies = source.split("\n}\n")
     for body in bodies:
         made = re.findall(r"const (?:double|cx) (\w+) =", body)

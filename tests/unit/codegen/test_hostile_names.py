@@ -14,21 +14,18 @@ import numpy as np
 import pytest
 
 from symflex import pipeline
-from symflex.codegen import members
-from symflex.codegen.array import module as arrays
-from symflex.codegen.c import c_files
-from symflex.codegen.c import module as c_module
+from symflex.codegen import export
+from symflex.codegen.c import C99
 from symflex.codegen.exporters import EXPORTERS
-from symflex.codegen.julia import julia_module
-from symflex.codegen.matlab import matlab_function_file
-from symflex.codegen.numpy import module as numpys
+from symflex.codegen.julia import JULIA
+from symflex.codegen.matlab import MATLAB
 from symflex.codegen.program import choose_programs
+from symflex.codegen.python import ARRAY_API, JAX, NUMPY
 from symflex.codegen.state_space.module import state_space_module
 from tests.house.repository import slow_ones
 from tests.unit.codegen.hostile_names import NAMES, PARAMETERS, C, benign, mass_on_springs, with_names
 
 COUNT = len(NAMES)
-ROOMS = (members, c_module)
 TOTAL = COUNT * (COUNT + 1) // 2
 """N/m: the stiffness of all springs."""
 
@@ -41,22 +38,21 @@ def _chosen_once(monkeypatch):
     def choose(tf, *_):
         return found.setdefault(id(tf.ratio), (tf, choose_programs(tf, None, 3)))[1]
 
-    for room in ROOMS:
-        monkeypatch.setattr(room, "choose_programs", choose)
+    monkeypatch.setattr(export, "choose_programs", choose)
 
 
 def c_text(tfs, model):
-    files = c_files(tfs, model, name="plant")
-    return f"{files.header}\n{files.source}"
+    files = C99.export(model, tfs, stem="plant", is_alone=False)
+    return f"{files.companions['.h']}\n{files.text}"
 
 
 WRITERS = {
-    "numpy": lambda tfs, model: numpys.numpy_module(tfs, model).text,
-    "array-api": lambda tfs, model: arrays.array_module(tfs, model, arrays.ARRAY_API).text,
-    "jax": lambda tfs, model: arrays.array_module(tfs, model, arrays.JAX).text,
+    "numpy": lambda tfs, model: NUMPY.export(model, tfs).text,
+    "array-api": lambda tfs, model: ARRAY_API.export(model, tfs).text,
+    "jax": lambda tfs, model: JAX.export(model, tfs).text,
     "c": c_text,
-    "matlab": lambda tfs, model: matlab_function_file(tfs, model, "plant").text,
-    "julia": lambda tfs, model: julia_module(tfs, model, "plant").text,
+    "matlab": lambda tfs, model: MATLAB.export(model, tfs, "plant").text,
+    "julia": lambda tfs, model: JULIA.export(model, tfs, "plant").text,
     "state-space": lambda tfs, model: state_space_module(pipeline.state_space(model), tfs, samples=3).text,
 }
 EACH_TIME = ("numpy", "c", "matlab")
@@ -275,11 +271,11 @@ STRICT = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic"]
 
 def in_c(folder, tfs, model):
     """Compile and run a file, and return the values of its functions in order."""
-    files = c_files(tfs, model, name="plant")
-    names = re.findall(r"^double complex (\w+)\(", files.header, re.MULTILINE)
+    files = C99.export(model, tfs, stem="plant", is_alone=False)
+    names = re.findall(r"^double complex (\w+)\(", files.companions[".h"], re.MULTILINE)
     calls = "".join(CALLS.format(i=i, name=name) for i, name in enumerate(names))
-    (folder / "plant.h").write_text(files.header, encoding="utf-8")
-    (folder / "plant.c").write_text(files.source, encoding="utf-8")
+    (folder / "plant.h").write_text(files.companions[".h"], encoding="utf-8")
+    (folder / "plant.c").write_text(files.text, encoding="utf-8")
     (folder / "run.c").write_text(f'#include "plant.h"\n{calls}', encoding="utf-8")
     command = ["gcc", *STRICT, "-shared", "-fPIC", "-o", "plant.so", "plant.c", "run.c", "-lm"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)

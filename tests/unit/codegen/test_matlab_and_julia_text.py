@@ -9,14 +9,14 @@ import pytest
 
 import symflex
 from symflex.codegen.infix import in_lines
-from symflex.codegen.julia import julia_module, module_name
-from symflex.codegen.matlab import main_name, matlab_function_file
+from symflex.codegen.julia import JULIA, module_name
+from symflex.codegen.matlab import MATLAB, main_name
 from symflex.codegen.matlab.function_file import NAMES
 from symflex.codegen.program import identifiers
 from tests.house.repository import slow_ones
 from tests.unit.codegen.exportable import DERIVATIONS, derived
 
-TARGETS = {"matlab": (matlab_function_file, 88), "julia": (julia_module, 92)}
+TARGETS = {"matlab": (MATLAB, 88), "julia": (JULIA, 92)}
 SHORT = ["two_mass", "rod_tip_mass", "delayed", "chain"]
 CALLING = slow_ones(
     [*SHORT, "timoshenko_cantilever", "two_beams", "pipe_with_flow", "massless_beam"],
@@ -27,7 +27,7 @@ CALLING = slow_ones(
 @cache
 def made(target, name):
     model, tfs = derived(name)
-    return TARGETS[target][0](tfs, model, name, samples=5)
+    return TARGETS[target][0].export(model, tfs, name, samples=5)
 
 
 @pytest.mark.parametrize("target", TARGETS)
@@ -41,8 +41,8 @@ def test_lines_are_no_longer_than_the_language_likes(target, name):
 @pytest.mark.parametrize("target", TARGETS)
 def test_a_transfer_function_given_twice_is_written_once(target):
     model, tfs = derived("two_mass")
-    function = TARGETS[target][0]
-    assert function([*tfs, *tfs], model, "x", samples=5).text == function(tfs, model, "x", samples=5).text
+    once, twice = (TARGETS[target][0].export(model, t, "x", samples=5).text for t in (tfs, [*tfs, *tfs]))
+    assert once == twice
 
 
 @pytest.mark.parametrize("target", TARGETS)

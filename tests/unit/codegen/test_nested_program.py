@@ -6,8 +6,8 @@ import pytest
 from benchmarks.networks import chain, network
 from symflex import pipeline
 from symflex.codegen.module_text import formula_lines
-from symflex.codegen.numpy.module import numpy_module
 from symflex.codegen.program import build_nested, choose_program, evaluate
+from symflex.codegen.python import NUMPY
 from symflex.errors import BudgetError
 from symflex.expressions import Product, Sum, format_expression
 from symflex.print.forms import nested_form
@@ -16,7 +16,7 @@ from tests.unit.transfer.test_nested_form import CHAIN, dense
 
 def module(tfs, model):
     namespace = {}
-    exec(compile(numpy_module(tfs, model, samples=20).text, "<export>", "exec"), namespace)  # noqa: S102
+    exec(compile(NUMPY.export(model, tfs, samples=20).text, "<export>", "exec"), namespace)  # noqa: S102
     return namespace["TRANSFER_FUNCTIONS"]
 
 

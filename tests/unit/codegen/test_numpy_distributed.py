@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 
 from symflex import pipeline
-from symflex.codegen.numpy.module import numpy_module
 from symflex.codegen.program import build_piecewise, evaluate, modal
 from symflex.codegen.program.verify import doubles
+from symflex.codegen.python import NUMPY
 from symflex.transfer import bind
 from tests.unit.codegen import exportable
 
@@ -125,7 +125,7 @@ def module(text, name):
     model = pipeline.loads(text)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"exported_{name}.py"
-        path.write_text(numpy_module(pipeline.derive_all(model), model, samples=40).text, encoding="utf-8")
+        path.write_text(NUMPY.export(model, pipeline.derive_all(model), samples=40).text, encoding="utf-8")
         spec = importlib.util.spec_from_file_location(path.stem, path)
         made = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(made)
@@ -392,7 +392,7 @@ def pipe() -> Any:
     model = pipeline.loads(PIPE)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "pipe.py"
-        path.write_text(numpy_module(pipeline.derive_all(model), model).text, encoding="utf-8")
+        path.write_text(NUMPY.export(model, pipeline.derive_all(model)).text, encoding="utf-8")
         spec = importlib.util.spec_from_file_location("exported_pipe", path)
         assert spec is not None and spec.loader is not None
         module = importlib.util.module_from_spec(spec)

@@ -12,7 +12,7 @@ from dataclasses import replace
 import pytest
 
 from symflex import pipeline
-from symflex.codegen.numpy.module import numpy_module
+from symflex.codegen.python import NUMPY
 from symflex.expressions import Name, substitute
 
 SPEC = """
@@ -160,7 +160,7 @@ def model_of(text=SPEC):
 
 
 def export(model, tfs=None):
-    return numpy_module(tfs or pipeline.derive_all(model), model, samples=5).text
+    return NUMPY.export(model, tfs or pipeline.derive_all(model), samples=5).text
 
 
 def skeleton(text):

@@ -19,8 +19,8 @@ import pytest
 from flint import acb
 
 from symflex import pipeline
-from symflex.codegen.numpy.module import numpy_module
 from symflex.codegen.program import build_program, choose_program, evaluate
+from symflex.codegen.python import NUMPY
 from symflex.errors import ModelError
 from tests.house.repository import specifications
 
@@ -40,7 +40,7 @@ outputs = { X = "x", gain = "k*u" }
 
 
 def exported(model):
-    return numpy_module(pipeline.derive_all(model), model)
+    return NUMPY.export(model, pipeline.derive_all(model))
 
 
 @cache
@@ -372,10 +372,10 @@ def test_every_line_fits_in_88_columns_but_the_linters_own():
 def test_the_text_is_the_same_in_every_process():
     code = (
         "from symflex import pipeline\n"
-        "from symflex.codegen.numpy.module import numpy_module\n"
+        "from symflex.codegen.python import NUMPY\n"
         "import hashlib, sys\n"
         "m = pipeline.load(sys.argv[1])\n"
-        "print(hashlib.sha256(numpy_module(pipeline.derive_all(m), m).text.encode()).hexdigest())\n"
+        "print(hashlib.sha256(NUMPY.export(m, pipeline.derive_all(m)).text.encode()).hexdigest())\n"
     )
     digests = set()
     for seed in ("0", "1", "4711"):
@@ -394,7 +394,7 @@ def test_one_verification_per_function_in_order():
 
 def test_the_band_can_be_given():
     model = pipeline.load(DERIVATIONS / "two_mass.toml")
-    export = numpy_module(pipeline.derive_all(model), model, (Fraction(1), Fraction(5)), samples=10)
+    export = NUMPY.export(model, pipeline.derive_all(model), band_hz=(Fraction(1), Fraction(5)), samples=10)
     assert "over 1 Hz ... 5 Hz" in export.text
     assert export.verified[0].band == (1, 5)
 
@@ -402,7 +402,7 @@ def test_the_band_can_be_given():
 def test_a_function_asked_for_twice_is_written_once():
     model = pipeline.load(DERIVATIONS / "two_mass.toml")
     tfs = pipeline.derive_all(model)
-    assert numpy_module([*tfs, *tfs], model).text == numpy_module(tfs, model).text
+    assert NUMPY.export(model, [*tfs, *tfs]).text == NUMPY.export(model, tfs).text
 
 
 def test_a_default_beyond_double_precision_is_refused():

@@ -5,26 +5,22 @@ Text of the model stands in them only as inert strings, whatever it says.
 
 from __future__ import annotations
 
-import keyword
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symflex.codegen.module_text import default_value, described, formula_lines, headline, origin_lines
-from symflex.codegen.numpy.expression import WIDTH
 from symflex.codegen.program import identifiers, inert, wrapped
+from symflex.codegen.python.expression import WIDTH
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
-    from symflex.codegen.members import Member
+    from symflex.codegen.export import Member
     from symflex.codegen.program import Verification
     from symflex.model import Model
     from symflex.transfer import AnyTransferFunction
 
 LITERAL_WIDTH = 60
-
-RESERVED = frozenset({*keyword.kwlist, "np", "s", "arguments", "complex", "ArrayLike", "NDArray"})
-"""Names a parameter cannot take in the generated code."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,15 +51,16 @@ class Signature:
     more: tuple[str, ...] = ()
 
 
-def header(first: str, model: Model, verified: Sequence[Verification], digits: int) -> str:
-    """Return a module's docstring: a first line, origin, and the verified error of every function."""
+def header(first: str, model: Model, verified: Sequence[Verification], digits: int, remark: str = "") -> str:
+    """Return a module's docstring: a first line, origin, the verified error of every function, a remark."""
     lines = [first, "", *origin(model, "")]
     lines.append("Written by symflex. Each function evaluates OUT/IN at the Laplace variable s [rad/s].")
     if verified:
         lines.append("")
     for verification in verified:
         lines += wrapped(inert(f"{verification.name}: {verification.text(digits)}"), WIDTH, "", "    ")
-    return docstring(lines, "")
+    text = docstring(lines, "")
+    return text.rstrip().removesuffix('"""') + f'\n{remark}"""\n' if remark else text
 
 
 def function_docstring(tf: AnyTransferFunction, signature: Signature, notes: Sequence[str]) -> str:

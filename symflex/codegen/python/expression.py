@@ -1,4 +1,4 @@
-"""Expressions of a program tree as Python text for any library of arrays.
+"""Expressions of a program tree as Python text, for numpy or any other library of arrays.
 
 The names of functions are those of the Python array API standard, which numpy's are too.
 """
@@ -7,20 +7,83 @@ from __future__ import annotations
 
 from cmath import isfinite
 from dataclasses import dataclass, field
+from textwrap import TextWrapper
 from typing import TYPE_CHECKING, Any
 
-from symflex.codegen.numpy.expression import Printer
+from symflex.codegen.infix import InfixPrinter
 from symflex.codegen.program import Add, Apply, Divide, Multiply, Negate, Node, Reference
-from symflex.codegen.program.evaluate import number_of
+from symflex.codegen.program.evaluate import NUMPY_FUNCTIONS, number_of
 from symflex.codegen.program.everywhere import ONE
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from symflex.codegen.program.nodes import Frames
+
+WIDTH = 88
 
 
 @dataclass(frozen=True)
-class ArrayPrinter(Printer):
-    """Prints expressions as Python, evaluated in the order of the tree.
+class PythonPrinter(InfixPrinter):
+    """Prints expressions as Python of numpy.
+
+    Parameters
+    ----------
+    space : str
+        What functions are looked up in.
+    """
+
+    space: str = "np"
+
+    def assignment(self, name: str, value: Node, indent: str) -> list[str]:
+        """Return the lines of an assignment."""
+        return statement(self.locals[name], self.print(value), indent)
+
+    @property
+    def pi(self) -> str:
+        """The number pi."""
+        return f"{self.space}.pi"
+
+    def applied(self, function: str, argument: Node) -> str:
+        """Return the text of a function's value."""
+        if function == "complex_exp":
+            return f"_complex_exp({self.print(argument)})"
+        return f"{self.space}.{NUMPY_FUNCTIONS[function]}({self.print(argument)})"
+
+    def complex_number(self, real: float, imaginary: float) -> str:
+        """Return a number as text that needs no parentheses."""
+        if not real:
+            return f"({imaginary!r}j)"
+        return f"({real!r}{imaginary:+}j)" if imaginary else f"({real!r}+0j)"
+
+    def power(self, base: str, exponent: int) -> str:
+        """Return a power of text that needs no parentheses."""
+        return f"{base}**{exponent}"
+
+    def listed(self, texts: Iterable[str]) -> str:
+        """Return a list."""
+        return f"[{', '.join(texts)}]"
+
+    def item(self, values: str, position: int) -> str:
+        """Return one value of a list."""
+        return f"{values}[{position}]"
+
+    def call(self, function: str, arguments: Sequence[str]) -> str:
+        """Return a call of a run-time function."""
+        if function == "mode_values":
+            # What finds the roots also gives the least distance of two.
+            roots, length = arguments
+            arguments = (f"{roots}[:-1]", length)
+        return f"_{function}({', '.join(arguments)})"
+
+    def frames(self, frames: Frames) -> str:
+        """Return the frames of a sum of exponentials."""
+        return repr(frames)
+
+
+@dataclass(frozen=True)
+class ArrayPrinter(PythonPrinter):
+    """Prints expressions as Python of any library of arrays.
 
     Parameters
     ----------
@@ -32,7 +95,7 @@ class ArrayPrinter(Printer):
     meanings : mapping of str to Node
         What the assignments say.
     leading : str
-        First arguments of support functions that look others up.
+        First arguments of functions that look others up.
     """
 
     numbers: Mapping[str, Any] = field(default_factory=dict)
@@ -61,9 +124,9 @@ class ArrayPrinter(Printer):
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
         """Return a call of a run-time function."""
-        leading = [] if function in ("series_solutions", "mode_values") else [self.leading.rstrip(", ")]
         text = super().call(function, arguments)
-        return text.replace("(", f"({leading[0]}, ", 1) if any(leading) else text
+        takes_space = function not in ("series_solutions", "mode_values")
+        return text.replace("(", f"({self.leading}", 1) if takes_space else text
 
     def _pair(self, node: Node) -> tuple[Node, Node] | None:
         """Return m and p of ``m*(1 + sqrt(1 - p/(m*m)))``, the larger root of ``x^2 - 2*m*x + p``.
@@ -91,3 +154,13 @@ class ArrayPrinter(Printer):
 
     def _meaning(self, node: Node) -> Node:
         return self.meanings.get(node.name, node) if isinstance(node, Reference) else node
+
+
+def statement(target: str, value: str, indent: str) -> list[str]:
+    """Return ``target = value``, or ``return value``, on as many lines as it needs."""
+    opening = f"{indent}{target} " if target == "return" else f"{indent}{target} = "
+    if len(opening) + len(value) <= WIDTH:
+        return [opening + value]
+    # Only between operators: an identifier longer than a line stays whole.
+    wrapper = TextWrapper(width=WIDTH - len(indent) - 4, break_long_words=False, break_on_hyphens=False)
+    return [f"{opening}(", *(f"{indent}    {line}" for line in wrapper.wrap(value)), f"{indent})"]

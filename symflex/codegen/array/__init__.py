@@ -1,1 +1,0 @@
-"""Modules over any library of arrays, and over jax."""

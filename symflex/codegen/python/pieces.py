@@ -1,0 +1,359 @@
+"""The private functions behind one transfer function, in Python: one per piece, and the choice among them.
+
+numpy computes the pieces that serve, in blocks of elements. Other libraries compute every piece for all
+elements, so that no branch depends on a value: the text can be compiled and differentiated by what traces it.
+
+Input: a program and identifiers.
+Output: lines of a module.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from symflex.codegen.program import (
+    Apply,
+    Assignment,
+    InverseLaplace,
+    Laplace,
+    Multiply,
+    Node,
+    Piece,
+    Piecewise,
+    Program,
+    Straight,
+    identifiers,
+)
+from symflex.codegen.program.evaluate import number_of
+from symflex.codegen.program.everywhere import ONE, cases_of, in_pieces, places_of
+from symflex.codegen.program.real_axis import needed
+from symflex.codegen.python.expression import WIDTH, ArrayPrinter, PythonPrinter, statement
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from symflex.codegen.python.dialects import Dialect
+
+
+@dataclass(frozen=True)
+class PrivateText(ABC):
+    """Prints the private functions behind one transfer function.
+
+    Their names begin with what a private function is, so that ``A_over_F_0`` may be another public function.
+
+    Parameters
+    ----------
+    given : Program or Piecewise
+        What they compute.
+    name : str
+        Identifier of the public function.
+    parameters : mapping of str to str
+        Identifiers of the parameters.
+    values : mapping of str to float
+        Values of the parameters that have one.
+    dialect : Dialect
+        Of Python.
+    """
+
+    given: Program | Piecewise
+    name: str
+    parameters: Mapping[str, str]
+    values: Mapping[str, float]
+    dialect: Dialect
+
+    @property
+    def variable(self) -> str:
+        """The first argument's name, ``s`` or ``omega``."""
+        if not self.given.is_real:
+            return "s"
+        return "omega_" if "omega" in self.parameters.values() else "omega"
+
+    @property
+    def leading(self) -> str:
+        """First arguments of functions that look others up."""
+        return f"{self.dialect.space}, " if self.dialect.is_argument else ""
+
+    @property
+    def arguments(self) -> list[str]:
+        """Of the private functions."""
+        return [self.variable, *(self.parameters[p] for p in self.given.parameters)]
+
+    @abstractmethod
+    def call(self) -> list[str]:
+        """Return the statements that compute the value of ``arguments``."""
+
+    @abstractmethod
+    def functions(self) -> list[str]:
+        """Return the lines of all functions; no text of the model is in them."""
+
+    def _head(self, name: str, arguments: Sequence[str] | None = None) -> list[str]:
+        given = self.arguments if arguments is None else arguments
+        given = [*([self.dialect.space] if self.dialect.is_argument else []), *given]
+        line = f"def {name}({', '.join(given)}):"
+        if len(line) <= WIDTH:
+            return [line]
+        return [f"def {name}(", *(f"    {g}," for g in given), "):"]
+
+    @abstractmethod
+    def _body(self, code: Straight, variable: str) -> tuple[list[str], PythonPrinter]:
+        """Return the lines of the assignments, and what prints values in their scope."""
+
+    @abstractmethod
+    def _mean(self, parts: str, points: int) -> str:
+        """Return the text of a mean over a circle."""
+
+    @abstractmethod
+    def _value(self, piece: Piece, lines: list[str], printer: PythonPrinter) -> list[str]:
+        """Return the last lines of a piece's function."""
+
+    def _piece(self, number: int, piece: Piece) -> list[str]:
+        name, parts = (f"_{word}_{number}_of_{self.name}" for word in ("piece", "parts"))
+        if piece.circle:
+            lines, printer = self._body(piece.code, self.variable)
+            values = ", ".join(printer.print(v) for v in piece.code.values)
+            return [
+                *self._head(parts),
+                *lines,
+                *statement("return", values, "    "),
+                "",
+                "",
+                *self._head(name),
+                *statement("return", self._mean(parts, piece.circle), "    "),
+            ]
+        start, variable = self._head(name), self.variable
+        if piece.is_complex:
+            variable = identifiers({"s": "s"}, {*self.dialect.reserved - {"s"}, *self.arguments})["s"]
+            start.append(f"    {variable} = 1j * {self.variable}")
+        lines, printer = self._body(piece.code, variable)
+        return [*start, *self._value(piece, lines, printer)]
+
+
+@dataclass(frozen=True)
+class BlockText(PrivateText):
+    """Prints functions of numpy, which compute only what serves."""
+
+    def call(self) -> list[str]:
+        """Return the statements that compute the value of ``arguments``."""
+        program, name = self.given, self.name
+        if isinstance(program, Program):
+            text = f"_in_blocks(_value_of_{name}, arguments)"
+        elif program.is_real:
+            parts = ", ".join(f"_{part}_of_{name}" for part in ("limits", "sizes", "pieces"))
+            text = f"_in_real_pieces({parts}, arguments, {'1j' if program.turn else '1'})"
+        elif program.solves:
+            text = f"_in_array(_tests_of_{name}, _pieces_of_{name}, arguments)"
+        else:
+            text = f"_in_pieces(_tests_of_{name}, _pieces_of_{name}, arguments, 1)"
+        return ['    with np.errstate(all="ignore"):', *statement("return", text, "        ")]
+
+    def functions(self) -> list[str]:
+        """Return the lines of all functions; no text of the model is in them."""
+        program = self.given
+        if isinstance(program, Program):
+            return self._lumped(program)
+        lines = [*(self._real_tests(program) if program.is_real else self._tests(program)), "", ""]
+        for i, piece in enumerate(program.code):
+            lines += [*self._piece(i, piece), "", ""]
+        names = [f"_piece_{i}_of_{self.name}" for i in program.pieces]
+        comma = "," if len(names) == 1 else ""
+        return [*lines, *statement(f"_pieces_of_{self.name}", f"({', '.join(names)}{comma})", "")]
+
+    def _lumped(self, program: Program) -> list[str]:
+        """Return the function that computes with numbers or arrays of any shape."""
+        lines = [f"def _value_of_{self.name}("]
+        lines += [f"    {name}: NDArray[np.complex128]," for name in self.arguments]
+        lines.append(") -> NDArray[np.complex128]:")
+        far = program.far
+        used = {*self.dialect.reserved, *self.arguments[1:]}
+        own = identifiers({n: n for n in ("value", "limit", "is_far", "inverse")}, used)
+        used |= set(own.values())
+        assignments = [*program.constants, *program.near.assignments, *(far.assignments if far else ())]
+        intermediates = identifiers({a.name: a.name for a in assignments}, used)
+        printer = PythonPrinter(self.parameters, intermediates, "s", own["inverse"])
+        for assignment in (*program.constants, *program.near.assignments):
+            lines += printer.assignment(assignment.name, assignment.value, "    ")
+        value = printer.print(program.near.value)
+        if far is None:
+            return [*lines, *statement("return", value if program.varies else f"np.asarray({value})", "    ")]
+        lines += statement(own["value"], value, "    ")
+        lines.append(f"    {own['limit']} = {program.limit!r}")
+        lines.append(f"    {own['is_far']} = np.abs(s) > {own['limit']}")
+        lines.append(f"    if np.any({own['is_far']}):")
+        lines.append(f"        {own['inverse']} = 1.0 / s")
+        for assignment in far.assignments:
+            lines += printer.assignment(assignment.name, assignment.value, "        ")
+        whole = f"np.where({own['is_far']}, {printer.print(far.value)}, {own['value']})"
+        return [*lines, *statement(own["value"], whole, "        "), f"    return {own['value']}"]
+
+    def _body(self, code: Straight, variable: str) -> tuple[list[str], PythonPrinter]:
+        assignments: list[Assignment] = [*code.constants, *code.assignments]
+        taken = {*self.dialect.reserved, *self.parameters.values(), self.variable, variable, "z"}
+        names = identifiers({a.name: a.name for a in assignments}, taken)
+        printer = PythonPrinter(self.parameters, names, variable, "inverse")
+        return [line for a in assignments for line in printer.assignment(a.name, a.value, "    ")], printer
+
+    def _tests(self, program: Piecewise) -> list[str]:
+        lines, printer = self._body(program.tests, self.variable)
+        tests = []
+        for condition in program.conditions:
+            text = printer.print(condition.quantity)
+            scale = printer.print(condition.scale)
+            if not condition.limit:
+                tests.append(f"_is_left({text}, {scale})")
+                continue
+            below = f" / np.abs({scale})" if scale != "1.0" else ""
+            tests.append(f"np.abs({text}) < {condition.limit!r}{below}")
+        head = self._head(f"_tests_of_{self.name}")
+        return [*head, *lines, *statement("return", f"[{', '.join(tests)}]", "    ")]
+
+    def _real_tests(self, program: Piecewise) -> list[str]:
+        """Return two functions: of the limits, made once per call, and of the sizes, made per block."""
+        _, printer = self._body(program.tests, self.variable)
+        limits: list[str] = []
+        sizes: list[Node] = []
+        for condition in program.conditions:
+            if not condition.limit:
+                limits.append("0.0")
+                sizes.append(Multiply((condition.scale, condition.quantity)))
+                continue
+            scale = printer.print(condition.scale)
+            limits.append(repr(condition.limit) + (f" / np.abs({scale})" if scale != "1.0" else ""))
+            is_positive = isinstance(condition.quantity, Laplace)
+            sizes.append(condition.quantity if is_positive else Apply("abs", condition.quantity))
+        fixed = needed(program.tests, [c.scale for c in program.conditions if c.limit])
+        lines: list[list[str]] = []
+        for code in (fixed, needed(program.tests, sizes)):
+            own = (*code.constants, *code.assignments)
+            lines.append([line for a in own for line in printer.assignment(a.name, a.value, "    ")])
+        return [
+            *self._head(f"_limits_of_{self.name}", self.arguments[1:]),
+            *lines[0],
+            *statement("return", f"[{', '.join(limits)}]", "    "),
+            "",
+            "",
+            *self._head(f"_sizes_of_{self.name}"),
+            *lines[1],
+            *statement("return", f"[{', '.join(printer.print(x) for x in sizes)}]", "    "),
+        ]
+
+    def _mean(self, parts: str, points: int) -> str:
+        given = ", ".join(["z", *self.arguments[1:]])
+        return f"_mean_over_circle(lambda z: {parts}({given}), {self.variable}, {points})"
+
+    def _value(self, piece: Piece, lines: list[str], printer: PythonPrinter) -> list[str]:
+        num, den = piece.code.values
+        if not isinstance(self.given, Piecewise) or not self.given.is_real:
+            return [*lines, *statement("return", printer.quotient(num, den), "    ")]
+        above, below = printer.print(num), printer.print(den)
+        if piece.is_complex:
+            # The factor that the real pieces leave out comes after.
+            above = f"{'-1j' if self.given.turn else '(1+0j)'} * ({above})"
+        return [*lines, *statement("return", f"{above}, {below}", "    ")]
+
+
+@dataclass(frozen=True)
+class TracedText(PrivateText):
+    """Prints functions without branches on values."""
+
+    @property
+    def program(self) -> Piecewise:
+        """The program in pieces, each of which can be computed without the others."""
+        return in_pieces(self.given)
+
+    def call(self) -> list[str]:
+        """Return the statements that compute the value of ``arguments``."""
+        text = f"_piece_0_of_{self.name}({self.leading}*arguments)"
+        if self.program.conditions:
+            chooser = "_in_real_pieces" if self.program.is_real else "_in_pieces"
+            text = f"{chooser}({self.leading}_tests_of_{self.name}, _pieces_of_{self.name}, arguments)"
+        return statement("return", f"_shaped({self.leading}{text}, arguments)", "    ")
+
+    def functions(self) -> list[str]:
+        """Return the lines of all functions; no text of the model is in them."""
+        program = self.program
+        if not program.conditions:
+            return self._piece(0, program.code[0])
+        lines = [*self._tests(program), "", ""]
+        for i, piece in enumerate(program.code):
+            lines += [*self._piece(i, piece), "", ""]
+        lines.append(f"_pieces_of_{self.name} = (")
+        places = places_of(program, self.values)
+        for i, (cases, place) in enumerate(zip(cases_of(program), places, strict=True)):
+            at = repr(place.real if program.is_real else place)
+            lines += [
+                f"    (_piece_{i}_of_{self.name}, {at}, (",
+                *(f"        {case!r}," for case in cases),
+                "    )),",
+            ]
+        return [*lines, ")"]
+
+    def _body(self, code: Straight, variable: str) -> tuple[list[str], ArrayPrinter]:
+        assignments = (*code.constants, *code.assignments)
+        taken = {*self.dialect.reserved, *self.arguments, variable}
+        inverse = identifiers({"inverse": "inverse"}, taken)["inverse"]
+        names = identifiers({a.name: a.name for a in assignments}, {*taken, inverse})
+        numbers: dict[str, Any] = {}
+        for assignment in assignments:
+            if (number := number_of(assignment.value, numbers)) is not None:
+                numbers[assignment.name] = number
+        has_fixed_sizes = (
+            self.dialect.has_fixed_sizes and bool(self.program.conditions) and not self.program.is_real
+        )
+        meanings = {a.name: a.value for a in assignments}
+        printer = ArrayPrinter(
+            self.parameters,
+            names,
+            variable,
+            inverse,
+            self.dialect.space,
+            numbers,
+            has_fixed_sizes,
+            meanings,
+            self.leading,
+        )
+        lines = [line for a in assignments for line in printer.assignment(a.name, a.value, "    ")]
+        if any(inverse in line for line in lines):
+            lines = [f"    {inverse} = 1.0 / {variable}", *lines]
+        return lines, printer
+
+    def _tests(self, program: Piecewise) -> list[str]:
+        lines, printer = self._body(program.tests, self.variable)
+        tests = []
+        for condition in program.conditions:
+            is_one = condition.scale == ONE
+            if not condition.limit:
+                tested = condition.quantity if is_one else Multiply((condition.scale, condition.quantity))
+                text = printer.print(tested)
+                text = text if program.is_real else f"{self.dialect.space}.real({text})"
+                tests.append(f"{text} < 0.0")
+                continue
+            is_positive = program.is_real and isinstance(condition.quantity, Laplace)
+            size = condition.quantity if is_positive else Apply("abs", condition.quantity)
+            limit = repr(condition.limit)
+            if not is_one:
+                limit += f" / {_size(condition.scale, printer)}"
+            tests.append(f"{printer.print(size)} < {limit}")
+        head = self._head(f"_tests_of_{self.name}")
+        return [*head, *lines, *statement("return", f"[{', '.join(tests)}]", "    ")]
+
+    def _mean(self, parts: str, points: int) -> str:
+        return f"_mean_over_circle({self.leading}{parts}, [{', '.join(self.arguments)}], {points})"
+
+    def _value(self, piece: Piece, lines: list[str], printer: PythonPrinter) -> list[str]:
+        num, den = piece.code.values
+        value = printer.print(num) if den == ONE else printer.quotient(num, den)
+        first = f"    {printer.inverse} = 1.0 / {printer.variable}"
+        if den == ONE and printer.inverse in value and first not in lines:
+            lines = [first, *lines]
+        if self.program.is_real and not piece.is_complex:
+            value = f"{'1j' if self.program.turn else '(1+0j)'} * ({value})"
+        elif not any(isinstance(n, (Laplace, InverseLaplace)) for n in piece.code.nodes()):
+            value = f"{value} + {self.dialect.space}.zeros_like({self.variable})"
+        return [*lines, *statement("return", value, "    ")]
+
+
+def _size(scale: Node, printer: ArrayPrinter) -> str:
+    number = number_of(scale, printer.numbers)
+    return printer.print(Apply("abs", scale)) if number is None else repr(abs(number))
