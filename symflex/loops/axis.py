@@ -131,7 +131,10 @@ def _refined(
     digits: int,
     order: int,
 ) -> arb:
-    """Return a narrower enclosure of the only root in an interval on which the function is monotonous."""
+    """Return a narrower enclosure of the only root in an interval on which the function is monotonous.
+
+    Steps as in :mod:`symflex.algebra.interval_newton`, at a precision that rises with what is known.
+    """
     wanted = bits_for_digits(digits) + 16
     for step in range(NEWTON_STEPS):
         bits = min(max(BITS, 2 * ball.rel_accuracy_bits() + 64), 2 * wanted + BITS)

@@ -5,8 +5,7 @@ Output: one value per generator of the ring, wavenumbers and kernels included.
 
 Wavenumbers are square roots, on a branch that is analytic where they are asked for, or roots of a
 characteristic polynomial, whose coefficients may be wide. The roots of the middle polynomial are isolated,
-and boxes about them are proved to hold one root of every polynomial in the ball by the interval Newton
-operator (Moore 1966).
+and boxes about them are proved to hold one root of every polynomial in the ball by interval Newton steps.
 """
 
 from __future__ import annotations
@@ -18,6 +17,7 @@ from typing import TYPE_CHECKING
 from flint import acb, acb_mat, acb_poly, acb_series, arb, ctx
 
 from symflex.algebra import ModalSums, modal_amplitudes, mode_values
+from symflex.algebra.interval_newton import narrowed, stays_inside
 from symflex.transfer.balls import Value, ball
 
 if TYPE_CHECKING:
@@ -352,6 +352,8 @@ ROOM = 2
 WIDENINGS = 6
 GROWTH = 1.5
 STEPS = 8
+HALF = 0.5
+"""Steps that leave more than this of a box no longer double its digits."""
 LITTLE = 7 / 8
 """Boxes that Newton's operator makes no smaller than this share are left."""
 
@@ -416,14 +418,14 @@ def _isolated(
         discs = middle.roots()
         exact = [_refined(middle, own, disc) for disc in discs]
         gap = min((abs(a.mid() - b.mid()) for i, a in enumerate(discs) for b in discs[:i]), default=arb(1))
-        if not all(root is not None and root.rad() < gap / FINER for root in exact):
+        if not all(root.rad() < gap / FINER for root in exact):
             # Told apart, but too roughly for Newton's method.
             exact = [_refined(middle, own, disc) for disc in middle.roots(tol=gap.mid() / FINER)]
     except ValueError:
         return None
     boxes = []
     for root in exact:
-        box = None if root is None else _boxed(polynomial, slope, root.mid(), moving)
+        box = _boxed(polynomial, slope, root.mid(), moving)
         if box is None:
             return None
         boxes.append(box)
@@ -434,18 +436,14 @@ def _are_apart(boxes: Sequence[acb]) -> bool:
     return not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
 
 
-def _refined(polynomial: acb_poly, slope: acb_poly, disc: acb) -> acb | None:
+def _refined(polynomial: acb_poly, slope: acb_poly, disc: acb) -> acb:
     """Return an isolated root to the working precision, by interval Newton steps."""
-    root = disc
-    for _ in range(ctx.prec.bit_length() + 2):
+
+    def newton(root: acb) -> acb:
         middle = root.mid()
-        step = middle - polynomial(middle) / slope(root)
-        if not step.is_finite():
-            return None
-        if step.rad() >= root.rad() / 2:
-            return step if step.rad() < root.rad() else root
-        root = step
-    return root
+        return middle - polynomial(middle) / slope(root)
+
+    return narrowed(disc, newton, ctx.prec.bit_length() + 2, HALF)
 
 
 def _boxed(
@@ -466,17 +464,7 @@ def _boxed(
             return None
         if step == 0:
             return middle
-        if step.real.abs_upper() < reach and step.imag.abs_upper() < reach:
-            return _narrowed(middle - step, middle, value, slope)
+        if stays_inside(step, reach):
+            return narrowed(middle - step, lambda root: middle - value / slope(root), STEPS, LITTLE)
         reach = (reach * GROWTH).upper()
     return None
-
-
-def _narrowed(root: acb, middle: acb, value: acb, slope: acb_poly) -> acb:
-    """Return a smaller box about a root that Newton's operator holds already."""
-    for _ in range(STEPS):
-        smaller = middle - value / slope(root)
-        if not smaller.is_finite() or not smaller.rad() < root.rad() * LITTLE:
-            return root
-        root = smaller
-    return root

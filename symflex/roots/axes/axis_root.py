@@ -1,6 +1,6 @@
 """Roots of real functions on an axis: from two places of opposite sign, and from guesses in doubles.
 
-Newton steps of rising precision come close to a root, and interval Newton steps (Moore 1966) prove it.
+Newton steps of rising precision come close to a root, and :mod:`symflex.algebra.interval_newton` proves it.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from flint import arb
 
+from symflex.algebra.interval_newton import stays_inside
 from symflex.budget import spend
 from symflex.roots.axes.axis_function import FLOAT_BITS
 from symflex.roots.precision import bits_for_digits, precision
@@ -97,7 +98,7 @@ class AxisNewton:
             with precision(bits):
                 step = source.values(bits).value(t) / slope
                 # All of the ball that the step leads to lies inside the ball it started from.
-                if i == 0 and not abs(step) < radius:
+                if i == 0 and not stays_inside(step, radius):
                     return None
                 box = t - step
                 if box.rad() < self._goal * abs(box):

@@ -24,8 +24,8 @@ from symflex.roots.functions.kernel_function import KernelFunction, has_kernels,
 from symflex.roots.functions.square_free_kernels import without_squares
 from symflex.roots.plane.branch_points import prove_together
 from symflex.roots.plane.domains import WIDER, holes_about, is_whole_ring, limits
-from symflex.roots.plane.krawczyk import prove_simple
 from symflex.roots.plane.search import HIGHEST, MODES_LIMIT, RootSearch
+from symflex.roots.plane.simple_root import prove_simple
 from symflex.roots.polynomial_roots import find_polynomial_roots, in_order
 from symflex.roots.precision import precision
 from symflex.roots.problem import problem_of

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from flint import acb, acb_poly, arb
 
 from symflex.roots.plane.branch_points import prove_together
-from symflex.roots.plane.krawczyk import prove_simple
+from symflex.roots.plane.simple_root import prove_simple
 from symflex.roots.precision import precision
 from symflex.roots.root import GUARD_BITS
 
