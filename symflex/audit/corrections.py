@@ -17,7 +17,7 @@ from symflex.algebra import Factored
 from symflex.algebra.normal_form import split
 from symflex.audit.field import GrowError, UnreadError
 from symflex.audit.notation import in_symbols, monomial_expression, solve_linear, symbols_of
-from symflex.audit.reading import Formula, Reading, read
+from symflex.audit.reading import Formula, FormulaReading, read
 from symflex.budget import spend
 from symflex.errors import BudgetError, SpecError
 from symflex.expressions import (
@@ -90,7 +90,7 @@ class Correction:
     lines: tuple[tuple[str, Expression], ...]
 
 
-def find_correction(reading: Reading, tf: TransferFunction) -> Correction | None:
+def find_correction(reading: FormulaReading, tf: TransferFunction) -> Correction | None:
     """Return the smallest change found that makes the formula right; it is proved to do so."""
     if sum(len(f) for f, _ in (*reading.derived.factors, *reading.printed.factors)) > MOST_TERMS:
         return None
@@ -105,7 +105,7 @@ def find_correction(reading: Reading, tf: TransferFunction) -> Correction | None
     return None
 
 
-def _in_expression(reading: Reading) -> Iterator[Correction]:
+def _in_expression(reading: FormulaReading) -> Iterator[Correction]:
     formula = reading.formula
     parts = [(p, place) for p, place in _parts(formula.expression) if p is not formula.expression]
     if formula.scale is not None:
@@ -147,7 +147,7 @@ def _parts(expression: Expression) -> Iterator[tuple[Expression, str]]:
                 pending += [(child, place) for child in reversed(node.children)]
 
 
-def _needed(reading: Reading, part: Expression) -> Factored | None:
+def _needed(reading: FormulaReading, part: Expression) -> Factored | None:
     """Return the value of a part with which printed and derived function would be equal."""
     formula, field = reading.formula, reading.field
     gap = reading.value(formula.whole, part) - reading.derived
@@ -166,7 +166,7 @@ def _needed(reading: Reading, part: Expression) -> Factored | None:
 
 
 def _corrected(
-    reading: Reading, part: Expression, new: Expression, changes: tuple[Change, ...]
+    reading: FormulaReading, part: Expression, new: Expression, changes: tuple[Change, ...]
 ) -> Correction:
     formula = reading.formula
     expression = _replaced(formula.expression, part, new)
@@ -174,7 +174,9 @@ def _corrected(
     return Correction(changes, expression, scale, formula.lines)
 
 
-def _times_number(reading: Reading, part: Expression, place: str, value: Factored) -> Iterator[Correction]:
+def _times_number(
+    reading: FormulaReading, part: Expression, place: str, value: Factored
+) -> Iterator[Correction]:
     """Yield the part times a rational number: a coefficient, sign or factor."""
     ratio = reading.field.constant_ratio(value, reading.value(part))
     if ratio is not None and ratio.is_constant:
@@ -197,7 +199,9 @@ def _times(ratio: Fraction, part: Expression) -> Expression:
     return product
 
 
-def _times_monomial(reading: Reading, part: Expression, place: str, value: Factored) -> Iterator[Correction]:
+def _times_monomial(
+    reading: FormulaReading, part: Expression, place: str, value: Factored
+) -> Iterator[Correction]:
     """Yield the part times powers of s and the parameters."""
     ratio = reading.field.constant_ratio(value, reading.value(part))
     factor = None if ratio is None else monomial_expression(reading.field, ratio)
@@ -206,7 +210,9 @@ def _times_monomial(reading: Reading, part: Expression, place: str, value: Facto
         yield _corrected(reading, part, new, (Change(place, part, new),))
 
 
-def _other_exponent(reading: Reading, part: Expression, place: str, value: Factored) -> Iterator[Correction]:
+def _other_exponent(
+    reading: FormulaReading, part: Expression, place: str, value: Factored
+) -> Iterator[Correction]:
     """Yield the part with another exponent."""
     base, known = (part.base, part.exponent) if isinstance(part, Power) else (part, Number(Fraction(1)))
     if not isinstance(base, Name | Call | Sum):
@@ -232,7 +238,9 @@ def _exponent(value: Fraction) -> Expression:
     )
 
 
-def _other_symbol(reading: Reading, part: Expression, place: str, value: Factored) -> Iterator[Correction]:
+def _other_symbol(
+    reading: FormulaReading, part: Expression, place: str, value: Factored
+) -> Iterator[Correction]:
     """Yield another name, or another function of the same argument."""
     others: list[Expression] = []
     if isinstance(part, Name):
@@ -246,7 +254,9 @@ def _other_symbol(reading: Reading, part: Expression, place: str, value: Factore
             yield _corrected(reading, part, other, (Change(place, part, other),))
 
 
-def _other_terms(reading: Reading, part: Expression, place: str, value: Factored) -> Iterator[Correction]:
+def _other_terms(
+    reading: FormulaReading, part: Expression, place: str, value: Factored
+) -> Iterator[Correction]:
     """Yield a sum of the same terms with other coefficients, and another number in front of all."""
     if not isinstance(part, Sum):
         return
@@ -268,7 +278,7 @@ def _other_terms(reading: Reading, part: Expression, place: str, value: Factored
     yield Correction(tuple(changes), expression, corrected.scale, corrected.lines)
 
 
-def _shared(reading: Reading, part: Sum, coefficients: tuple[Fraction, ...]) -> Fraction:
+def _shared(reading: FormulaReading, part: Sum, coefficients: tuple[Fraction, ...]) -> Fraction:
     """Return the number most coefficients share, one where the formula is not proportional to the sum."""
     without = reading.value(reading.formula.whole, part)
     index = reading.field.ring.index["?"]
@@ -325,7 +335,7 @@ def _numbers_in_front(expression: Expression) -> tuple[Fraction, list[Expression
     return front, factors, below
 
 
-def _both_sums(reading: Reading) -> Iterator[Correction]:
+def _both_sums(reading: FormulaReading) -> Iterator[Correction]:
     """Yield sums above and below the bar, both with other coefficients."""
     field, formula = reading.field, reading.formula
     sums = [(p, place) for p, place in _parts(formula.expression) if isinstance(p, Sum)]
@@ -346,7 +356,7 @@ def _both_sums(reading: Reading) -> Iterator[Correction]:
 
 
 def _with_sums(
-    reading: Reading, upper: tuple[Sum, tuple[Fraction, ...]], lower: tuple[Sum, tuple[Fraction, ...]]
+    reading: FormulaReading, upper: tuple[Sum, tuple[Fraction, ...]], lower: tuple[Sum, tuple[Fraction, ...]]
 ) -> Correction:
     expression, changes, ratio = reading.formula.expression, [], Fraction(1)
     for (part, coefficients), place in ((upper, "numerator"), (lower, "denominator")):
@@ -364,7 +374,9 @@ def _with_sums(
     return Correction(tuple(changes), expression, reading.formula.scale, reading.formula.lines)
 
 
-def _more_terms(reading: Reading, part: Expression, place: str, value: Factored) -> Iterator[Correction]:
+def _more_terms(
+    reading: FormulaReading, part: Expression, place: str, value: Factored
+) -> Iterator[Correction]:
     """Yield terms that are not printed."""
     if not isinstance(part, Sum):
         return
@@ -378,7 +390,7 @@ def _more_terms(reading: Reading, part: Expression, place: str, value: Factored)
         yield _corrected(reading, part, new, (Change(place, number(0), term),))
 
 
-def _in_lines(reading: Reading) -> Iterator[Correction]:
+def _in_lines(reading: FormulaReading) -> Iterator[Correction]:
     """Yield a line of the formula times a number, or its square or square root."""
     formula = reading.formula
     for i, (name, expression) in enumerate(formula.lines):

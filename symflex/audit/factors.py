@@ -15,7 +15,7 @@ from symflex.audit.field import UNIT
 if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
-    from symflex.audit.field import Field
+    from symflex.audit.field import Arithmetic
 
 MOST_TERMS = 20_000
 
@@ -37,7 +37,7 @@ class LowestTerms:
     poles: tuple[tuple[fmpz_mpoly, int], ...]
 
 
-def lowest_terms(field: Field, value: Factored) -> LowestTerms | None:
+def lowest_terms(field: Arithmetic, value: Factored) -> LowestTerms | None:
     """Return a function's factors, ``None`` where roots in them may keep them from being unique."""
     ring = half_angle_ring(field)
     counted: list[tuple[fmpz_mpoly, int]] = []
@@ -55,7 +55,7 @@ def lowest_terms(field: Field, value: Factored) -> LowestTerms | None:
     return LowestTerms(ring, zeros, tuple((f, -e) for f, e in kept if e < 0))
 
 
-def half_angle_ring(field: Field) -> Ring:
+def half_angle_ring(field: Arithmetic) -> Ring:
     """Return the ring with half angles in place of cosines and sines."""
     return Ring(tuple(n.replace("cos(", "u(").replace("sin(", "t(") for n in field.ring.names))
 
@@ -70,7 +70,7 @@ def _count(counted: list[tuple[fmpz_mpoly, int]], part: fmpz_mpoly, exponent: in
     counted.append((part, exponent))
 
 
-def _half_angles(field: Field, ring: Ring, polynomial: fmpz_mpoly) -> fmpz_mpoly:
+def _half_angles(field: Arithmetic, ring: Ring, polynomial: fmpz_mpoly) -> fmpz_mpoly:
     waves = range(len(field.ground.waves))
     places = [(field.ring.index[f"cos({i})"], field.ring.index[f"sin({i})"]) for i in waves]
     degrees = [max(int(m[c]) + int(m[s]) for m in polynomial.monoms()) for c, s in places]
@@ -94,7 +94,7 @@ def _half_angles(field: Field, ring: Ring, polynomial: fmpz_mpoly) -> fmpz_mpoly
     return total
 
 
-def _has_roots(field: Field, part: fmpz_mpoly) -> bool:
+def _has_roots(field: Arithmetic, part: fmpz_mpoly) -> bool:
     degrees = part.degrees()
     return any(
         int(d) and n.startswith(("root(", "sum(", UNIT))
@@ -102,7 +102,7 @@ def _has_roots(field: Field, part: fmpz_mpoly) -> bool:
     )
 
 
-def _varying(field: Field) -> list[int]:
+def _varying(field: Arithmetic) -> list[int]:
     """Return the positions of the generators that depend on s."""
     found = [field.ring.index[LAPLACE]]
     for i, wave in enumerate(field.ground.waves):
@@ -111,7 +111,7 @@ def _varying(field: Field) -> list[int]:
     return found
 
 
-def _vanishes(field: Field, ring: Ring, factor: fmpz_mpoly, varying: list[int]) -> bool:
+def _vanishes(field: Arithmetic, ring: Ring, factor: fmpz_mpoly, varying: list[int]) -> bool:
     """Tell whether a factor depends on s and may be zero for some s but 0."""
     degrees = factor.degrees()
     if not any(int(degrees[i]) for i in varying):
@@ -126,7 +126,7 @@ def _vanishes(field: Field, ring: Ring, factor: fmpz_mpoly, varying: list[int]) 
     return True
 
 
-def full_angles(field: Field, ring: Ring, factor: fmpz_mpoly) -> Factored | None:
+def full_angles(field: Arithmetic, ring: Ring, factor: fmpz_mpoly) -> Factored | None:
     """Return a factor in cosines and sines again, ``None`` where it holds only half of one."""
     total = field.number(0)
     waves = range(len(field.ground.waves))

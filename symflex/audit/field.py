@@ -117,7 +117,7 @@ class Ground:
 
 
 @dataclass(frozen=True, eq=False)
-class Field:
+class Arithmetic:
     """Arithmetic over one ground.
 
     Parameters

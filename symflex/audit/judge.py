@@ -10,7 +10,7 @@ from symflex.audit.field import UnreadError
 from symflex.audit.laws import LawCheck, check_laws
 from symflex.audit.notation import derived_in_symbols, monomial_expression
 from symflex.audit.numeric import Comparison, Deviation, Numbers, compare, largest_deviation, numbers_of
-from symflex.audit.reading import Formula, Reading, formula_of, read
+from symflex.audit.reading import Formula, FormulaReading, formula_of, read
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, SpecError, UsageError
 from symflex.errors.diagnostic import nearest
@@ -142,7 +142,7 @@ def judge(tf: TransferFunction, published: Published) -> Audit:
     return _difference(Audit(tf, published, formula, "differs", unread, comparison=found), reading, numbers)
 
 
-def _difference(audit: Audit, reading: Reading | None, numbers: Numbers) -> Audit:
+def _difference(audit: Audit, reading: FormulaReading | None, numbers: Numbers) -> Audit:
     measured = None if numbers.invented else numbers
     ratio, correction, derived = None, None, None
     vanishes = reading is not None and any(map(reading.field.is_zero, (reading.printed, reading.derived)))

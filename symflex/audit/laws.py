@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.audit.numeric import Numbers
-    from symflex.audit.reading import Reading
+    from symflex.audit.reading import FormulaReading
 
 How = Literal["proved", "measured"]
 AXIS_POINTS = 800
@@ -63,12 +63,12 @@ class LawCheck:
     detail: str
 
 
-def check_laws(reading: Reading | None, numbers: Numbers | None) -> tuple[LawCheck, ...]:
+def check_laws(reading: FormulaReading | None, numbers: Numbers | None) -> tuple[LawCheck, ...]:
     """Return every law that could be checked.
 
     Parameters
     ----------
-    reading : Reading or None
+    reading : FormulaReading or None
         Both functions exactly, ``None`` when they could not be read.
     numbers : Numbers or None
         Both with the model's own values, ``None`` where a parameter has none.
@@ -87,7 +87,7 @@ def check_laws(reading: Reading | None, numbers: Numbers | None) -> tuple[LawChe
 # ------------------------------------------------------------------------------------- exactly, by factors
 
 
-def _poles(reading: Reading, printed: LowestTerms, derived: LowestTerms) -> LawCheck:
+def _poles(reading: FormulaReading, printed: LowestTerms, derived: LowestTerms) -> LawCheck:
     extra = _without(printed.poles, derived.poles)
     missing = _without(derived.poles, printed.poles)
     if not extra and not missing:
@@ -101,12 +101,14 @@ def _poles(reading: Reading, printed: LowestTerms, derived: LowestTerms) -> LawC
     return LawCheck("poles", False, "proved", "; ".join(parts))
 
 
-def _where_zero(reading: Reading, terms: LowestTerms, factors: Sequence[tuple[fmpz_mpoly, int]]) -> str:
+def _where_zero(
+    reading: FormulaReading, terms: LowestTerms, factors: Sequence[tuple[fmpz_mpoly, int]]
+) -> str:
     text = _shown(reading, terms, factors)
     return f", where {text} = 0" if text else ""
 
 
-def _double_zeros(reading: Reading, printed: LowestTerms, derived: LowestTerms) -> LawCheck | None:
+def _double_zeros(reading: FormulaReading, printed: LowestTerms, derived: LowestTerms) -> LawCheck | None:
     double = [(f, e) for f, e in printed.zeros if e > 1 and (f, e) not in derived.zeros]
     if not double:
         return LawCheck(
@@ -130,7 +132,7 @@ def _without(
     return found
 
 
-def _shown(reading: Reading, terms: LowestTerms, factors: Sequence[tuple[fmpz_mpoly, int]]) -> str:
+def _shown(reading: FormulaReading, terms: LowestTerms, factors: Sequence[tuple[fmpz_mpoly, int]]) -> str:
     """Return a product of factors in the printed symbols, up to one without zeros; nothing if long."""
     product = terms.ring.constant(1)
     for factor, times in factors:
@@ -141,7 +143,7 @@ def _shown(reading: Reading, terms: LowestTerms, factors: Sequence[tuple[fmpz_mp
     return text if len(text) <= LONGEST_TEXT else ""
 
 
-def _limit(reading: Reading) -> LawCheck | None:
+def _limit(reading: FormulaReading) -> LawCheck | None:
     found = behaviour_at_zero(reading.field, reading.printed / reading.derived)
     if found is None:
         return None
@@ -159,7 +161,7 @@ def _limit(reading: Reading) -> LawCheck | None:
     return LawCheck(law, False, "proved", f"printed/derived behaves as {shown} as s tends to 0")
 
 
-def _expression_of(reading: Reading, value: Factored) -> Expression | None:
+def _expression_of(reading: FormulaReading, value: Factored) -> Expression | None:
     found = monomial_expression(reading.field, value)
     if found is not None:
         return found

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from flint import fmpq_mpoly, fmpz_mpoly
 
-    from symflex.audit.field import Field
+    from symflex.audit.field import Arithmetic
 
 FIRST_TERMS = 8
 LAST_TERMS = 64
@@ -22,7 +22,7 @@ MOST_TERMS = 60
 MOST_WAVES = 3
 
 
-def behaviour_at_zero(field: Field, value: Factored) -> tuple[Factored, Fraction] | None:
+def behaviour_at_zero(field: Arithmetic, value: Factored) -> tuple[Factored, Fraction] | None:
     """Return ``c`` and ``n`` with ``value ~ c s^n`` as s tends to 0, c free of s; ``None`` if not found."""
     coefficient, order = field.number(value.unit), Fraction(0)
     for factor, exponent in value.factors:
@@ -34,7 +34,7 @@ def behaviour_at_zero(field: Field, value: Factored) -> tuple[Factored, Fraction
     return field.reduced(coefficient), order / field.ground.order
 
 
-def _leading(field: Field, factor: fmpz_mpoly) -> tuple[Factored, Fraction] | None:
+def _leading(field: Arithmetic, factor: fmpz_mpoly) -> tuple[Factored, Fraction] | None:
     """Return the coefficient and power of the root of s that dominates a factor."""
     steps = _steps(field)
     sums = any(n.startswith("sum(") for n in field.ring.used_in((factor,)))
@@ -67,7 +67,7 @@ def _leading(field: Field, factor: fmpz_mpoly) -> tuple[Factored, Fraction] | No
     return None
 
 
-def _steps(field: Field) -> list[int]:
+def _steps(field: Arithmetic) -> list[int]:
     """Return per base argument the power of the root of s in it, -1 where it is more than a power."""
     found = []
     for wave in field.ground.waves:
@@ -78,7 +78,7 @@ def _steps(field: Field) -> list[int]:
     return found
 
 
-def _holds(field: Field, factor: fmpz_mpoly, wave: int) -> bool:
+def _holds(field: Arithmetic, factor: fmpz_mpoly, wave: int) -> bool:
     degrees = factor.degrees()
     return any(int(degrees[field.ring.index[f"{f}({wave})"]]) for f in ("exp", "cos", "sin"))
 
@@ -100,7 +100,7 @@ def _series(x: fmpq_mpoly, terms: int) -> tuple[fmpq_mpoly, fmpq_mpoly, fmpq_mpo
 
 
 def _lowest(
-    field: Field, expanded: fmpq_mpoly, used: Sequence[int], highest: int | None
+    field: Arithmetic, expanded: fmpq_mpoly, used: Sequence[int], highest: int | None
 ) -> tuple[Factored, Fraction] | None:
     """Return the first coefficient, in ascending powers of the root of s, that does not vanish."""
     waves = {field.ring.index[f"exp({i})"]: _monomial(field, i) for i in used}
@@ -133,7 +133,7 @@ def _lowest(
     return None
 
 
-def _monomial(field: Field, wave: int) -> Factored:
+def _monomial(field: Arithmetic, wave: int) -> Factored:
     """Return a base argument without s."""
     base = field.ground.waves[wave]
     value = field.number(base.unit)

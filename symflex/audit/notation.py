@@ -31,8 +31,8 @@ from symflex.expressions import (
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.audit.field import Field
-    from symflex.audit.reading import Reading
+    from symflex.audit.field import Arithmetic
+    from symflex.audit.reading import FormulaReading
 
 MOST_DEGREE = 4
 MOST_SYMBOLS = 6
@@ -49,7 +49,7 @@ class Symbol:
     value: Factored
 
 
-def symbols_of(reading: Reading) -> tuple[Symbol, ...]:
+def symbols_of(reading: FormulaReading) -> tuple[Symbol, ...]:
     """Return the transcendental symbols of the printed expression, in order of appearance."""
     found: dict[Expression, Symbol] = {}
     pending = [reading.formula.expression]
@@ -65,7 +65,7 @@ def symbols_of(reading: Reading) -> tuple[Symbol, ...]:
     return tuple(found.values())
 
 
-def in_symbols(field: Field, value: Factored, symbols: Sequence[Symbol]) -> Expression | None:
+def in_symbols(field: Arithmetic, value: Factored, symbols: Sequence[Symbol]) -> Expression | None:
     """Return a value as a sum of products of symbols with rational coefficients, ``None`` when it is none.
 
     The lowest degree that will do is used.
@@ -98,7 +98,9 @@ def _powers(factors: Sequence[Expression]) -> list[Expression]:
     return [power(f, n) if n > 1 else f for f, n in found.items()]
 
 
-def solve_linear(field: Field, value: Factored, parts: Sequence[Factored]) -> tuple[Fraction, ...] | None:
+def solve_linear(
+    field: Arithmetic, value: Factored, parts: Sequence[Factored]
+) -> tuple[Fraction, ...] | None:
     """Return rational coefficients with which the parts add up to the value, ``None`` when there are none.
 
     Where several will do, later parts are left out.
@@ -129,7 +131,7 @@ def solve_linear(field: Field, value: Factored, parts: Sequence[Factored]) -> tu
     return tuple(solution)
 
 
-def monomial_expression(field: Field, value: Factored) -> Expression | None:
+def monomial_expression(field: Arithmetic, value: Factored) -> Expression | None:
     """Return a number times powers of s and the parameters; ``None`` for anything else."""
     exponents: dict[str, Fraction] = {}
     order, coefficient = field.ground.order, value.unit
@@ -172,7 +174,7 @@ def powers_expression(coefficient: Fraction, exponents: dict[str, Fraction]) -> 
     return quotient(product_of(above), product_of(below))
 
 
-def factor_expression(reading: Reading, value: Factored) -> Expression | None:
+def factor_expression(reading: FormulaReading, value: Factored) -> Expression | None:
     """Return a value, up to a factor without zeros, in the printed symbols or with functions of s."""
     field = reading.field
     symbols = symbols_of(reading)
@@ -191,7 +193,7 @@ def _negated(expression: Expression) -> Expression:
     return sum_of(negative(term) for term in terms)
 
 
-def _shifts(field: Field, value: Factored) -> list[Factored]:
+def _shifts(field: Arithmetic, value: Factored) -> list[Factored]:
     """Return powers of the exponentials by which a value may be divided."""
     highest = [0] * len(field.ground.waves)
     for factor, exponent in value.factors:
@@ -205,7 +207,7 @@ def _shifts(field: Field, value: Factored) -> list[Factored]:
     return shifts[:MOST_SHIFTS]
 
 
-def polynomial_expression(field: Field, value: Factored) -> Expression | None:
+def polynomial_expression(field: Arithmetic, value: Factored) -> Expression | None:
     """Return a polynomial with its functions written out, ``None`` when it has a denominator."""
     if any(e < 0 for _, e in value.factors):
         return None
@@ -227,7 +229,7 @@ def polynomial_expression(field: Field, value: Factored) -> Expression | None:
     return sum_of(terms)
 
 
-def _function(field: Field, name: str, exponent: int) -> Expression:
+def _function(field: Arithmetic, name: str, exponent: int) -> Expression:
     wave = field.ground.waves[int(name[4:-1])]
     exponents = {
         n.removeprefix("root(").removesuffix(")"): e for n, e in wave.key if not n.startswith("sum(")
@@ -238,7 +240,7 @@ def _function(field: Field, name: str, exponent: int) -> Expression:
     return call if exponent == 1 else power(call, exponent)
 
 
-def derived_in_symbols(reading: Reading) -> Expression | None:
+def derived_in_symbols(reading: FormulaReading) -> Expression | None:
     """Return the derived function in the symbols of the print, ``None`` where that does not work out."""
     field = reading.field
     symbols, terms = symbols_of(reading), lowest_terms(field, reading.derived)
@@ -263,7 +265,7 @@ def derived_in_symbols(reading: Reading) -> Expression | None:
 
 
 def _in_symbols(
-    field: Field, value: Factored, symbols: Sequence[Symbol]
+    field: Arithmetic, value: Factored, symbols: Sequence[Symbol]
 ) -> tuple[Expression, Factored] | None:
     """Return a value, up to powers of exponentials, in symbols."""
     for shift in _shifts(field, value):

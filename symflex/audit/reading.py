@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, Factored
-from symflex.audit.field import Field, GrowError, UnreadError, ground_of
+from symflex.audit.field import Arithmetic, GrowError, UnreadError, ground_of
 from symflex.errors import BudgetError, Diagnostic, SpecError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import (
@@ -157,12 +157,12 @@ def _used(expression: Expression, known: Mapping[str, Expression]) -> list[str]:
 
 
 @dataclass(frozen=True, eq=False)
-class Reading:
+class FormulaReading:
     """A printed formula and a derived function over one field.
 
     Parameters
     ----------
-    field : Field
+    field : Arithmetic
         Where both live.
     formula : Formula
         The printed one.
@@ -172,7 +172,7 @@ class Reading:
         Values of both.
     """
 
-    field: Field
+    field: Arithmetic
     formula: Formula
     lines: Mapping[str, Factored]
     printed: Factored
@@ -180,10 +180,10 @@ class Reading:
 
     def value(self, expression: Expression, hole: Expression | None = None) -> Factored:
         """Return the value of an expression of the formula, with ``hole`` (the very node) left open."""
-        return _Reader(self.field, self.lines, hole).value(expression)
+        return _FormulaReader(self.field, self.lines, hole).value(expression)
 
 
-def read(formula: Formula, tf: TransferFunction) -> Reading:
+def read(formula: Formula, tf: TransferFunction) -> FormulaReading:
     """Return both functions over the smallest field that holds them.
 
     Raises
@@ -197,37 +197,37 @@ def read(formula: Formula, tf: TransferFunction) -> Reading:
     """
     ground = ground_of([(p.name, p.assume != "real") for p in tf.model.parameters])
 
-    def attempt(field: Field) -> Reading:
+    def attempt(field: Arithmetic) -> FormulaReading:
         lines = formula_lines(field, formula)
-        printed = _Reader(field, lines).value(formula.whole)
-        return Reading(field, formula, lines, printed, derived_value(field, tf))
+        printed = _FormulaReader(field, lines).value(formula.whole)
+        return FormulaReading(field, formula, lines, printed, derived_value(field, tf))
 
     return _grown(ground, attempt)
 
 
-def _grown(ground: Ground, attempt: Callable[[Field], Reading]) -> Reading:
+def _grown(ground: Ground, attempt: Callable[[Arithmetic], FormulaReading]) -> FormulaReading:
     for _ in range(MOST_GROWTHS):
         try:
-            return attempt(Field(ground))
+            return attempt(Arithmetic(ground))
         except GrowError as more:
             ground = more.ground
     message = "it has too many different roots and functions"
     raise UnreadError(message)
 
 
-def formula_lines(field: Field, formula: Formula) -> dict[str, Factored]:
+def formula_lines(field: Arithmetic, formula: Formula) -> dict[str, Factored]:
     """Return the values of a formula's lines."""
     lines: dict[str, Factored] = {}
     for name, expression in formula.lines:
-        lines[name] = _Reader(field, lines).value(expression)
+        lines[name] = _FormulaReader(field, lines).value(expression)
     return lines
 
 
 @dataclass(frozen=True)
-class _Reader:
+class _FormulaReader:
     """Evaluates one expression."""
 
-    field: Field
+    field: Arithmetic
     lines: Mapping[str, Factored]
     hole: Expression | None = None
 
@@ -290,7 +290,7 @@ def _division(part: Expression, whole: Expression) -> SpecError:
     return SpecError(Diagnostic("SF224", "a printed formula divides by zero", part.span or whole.span))
 
 
-def derived_value(field: Field, tf: TransferFunction) -> Factored:
+def derived_value(field: Arithmetic, tf: TransferFunction) -> Factored:
     """Return a derived transfer function over the field.
 
     Raises
@@ -304,7 +304,7 @@ def derived_value(field: Field, tf: TransferFunction) -> Factored:
         images[name] = field.name(name)
     for constant in tf.constants:
         if tf.ratio.depends_on(constant.generator):
-            images[constant.generator] = _Reader(field, {}).value(constant.expression)
+            images[constant.generator] = _FormulaReader(field, {}).value(constant.expression)
 
     def image(factor_names: Sequence[str], value: Factored) -> Factored:
         chosen = [images.get(n) for n in factor_names]
@@ -322,7 +322,7 @@ def derived_value(field: Field, tf: TransferFunction) -> Factored:
 
 
 def _wavenumbers(
-    field: Field, dispersion: Dispersion, image: Callable[[Factored], Factored]
+    field: Arithmetic, dispersion: Dispersion, image: Callable[[Factored], Factored]
 ) -> dict[str, Factored]:
     match dispersion.kind:
         case "bending":
@@ -344,7 +344,7 @@ def _wavenumbers(
 
 
 def _kernel(
-    field: Field, kernel: Kernel, images: Mapping[str, Factored], image: Callable[[Factored], Factored]
+    field: Arithmetic, kernel: Kernel, images: Mapping[str, Factored], image: Callable[[Factored], Factored]
 ) -> Factored:
     length = image(kernel.length)
     if kernel.function == "exp":

@@ -27,7 +27,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True)
-class _Reading:
+class _WhatIsRead:
     """What every command that reads a specification is asked."""
 
     spec: str = option("", is_path=True)
@@ -89,7 +89,7 @@ def command_of(
 
         called.__doc__ = run.__doc__
         faced = budgeted(with_parameters(_Setting, reporting(called)))
-        return click.command(name, cls=cls)(with_parameters(_Reading, with_parameters(options, faced)))
+        return click.command(name, cls=cls)(with_parameters(_WhatIsRead, with_parameters(options, faced)))
 
     return made
 

@@ -19,7 +19,7 @@ COLUMNS = 79
 BAR = 20
 
 
-class Terminal(Protocol):
+class Screen(Protocol):
     """Where a bar is drawn."""
 
     def write(self, text: str, /) -> object:
@@ -40,7 +40,7 @@ class ProgressBar:
 
     Parameters
     ----------
-    stream : Terminal, optional
+    stream : Screen, optional
         stderr by default.
     clock : callable
         Returns the time [s].
@@ -58,7 +58,7 @@ class ProgressBar:
     '\r[#####---------------]  25 %  12 of 48 roots'
     """
 
-    def __init__(self, stream: Terminal | None = None, clock: Callable[[], float] = monotonic) -> None:
+    def __init__(self, stream: Screen | None = None, clock: Callable[[], float] = monotonic) -> None:
         self._stream = sys.stderr if stream is None else stream
         self._clock = clock
         self._is_shown = (

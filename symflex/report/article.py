@@ -15,15 +15,15 @@ from symflex.print.latex.text import text_width
 from symflex.print.latex.width import EM_MM
 from symflex.report.document import (
     Aside,
+    Badge,
     Code,
-    Formula,
-    Link,
+    DisplayedFormula,
     Listing,
-    Mark,
     Mathematics,
     Notice,
+    PageFigure,
+    PageLink,
     Paragraph,
-    Picture,
     Section,
     Table,
 )
@@ -114,11 +114,11 @@ def _block(block: Block, level: int) -> str:
             return _section(block, level)
         case Paragraph(runs=runs):
             return _runs(runs)
-        case Formula(latex=latex):
+        case DisplayedFormula(latex=latex):
             return latex
         case Table():
             return _table(block)
-        case Picture(stem=stem, caption=caption):
+        case PageFigure(stem=stem, caption=caption):
             drawing = rf"\includegraphics[width={_drawn_width(block):.1f}mm]{{figures/{stem}.pdf}}"
             below = rf"\par\nopagebreak\smallskip {{\small {escape_text(caption)}}}\par"
             return rf"{{\centering {drawing}{below}}}\medskip"
@@ -130,7 +130,7 @@ def _block(block: Block, level: int) -> str:
             assert_never(block)
 
 
-def _drawn_width(picture: Picture) -> float:
+def _drawn_width(picture: PageFigure) -> float:
     """Return the width of a figure [mm]: its own, less where a page is smaller."""
     size = picture_size(picture.svg)
     if size is None:
@@ -227,7 +227,7 @@ def _lines(cell: Cell) -> list[list[tuple[str, float]]]:
                 case Mathematics(latex=latex):
                     # Mathematics in a text may be broken at its signs.
                     lines[-1] += [(t, _EM_PER_CHARACTER * len(t)) for t in re.split("(?=[+=-])", latex)]
-                case Code(text=text) | Link(text=text):
+                case Code(text=text) | PageLink(text=text):
                     lines[-1] += [(part, _TYPEWRITER * len(part)) for part in re.split("(?<=[/_. ])", text)]
                 case _:
                     lines[-1] += [(word, text_width(word)) for word in re.split("(?<= )", piece.text)]
@@ -250,11 +250,11 @@ def _run(run: Run) -> str:
             return f"${latex}$"
         case Code(text=text):
             return rf"\texttt{{{_breakable(text)}}}"
-        case Mark(text=text):
+        case Badge(text=text):
             return rf"\textbf{{{escape_text(text)}}}"
         case Aside(text=text):
             return rf"\textit{{{escape_text(text)}}}"
-        case Link(text=text, target=target):
+        case PageLink(text=text, target=target):
             shown = " ".join(map(_breakable, text.split(" ")))
             return shown if target.startswith("#") else rf"\texttt{{{shown}}}"
         case _:

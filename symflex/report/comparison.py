@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.report.document import (
     Aside,
+    Badge,
     Cell,
     Code,
-    Link,
-    Mark,
+    PageLink,
     Paragraph,
     Section,
     Side,
@@ -39,7 +39,7 @@ ANCHOR: Final = "comparison"
 
 def model_cell(facts: ModelFacts) -> Cell:
     """Return the model's file and a link to its chapter."""
-    return (Link(facts.stem, f"#{facts.stem}"),)
+    return (PageLink(facts.stem, f"#{facts.stem}"),)
 
 
 def flexibility_cell(facts: ModelFacts) -> Cell:
@@ -86,7 +86,7 @@ def both_cell(facts: ModelFacts) -> Cell:
     """Return whether a model has colocated and noncolocated transfer functions."""
     kinds = {f.colocated for f in facts.functions} - {None}
     if kinds == {True, False}:
-        return (Mark("both", "good"),)
+        return (Badge("both", "good"),)
     return ("colocated only" if kinds == {True} else "noncolocated only" if kinds else NONE,)
 
 
@@ -239,15 +239,15 @@ def phase_runs(function: TransferFacts) -> tuple[Run, ...]:
     """Return whether a function is minimum phase, and the condition where one is known."""
     shown = ", as far as listed" if function.is_infinite else ""
     if function.condition == "always":
-        return (Mark("yes", "good"), ", for all values")
+        return (Badge("yes", "good"), ", for all values")
     if function.condition == "if positive" and function.bracket_mathematics is not None:
-        verdict = Mark("yes", "good") if function.is_minimum_phase else Mark("no", "bad")
+        verdict = Badge("yes", "good") if function.is_minimum_phase else Badge("no", "bad")
         return (verdict, "; exactly when ", function.bracket_mathematics, " ≥ 0")
     if not function.is_minimum_phase:
         count = f": {counted(function.right_half_plane_zeros, 'zero')} in the right half plane{shown}"
         for_all = ", for all values" if function.condition in ("never", "as given") else ", for these values"
-        return (Mark("no", "bad"), for_all + count)
-    return (Mark("yes", "good"), f", for these values{shown}")
+        return (Badge("no", "bad"), for_all + count)
+    return (Badge("yes", "good"), f", for these values{shown}")
 
 
 def _per_mode(poles: int, zeros: int, function: TransferFacts) -> str:

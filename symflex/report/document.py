@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from symflex.expressions import Expression
     from symflex.model import Model
-    from symflex.print.mathml import Row
+    from symflex.print.mathml import MathRow
 
 Verdict: TypeAlias = Literal["holds", "holds with a condition", "does not hold", "not examined"]
 Tone: TypeAlias = Literal["good", "fair", "bad", "quiet"]
@@ -48,7 +48,7 @@ class Code:
 
 
 @dataclass(frozen=True, slots=True)
-class Mark:
+class Badge:
     """A verdict, or another word that a reader looks for."""
 
     text: str
@@ -56,7 +56,7 @@ class Mark:
 
 
 @dataclass(frozen=True, slots=True)
-class Link:
+class PageLink:
     """A word that leads to a file of the report's folder, or to a heading (``#...``)."""
 
     text: str
@@ -70,7 +70,7 @@ class Aside:
     text: str
 
 
-Run: TypeAlias = "str | Mathematics | Code | Mark | Link | Aside"
+Run: TypeAlias = "str | Mathematics | Code | Badge | PageLink | Aside"
 """A line break is ``"\\n"``."""
 
 Cell: TypeAlias = "tuple[Run, ...]"
@@ -84,12 +84,12 @@ class Paragraph:
 
 
 @dataclass(frozen=True, slots=True)
-class Formula:
+class DisplayedFormula:
     """A displayed equation.
 
     Parameters
     ----------
-    rows : tuple of Row
+    rows : tuple of MathRow
         For pages.
     latex : str
         A display for paper, such as an ``equation`` environment.
@@ -97,13 +97,13 @@ class Formula:
         What it is an equation of, for those who do not see it.
     """
 
-    rows: tuple[Row, ...]
+    rows: tuple[MathRow, ...]
     latex: str
     name: str
 
 
 @dataclass(frozen=True, slots=True)
-class Column:
+class PageColumn:
     """A column of a table.
 
     Parameters
@@ -124,7 +124,7 @@ class Table:
 
     Parameters
     ----------
-    columns : tuple of Column
+    columns : tuple of PageColumn
         Heads and how cells stand.
     rows : tuple of tuple of Cell
         As many cells each as there are columns.
@@ -134,14 +134,14 @@ class Table:
         A table for paper that is printed instead, where one was made for it; empty without.
     """
 
-    columns: tuple[Column, ...]
+    columns: tuple[PageColumn, ...]
     rows: tuple[tuple[Cell, ...], ...]
     caption: str = ""
     latex: str = ""
 
 
 @dataclass(frozen=True, slots=True)
-class Picture:
+class PageFigure:
     """A figure.
 
     Parameters
@@ -174,7 +174,7 @@ class Notice:
     text: str
 
 
-Block: TypeAlias = "Paragraph | Formula | Table | Picture | Listing | Notice | Section"
+Block: TypeAlias = "Paragraph | DisplayedFormula | Table | PageFigure | Listing | Notice | Section"
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,7 +204,7 @@ def text(*runs: Run) -> Paragraph:
     return Paragraph(runs)
 
 
-def columns(*heads: str | tuple[str, Side]) -> tuple[Column, ...]:
+def columns(*heads: str | tuple[str, Side]) -> tuple[PageColumn, ...]:
     """Return columns with plain heads.
 
     Examples
@@ -212,7 +212,7 @@ def columns(*heads: str | tuple[str, Side]) -> tuple[Column, ...]:
     >>> [c.side for c in columns("Meaning", ("Value", "number"))]
     ['text', 'number']
     """
-    return tuple(Column((h,)) if isinstance(h, str) else Column((h[0],), h[1]) for h in heads)
+    return tuple(PageColumn((h,)) if isinstance(h, str) else PageColumn((h[0],), h[1]) for h in heads)
 
 
 def mathematics(expression: Expression, model: Model) -> Mathematics:

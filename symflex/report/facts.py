@@ -71,7 +71,7 @@ class RootFact:
 
 
 @dataclass(frozen=True, slots=True)
-class Truncation:
+class TruncationFacts:
     """How far a product of the lowest modes is right.
 
     Parameters
@@ -119,7 +119,7 @@ class TransferFacts:
         The expression that must not be negative, in the spec language; empty without one.
     bracket_mathematics : Mathematics or None
         The same for print.
-    truncation : Truncation or None
+    truncation : TruncationFacts or None
         Of distributed systems.
     stability : str
         ``stable``, ``marginal``, ``unstable`` or ``unknown``: of all poles, listed or not.
@@ -140,7 +140,7 @@ class TransferFacts:
     reason: str
     bracket: str = ""
     bracket_mathematics: Mathematics | None = None
-    truncation: Truncation | None = None
+    truncation: TruncationFacts | None = None
     stability: str = "unknown"
 
     @property
@@ -538,11 +538,11 @@ def _root_fact(root: Root) -> RootFact:
     )
 
 
-def _truncation(study: Study, tf: TransferFunction, found: PoleZeroMap) -> Truncation | None:
+def _truncation(study: Study, tf: TransferFunction, found: PoleZeroMap) -> TruncationFacts | None:
     last = max((p.frequency_hz() for p in found.poles if p.im > 0), default=0.0)
     if not found.is_infinite or not last:
         return None
     kept = study.rational(tf)
     if kept is None:
         return None
-    return Truncation(kept.modes, last, kept.valid_to(0.01), kept.valid_to(0.05))
+    return TruncationFacts(kept.modes, last, kept.valid_to(0.01), kept.valid_to(0.05))

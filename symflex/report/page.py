@@ -14,15 +14,15 @@ from symflex.print.mathml import math_element
 from symflex.print.mathml.element import EQUALS
 from symflex.report.document import (
     Aside,
+    Badge,
     Code,
-    Formula,
-    Link,
+    DisplayedFormula,
     Listing,
-    Mark,
     Mathematics,
     Notice,
+    PageFigure,
+    PageLink,
     Paragraph,
-    Picture,
     Section,
     Table,
 )
@@ -31,7 +31,7 @@ from symflex.report.style import STYLE
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from symflex.report.document import Block, Column, Run
+    from symflex.report.document import Block, PageColumn, Run
     from symflex.report.report import Report
 
 DEEPEST_HEADING: Final = 6
@@ -154,11 +154,11 @@ def _block(block: Block, level: int, anchor: str) -> str:
             return _section(block, level)
         case Paragraph(runs=runs):
             return f"<p>{_runs(runs)}</p>"
-        case Formula():
+        case DisplayedFormula():
             return "\n".join(_formula(block))
         case Table():
             return _table(block)
-        case Picture():
+        case PageFigure():
             drawn = inline_svg(block.svg, block.stem, block.caption)
             files = (
                 f'<a href="figures/{_escape(block.stem)}.pdf">PDF</a>, '
@@ -175,7 +175,7 @@ def _block(block: Block, level: int, anchor: str) -> str:
             assert_never(block)
 
 
-def _formula(formula: Formula) -> Iterator[str]:
+def _formula(formula: DisplayedFormula) -> Iterator[str]:
     yield f'<div class="formula" tabindex="0" role="group" aria-label="{_escape(formula.name)}">'
     is_below = False
     for row in formula.rows:
@@ -204,7 +204,7 @@ def _table(table: Table) -> str:
     )
 
 
-def _row(row: Iterable[tuple[Run, ...]], columns: Iterable[Column]) -> str:
+def _row(row: Iterable[tuple[Run, ...]], columns: Iterable[PageColumn]) -> str:
     cells = "".join(
         f'<td class="{c.side}" data-head="{_escape(_plain(c.head))}">{_runs(cell)}</td>'
         for cell, c in zip(row, columns, strict=True)
@@ -228,11 +228,11 @@ def _run(run: Run) -> str:
             return math_element(mathml)
         case Code(text=text):
             return f"<code>{_escape(text)}</code>"
-        case Mark(text=text, tone=tone):
+        case Badge(text=text, tone=tone):
             return f'<strong class="{tone}">{_escape(text)}</strong>'
         case Aside(text=text):
             return f"<small>{_escape(text)}</small>"
-        case Link(text=text, target=target):
+        case PageLink(text=text, target=target):
             return f'<a href="{_escape(target)}">{_escape(text)}</a>'
         case _:
             assert_never(run)

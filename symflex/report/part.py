@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from symflex.errors import UncertifiedError
 from symflex.figures import render
-from symflex.report.document import Picture
+from symflex.report.document import PageFigure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class ChapterPart:
     """One section of the chapter about a model.
 
     Parameters
@@ -55,18 +55,18 @@ def code_of(error: SymflexError) -> int:
     return error.exit_code if error.exit_code >= UncertifiedError.exit_code else 0
 
 
-def picture(stem: str, drawn: Figure, caption: str, files: dict[str, bytes]) -> Picture:
+def picture(stem: str, drawn: Figure, caption: str, files: dict[str, bytes]) -> PageFigure:
     """Return a figure as a block: its SVG stands on the page, and beside its PDF in ``files`` for papers."""
     svg = render(drawn, "svg")
     files[f"figures/{stem}.svg"] = svg
     files[f"figures/{stem}.pdf"] = render(drawn, "pdf")
-    return Picture(stem, svg.decode(), caption)
+    return PageFigure(stem, svg.decode(), caption)
 
 
 class SectionMaker(Protocol):
     """A function that writes one section; a key of :data:`symflex.report.sections.SECTIONS` names it."""
 
-    def __call__(self, study: Study) -> Part | None:
+    def __call__(self, study: Study) -> ChapterPart | None:
         """Return the section, None where a model gives no cause for it.
 
         Raises

@@ -28,7 +28,7 @@ from symflex.report.chapter import Chapter, chapter_of, failed_chapter
 from symflex.report.claims import CLAIMS, claim_section, is_claims, publication_of, read_claims
 from symflex.report.claims.section import claims_json, judge_all
 from symflex.report.comparison import comparison_section
-from symflex.report.document import Code, Link, Mark, Section, Table, columns, text
+from symflex.report.document import Badge, Code, PageLink, Section, Table, columns, text
 from symflex.report.numerals import counted
 from symflex.report.sections.roots import stability_mark
 from symflex.report.study import Study, attempt
@@ -420,24 +420,24 @@ def _overview(
                 f"Of {counted(len(findings), 'claim')} of the publication {held} hold, {failed} do not, "
                 f"and {open_} "
                 "are not examined here: ",
-                Link("the claims", "#claims"),
+                PageLink("the claims", "#claims"),
                 ".",
             )
         )
     rows: list[tuple[Cell, ...]] = []
     for c in chapters:
         functions = c.facts.functions
-        mark: Mark
+        mark: Badge
         certified = bool(functions) and all(f.certified for f in functions)
         if c.failure:
-            mark = Mark("not computed", "bad")
+            mark = Badge("not computed", "bad")
         elif certified:
-            mark = Mark("certified", "good")
+            mark = Badge("certified", "good")
         else:
-            mark = Mark("not certified", "bad") if functions else Mark("no numbers", "quiet")
+            mark = Badge("not certified", "bad") if functions else Badge("no numbers", "quiet")
         rows.append(
             (
-                (Link(c.section.title, f"#{c.stem}"),),
+                (PageLink(c.section.title, f"#{c.stem}"),),
                 (c.facts.source or "–",),
                 (mark,),
                 (_stability(c),),
@@ -448,7 +448,7 @@ def _overview(
     return Section("Overview", tuple(blocks), "models")
 
 
-def _stability(chapter: Chapter) -> Mark | str:
+def _stability(chapter: Chapter) -> Badge | str:
     """Return the worst that was found of a model's transfer functions."""
     found = {f.stability for f in chapter.facts.functions}
     worst = next((word for word in ("unstable", "unknown", "marginal", "stable") if word in found), "")

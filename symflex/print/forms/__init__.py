@@ -18,7 +18,7 @@ from symflex.print.forms.kept import with_definitions
 from symflex.print.forms.krylov import krylov_form
 from symflex.print.forms.nested import nested_form, step_names
 from symflex.print.forms.polynomial import constant_form, factored_form, monic_form, polynomial_form
-from symflex.print.forms.printed import Form, PrintedForm
+from symflex.print.forms.printed import Arrange, PrintedForm
 from symflex.print.forms.usage import forms_of
 from symflex.print.forms.vaughan import vaughan_form
 from symflex.print.forms.zpk import zpk_form
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from symflex.transfer import AnyTransferFunction, TransferFunction
 
-FORMS: dict[str, Form] = {
+FORMS: dict[str, Arrange] = {
     "polynomial": polynomial_form,
     "monic": monic_form,
     "constant": constant_form,
@@ -163,8 +163,8 @@ __all__ = [
     "CANDIDATES",
     "DISTRIBUTED_CANDIDATES",
     "FORMS",
+    "Arrange",
     "Arranger",
-    "Form",
     "PrintedForm",
     "counts_of",
     "hidden_expressions",

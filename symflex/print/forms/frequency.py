@@ -67,11 +67,11 @@ def frequency_form(tf: TransferFunction, digits: int) -> PrintedForm:
     """
     del digits
     require_formula(tf, "frequency")
-    page = _Page(tf)
+    page = _FrequencyPage(tf)
     return page.form()
 
 
-class _Page:
+class _FrequencyPage:
     """The ring of real functions of the frequency for one transfer function."""
 
     def __init__(self, tf: TransferFunction) -> None:

@@ -60,7 +60,7 @@ class PrintedForm:
         return name if self.argument == S else f"{name}({format_expression(self.argument)})"
 
 
-class Form(Protocol):
+class Arrange(Protocol):
     """A function that arranges a transfer function."""
 
     def __call__(self, tf: TransferFunction, digits: int) -> PrintedForm:

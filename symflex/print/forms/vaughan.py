@@ -70,7 +70,7 @@ def vaughan_form(tf: TransferFunction, digits: int) -> PrintedForm:
     del digits
     require_kernels(tf, "vaughan")
     require_formula(tf, "vaughan")
-    page = _Page(tf)
+    page = _DecayingPage(tf)
     _, sides = min(
         ((cost + length(sides := page.sides(value)), sides) for value, cost in page.variants()),
         key=lambda found: found[0],
@@ -78,7 +78,7 @@ def vaughan_form(tf: TransferFunction, digits: int) -> PrintedForm:
     return PrintedForm("vaughan", *sides, reachable(sides, page.lines))
 
 
-class _Page:
+class _DecayingPage:
     """The ring of decaying functions for one transfer function, and what is printed for its generators."""
 
     def __init__(self, tf: TransferFunction) -> None:

@@ -10,7 +10,7 @@ from symflex.print.latex.table import damping_text, frequency_text, one_of_each_
 from symflex.print.text import region_text
 
 if TYPE_CHECKING:
-    from symflex.print.latex.table import Entry
+    from symflex.print.latex.table import PrintedRoot
     from symflex.roots import PoleZeroMap
 
 DIGITS: Final = 10
@@ -54,7 +54,7 @@ def roots_html(found: PoleZeroMap) -> str:
     return html_table(HEAD, (TEXT, *[NUMBER] * (len(HEAD) - 1)), rows, caption)
 
 
-def _row(word: str, entry: Entry) -> tuple[str, ...]:
+def _row(word: str, entry: PrintedRoot) -> tuple[str, ...]:
     root = entry.root
     printed = root.decimal(DIGITS)
     mark = ("" if root.certified else " ?") + (" |" if root.on_boundary else "")

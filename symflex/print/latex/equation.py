@@ -48,7 +48,7 @@ _NUMERATORS: Final = (("N", "D"), ("P", "Q"), ("B", "A"), (r"\mathcal{N}", r"\ma
 
 
 @dataclass(frozen=True, slots=True)
-class _Row:
+class _DisplayRow:
     """One equation of a display: its sides, the right one in lines, and the width of the left one."""
 
     left: str
@@ -156,7 +156,7 @@ def formula_latex(
     parts = [_align(rows, "align*", "")]
     if where:
         lines = _broken_rows(where, writer, width - _WHERE_WIDTH)
-        lines[0] = _Row(f"{_WHERE}{lines[0].left}", lines[0].left_width, lines[0].right)
+        lines[0] = _DisplayRow(f"{_WHERE}{lines[0].left}", lines[0].left_width, lines[0].right)
         parts.append(_align(lines, "align*", ""))
     return "\n".join(parts)
 
@@ -251,7 +251,7 @@ def _formula(
     return _align(_rows(tf, form, writer, width), "align", label)
 
 
-def _rows(tf: AnyTransferFunction, form: PrintedForm, writer: Writer, width: float) -> list[_Row]:
+def _rows(tf: AnyTransferFunction, form: PrintedForm, writer: Writer, width: float) -> list[_DisplayRow]:
     """Return the equations that a formula too wide for one line is made of."""
     left, left_width = _left_side(tf, form, writer)
     if is_number(form.den, 1):
@@ -259,7 +259,9 @@ def _rows(tf: AnyTransferFunction, form: PrintedForm, writer: Writer, width: flo
     return _named_parts(form, writer, width, left, left_width)
 
 
-def _named_parts(form: PrintedForm, writer: Writer, width: float, left: str, left_width: float) -> list[_Row]:
+def _named_parts(
+    form: PrintedForm, writer: Writer, width: float, left: str, left_width: float
+) -> list[_DisplayRow]:
     """Return the quotient of what is short and of names for what is not, and what the names stand for."""
     sign, num = split_sign(form)
     varying, argument = varying_names(form), writer.piece(form.argument)
@@ -270,7 +272,7 @@ def _named_parts(form: PrintedForm, writer: Writer, width: float, left: str, lef
         depends = any(n.name in varying for n in names(expression))
         head = f"{name}({argument.latex})" if depends else name
         parts.append((head if is_long else piece.latex, expression, is_long))
-    rows = [_Row(left, left_width, (rf"{sign}\frac{{{parts[0][0]}}}{{{parts[1][0]}}}",))]
+    rows = [_DisplayRow(left, left_width, (rf"{sign}\frac{{{parts[0][0]}}}{{{parts[1][0]}}}",))]
     rows += [
         _row(head, MINUS + argument.width + _PARENTHESES, expression, writer, width, left_width)
         for head, expression, is_long in parts
@@ -309,13 +311,13 @@ def _where(form: PrintedForm, writer: Writer, width: float | None) -> str:
     return _align(_where_rows(form, writer, width), "align*", "")
 
 
-def _where_rows(form: PrintedForm, writer: Writer, width: float | None) -> list[_Row]:
+def _where_rows(form: PrintedForm, writer: Writer, width: float | None) -> list[_DisplayRow]:
     if not (form.where or form.laws):
         return []
     rows = _broken_rows(form.where, writer, width) if form.where else []
-    rows += [_Row(left.latex, left.width, (value,)) for left, value in _laws(form, writer)]
+    rows += [_DisplayRow(left.latex, left.width, (value,)) for left, value in _laws(form, writer)]
     first = rows[0]
-    rows[0] = _Row(f"{_WHERE}{first.left}", first.left_width, first.right)
+    rows[0] = _DisplayRow(f"{_WHERE}{first.left}", first.left_width, first.right)
     return rows
 
 
@@ -332,7 +334,7 @@ def _laws(form: PrintedForm, writer: Writer) -> list[tuple[Piece, str]]:
 
 def _broken_rows(
     equations: Sequence[tuple[str, Expression]], writer: Writer, width: float | None
-) -> list[_Row]:
+) -> list[_DisplayRow]:
     heads = [writer.label(name) for name, _ in equations]
     column = max(_WHERE_WIDTH + heads[0].width, *(head.width for head in heads))
     return [
@@ -349,7 +351,7 @@ def _row(
     width: float | None,
     column: float,
     tag: float = 0.0,
-) -> _Row:
+) -> _DisplayRow:
     """Return an equation with its right side broken.
 
     Parameters
@@ -368,17 +370,17 @@ def _row(
         Room that the first line leaves for its number.
     """
     if width is None:
-        return _Row(left, left_width, (writer.piece(expression).latex,))
+        return _DisplayRow(left, left_width, (writer.piece(expression).latex,))
     room = width - column - RELATION
     if room - tag < _LEAST_ROOM:
         # The left side stands in a line of its own.
         room = width - RELATION - QUAD
         lines = break_lines(expression, writer, room, room - QUAD + RELATION)
-        return _Row(left, left_width, ("", *lines))
-    return _Row(left, left_width, tuple(break_lines(expression, writer, room - tag, room - QUAD)))
+        return _DisplayRow(left, left_width, ("", *lines))
+    return _DisplayRow(left, left_width, tuple(break_lines(expression, writer, room - tag, room - QUAD)))
 
 
-def _align(rows: Sequence[_Row], environment: str, label: str) -> str:
+def _align(rows: Sequence[_DisplayRow], environment: str, label: str) -> str:
     """Return rows aligned at their equals signs; pages may break between lines."""
     stands_alone = any(row.right[0] == "" for row in rows)
     lines: list[str] = []

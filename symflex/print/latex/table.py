@@ -14,8 +14,8 @@ from symflex.print.latex.equation import model_labels
 from symflex.print.latex.label import symbol
 from symflex.print.latex.tabular import (
     SETTINGS,
-    Column,
     Setting,
+    TabularColumn,
     fitting,
     number_column,
     number_width,
@@ -68,37 +68,39 @@ def parameter_table(model: Model, *, width_mm: float = COLUMNS_MM["a4"]) -> str:
     labels = model_labels(model)
     widths = [symbol(p.name, labels).width for p in model.parameters]
     symbols = tuple(f"${labels[p.name]}$" for p in model.parameters)
-    first = Column("l", ("Symbol",), (text_width("Symbol"),), symbols, max(widths, default=0.0))
+    first = TabularColumn("l", ("Symbol",), (text_width("Symbol"),), symbols, max(widths, default=0.0))
     values = tuple(map(_value, model.parameters))
     widest = max(map(_value_width, model.parameters), default=0.0)
-    last = Column("l", ("Value",), (text_width("Value"),), values, widest)
+    last = TabularColumn("l", ("Value",), (text_width("Value"),), values, widest)
     room = width_mm / EM_MM
     if not any(p.doc for p in model.parameters):
         return tabular((first, last), fitting((first, last), room) or SETTINGS[-1])
     texts = tuple(_cut(p.doc) for p in model.parameters)
     meanings = tuple(map(escape_text, texts))
-    natural = Column("l", ("Meaning",), (text_width("Meaning"),), meanings, max(map(text_width, texts)))
+    natural = TabularColumn(
+        "l", ("Meaning",), (text_width("Meaning"),), meanings, max(map(text_width, texts))
+    )
     if SETTINGS[0].width((first, natural, last)) <= room:
         return tabular((first, natural, last), SETTINGS[0])
     for setting in SETTINGS:
-        left = room - setting.width((first, Column("p", ("",), (0.0,), (), 0.0), last))
+        left = room - setting.width((first, TabularColumn("p", ("",), (0.0,), (), 0.0), last))
         if left >= _NARROWEST_MEANING * setting.scale:
             return tabular((first, _wrapped(natural, left), last), setting, _heights(texts, left, setting))
     # Without room beside each other, a value stands below its meaning.
     setting = SETTINGS[-1]
-    left = room - setting.width((first, Column("p", ("",), (0.0,), (), 0.0)))
+    left = room - setting.width((first, TabularColumn("p", ("",), (0.0,), (), 0.0)))
     both = tuple(
         rf"{meaning}\newline {value}" if meaning else value
         for meaning, value in zip(meanings, values, strict=True)
     )
-    below = Column("l", ("Meaning, value",), natural.head_widths, both, 0.0)
+    below = TabularColumn("l", ("Meaning, value",), natural.head_widths, both, 0.0)
     heights = [1 + height for height in _heights(texts, left, setting)]
     return tabular((first, _wrapped(below, left)), setting, heights)
 
 
-def _wrapped(column: Column, width: float) -> Column:
+def _wrapped(column: TabularColumn, width: float) -> TabularColumn:
     """Return a column of paragraphs of a width [em]."""
-    return Column(_WRAPPED.format(width * EM_MM), column.head, column.head_widths, column.cells, width)
+    return TabularColumn(_WRAPPED.format(width * EM_MM), column.head, column.head_widths, column.cells, width)
 
 
 def _heights(texts: Iterable[str], width: float, setting: Setting) -> list[int]:
@@ -157,7 +159,7 @@ def mode_table(
     """
     from symflex.roots.root import overlap  # imports numpy
 
-    modes: list[Entry] = []
+    modes: list[PrintedRoot] = []
     for found in maps:
         for entry in one_of_each_pair(found.all_poles):
             same = [i for i, m in enumerate(modes) if overlap(m.root, entry.root)]
@@ -179,11 +181,11 @@ def mode_table(
     return _table_of(modes, heads, digits, width_mm / EM_MM, ("Mode", numbers))
 
 
-_Head = tuple[tuple[str, ...], tuple[str, ...], "Callable[[Entry, int], str]"]
+_Head = tuple[tuple[str, ...], tuple[str, ...], "Callable[[PrintedRoot, int], str]"]
 
 
 def _table_of(
-    entries: Sequence[Entry],
+    entries: Sequence[PrintedRoot],
     heads: Sequence[_Head],
     digits: int,
     room: float,
@@ -194,14 +196,14 @@ def _table_of(
         columns = []
         if first is not None:
             title, numbers = first
-            columns.append(Column("r", (title,), (text_width(title),), tuple(numbers), 2.0))
+            columns.append(TabularColumn("r", (title,), (text_width(title),), tuple(numbers), 2.0))
         for head, plain, cell in heads:
             cells = [cell(entry, count) for entry in entries]
             columns.append(number_column(head, tuple(map(text_width, plain)), cells))
         if any(entry.root.multiplicity > 1 for entry in entries):
             times = tuple(str(entry.root.multiplicity) for entry in entries)
             head = ("Multi-", "plicity")
-            columns.append(Column("r", head, tuple(map(text_width, head)), times, 1.0))
+            columns.append(TabularColumn("r", head, tuple(map(text_width, head)), times, 1.0))
         setting = fitting(columns, room)
         if setting is not None:
             break
@@ -267,14 +269,14 @@ def _value_width(parameter: Parameter) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class PrintedRoot:
     """A root to print, alone or for its conjugate pair."""
 
     root: Root
     is_pair: bool
 
 
-def one_of_each_pair(roots: Sequence[Root]) -> list[Entry]:
+def one_of_each_pair(roots: Sequence[Root]) -> list[PrintedRoot]:
     """Return every root once, a conjugate pair as the member above the real axis."""
     lower = [r for r in roots if r.im < 0]
     entries = []
@@ -283,24 +285,24 @@ def one_of_each_pair(roots: Sequence[Root]) -> list[Entry]:
             partner = next((r for r in lower if r.im.overlaps(-root.im) and r.re.overlaps(root.re)), None)
             if partner is not None:
                 lower.remove(partner)
-            entries.append(Entry(root, partner is not None))
+            entries.append(PrintedRoot(root, partner is not None))
         elif not root.im < 0:
-            entries.append(Entry(root, is_pair=False))
-    return entries + [Entry(root, is_pair=False) for root in lower]
+            entries.append(PrintedRoot(root, is_pair=False))
+    return entries + [PrintedRoot(root, is_pair=False) for root in lower]
 
 
-def _real_part(entry: Entry, digits: int) -> str:
+def _real_part(entry: PrintedRoot, digits: int) -> str:
     root = entry.root
     return _certified(root.decimal(digits).re, is_exact=root.on_imaginary_axis)
 
 
-def _imaginary_part(entry: Entry, digits: int) -> str:
+def _imaginary_part(entry: PrintedRoot, digits: int) -> str:
     root = entry.root
     shown = _certified(root.decimal(digits).im, is_exact=root.is_real)
     return rf"\pm {shown}" if entry.is_pair and not shown.startswith("{") else shown
 
 
-def _angular_frequency(entry: Entry, digits: int) -> str:
+def _angular_frequency(entry: PrintedRoot, digits: int) -> str:
     from symflex.roots import decimals  # imports numpy
 
     return _certified(
@@ -308,11 +310,11 @@ def _angular_frequency(entry: Entry, digits: int) -> str:
     )
 
 
-def _frequency(entry: Entry, digits: int) -> str:
+def _frequency(entry: PrintedRoot, digits: int) -> str:
     return _certified(frequency_text(entry.root, digits), is_exact=entry.root.is_zero)
 
 
-def _damping(entry: Entry, digits: int) -> str:
+def _damping(entry: PrintedRoot, digits: int) -> str:
     shown = damping_text(entry.root, digits)
     return _certified(shown, is_exact=entry.root.on_imaginary_axis) if shown else "{--}"
 

@@ -27,7 +27,7 @@ _DOT: Final = 0.28
 
 
 @dataclass(frozen=True, slots=True)
-class Column:
+class TabularColumn:
     """A column of a table.
 
     Parameters
@@ -77,7 +77,7 @@ class Setting:
     is_stacked: bool
     is_dense: bool = False
 
-    def width(self, columns: Sequence[Column]) -> float:
+    def width(self, columns: Sequence[TabularColumn]) -> float:
         """Return the width of a table set like this [em of ten points]."""
         gap = _NARROW_GAP if self.is_dense else _GAP
         cells = sum(column.needs(is_stacked=self.is_stacked) for column in columns)
@@ -91,17 +91,17 @@ SETTINGS: Final = (
 )
 
 
-def fitting(columns: Sequence[Column], width: float) -> Setting | None:
+def fitting(columns: Sequence[TabularColumn], width: float) -> Setting | None:
     """Return the first of the settings in which a table has room [em], None when it has in none."""
     return next((setting for setting in SETTINGS if setting.width(columns) <= width), None)
 
 
-def tabular(columns: Sequence[Column], setting: Setting, heights: Sequence[int] | None = None) -> str:
+def tabular(columns: Sequence[TabularColumn], setting: Setting, heights: Sequence[int] | None = None) -> str:
     r"""Return a table, centred, as a paragraph of its own.
 
     Parameters
     ----------
-    columns : sequence of Column
+    columns : sequence of TabularColumn
         Of equally many cells.
     setting : Setting
         How it is set.
@@ -123,7 +123,9 @@ def tabular(columns: Sequence[Column], setting: Setting, heights: Sequence[int] 
     return f"\\par{{\\centering{setting.size}{_SETUP}{dense}\n" + "\\medskip\n".join(parts) + "}"
 
 
-def number_column(head: tuple[str, ...], head_widths: tuple[float, ...], cells: Sequence[str]) -> Column:
+def number_column(
+    head: tuple[str, ...], head_widths: tuple[float, ...], cells: Sequence[str]
+) -> TabularColumn:
     r"""Return a column of numbers, aligned by siunitx; cells in braces are none.
 
     Parameters
@@ -151,7 +153,7 @@ def number_column(head: tuple[str, ...], head_widths: tuple[float, ...], cells: 
         width += OPERATOR + 2 * DIGIT + SCRIPT * (DIGIT * exponent + (MINUS if negative_exponent else 0))
     braced = tuple(f"{{{line}}}" for line in head)
     plain = f"S[table-format={'+' if signed else ''}{whole}.{places}{power}]"
-    return Column(plain, braced, head_widths, tuple(cells), width)
+    return TabularColumn(plain, braced, head_widths, tuple(cells), width)
 
 
 def number_width(text: str) -> float:
@@ -161,7 +163,7 @@ def number_width(text: str) -> float:
     return width + (2 * DIGIT + OPERATOR + CDOT + SCRIPT * DIGIT * (len(power) + 1) if power else 0)
 
 
-def _head(column: Column, setting: Setting) -> str:
+def _head(column: TabularColumn, setting: Setting) -> str:
     if len(column.head) == 1:
         return column.head[0]
     lines = [line.removeprefix("{").removesuffix("}") for line in column.head]

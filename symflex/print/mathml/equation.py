@@ -31,7 +31,7 @@ _ARGUMENT_OF_S: Final = (
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class MathRow:
     """One equation: its left side, and its right side in pieces between which a line may end.
 
     Parameters
@@ -54,7 +54,7 @@ def ratio_mathml(tf: TransferFunction) -> str:
     return f"<mfrac>{_end(tf.output)}{_end(tf.input)}</mfrac>"
 
 
-def transfer_function_mathml(tf: TransferFunction, form: PrintedForm) -> tuple[Row, ...] | None:
+def transfer_function_mathml(tf: TransferFunction, form: PrintedForm) -> tuple[MathRow, ...] | None:
     """Return a transfer function as equations below each other.
 
     Parameters
@@ -64,7 +64,7 @@ def transfer_function_mathml(tf: TransferFunction, form: PrintedForm) -> tuple[R
 
     Returns
     -------
-    tuple of Row or None
+    tuple of MathRow or None
         The quotient in one row where it is at most :data:`WIDEST_FRACTION` wide, else with names for what is
         wide and their rows below it; then the ``where`` rows. None when all of it would be longer than
         :data:`LONGEST` characters.
@@ -83,16 +83,16 @@ def _end(end: Input | Output) -> str:
 
 def _formula(
     tf: TransferFunction, form: PrintedForm, writer: MathmlWriter, labels: dict[str, str]
-) -> list[Row]:
+) -> list[MathRow]:
     left = ratio_mathml(tf)
     if is_number(form.den, 1):
-        return [Row(left, writer.pieces(form.num))]
+        return [MathRow(left, writer.pieces(form.num))]
     sign, num = split_sign(form)
     minus = operator("-", "prefix") if sign else ""
     widths = [writer.width(part, Style.TEXT) for part in (num, form.den)]
     if max(widths) <= WIDEST_FRACTION:
         above, below = (writer.markup(part, Style.TEXT).mathml for part in (num, form.den))
-        return [Row(left, (row(*filter(None, (minus, f"<mfrac>{above}{below}</mfrac>"))),))]
+        return [MathRow(left, (row(*filter(None, (minus, f"<mfrac>{above}{below}</mfrac>"))),))]
     varying = varying_names(form)
     parts, rows = [], []
     for name, expression, width in zip(
@@ -105,13 +105,13 @@ def _formula(
         head = identifier(_LETTERS.get(name, name))
         head = row(head, "<mo>&#x2061;</mo>", f"<mrow>{_ARGUMENT_OF_S}</mrow>") if depends else head
         parts.append(head)
-        rows.append(Row(head, writer.pieces(expression)))
+        rows.append(MathRow(head, writer.pieces(expression)))
     fraction = f"<mfrac>{parts[0]}{parts[1]}</mfrac>"
-    return [Row(left, (row(*filter(None, (minus, fraction))),)), *rows]
+    return [MathRow(left, (row(*filter(None, (minus, fraction))),)), *rows]
 
 
-def _where(form: PrintedForm, writer: MathmlWriter) -> list[Row]:
-    rows = [Row(writer.label(name), writer.pieces(e), is_where=True) for name, e in form.where]
+def _where(form: PrintedForm, writer: MathmlWriter) -> list[MathRow]:
+    rows = [MathRow(writer.label(name), writer.pieces(e), is_where=True) for name, e in form.where]
     for name, law in form.laws:
         order = max(node.order for node in names(law) if isinstance(node, Derivative))
         rows.append(_equation(law.left, law.right, writer))
@@ -121,5 +121,5 @@ def _where(form: PrintedForm, writer: MathmlWriter) -> list[Row]:
     return rows
 
 
-def _equation(left: Expression, right: Expression, writer: MathmlWriter) -> Row:
-    return Row(writer.markup(left).mathml, writer.pieces(right), is_where=True)
+def _equation(left: Expression, right: Expression, writer: MathmlWriter) -> MathRow:
+    return MathRow(writer.markup(left).mathml, writer.pieces(right), is_where=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, Final, Literal
 
-from symflex.report.document import Aside, Mark, Section, Table, columns, text
+from symflex.report.document import Aside, Badge, Section, Table, columns, text
 from symflex.report.numerals import counted
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def claim_section(publication: Publication, findings: Sequence[Finding]) -> Sect
     rows = tuple(
         (
             (f"“{claim.quote}”" if claim.is_quotation else claim.quote, "\n", Aside(claim.place)),
-            (Mark(finding.verdict, TONES[finding.verdict]),),
+            (Badge(finding.verdict, TONES[finding.verdict]),),
             finding.evidence,
         )
         for claim, finding in zip(publication.claims, findings, strict=True)

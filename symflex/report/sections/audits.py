@@ -9,10 +9,10 @@ from symflex.audit.json_format import audit_document
 from symflex.audit.text import VERDICTS
 from symflex.print.latex import TEXT_WIDTH_MM, formula_latex, model_labels, ratio_latex
 from symflex.print.latex.label import labels_of
-from symflex.print.mathml import WIDEST_FRACTION, MathmlWriter, Row, ratio_mathml
+from symflex.print.mathml import WIDEST_FRACTION, MathmlWriter, MathRow, ratio_mathml
 from symflex.report.document import (
-    Formula,
-    Mark,
+    Badge,
+    DisplayedFormula,
     Mathematics,
     Section,
     Table,
@@ -20,7 +20,7 @@ from symflex.report.document import (
     mathematics,
     text,
 )
-from symflex.report.part import Part
+from symflex.report.part import ChapterPart
 from symflex.report.sections.equations import ratio_line
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ WORDS: Final = {
 }
 
 
-def audit_section(study: Study) -> Part | None:
+def audit_section(study: Study) -> ChapterPart | None:
     """Return every printed formula with its verdict, and the smallest change that makes a wrong one right."""
     if not study.audits:
         return None
@@ -53,13 +53,13 @@ def audit_section(study: Study) -> Part | None:
         for i, audit in enumerate(study.audits)
     )
     data = json.dumps(audit_document(study.audits), indent=1, ensure_ascii=True).encode()
-    return Part("Printed formulas", blocks, {f"data/{study.stem}_audit.json": data})
+    return ChapterPart("Printed formulas", blocks, {f"data/{study.stem}_audit.json": data})
 
 
 def _of(audit: Audit) -> tuple[Block, ...]:
     word, tone = WORDS[audit.verdict]
     source = f", printed in {audit.published.source}" if audit.published.source else ""
-    blocks: list[Block] = [text(Mark(word, tone), f"{source}:")]  # type: ignore[arg-type]
+    blocks: list[Block] = [text(Badge(word, tone), f"{source}:")]  # type: ignore[arg-type]
     where = audit.formula.lines
     scale = audit.published.scale
     blocks.append(_formula(audit, audit.published.expression, where, f"{audit.tf.name} as printed"))
@@ -100,7 +100,7 @@ def _of(audit: Audit) -> tuple[Block, ...]:
         laws = tuple(
             (
                 (law.law,),
-                (Mark("kept", "good") if law.kept else Mark("violated", "bad"),),
+                (Badge("kept", "good") if law.kept else Badge("violated", "bad"),),
                 (f"{law.detail} ({law.how})",),
             )
             for law in audit.laws
@@ -123,12 +123,12 @@ def _mathematics(audit: Audit, expression: Expression) -> Mathematics:
 
 def _formula(
     audit: Audit, expression: Expression, where: Sequence[tuple[str, Expression]], name: str
-) -> Formula:
+) -> DisplayedFormula:
     labels = _labels(audit)
     writer = MathmlWriter(labels)
     is_narrow = writer.width(expression) <= WIDEST_FRACTION
     pieces = (writer.markup(expression).mathml,) if is_narrow else writer.pieces(expression)
-    rows = [Row(ratio_mathml(audit.tf), pieces)]
-    rows += [Row(writer.label(n), writer.pieces(e), is_where=True) for n, e in where]
+    rows = [MathRow(ratio_mathml(audit.tf), pieces)]
+    rows += [MathRow(writer.label(n), writer.pieces(e), is_where=True) for n, e in where]
     latex = formula_latex(ratio_latex(audit.tf), expression, where, labels, width_mm=TEXT_WIDTH_MM)
-    return Formula(tuple(rows), latex, name)
+    return DisplayedFormula(tuple(rows), latex, name)

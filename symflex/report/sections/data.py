@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from symflex.figures import draw_measured
 from symflex.report.document import Code, text
-from symflex.report.part import Part, picture
+from symflex.report.part import ChapterPart, picture
 
 if TYPE_CHECKING:
     from symflex.report.data_comparison import DataComparison
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from symflex.report.study import Study
 
 
-def data_section(study: Study) -> Part | None:
+def data_section(study: Study) -> ChapterPart | None:
     """Return every measured response that a transfer function of the model is named like."""
     blocks: list[Block] = []
     files: dict[str, bytes] = {}
@@ -37,7 +37,7 @@ def data_section(study: Study) -> Part | None:
                 f" is off {_kind(found)} by {misfit}, all lines alike.",
             )
         )
-    return Part("Data", tuple(blocks), files) if blocks else None
+    return ChapterPart("Data", tuple(blocks), files) if blocks else None
 
 
 def _kind(found: DataComparison) -> str:

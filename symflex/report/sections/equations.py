@@ -9,9 +9,9 @@ from symflex.print.forms import counts_of, with_hidden
 from symflex.print.json_format import derive_document
 from symflex.print.latex import TEXT_WIDTH_MM, form_labels, ratio_latex, transfer_function_latex
 from symflex.print.mathml import ratio_mathml, transfer_function_mathml
-from symflex.report.document import Code, Formula, Mathematics, Notice, Section, labelled, text
+from symflex.report.document import Code, DisplayedFormula, Mathematics, Notice, Section, labelled, text
 from symflex.report.numerals import counted, unit_text
-from symflex.report.part import Part
+from symflex.report.part import ChapterPart
 from symflex.report.study import MOST_FUNCTIONS
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 LONGEST_LATEX: Final = 60_000
 
 
-def equation_section(study: Study) -> Part:
+def equation_section(study: Study) -> ChapterPart:
     """Return every transfer function in its default form, with what cancelled from it."""
     blocks: list[Block] = []
     left_out = len(study.model.transfer_functions) - len(study.pairs)
@@ -41,7 +41,7 @@ def equation_section(study: Study) -> Part:
         )
     document = derive_document(list(zip(study.tfs, study.forms, strict=True)))
     data = json.dumps(document, indent=1, ensure_ascii=True).encode()
-    return Part("Transfer functions", tuple(blocks), {f"data/{study.stem}_derive.json": data})
+    return ChapterPart("Transfer functions", tuple(blocks), {f"data/{study.stem}_derive.json": data})
 
 
 def ratio_line(tf: TransferFunction) -> str:
@@ -60,7 +60,7 @@ def _of(tf: TransferFunction, form: PrintedForm, label: str) -> tuple[Block, ...
     if rows is None or len(latex) > LONGEST_LATEX:
         blocks.append(Notice("The closed form is too long for a page; the folder's data hold it."))
     else:
-        blocks.append(Formula(rows, latex, f"{tf.name} in closed form"))
+        blocks.append(DisplayedFormula(rows, latex, f"{tf.name} in closed form"))
     labels = form_labels(tf, form)
     for expression, multiplicity in hidden:
         times = "" if multiplicity == 1 else f" ({multiplicity} times)"

@@ -11,8 +11,8 @@ import numpy as np
 
 from symflex.codegen.exporters import EXPORTERS
 from symflex.errors import SymflexError
-from symflex.report.document import Code, Link, Notice, Table, columns, text
-from symflex.report.part import Part, code_of
+from symflex.report.document import Code, Notice, PageLink, Table, columns, text
+from symflex.report.part import ChapterPart, code_of
 from symflex.report.study import attempt, said
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ TARGETS: Final = ("numpy", "c")
 HEAD: Final = ("frequency_hz", "re", "im", "magnitude_db", "phase_deg")
 
 
-def export_section(study: Study) -> Part:
+def export_section(study: Study) -> ChapterPart:
     """Return the files of a model: numeric code, frequency responses, and the results as JSON."""
     files: dict[str, bytes] = {}
     rows: list[tuple[Cell, ...]] = []
@@ -42,11 +42,11 @@ def export_section(study: Study) -> Part:
             continue
         name = f"code/{study.stem}{exporter.suffix}"
         files[name] = made.text.encode()
-        rows.append(((Link(name, name),), (exporter.summary,)))
+        rows.append(((PageLink(name, name),), (exporter.summary,)))
         for suffix, content in made.companions.items():
             beside = f"code/{study.stem}{suffix}"
             files[beside] = content.encode()
-            rows.append(((Link(beside, beside),), ("its header",)))
+            rows.append(((PageLink(beside, beside),), ("its header",)))
         warnings += [f"{study.stem}, {target}: {warning}" for warning in made.warnings]
         blocks += [Notice(warning) for warning in made.warnings]
     responses = attempt(lambda: study.responses)
@@ -57,7 +57,10 @@ def export_section(study: Study) -> Part:
         for response, name in zip(responses, _names(study, responses), strict=True):
             files[name] = _csv(response)
             rows.append(
-                ((Link(name, name),), (f"frequency response of {response.tf}, {len(response.omega)} lines",))
+                (
+                    (PageLink(name, name),),
+                    (f"frequency response of {response.tf}, {len(response.omega)} lines",),
+                )
             )
     data = (
         ("derive", "closed forms, as symflex derive --json prints them"),
@@ -65,7 +68,8 @@ def export_section(study: Study) -> Part:
         ("facts", "what the comparison is made of"),
     )
     rows += [
-        ((Link(f"data/{study.stem}_{k}.json", f"data/{study.stem}_{k}.json"),), (what,)) for k, what in data
+        ((PageLink(f"data/{study.stem}_{k}.json", f"data/{study.stem}_{k}.json"),), (what,))
+        for k, what in data
     ]
     head = text(
         "The code is verified against ball arithmetic; the worst error stands in its documentation. Reading ",
@@ -73,7 +77,7 @@ def export_section(study: Study) -> Part:
         " shows the other targets.",
     )
     table = Table(columns(("File", "plain"), "Content"), tuple(rows))
-    return Part("Code and data", (head, *blocks, table), files, tuple(warnings), code)
+    return ChapterPart("Code and data", (head, *blocks, table), files, tuple(warnings), code)
 
 
 def _names(study: Study, responses: tuple[FrequencyResponse, ...]) -> list[str]:

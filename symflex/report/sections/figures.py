@@ -8,11 +8,11 @@ from symflex.errors import Diagnostic, SymflexError, UncertifiedError
 from symflex.figures import FIGURES, LOOP_FIGURES, draw, draw_loop, draw_measured, unavailable
 from symflex.model import Figure
 from symflex.report.document import Notice
-from symflex.report.part import Part, code_of, picture
+from symflex.report.part import ChapterPart, code_of, picture
 from symflex.report.study import attempt
 
 if TYPE_CHECKING:
-    from symflex.report.document import Block, Picture
+    from symflex.report.document import Block, PageFigure
     from symflex.report.study import Study
     from symflex.transfer import BoundTransferFunction
 
@@ -26,7 +26,7 @@ LOOP_WORDS: Final = {
 }
 
 
-def figure_section(study: Study) -> Part | None:
+def figure_section(study: Study) -> ChapterPart | None:
     """Return every figure, as SVG for the page and as PDF and SVG for papers."""
     known = {(b.source.output.name, b.source.input.name): b for b in study.bounds}
     drawable = {pair: b for pair, b in known.items() if not b.ratio.is_zero}
@@ -36,7 +36,7 @@ def figure_section(study: Study) -> Part | None:
     code = 0
     for figure in study.model.figures or _defaults(study, drawable):
         chosen = [drawable[pair] for pair in figure.of or tuple(drawable) if pair in drawable]
-        drawn: Picture | SymflexError
+        drawn: PageFigure | SymflexError
         if figure.gain and figure.kind in LOOP_FIGURES:
             drawn = attempt(lambda f=figure: _loop_picture(study, f, files))  # type: ignore[misc]
         elif figure.kind not in FIGURES:
@@ -55,7 +55,7 @@ def figure_section(study: Study) -> Part | None:
             code = max(code, code_of(drawn), UncertifiedError.exit_code if is_asked else 0)
         else:
             blocks.append(drawn)
-    return Part("Figures", tuple(blocks), files, tuple(warnings), code) if blocks else None
+    return ChapterPart("Figures", tuple(blocks), files, tuple(warnings), code) if blocks else None
 
 
 def _defaults(study: Study, drawable: dict[tuple[str, str], BoundTransferFunction]) -> tuple[Figure, ...]:
@@ -63,7 +63,7 @@ def _defaults(study: Study, drawable: dict[tuple[str, str], BoundTransferFunctio
     return (Figure("bode", "bode", pairs), Figure("poles_zeros", "poles_zeros", pairs)) if pairs else ()
 
 
-def _loop_picture(study: Study, figure: Figure, files: dict[str, bytes]) -> Picture:
+def _loop_picture(study: Study, figure: Figure, files: dict[str, bytes]) -> PageFigure:
     """Draw a root locus, or a Nyquist plot of the loop gain."""
     drawn = draw_loop(figure.kind, study.loop(figure.gain), band_hz=figure.band)
     caption = f"{figure.title}. " if figure.title else ""
@@ -73,7 +73,7 @@ def _loop_picture(study: Study, figure: Figure, files: dict[str, bytes]) -> Pict
 
 def _picture(
     study: Study, figure: Figure, chosen: list[BoundTransferFunction], files: dict[str, bytes]
-) -> Picture:
+) -> PageFigure:
     if figure.kind == "modes":
         chosen = chosen[:1]  # all functions of a model have the same modes
     caption = f"{figure.title}. " if figure.title else ""

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Final
 from symflex.errors import SymflexError, UncertifiedError
 from symflex.loops import degrees
 from symflex.loops.text import bandwidth_text, nominal_text
-from symflex.report.document import Code, Mark, Notice, Section, Table, columns, text
-from symflex.report.part import Part, code_of
+from symflex.report.document import Badge, Code, Notice, Section, Table, columns, text
+from symflex.report.part import ChapterPart, code_of
 from symflex.report.sections.roots import stability_mark
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ HEADS: Final = columns(
 )
 
 
-def loop_section(study: Study) -> Part | None:
+def loop_section(study: Study) -> ChapterPart | None:
     """Return the stable gains of the loops that figures name, and up to where outputs move together."""
     blocks: list[Block] = []
     documents = []
@@ -54,14 +54,14 @@ def loop_section(study: Study) -> Part | None:
     content = {"schema": "symflex.report-loops/1", "loops": documents}
     data = {f"data/{study.stem}_loops.json": json.dumps(content, indent=1).encode()}
     title = "Loops" if study.loops else "Dynamic colocation"
-    return Part(title, tuple(blocks), data, tuple(warnings), code)
+    return ChapterPart(title, tuple(blocks), data, tuple(warnings), code)
 
 
 def _of(found: StabilityMap) -> tuple[Block, ...]:
     if found.certified:
-        opening = text(Mark("certified", "good"), ": all poles right of the imaginary axis are counted.")
+        opening = text(Badge("certified", "good"), ": all poles right of the imaginary axis are counted.")
     else:
-        opening = text(Mark("not certified", "bad"), f": {'; '.join(found.reasons)}.")
+        opening = text(Badge("not certified", "bad"), f": {'; '.join(found.reasons)}.")
     blocks: list[Block] = []
     if found.nominal is not None:
         word = "unknown" if found.is_stable is None else "stable" if found.is_stable else "unstable"
@@ -70,7 +70,7 @@ def _of(found: StabilityMap) -> tuple[Block, ...]:
     blocks.append(opening)
     rows: list[tuple[Cell, ...]] = []
     for interval in found.intervals:
-        stable = Mark("stable", "good") if interval.poles.is_stable else Mark("unstable", "bad")
+        stable = Badge("stable", "good") if interval.poles.is_stable else Badge("unstable", "bad")
         low, high = ("no end" if end is None else decimal(end) for end in (interval.low, interval.high))
         rows.append(((low,), (high,), (str(interval.poles.right),), (str(interval.poles.axis),), (stable,)))
     unit = f" [{found.unit}]" if found.unit else ""
@@ -97,7 +97,7 @@ def _of(found: StabilityMap) -> tuple[Block, ...]:
 def _together(found: DynamicColocation) -> Block:
     within = f" within {found.phase:g} degrees and {found.magnitude:g} dB"
     pair = (Code(found.tf), " and ", Code(found.reference))
-    status = () if found.is_decided else (" ", Mark("not certified", "bad"))
+    status = () if found.is_decided else (" ", Badge("not certified", "bad"))
     if not found.begins:
         return text(*pair, f" are not together{within} at {found.limits[0]:g} Hz.", *status)
     if found.edge is None:

@@ -9,14 +9,14 @@ from symflex.print.latex.table import decimal_text
 from symflex.print.mathml import label_mathml
 from symflex.report.document import Code, Mathematics, Table, columns
 from symflex.report.numerals import exponents, unit_text
-from symflex.report.part import Part
+from symflex.report.part import ChapterPart
 
 if TYPE_CHECKING:
     from symflex.report.document import Cell
     from symflex.report.study import Study
 
 
-def parameter_section(study: Study) -> Part | None:
+def parameter_section(study: Study) -> ChapterPart | None:
     """Return the table of parameters: symbol, value in the unit it was given in, meaning."""
     model = study.model
     if not model.parameters:
@@ -30,4 +30,4 @@ def parameter_section(study: Study) -> Part | None:
         rows.append(((symbol,), (Code(p.name),), (value,), (unit_text(unit),), (p.doc,)))
     heads = columns(("Symbol", "plain"), ("Name", "plain"), ("Value", "number"), ("Unit", "plain"), "Meaning")
     table = Table(heads, tuple(rows), latex=parameter_table(model))
-    return Part("Parameters", (table,))
+    return ChapterPart("Parameters", (table,))

@@ -10,15 +10,15 @@ from symflex.errors import SymflexError
 from symflex.print.latex import ratio_latex, root_table
 from symflex.print.latex.table import KINDS, damping_text, frequency_text, one_of_each_pair, roots_of
 from symflex.print.text import region_text
-from symflex.report.document import Mark, Mathematics, Notice, Section, Table, columns, text
+from symflex.report.document import Badge, Mathematics, Notice, Section, Table, columns, text
 from symflex.report.numerals import exponents
-from symflex.report.part import Part, code_of
+from symflex.report.part import ChapterPart, code_of
 from symflex.report.sections.equations import ratio_line
 from symflex.report.study import attempt, said
 
 if TYPE_CHECKING:
     from symflex.analysis.explanation import ZeroExplanation
-    from symflex.print.latex.table import Entry
+    from symflex.print.latex.table import PrintedRoot
     from symflex.report.document import Block, Cell, Tone
     from symflex.report.study import Study
     from symflex.roots import PoleZeroMap
@@ -35,7 +35,7 @@ HEADS: Final = columns(
 )
 
 
-def root_section(study: Study) -> Part:
+def root_section(study: Study) -> ChapterPart:
     """Return the poles and zeros of every transfer function, enclosed, and what its zeros mean."""
     explained = {found.tf: told for _, found, told in study.located}
     derived = attempt(lambda: study.tfs)
@@ -56,19 +56,19 @@ def root_section(study: Study) -> Part:
         code = max(code, code_of(error))
     document = {"schema": "symflex.report-roots/1", "roots": [found.to_json_dict() for found in study.maps]}
     data = {f"data/{study.stem}_roots.json": json.dumps(document, indent=1).encode()}
-    return Part("Poles and zeros", tuple(blocks), data, tuple(warnings), code)
+    return ChapterPart("Poles and zeros", tuple(blocks), data, tuple(warnings), code)
 
 
 def _of(found: PoleZeroMap, told: ZeroExplanation | None) -> tuple[Block, ...]:
     certificate = found.certificate
     blocks: list[Block] = []
     if certificate.certified:
-        mark = Mark("certified", "good")
+        mark = Badge("certified", "good")
         said = (
             f": {certificate.found} of {certificate.counted} roots enclosed, each within its radius [rad/s]."
         )
     else:
-        mark, said = Mark("not certified", "bad"), f": {certificate.reason or 'no reason given'}."
+        mark, said = Badge("not certified", "bad"), f": {certificate.reason or 'no reason given'}."
     shown = f" Listed: {region_text(found.region)}." if region_text(found.region) else ""
     verdict = found.verdict
     blocks.append(text(stability_mark(verdict.word), f"{verdict.sentence.removeprefix(verdict.brief)}."))
@@ -96,7 +96,7 @@ def _of(found: PoleZeroMap, told: ZeroExplanation | None) -> tuple[Block, ...]:
     return tuple(blocks)
 
 
-def stability_mark(word: str) -> Mark:
+def stability_mark(word: str) -> Badge:
     """Return the badge of a verdict: green for what is proved to be stable alone.
 
     Examples
@@ -105,7 +105,7 @@ def stability_mark(word: str) -> Mark:
     ['good', 'fair', 'bad', 'fair']
     """
     tones: dict[str, Tone] = {"stable": "good", "unstable": "bad"}
-    return Mark("stability not known" if word == "unknown" else word, tones.get(word, "fair"))
+    return Badge("stability not known" if word == "unknown" else word, tones.get(word, "fair"))
 
 
 def _told(told: ZeroExplanation) -> list[tuple[str, ...]]:
@@ -118,7 +118,7 @@ def _told(told: ZeroExplanation) -> list[tuple[str, ...]]:
     return found
 
 
-def _row(entry: Entry) -> tuple[Cell, ...]:
+def _row(entry: PrintedRoot) -> tuple[Cell, ...]:
     root = entry.root
     printed = root.decimal(DIGITS)
     cells = (

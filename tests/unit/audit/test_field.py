@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 
-from symflex.audit.field import Field, GrowError, UnreadError, ground_of
+from symflex.audit.field import Arithmetic, GrowError, UnreadError, ground_of
 from symflex.audit.reading import Formula, formula_lines
 from symflex.errors import Source, Span, Text
 from symflex.expressions import parse
@@ -22,7 +22,7 @@ def equal(left, right):
     formula = Formula(expression("0"), None, (("L", expression(left)), ("R", expression(right))), names)
     ground = ground_of(PARAMETERS)
     while True:
-        field = Field(ground)
+        field = Arithmetic(ground)
         try:
             values = formula_lines(field, formula)
         except GrowError as more:
@@ -105,13 +105,13 @@ def test_what_has_two_readings_or_none_is_left_unread(text):
 
 
 def test_a_constant_ratio_is_found_and_a_varying_one_is_not():
-    field = Field(ground_of(PARAMETERS))
+    field = Arithmetic(ground_of(PARAMETERS))
     x, y, s = (field.name(n) for n in "xys")
     assert str(field.constant_ratio(2 * x * (s + y), s + y)) == "2*x"
     assert field.constant_ratio(s + x, s + y) is None
 
 
 def test_a_power_of_zero_with_a_negative_exponent_is_an_error():
-    field = Field(ground_of(PARAMETERS))
+    field = Arithmetic(ground_of(PARAMETERS))
     with pytest.raises(ZeroDivisionError):
         field.power(field.number(0), Fraction(-1, 2))

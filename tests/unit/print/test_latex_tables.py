@@ -11,7 +11,7 @@ from symflex.errors import UsageError
 from symflex.model.model import ExactValue, Model, Parameter
 from symflex.print.latex import COLUMNS_MM, column_width, mode_table, parameter_table, root_table
 from symflex.print.latex.table import decimal_text
-from symflex.print.latex.tabular import SETTINGS, Column, fitting, tabular
+from symflex.print.latex.tabular import SETTINGS, TabularColumn, fitting, tabular
 from symflex.print.latex.units import quantity_latex, siunitx_unit
 from symflex.roots import Certificate, Everything, HiddenRoot, PoleZeroMap, Root
 
@@ -181,7 +181,7 @@ def test_modes_are_the_poles_of_all_functions_once_each():
 
 
 def test_a_table_too_wide_for_every_setting_is_told_apart():
-    column = Column("l", ("a",), (0.5,), ("b",), 30.0)
+    column = TabularColumn("l", ("a",), (0.5,), ("b",), 30.0)
     assert fitting((column,), 20.0) is None
     assert fitting((column,), 26.0) is SETTINGS[3]
     assert r"\footnotesize" in tabular((column,), SETTINGS[3])

@@ -10,7 +10,14 @@ import pytest
 from symflex.errors import SpecError
 from symflex.report import find_claims, find_specifications
 from symflex.report.claims import PREDICATES, read_claims
-from symflex.report.facts import ColocationFact, LoopFacts, ModelFacts, RootFact, TransferFacts, Truncation
+from symflex.report.facts import (
+    ColocationFact,
+    LoopFacts,
+    ModelFacts,
+    RootFact,
+    TransferFacts,
+    TruncationFacts,
+)
 from tests.house.repository import ROOT
 
 HEAD = 'symflex-claims = 1\npublication = "Nobody 2001"\ntitle = "On carts"\nmodels = ["cart"]\n'
@@ -183,8 +190,8 @@ def of_loop(stem, loop):
         ('is = "infinitely-many"', function(is_infinite=True), function()),
         (
             'is = "modes-suffice"',
-            function(truncation=Truncation(5, 10.0, 5.0, 11.0)),
-            function(truncation=Truncation(5, 10.0, 5.0, 9.0)),
+            function(truncation=TruncationFacts(5, 10.0, 5.0, 11.0)),
+            function(truncation=TruncationFacts(5, 10.0, 5.0, 9.0)),
         ),
         (
             'is = "interlacing"',
