@@ -1,7 +1,10 @@
 """The workbench on which programs are made: every expression exists once, so that shared parts are shared.
 
-Expressions are numbers of rows in a table whose operands stand before them; nothing here recurs, however deep
-a polynomial nests.
+Expressions are numbers of nodes in a table. The operands of a node there are numbers too, of nodes that stand
+before it; so nothing here recurs, however deep a polynomial nests.
+
+    forge.multiply([forge.s, forge.parameter("k")])      0: Laplace()  1: Parameter('k')  2: Multiply((1, 0))
+    forge.multiply([forge.parameter("k"), forge.s])      the same 2: parameters come first
 """
 
 from __future__ import annotations
@@ -9,31 +12,34 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import IntFlag
 from fractions import Fraction
-from typing import TYPE_CHECKING, Literal
+from functools import reduce
+from operator import or_
+from typing import TYPE_CHECKING, Any, cast
+
+from symflex.codegen.program.nodes import (
+    Add,
+    Apply,
+    ComplexNumber,
+    Constant,
+    Divide,
+    InverseLaplace,
+    Item,
+    Laplace,
+    ModalValue,
+    ModeValues,
+    Multiply,
+    Negate,
+    Node,
+    Parameter,
+    Power,
+    Roots,
+    Solutions,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from symflex.codegen.program.nodes import Frames
-
-Kind = Literal[
-    "constant",
-    "complex",
-    "parameter",
-    "s",
-    "inverse",
-    "add",
-    "multiply",
-    "divide",
-    "power",
-    "negate",
-    "apply",
-    "solutions",
-    "roots",
-    "modes",
-    "modal",
-    "item",
-]
 
 
 class Depends(IntFlag):
@@ -44,81 +50,71 @@ class Depends(IntFlag):
     INVERSE = 2
 
 
-@dataclass(frozen=True, slots=True)
-class Row:
-    """One expression: its kind, its operands, a number, name or exponent, and what a sum is made of."""
-
-    kind: Kind
-    operands: tuple[int, ...] = ()
-    payload: Fraction | str | int = 0
-    pi_power: int = 0
-    imaginary: Fraction | int = 0
-    frames: Frames = ()
-
-
 @dataclass
 class Forge:
     """Makes expressions; equal ones get the same number."""
 
-    rows: list[Row] = field(default_factory=list)
+    nodes: list[Node] = field(default_factory=list)
     depends: list[Depends] = field(default_factory=list)
     labels: dict[int, str] = field(default_factory=dict)
-    _numbers: dict[Row, int] = field(default_factory=dict)
+    _numbers: dict[Node, int] = field(default_factory=dict)
 
-    def _make(self, row: Row) -> int:
-        known = self._numbers.get(row)
+    def operands(self, x: int) -> tuple[int, ...]:
+        """Return what an expression is made of."""
+        return cast("tuple[int, ...]", self.nodes[x].children)
+
+    def _make(self, node: Node) -> int:
+        known = self._numbers.get(node)
         if known is not None:
             return known
-        depends = {"s": Depends.S, "inverse": Depends.INVERSE}.get(row.kind, Depends.PARAMETERS)
-        for operand in row.operands:
-            depends |= self.depends[operand]
-        self.rows.append(row)
-        self.depends.append(depends)
-        self._numbers[row] = len(self.rows) - 1
-        return len(self.rows) - 1
+        x = len(self.nodes)
+        self.nodes.append(node)
+        own = {Laplace: Depends.S, InverseLaplace: Depends.INVERSE}.get(type(node), Depends.PARAMETERS)
+        self.depends.append(reduce(or_, (self.depends[o] for o in self.operands(x)), own))
+        self._numbers[node] = x
+        return x
 
     def constant(self, value: Fraction | int, pi_power: int = 0) -> int:
         """Return ``value * pi**pi_power``."""
         exact = Fraction(value)
         if exact == 0:
             pi_power = 0
-        number = self._make(Row("constant", (), abs(exact), pi_power))
+        number = self._make(Constant(abs(exact), pi_power))
         return self.negate(number) if exact < 0 else number
 
     def complex_number(self, real: Fraction | int, imaginary: Fraction | int) -> int:
         """Return ``real + 1j*imaginary``."""
-        return self._make(Row("complex", (), Fraction(real), 0, Fraction(imaginary)))
+        return self._make(ComplexNumber(Fraction(real), Fraction(imaginary)))
 
     def parameter(self, name: str) -> int:
         """Return a parameter."""
-        return self._make(Row("parameter", (), name))
+        return self._make(Parameter(name))
 
     @property
     def s(self) -> int:
         """The Laplace variable."""
-        return self._make(Row("s"))
+        return self._make(Laplace())
 
     @property
     def inverse(self) -> int:
         """The quotient 1/s."""
-        return self._make(Row("inverse"))
+        return self._make(InverseLaplace())
 
     def is_number(self, x: int, value: int) -> bool:
         """Tell whether ``x`` is the given non-negative integer."""
-        row = self.rows[x]
-        return row.kind == "constant" and row.payload == value and row.pi_power == 0
+        node = self.nodes[x]
+        return isinstance(node, Constant) and node.value == value and not node.pi_power
 
     def signed(self, x: int) -> tuple[bool, int]:
         """Return whether ``x`` is minus something, and that."""
-        row = self.rows[x]
-        return (True, row.operands[0]) if row.kind == "negate" else (False, x)
+        return (True, self.operands(x)[0]) if isinstance(self.nodes[x], Negate) else (False, x)
 
     def negate(self, x: int) -> int:
         """Return minus ``x``."""
         is_negative, inner = self.signed(x)
         if is_negative or self.is_number(inner, 0):
             return inner
-        return self._make(Row("negate", (x,)))
+        return self._make(Negate(_row(x)))
 
     def add(self, terms: Iterable[int]) -> int:
         """Return a sum; a term without minus sign comes first when there is one."""
@@ -129,7 +125,7 @@ class Forge:
         if first is None:
             return self.negate(self.add([self.negate(t) for t in kept]))
         kept.insert(0, kept.pop(first))
-        return kept[0] if len(kept) == 1 else self._make(Row("add", tuple(kept)))
+        return kept[0] if len(kept) == 1 else self._make(Add(_rows(*kept)))
 
     def multiply(self, factors: Sequence[int]) -> int:
         """Return a product, its parameters multiplied first, so that they are multiplied once per call."""
@@ -148,7 +144,7 @@ class Forge:
         return self.negate(product) if is_negative else product
 
     def _product(self, factors: Sequence[int]) -> int:
-        return factors[0] if len(factors) == 1 else self._make(Row("multiply", tuple(factors)))
+        return factors[0] if len(factors) == 1 else self._make(Multiply(_rows(*factors)))
 
     def divide(self, above: int, below: int) -> int:
         """Return a quotient."""
@@ -156,7 +152,7 @@ class Forge:
         minus_below, denominator = self.signed(below)
         whole = numerator
         if not self.is_number(denominator, 1) and not self.is_number(numerator, 0):
-            whole = self._make(Row("divide", (numerator, denominator)))
+            whole = self._make(Divide(_row(numerator), _row(denominator)))
         return whole if minus_above == minus_below else self.negate(whole)
 
     def power(self, base: int, exponent: int) -> int:
@@ -170,7 +166,7 @@ class Forge:
             power = self.power(size, exponent)
             return self.negate(power) if exponent % 2 else power
         if not self.depends[base]:
-            return self._make(Row("power", (base,), exponent))
+            return self._make(Power(_row(base), exponent))
         if exponent % 2:
             return self._product([self.power(base, exponent - 1), base])
         half = self.power(base, exponent // 2)
@@ -178,36 +174,43 @@ class Forge:
 
     def apply(self, function: str, argument: int) -> int:
         """Return an elementary function."""
-        return self._make(Row("apply", (argument,), function))
+        return self._make(Apply(function, _row(argument)))
 
     def solutions(self, coefficients: Sequence[int], terms: int) -> tuple[int, ...]:
         """Return a differential equation's solutions at 1; see :class:`nodes.Solutions`."""
-        row = self.label(self._make(Row("solutions", tuple(coefficients), terms)), "solutions")
+        row = self.label(self._make(Solutions(_rows(*coefficients), terms)), "solutions")
         return tuple(self.item(row, k) for k in range(len(coefficients)))
 
     def roots(self, coefficients: Sequence[int]) -> int:
         """Return the list of a polynomial's roots; see :class:`nodes.Roots`."""
-        return self.label(self._make(Row("roots", tuple(coefficients))), "x")
+        return self.label(self._make(Roots(_rows(*coefficients))), "x")
 
     def mode_values(self, roots: int, length: int) -> int:
         """Return what a sum needs of roots at a length; see :class:`nodes.ModeValues`."""
-        return self.label(self._make(Row("modes", (roots, length))), "modes")
+        return self.label(self._make(ModeValues(_row(roots), _row(length))), "modes")
 
     def modal_value(
         self, modes: Sequence[int], coefficients: Sequence[int], frames: Frames
     ) -> tuple[int, int]:
         """Return a sum over its largest exponential, and the logarithm of that."""
-        row = self.label(
-            self._make(Row("modal", (*modes, *coefficients), len(modes), frames=frames)), "total"
-        )
+        row = self.label(self._make(ModalValue(_rows(*modes), _rows(*coefficients), frames)), "total")
         return self.item(row, 0), self.item(row, 1)
 
     def item(self, values: int, position: int) -> int:
         """Return one value of a list."""
-        return self._make(Row("item", (values,), position))
+        return self._make(Item(_row(values), position))
 
     def label(self, x: int, name: str) -> int:
         """Ask for an assignment of ``x``; the first name given stays."""
-        if self.rows[x].operands:
+        if self.operands(x):
             self.labels.setdefault(x, name)
         return x
+
+
+def _row(x: int) -> Any:  # noqa: ANN401
+    """Return the number of a node as an operand of a node of the table."""
+    return x
+
+
+def _rows(*numbers: int) -> tuple[Any, ...]:
+    return numbers

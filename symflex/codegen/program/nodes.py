@@ -7,11 +7,12 @@ the same floating-point numbers in the same order.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from itertools import islice
+from typing import TYPE_CHECKING, ClassVar, Self
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
     from fractions import Fraction
 
 Frames = tuple[
@@ -23,12 +24,40 @@ Frames = tuple[
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """Base of all nodes."""
+    """Base of all nodes.
+
+    Operands are nodes. In the table of a :class:`~symflex.codegen.program.forge.Forge` they are numbers of
+    nodes, which stand before.
+
+    Examples
+    --------
+    >>> Divide(Laplace(), Parameter("k")).children
+    (Laplace(), Parameter(name='k'))
+    >>> Divide(Laplace(), Parameter("k")).with_children([Laplace(), Laplace()])
+    Divide(numerator=Laplace(), denominator=Laplace())
+    """
+
+    OPERANDS: ClassVar[tuple[str, ...]] = ()
+    """The fields that hold operands, or tuples of them."""
 
     @property
     def children(self) -> tuple[Node, ...]:
         """The operands, from left to right; empty for a leaf."""
-        return ()
+        found: list[Node] = []
+        for name in self.OPERANDS:
+            value = getattr(self, name)
+            found += value if isinstance(value, tuple) else (value,)
+        return tuple(found)
+
+    def with_children(self, children: Iterable[Node]) -> Self:
+        """Return the same with other operands, as many as there are."""
+        given = iter(children)
+        changes = {}
+        for name in self.OPERANDS:
+            value = getattr(self, name)
+            is_list = isinstance(value, tuple)
+            changes[name] = tuple(islice(given, len(value))) if is_list else next(given)
+        return replace(self, **changes) if changes else self
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,75 +104,57 @@ class Reference(Node):
 class Add(Node):
     """A sum, evaluated from left to right."""
 
-    terms: tuple[Node, ...]
+    OPERANDS: ClassVar = ("terms",)
 
-    @property
-    def children(self) -> tuple[Node, ...]:
-        """The operands, from left to right."""
-        return self.terms
+    terms: tuple[Node, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Multiply(Node):
     """A product, evaluated from left to right."""
 
-    factors: tuple[Node, ...]
+    OPERANDS: ClassVar = ("factors",)
 
-    @property
-    def children(self) -> tuple[Node, ...]:
-        """The operands, from left to right."""
-        return self.factors
+    factors: tuple[Node, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Divide(Node):
     """A quotient."""
 
+    OPERANDS: ClassVar = ("numerator", "denominator")
+
     numerator: Node
     denominator: Node
-
-    @property
-    def children(self) -> tuple[Node, ...]:
-        """The operands, from left to right."""
-        return (self.numerator, self.denominator)
 
 
 @dataclass(frozen=True, slots=True)
 class Power(Node):
     """An expression free of s raised to an integer of at least two."""
 
+    OPERANDS: ClassVar = ("base",)
+
     base: Node
     exponent: int
-
-    @property
-    def children(self) -> tuple[Node, ...]:
-        """The operands, from left to right."""
-        return (self.base,)
 
 
 @dataclass(frozen=True, slots=True)
 class Negate(Node):
     """Minus its operand."""
 
-    operand: Node
+    OPERANDS: ClassVar = ("operand",)
 
-    @property
-    def children(self) -> tuple[Node, ...]:
-        """The operands, from left to right."""
-        return (self.operand,)
+    operand: Node
 
 
 @dataclass(frozen=True, slots=True)
 class Apply(Node):
     """An elementary function; ``function`` is a key of ``kernels.FUNCTIONS``, ``abs`` or ``complex_exp``."""
 
+    OPERANDS: ClassVar = ("argument",)
+
     function: str
     argument: Node
-
-    @property
-    def children(self) -> tuple[Node, ...]:
-        """The operands, from left to right."""
-        return (self.argument,)
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,13 +171,10 @@ class Solutions(Node):
         Length of their Taylor series; 0 asks for a method that serves coefficients of any size.
     """
 
+    OPERANDS: ClassVar = ("coefficients",)
+
     coefficients: tuple[Node, ...]
     terms: int
-
-    @property
-    def children(self) -> tuple[Node, ...]:
-        """The operands, from left to right."""
-        return self.coefficients
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,12 +187,9 @@ class Roots(Node):
         ``c_0, ..., c_(n-1)``.
     """
 
-    coefficients: tuple[Node, ...]
+    OPERANDS: ClassVar = ("coefficients",)
 
-    @property
-    def children(self) -> tuple[Node, ...]:
-        """The operands, from left to right."""
-        return self.coefficients
+    coefficients: tuple[Node, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,13 +204,10 @@ class ModeValues(Node):
         What they are multiplied by.
     """
 
+    OPERANDS: ClassVar = ("roots", "length")
+
     roots: Node
     length: Node
-
-    @property
-    def children(self) -> tuple[Node, ...]:
-        """The operands, from left to right."""
-        return (self.roots, self.length)
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,27 +224,21 @@ class ModalValue(Node):
         Slots, terms and keys of every frame.
     """
 
+    OPERANDS: ClassVar = ("modes", "coefficients")
+
     modes: tuple[Node, ...]
     coefficients: tuple[Node, ...]
     frames: Frames
-
-    @property
-    def children(self) -> tuple[Node, ...]:
-        """The operands, from left to right."""
-        return (*self.modes, *self.coefficients)
 
 
 @dataclass(frozen=True, slots=True)
 class Item(Node):
     """One value of a list."""
 
+    OPERANDS: ClassVar = ("values",)
+
     values: Node
     position: int
-
-    @property
-    def children(self) -> tuple[Node, ...]:
-        """The list."""
-        return (self.values,)
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,10 +18,7 @@ from symflex.codegen.program.nodes import (
     Assignment,
     Constant,
     Divide,
-    Item,
     Laplace,
-    ModalValue,
-    ModeValues,
     Multiply,
     Negate,
     Node,
@@ -30,8 +27,6 @@ from symflex.codegen.program.nodes import (
     Piecewise,
     Power,
     Reference,
-    Roots,
-    Solutions,
     Straight,
 )
 
@@ -324,31 +319,7 @@ def _each(code: Straight, change: Callable[[Node], Node]) -> Straight:
 
 def _everywhere(node: Node, change: Callable[[Node], Node]) -> Node:
     """Return an expression changed from the leaves up."""
-    parts = tuple(_everywhere(c, change) for c in node.children)
-    match node:
-        case Add():
-            node = Add(parts)
-        case Multiply():
-            node = Multiply(parts)
-        case Divide():
-            node = Divide(*parts)
-        case Power(_, exponent):
-            node = Power(parts[0], exponent)
-        case Negate():
-            node = Negate(parts[0])
-        case Apply(function, _):
-            node = Apply(function, parts[0])
-        case Solutions(_, terms):
-            node = Solutions(parts, terms)
-        case Roots():
-            node = Roots(parts)
-        case ModeValues():
-            node = ModeValues(*parts)
-        case ModalValue(modes, _, frames):
-            node = ModalValue(parts[: len(modes)], parts[len(modes) :], frames)
-        case Item(_, position):
-            node = Item(parts[0], position)
-    return change(node)
+    return change(node.with_children(_everywhere(c, change) for c in node.children))
 
 
 def _positive(node: Node) -> Node:

@@ -3,39 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symflex.codegen.program.forge import Depends
-from symflex.codegen.program.nodes import (
-    Add,
-    Apply,
-    Assignment,
-    Branch,
-    ComplexNumber,
-    Constant,
-    Divide,
-    InverseLaplace,
-    Item,
-    Laplace,
-    ModalValue,
-    ModeValues,
-    Multiply,
-    Negate,
-    Node,
-    Parameter,
-    Power,
-    Program,
-    Reference,
-    Roots,
-    Solutions,
-    Straight,
-)
+from symflex.codegen.program.nodes import Assignment, Branch, Negate, Node, Program, Reference, Straight
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.codegen.program.forge import Forge, Row
+    from symflex.codegen.program.forge import Forge
 
 DEEPEST = 8
 """Nesting from which an intermediate value gets a name, for the reader's sake and the parser's."""
@@ -98,25 +74,26 @@ class _Schedule:
             x = pending.pop()
             if x not in found:
                 found.add(x)
-                pending += self.forge.rows[x].operands
+                pending += self.forge.operands(x)
         return found
 
     def _uses(self, reached: set[int]) -> dict[int, tuple[int, bool]]:
         """Return how often each expression is used, and whether something that depends on s uses it."""
         counts = dict.fromkeys(reached, (0, False))
         for x in reached:
-            for operand in self.forge.rows[x].operands:
+            for operand in self.forge.operands(x):
                 count, hoisted = counts[operand]
                 counts[operand] = (count + 1, hoisted or bool(self.forge.depends[x]))
         return counts
 
     def _deserves_name(self, x: int, uses: tuple[int, bool], deep: int) -> bool:
-        row = self.forge.rows[x]
-        if not row.operands or (row.kind == "negate" and not self.forge.rows[row.operands[0]].operands):
+        operands = self.forge.operands(x)
+        is_minus = isinstance(self.forge.nodes[x], Negate)
+        if not operands or (is_minus and not self.forge.operands(operands[0])):
             return False
         count, used_with_s = uses
         is_free = self.forge.depends[x] == Depends.PARAMETERS
-        is_hoisted = is_free and used_with_s and row.kind != "negate"
+        is_hoisted = is_free and used_with_s and not is_minus
         return x in self.forge.labels or count > 1 or is_hoisted or deep > DEEPEST
 
     def _name(self, x: int) -> str:
@@ -132,49 +109,6 @@ class _Schedule:
                 return name
 
     def _node(self, x: int) -> tuple[Node, int]:
-        row = self.forge.rows[x]
-        deep = 1 + max(self.depth[o] for o in row.operands) if row.operands else 0
-        return _node_of(row, tuple(self.nodes[o] for o in row.operands)), deep
-
-
-def _node_of(row: Row, operands: tuple[Node, ...]) -> Node:
-    match row.kind:
-        case "constant":
-            return Constant(Fraction(row.payload), row.pi_power)
-        case "complex":
-            return ComplexNumber(Fraction(row.payload), Fraction(row.imaginary))
-        case "parameter":
-            return Parameter(str(row.payload))
-        case "s":
-            return Laplace()
-        case "inverse":
-            return InverseLaplace()
-        case "add":
-            return Add(operands)
-        case "multiply":
-            return Multiply(operands)
-        case "divide":
-            return Divide(*operands)
-        case "power":
-            return Power(operands[0], int(row.payload))
-        case "negate":
-            return Negate(operands[0])
-        case "apply":
-            return Apply(str(row.payload), operands[0])
-        case "item":
-            return Item(operands[0], int(row.payload))
-        case "solutions" | "roots" | "modes" | "modal":
-            return _list_of(row, operands)
-
-
-def _list_of(row: Row, operands: tuple[Node, ...]) -> Node:
-    """Return a node whose value is a list."""
-    match row.kind:
-        case "roots":
-            return Roots(operands)
-        case "modes":
-            return ModeValues(*operands)
-        case "modal":
-            count = int(row.payload)
-            return ModalValue(operands[:count], operands[count:], row.frames)
-    return Solutions(operands, int(row.payload))
+        operands = self.forge.operands(x)
+        deep = 1 + max(self.depth[o] for o in operands) if operands else 0
+        return self.forge.nodes[x].with_children(self.nodes[o] for o in operands), deep
