@@ -2,7 +2,7 @@
 
 text --parse--> Spec --resolve--> Model --assemble--> Equations --derive--> TransferFunction
                                                                                | bind(values)
-   PoleZeroMap <--roots--  FrequencyResponse <--response--  RationalApproximation <--rational--
+   PoleZeroMap <--roots--  SampledResponse <--response--  RationalApproximation <--rational--
                                                                                |
                                                  print, codegen: text, JSON, LaTeX, numpy, figure
 
@@ -36,10 +36,10 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     from symflex.analysis.explanation import ZeroExplanation
-    from symflex.analysis.rational import RationalApproximation, Residue
-    from symflex.analysis.sensitivity import Sensitivity
+    from symflex.analysis.rational import PrincipalPart, RationalApproximation
+    from symflex.analysis.sensitivity import RootDerivative
     from symflex.audit import Audit
-    from symflex.data.fitting import Fit
+    from symflex.data.fitting import ResonanceFit
     from symflex.data.measurement import MeasuredResponse
     from symflex.equations import Equations
     from symflex.loops import DynamicColocation, Loop, StabilityMap
@@ -147,7 +147,7 @@ def roots(
 
 def residues(
     bound: BoundTransferFunction, region: Region | None = None, digits: int = 15, budget: Budget | None = None
-) -> tuple[Residue, ...]:
+) -> tuple[PrincipalPart, ...]:
     """Return the principal parts at the poles; see :func:`symflex.analysis.rational.find_residues`."""
     from symflex.analysis import rational as rational_room  # imports numpy
 
@@ -185,7 +185,7 @@ def sensitivities(
     found: PoleZeroMap,
     names: Sequence[str] = (),
     digits: int = 15,
-) -> tuple[Sensitivity, ...]:
+) -> tuple[RootDerivative, ...]:
     """Return how poles and zeros move with parameters; see :mod:`symflex.analysis.sensitivity.of_model`."""
     from symflex.analysis.sensitivity import of_model  # imports numpy
 
@@ -239,14 +239,14 @@ def check_published(model: Model, formulas: Sequence[Published]) -> None:
     audit_room.check_published(model, formulas)
 
 
-def fit(measured: Sequence[MeasuredResponse], given: FitOptions) -> Fit:
+def fit(measured: Sequence[MeasuredResponse], given: FitOptions) -> ResonanceFit:
     """Fit resonances to measured responses, which share their poles; see :mod:`symflex.analysis.measured`."""
     from symflex.analysis import measured as measured_room  # imports numpy and scipy
 
     return measured_room.fit(measured, given)
 
 
-def fit_specification(found: Fit, folder: str | Path) -> str:
+def fit_specification(found: ResonanceFit, folder: str | Path) -> str:
     """Return the specification of a fit that will stand in a folder; see :mod:`.fitting.specification`."""
     from symflex.data.fitting import specification  # imports numpy
 

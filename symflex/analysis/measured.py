@@ -23,14 +23,14 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-    from symflex.data.fitting import Fit
+    from symflex.data.fitting import ResonanceFit
     from symflex.data.measurement import MeasuredResponse
     from symflex.model import Model
     from symflex.options import FitOptions, MeasureOptions
     from symflex.transfer import BoundTransferFunction
 
 
-def fit(measured: Sequence[MeasuredResponse], given: FitOptions) -> Fit:
+def fit(measured: Sequence[MeasuredResponse], given: FitOptions) -> ResonanceFit:
     """Fit resonances to measured responses, which share their poles; see :func:`.fitting.fit_resonances`.
 
     Raises

@@ -32,11 +32,11 @@ class Fit:
 
     Parameters
     ----------
-    found : symflex.data.fitting.Fit
+    found : symflex.data.fitting.ResonanceFit
         The fit in full: data, start, residuals, covariance.
     """
 
-    found: fitting.Fit
+    found: fitting.ResonanceFit
 
     @property
     def resonances(self) -> Resonances:

@@ -11,14 +11,14 @@ LARGEST_DRAWING = 4000
 
 
 @dataclass(frozen=True, eq=False)
-class FrequencyResponse(response_room.FrequencyResponse):
+class FrequencyResponse(response_room.SampledResponse):
     """Values on the imaginary axis; in a notebook, a Bode plot.
 
-    See :class:`symflex.analysis.response.FrequencyResponse`.
+    See :class:`symflex.analysis.response.SampledResponse`.
     """
 
     @staticmethod
-    def of(response: response_room.FrequencyResponse) -> FrequencyResponse:
+    def of(response: response_room.SampledResponse) -> FrequencyResponse:
         """Return the face of a response."""
         return FrequencyResponse(
             response.tf, response.omega, response.values, response.quantity, response.unit, response.turns

@@ -35,7 +35,7 @@ class ModeShape:
 
     Parameters
     ----------
-    enclosed : symflex.analysis.modes.ModeShape
+    enclosed : symflex.analysis.modes.EnclosedModeShape
         With a ball around every amplitude.
 
     Examples
@@ -54,7 +54,7 @@ class ModeShape:
     (('x', 'bar.f_a', 'bar.f'), array([0.      , 0.707107, 1.      ]))
     """
 
-    enclosed: modes_room.ModeShape
+    enclosed: modes_room.EnclosedModeShape
 
     @property
     def pole(self) -> Root:

@@ -21,11 +21,11 @@ class Residue:
 
     Parameters
     ----------
-    principal : symflex.analysis.rational.Residue
+    principal : symflex.analysis.rational.PrincipalPart
         The enclosures.
     """
 
-    principal: rational_room.Residue
+    principal: rational_room.PrincipalPart
 
     @property
     def pole(self) -> Root:

@@ -22,11 +22,11 @@ class Sensitivity:
 
     Parameters
     ----------
-    moved : symflex.analysis.sensitivity.Sensitivity
+    moved : symflex.analysis.sensitivity.RootDerivative
         The enclosures.
     """
 
-    moved: sensitivity_room.Sensitivity
+    moved: sensitivity_room.RootDerivative
 
     @property
     def kind(self) -> str:

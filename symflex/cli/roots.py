@@ -12,7 +12,7 @@ from symflex.options import RootsOptions
 
 if TYPE_CHECKING:
     from symflex.analysis.explanation import ZeroExplanation
-    from symflex.analysis.sensitivity import Sensitivity
+    from symflex.analysis.sensitivity import RootDerivative
 
 DERIVING = 0.5
 """Seconds that deriving may take in any case, by which a command may exceed its time."""
@@ -44,7 +44,7 @@ def command(spec: Specification, given: RootsOptions) -> int:
         (bound,) = pipeline.derive_bound(model, [pair])
     with ProgressBar() as bar:
         found = pipeline.roots(bound, chosen, shown, entered_budget().told(bar))
-    moved: tuple[Sensitivity, ...] = ()
+    moved: tuple[RootDerivative, ...] = ()
     explained: ZeroExplanation | None = None
     wanted, is_over = bool(given.sensitivity), found.certificate.is_exceeded
     try:

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from symflex.analysis.response import FrequencyResponse
+    from symflex.analysis.response import SampledResponse
     from symflex.figures.drawing import AxisLimits, Limits
     from symflex.roots import PoleZeroMap
     from symflex.transfer import BoundTransferFunction, TransferFunction
@@ -137,7 +137,7 @@ def said_of_grid(found: PoleZeroMap) -> str:
     return f"{found.tf}: {certificate.reason}; drawn where its values turn, without knowing all roots"
 
 
-def draw_response(response: FrequencyResponse) -> Figure | None:
+def draw_response(response: SampledResponse) -> Figure | None:
     """Draw magnitude and phase of one frequency response, at its own frequencies.
 
     Returns
@@ -177,7 +177,7 @@ def _band_of_model(tf: TransferFunction) -> tuple[float, float] | None:
 
 
 def _magnitude_limits(
-    responses: Sequence[FrequencyResponse], maps: Sequence[PoleZeroMap]
+    responses: Sequence[SampledResponse], maps: Sequence[PoleZeroMap]
 ) -> tuple[float, float]:
     """Return limits [dB] that hold every damped peak, and undamped ones cut off."""
     lowest, highest = np.inf, -np.inf
@@ -197,7 +197,7 @@ def _magnitude_limits(
 
 
 def _magnitude_curve(
-    response: FrequencyResponse, found: PoleZeroMap, limits: tuple[float, float]
+    response: SampledResponse, found: PoleZeroMap, limits: tuple[float, float]
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     """Return frequencies [Hz] and levels [dB], with a point beyond the frame at each root on the axis."""
     beyond = limits[1] - limits[0]
@@ -221,7 +221,7 @@ def _near_undamped(omega: npt.NDArray[np.float64], found: PoleZeroMap) -> npt.ND
     return near
 
 
-def _set_phase_axis(axes: Axes, responses: Sequence[FrequencyResponse], limits: Limits | None = None) -> None:
+def _set_phase_axis(axes: Axes, responses: Sequence[SampledResponse], limits: Limits | None = None) -> None:
     phase = np.degrees(np.concatenate([response.phase for response in responses]))
     phase = phase[np.isfinite(phase)]
     lowest, highest = limits or ((float(phase.min()), float(phase.max())) if phase.size else (0.0, 0.0))

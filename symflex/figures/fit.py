@@ -12,17 +12,17 @@ from symflex.figures.style import COLOURS, DASHES, QUIET, paper_style
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from symflex.data.fitting import Fit
+    from symflex.data.fitting import ResonanceFit
 
 PARTED_COLOUR: Final = "#F6E3D4"
 
 
-def draw_fit(fit: Fit, response: int = 0) -> Figure:
+def draw_fit(fit: ResonanceFit, response: int = 0) -> Figure:
     """Draw one response of a fit: data, start, fit; and the phase of the magnitude-only fit where it parts.
 
     Parameters
     ----------
-    fit : Fit
+    fit : ResonanceFit
         The result.
     response : int
         Which of its responses.

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from symflex.analysis.modes import ModeShape
+    from symflex.analysis.modes import EnclosedModeShape
     from symflex.figures.drawing import AxisLimits, Limits
     from symflex.figures.runs import Panel
     from symflex.transfer import BoundTransferFunction, TransferFunction
@@ -131,16 +131,16 @@ def draw_modes(
     return figure
 
 
-def heading(shape: ModeShape) -> str:
+def heading(shape: EnclosedModeShape) -> str:
     r"""Return natural frequency and damping ratio of a mode, or its pole where that is real.
 
     Examples
     --------
     >>> from flint import arb
-    >>> from symflex.analysis.modes import ModeShape
+    >>> from symflex.analysis.modes import EnclosedModeShape
     >>> from symflex.roots import Root
     >>> pole = Root(arb(-3), arb(4), 1, on_imaginary_axis=False, is_real=False)
-    >>> heading(ModeShape(pole, (), (), "x", True))
+    >>> heading(EnclosedModeShape(pole, (), (), "x", True))
     '$0.7958$ Hz, $\\zeta = 0.600$'
     """
     pole = shape.pole
@@ -182,7 +182,7 @@ def _widths(panels: Sequence[Panel], room: float) -> list[float]:
     return [left if isinstance(p, Run) else s * shrink for p, s in zip(panels, stems, strict=True)]
 
 
-def _curves(panel: Run, shape: ModeShape) -> list[Curve]:
+def _curves(panel: Run, shape: EnclosedModeShape) -> list[Curve]:
     """Return the displacement along each part of a run."""
     found = []
     for segment in panel.segments:
@@ -194,24 +194,24 @@ def _curves(panel: Run, shape: ModeShape) -> list[Curve]:
     return found
 
 
-def _stem_values(panel: Stems, shape: ModeShape) -> npt.NDArray[np.complex128]:
+def _stem_values(panel: Stems, shape: EnclosedModeShape) -> npt.NDArray[np.complex128]:
     return np.array([complex(shape.motion(name).value.mid()) for name in panel.names])
 
 
-def _amplitudes(panel: Panel, shape: ModeShape) -> npt.NDArray[np.complex128]:
+def _amplitudes(panel: Panel, shape: EnclosedModeShape) -> npt.NDArray[np.complex128]:
     if isinstance(panel, Stems):
         return _stem_values(panel, shape)
     return np.concatenate([values for _, values in _curves(panel, shape)])
 
 
-def _lags(panel: Panel, shape: ModeShape) -> bool:
+def _lags(panel: Panel, shape: EnclosedModeShape) -> bool:
     """Tell whether something in a panel is seen to move out of phase."""
     values = _amplitudes(panel, shape)
     largest = 1.0 if _is_normalised(panel, shape) else float(np.abs(values).max())
     return bool(np.abs(values.imag).max() > VISIBLE * largest)
 
 
-def _draw_panel(axes: Axes, panel: Panel, shape: ModeShape) -> None:
+def _draw_panel(axes: Axes, panel: Panel, shape: EnclosedModeShape) -> None:
     axes.axhline(0, color=QUIET, linewidth=0.5, zorder=1)
     values = _amplitudes(panel, shape)
     if isinstance(panel, Run):
@@ -231,7 +231,7 @@ def _draw_panel(axes: Axes, panel: Panel, shape: ModeShape) -> None:
         axes.yaxis.get_offset_text().set_fontsize(6)
 
 
-def _is_normalised(panel: Panel, shape: ModeShape) -> bool:
+def _is_normalised(panel: Panel, shape: EnclosedModeShape) -> bool:
     """Tell whether the panel's unit is that of the largest displacement, which is 1."""
     return _unit_of(panel) in ("m", _unit_of_reference(shape))
 
@@ -242,14 +242,14 @@ def _unit_of(panel: Panel) -> str:
     return "rad" if panel.is_turning else "m"
 
 
-def _unit_of_reference(shape: ModeShape) -> str:
+def _unit_of_reference(shape: EnclosedModeShape) -> str:
     part = next((p for p in shape.distributed if shape.reference.startswith(f"{p.name}(")), None)
     if part is not None:
         return "rad" if part.kind == "shaft" else "m"
     return shape.motion(shape.reference).unit
 
 
-def _draw_run(axes: Axes, panel: Run, shape: ModeShape, *, is_lagging: bool) -> None:
+def _draw_run(axes: Axes, panel: Run, shape: EnclosedModeShape, *, is_lagging: bool) -> None:
     for joint in panel.ends[1:-1]:
         axes.axvline(joint, color=FAINT, linewidth=0.6, zorder=0)
     for x, values in _curves(panel, shape):

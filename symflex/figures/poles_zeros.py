@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 from symflex.figures.drawing import FREE
 from symflex.figures.labels import label_of_tf
 from symflex.figures.placement import Panel, text_width
-from symflex.figures.s_plane import Mark, View, choose_view, leaving, marks_of
+from symflex.figures.s_plane import RootMark, View, choose_view, leaving, marks_of
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
@@ -126,7 +126,7 @@ def _highest_pole(maps: Sequence[PoleZeroMap]) -> float | None:
     return max((root.frequency_hz() for root in found), default=None)
 
 
-def _draw_panel(axes: Axes, marks: Sequence[Mark], view: View, width: float, height: float) -> None:
+def _draw_panel(axes: Axes, marks: Sequence[RootMark], view: View, width: float, height: float) -> None:
     axes.set_xlim(*view.re)
     axes.set_ylim(*view.im)
     axes.set_aspect("equal", adjustable="box")
@@ -154,7 +154,7 @@ def _draw_panel(axes: Axes, marks: Sequence[Mark], view: View, width: float, hei
             _number(axes, mark, panel)
 
 
-def _name_the_rest(axes: Axes, marks: Sequence[Mark], view: View, width: float) -> None:
+def _name_the_rest(axes: Axes, marks: Sequence[RootMark], view: View, width: float) -> None:
     """Name at the border what lies outside."""
     panel = Panel(view, width, tuple(mark.s for mark in marks if view.shows(mark)))
     for group in leaving(marks, view):
@@ -171,7 +171,7 @@ def _said_of_rest(found: PoleZeroMap, view: View) -> str:
     return f"{found.tf}: {' and '.join(said)} outside" if said else ""
 
 
-def _number(axes: Axes, mark: Mark, panel: Panel) -> None:
+def _number(axes: Axes, mark: RootMark, panel: Panel) -> None:
     """Write a multiplicity in the corner beside its mark where no other root stands."""
     x, y = panel.at(mark.s)
     width = text_width(str(mark.multiplicity), NOTE_POINTS)
@@ -189,7 +189,7 @@ def _number(axes: Axes, mark: Mark, panel: Panel) -> None:
     )
 
 
-def _point_outside(axes: Axes, group: Sequence[Mark], panel: Panel) -> None:
+def _point_outside(axes: Axes, group: Sequence[RootMark], panel: Panel) -> None:
     """Draw an arrow to where roots outside the view lie, and name those of the upper half plane beside it."""
     view = panel.view
     tip = view.border(group[0].s)

@@ -15,7 +15,7 @@ from symflex.library.elements import LineElement
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from symflex.analysis.modes import DistributedShape, ModeShape
+    from symflex.analysis.modes import DistributedShape, EnclosedModeShape
     from symflex.model import Model, PlacedElement
 
 TURNING: Final = ("shaft",)
@@ -78,7 +78,7 @@ class Stems:
 Panel = Run | Stems
 
 
-def panels_of(model: Model, shapes: Sequence[ModeShape]) -> tuple[Panel, ...]:
+def panels_of(model: Model, shapes: Sequence[EnclosedModeShape]) -> tuple[Panel, ...]:
     """Return what a figure of the modes shows, from left to right.
 
     Nodes at the ends of distributed parts are shown there; what rests in all modes, and what turns where a
@@ -105,7 +105,7 @@ def panels_of(model: Model, shapes: Sequence[ModeShape]) -> tuple[Panel, ...]:
     return (*runs, *stems)
 
 
-def _moves(name: str, shapes: Sequence[ModeShape]) -> bool:
+def _moves(name: str, shapes: Sequence[EnclosedModeShape]) -> bool:
     return any(abs(complex(shape.motion(name).value.mid())) > AT_REST for shape in shapes)
 
 
@@ -170,16 +170,16 @@ def _chain(first: PlacedElement, lines: Sequence[PlacedElement]) -> list[tuple[P
         return None if is_folded and kind == "beam" else others[0]
 
     start, node = first, _ends(first)[0]
-    seen = {id(start)}
-    while (before := beyond(node, start)) is not None and id(before) not in seen:
-        seen.add(id(before))
+    seen = {start.name}
+    while (before := beyond(node, start)) is not None and before.name not in seen:
+        seen.add(before.name)
         a, b = _ends(before)
         start, node = before, a if b == node else b
     chain: list[tuple[PlacedElement, bool]] = []
     here: PlacedElement | None = start
-    used: set[int] = set()
-    while here is not None and id(here) not in used:
-        used.add(id(here))
+    used: set[str] = set()
+    while here is not None and here.name not in used:
+        used.add(here.name)
         a, b = _ends(here)
         is_reversed = node == b != a
         chain.append((here, is_reversed))

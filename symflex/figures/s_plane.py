@@ -32,7 +32,7 @@ PLAIN_LIMIT: Final = 1e5
 
 
 @dataclass(frozen=True, slots=True)
-class Mark:
+class RootMark:
     """A pole or zero at ``s`` [rad/s]."""
 
     kind: Literal["pole", "zero"]
@@ -45,7 +45,7 @@ class Mark:
 
         Examples
         --------
-        >>> Mark("zero", complex(-1989.6, 0)).value, Mark("pole", complex(0, 1516.54), 2).value
+        >>> RootMark("zero", complex(-1989.6, 0)).value, RootMark("pole", complex(0, 1516.54), 2).value
         ('$-1990$', '$\\pm 1517\\,\\mathrm{j}$ (2)')
         """
         re = _number(self.s.real) if self.s.real or not self.s.imag else ""
@@ -85,7 +85,7 @@ class View:
         """Width over height."""
         return self.width / self.height
 
-    def shows(self, mark: Mark) -> bool:
+    def shows(self, mark: RootMark) -> bool:
         """Whether a root is drawn where it is, not named at the border."""
         inside = self.re[0] <= mark.s.real <= self.re[1] and self.im[0] <= mark.s.imag <= self.im[1]
         return inside or mark.s in self.shown
@@ -100,18 +100,18 @@ class View:
         return s * min(scales)
 
 
-def marks_of(found: PoleZeroMap) -> tuple[Mark, ...]:
+def marks_of(found: PoleZeroMap) -> tuple[RootMark, ...]:
     """Return the poles and zeros of a transfer function in double precision."""
-    poles = tuple(Mark("pole", _point(root), root.multiplicity) for root in found.all_poles)
-    return poles + tuple(Mark("zero", _point(root), root.multiplicity) for root in found.zeros)
+    poles = tuple(RootMark("pole", _point(root), root.multiplicity) for root in found.all_poles)
+    return poles + tuple(RootMark("zero", _point(root), root.multiplicity) for root in found.zeros)
 
 
-def choose_view(marks: Sequence[Mark], high_hz: float | None, ratios: tuple[float, float]) -> View:
+def choose_view(marks: Sequence[RootMark], high_hz: float | None, ratios: tuple[float, float]) -> View:
     """Choose the part of the s plane to show.
 
     Parameters
     ----------
-    marks : sequence of Mark
+    marks : sequence of RootMark
         All poles and zeros of all panels.
     high_hz : float or None
         Show the roots up to this natural frequency [Hz]; without it, the resonances from the lowest on, as
@@ -121,7 +121,7 @@ def choose_view(marks: Sequence[Mark], high_hz: float | None, ratios: tuple[floa
 
     Examples
     --------
-    >>> marks = [Mark("pole", s) for s in (-2 + 70j, -2 - 70j, -5000 + 0j)]
+    >>> marks = [RootMark("pole", s) for s in (-2 + 70j, -2 - 70j, -5000 + 0j)]
     >>> view = choose_view(marks, None, (0.6, 1.8))
     >>> view.shows(marks[0]), view.shows(marks[2]), view.re[0] > -150
     (True, False, True)
@@ -157,9 +157,9 @@ def choose_view(marks: Sequence[Mark], high_hz: float | None, ratios: tuple[floa
     return view
 
 
-def leaving(marks: Iterable[Mark], view: View) -> list[list[Mark]]:
+def leaving(marks: Iterable[RootMark], view: View) -> list[list[RootMark]]:
     """Return the roots outside the view in groups of about one direction, the nearest first."""
-    groups: list[list[Mark]] = []
+    groups: list[list[RootMark]] = []
     for mark in sorted((m for m in marks if not view.shows(m)), key=lambda m: abs(m.s)):
         angle = atan2(mark.s.imag, mark.s.real)
         for group in groups:

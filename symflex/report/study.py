@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from symflex.analysis.explanation import ZeroExplanation
     from symflex.analysis.rational import RationalApproximation
-    from symflex.analysis.response import FrequencyResponse
+    from symflex.analysis.response import SampledResponse
     from symflex.audit import Audit
     from symflex.data.measurement import MeasuredResponse
     from symflex.loops import DynamicColocation, Loop, StabilityMap
@@ -196,7 +196,7 @@ class Study:
         return facts_of(self)
 
     @cached_property
-    def responses(self) -> tuple[FrequencyResponse, ...]:
+    def responses(self) -> tuple[SampledResponse, ...]:
         """Frequency responses over the model's band, on grids that miss no resonance."""
         band = self.model.analysis.band
         found = []

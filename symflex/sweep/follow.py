@@ -47,7 +47,7 @@ PIECES = (4, 16)
 """Into how many a step is divided on which names are in doubt."""
 
 
-class Link(IntEnum):
+class NameOrigin(IntEnum):
     """How a root got its name.
 
     ``START``: here names begin, in order of natural frequency. ``SIMILAR``: from the predecessor, whose roots
@@ -74,7 +74,7 @@ class Names:
     mode : array of int, shape (points, roots)
         Which mode, from 0; -1 where there is no root.
     link : array of int, shape (points, roots)
-        A :class:`Link` each.
+        A :class:`NameOrigin` each.
     modes : int
         How many names there are.
     """
@@ -216,18 +216,18 @@ def follow(s: Complexes, family: Integers, steps: Predecessors, between: Between
         n, parent = int(count[i]), steps.before[i]
         own = logarithms[i, :n]
         if parent < 0:
-            names, links = np.arange(n), np.full(n, Link.START, np.int8)
+            names, links = np.arange(n), np.full(n, NameOrigin.START, np.int8)
             last = np.full(n, complex(np.nan, np.nan))
         else:
             last = seen[parent]
             old = mode[parent, : count[parent]]
             if family[i] and family[i] == family[parent] and n == count[parent]:
-                names, links = old.copy(), np.full(n, Link.SIMILAR, np.int8)
+                names, links = old.copy(), np.full(n, NameOrigin.SIMILAR, np.int8)
             else:
                 step = _steps_before(seen, steps, i, old)
                 here = logarithms[parent, : len(old)]
                 names, links = _continued(here, old, last, own, step, modes)
-                if between is not None and Link.DOUBTFUL in links:
+                if between is not None and NameOrigin.DOUBTFUL in links:
                     names, links = _divided(between, (parent, i), here, old, own) or (names, links)
         modes = max(modes, int(names.max(initial=-1)) + 1)
         mode[i, :n], link[i, :n] = names, links
@@ -269,14 +269,14 @@ def _divided(
                 break
             # Nobody sleeps and nobody is new: all roots go on.
             now, links = _continued(here, names, here[:0], there, step, 0)
-            if not np.isin(links, (Link.CLEAR, Link.DOUBTFUL)).all():
+            if not np.isin(links, (NameOrigin.CLEAR, NameOrigin.DOUBTFUL)).all():
                 break
-            doubtful.update(now[links == Link.DOUBTFUL].tolist())
+            doubtful.update(now[links == NameOrigin.DOUBTFUL].tolist())
             places = {int(name): j for j, name in enumerate(names)}
             step = there - here[[places[int(name)] for name in now]]
             here, names = there, now
         else:
-            sure = [Link.DOUBTFUL if name in doubtful else Link.CLEAR for name in names.tolist()]
+            sure = [NameOrigin.DOUBTFUL if name in doubtful else NameOrigin.CLEAR for name in names.tolist()]
             result = names, np.array(sure, np.int8)
             if not doubtful:
                 break
@@ -293,7 +293,7 @@ def _continued(
 ) -> tuple[Integers, npt.NDArray[np.int8]]:
     """Return names and links of roots, from those of the predecessor."""
     names = np.full(len(now), -1, np.int64)
-    links = np.full(len(now), Link.APPEARS, np.int8)
+    links = np.full(len(now), NameOrigin.APPEARS, np.int8)
     foretold = [(before, 0.0)] if step is None else [(before + step, LINE), (before, 0.0)]
     if len(before) == len(now) and len(now):
         # All frequencies may have moved by one factor.
@@ -304,7 +304,7 @@ def _continued(
             continue
         names[column] = old[row]
         met = _is_real(before[row]) != _is_real(now[column])
-        links[column] = Link.REAL_AXIS if met else Link.CLEAR if is_clear else Link.DOUBTFUL
+        links[column] = NameOrigin.REAL_AXIS if met else NameOrigin.CLEAR if is_clear else NameOrigin.DOUBTFUL
     left = np.nonzero(names < 0)[0]
     sleeping = np.array([k for k in range(len(last)) if k not in set(old.tolist()) and not np.isnan(last[k])])
     if left.size and sleeping.size:

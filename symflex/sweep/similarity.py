@@ -16,7 +16,7 @@ from flint import fmpq
 from symflex.algebra import degree_in
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from flint import fmpz_mpoly
 
@@ -60,10 +60,10 @@ class _Term:
 
 @dataclass(frozen=True, slots=True)
 class _Product:
-    """A rational function: its unit, and polynomials with their exponents."""
+    """A rational function: its unit, and the numbers of its polynomials with their exponents."""
 
     unit: fmpq
-    factors: tuple[tuple[tuple[_Term, ...], int], ...]
+    factors: tuple[tuple[int, int], ...]
 
 
 class Similarities:
@@ -90,7 +90,8 @@ class Similarities:
             return
         self._varying = (0, ring.index[PI], *(ring.index[name] for name in table.generators))
         self._waves = len(table.wavenumbers)
-        self._known: dict[str, tuple[_Term, ...]] = {}
+        self._numbers: dict[str, int] = {}
+        self._polynomials: list[tuple[_Term, ...]] = []
         self._names = ring.names
         self._laws = [(law.kind, law.order, len(law.characteristic)) for law in table.dispersions]
         parts = (tf.num, tf.den)
@@ -100,7 +101,7 @@ class Similarities:
         polynomials = [f for value in (*parts, *values, *lengths) for f, _ in value.factors] + hidden
         self._is_possible = not any(degree_in(f, i) for f in polynomials for i in constants)
         self._parts = [self._product(part) for part in parts]
-        self._hidden = [(self._terms(h.polynomial), h.multiplicity) for h in tf.hidden]
+        self._hidden = [(self._numbered(h.polynomial), h.multiplicity) for h in tf.hidden]
         self._values = [self._product(value) for value in values]
         self._lengths = [self._product(value) for value in lengths]
         first = table.kernels[0].dispersion
@@ -118,7 +119,7 @@ class Similarities:
         """
         if not self._is_possible:
             return None
-        found = _Point(values, self._waves)
+        found = _Point(values, self._waves, self._polynomials)
         length = found.number(self._lengths[0])
         leading = found.leading(self._values[self._leading])
         if length is None or length == 0 or leading is None:
@@ -132,7 +133,7 @@ class Similarities:
             key = (
                 degree,
                 tuple(found.product(part) for part in self._parts),
-                tuple((found.polynomial(terms), times) for terms, times in self._hidden),
+                tuple((found.polynomial(number), times) for number, times in self._hidden),
                 tuple(found.value(v, order) for v, order in zip(self._values, orders, strict=True)),
                 tuple(found.value(v, -1) for v in self._lengths),
             )
@@ -142,12 +143,14 @@ class Similarities:
 
     def _product(self, value: Factored) -> _Product:
         unit = fmpq(value.unit.numerator, value.unit.denominator)
-        return _Product(unit, tuple((self._terms(f), e) for f, e in value.factors))
+        return _Product(unit, tuple((self._numbered(f), e) for f, e in value.factors))
 
-    def _terms(self, polynomial: fmpz_mpoly) -> tuple[_Term, ...]:
+    def _numbered(self, polynomial: fmpz_mpoly) -> int:
+        """Return the number of a polynomial, the same for equal ones."""
         varying, name = set(self._varying), str(polynomial)
-        if name not in self._known:
-            self._known[name] = tuple(
+        if name not in self._numbers:
+            self._numbers[name] = len(self._polynomials)
+            terms = (
                 _Term(
                     tuple(int(monomial[i]) for i in self._varying),
                     tuple((self._names[i], int(e)) for i, e in enumerate(monomial) if e and i not in varying),
@@ -155,18 +158,21 @@ class Similarities:
                 )
                 for monomial, coefficient in polynomial.terms()
             )
-        return self._known[name]
+            self._polynomials.append(tuple(terms))
+        return self._numbers[name]
 
 
 class _Point:
     """Writes coefficients without dimension: their signs, and the n-th powers of their absolute values."""
 
-    def __init__(self, values: Mapping[str, ExactValue], waves: int) -> None:
+    def __init__(
+        self, values: Mapping[str, ExactValue], waves: int, polynomials: Sequence[tuple[_Term, ...]]
+    ) -> None:
         self._values = {
             name: (fmpq(value.rational.numerator, value.rational.denominator), value.pi_power)
             for name, value in values.items()
         }
-        self._waves = waves
+        self._waves, self._polynomials = waves, polynomials
         self._images: dict[int, list[tuple[tuple[int, ...], fmpq]]] = {}
         self.scale, self._length, self._degree = fmpq(1), fmpq(1), 1
 
@@ -177,8 +183,8 @@ class _Point:
     def number(self, value: _Product) -> fmpq | None:
         """Return a value that is a rational number."""
         result = value.unit
-        for terms, power in value.factors:
-            image = self._image(terms)
+        for place, power in value.factors:
+            image = self._image(place)
             if len(image) != 1 or any(image[0][0]):
                 return None
             result *= image[0][1] ** power
@@ -187,8 +193,8 @@ class _Point:
     def leading(self, value: _Product) -> tuple[fmpq, int] | None:
         """Return coefficient and exponent of the lowest power of s; ``None`` without a power of s."""
         coefficient, exponent = value.unit, 0
-        for terms, power in value.factors:
-            image = self._image(terms)
+        for place, power in value.factors:
+            image = self._image(place)
             if not image:
                 return None
             monomial, number = min(image, key=lambda term: term[0][0])
@@ -200,7 +206,7 @@ class _Point:
 
     def product(self, value: _Product) -> Key:
         """Return a product up to a constant factor."""
-        return tuple((self.polynomial(terms), power) for terms, power in value.factors)
+        return tuple((self.polynomial(place), power) for place, power in value.factors)
 
     def value(self, value: _Product, lengths: int) -> Key:
         """Return a value that is measured in a power of 1/length, exactly."""
@@ -209,8 +215,8 @@ class _Point:
             return (0,)
         sign = 1 if value.unit > 0 else -1
         size = abs(value.unit) ** n * self._length ** (n * lengths)
-        for terms, power in value.factors:
-            image = self._image(terms)
+        for place, power in value.factors:
+            image = self._image(place)
             if not image:
                 raise ZeroDivisionError
             own, first = self._measured(*image[0])
@@ -218,9 +224,9 @@ class _Point:
             sign *= own**power
         return (sign, str(size), self.product(value))
 
-    def polynomial(self, terms: tuple[_Term, ...]) -> Key:
+    def polynomial(self, place: int) -> Key:
         """Return a polynomial up to a constant factor."""
-        image = self._image(terms)
+        image = self._image(place)
         if not image:
             raise ZeroDivisionError
         if len(image) == 1:
@@ -237,22 +243,22 @@ class _Point:
         size = abs(number) ** n * self.scale ** monomial[0]
         return (1 if number > 0 else -1), size / self._length ** (n * waves) if waves else size
 
-    def _image(self, terms: tuple[_Term, ...]) -> list[tuple[tuple[int, ...], fmpq]]:
+    def _image(self, place: int) -> list[tuple[tuple[int, ...], fmpq]]:
         """Return a polynomial with numbers for its parameters."""
-        known = self._images.get(id(terms))
+        known = self._images.get(place)
         if known is not None:
             return known
         collected: dict[tuple[int, ...], fmpq] = {}
-        for term in terms:
+        for term in self._polynomials[place]:
             number, turns = fmpq(term.coefficient), 0
             for name, exponent in term.parameters:
                 value, power = self._values[name]
                 number *= value**exponent
                 turns += power * exponent
-            place = term.varying
+            powers = term.varying
             if turns:
-                place = (place[0], place[1] + turns, *place[2:])
-            collected[place] = collected[place] + number if place in collected else number
-        image = [(place, number) for place, number in sorted(collected.items()) if number != 0]
-        self._images[id(terms)] = image
+                powers = (powers[0], powers[1] + turns, *powers[2:])
+            collected[powers] = collected[powers] + number if powers in collected else number
+        image = [(powers, number) for powers, number in sorted(collected.items()) if number != 0]
+        self._images[place] = image
         return image

@@ -9,7 +9,7 @@ import numpy as np
 
 from symflex.errors import Diagnostic, UsageError
 from symflex.sweep.design import number
-from symflex.sweep.follow import Link, follow, predecessors
+from symflex.sweep.follow import NameOrigin, follow, predecessors
 from symflex.sweep.points import MARGINS, PointStatus, RootStatus
 
 if TYPE_CHECKING:
@@ -257,7 +257,7 @@ def _roots(design: Design, rows: Rows, between: Between | None) -> tuple[list[Na
         ("radius", own, sorted_by_mode(rows["radius"], np.nan), "rad/s", "the true root is no further away"),
         ("status", own, sorted_by_mode(rows["status"], RootStatus.ABSENT), "", ROOT_STATUS),
         ("multiplicity", own, sorted_by_mode(rows["multiplicity"], 0), "", "multiplicity"),
-        ("link", own, sorted_by_mode(names.link, Link.ABSENT), "", LINKS),
+        ("link", own, sorted_by_mode(names.link, NameOrigin.ABSENT), "", LINKS),
         ("frequency_hz", own, size / (2 * np.pi), "Hz", "natural frequency"),
         ("damping_ratio", own, ratio + 0.0, "", "damping ratio"),
         ("at_zero", (), rows["at_zero"], "", "multiplicity of the root at s = 0"),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from symflex.sweep.follow import Link
+from symflex.sweep.follow import NameOrigin
 from symflex.sweep.points import RootStatus
 
 if TYPE_CHECKING:
@@ -119,7 +119,9 @@ def _links(sweep: Sweep) -> list[str]:
 
 def _link_counts(sweep: Sweep) -> dict[str, int]:
     link = sweep["link"]
-    return {each.name.lower(): int(np.sum(link == each)) for each in Link if each is not Link.ABSENT}
+    return {
+        each.name.lower(): int(np.sum(link == each)) for each in NameOrigin if each is not NameOrigin.ABSENT
+    }
 
 
 def _margins(sweep: Sweep) -> list[str]:

@@ -31,7 +31,7 @@ PAIR = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Motion:
+class MeasuredCoordinate:
     """An output that is ``factor`` times one coordinate, or times the difference of two.
 
     Parameters
@@ -126,7 +126,7 @@ def same_sign(coordinates: Coordinates) -> Coordinates:
     return tuple((v, sign * lead) for v, sign in ordered)
 
 
-def measured(equations: Equations, output: str) -> Motion | None:
+def measured(equations: Equations, output: str) -> MeasuredCoordinate | None:
     """Return what an output measures, ``None`` when that is no coordinate and no difference of two."""
     row = next(o for o in equations.outputs if o.name == output)
     terms = _in_nodes(equations, row.form)
@@ -135,7 +135,7 @@ def measured(equations: Equations, output: str) -> Motion | None:
     (lead, factor), *others = sorted(terms.items(), key=lambda term: str(term[0]))
     if any(not (coefficient + factor).is_zero for _, coefficient in others):
         return None
-    return Motion(((lead, 1), *((v, -1) for v, _ in others)), factor)
+    return MeasuredCoordinate(((lead, 1), *((v, -1) for v, _ in others)), factor)
 
 
 def _in_nodes(equations: Equations, form: LinearForm) -> Mapping[Variable, Factored] | None:

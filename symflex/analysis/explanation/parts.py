@@ -27,7 +27,7 @@ SUPPORTS = (Fixed, Pin, Slider)
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class ConstrainedPart:
     """A part of a constrained system that moves by itself.
 
     Parameters
@@ -59,7 +59,7 @@ class Part:
 class Separation:
     """The parts, and the variables that are at rest."""
 
-    parts: tuple[Part, ...]
+    parts: tuple[ConstrainedPart, ...]
     resting: frozenset[Variable]
 
 
@@ -167,7 +167,7 @@ def separate(equations: Equations, source: str, model: Model | None = None) -> S
         elements = tuple(u.name for u in named.elements if _is_in(named, u, variables))
         signals = tuple(x.name for x in equations.model.signals if Variable("signal", x.name) in variables)
         has_input = any(i in matrix.driven for i in rows)
-        parts.append(Part(elements, fields, signals, order, has_input, determinant))
+        parts.append(ConstrainedPart(elements, fields, signals, order, has_input, determinant))
     return Separation(tuple(parts), frozenset(matrix.resting))
 
 

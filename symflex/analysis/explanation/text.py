@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from symflex.analysis.explanation.parts import Part
+    from symflex.analysis.explanation.parts import ConstrainedPart
     from symflex.analysis.explanation.zeros import ZeroExplanation
 
 WIDTH = 80
@@ -204,7 +204,7 @@ def _structure(explained: ZeroExplanation) -> Iterator[list[str]]:
         yield ["In it moves", _members(parts[0])]
 
 
-def _listed_parts(parts: Sequence[Part], source: str) -> Iterator[str]:
+def _listed_parts(parts: Sequence[ConstrainedPart], source: str) -> Iterator[str]:
     for part in parts[:LISTED]:
         role = "" if not source else f", driven by {source}" if part.has_input else ", not driven"
         yield _members(part) + role
@@ -212,7 +212,7 @@ def _listed_parts(parts: Sequence[Part], source: str) -> Iterator[str]:
         yield f"and {len(parts) - LISTED} more"
 
 
-def _members(part: Part) -> str:
+def _members(part: ConstrainedPart) -> str:
     names = part.names
     shown = ", ".join(names[:NAMES]) + (f" and {len(names) - NAMES} more" if len(names) > NAMES else "")
     if part.order is None:

@@ -22,7 +22,7 @@ from symflex.analysis.explanation.constraints import Constraint, hold, open_circ
 from symflex.analysis.explanation.coordinates import acting, measured
 from symflex.analysis.explanation.ends import bending_between, ends_of_element, ends_of_field, is_line
 from symflex.analysis.explanation.joints import in_one_way, seen_at_the_input
-from symflex.analysis.explanation.parts import Part, Separation, separate
+from symflex.analysis.explanation.parts import ConstrainedPart, Separation, separate
 from symflex.analysis.explanation.text import explanation_json, explanation_text
 from symflex.equations import assemble
 from symflex.equations.elimination import Determinants
@@ -105,7 +105,7 @@ class ZeroExplanation:
     has_hidden : bool
         There are hidden modes: together with the zeros they are the poles of the constrained system, but
         cancel with poles of the system itself.
-    parts : tuple of Part
+    parts : tuple of ConstrainedPart
         What the constrained system separates into.
     ends : tuple of EndChange
         Of line elements and fields, where the constraint changes them.
@@ -136,7 +136,7 @@ class ZeroExplanation:
     transmission: str = ""
     is_delayed: bool = False
     has_hidden: bool = False
-    parts: tuple[Part, ...] = ()
+    parts: tuple[ConstrainedPart, ...] = ()
     ends: tuple[EndChange, ...] = ()
     right_half_plane: int = 0
     real_zeros: tuple[RealZero, ...] = ()

@@ -1,7 +1,7 @@
 """From a pole of a bound transfer function to its mode shapes.
 
 Input: :class:`symflex.transfer.BoundTransferFunction` and the number of a mode, or a root. Output:
-:class:`ModeShape`, from the null space of the equations on the pole's enclosure.
+:class:`EnclosedModeShape`, from the null space of the equations on the pole's enclosure.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from flint import acb, acb_mat
 
 from symflex.analysis.modes.bound_equations import BoundEquations
 from symflex.analysis.modes.null_space import null_space
-from symflex.analysis.modes.shape import ModeShape, Motion, normalised
+from symflex.analysis.modes.shape import EnclosedModeShape, Motion, normalised
 from symflex.budget import spend
 from symflex.equations import assemble
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError, UsageError
@@ -56,17 +56,17 @@ class NumberedShape:
 
     Parameters
     ----------
-    shape : ModeShape
+    shape : EnclosedModeShape
         The shape.
     is_hidden : bool
         The input does not reach it, or the output does not see it.
     """
 
-    shape: ModeShape
+    shape: EnclosedModeShape
     is_hidden: bool
 
 
-def mode_shape(bound: BoundTransferFunction, which: int | Root, digits: int = DIGITS) -> ModeShape:
+def mode_shape(bound: BoundTransferFunction, which: int | Root, digits: int = DIGITS) -> EnclosedModeShape:
     """Return the shape of one mode.
 
     Parameters
@@ -82,7 +82,7 @@ def mode_shape(bound: BoundTransferFunction, which: int | Root, digits: int = DI
 
     Returns
     -------
-    ModeShape
+    EnclosedModeShape
         Of the member of a pair with positive imaginary part.
 
     Raises
@@ -124,7 +124,7 @@ def mode_shape(bound: BoundTransferFunction, which: int | Root, digits: int = DI
 
 def mode_shapes(
     bound: BoundTransferFunction, which: int | Root, digits: int = DIGITS
-) -> tuple[ModeShape, ...]:
+) -> tuple[EnclosedModeShape, ...]:
     """Return all independent shapes of the pole that a mode belongs to; see :func:`mode_shape`.
 
     More than one are a basis: in each, one of as many places is 1 and the others are at rest.
@@ -140,7 +140,7 @@ def lowest_modes(
     Those of poles in the right half plane follow, wherever they lie. Whether the model is stable comes with
     them.
     """
-    search = _Search(bound)
+    search = _ModeSearch(bound)
     found = search.map(band or Modes(count), DIGITS + SPARE_DIGITS)
     candidates = [(root, False) for root in found.all_poles] + [(h.root, True) for h in found.hidden]
     chosen = [(root, hidden) for root, hidden in candidates if not root.is_zero and not root.im < 0]
@@ -163,16 +163,16 @@ def lowest_modes(
 
 def _shapes(
     bound: BoundTransferFunction, which: int | Root, digits: int
-) -> tuple[tuple[ModeShape, ...], int]:
+) -> tuple[tuple[EnclosedModeShape, ...], int]:
     """Return the shapes of a pole, and the place of the mode asked for among them."""
-    search = _Search(bound)
+    search = _ModeSearch(bound)
     if not isinstance(which, int):
         return search.shapes(partial(search.again, which), digits), 0
     place = search.numbered(which, digits)[1]
     return search.shapes(lambda more: search.numbered(which, more)[0], digits), place
 
 
-class _Search:
+class _ModeSearch:
     """Finds poles of one bound transfer function to more and more digits, and solves for their shapes."""
 
     def __init__(self, bound: BoundTransferFunction) -> None:
@@ -233,10 +233,10 @@ class _Search:
         nearest = min(candidates, key=lambda r: _distance(r, root), default=root)
         return nearest if _is_same(nearest, root) else root
 
-    def shapes(self, pole: Callable[[int], Root], digits: int) -> tuple[ModeShape, ...]:
+    def shapes(self, pole: Callable[[int], Root], digits: int) -> tuple[EnclosedModeShape, ...]:
         """Return the shapes of a pole that can be found to any number of digits."""
         working = digits + SPARE_DIGITS
-        best: tuple[ModeShape, ...] = ()
+        best: tuple[EnclosedModeShape, ...] = ()
         for _ in range(ROUNDS):
             try:
                 root = pole(working)
@@ -254,7 +254,7 @@ class _Search:
             raise UncertifiedError(Diagnostic("SF406", message, None, "the pole is not known well enough"))
         return best
 
-    def _at(self, root: Root, digits: int) -> tuple[ModeShape, ...]:
+    def _at(self, root: Root, digits: int) -> tuple[EnclosedModeShape, ...]:
         """Return the shapes at a pole, none when its enclosure is too wide."""
         bits = root.working_bits() + SPARE_BITS
         with precision(bits):
@@ -281,7 +281,7 @@ class _Search:
 
     def _shape(
         self, root: Root, system: SystemAt, values: Sequence[acb], bits: int, is_proved: bool
-    ) -> ModeShape:
+    ) -> EnclosedModeShape:
         known = dict(zip(system.unknowns, values, strict=True))
         starts = {part.name: float(part.start.mid()) for part in system.continua}
         motions = tuple(
@@ -290,7 +290,7 @@ class _Search:
             if variable.kind != "value"
         )
         distributed = tuple(part.shape(known, bits) for part in system.continua)
-        return ModeShape(root, motions, distributed, "", is_proved)
+        return EnclosedModeShape(root, motions, distributed, "", is_proved)
 
 
 def _name(variable: Variable, starts: Mapping[str, float]) -> str:
@@ -364,7 +364,7 @@ def _independent(basis: tuple[tuple[acb, ...], ...], places: Sequence[int]) -> l
     return sorted(chosen)
 
 
-def _is_accurate(shape: ModeShape, digits: int) -> bool:
+def _is_accurate(shape: EnclosedModeShape, digits: int) -> bool:
     """Tell whether motions, also at the far ends of distributed parts, have the digits asked for."""
     groups: dict[tuple[str, str], list[acb]] = {}
     for motion in shape.motions:

@@ -171,7 +171,7 @@ def _log2(value: acb) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class ModeShape:
+class EnclosedModeShape:
     """The motion of everything at one pole, up to a complex factor.
 
     Parameters
@@ -243,7 +243,7 @@ GOLDEN = 0.6180339887498949
 
 
 @dataclass(frozen=True, slots=True)
-class _Place:
+class _PlacedAmplitude:
     """An amplitude and where it is met."""
 
     name: str
@@ -258,7 +258,7 @@ class _Place:
         return float(abs(self.value.mid()))
 
 
-def normalised(shape: ModeShape, digits: int) -> ModeShape | None:
+def normalised(shape: EnclosedModeShape, digits: int) -> EnclosedModeShape | None:
     """Return a shape whose largest displacement is 1, None when its balls do not tell which that is.
 
     Displacements are those of nodes in translation, along beams, rods and strings, and of each field's first
@@ -267,7 +267,7 @@ def normalised(shape: ModeShape, digits: int) -> ModeShape | None:
 
     Parameters
     ----------
-    shape : ModeShape
+    shape : EnclosedModeShape
         Of any scale.
     digits : int
         What is smaller than ``10^-digits`` of another motion, in SI units, is at rest.
@@ -284,13 +284,13 @@ def normalised(shape: ModeShape, digits: int) -> ModeShape | None:
     return None
 
 
-def _groups(shape: ModeShape) -> Iterator[Iterator[_Place]]:
+def _groups(shape: EnclosedModeShape) -> Iterator[Iterator[_PlacedAmplitude]]:
     """Yield what competes for being the largest, the kind that matters most first."""
 
-    def group(unit: str, chosen: Callable[[DistributedShape], bool]) -> Iterator[_Place]:
+    def group(unit: str, chosen: Callable[[DistributedShape], bool]) -> Iterator[_PlacedAmplitude]:
         for motion in shape.motions:
             if motion.unit == unit and motion.variable.kind == "node":
-                yield _Place(motion.name, motion.value)
+                yield _PlacedAmplitude(motion.name, motion.value)
         for part in shape.distributed:
             if chosen(part):
                 yield from _along(part)
@@ -298,24 +298,24 @@ def _groups(shape: ModeShape) -> Iterator[Iterator[_Place]]:
     yield group("m", lambda part: part.kind not in TURNING)
     yield group("rad", lambda part: part.kind in TURNING)
     yield group("V", lambda part: False)
-    yield (_Place(m.name, m.value) for m in shape.motions if m.variable.kind != "node")
+    yield (_PlacedAmplitude(m.name, m.value) for m in shape.motions if m.variable.kind != "node")
 
 
-def _along(part: DistributedShape) -> Iterator[_Place]:
+def _along(part: DistributedShape) -> Iterator[_PlacedAmplitude]:
     intervals = part.intervals()
     for share, state in part.sampled(intervals):
-        yield _Place(part.name, state[0], part, share, Fraction(1, intervals))
+        yield _PlacedAmplitude(part.name, state[0], part, share, Fraction(1, intervals))
 
 
-def _largest(places: list[_Place]) -> _Place | None:
-    found: _Place | None = None
+def _largest(places: list[_PlacedAmplitude]) -> _PlacedAmplitude | None:
+    found: _PlacedAmplitude | None = None
     for place in places:
         if found is None or place.size > found.size * TIE:
             found = place
     return found
 
 
-def _refined(place: _Place) -> _Place:
+def _refined(place: _PlacedAmplitude) -> _PlacedAmplitude:
     """Return the place of the largest amplitude next to a sample, by golden section."""
     part = place.part
     if part is None or place.share in (0, 1):
@@ -340,7 +340,7 @@ def _refined(place: _Place) -> _Place:
     return replace(place, share=share, value=part.state_at_share(share)[0])
 
 
-def _scaled(shape: ModeShape, reference: _Place) -> ModeShape:
+def _scaled(shape: EnclosedModeShape, reference: _PlacedAmplitude) -> EnclosedModeShape:
     part, name = reference.part, reference.name
     if part is not None:
         with precision(part.bits):
@@ -356,9 +356,9 @@ def _scaled(shape: ModeShape, reference: _Place) -> ModeShape:
     return replace(shape, motions=motions, distributed=distributed, reference=name)
 
 
-def _bits(reference: _Place) -> int:
+def _bits(reference: _PlacedAmplitude) -> int:
     return max(64, reference.value.bits()) + 32
 
 
-def _radius(place: _Place) -> float:
+def _radius(place: _PlacedAmplitude) -> float:
     return float(place.value.rad())

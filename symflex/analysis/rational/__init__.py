@@ -6,7 +6,7 @@ from symflex.analysis.rational.approximation_error import BandError, ErrorScan
 from symflex.analysis.rational.forms import FORMS
 from symflex.analysis.rational.laurent import (
     LaurentSeries,
-    Residue,
+    PrincipalPart,
     expand_at_pole,
     expand_at_zero,
     find_residues,
@@ -17,8 +17,8 @@ __all__ = [
     "BandError",
     "ErrorScan",
     "LaurentSeries",
+    "PrincipalPart",
     "RationalApproximation",
-    "Residue",
     "approximate",
     "expand_at_pole",
     "expand_at_zero",

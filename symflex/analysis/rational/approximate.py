@@ -16,7 +16,7 @@ from symflex.errors.diagnostic import nearest
 from symflex.roots.functions.vanishing import without_lengths_of_zero
 
 if TYPE_CHECKING:
-    from symflex.analysis.rational.truncation import Truncation
+    from symflex.analysis.rational.truncation import KeptRoots
     from symflex.transfer import BoundTransferFunction
 
 DEFAULT_MODES = 5
@@ -119,7 +119,7 @@ def _default_modes(bound: BoundTransferFunction, band: tuple[float, float] | Non
     return bound.source.model.analysis.modes or DEFAULT_MODES
 
 
-def _bands(kept: Truncation, band: tuple[float, float] | None) -> tuple[float, float, tuple[float, float]]:
+def _bands(kept: KeptRoots, band: tuple[float, float] | None) -> tuple[float, float, tuple[float, float]]:
     """Return where the error is sampled, and the band it is stated for [Hz].
 
     Samples end at the first pole left out, where an undamped G is infinite and R is not.

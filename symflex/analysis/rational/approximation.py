@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import sympy
 
     from symflex.analysis.rational.approximation_error import BandError, ErrorScan
-    from symflex.analysis.rational.laurent import Residue
+    from symflex.analysis.rational.laurent import PrincipalPart
     from symflex.transfer import BoundTransferFunction
 
 
@@ -44,7 +44,7 @@ class PoleZeroGain:
 
 
 @dataclass(frozen=True, eq=False)
-class Evaluator:
+class RationalEvaluator:
     """Values of a rational function in double precision, neither overflowing nor cancelling.
 
     Parameters
@@ -102,9 +102,9 @@ class RationalApproximation:
         How many modes, roots at 0 aside.
     function : PoleZeroGain
         R.
-    evaluator : Evaluator
+    evaluator : RationalEvaluator
         R in double precision.
-    residues : tuple of Residue
+    residues : tuple of PrincipalPart
         Of the modal form, its principal parts; empty for products.
     correction : tuple of mpmath.mpf
         Of the modal form, what is added to the principal parts, in ascending powers of s; one constant, the
@@ -127,8 +127,8 @@ class RationalApproximation:
     form: str
     modes: int
     function: PoleZeroGain
-    evaluator: Evaluator
-    residues: tuple[Residue, ...]
+    evaluator: RationalEvaluator
+    residues: tuple[PrincipalPart, ...]
     correction: tuple[mpmath.mpf, ...]
     is_exact: bool
     is_estimate: bool

@@ -13,7 +13,7 @@ import mpmath
 import numpy as np
 from flint import acb, acb_poly, arb, ctx
 
-from symflex.analysis.rational.approximation import Evaluator, PoleZeroGain
+from symflex.analysis.rational.approximation import PoleZeroGain, RationalEvaluator
 from symflex.analysis.rational.laurent import about_zero, expand_at_zero, residues_at
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots import precision
@@ -23,8 +23,8 @@ from symflex.transfer.bind import EnclosedTransferFunction
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.analysis.rational.laurent import Residue
-    from symflex.analysis.rational.truncation import Truncation
+    from symflex.analysis.rational.laurent import PrincipalPart
+    from symflex.analysis.rational.truncation import KeptRoots
     from symflex.roots import Root
     from symflex.transfer import BoundTransferFunction
 
@@ -40,23 +40,23 @@ class Approximant:
     """What a form makes: see :class:`RationalApproximation` for the fields."""
 
     function: PoleZeroGain
-    evaluator: Evaluator
-    residues: tuple[Residue, ...] = ()
+    evaluator: RationalEvaluator
+    residues: tuple[PrincipalPart, ...] = ()
     correction: tuple[mpmath.mpf, ...] = ()
     is_estimate: bool = False
 
 
-Form = Callable[["BoundTransferFunction", "Truncation", int], Approximant]
+Form = Callable[["BoundTransferFunction", "KeptRoots", int], Approximant]
 
 
-def product_form(bound: BoundTransferFunction, kept: Truncation, digits: int) -> Approximant:
+def product_form(bound: BoundTransferFunction, kept: KeptRoots, digits: int) -> Approximant:
     """Return the product over the poles and zeros that are kept, right to the leading order at s = 0.
 
     Parameters
     ----------
     bound : BoundTransferFunction
         Not identically zero.
-    kept : Truncation
+    kept : KeptRoots
         Its poles and zeros.
     digits : int
         Significant digits of the leading coefficient.
@@ -86,18 +86,18 @@ def product_form(bound: BoundTransferFunction, kept: Truncation, digits: int) ->
     function = PoleZeroGain(
         tuple(map(to_complex_mpmath, poles)), tuple(map(to_complex_mpmath, zeros)), num[0], num, den
     )
-    evaluator = Evaluator(order, complex(start.coefficients[0].mid()), _array(poles), _array(zeros))
+    evaluator = RationalEvaluator(order, complex(start.coefficients[0].mid()), _array(poles), _array(zeros))
     return Approximant(function, evaluator, is_estimate=start.is_estimate)
 
 
-def modal_form(bound: BoundTransferFunction, kept: Truncation, digits: int) -> Approximant:
+def modal_form(bound: BoundTransferFunction, kept: KeptRoots, digits: int) -> Approximant:
     """Return the sum of the principal parts at the poles that are kept, and a static correction.
 
     Parameters
     ----------
     bound : BoundTransferFunction
         Not identically zero.
-    kept : Truncation
+    kept : KeptRoots
         Its poles.
     digits : int
         Significant digits of residues and correction.
@@ -149,7 +149,7 @@ def modal_form(bound: BoundTransferFunction, kept: Truncation, digits: int) -> A
         for power, coefficient in enumerate(residue.coefficients, 1)
     )
     polynomial = tuple(float(c.real.mid()) for c in correction)
-    evaluator = Evaluator(
+    evaluator = RationalEvaluator(
         start.order,
         complex(start.coefficients[0].mid()),
         _array(roots),

@@ -384,7 +384,7 @@ def _is_accurate(coefficients: Sequence[acb], digits: int, bits: int) -> bool:
 
 
 @dataclass(frozen=True, slots=True)
-class Residue:
+class PrincipalPart:
     """The principal part of a transfer function at one of its poles p.
 
     Parameters
@@ -409,12 +409,12 @@ class Residue:
         """The residue, the coefficient of ``1/(s - p)``, in the transfer function's unit times rad/s."""
         return self.coefficients[0]
 
-    def conjugate(self, root: Root) -> Residue:
+    def conjugate(self, root: Root) -> PrincipalPart:
         """Return the residue at the conjugate pole."""
         # What arithmetic returns is rounded to the working precision.
         with precision(max(c.bits() for c in (self.pole, *self.coefficients)) + GUARD_BITS):
             conjugates = tuple(c.conjugate() for c in self.coefficients)
-            return Residue(root, self.pole.conjugate(), conjugates, self.is_estimate)
+            return PrincipalPart(root, self.pole.conjugate(), conjugates, self.is_estimate)
 
 
 def find_residues(
@@ -422,7 +422,7 @@ def find_residues(
     region: Region | None = None,
     digits: int = 15,
     budget: Budget | None = None,
-) -> tuple[Residue, ...]:
+) -> tuple[PrincipalPart, ...]:
     r"""Return the principal parts at the poles in a region.
 
     Parameters
@@ -438,7 +438,7 @@ def find_residues(
 
     Returns
     -------
-    tuple of Residue
+    tuple of PrincipalPart
         In the order of the poles; both members of a conjugate pair.
 
     Raises
@@ -462,9 +462,11 @@ def find_residues(
     return residues_at(bound, locate(bound, region, digits, budget).complete().all_poles, digits)
 
 
-def residues_at(bound: BoundTransferFunction, poles: Sequence[Root], digits: int) -> tuple[Residue, ...]:
+def residues_at(
+    bound: BoundTransferFunction, poles: Sequence[Root], digits: int
+) -> tuple[PrincipalPart, ...]:
     """Return the principal parts at known poles; see :func:`find_residues`."""
-    found: list[Residue] = []
+    found: list[PrincipalPart] = []
     for root in poles:
         spend()
         upper = next((r for r in found if _are_conjugate(r.root, root)), None)
@@ -474,17 +476,17 @@ def residues_at(bound: BoundTransferFunction, poles: Sequence[Root], digits: int
             found.append(_at_zero(bound, root, digits))
         else:
             pole, series = expand_at_pole(bound, root, digits)
-            found.append(Residue(root, pole, series.principal_part, series.is_estimate))
+            found.append(PrincipalPart(root, pole, series.principal_part, series.is_estimate))
     return tuple(found)
 
 
-def _at_zero(bound: BoundTransferFunction, root: Root, digits: int) -> Residue:
+def _at_zero(bound: BoundTransferFunction, root: Root, digits: int) -> PrincipalPart:
     series = expand_at_zero(bound, -1, digits)
     if series.order != -root.multiplicity:
         message = f"the order of the pole of {bound.name} at s = 0 is {root.multiplicity} or {-series.order}"
         raise UncertifiedError(Diagnostic("SF405", message))
     is_estimate = series.is_estimate or not root.certified
-    return Residue(root, root.enclosure(), series.principal_part, is_estimate)
+    return PrincipalPart(root, root.enclosure(), series.principal_part, is_estimate)
 
 
 def _are_conjugate(a: Root, b: Root) -> bool:

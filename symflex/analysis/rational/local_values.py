@@ -15,7 +15,7 @@ from flint import acb, acb_mat, acb_series
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from symflex.algebra import Dispersion, Kernel
+    from symflex.algebra import Dispersion, Factored, Kernel
     from symflex.transfer.balls import Value
     from symflex.transfer.enclose_kernels import KernelValues
 
@@ -67,22 +67,22 @@ def local_values(
         plain["s"] = acb_series([centre, acb(1)], terms)
         values = dict(plain)
         values["s"] = _inflated(plain["s"], branches, terms)
-        laws: dict[int, tuple[tuple[Value, ...], Value]] = {}
+        laws: dict[Dispersion, tuple[tuple[Value, ...], Value]] = {}
         for law in evaluator.table.dispersions:
             found = tuple(evaluator.value(c, plain) for c in law.characteristic)
-            laws[id(law)] = (found, evaluator.value(law.shift, plain))
+            laws[law] = (found, evaluator.value(law.shift, plain))
             roots = _wavenumbers(law, [_inflated(c, branches, terms) for c in found])
             if roots is None:
                 return None
             values.update(zip(law.wavenumbers, roots, strict=True))
-        fundamental: dict[tuple[int, int], tuple[acb_series, ...]] = {}
+        fundamental: dict[tuple[Dispersion, Factored], tuple[acb_series, ...]] = {}
         for kernel in evaluator.table.kernels:
             length = _number(evaluator.value(kernel.length, plain))
-            coefficients, shift = laws[id(kernel.dispersion)]
+            coefficients, shift = laws[kernel.dispersion]
             if kernel.function == "exp":
                 values[kernel.generator] = _inflated((-shift * length).exp(), branches, terms)
             elif kernel.function == "fundamental":
-                key = (id(kernel.dispersion), id(kernel.length))
+                key = (kernel.dispersion, kernel.length)
                 if key not in fundamental:
                     short = 1 + (terms - 1) // branches
                     fundamental[key] = fundamental_series(coefficients, length, short)

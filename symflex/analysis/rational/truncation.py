@@ -1,6 +1,6 @@
 """Which poles and zeros a rational approximation keeps.
 
-Input: a bound transfer function, and a number of modes or a highest frequency. Output: a :class:`Truncation`.
+Input: a bound transfer function, and a number of modes or a highest frequency. Output: a :class:`KeptRoots`.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ FURTHER = (1, 4)
 
 
 @dataclass(frozen=True, slots=True)
-class Truncation:
+class KeptRoots:
     """The poles and zeros that are kept.
 
     Parameters
@@ -64,7 +64,7 @@ class Truncation:
         return None
 
 
-def truncate(bound: BoundTransferFunction, modes: int, digits: int) -> Truncation:
+def truncate(bound: BoundTransferFunction, modes: int, digits: int) -> KeptRoots:
     """Return the poles of a number of modes, and the zeros below the first pole left out.
 
     Poles in the right half plane are kept wherever they lie: without them the approximation would be stable.
@@ -100,7 +100,7 @@ def truncate(bound: BoundTransferFunction, modes: int, digits: int) -> Truncatio
         zeros = _no_more_than(zeros, sum(root.multiplicity for root in poles))
     excess = max(_count(zeros) - _count(poles), 0) if is_exact else 0
     known = replace(found, zeros=above)
-    return Truncation(len(_modes_of(poles)), poles, zeros, known, omitted, is_exact, excess)
+    return KeptRoots(len(_modes_of(poles)), poles, zeros, known, omitted, is_exact, excess)
 
 
 def modes_up_to(bound: BoundTransferFunction, high_hz: float, digits: int) -> int:

@@ -1,6 +1,6 @@
 """A frequency response: values of a transfer function on the imaginary axis.
 
-Input: a :class:`BoundTransferFunction` and frequencies. Output: a :class:`FrequencyResponse`.
+Input: a :class:`BoundTransferFunction` and frequencies. Output: a :class:`SampledResponse`.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class FrequencyResponse:
+class SampledResponse:
     """Values of a transfer function at s = j omega.
 
     Parameters
@@ -53,7 +53,7 @@ class FrequencyResponse:
 
     Examples
     --------
-    >>> response = FrequencyResponse("x/F", [1.0, 10.0], [1.0, -0.01], "receptance", "m/N")
+    >>> response = SampledResponse("x/F", [1.0, 10.0], [1.0, -0.01], "receptance", "m/N")
     >>> response.magnitude_db.tolist()
     [0.0, -40.0]
     """
@@ -118,7 +118,7 @@ DOUBLE_BITS = 54
 
 def respond(
     bound: BoundTransferFunction, omega: npt.ArrayLike, roots: PoleZeroMap | None = None
-) -> FrequencyResponse:
+) -> SampledResponse:
     """Evaluate a transfer function on the imaginary axis to double precision.
 
     Parameters
@@ -132,7 +132,7 @@ def respond(
 
     Returns
     -------
-    FrequencyResponse
+    SampledResponse
         Each value is right to the last bits of its absolute value; ``inf + nan*1j`` at a pole. The phase is
         counted from the poles and zeros, for a distributed system followed from s = 0, so it does not depend
         on how fine the grid is.
@@ -168,13 +168,13 @@ def respond(
         bound, roots = settled, None
     quantity, unit = bound.source.quantity, bound.source.unit
     if bound.ratio.is_zero:
-        return FrequencyResponse(bound.name, grid, np.zeros(grid.shape, np.complex128), quantity, unit)
+        return SampledResponse(bound.name, grid, np.zeros(grid.shape, np.complex128), quantity, unit)
     values = evaluate(bound, grid)
     if bound.is_distributed:
         turns = _follow_turns(bound, grid, values)
     else:
         turns = count_turns(grid, values, locate(bound) if roots is None else roots)
-    return FrequencyResponse(bound.name, grid, values, quantity, unit, turns)
+    return SampledResponse(bound.name, grid, values, quantity, unit, turns)
 
 
 def _follow_turns(

@@ -1,9 +1,10 @@
 """The derivatives of poles and zeros with respect to parameters, by implicit differentiation.
 
 Input: a transfer function with the parameters as symbols, their values, and the roots found with numbers.
-Output: a :class:`Sensitivity` per root and parameter.
+Output: a :class:`RootDerivative` per root and parameter.
 
-What is differentiated is the factor of the numerator or denominator that makes the root, a :class:`Branch`.
+What is differentiated is the factor of the numerator or denominator that makes the root: a
+:class:`RootBranch`.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from flint import acb
 
 from symflex.algebra import square_free_factors
 from symflex.algebra.origin import OriginSeries
-from symflex.analysis.sensitivity.sensitivity import Sensitivity
+from symflex.analysis.sensitivity.sensitivity import RootDerivative
 from symflex.analysis.sensitivity.tangents import Tangents
 from symflex.budget import spend
 from symflex.roots.precision import bits_for_digits, precision
@@ -45,7 +46,7 @@ def differentiate(
     found: PoleZeroMap,
     parameters: Sequence[Parameter] | None = None,
     digits: int = 15,
-) -> tuple[Sensitivity, ...]:
+) -> tuple[RootDerivative, ...]:
     """Return how poles and zeros move with parameters.
 
     Parameters
@@ -63,7 +64,7 @@ def differentiate(
 
     Returns
     -------
-    tuple of Sensitivity
+    tuple of RootDerivative
         Poles first, each with all parameters. A root at 0 that is there for all values of the parameters has
         the derivative 0, exactly.
     """
@@ -75,7 +76,7 @@ def differentiate(
         ("pole", tf.den, found.poles),
         ("zero", tf.num, found.zeros),
     )
-    moved: list[Sensitivity] = []
+    moved: list[RootDerivative] = []
     for kind, part, roots in sides:
         side = _Side(tangents, part, digits, {})
         for i, root in enumerate(roots):
@@ -83,7 +84,7 @@ def differentiate(
                 spend()
                 status, place, derivative = side.moved(root, parameter.name)
                 value = values[parameter.name]
-                moved.append(Sensitivity(kind, i, root, parameter, value, status, place, derivative))
+                moved.append(RootDerivative(kind, i, root, parameter, value, status, place, derivative))
     return tuple(moved)
 
 
@@ -97,7 +98,7 @@ class _Side:
     tangents: Tangents
     part: Factored
     digits: int
-    branches: dict[tuple[Fraction, Fraction], Branch | Obstacle]
+    branches: dict[tuple[Fraction, Fraction], RootBranch | Obstacle]
 
     def moved(self, root: Root, parameter: str) -> Movement:
         """Return the status, the place and the derivative of a root."""
@@ -112,7 +113,7 @@ class _Side:
         if key not in self.branches:
             self.branches[key] = find_branch(self.tangents, self.part, root)
         branch = self.branches[key]
-        if not isinstance(branch, Branch):
+        if not isinstance(branch, RootBranch):
             return branch, root.enclosure(), None
         wanted = bits_for_digits(self.digits)
         bits = max(root.working_bits(), 2 * wanted)
@@ -150,7 +151,7 @@ ROUNDS_OF_ROOTS = 4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Branch:
+class RootBranch:
     """A function of s and the parameters that is zero at a root while its derivative in s is not.
 
     By the implicit function theorem the root is then a differentiable function of the parameters.
@@ -169,7 +170,7 @@ class Branch:
     factor: fmpz_mpoly
     root: acb
 
-    def refined(self, bits: int) -> Branch | None:
+    def refined(self, bits: int) -> RootBranch | None:
         """Return the branch with the root to about so many bits, ``None`` when it holds no root after all.
 
         Interval Newton steps ``m - f(m)/f'(X)`` (Moore 1966), which keep every root of X.
@@ -189,7 +190,7 @@ class Branch:
                 if not closer.rad() < root.rad() / 2:
                     break
                 root = closer
-            return Branch(self.tangents, self.factor, root)
+            return RootBranch(self.tangents, self.factor, root)
 
     def derivative(self, parameter: str, bits: int) -> acb:
         """Return ``ds/dp = -(df/dp)/(df/ds)`` at the current enclosure of the root."""
@@ -200,7 +201,7 @@ class Branch:
             return -change / slope
 
 
-def find_branch(tangents: Tangents, part: Factored, root: Root) -> Branch | Obstacle:
+def find_branch(tangents: Tangents, part: Factored, root: Root) -> RootBranch | Obstacle:
     """Return the factor of a numerator or denominator that alone is zero at a root, and simply.
 
     Parameters
@@ -214,7 +215,7 @@ def find_branch(tangents: Tangents, part: Factored, root: Root) -> Branch | Obst
 
     Returns
     -------
-    Branch or str
+    RootBranch or str
         ``"multiple"`` where a root of higher multiplicity splits, or several factors meet in it: it has no
         derivative. ``"undecided"`` where the enclosure of the root does not tell.
     """
@@ -226,7 +227,7 @@ def find_branch(tangents: Tangents, part: Factored, root: Root) -> Branch | Obst
             _, square_free = square_free_factors(found[0])
             found = _meeting(tangents, [f for f, _ in square_free], place, bits)
         if found is not None and len(found) == 1 and _is_simple(tangents, found[0], place, bits):
-            return Branch(tangents, found[0], place)
+            return RootBranch(tangents, found[0], place)
         if found == []:
             return "undecided"
         bits *= 2

@@ -12,7 +12,7 @@ from symflex.transfer.of_model import derive_all
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.analysis.sensitivity.sensitivity import Sensitivity
+    from symflex.analysis.sensitivity.sensitivity import RootDerivative
     from symflex.model import Model
     from symflex.roots import PoleZeroMap
     from symflex.transfer import BoundTransferFunction
@@ -24,7 +24,7 @@ def sensitivities(
     found: PoleZeroMap,
     names: Sequence[str] = (),
     digits: int = 15,
-) -> tuple[Sensitivity, ...]:
+) -> tuple[RootDerivative, ...]:
     """Return how poles and zeros move with parameters; see :func:`.differentiate`.
 
     Parameters
@@ -53,7 +53,7 @@ def sensitivities(
         return differentiate(bound.source, known, found, chosen, digits)
     # One symbol at a time, among numbers, is far less than all at once.
     pair = (bound.source.output.name, bound.source.input.name)
-    moved: list[Sensitivity] = []
+    moved: list[RootDerivative] = []
     for parameter in chosen:
         (tf,) = derive_all(with_numbers(model, (parameter.name,), known), [pair])
         moved += differentiate(tf, known, found, [parameter], digits)

@@ -22,7 +22,7 @@ LEAST_DIGITS = 15
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Sensitivity:
+class RootDerivative:
     """The derivative of a root with respect to a parameter.
 
     Parameters

@@ -92,13 +92,13 @@ class Tangents:
             coefficients = [self.product(c, point) for c in law.characteristic]
             shift = self.product(law.shift, point)
             point.update(zip(law.wavenumbers, _wavenumbers(law, coefficients), strict=True))
-            solutions: dict[int, tuple[acb_series, ...]] = {}
+            solutions: dict[Factored, tuple[acb_series, ...]] = {}
             for kernel in self.tf.kernels.kernels_of(law):
                 length = self.product(kernel.length, point)
                 if kernel.function == "fundamental":
-                    if id(kernel.length) not in solutions:
-                        solutions[id(kernel.length)] = _fundamental(coefficients, length)
-                    point[kernel.generator] = solutions[id(kernel.length)][kernel.order]
+                    if kernel.length not in solutions:
+                        solutions[kernel.length] = _fundamental(coefficients, length)
+                    point[kernel.generator] = solutions[kernel.length][kernel.order]
                 else:
                     rate = point[kernel.wavenumber] if kernel.wavenumber else -shift
                     point[kernel.generator] = _kernel(kernel, rate * length)

@@ -14,7 +14,7 @@ from symflex.roots.root import decimals
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.analysis.sensitivity import Sensitivity
+    from symflex.analysis.sensitivity import RootDerivative
     from symflex.roots import Root
 
 
@@ -29,12 +29,12 @@ OBSTACLES = {
 }
 
 
-def sensitivity_text(moved: Sequence[Sensitivity], width: int = WIDTH) -> str:
+def sensitivity_text(moved: Sequence[RootDerivative], width: int = WIDTH) -> str:
     """Return how natural frequencies and damping ratios change, a line per pair of roots and parameter.
 
     Parameters
     ----------
-    moved : sequence of Sensitivity
+    moved : sequence of RootDerivative
         Of poles, then of zeros; each root with all parameters in the same order.
     width : int
         Columns available; names that do not fit stand on lines of their own.
@@ -53,7 +53,7 @@ def sensitivity_text(moved: Sequence[Sensitivity], width: int = WIDTH) -> str:
     return "\n".join(lines)
 
 
-def _table(moved: Sequence[Sensitivity], width: int) -> list[str]:
+def _table(moved: Sequence[RootDerivative], width: int) -> list[str]:
     rows: list[tuple[str, ...]] = [HEAD]
     roots = {m.index: m.root for m in moved}
     printed = {i: decimals(r.re, r.im, DIGITS) for i, r in roots.items()}
@@ -86,7 +86,7 @@ def _laid_out(row: Sequence[str], columns: Sequence[int]) -> list[str]:
     return [start + name, f"{' ' * (len(start) + columns[2])}  {end}".rstrip()]
 
 
-def _rows(root: Root, moved: Sequence[Sensitivity]) -> list[tuple[str, ...]]:
+def _rows(root: Root, moved: Sequence[RootDerivative]) -> list[tuple[str, ...]]:
     """Return what stands to the right of one root."""
     if all(m.status in OBSTACLES for m in moved):
         return [(OBSTACLES[status],) for status in sorted({m.status for m in moved})]
@@ -95,7 +95,7 @@ def _rows(root: Root, moved: Sequence[Sensitivity]) -> list[tuple[str, ...]]:
     return [_row(m) for m in moved]
 
 
-def _row(found: Sensitivity) -> tuple[str, ...]:
+def _row(found: RootDerivative) -> tuple[str, ...]:
     name = found.parameter.name
     if found.derivative is None:
         return (f"{name}: {OBSTACLES[found.status]}",)
@@ -121,11 +121,11 @@ def _negated(text: str) -> str:
     return text.removeprefix("-") if text.startswith("-") else f"-{text}"
 
 
-def _is_zero(found: Sensitivity) -> bool:
+def _is_zero(found: RootDerivative) -> bool:
     return found.value.rational == 0
 
 
-def _per(found: Sensitivity) -> str:
+def _per(found: RootDerivative) -> str:
     return f" [{found.parameter.unit}]" if found.parameter.unit else ""
 
 

@@ -1,6 +1,6 @@
 """Fitting resonances to measured frequency responses, with standard errors and the paper's phase test."""
 
-from symflex.data.fitting.fit import Base, Fit, fit_resonances
+from symflex.data.fitting.fit import Base, ResonanceFit, fit_resonances
 from symflex.data.fitting.mode_shapes import FittedModeShapes, mode_shapes
 from symflex.data.fitting.order import CRITERIA, STARTS, Score
 from symflex.data.fitting.phase_test import PartedBand, PhaseTest
@@ -10,10 +10,10 @@ __all__ = [
     "CRITERIA",
     "STARTS",
     "Base",
-    "Fit",
     "FittedModeShapes",
     "PartedBand",
     "PhaseTest",
+    "ResonanceFit",
     "Resonances",
     "Score",
     "fit_resonances",

@@ -89,7 +89,7 @@ class Base:
 
 
 @dataclass(frozen=True, eq=False)
-class Fit:
+class ResonanceFit:
     """The result of a fit.
 
     Parameters
@@ -190,7 +190,7 @@ def fit_resonances(
     measured: Sequence[MeasuredResponse],
     bases: Sequence[Base] | None = None,
     given: FitOptions = DEFAULTS,
-) -> Fit:
+) -> ResonanceFit:
     """Fit simple resonances, in cascade with a known base, to one or several measured responses.
 
     Parameters
@@ -253,7 +253,7 @@ def _fit(
     bases: tuple[Base, ...],
     given: FitOptions,
     slopes: tuple[int, ...],
-) -> Fit:
+) -> ResonanceFit:
     has_base = any(base.tf for base in bases)
     modes, start = given.modes, given.start
     is_lag_free = given.is_lag_free or given.is_lag_signed
@@ -283,11 +283,11 @@ def _fit(
     if not has_base:
         bases = tuple(Base.power(int(power)) for power in candidate.refined.resonances.slope)
     tests = tuple(judge_phase(problem, r, candidate.refined.resonances) for r in range(len(measured)))
-    fit = Fit(problem, bases, candidate, scores, given.criterion, tests, ())
+    fit = ResonanceFit(problem, bases, candidate, scores, given.criterion, tests, ())
     return replace(fit, warnings=_warnings(fit), poor=_poor(fit, is_ambiguous=is_ambiguous))
 
 
-def _poor(fit: Fit, *, is_ambiguous: bool) -> tuple[str, ...]:
+def _poor(fit: ResonanceFit, *, is_ambiguous: bool) -> tuple[str, ...]:
     """Return why a fit is poor."""
     found, errors = fit.resonances, fit.standard_errors()
     reasons = []
@@ -308,7 +308,7 @@ def _poor(fit: Fit, *, is_ambiguous: bool) -> tuple[str, ...]:
     return tuple(reasons)
 
 
-def _warnings(fit: Fit) -> tuple[str, ...]:
+def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
     found = fit.resonances
     errors = fit.standard_errors()
     low, high = fit.problem.band

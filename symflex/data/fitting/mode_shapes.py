@@ -25,7 +25,7 @@ from symflex.quantities import parse_unit
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.data.fitting.fit import Fit
+    from symflex.data.fitting.fit import ResonanceFit
     from symflex.data.fitting.observation import Observation
     from symflex.data.measurement import MeasuredResponse
 
@@ -82,12 +82,12 @@ class FittedModeShapes:
     damping_ratio: Real
 
 
-def mode_shapes(fit: Fit, measured: Sequence[MeasuredResponse]) -> FittedModeShapes:
+def mode_shapes(fit: ResonanceFit, measured: Sequence[MeasuredResponse]) -> FittedModeShapes:
     """Return mass-normalised mode shapes where responses were measured.
 
     Parameters
     ----------
-    fit : Fit
+    fit : ResonanceFit
         Of the response at the driven point alone, without a base.
     measured : sequence of MeasuredResponse
         Displacements, velocities or accelerations over the same force, as their units say; the fitted
@@ -137,7 +137,7 @@ def mode_shapes(fit: Fit, measured: Sequence[MeasuredResponse]) -> FittedModeSha
 
 
 @dataclass(frozen=True, eq=False)
-class _System:
+class _ResponseSystem:
     """One response as a linear problem: its lines, over their standard deviations."""
 
     motion: _Motion
@@ -160,7 +160,7 @@ class _System:
 
 
 @dataclass(frozen=True, eq=False)
-class _Solved:
+class _SolvedShapes:
     """Modal constants of a response, shape (n,), and how they vary.
 
     ``noise`` is the covariance, shape (n, n), of their real parts with poles that are known; ``slopes``,
@@ -172,15 +172,15 @@ class _Solved:
     slopes: Real
 
 
-def _system(response: MeasuredResponse, motion: _Motion) -> _System:
+def _system(response: MeasuredResponse, motion: _Motion) -> _ResponseSystem:
     observation = observe(response.frequency_hz, response.spacing_hz, response.window)
     relative = response.relative_deviation()
     deviation = np.abs(response.values) * (1.0 if relative is None else relative)
     values = response.values / deviation
-    return _System(motion, observation, deviation, np.concatenate([values.real, values.imag]))
+    return _ResponseSystem(motion, observation, deviation, np.concatenate([values.real, values.imag]))
 
 
-def _refined(systems: Sequence[_System], fit: Fit) -> tuple[Real, Real]:
+def _refined(systems: Sequence[_ResponseSystem], fit: ResonanceFit) -> tuple[Real, Real]:
     """Return ln omega_p and ln zeta_p that leave least of all responses, and their covariance.
 
     Raises
@@ -205,7 +205,7 @@ def _refined(systems: Sequence[_System], fit: Fit) -> tuple[Real, Real]:
     return result.x, np.linalg.inv(normal) * spread
 
 
-def _solved(system: _System, logarithms: Real, correlation: float) -> _Solved:
+def _solved(system: _ResponseSystem, logarithms: Real, correlation: float) -> _SolvedShapes:
     """Return the modal constants of one response."""
     n = logarithms.size // 2
 
@@ -227,10 +227,10 @@ def _solved(system: _System, logarithms: Real, correlation: float) -> _Solved:
     for i in range(2 * n):
         step = STEP * np.eye(2 * n)[i]
         slopes[:, i] = (constants(logarithms + step)[0] - constants(logarithms - step)[0]).real / (2 * STEP)
-    return _Solved(found, noise, slopes)
+    return _SolvedShapes(found, noise, slopes)
 
 
-def _errors(one: _Solved, driven: _Solved, poles: Real, *, is_driven: bool) -> Real:
+def _errors(one: _SolvedShapes, driven: _SolvedShapes, poles: Real, *, is_driven: bool) -> Real:
     """Return the standard errors of ``c_j/sqrt(c_k)``, shape (n,): errors of the poles reach both."""
     c, k = one.constants.real, driven.constants.real
     of_one, of_driven = 1 / np.sqrt(k), -c / (2 * k**1.5)

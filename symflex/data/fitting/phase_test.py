@@ -108,7 +108,7 @@ def judge_phase(problem: FitProblem, response: int, fitted: Resonances) -> Phase
 
     Where they part, functions with zeros in the left half plane are fitted to magnitude and phase together.
     """
-    search = _Search(problem, response, fitted)
+    search = _PhaseSearch(problem, response, fitted)
     line = search.line
     alone, _ = search.found(search.mirrored, "magnitude")
     model = search.single.values(alone, 0)
@@ -142,7 +142,7 @@ KINDS: Final = ("magnitude", "both", "lag")
 """What a search fits: the magnitude; magnitude and phase; these with a lag linear in frequency."""
 
 
-class _Search:
+class _PhaseSearch:
     """Fits of one response by resonances whose zeros lie in the left half plane."""
 
     def __init__(self, problem: FitProblem, response: int, fitted: Resonances) -> None:

@@ -84,7 +84,7 @@ class FitProblem:
         Dead time of each response that a start begins with [s].
     is_noise_estimated : bool
         Whether the accuracy of lines was estimated, and not known from coherence.
-    reference : Reference, optional
+    reference : StructurelessFit, optional
         Of the estimate: how well a function without structure describes the lines.
     """
 
@@ -94,7 +94,7 @@ class FitProblem:
     slopes: tuple[int, ...] = (0,)
     delays: tuple[float, ...] = ()
     is_noise_estimated: bool = False
-    reference: Reference | None = None
+    reference: StructurelessFit | None = None
     count: int = field(init=False)
 
     def __post_init__(self) -> None:
@@ -209,7 +209,7 @@ FEWEST = 5
 
 
 @dataclass(frozen=True, slots=True)
-class Reference:
+class StructurelessFit:
     """How well a function without structure describes the lines: its sum of squares and its parameters."""
 
     cost: float
@@ -285,7 +285,7 @@ def estimated(problem: FitProblem, values: list[Complex], parameters: int) -> Fi
         rest = np.abs(model - line.measured.values) / (deviation * np.abs(line.measured.values))
         cost += float(np.sum(rest**2))
     return replace(
-        problem, lines=tuple(lines), is_noise_estimated=True, reference=Reference(cost, parameters)
+        problem, lines=tuple(lines), is_noise_estimated=True, reference=StructurelessFit(cost, parameters)
     )
 
 

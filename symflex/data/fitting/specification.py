@@ -25,7 +25,7 @@ from symflex.transfer.of_model import assemble, check_solvable
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
-    from symflex.data.fitting.fit import Fit
+    from symflex.data.fitting.fit import ResonanceFit
     from symflex.data.fitting.resonances import Resonances
 
 DIGITS = 9
@@ -34,7 +34,7 @@ COPIED = ("parameters", "definitions", "elements", "signals", "blocks", "fields"
 """Sections of a base that are copied; its outputs are multiplied, and its figures show another model."""
 
 
-def fit_specification(found: Fit, folder: str | Path) -> str:
+def fit_specification(found: ResonanceFit, folder: str | Path) -> str:
     """Return the specification of a fit that will stand in a folder.
 
     It has been read, resolved and assembled as ``symflex check`` does. A base that a ``model`` block can
@@ -72,7 +72,7 @@ def fit_specification(found: Fit, folder: str | Path) -> str:
 
 
 def _written(
-    fit: Fit,
+    fit: ResonanceFit,
     folder: str | Path,
     taken: Collection[str] = (),
     copied: Mapping[str, object] | None = None,
@@ -81,7 +81,7 @@ def _written(
 
     Parameters
     ----------
-    fit : Fit
+    fit : ResonanceFit
         The result.
     folder : str or Path
         Where the file will stand: the base is referred to from there.
@@ -179,7 +179,7 @@ class _Names:
 
 
 def _times(
-    fit: Fit, response: int, errors: Resonances, names: _Names
+    fit: ResonanceFit, response: int, errors: Resonances, names: _Names
 ) -> tuple[dict[str, object], dict[str, object]]:
     """Return parameters and blocks of the lag and the dead time that were fitted."""
     parameters: dict[str, object] = {}
@@ -276,12 +276,12 @@ def _is_name(text: str) -> bool:
     return text.isascii() and text.isidentifier() and not text.startswith("_") and len(text) < 40  # noqa: PLR2004
 
 
-def _input_name(fit: Fit) -> str:
+def _input_name(fit: ResonanceFit) -> str:
     ends = fit.measured[0].name.split("/")
     return ends[1] if len(ends) == 2 and all(map(_is_name, ends)) else FREE_NAMES[0]  # noqa: PLR2004
 
 
-def _output_names(fit: Fit) -> list[str]:
+def _output_names(fit: ResonanceFit) -> list[str]:
     names: list[str] = []
     for base, measured in zip(fit.bases, fit.measured, strict=True):
         ends = (base.tf or measured.name).split("/")

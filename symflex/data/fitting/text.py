@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 if TYPE_CHECKING:
-    from symflex.data.fitting import Fit, FittedModeShapes, PhaseTest
+    from symflex.data.fitting import FittedModeShapes, PhaseTest, ResonanceFit
 
 SCHEMA: Final = "symflex.fit/1"
 ERROR_DIGITS: Final = 2
@@ -20,12 +20,12 @@ STARTS: Final = {
 }
 
 
-def fit_text(fit: Fit, width: int = 80, shapes: FittedModeShapes | None = None) -> str:
+def fit_text(fit: ResonanceFit, width: int = 80, shapes: FittedModeShapes | None = None) -> str:
     """Return the report of a fit.
 
     Parameters
     ----------
-    fit : Fit
+    fit : ResonanceFit
         The result.
     width : int
         Columns of the terminal.
@@ -116,7 +116,7 @@ def _shapes_json(shapes: FittedModeShapes) -> dict[str, object]:
     }
 
 
-def fit_json(fit: Fit, shapes: FittedModeShapes | None = None) -> dict[str, object]:
+def fit_json(fit: ResonanceFit, shapes: FittedModeShapes | None = None) -> dict[str, object]:
     """Return the document ``symflex fit --json`` prints."""
     found, errors = fit.resonances, fit.standard_errors()
     return {
@@ -152,7 +152,7 @@ def fit_json(fit: Fit, shapes: FittedModeShapes | None = None) -> dict[str, obje
     }
 
 
-def _response_json(fit: Fit, r: int) -> dict[str, object]:
+def _response_json(fit: ResonanceFit, r: int) -> dict[str, object]:
     measured, base, test = fit.measured[r], fit.bases[r], fit.phase_tests[r]
     found, errors, start = fit.resonances, fit.standard_errors(), fit.candidate.start
     shown = found.has_zeros[r]
@@ -227,7 +227,7 @@ def _finite(value: float) -> float | None:
     return value if isfinite(value) else None
 
 
-def _is_scaled(fit: Fit) -> bool:
+def _is_scaled(fit: ResonanceFit) -> bool:
     return fit.problem.has_deviations and all(bool(m.averages) for m in fit.measured)
 
 
@@ -237,7 +237,7 @@ def _wrapped(text: str, width: int, indent: str = "  ") -> list[str]:
     )
 
 
-def _what(fit: Fit, r: int) -> str:
+def _what(fit: ResonanceFit, r: int) -> str:
     count, base = fit.resonances.count, fit.bases[r]
     word = "resonance" if count == 1 else "resonances"
     if base.path:
@@ -245,7 +245,7 @@ def _what(fit: Fit, r: int) -> str:
     return f"{count} {word} on a gain" + (f" times s^{base.slope}" if base.slope else "")
 
 
-def _data_line(fit: Fit, r: int) -> str:
+def _data_line(fit: ResonanceFit, r: int) -> str:
     measured = fit.measured[r]
     low, high = measured.frequency_hz[0], measured.frequency_hz[-1]
     parts = [f"data: {measured.values.size} lines from {low:.4g} to {high:.4g} Hz"]
@@ -287,7 +287,7 @@ def _error(error: float) -> str:
     return f"{error:.{_places(error)}f}" if error >= 1e-10 else "0"  # noqa: PLR2004
 
 
-def _accuracy(fit: Fit) -> str:
+def _accuracy(fit: ResonanceFit) -> str:
     words = []
     size = sqrt(fit.refined.reduced)
     if _is_scaled(fit):
@@ -298,11 +298,11 @@ def _accuracy(fit: Fit) -> str:
     return ", ".join(words[:-1]) + (", " if len(words) == 2 else " ") + words[-1]  # noqa: PLR2004
 
 
-def _times(fit: Fit) -> str:
+def _times(fit: ResonanceFit) -> str:
     return f"{fit.refined.correlation:.2f} times"
 
 
-def _phase_words(test: PhaseTest, fit: Fit, r: int) -> str:
+def _phase_words(test: PhaseTest, fit: ResonanceFit, r: int) -> str:
     low, high = fit.measured[r].frequency_hz[[0, -1]]
     fitted = "a minimum-phase fit to the magnitude alone"
     if fit.bases[r].path:

@@ -55,7 +55,7 @@ _HEADER_HINT: Final = (
 
 
 @dataclass(frozen=True, slots=True)
-class Column:
+class DataColumn:
     """One column: what it is, the factor to its SI unit, and whether it is in decibels."""
 
     kind: str
@@ -122,7 +122,7 @@ def read_columns(name: str, data: bytes, stem: str) -> tuple[MeasuredResponse, .
     return (checked_response(response, name, span_of),)
 
 
-def _complex(columns: list[Column], table: np.ndarray, by_kind: dict[str, int]) -> np.ndarray:
+def _complex(columns: list[DataColumn], table: np.ndarray, by_kind: dict[str, int]) -> np.ndarray:
     if "real" in by_kind:
         return np.asarray(table[:, by_kind["real"]] + 1j * table[:, by_kind["imaginary"]])
     magnitude, phase = by_kind["magnitude"], by_kind["phase"]
@@ -201,12 +201,12 @@ def _splitter(header: str) -> Callable[[Source, int, int], list[Span]]:
 
 def _columns(
     source: Source, split: Callable[[Source, int, int], list[Span]], start: int, end: int
-) -> list[Column]:
+) -> list[DataColumn]:
     cells = split(source, start, end)
     if all(_number(cell.text) is not None for cell in cells):
         message = "the first line holds numbers: without a header, columns have no meaning"
         raise DataError(Diagnostic("SF602", message, cells[0], _HEADER_HINT))
-    found: list[Column] = []
+    found: list[DataColumn] = []
     problems: list[Diagnostic] = []
     for i, cell in enumerate(cells):
         column = _column(cell, i, problems)
@@ -230,7 +230,7 @@ def _columns(
     return found
 
 
-def _column(cell: Span, index: int, problems: list[Diagnostic]) -> Column | None:
+def _column(cell: Span, index: int, problems: list[Diagnostic]) -> DataColumn | None:
     written = cell.text.strip("\"' ").lower()
     name, unit = written, ""
     if written not in _KINDS and (match := _UNIT.search(written)):
@@ -246,7 +246,7 @@ def _column(cell: Span, index: int, problems: list[Diagnostic]) -> Column | None
     if kind == "omega":
         kind, unit = "frequency", unit or "rad/s"
     if kind == "decibel":
-        return Column("magnitude", index, is_decibel=True)
+        return DataColumn("magnitude", index, is_decibel=True)
     if kind in _UNITS:
         factor = _UNITS[kind].get(unit)
         if factor is None:
@@ -254,8 +254,8 @@ def _column(cell: Span, index: int, problems: list[Diagnostic]) -> Column | None
             said = f"unknown unit '{unit[:20]}'" if unit else "no unit"
             problems.append(Diagnostic("SF602", f"{said} of column '{name}'", cell, f"units: {known}"))
             return None
-        return Column(kind, index, factor)
-    return Column(kind, index, is_decibel=kind == "magnitude" and unit == "db")
+        return DataColumn(kind, index, factor)
+    return DataColumn(kind, index, is_decibel=kind == "magnitude" and unit == "db")
 
 
 def _number(text: str) -> float | None:
@@ -271,7 +271,7 @@ def _numbers(
     source: Source,
     split: Callable[[Source, int, int], list[Span]],
     lines: list[tuple[int, int]],
-    columns: list[Column],
+    columns: list[DataColumn],
 ) -> np.ndarray:
     table = np.empty((len(lines), len(columns)))
     problems: list[Diagnostic] = []

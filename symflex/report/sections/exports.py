@@ -16,7 +16,7 @@ from symflex.report.part import ChapterPart, code_of
 from symflex.report.study import attempt, said
 
 if TYPE_CHECKING:
-    from symflex.analysis.response import FrequencyResponse
+    from symflex.analysis.response import SampledResponse
     from symflex.report.document import Block, Cell
     from symflex.report.study import Study
 
@@ -80,7 +80,7 @@ def export_section(study: Study) -> ChapterPart:
     return ChapterPart("Code and data", (head, *blocks, table), files, tuple(warnings), code)
 
 
-def _names(study: Study, responses: tuple[FrequencyResponse, ...]) -> list[str]:
+def _names(study: Study, responses: tuple[SampledResponse, ...]) -> list[str]:
     """Return a file's name for each, different also where capitals count as small letters."""
     found: list[str] = []
     taken: set[str] = set()
@@ -94,7 +94,7 @@ def _names(study: Study, responses: tuple[FrequencyResponse, ...]) -> list[str]:
     return found
 
 
-def _csv(response: FrequencyResponse) -> bytes:
+def _csv(response: SampledResponse) -> bytes:
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(HEAD)

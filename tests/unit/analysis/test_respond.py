@@ -7,7 +7,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from symflex.analysis.response import FrequencyResponse, respond
+from symflex.analysis.response import SampledResponse, respond
 from symflex.transfer import bind
 from tests.unit.analysis.systems import derived, rational
 
@@ -171,10 +171,10 @@ def test_frequency_is_in_hertz():
 
 def test_measured_values_are_unwrapped_from_point_to_point():
     lag = np.linspace(0, 4 * np.pi, 50)
-    response = FrequencyResponse("y/u", np.arange(50.0), np.exp(-1j * lag), "", "")
+    response = SampledResponse("y/u", np.arange(50.0), np.exp(-1j * lag), "", "")
     np.testing.assert_allclose(response.phase, -lag, atol=1e-12)
 
 
 def test_arrays_of_different_lengths_are_refused():
     with pytest.raises(ValueError, match="of one length"):
-        FrequencyResponse("y/u", np.ones(2), np.ones(3), "", "")
+        SampledResponse("y/u", np.ones(2), np.ones(3), "", "")

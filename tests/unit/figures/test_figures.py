@@ -13,7 +13,7 @@ import pytest
 from symflex.errors import ModelError, UsageError
 from symflex.figures import FIGURES, FORMATS, LOOP_FIGURES, AxisLimits, draw, render, save
 from symflex.figures.labels import label_of, label_of_name, label_of_tf, label_of_unit
-from symflex.figures.s_plane import Mark, choose_view, leaving
+from symflex.figures.s_plane import RootMark, choose_view, leaving
 from symflex.model import Output
 from symflex.model.analysis import FIGURE_KINDS
 from symflex.model.labels import ACCENTS, FONTS, GREEK, SYMBOLS
@@ -469,7 +469,7 @@ def test_many_functions_take_the_page_and_several_rows(tfs):
     assert len({round(axes.get_position().y0, 6) for axes in figure.axes}) == 2
 
 
-RESONANT = [Mark("pole", complex(-2, y)) for y in (70, -70, 240, -240)]
+RESONANT = [RootMark("pole", complex(-2, y)) for y in (70, -70, 240, -240)]
 
 
 def seen(marks, high_hz=None):
@@ -482,31 +482,31 @@ def test_neighbouring_resonances_are_shown_together():
 
 
 def test_a_far_real_root_does_not_squash_the_resonances():
-    marks = [*RESONANT, Mark("pole", -5000 + 0j)]
+    marks = [*RESONANT, RootMark("pole", -5000 + 0j)]
     assert len(seen(marks)) == 4
 
 
 def test_a_far_resonance_does_not_squash_the_near_ones():
-    marks = [*RESONANT, Mark("pole", 20000j), Mark("pole", -20000j)]
+    marks = [*RESONANT, RootMark("pole", 20000j), RootMark("pole", -20000j)]
     assert len(seen(marks)) == 4
 
 
 def test_a_real_root_of_the_size_of_the_resonances_is_shown():
-    marks = [*RESONANT, Mark("zero", 400 + 0j)]
+    marks = [*RESONANT, RootMark("zero", 400 + 0j)]
     assert 400 in seen(marks)
 
 
 def test_real_roots_alone_are_shown_from_the_lowest():
-    assert seen([Mark("pole", -50 + 0j), Mark("pole", -5000 + 0j)]) == [-50]
+    assert seen([RootMark("pole", -50 + 0j), RootMark("pole", -5000 + 0j)]) == [-50]
 
 
 def test_a_band_decides_what_is_shown():
-    marks = [*RESONANT, Mark("pole", 20000j), Mark("pole", -20000j)]
+    marks = [*RESONANT, RootMark("pole", 20000j), RootMark("pole", -20000j)]
     assert len(seen(marks, high_hz=5000)) == 6
 
 
 def test_the_view_has_the_shape_asked_for():
-    for marks in (RESONANT, [Mark("pole", -50 + 0j)], []):
+    for marks in (RESONANT, [RootMark("pole", -50 + 0j)], []):
         assert 0.6 <= choose_view(marks, None, (0.6, 1.25)).ratio * (1 + 1e-12)
         assert choose_view(marks, None, (0.6, 1.25)).ratio <= 1.25 * (1 + 1e-12)
 
@@ -519,6 +519,11 @@ def test_the_border_lies_on_the_ray_from_the_origin():
 
 
 def test_roots_outside_in_one_direction_share_an_arrow():
-    marks = [*RESONANT, Mark("zero", -9000 + 0j), Mark("pole", -5000 + 0j), Mark("pole", 5000 + 0j)]
+    marks = [
+        *RESONANT,
+        RootMark("zero", -9000 + 0j),
+        RootMark("pole", -5000 + 0j),
+        RootMark("pole", 5000 + 0j),
+    ]
     groups = leaving(marks, choose_view(marks, None, (0.6, 1.25)))
     assert [[mark.s for mark in group] for group in groups] == [[-5000, -9000], [5000]]

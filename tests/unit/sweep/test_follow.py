@@ -5,7 +5,7 @@ import pytest
 
 import symflex
 from symflex.sweep import read_design
-from symflex.sweep.follow import Link, Predecessors, follow, predecessors
+from symflex.sweep.follow import NameOrigin, Predecessors, follow, predecessors
 from tests.unit.sweep.models import TWO_RESONANCES, oscillator
 
 NO_FAMILY = np.zeros(2, np.int64)
@@ -19,7 +19,7 @@ def rising(share):
 
 def test_a_long_step_is_in_doubt():
     s = np.array([rising(0), rising(1)])
-    assert follow(s, NO_FAMILY, ONE_STEP).link[1].tolist() == [Link.DOUBTFUL, Link.DOUBTFUL]
+    assert follow(s, NO_FAMILY, ONE_STEP).link[1].tolist() == [NameOrigin.DOUBTFUL, NameOrigin.DOUBTFUL]
 
 
 def test_a_long_step_is_divided():
@@ -31,27 +31,27 @@ def test_a_long_step_is_divided():
 
     names = follow(np.array([rising(0), rising(1)]), NO_FAMILY, ONE_STEP, between)
     assert names.mode.tolist() == [[0, 1], [0, 1]]
-    assert names.link[1].tolist() == [Link.CLEAR, Link.CLEAR]
+    assert names.link[1].tolist() == [NameOrigin.CLEAR, NameOrigin.CLEAR]
     assert asked and all(each[:2] == (0, 1) for each in asked)
 
 
 def test_where_nothing_can_be_asked_doubt_remains():
     names = follow(np.array([rising(0), rising(1)]), NO_FAMILY, ONE_STEP, lambda *step: None)
-    assert names.link[1].tolist() == [Link.DOUBTFUL, Link.DOUBTFUL]
+    assert names.link[1].tolist() == [NameOrigin.DOUBTFUL, NameOrigin.DOUBTFUL]
 
 
 def test_a_root_that_is_nowhere_near_has_a_name_of_its_own():
     s = np.array([[1j, 2j], [1j, 400j]])
     names = follow(s, NO_FAMILY, ONE_STEP)
     assert names.mode[1].tolist() == [0, 2]
-    assert names.link[1].tolist()[1] == Link.APPEARS
+    assert names.link[1].tolist()[1] == NameOrigin.APPEARS
 
 
 def test_modes_that_swap_places_within_one_step():
     sweep = symflex.loads(TWO_RESONANCES).sweep({"k_1": "1:30:lin:4"})
     assert np.allclose(sweep["im"][:, 0], np.sqrt(np.linspace(1, 30, 4)))
     assert (sweep["im"][:, 1] == 2).all()
-    assert sweep["link"][1].tolist() == [Link.DOUBTFUL, Link.DOUBTFUL]
+    assert sweep["link"][1].tolist() == [NameOrigin.DOUBTFUL, NameOrigin.DOUBTFUL]
 
 
 def test_names_do_not_depend_on_the_direction():
@@ -64,7 +64,7 @@ def test_names_do_not_depend_on_the_direction():
 def test_similar_functions_need_no_distances():
     s = np.array([[1j, 2j], [50j, 100j]])
     names = follow(s, np.array([7, 7]), ONE_STEP)
-    assert names.link[1].tolist() == [Link.SIMILAR, Link.SIMILAR]
+    assert names.link[1].tolist() == [NameOrigin.SIMILAR, NameOrigin.SIMILAR]
     assert names.mode[1].tolist() == [0, 1]
 
 

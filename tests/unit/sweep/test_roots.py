@@ -9,7 +9,7 @@ import symflex
 from symflex import pipeline
 from symflex.errors import UsageError
 from symflex.roots import Modes
-from symflex.sweep.follow import Link
+from symflex.sweep.follow import NameOrigin
 from symflex.sweep.points import PointStatus, RootSolver, RootStatus
 from symflex.transfer.bind import read_values
 from tests.unit.sweep.models import ALGEBRAIC, BEAM, SLIDING_FREE, TWO_RESONANCES, oscillator
@@ -39,7 +39,7 @@ def test_poles_of_a_beam_lie_in_their_discs():
     assert sweep["status"].shape == (12, 6)
     assert (sweep["re"] == 0).all()
     # The function of the wavenumber is free of parameters.
-    assert set(sweep["link"].ravel()) == {Link.START, Link.SIMILAR}
+    assert set(sweep["link"].ravel()) == {NameOrigin.START, NameOrigin.SIMILAR}
     with mp.workdps(40):
         known = wavenumbers(6)
         for i in range(12):
@@ -88,8 +88,8 @@ def test_names_pass_through_a_crossing():
     assert np.allclose(moving, np.sqrt(np.linspace(1, 9, 12)), rtol=1e-12)
     assert (still == 2).all()
     crossing = int(np.argmax(moving > 2))
-    assert sweep["link"][crossing].tolist() == [Link.DOUBTFUL, Link.DOUBTFUL]
-    assert (sweep["link"][crossing + 2 :] == Link.CLEAR).all()
+    assert sweep["link"][crossing].tolist() == [NameOrigin.DOUBTFUL, NameOrigin.DOUBTFUL]
+    assert (sweep["link"][crossing + 2 :] == NameOrigin.CLEAR).all()
 
 
 def test_a_mode_that_cancels_is_absent():
@@ -109,8 +109,8 @@ def test_a_pair_that_meets_the_real_axis():
     half = np.sqrt(b[real] ** 2 / 4 - 1)
     assert np.allclose(roots, [-b[real] / 2 - half, -b[real] / 2 + half])
     assert (sweep["im"][real] == 0).all()
-    assert sweep["link"][3, 0] == Link.REAL_AXIS
-    assert sweep["link"][4, 1] == Link.APPEARS
+    assert sweep["link"][3, 0] == NameOrigin.REAL_AXIS
+    assert sweep["link"][4, 1] == NameOrigin.APPEARS
 
 
 def test_a_rigid_body_is_counted_at_zero():
@@ -162,7 +162,7 @@ def test_how_a_point_is_solved_does_not_show(text):
 
 def test_functions_of_other_ratios_are_not_similar():
     sweep = symflex.loads(BEAM).sweep({"m": [1, 2]}, modes=3)
-    assert Link.SIMILAR not in set(sweep["link"].ravel())
+    assert NameOrigin.SIMILAR not in set(sweep["link"].ravel())
 
 
 def with_length(assumed):
