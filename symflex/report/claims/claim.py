@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import TYPE_CHECKING, Final
 
 from symflex.report.facts import ModelFacts
 
@@ -13,6 +13,9 @@ if TYPE_CHECKING:
 
 Models = Mapping[str, ModelFacts]
 """Facts by the name of the model's file, without suffix."""
+
+Predicate = Callable[..., "Finding"]
+"""What may be checked, with facts, the names of what is checked, and values by keyword."""
 
 WORST: Final[tuple[Verdict, ...]] = ("not examined", "does not hold", "holds with a condition", "holds")
 """Verdicts; of several checks the first one here counts."""
@@ -34,23 +37,6 @@ class Finding:
     evidence: tuple[Run, ...]
 
 
-class Predicate(Protocol):
-    """What may be checked; :mod:`symflex.report.claims.predicates` has those there are."""
-
-    @property
-    def of(self) -> tuple[str, ...]:
-        """What is checked: ``"model: OUT/IN"``, or the name of a model's file without suffix."""
-
-    def judge(self, models: Models) -> Finding:
-        """Return what the facts about these models say.
-
-        Raises
-        ------
-        KeyError
-            With what the models lack, in words.
-        """
-
-
 @dataclass(frozen=True, slots=True)
 class Check:
     """A predicate with what its author adds to the evidence.
@@ -58,18 +44,21 @@ class Check:
     Parameters
     ----------
     predicate : Predicate
-        What is checked.
+        With its values, but for what is checked.
+    of : tuple of str
+        What is checked: ``"model: OUT/IN"``, or the name of a model's file without suffix.
     note, condition : str
         Sentences; with a condition, what holds does so under it.
     """
 
     predicate: Predicate
+    of: tuple[str, ...]
     note: str = ""
     condition: str = ""
 
     def judge(self, models: Models) -> Finding:
         """Return the finding with what was added."""
-        found = self.predicate.judge(models)
+        found = self.predicate(models, self.of)
         condition = self.condition and f"Condition: {self.condition}"
         added = [f" {text}" for text in (self.note, condition) if text]
         is_conditional = self.condition and found.verdict == "holds"
@@ -104,7 +93,7 @@ class Claim:
 
     def judge(self, models: Models) -> Finding:
         """Return the finding; what needs a model that is not there is not examined."""
-        needs = dict.fromkeys(model_of(name) for check in self.checks for name in check.predicate.of)
+        needs = dict.fromkeys(model_of(name) for check in self.checks for name in check.of)
         missing = [name for name in needs if name not in models]
         if missing:
             return Finding("not examined", (f"the report does not hold {', '.join(missing)}",))

@@ -1,18 +1,17 @@
-"""What can be claimed of models and checked. A new predicate is one class and one line in ``PREDICATES``.
+"""What can be claimed of models and checked. A new predicate is one function and one line in ``PREDICATES``.
 
-Each is a frozen dataclass whose fields are the keys that a check in a claims file may have, and a pure
-function of facts. ``of`` names what is checked: ``"two_mass: X_tip/F"`` a transfer function, ``"two_mass"``
-all of a model's.
+Each is a pure function of facts. Its keyword arguments are the keys that a check in a claims file may have.
+``of`` names what is checked: ``"two_mass: X_tip/F"`` a transfer function, ``"two_mass"`` all of a model's, or
+the model itself. What the models lack is raised as a ``KeyError``, in words.
 
 >>> from symflex.report.facts import ModelFacts, TransferFacts
 >>> facts = TransferFacts("X/F", "", (), (), True, False, (0, 2), None, None, True, "", "always", "")
->>> Counts(of=("car: X/F",), zeros=0, poles=2).judge({"car": ModelFacts("car", functions=(facts,))})
+>>> counts({"car": ModelFacts("car", functions=(facts,))}, ("car: X/F",), zeros=0, poles=2)
 Finding(verdict='holds', evidence=('X/F: no zeros and 2 poles.',))
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from symflex.report.claims.claim import Finding, judged, model_of
@@ -26,14 +25,13 @@ if TYPE_CHECKING:
     from symflex.report.facts import ColocationFact, DataFact, LoopFacts, RootFact, TransferFacts
 
 
-@dataclass(frozen=True, slots=True)
-class ModesAt:
-    """Poles that oscillate have these natural frequencies, all of them, or the lowest ones where ``lowest``.
+def modes_at(
+    models: Models, of: tuple[str, ...], *, hertz: tuple[float, ...], within: float, lowest: bool = False
+) -> Finding:
+    """Tell whether poles that oscillate have these natural frequencies: all of them, or the lowest.
 
     Parameters
     ----------
-    of : tuple of str
-        Transfer functions.
     hertz : tuple of float
         Natural frequencies [Hz], ascending.
     within : float
@@ -41,93 +39,76 @@ class ModesAt:
     lowest : bool
         There may be more beyond the last one.
     """
-
-    of: tuple[str, ...]
-    hertz: tuple[float, ...]
-    within: float
-    lowest: bool = False
-
-    def judge(self, models: Models) -> Finding:
-        """Return the finding."""
-        lines, is_true = [], True
-        for stem, function in functions(models, self.of):
-            found = [p.frequency_hz for p in function.poles if p.is_oscillatory]
-            found = found[: len(self.hertz)] if self.lowest else found
-            near = all(abs(a - b) < self.within for a, b in zip(found, self.hertz, strict=False))
-            is_true = is_true and near and len(found) == len(self.hertz)
-            begins = f"{counted(len(found), 'mode')}, the lowest," if self.lowest else "modes"
-            lines.append(f"{stem}: {begins} at {', '.join(f'{f:.2f}' for f in found)} Hz")
-        return judged(is_true, "\n".join(lines))
+    lines, is_true = [], True
+    for stem, function in functions(models, of):
+        found = [p.frequency_hz for p in function.poles if p.is_oscillatory]
+        found = found[: len(hertz)] if lowest else found
+        near = all(abs(a - b) < within for a, b in zip(found, hertz, strict=False))
+        is_true = is_true and near and len(found) == len(hertz)
+        begins = f"{counted(len(found), 'mode')}, the lowest," if lowest else "modes"
+        lines.append(f"{stem}: {begins} at {', '.join(f'{f:.2f}' for f in found)} Hz")
+    return judged(is_true, "\n".join(lines))
 
 
-@dataclass(frozen=True, slots=True)
-class Counts:
-    """Rational functions have so many zeros and poles.
+def counts(models: Models, of: tuple[str, ...], *, zeros: int, poles: int) -> Finding:
+    """Tell whether rational functions have so many zeros and poles.
 
     Parameters
     ----------
-    of : tuple of str
-        Transfer functions.
     zeros, poles : int
         With multiplicity.
     """
-
-    of: tuple[str, ...]
-    zeros: int
-    poles: int
-
-    def judge(self, models: Models) -> Finding:
-        """Return the finding."""
-        found = [f for _, f in functions(models, self.of)]
-        is_true = all(f.counts == (self.zeros, self.poles) for f in found)
-        return judged(is_true, " ".join(f"{f.tf}: {_counts(f)}." for f in found))
+    found = [f for _, f in functions(models, of)]
+    is_true = all(f.counts == (zeros, poles) for f in found)
+    return judged(is_true, " ".join(f"{f.tf}: {_counts(f)}." for f in found))
 
 
-@dataclass(frozen=True, slots=True)
-class Arrangement:
-    """The pole-zero array is made of so many pairs, zeros at 0, and other poles.
+def arrangement(
+    models: Models,
+    of: tuple[str, ...],
+    *,
+    pole_pairs: int,
+    zero_pairs: int,
+    zeros_at_origin: int = 0,
+    other_poles: int = 0,
+) -> Finding:
+    """Tell whether the pole-zero array is made of so many pairs, zeros at 0, and other poles.
 
     Parameters
     ----------
-    of : tuple of str
-        Transfer functions.
     pole_pairs, zero_pairs : int
         Conjugate pairs that oscillate.
     zeros_at_origin, other_poles : int
         Zeros at s = 0, and poles that are of no pair.
     """
-
-    of: tuple[str, ...]
-    pole_pairs: int
-    zero_pairs: int
-    zeros_at_origin: int = 0
-    other_poles: int = 0
-
-    def judge(self, models: Models) -> Finding:
-        """Return the finding."""
-        lines, is_true = [], True
-        for _, function in functions(models, self.of):
-            pairs, zeros = (sum(r.is_oscillatory for r in rs) for rs in (function.poles, function.zeros))
-            at_origin = sum(z.multiplicity for z in function.zeros if z.place == "origin")
-            others = (function.counts[1] if function.counts else 0) - 2 * pairs
-            wanted = (self.pole_pairs, self.zero_pairs, self.zeros_at_origin, self.other_poles)
-            is_true = is_true and (pairs, zeros, at_origin, others) == wanted
-            lines.append(
-                f"{function.tf}: {_counts(function)}: {counted(pairs, 'pair')} of poles, "
-                f"{counted(zeros, 'pair')} of zeros, {counted(others, 'other pole')}, "
-                f"{counted(at_origin, 'zero')} at 0."
-            )
-        return judged(is_true, "\n".join(lines))
+    lines, is_true = [], True
+    for _, function in functions(models, of):
+        pairs, zeros = (sum(r.is_oscillatory for r in rs) for rs in (function.poles, function.zeros))
+        at_origin = sum(z.multiplicity for z in function.zeros if z.place == "origin")
+        others = (function.counts[1] if function.counts else 0) - 2 * pairs
+        wanted = (pole_pairs, zero_pairs, zeros_at_origin, other_poles)
+        is_true = is_true and (pairs, zeros, at_origin, others) == wanted
+        lines.append(
+            f"{function.tf}: {_counts(function)}: {counted(pairs, 'pair')} of poles, "
+            f"{counted(zeros, 'pair')} of zeros, {counted(others, 'other pole')}, "
+            f"{counted(at_origin, 'zero')} at 0."
+        )
+    return judged(is_true, "\n".join(lines))
 
 
-@dataclass(frozen=True, slots=True)
-class AddedPerMode:
-    """Each flexible mode adds so many zeros and poles to the model with rigid compliances.
+def added_per_mode(
+    models: Models,
+    of: tuple[str, ...],
+    *,
+    zeros: int,
+    poles: int,
+    zeros_are_real: bool = False,
+    needs_dampers: bool = False,
+) -> Finding:
+    """Tell whether each flexible mode adds so many zeros and poles to the model with rigid compliances.
 
     Parameters
     ----------
-    of : tuple of str
-        Transfer functions; of distributed systems the modes listed count.
     zeros, poles : int
         By each mode.
     zeros_are_real : bool
@@ -135,428 +116,251 @@ class AddedPerMode:
     needs_dampers : bool
         It is otherwise without dampers, which is said as a condition.
     """
-
-    of: tuple[str, ...]
-    zeros: int
-    poles: int
-    zeros_are_real: bool = False
-    needs_dampers: bool = False
-
-    def judge(self, models: Models) -> Finding:
-        """Return the finding."""
-        lines, is_true = [], True
-        for stem, function in functions(models, self.of):
-            zeros, poles = function.added or (0, 0)
-            wanted = (self.zeros * function.modes, self.poles * function.modes)
-            are_real = all(z.place == "real axis" for z in function.zeros)
-            is_true = is_true and (zeros, poles) == wanted and (are_real or not self.zeros_are_real)
-            is_true = is_true and function.modes > 0
-            line = (
-                f"{stem}, {function.tf}: {counted(poles, 'pole')} and {counted(zeros, 'zero')} more with "
-                f"{counted(function.modes, 'mode')}"
-            )
-            line += ", the zeros real" if self.zeros_are_real and are_real else ""
-            if self.needs_dampers and function.undamped is not None:
-                line += f"; without dampers {counted(function.undamped[0], 'zero')}"
-                is_true = is_true and function.undamped[0] != zeros
-            lines.append(f"{line}.")
-        return judged(is_true, "\n".join(lines), condition=self.needs_dampers)
-
-
-@dataclass(frozen=True, slots=True)
-class FewerZerosAdded:
-    """Flexibility adds fewer zeros to one function than to another, though not fewer modes.
-
-    Parameters
-    ----------
-    of : tuple of str
-        Two transfer functions.
-    """
-
-    of: tuple[str, ...]
-
-    def judge(self, models: Models) -> Finding:
-        """Return the finding."""
-        one, other = _two(models, self.of)
-        (zeros, poles), (more, _) = one.added or (0, 0), other.added or (0, 0)
-        return judged(
-            zeros < more and one.modes >= other.modes,
-            f"With {counted(one.modes, 'mode')} {one.tf} has {counted(zeros, 'zero')} and "
-            f"{counted(poles, 'pole')} more; {other.tf}, with {other.modes}, {counted(more, 'zero')} more.",
+    lines, is_true = [], True
+    for stem, function in functions(models, of):
+        zeros, poles = function.added or (0, 0)
+        wanted = (zeros * function.modes, poles * function.modes)
+        are_real = all(z.place == "real axis" for z in function.zeros)
+        is_true = is_true and (zeros, poles) == wanted and (are_real or not zeros_are_real)
+        is_true = is_true and function.modes > 0
+        line = (
+            f"{stem}, {function.tf}: {counted(poles, 'pole')} and {counted(zeros, 'zero')} more with "
+            f"{counted(function.modes, 'mode')}"
         )
+        line += ", the zeros real" if zeros_are_real and are_real else ""
+        if needs_dampers and function.undamped is not None:
+            line += f"; without dampers {counted(function.undamped[0], 'zero')}"
+            is_true = is_true and function.undamped[0] != zeros
+        lines.append(f"{line}.")
+    return judged(is_true, "\n".join(lines), condition=needs_dampers)
 
 
-@dataclass(frozen=True, slots=True)
-class Colocated:
-    """Outputs are taken where the input acts, or rigidly joined to it.
-
-    Parameters
-    ----------
-    of : tuple of str
-        Transfer functions.
-    """
-
-    of: tuple[str, ...]
-
-    def judge(self, models: Models) -> Finding:
-        """Return the finding."""
-        found = [f for _, f in functions(models, self.of)]
-        are, are_not = ([f.tf for f in found if bool(f.colocated) is truth] for truth in (True, False))
-        said = [f"{', '.join(tfs)}: {word}." for tfs, word in ((are, "colocated"), (are_not, "not")) if tfs]
-        return judged(not are_not, " ".join(said))
+def fewer_zeros_added(models: Models, of: tuple[str, ...]) -> Finding:
+    """Tell whether flexibility adds fewer zeros to one function than to another, though not fewer modes."""
+    one, other = _two(models, of)
+    (zeros, poles), (more, _) = one.added or (0, 0), other.added or (0, 0)
+    return judged(
+        zeros < more and one.modes >= other.modes,
+        f"With {counted(one.modes, 'mode')} {one.tf} has {counted(zeros, 'zero')} and "
+        f"{counted(poles, 'pole')} more; {other.tf}, with {other.modes}, {counted(more, 'zero')} more.",
+    )
 
 
-@dataclass(frozen=True, slots=True)
-class InfinitelyMany:
-    """Functions are transcendental, with infinitely many poles and zeros.
-
-    Parameters
-    ----------
-    of : tuple of str
-        Transfer functions.
-    """
-
-    of: tuple[str, ...]
-
-    def judge(self, models: Models) -> Finding:
-        """Return the finding."""
-        finite = [f.tf for _, f in functions(models, self.of) if not f.is_infinite]
-        return judged(not finite, f"{', '.join(finite)}: rational." if finite else "All are transcendental.")
+def colocated(models: Models, of: tuple[str, ...]) -> Finding:
+    """Tell whether outputs are taken where the input acts, or rigidly joined to it."""
+    found = [f for _, f in functions(models, of)]
+    are, are_not = ([f.tf for f in found if bool(f.colocated) is truth] for truth in (True, False))
+    said = [f"{', '.join(tfs)}: {word}." for tfs, word in ((are, "colocated"), (are_not, "not")) if tfs]
+    return judged(not are_not, " ".join(said))
 
 
-@dataclass(frozen=True, slots=True)
-class ModesSuffice:
-    """A product of the lowest modes, exact at s = 0, is within 5 % up to the last of them.
-
-    Parameters
-    ----------
-    of : tuple of str
-        Transfer functions of distributed systems.
-    """
-
-    of: tuple[str, ...]
-
-    def judge(self, models: Models) -> Finding:
-        """Return the finding."""
-        lines, is_true = [], True
-        for _, function in functions(models, self.of):
-            kept = function.truncation
-            if kept is None:
-                raise KeyError(f"rational approximation of {function.tf}")
-            is_true = is_true and kept.five_percent_hz >= kept.last_hz
-            lines.append(
-                f"{function.tf}: the product of {kept.modes} modes, exact at s = 0, is within 1 % up to "
-                f"{kept.one_percent_hz:.0f} Hz and within 5 % up to {kept.five_percent_hz:.0f} Hz "
-                f"(sampled); mode {kept.modes} is at {kept.last_hz:.0f} Hz."
-            )
-        return judged(is_true, "\n".join(lines))
+def infinitely_many(models: Models, of: tuple[str, ...]) -> Finding:
+    """Tell whether functions are transcendental, with infinitely many poles and zeros."""
+    finite = [f.tf for _, f in functions(models, of) if not f.is_infinite]
+    return judged(not finite, f"{', '.join(finite)}: rational." if finite else "All are transcendental.")
 
 
-@dataclass(frozen=True, slots=True)
-class Interlacing:
-    """Poles and zeros listed lie on the imaginary axis and take turns there, proved.
-
-    Parameters
-    ----------
-    of : tuple of str
-        Transfer functions.
-    """
-
-    of: tuple[str, ...]
-
-    def judge(self, models: Models) -> Finding:
-        """Return the finding."""
-        found = [f for _, f in functions(models, self.of)]
-        is_true = all(f.alternates and f.certified for f in found)
-        words = "lie exactly on the axis (proved) and take turns" if is_true else "do not take turns there"
-        listed = [f"{len(f.poles)} poles and {len(f.zeros)} zeros of {f.tf}" for f in found]
-        return judged(is_true, "\n".join(f"The {these} listed {words}." for these in listed))
-
-
-@dataclass(frozen=True, slots=True)
-class SamePoles:
-    """Two functions have the same poles listed, all on the imaginary axis.
-
-    Parameters
-    ----------
-    of : tuple of str
-        Two transfer functions.
-    """
-
-    of: tuple[str, ...]
-
-    def judge(self, models: Models) -> Finding:
-        """Return the finding."""
-        one, other = _two(models, self.of)
-        is_same = len(one.poles) == len(other.poles) and all(
-            abs(a.re - b.re) + abs(a.im - b.im) <= a.radius + b.radius
-            for a, b in zip(one.poles, other.poles, strict=True)
+def modes_suffice(models: Models, of: tuple[str, ...]) -> Finding:
+    """Tell whether a product of the lowest modes, exact at s = 0, is within 5 % up to the last of them."""
+    lines, is_true = [], True
+    for _, function in functions(models, of):
+        kept = function.truncation
+        if kept is None:
+            raise KeyError(f"rational approximation of {function.tf}")
+        is_true = is_true and kept.five_percent_hz >= kept.last_hz
+        lines.append(
+            f"{function.tf}: the product of {kept.modes} modes, exact at s = 0, is within 1 % up to "
+            f"{kept.one_percent_hz:.0f} Hz and within 5 % up to {kept.five_percent_hz:.0f} Hz "
+            f"(sampled); mode {kept.modes} is at {kept.last_hz:.0f} Hz."
         )
-        on_axis = all(p.place in ("imaginary axis", "origin") for p in other.poles)
-        words = "are the same" if is_same else "differ"
-        where = ", on the axis (proved)" if on_axis else ""
-        return judged(is_same and on_axis, f"The {len(other.poles)} poles listed {words}{where}.")
+    return judged(is_true, "\n".join(lines))
 
 
-@dataclass(frozen=True, slots=True)
-class MirroredRealZeros:
-    """All zeros are real, each with its mirror image in the imaginary axis.
+def interlacing(models: Models, of: tuple[str, ...]) -> Finding:
+    """Tell whether poles and zeros listed lie on the imaginary axis and take turns there, proved."""
+    found = [f for _, f in functions(models, of)]
+    is_true = all(f.alternates and f.certified for f in found)
+    words = "lie exactly on the axis (proved) and take turns" if is_true else "do not take turns there"
+    listed = [f"{len(f.poles)} poles and {len(f.zeros)} zeros of {f.tf}" for f in found]
+    return judged(is_true, "\n".join(f"The {these} listed {words}." for these in listed))
+
+
+def same_poles(models: Models, of: tuple[str, ...]) -> Finding:
+    """Tell whether two functions have the same poles listed, all on the imaginary axis."""
+    one, other = _two(models, of)
+    is_same = len(one.poles) == len(other.poles) and all(
+        abs(a.re - b.re) + abs(a.im - b.im) <= a.radius + b.radius
+        for a, b in zip(one.poles, other.poles, strict=True)
+    )
+    on_axis = all(p.place in ("imaginary axis", "origin") for p in other.poles)
+    words = "are the same" if is_same else "differ"
+    where = ", on the axis (proved)" if on_axis else ""
+    return judged(is_same and on_axis, f"The {len(other.poles)} poles listed {words}{where}.")
+
+
+def mirrored_real_zeros(models: Models, of: tuple[str, ...], *, count: int = 0) -> Finding:
+    """Tell whether all zeros are real, each with its mirror image in the imaginary axis.
 
     Parameters
     ----------
-    of : tuple of str
-        Transfer functions.
     count : int
         How many zeros there are; 0 for any number.
     """
-
-    of: tuple[str, ...]
-    count: int = 0
-
-    def judge(self, models: Models) -> Finding:
-        """Return the finding, with the condition under which there are such zeros."""
-        lines: list[Run] = []
-        found = functions(models, self.of)
-        for stem, function in found:
-            right = [f"{z.re:.4g}" for z in function.zeros if z.is_in_right_half_plane]
-            listed = f"±{', ±'.join(right)}" if function.has_mirrored_real_zeros else _listed(function.zeros)
-            lines += ["\n", f"{stem}, {function.tf}: zeros at {listed} rad/s."]
-            lines += _bracket(function) if function.bracket else ()
-        is_true = all(f.has_mirrored_real_zeros for _, f in found)
-        is_true = is_true and (not self.count or all(len(f.zeros) == self.count for _, f in found))
-        return judged(is_true, *lines[1:], condition=any(f.bracket for _, f in found))
+    lines: list[Run] = []
+    found = functions(models, of)
+    for stem, function in found:
+        right = [f"{z.re:.4g}" for z in function.zeros if z.is_in_right_half_plane]
+        listed = f"±{', ±'.join(right)}" if function.has_mirrored_real_zeros else _listed(function.zeros)
+        lines += ["\n", f"{stem}, {function.tf}: zeros at {listed} rad/s."]
+        lines += _bracket(function) if function.bracket else ()
+    is_true = all(f.has_mirrored_real_zeros for _, f in found)
+    is_true = is_true and (not count or all(len(f.zeros) == count for _, f in found))
+    return judged(is_true, *lines[1:], condition=any(f.bracket for _, f in found))
 
 
-@dataclass(frozen=True, slots=True)
-class MinimumPhase:
-    """No zero lies in the right half plane, for all values of the parameters.
-
-    Parameters
-    ----------
-    of : tuple of str
-        Transfer functions.
-    """
-
-    of: tuple[str, ...]
-
-    def judge(self, models: Models) -> Finding:
-        """Return the finding."""
-        lines = []
-        found = functions(models, self.of)
-        for stem, function in found:
-            word = "minimum phase" if function.is_minimum_phase else "nonminimum phase"
-            lines.append(f"{stem}, {function.tf}: {word}, {function.condition}: {function.reason}.")
-        is_true = all(f.is_minimum_phase and f.condition == "always" for _, f in found)
-        return judged(is_true, "\n".join(lines))
+def minimum_phase(models: Models, of: tuple[str, ...]) -> Finding:
+    """Tell whether no zero lies in the right half plane, for all values of the parameters."""
+    lines = []
+    found = functions(models, of)
+    for stem, function in found:
+        word = "minimum phase" if function.is_minimum_phase else "nonminimum phase"
+        lines.append(f"{stem}, {function.tf}: {word}, {function.condition}: {function.reason}.")
+    is_true = all(f.is_minimum_phase and f.condition == "always" for _, f in found)
+    return judged(is_true, "\n".join(lines))
 
 
-@dataclass(frozen=True, slots=True)
-class NonminimumPhase:
-    """Zeros lie in the right half plane.
+def nonminimum_phase(models: Models, of: tuple[str, ...], *, for_these_values: bool = False) -> Finding:
+    """Tell whether zeros lie in the right half plane.
 
     Parameters
     ----------
-    of : tuple of str
-        Transfer functions.
     for_these_values : bool
         What it is for other values of the parameters is left out.
     """
-
-    of: tuple[str, ...]
-    for_these_values: bool = False
-
-    def judge(self, models: Models) -> Finding:
-        """Return the finding, with the condition where the parameters decide."""
-        lines: list[Run] = []
-        found = functions(models, self.of)
-        for stem, function in found:
-            zeros = counted(function.right_half_plane_zeros, "zero")
-            lines += ["\n", f"{stem}, {function.tf}: {zeros} in the right half plane."]
-            lines += () if self.for_these_values else _bracket(function)
-        is_true = all(not f.is_minimum_phase for _, f in found)
-        has_condition = not self.for_these_values and any(f.bracket for _, f in found)
-        return judged(is_true, *lines[1:], condition=has_condition)
+    lines: list[Run] = []
+    found = functions(models, of)
+    for stem, function in found:
+        zeros = counted(function.right_half_plane_zeros, "zero")
+        lines += ["\n", f"{stem}, {function.tf}: {zeros} in the right half plane."]
+        lines += () if for_these_values else _bracket(function)
+    is_true = all(not f.is_minimum_phase for _, f in found)
+    has_condition = not for_these_values and any(f.bracket for _, f in found)
+    return judged(is_true, *lines[1:], condition=has_condition)
 
 
-@dataclass(frozen=True, slots=True)
-class PrintedFormula:
-    """A formula of ``[published]`` is equal to the derived function.
-
-    Parameters
-    ----------
-    of : tuple of str
-        Transfer functions.
-    """
-
-    of: tuple[str, ...]
-
-    def judge(self, models: Models) -> Finding:
-        """Return the finding, with what should be changed in a wrong formula."""
-        findings = [self._of_one(models, name) for name in self.of]
-        worst = next((f for f in findings if f.verdict != "holds"), findings[0])
-        return Finding(worst.verdict, ("\n".join(str(run) for f in findings for run in f.evidence),))
-
-    @staticmethod
-    def _of_one(models: Models, name: str) -> Finding:
-        stem, _, tf = name.partition(": ")
-        found = {key: (verdict, changes) for key, verdict, changes in models[stem].audits}
-        if tf not in found:
-            raise KeyError(f"printed formula of {tf}")
-        verdict, changes = found[tf]
-        if verdict not in ("equal", "differs"):
-            return _unexamined("The comparison was not decided.")
-        if verdict == "equal":
-            return judged(True, "Proved equal to the derived function.")
-        return judged(False, f"Proved not to be the derived function. {changes}.")
+def printed_formula(models: Models, of: tuple[str, ...]) -> Finding:
+    """Tell whether a formula of ``[published]`` is equal to the derived function."""
+    findings = [_of_one(models, name) for name in of]
+    worst = next((f for f in findings if f.verdict != "holds"), findings[0])
+    return Finding(worst.verdict, ("\n".join(str(run) for f in findings for run in f.evidence),))
 
 
-@dataclass(frozen=True, slots=True)
-class BestFit:
-    """Of all models that measured data are compared with, these alone are close to them.
+def _of_one(models: Models, name: str) -> Finding:
+    stem, _, tf = name.partition(": ")
+    found = {key: (verdict, changes) for key, verdict, changes in models[stem].audits}
+    if tf not in found:
+        raise KeyError(f"printed formula of {tf}")
+    verdict, changes = found[tf]
+    if verdict not in ("equal", "differs"):
+        return _unexamined("The comparison was not decided.")
+    if verdict == "equal":
+        return judged(True, "Proved equal to the derived function.")
+    return judged(False, f"Proved not to be the derived function. {changes}.")
+
+
+def best_fit(
+    models: Models,
+    of: tuple[str, ...],
+    *,
+    decibels: float = 0.0,
+    synthetic: str = "The data in this report are synthetic.",
+) -> Finding:
+    """Tell whether of all models that measured data are compared with, these alone are close to them.
 
     Parameters
     ----------
-    of : tuple of str
-        Models.
     decibels : float
         Root mean square of the error in magnitude that counts as close; 0 where the publication gives no
         measure, and the claim is not examined.
     synthetic : str
         What is said where the only data are synthetic.
     """
-
-    of: tuple[str, ...]
-    decibels: float = 0.0
-    synthetic: str = "The data in this report are synthetic."
-
-    def judge(self, models: Models) -> Finding:
-        """Return the finding; synthetic data tell nothing."""
-        told = [(stem, fact) for stem, facts in models.items() for fact in facts.data]
-        measured = [(stem, fact) for stem, fact in told if not fact.is_synthetic]
-        if not measured:
-            lacking = "The comparison needs measured data, which the report does not hold."
-            return _unexamined(f"{lacking} {self.synthetic} {_off(told)}." if told else lacking)
-        if not self.decibels:
-            return _unexamined(f"What counts as close is not said. {_off(measured)}.")
-        good = {stem for stem, fact in measured if fact.decibels < self.decibels}
-        return judged(
-            good == set(self.of), f"{_off(measured)}. Well means here: within {self.decibels:g} dB rms."
-        )
+    told = [(stem, fact) for stem, facts in models.items() for fact in facts.data]
+    measured = [(stem, fact) for stem, fact in told if not fact.is_synthetic]
+    if not measured:
+        lacking = "The comparison needs measured data, which the report does not hold."
+        return _unexamined(f"{lacking} {synthetic} {_off(told)}." if told else lacking)
+    if not decibels:
+        return _unexamined(f"What counts as close is not said. {_off(measured)}.")
+    good = {stem for stem, fact in measured if fact.decibels < decibels}
+    return judged(good == set(of), f"{_off(measured)}. Well means here: within {decibels:g} dB rms.")
 
 
-@dataclass(frozen=True, slots=True)
-class UnstableAtHighGain:
-    """Loops are stable up to some gain and unstable for the largest ones examined.
-
-    Parameters
-    ----------
-    of : tuple of str
-        Models whose figures name the gain of a loop.
-    """
-
-    of: tuple[str, ...]
-
-    def judge(self, models: Models) -> Finding:
-        """Return the finding."""
-        lines, is_true = [], True
-        for stem in self.of:
-            loop = _loop(models, stem)
-            end = loop.stable[0][1] if loop.stable else 0.0
-            is_true = is_true and loop.unstable_at_last > 0
-            crossing = f", where poles cross at {loop.crossings_hz[0]:.4g} Hz" if loop.crossings_hz else ""
-            words = f"unstable for {loop.gain} > {end or 0:.4g}{crossing}"
-            lines.append(f"{stem}: {words if loop.unstable_at_last else 'stable'}")
-        return judged(is_true, "\n".join(lines))
+def unstable_at_high_gain(models: Models, of: tuple[str, ...]) -> Finding:
+    """Tell whether loops are stable up to some gain and unstable for the largest ones examined."""
+    lines, is_true = [], True
+    for stem in of:
+        loop = _loop(models, stem)
+        end = loop.stable[0][1] if loop.stable else 0.0
+        is_true = is_true and loop.unstable_at_last > 0
+        crossing = f", where poles cross at {loop.crossings_hz[0]:.4g} Hz" if loop.crossings_hz else ""
+        words = f"unstable for {loop.gain} > {end or 0:.4g}{crossing}"
+        lines.append(f"{stem}: {words if loop.unstable_at_last else 'stable'}")
+    return judged(is_true, "\n".join(lines))
 
 
-@dataclass(frozen=True, slots=True)
-class AlwaysStable:
-    """Loops are stable for all gains examined.
-
-    Parameters
-    ----------
-    of : tuple of str
-        Models whose figures name the gain of a loop.
-    """
-
-    of: tuple[str, ...]
-
-    def judge(self, models: Models) -> Finding:
-        """Return the finding."""
-        found = [(stem, _loop(models, stem).is_always_stable) for stem in self.of]
-        lines = [f"{stem}: {'' if is_so else 'not '}stable for all gains examined" for stem, is_so in found]
-        return judged(all(is_so for _, is_so in found), "\n".join(lines))
+def always_stable(models: Models, of: tuple[str, ...]) -> Finding:
+    """Tell whether loops are stable for all gains examined."""
+    found = [(stem, _loop(models, stem).is_always_stable) for stem in of]
+    lines = [f"{stem}: {'' if is_so else 'not '}stable for all gains examined" for stem, is_so in found]
+    return judged(all(is_so for _, is_so in found), "\n".join(lines))
 
 
-@dataclass(frozen=True, slots=True)
-class Together:
-    """Outputs move together with one where the input acts, from the lowest frequency examined.
-
-    Parameters
-    ----------
-    of : tuple of str
-        Transfer functions whose output is taken elsewhere.
-    """
-
-    of: tuple[str, ...]
-
-    def judge(self, models: Models) -> Finding:
-        """Return the finding, with the frequency up to which they do as a condition."""
-        found = [(_colocation(models, name), models[model_of(name)]) for name in self.of]
-        lines = [
-            f"{facts.stem}: {one.tf} and {one.reference} are together {_up_to(one)}; "
-            f"mode at {_first_mode(facts.of(one.tf)):.4g} Hz."
-            for one, facts in found
-        ]
-        is_limited = any(one.bandwidth_hz is not None for one, _ in found)
-        lines += ["Condition: below that frequency."] if is_limited else []
-        return judged(all(one.is_together for one, _ in found), " ".join(lines), condition=is_limited)
+def together(models: Models, of: tuple[str, ...]) -> Finding:
+    """Tell whether outputs move with one where the input acts, from the lowest frequency examined."""
+    found = [(_colocation(models, name), models[model_of(name)]) for name in of]
+    lines = [
+        f"{facts.stem}: {one.tf} and {one.reference} are together {_up_to(one)}; "
+        f"mode at {_first_mode(facts.of(one.tf)):.4g} Hz."
+        for one, facts in found
+    ]
+    is_limited = any(one.bandwidth_hz is not None for one, _ in found)
+    lines += ["Condition: below that frequency."] if is_limited else []
+    return judged(all(one.is_together for one, _ in found), " ".join(lines), condition=is_limited)
 
 
-@dataclass(frozen=True, slots=True)
-class TogetherFarthest:
-    """The first output moves with the colocated one up to a larger share of its first mode than the others.
-
-    Parameters
-    ----------
-    of : tuple of str
-        Transfer functions whose output is taken elsewhere.
-    """
-
-    of: tuple[str, ...]
-
-    def judge(self, models: Models) -> Finding:
-        """Return the finding."""
-        lines: list[str] = []
-        shares: list[float] = []
-        for name in self.of:
-            found = _colocation(models, name)
-            end = (found.bandwidth_hz or found.examined_hz) if found.is_together else 0.0
-            shares.append(end / _first_mode(models[model_of(name)].of(found.tf)))
-            lines.append(f"{model_of(name)}: together {_up_to(found)}, {shares[-1]:.2g} times its first mode")
-        return judged(all(shares[0] > share for share in shares[1:]), "\n".join(lines))
+def together_farthest(models: Models, of: tuple[str, ...]) -> Finding:
+    """Tell whether the first output moves with the colocated one to the largest share of its first mode."""
+    lines: list[str] = []
+    shares: list[float] = []
+    for name in of:
+        found = _colocation(models, name)
+        end = (found.bandwidth_hz or found.examined_hz) if found.is_together else 0.0
+        shares.append(end / _first_mode(models[model_of(name)].of(found.tf)))
+        lines.append(f"{model_of(name)}: together {_up_to(found)}, {shares[-1]:.2g} times its first mode")
+    return judged(all(shares[0] > share for share in shares[1:]), "\n".join(lines))
 
 
-PREDICATES: Final[Mapping[str, type[Predicate]]] = {
-    "modes-at": ModesAt,
-    "counts": Counts,
-    "arrangement": Arrangement,
-    "added-per-mode": AddedPerMode,
-    "fewer-zeros-added": FewerZerosAdded,
-    "colocated": Colocated,
-    "infinitely-many": InfinitelyMany,
-    "modes-suffice": ModesSuffice,
-    "interlacing": Interlacing,
-    "same-poles": SamePoles,
-    "mirrored-real-zeros": MirroredRealZeros,
-    "minimum-phase": MinimumPhase,
-    "nonminimum-phase": NonminimumPhase,
-    "printed-formula": PrintedFormula,
-    "best-fit": BestFit,
-    "unstable-at-high-gain": UnstableAtHighGain,
-    "always-stable": AlwaysStable,
-    "together": Together,
-    "together-farthest": TogetherFarthest,
+PREDICATES: Final[Mapping[str, Predicate]] = {
+    "modes-at": modes_at,
+    "counts": counts,
+    "arrangement": arrangement,
+    "added-per-mode": added_per_mode,
+    "fewer-zeros-added": fewer_zeros_added,
+    "colocated": colocated,
+    "infinitely-many": infinitely_many,
+    "modes-suffice": modes_suffice,
+    "interlacing": interlacing,
+    "same-poles": same_poles,
+    "mirrored-real-zeros": mirrored_real_zeros,
+    "minimum-phase": minimum_phase,
+    "nonminimum-phase": nonminimum_phase,
+    "printed-formula": printed_formula,
+    "best-fit": best_fit,
+    "unstable-at-high-gain": unstable_at_high_gain,
+    "always-stable": always_stable,
+    "together": together,
+    "together-farthest": together_farthest,
 }
 """What ``is`` of a check may be."""
 

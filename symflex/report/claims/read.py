@@ -17,9 +17,10 @@ Input: a file. Output: a :class:`Publication`, whose checks are predicates of a 
 from __future__ import annotations
 
 import re
-from dataclasses import MISSING, fields
+from functools import partial
+from inspect import Parameter, signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from symflex.errors import SpecError, SymflexError
 from symflex.errors.diagnostic import nearest
@@ -103,29 +104,31 @@ def _claim(reader: Reader, table: TableValue) -> Claim:
 
 def _check(reader: Reader, table: TableValue) -> Check | None:
     name = _text(reader, table, "is", "a check")
-    kind = PREDICATES.get(name)
-    if kind is None:
+    predicate = PREDICATES.get(name)
+    if predicate is None:
         entry = table.get("is")
         if entry is not None and name:
             hint = nearest(name, PREDICATES) or f"there are {', '.join(PREDICATES)}"
             reader.note("SF208", f"there is no check '{name[:80]}'", entry.value.span, hint)
         return None
-    reader.keys(table, (*KEYS_OF_CHECKS, *(f.name for f in fields(kind))), f"a check '{name}'")  # type: ignore[arg-type]
-    values: dict[str, object] = {}
-    for each in fields(kind):  # type: ignore[arg-type]
-        entry = table.get(each.name)
+    keys = [p for p in signature(predicate).parameters.values() if p.name != "models"]
+    reader.keys(table, (*KEYS_OF_CHECKS, *(key.name for key in keys)), f"a check '{name}'")
+    values: dict[str, Any] = {}
+    for key in keys:
+        entry = table.get(key.name)
         if entry is not None:
-            values[each.name] = _value(reader, entry, str(each.type))
-        elif each.default is MISSING:
-            reader.note("SF214", f"a check '{name}' needs '{each.name}'", table.span)
+            values[key.name] = _value(reader, entry, key.annotation)
+        elif key.default is Parameter.empty:
+            reader.note("SF214", f"a check '{name}' needs '{key.name}'", table.span)
     if reader.problems:
         return None
+    of = values.pop("of")
     texts = (_optional(reader, table, key) for key in ("note", "condition"))
-    return Check(kind(**values), *texts)
+    return Check(partial(predicate, **values), of, *texts)
 
 
 def _value(reader: Reader, entry: Entry, kind: str) -> object:
-    """Return the value of a key, of the type that the predicate's field has."""
+    """Return the value of a key, of the type that the predicate takes."""
     value = entry.value
     if kind == "tuple[str, ...]":
         return tuple(text.value for text in reader.strings(entry, entry.key) or ())
