@@ -118,19 +118,19 @@ def added_per_mode(
     """
     lines, is_true = [], True
     for stem, function in functions(models, of):
-        zeros, poles = function.added or (0, 0)
+        more_zeros, more_poles = function.added or (0, 0)
         wanted = (zeros * function.modes, poles * function.modes)
         are_real = all(z.place == "real axis" for z in function.zeros)
-        is_true = is_true and (zeros, poles) == wanted and (are_real or not zeros_are_real)
+        is_true = is_true and (more_zeros, more_poles) == wanted and (are_real or not zeros_are_real)
         is_true = is_true and function.modes > 0
         line = (
-            f"{stem}, {function.tf}: {counted(poles, 'pole')} and {counted(zeros, 'zero')} more with "
+            f"{stem}, {function.tf}: {counted(more_poles, 'pole')} and {counted(more_zeros, 'zero')} more with "
             f"{counted(function.modes, 'mode')}"
         )
         line += ", the zeros real" if zeros_are_real and are_real else ""
         if needs_dampers and function.undamped is not None:
             line += f"; without dampers {counted(function.undamped[0], 'zero')}"
-            is_true = is_true and function.undamped[0] != zeros
+            is_true = is_true and function.undamped[0] != more_zeros
         lines.append(f"{line}.")
     return judged(is_true, "\n".join(lines), condition=needs_dampers)
 

@@ -187,6 +187,7 @@ def of_loop(stem, loop):
             function(poles=axis(2.0), counts=(0, 2)),
         ),
         ('is = "added-per-mode", zeros = 1, poles = 2, zeros_are_real = true', SPRUNG, function()),
+        ('is = "added-per-mode", zeros = 2, poles = 2', replace(SPRUNG, counts=(2, 4)), SPRUNG),
         ('is = "colocated"', function(), function(colocated=False)),
         ('is = "infinitely-many"', function(is_infinite=True), function()),
         (
