@@ -123,10 +123,8 @@ def added_per_mode(
         are_real = all(z.place == "real axis" for z in function.zeros)
         is_true = is_true and (more_zeros, more_poles) == wanted and (are_real or not zeros_are_real)
         is_true = is_true and function.modes > 0
-        line = (
-            f"{stem}, {function.tf}: {counted(more_poles, 'pole')} and {counted(more_zeros, 'zero')} more with "
-            f"{counted(function.modes, 'mode')}"
-        )
+        more = f"{counted(more_poles, 'pole')} and {counted(more_zeros, 'zero')} more"
+        line = f"{stem}, {function.tf}: {more} with {counted(function.modes, 'mode')}"
         line += ", the zeros real" if zeros_are_real and are_real else ""
         if needs_dampers and function.undamped is not None:
             line += f"; without dampers {counted(function.undamped[0], 'zero')}"
