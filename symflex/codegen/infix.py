@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, ClassVar
 from symflex.codegen.program import (
     Add,
     Apply,
+    Assigned,
+    CodeNode,
     ComplexNumber,
-    Constant,
     Divide,
+    IntegerPower,
     InverseLaplace,
     Item,
     Laplace,
@@ -20,14 +22,12 @@ from symflex.codegen.program import (
     ModeValues,
     Multiply,
     Negate,
-    Node,
-    Power,
-    Reference,
+    ParameterValue,
+    RealNumber,
     Roots,
     Solutions,
     nearest_double,
 )
-from symflex.codegen.program import Parameter as ParameterNode
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -62,15 +62,15 @@ class InfixPrinter(ABC):
     times: ClassVar[str] = "*"
     over: ClassVar[str] = "/"
 
-    def print(self, node: Node) -> str:
+    def print(self, node: CodeNode) -> str:
         """Return the text of an expression."""
         return self._print(node)[0]
 
-    def quotient(self, numerator: Node, denominator: Node) -> str:
+    def quotient(self, numerator: CodeNode, denominator: CodeNode) -> str:
         """Return the text of a quotient."""
         return f"{self.within(numerator, _PRODUCT)} {self.over} {self.within(denominator, _SIGN)}"
 
-    def within(self, node: Node, tightest: int) -> str:
+    def within(self, node: CodeNode, tightest: int) -> str:
         """Return the text of an operand, in parentheses when it binds less tightly."""
         text, binding = self._print(node)
         return text if binding >= tightest else f"({text})"
@@ -80,7 +80,7 @@ class InfixPrinter(ABC):
         """The number pi."""
         return "pi"
 
-    def applied(self, function: str, argument: Node) -> str:
+    def applied(self, function: str, argument: CodeNode) -> str:
         """Return the text of an elementary function's value."""
         return f"{'exp' if function == 'complex_exp' else function}({self.print(argument)})"
 
@@ -128,17 +128,17 @@ class InfixPrinter(ABC):
 
     # -------------------------------------------------------------------------------------------- the tree
 
-    def _print(self, node: Node) -> tuple[str, int]:
+    def _print(self, node: CodeNode) -> tuple[str, int]:
         """Return the text and how tightly it binds."""
         match node:
-            case Constant(value, pi_power):
+            case RealNumber(value, pi_power):
                 is_pi = value == 1 and pi_power == 1
                 return self.pi if is_pi else repr(nearest_double(value, pi_power)), _LEAF
             case ComplexNumber(real, imaginary):
                 return self.complex_number(nearest_double(real), nearest_double(imaginary)), _LEAF
-            case ParameterNode(name):
+            case ParameterValue(name):
                 return self.parameters[name], _LEAF
-            case Reference(name):
+            case Assigned(name):
                 return self.locals[name], _LEAF
             case Laplace():
                 return self.variable, _LEAF
@@ -151,7 +151,7 @@ class InfixPrinter(ABC):
                 return f" {self.times} ".join(texts), _PRODUCT
             case Divide(numerator, denominator):
                 return self.quotient(numerator, denominator), _PRODUCT
-            case Power(base, exponent):
+            case IntegerPower(base, exponent):
                 return self.power(self.within(base, _LEAF), exponent), _POWER
             case Negate(operand):
                 return f"-{self.within(operand, _POWER)}", _SIGN
@@ -159,7 +159,7 @@ class InfixPrinter(ABC):
                 return self.applied(function, argument), _LEAF
         return self._with_lists(node), _LEAF
 
-    def _with_lists(self, node: Node) -> str:
+    def _with_lists(self, node: CodeNode) -> str:
         """Return the text of what takes lists or gives them."""
         match node:
             case Solutions(coefficients, terms):
@@ -181,10 +181,10 @@ class InfixPrinter(ABC):
         message = f"no text for {type(node).__name__}"
         raise TypeError(message)
 
-    def _listed(self, nodes: Iterable[Node]) -> str:
+    def _listed(self, nodes: Iterable[CodeNode]) -> str:
         return self.listed(self.print(n) for n in nodes)
 
-    def _sum(self, terms: Sequence[Node]) -> str:
+    def _sum(self, terms: Sequence[CodeNode]) -> str:
         text = self.within(terms[0], _PRODUCT)
         for term in terms[1:]:
             if isinstance(term, Negate):

@@ -6,15 +6,15 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symflex.codegen.c.expression import Kind, Term, product
-from symflex.codegen.c.scope import POSITIVE, STEP, Scope
-from symflex.codegen.program import Condition, Constant, Piecewise
+from symflex.codegen.c.scope import POSITIVE, STEP, Body
+from symflex.codegen.program import Condition, Piecewise, RealNumber
 from symflex.codegen.program.real_axis import needed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 
-def conditions_of(program: Piecewise, scope: Scope, varying: Scope | None = None) -> list[str]:
+def conditions_of(program: Piecewise, scope: Body, varying: Body | None = None) -> list[str]:
     """Print what conditions need, and return the conditions; limits go to the outer scope."""
     inner = varying or scope
     fixed = needed(program.tests, [c.scale for c in program.conditions])
@@ -42,9 +42,9 @@ def conditions_of(program: Piecewise, scope: Scope, varying: Scope | None = None
     return conditions
 
 
-def limit_text(condition: Condition, scope: Scope) -> str:
+def limit_text(condition: Condition, scope: Body) -> str:
     """Return the text of a limit, a variable unless it is a number."""
-    if not condition.limit or condition.scale == Constant(Fraction(1)):
+    if not condition.limit or condition.scale == RealNumber(Fraction(1)):
         return repr(condition.limit)
     scale = scope.term(condition.scale)
     size = f"cx_abs({scale.text})" if scale.kind is Kind.COMPLEX else f"fabs({scale.text})"
@@ -52,7 +52,10 @@ def limit_text(condition: Condition, scope: Scope) -> str:
 
 
 def choose(
-    program: Piecewise, conditions: Sequence[str], scope: Scope, body: Callable[[int, Scope], None]
+    program: Piecewise,
+    conditions: Sequence[str],
+    scope: Body,
+    body: Callable[[int, Body], None],
 ) -> None:
     """Print the choice among pieces: test i adds ``2**i`` to the number of the piece."""
     indent = STEP * scope.depth
@@ -82,7 +85,7 @@ def choose(
     scope.lines.append(f"{indent}}}")
 
 
-def _case(k: int, scope: Scope, body: Callable[[int, Scope], None]) -> None:
+def _case(k: int, scope: Body, body: Callable[[int, Body], None]) -> None:
     indent = STEP * scope.depth
     block = scope.within()
     body(k, block)

@@ -15,20 +15,20 @@ from typing import TYPE_CHECKING
 from symflex.codegen.program import (
     Add,
     Apply,
+    Assigned,
+    CodeNode,
     ComplexNumber,
-    Constant,
     Divide,
+    IntegerPower,
     InverseLaplace,
     Item,
     Laplace,
     Multiply,
     Negate,
-    Node,
-    Power,
-    Reference,
+    ParameterValue,
+    RealNumber,
     nearest_double,
 )
-from symflex.codegen.program import Parameter as ParameterNode
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -100,7 +100,7 @@ class Term:
 
 
 @dataclass(frozen=True)
-class Printer:
+class CPrinter:
     """Prints expressions as C, evaluated in the order of the tree.
 
     Parameters
@@ -122,24 +122,24 @@ class Printer:
     parameter: Callable[[str], str]
     known: Mapping[str, Term]
     s: Term
-    array: Callable[[Node], Term]
+    array: Callable[[CodeNode], Term]
     hold: Callable[[Term], Term]
     in_lanes: bool = False
 
-    def print(self, node: Node) -> Term:
+    def print(self, node: CodeNode) -> Term:
         """Return an expression as C; calls nested deeply become variables."""
         return self._short(self.whole(node))
 
-    def whole(self, node: Node) -> Term:
+    def whole(self, node: CodeNode) -> Term:
         """Return an expression that gets a variable anyway."""
         match node:
-            case Constant(value, pi_power):
+            case RealNumber(value, pi_power):
                 return Term(repr(nearest_double(value, pi_power)), Kind.REAL)
             case ComplexNumber(real, imaginary):
                 return _complex(nearest_double(real), nearest_double(imaginary))
-            case ParameterNode(name):
+            case ParameterValue(name):
                 return Term(self.parameter(name), Kind.REAL)
-            case Reference(name):
+            case Assigned(name):
                 return self.known[name]
             case Laplace():
                 return self.s
@@ -154,7 +154,7 @@ class Printer:
                 return result
             case Divide(numerator, denominator):
                 return self.quotient(self.print(numerator), self.print(denominator))
-            case Power(base, exponent):
+            case IntegerPower(base, exponent):
                 return _power(self.print(base), exponent)
             case Negate(operand):
                 return negative(self.print(operand))
@@ -174,11 +174,11 @@ class Printer:
             return _call("lane_div", Kind.COMPLEX, complex_term(x), y)
         return quotient(x, y)
 
-    def listed(self, node: Node) -> Term:
+    def listed(self, node: CodeNode) -> Term:
         """Return the array that holds a list; it is declared where there is none yet."""
-        return self.known[node.name] if isinstance(node, Reference) else self.array(node)
+        return self.known[node.name] if isinstance(node, Assigned) else self.array(node)
 
-    def _sum(self, terms: Sequence[Node]) -> Term:
+    def _sum(self, terms: Sequence[CodeNode]) -> Term:
         result = self.print(terms[0])
         for term in terms[1:]:
             if isinstance(term, Negate):

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 from symflex.codegen.c.choice import choose, conditions_of
 from symflex.codegen.c.expression import Kind, Term, complex_term, quotient
 from symflex.codegen.c.lanes import fits_lanes, is_rational_in_lanes, lanes, rational_lanes
-from symflex.codegen.c.scope import AXIS, POSITIVE, STEP, WIDTH, S, Scope
-from symflex.codegen.program import Piece, Piecewise, Program
+from symflex.codegen.c.scope import AXIS, POSITIVE, STEP, WIDTH, Body, S
+from symflex.codegen.program import CodePiece, Piecewise, Program
 from symflex.codegen.program.real_axis import needed
 
 if TYPE_CHECKING:
@@ -91,12 +91,12 @@ class Functions:
     def _head(self, name: str) -> list[str]:
         return [f"static cx {name}(cx s, const {self.structure} *p)", "{"]
 
-    def _ends(self, scope: Scope, head: list[str]) -> list[str]:
+    def _ends(self, scope: Body, head: list[str]) -> list[str]:
         unused = [] if any(_mentions(line, "s") for line in scope.lines) else [f"{STEP}(void)s;"]
         return [*head, *scope.opening(self.members), *unused, *scope.lines, "}"]
 
     def _lumped_value(self, program: Program) -> list[str]:
-        scope = Scope.of(self.members, S)
+        scope = Body.of(self.members, S)
         _lumped(program, scope, lambda inner, term: inner.say("return", complex_term(term).text))
         return self._wrapped_value(self._ends(scope, self._head(f"value_of_{self.name}")))
 
@@ -117,19 +117,19 @@ class Functions:
         blocks = []
         for number, piece in enumerate(program.code):
             blocks += self._piece(f"piece_{number}_of_{self.name}", piece, orders)
-        scope = Scope.of(self.members, S)
+        scope = Body.of(self.members, S)
         conditions = conditions_of(program, scope)
         orders |= scope.orders
 
-        def call(k: int, inner: Scope) -> None:
+        def call(k: int, inner: Body) -> None:
             inner.say("return", f"piece_{k}_of_{self.name}(s, p)")
 
         choose(program, conditions, scope, call)
         blocks.append(self._wrapped_value(self._ends(scope, self._head(f"value_of_{self.name}"))))
         return blocks
 
-    def _piece(self, name: str, piece: Piece, orders: set[int]) -> list[list[str]]:
-        scope = Scope.of(self.members, S)
+    def _piece(self, name: str, piece: CodePiece, orders: set[int]) -> list[list[str]]:
+        scope = Body.of(self.members, S)
         code = needed(piece.code, piece.code.values)
         scope.assign((*code.constants, *code.assignments))
         values = [scope.term(v) for v in piece.code.values]
@@ -154,7 +154,7 @@ class Functions:
         if isinstance(program, Program) and is_rational_in_lanes(program):
             return [*self.freq_prototype.split("\n"), "{", *rational_lanes(program, self.members), "}"]
         is_axis = self.axis is not None
-        outer = Scope.of(self.members, POSITIVE if is_axis else AXIS)
+        outer = Body.of(self.members, POSITIVE if is_axis else AXIS)
         # Names are unique in the whole function; the loop's statements come after all constants.
         inner = outer.within()
         if isinstance(program, Program):
@@ -181,7 +181,7 @@ class Functions:
             "}",
         ]
 
-    def _axis_pieces(self, program: Piecewise, outer: Scope, inner: Scope) -> None:
+    def _axis_pieces(self, program: Piecewise, outer: Body, inner: Body) -> None:
         conditions = conditions_of(program, outer, inner)
         codes = [needed(piece.code, piece.code.values) for piece in program.code]
         fixed: list[dict[str, Term]] = []
@@ -191,7 +191,7 @@ class Functions:
                 outer.assign(code.constants)
             fixed.append(outer.known)
 
-        def body(k: int, block: Scope) -> None:
+        def body(k: int, block: Body) -> None:
             piece, code = program.code[k], codes[k]
             if piece.circle:
                 # Points on a circle are complex: the piece of the function of s serves.
@@ -210,7 +210,7 @@ class Functions:
 
         choose(program, conditions, inner, body)
 
-    def _store(self, scope: Scope, value: Term) -> None:
+    def _store(self, scope: Body, value: Term) -> None:
         """Write a value into the arrays; it is that at a positive frequency in real arithmetic."""
         sign = "sign * " if self.axis is not None else ""
         if value.kind is Kind.COMPLEX:
@@ -237,7 +237,10 @@ def _mentions(line: str, name: str) -> bool:
 
 
 def _lumped(
-    program: Program, scope: Scope, store: Callable[[Scope, Term], None], varying: Scope | None = None
+    program: Program,
+    scope: Body,
+    store: Callable[[Body, Term], None],
+    varying: Body | None = None,
 ) -> None:
     """Print a program of one or two branches; what varies goes to a scope of its own if there is one."""
     inner = varying or scope

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 from symflex.codegen.c.choice import limit_text
 from symflex.codegen.c.expression import LANE_FUNCTIONS, Kind, Term, quotient
-from symflex.codegen.c.scope import AXIS_LANE, LANE, STEP, Scope
-from symflex.codegen.program import Apply, Divide, Node, Piecewise, Program, Reference, Solutions, Straight
+from symflex.codegen.c.scope import AXIS_LANE, LANE, STEP, Body
+from symflex.codegen.program import Apply, Assigned, CodeNode, Divide, Piecewise, Program, Solutions, Straight
 from symflex.codegen.program.real_axis import needed
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ def lanes(program: Piecewise, members: Mapping[str, str]) -> list[str]:
     members : mapping of str to str
         The structure's members by the parameters' names.
     """
-    outer = Scope.of(members, LANE)
+    outer = Body.of(members, LANE)
     (condition,) = program.conditions
     fixed = needed(program.tests, [condition.scale])
     outer.assign(fixed.constants)
@@ -123,7 +123,7 @@ def rational_lanes(program: Program, members: Mapping[str, str]) -> list[str]:
     members : mapping of str to str
         The structure's members by the parameters' names.
     """
-    outer = Scope.of(members, AXIS_LANE)
+    outer = Body.of(members, AXIS_LANE)
     outer.assign(program.constants)
     block = outer.within(3)
     block.assign(program.near.assignments)
@@ -152,12 +152,12 @@ def rational_lanes(program: Program, members: Mapping[str, str]) -> list[str]:
     return _looped(outer, loop, members)
 
 
-def _looped(outer: Scope, loop: Scope, members: Mapping[str, str]) -> list[str]:
+def _looped(outer: Body, loop: Body, members: Mapping[str, str]) -> list[str]:
     head = [*outer.opening(members), *outer.lines, f"{STEP}for (size_t i = 0; i < n; i += LANES) {{"]
     return [*head, *loop.lines, f"{STEP}}}"]
 
 
-def _stages(code: Straight, scope: Scope, condition: str) -> None:
+def _stages(code: Straight, scope: Body, condition: str) -> None:
     """Print loops that compute a quotient; expressions that call the library are in loops of their own."""
     values = [*(a.value for a in code.assignments), Divide(*code.values)]
     stages = [0]
@@ -196,20 +196,20 @@ def _stages(code: Straight, scope: Scope, condition: str) -> None:
         scope.add("}")
 
 
-def _is_used_later(name: str, stage: int, values: Sequence[Node], stages: Sequence[int]) -> bool:
+def _is_used_later(name: str, stage: int, values: Sequence[CodeNode], stages: Sequence[int]) -> bool:
     return any(
-        other > stage and any(isinstance(n, Reference) and n.name == name for n in _all(value))
+        other > stage and any(isinstance(n, Assigned) and n.name == name for n in _all(value))
         for value, other in zip(values, stages, strict=True)
     )
 
 
-def _calls(root: Node) -> bool:
+def _calls(root: CodeNode) -> bool:
     """Tell whether an expression has a function that there is only in the library."""
     others = ("abs", *LANE_FUNCTIONS)
     return any(isinstance(node, Apply) and node.function not in others for node in _all(root))
 
 
-def _all(root: Node) -> list[Node]:
+def _all(root: CodeNode) -> list[CodeNode]:
     found, pending = [], [root]
     while pending:
         node = pending.pop()

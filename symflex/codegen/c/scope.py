@@ -8,10 +8,18 @@ from itertools import count
 from textwrap import TextWrapper
 from typing import TYPE_CHECKING
 
-from symflex.codegen.c.expression import Kind, Printer, Term, complex_term
+from symflex.codegen.c.expression import CPrinter, Kind, Term, complex_term
 from symflex.codegen.c.names import TAKEN
 from symflex.codegen.c.plan import modal_plan
-from symflex.codegen.program import Assignment, ModalValue, ModeValues, Node, Roots, Solutions, identifiers
+from symflex.codegen.program import (
+    Assignment,
+    CodeNode,
+    ModalValue,
+    ModeValues,
+    Roots,
+    Solutions,
+    identifiers,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -53,7 +61,7 @@ def statement(opening: str, value: str, depth: int) -> list[str]:
 
 
 @dataclass
-class Scope:
+class Body:
     """The variables of one C function, and the statements that make them.
 
     Parameters
@@ -85,13 +93,13 @@ class Scope:
     _shared: dict[tuple[str, Kind], Term] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, members: Mapping[str, str], s: Term) -> Scope:
+    def of(cls, members: Mapping[str, str], s: Term) -> Body:
         """Return the scope of a function of parameters that are members of a structure."""
         own = cls(identifiers(members, TAKEN), s)
         own._taken |= {*TAKEN, *own.parameters.values()}
         return own
 
-    def within(self, depth: int | None = None) -> Scope:
+    def within(self, depth: int | None = None) -> Body:
         """Return the scope of a block: it sees these variables, and what it makes stays known to itself."""
         return replace(self, depth=depth or self.depth + 1, lines=[], known=dict(self.known))
 
@@ -108,12 +116,12 @@ class Scope:
         return found
 
     @property
-    def printer(self) -> Printer:
+    def printer(self) -> CPrinter:
         """Prints expressions of these variables."""
         in_lanes = self.s in (LANE, AXIS_LANE)
-        return Printer(self._parameter, self.known, self.s, self._array, self._hold, in_lanes)
+        return CPrinter(self._parameter, self.known, self.s, self._array, self._hold, in_lanes)
 
-    def term(self, node: Node) -> Term:
+    def term(self, node: CodeNode) -> Term:
         """Return an expression of these variables."""
         return self.printer.print(node)
 
@@ -162,7 +170,7 @@ class Scope:
         self.used.add(name)
         return self.parameters[name]
 
-    def _array(self, node: Node, wanted: str = "solutions") -> Term:
+    def _array(self, node: CodeNode, wanted: str = "solutions") -> Term:
         match node:
             case Solutions(coefficients, count):
                 given, order, varies = self._given(coefficients)
@@ -190,7 +198,7 @@ class Scope:
         message = f"no text for {type(node).__name__}"
         raise TypeError(message)
 
-    def _given(self, nodes: Sequence[Node]) -> tuple[str, int, bool]:
+    def _given(self, nodes: Sequence[CodeNode]) -> tuple[str, int, bool]:
         """Declare an array of coefficients; return its name, its length and whether it depends on s."""
         terms = [complex_term(self.term(c)) for c in nodes]
         given = self.name("coefficients")

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from symflex.codegen.julia.expression import JuliaPrinter, head, statement
-from symflex.codegen.program import Assignment, Piece, Piecewise, Program, identifiers
+from symflex.codegen.program import Assignment, CodePiece, Piecewise, Program, identifiers
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -107,7 +107,7 @@ class PrivateFunctions:
             "value", variable, [*lines, *statement("return", f"_piece_{last}_of_{self.name}({given})")]
         )
 
-    def _piece(self, program: Piecewise, number: int, piece: Piece) -> list[str]:
+    def _piece(self, program: Piecewise, number: int, piece: CodePiece) -> list[str]:
         assignments = (*piece.code.constants, *piece.code.assignments)
         if piece.circle:
             printer, (variable,) = self._scope(assignments, self.variable)

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, ClassVar
 
 from symflex.codegen.infix import InfixPrinter, in_lines
-from symflex.codegen.program import ComplexNumber, Multiply, Node
+from symflex.codegen.program import CodeNode, ComplexNumber, Multiply
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -24,7 +24,7 @@ class MatlabPrinter(InfixPrinter):
     times: ClassVar[str] = ".*"
     over: ClassVar[str] = "./"
 
-    def _print(self, node: Node) -> tuple[str, int]:
+    def _print(self, node: CodeNode) -> tuple[str, int]:
         """Return the text and how tightly it binds; a square root needs no complex operand to be complex."""
         if isinstance(node, Multiply) and node.factors[0] == _ONE:
             rest = node.factors[1:]

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from symflex.codegen.matlab.expression import MatlabPrinter, continued, statement
-from symflex.codegen.program import Assignment, Piece, Piecewise, Program, identifiers
+from symflex.codegen.program import Assignment, CodePiece, Piecewise, Program, identifiers
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -116,7 +116,7 @@ class LocalFunctions:
         lines = [*_assigned(assignments, printer), *statement(number, printer.piece_number(program) or "0")]
         return self._function(number, "number", variable, lines)
 
-    def _piece(self, number: int, piece: Piece) -> list[str]:
+    def _piece(self, number: int, piece: CodePiece) -> list[str]:
         assignments = (*piece.code.constants, *piece.code.assignments)
         if piece.circle:
             words = (self.variable, "num", "den", "growth", "radius")

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from symflex.algebra import LAPLACE, Factored
 from symflex.budget import spend
 from symflex.codegen.program.forge import Forge
-from symflex.codegen.program.polynomials import Images, degree_of, evaluate_polynomial
+from symflex.codegen.program.polynomials import RingValues, degree_of, evaluate_polynomial
 from symflex.codegen.program.recurrence import express, plan_recurrences
 from symflex.codegen.program.schedule import schedule
 from symflex.errors import BudgetError, Diagnostic
@@ -126,12 +126,12 @@ class Generators:
         images = self.images(ring, (polynomial,))
         return evaluate_polynomial(self.forge, polynomial, images), degree_of(polynomial, images.degrees)
 
-    def images(self, ring: Ring, polynomials: Iterable[fmpz_mpoly]) -> Images:
+    def images(self, ring: Ring, polynomials: Iterable[fmpz_mpoly]) -> RingValues:
         """Return what stands for a ring's generators, for those in use."""
         spend()
         used = ring.used_in(polynomials)
         pairs = [self._generator(n) if n in used or n == LAPLACE else (0, 0) for n in ring.names]
-        return Images(tuple(v for v, _ in pairs), tuple(d for _, d in pairs), ring.index[PI], self.is_far)
+        return RingValues(tuple(v for v, _ in pairs), tuple(d for _, d in pairs), ring.index[PI], self.is_far)
 
     def product(self, value: Factored) -> tuple[int, int]:
         """Return a product of powers of polynomials, its unit left out, and its degree in s."""

@@ -20,7 +20,7 @@ from symflex.algebra import LAPLACE, Factored, degree_in
 from symflex.algebra.normal_form import NormalForm
 from symflex.budget import spend
 from symflex.codegen.program.build import TERM_LIMIT
-from symflex.codegen.program.exponents import ExponentialSum, derivative_at_zero, expand, families_of
+from symflex.codegen.program.exponents import KernelSum, derivative_at_zero, expand, families_of
 from symflex.codegen.program.forge import Forge
 from symflex.codegen.program.local_basis import (
     SERIES_ERROR,
@@ -31,7 +31,7 @@ from symflex.codegen.program.local_basis import (
     wave_basis,
 )
 from symflex.codegen.program.modal import CIRCLE, MODAL_REACHES, build_modal, declared_length
-from symflex.codegen.program.nodes import Condition, Piece, Piecewise
+from symflex.codegen.program.nodes import CodePiece, Condition, Piecewise
 from symflex.codegen.program.real_axis import RealAxis
 from symflex.codegen.program.schedule import straight
 from symflex.codegen.program.site import Site
@@ -104,7 +104,7 @@ def build_piecewise(tf: TransferFunction, reach: float | None = None) -> Piecewi
         message = f"a program for {tf.name} would have more than {TERM_LIMIT} terms"
         raise BudgetError(Diagnostic("SF503", message, None, "keep repeated sums in [definitions]"))
     chosen = reaches_of(tf)[0] if reach is None else reach
-    return build_modal(tf, chosen) if tf.is_nameless else _Workshop(tf, chosen).program()
+    return build_modal(tf, chosen) if tf.is_nameless else _PieceMaker(tf, chosen).program()
 
 
 def build_real(tf: TransferFunction, reach: float = REACHES[0]) -> Piecewise | None:
@@ -123,7 +123,7 @@ def build_real(tf: TransferFunction, reach: float = REACHES[0]) -> Piecewise | N
         return None
     positive = tuple(p.name for p in tf.parameters if p.assume == "positive")
     axis = RealAxis(tf.ratio.ring, tf.kernels, positive)
-    return _Workshop(tf, reach).real_program(axis) if axis.is_real else None
+    return _PieceMaker(tf, reach).real_program(axis) if axis.is_real else None
 
 
 _Test = tuple[int, float, int]
@@ -171,7 +171,7 @@ class _Half:
     unit: Fraction
 
 
-class _Workshop:
+class _PieceMaker:
     def __init__(self, tf: TransferFunction, reach: float) -> None:
         self.tf = tf
         self.reach = reach
@@ -249,7 +249,7 @@ class _Workshop:
             return one, value
         return reduced, value / sums
 
-    def _in_segments(self, sums: list[ExponentialSum]) -> list[ExponentialSum]:
+    def _in_segments(self, sums: list[KernelSum]) -> list[KernelSum]:
         """Return the sums in base lengths in each of which the denominator's largest term is largest.
 
         Then nothing else can overflow. Differences of successive lengths, by their declared values, mostly
@@ -292,7 +292,7 @@ class _Workshop:
         self.families = tuple(families)
         return [s.in_lengths(changes) for s in sums]
 
-    def _half(self, found: ExponentialSum, waves: Factored) -> _Half:
+    def _half(self, found: KernelSum, waves: Factored) -> _Half:
         doubled = {key: p * 2 ** self._still(key) for key, p in found.terms.items()}
         common = gcd(*(int(c) for p in doubled.values() for c in p.coeffs()))
         far = {key: p / self.ring.constant(common) for key, p in doubled.items()}
@@ -375,7 +375,7 @@ class _Workshop:
         laws = [d for d in self.table.dispersions if any(self.groups[i].dispersion is d for i in pairs)]
         tests += [self._lone_test(site, d) for d in laws]
         fifth = len(tests)
-        code: list[Piece] = []
+        code: list[CodePiece] = []
         known: dict[_Choice, int] = {}
         numbers: list[int] = []
         for number in range(2 ** len(tests)):
@@ -417,7 +417,12 @@ class _Workshop:
         return site.quotient(dispersion), (LONE * self.reach) ** 2, scale
 
     def _assembled(
-        self, forge: Forge, tests: Sequence[_Test], numbers: list[int], code: list[Piece], turn: int | None
+        self,
+        forge: Forge,
+        tests: Sequence[_Test],
+        numbers: list[int],
+        code: list[CodePiece],
+        turn: int | None,
     ) -> Piecewise:
         head = straight(forge, [*(x for x, _, _ in tests), *(c for _, _, c in tests)] or [forge.constant(1)])
         nodes = zip(head.values, tests, head.values[len(tests) :], strict=False)
@@ -434,7 +439,7 @@ class _Workshop:
         lone: tuple[int, ...] = (),
         *,
         is_complex: bool = False,
-    ) -> Piece:
+    ) -> CodePiece:
         forge = Forge()
         site = Site(
             forge,
@@ -461,11 +466,11 @@ class _Workshop:
         num = forge.multiply([site.value(gain.numerator()), values[0]])
         den = forge.multiply([site.value(gain.denominator()), values[1]])
         if not meets:
-            return Piece(straight(forge, [num, den]), 0, is_complex)
+            return CodePiece(straight(forge, [num, den]), 0, is_complex)
         growth = forge.add([forge.multiply([forge.constant(d), site.angle(*at)]) for at, d in scales.items()])
         size = forge.add([forge.constant(2), *(site.angle(*at) for at in scales)])
         radius = forge.divide(forge.apply("abs", forge.s), size)
-        return Piece(straight(forge, [num, den, growth, radius]), CIRCLE)
+        return CodePiece(straight(forge, [num, den, growth, radius]), CIRCLE)
 
     def _exponents(self) -> dict[tuple[int, int], list[tuple[int, int]]]:
         keys = [key for h in self.halves for key in h.terms]
@@ -639,7 +644,7 @@ class _Workshop:
         first = len(tests)
         signed = [d for d in self.table.dispersions if axis.sign(d) is None]
         tests += [(site.coefficient(d), 0.0, forge.constant(1)) for d in signed]
-        code: list[Piece] = []
+        code: list[CodePiece] = []
         known: dict[tuple[tuple[bool, ...], tuple[bool, ...]], int] = {}
         numbers: list[int] = []
         first_turn: int | None = None
@@ -663,7 +668,9 @@ class _Workshop:
             numbers.append(known[key])
         return self._assembled(forge, tests, numbers, code, first_turn)
 
-    def _real_piece(self, axis: RealAxis, wanted: int | None, *, is_near: bool) -> tuple[Piece, int] | None:
+    def _real_piece(
+        self, axis: RealAxis, wanted: int | None, *, is_near: bool
+    ) -> tuple[CodePiece, int] | None:
         """Return a piece and the power of j it leaves out, which is the wanted one if there is one."""
         forge = Forge()
         site = Site(forge, self.tf, self.families, axis=axis)
@@ -697,7 +704,7 @@ class _Workshop:
             real, turn = -real, wanted
         num = forge.multiply([site.value(real.numerator()), values[0]])
         den = forge.multiply([site.value(real.denominator()), values[1]])
-        return Piece(straight(forge, [num, den])), turn
+        return CodePiece(straight(forge, [num, den])), turn
 
     def _real_near(self, site: Site, axis: RealAxis, half: _Half) -> tuple[int, int, Factored] | None:
         """Return a half where all arguments are small, its power of j, and the factor taken out."""
@@ -721,7 +728,7 @@ class _Workshop:
 
 
 def _longer_and_shorter(
-    sums: Sequence[ExponentialSum],
+    sums: Sequence[KernelSum],
     families: Sequence[int],
     matrix: Sequence[Sequence[int]],
     values: Sequence[float],
@@ -730,7 +737,7 @@ def _longer_and_shorter(
 
     Parameters
     ----------
-    sums : sequence of ExponentialSum
+    sums : sequence of KernelSum
         Numerator and denominator.
     families : sequence of int
         Those that share the lengths.
@@ -764,7 +771,7 @@ def _in_lengths(
     return [sum(map(mul, a, column)) for column in columns], [sum(map(mul, b, column)) for column in columns]
 
 
-def _has_corner(sums: Sequence[ExponentialSum], i: int) -> bool:
+def _has_corner(sums: Sequence[KernelSum], i: int) -> bool:
     """Tell whether one term of the denominator has the largest exponents of a family at every length."""
     pairs = [key[i][0] for s in sums for key in s.terms]
     most = tuple(max(abs(p[j][0]) + abs(p[j][1]) for p in pairs) for j in range(len(pairs[0])))

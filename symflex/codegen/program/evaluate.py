@@ -14,11 +14,14 @@ from symflex.algebra import mode_values
 from symflex.codegen.program.nodes import (
     Add,
     Apply,
+    Assigned,
     Assignment,
     Branch,
+    CodeNode,
+    CodePiece,
     ComplexNumber,
-    Constant,
     Divide,
+    IntegerPower,
     InverseLaplace,
     Item,
     Laplace,
@@ -26,13 +29,10 @@ from symflex.codegen.program.nodes import (
     ModeValues,
     Multiply,
     Negate,
-    Node,
-    Parameter,
-    Piece,
+    ParameterValue,
     Piecewise,
-    Power,
     Program,
-    Reference,
+    RealNumber,
     Roots,
     Solutions,
 )
@@ -115,7 +115,7 @@ def evaluate(
     given = {name: _number(values[name]) for name in program.parameters}
     if isinstance(program, Piecewise):
         return _piecewise(program, point, given)
-    run = _Run(point, given)
+    run = _ProgramRun(point, given)
     with np.errstate(all="ignore"):
         run.assign(program.constants)
         value = run.branch(program.near)
@@ -162,7 +162,7 @@ def numbers_of_pieces(program: Piecewise, point: Any, given: Mapping[str, Any]) 
     point, given
         Its argument, and the parameters by name: numbers or arrays that broadcast.
     """
-    run = _Run(point, given)
+    run = _ProgramRun(point, given)
     run.assign(program.tests.constants)
     run.assign(program.tests.assignments)
     number = np.zeros(np.shape(point), dtype=int)
@@ -174,19 +174,19 @@ def numbers_of_pieces(program: Piecewise, point: Any, given: Mapping[str, Any]) 
     return number
 
 
-def value_of_piece(piece: Piece, point: Any, given: Mapping[str, Any]) -> Any:  # noqa: ANN401
+def value_of_piece(piece: CodePiece, point: Any, given: Mapping[str, Any]) -> Any:  # noqa: ANN401
     """Return the quotient that a piece computes, wherever its argument lies.
 
     Parameters
     ----------
-    piece : Piece
+    piece : CodePiece
         Of a program.
     point, given
         As for :func:`numbers_of_pieces`.
     """
 
     def parts(s: Any) -> tuple[Any, ...]:  # noqa: ANN401
-        run = _Run(s, given)
+        run = _ProgramRun(s, given)
         run.assign(piece.code.constants)
         run.assign(piece.code.assignments)
         return tuple(run.value(node) for node in piece.code.values)
@@ -197,32 +197,32 @@ def value_of_piece(piece: Piece, point: Any, given: Mapping[str, Any]) -> Any:  
     return num / den
 
 
-def number_of(node: Node, known: Mapping[str, Any]) -> Any:  # noqa: ANN401
+def number_of(node: CodeNode, known: Mapping[str, Any]) -> Any:  # noqa: ANN401
     """Return the value of an expression that depends on no argument, ``None`` for one that does.
 
     Parameters
     ----------
-    node : Node
+    node : CodeNode
         The expression.
     known : mapping of str to number
         Values of assignments that depend on no argument either.
 
     Examples
     --------
-    >>> number_of(Add((Constant(Fraction(1)), Reference("c_1"))), {"c_1": 2.0})
+    >>> number_of(Add((RealNumber(Fraction(1)), Assigned("c_1"))), {"c_1": 2.0})
     3.0
-    >>> number_of(Parameter("m"), {}) is None
+    >>> number_of(ParameterValue("m"), {}) is None
     True
     """
     pending = [node]
     while pending:
         part = pending.pop()
-        if isinstance(part, (Parameter, Laplace, InverseLaplace)):
+        if isinstance(part, (ParameterValue, Laplace, InverseLaplace)):
             return None
-        if isinstance(part, Reference) and part.name not in known:
+        if isinstance(part, Assigned) and part.name not in known:
             return None
         pending += part.children
-    run = _Run(None, {})
+    run = _ProgramRun(None, {})
     run.assigned.update(known)
     return run.value(node)
 
@@ -232,7 +232,7 @@ def _number(value: ArrayLike) -> Any:  # noqa: ANN401
     return array.astype(complex if array.dtype.kind == "c" else float)[()]
 
 
-class _Run:
+class _ProgramRun:
     """The values computed so far."""
 
     def __init__(self, s: Any, parameters: Mapping[str, Any]) -> None:  # noqa: ANN401
@@ -248,16 +248,16 @@ class _Run:
         self.assign(branch.assignments)
         return self.value(branch.value)
 
-    def value(self, node: Node) -> Any:  # noqa: ANN401, PLR0912
+    def value(self, node: CodeNode) -> Any:  # noqa: ANN401, PLR0912
         """Return the value of an expression: a number, an array, or a list of these."""
         match node:
-            case Constant(value, pi_power):
+            case RealNumber(value, pi_power):
                 return nearest_double(value, pi_power)
             case ComplexNumber(real, imaginary):
                 return complex(nearest_double(real), nearest_double(imaginary))
-            case Parameter(name):
+            case ParameterValue(name):
                 return self._parameters[name]
-            case Reference(name):
+            case Assigned(name):
                 return self.assigned[name]
             case Laplace():
                 return self._s
@@ -278,7 +278,7 @@ class _Run:
                 return product
             case Divide(numerator, denominator):
                 return self.value(numerator) / self.value(denominator)
-            case Power(base, exponent):
+            case IntegerPower(base, exponent):
                 return self.value(base) ** exponent
             case Negate(operand):
                 return -self.value(operand)

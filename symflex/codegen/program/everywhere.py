@@ -16,12 +16,12 @@ import numpy as np
 
 from symflex.codegen.program.evaluate import numbers_of_pieces, value_of_piece
 from symflex.codegen.program.nodes import (
+    CodePiece,
     Condition,
-    Constant,
     Laplace,
-    Piece,
     Piecewise,
     Program,
+    RealNumber,
     Straight,
 )
 from symflex.codegen.program.real_axis import needed
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-ONE = Constant(Fraction(1))
+ONE = RealNumber(Fraction(1))
 
 Cases = tuple[tuple[tuple[int, bool], ...], ...]
 """Alternatives; each is a number of tests with the results they must have."""
@@ -68,9 +68,9 @@ def in_pieces(program: Program | Piecewise) -> Piecewise:
     return Piecewise(program.parameters, Straight((), (), ()), tests, (0, 1), (_whole(far), _whole(near)))
 
 
-def _whole(code: Straight) -> Piece:
+def _whole(code: Straight) -> CodePiece:
     kept = needed(code, code.values)
-    return Piece(Straight(kept.constants, kept.assignments, (*code.values, ONE)))
+    return CodePiece(Straight(kept.constants, kept.assignments, (*code.values, ONE)))
 
 
 def cases_of(program: Piecewise) -> tuple[Cases, ...]:
@@ -78,7 +78,7 @@ def cases_of(program: Piecewise) -> tuple[Cases, ...]:
 
     Examples
     --------
-    >>> piece = Piece(Straight((), (), (ONE, ONE)))
+    >>> piece = CodePiece(Straight((), (), (ONE, ONE)))
     >>> test = Condition(Laplace(), 1.0, ONE)
     >>> cases_of(Piecewise((), Straight((), (), ()), (test, test), (0, 0, 0, 1), (piece, piece)))
     ((((0, False),), ((0, True), (1, False))), (((0, True), (1, True)),))
@@ -123,7 +123,7 @@ def places_of(program: Piecewise, values: Mapping[str, float]) -> tuple[complex,
 
 
 def _place(
-    piece: Piece,
+    piece: CodePiece,
     points: NDArray[np.complex128],
     serves: NDArray[np.bool_],
     last: float,

@@ -1,7 +1,7 @@
 """Polynomials in kernels as sums of exponentials, in exact arithmetic.
 
 Input: a polynomial over the ring of kernels.
-Output: an :class:`ExponentialSum`: per product of functions ``exp(sum(a_i q_i)) cos(sum(b_i q_i))``, one for
+Output: an :class:`KernelSum`: per product of functions ``exp(sum(a_i q_i)) cos(sum(b_i q_i))``, one for
 every wavenumber, a polynomial in s, the parameters and the wavenumbers.
 """
 
@@ -85,7 +85,7 @@ def families_of(ring: Ring, table: KernelTable) -> tuple[Family, ...]:
 
 
 @dataclass(frozen=True, eq=False)
-class ExponentialSum:
+class KernelSum:
     """``unit * sum(coefficient * product of terms)``.
 
     Parameters
@@ -99,7 +99,7 @@ class ExponentialSum:
     unit: Fraction
     terms: Mapping[Key, fmpz_mpoly]
 
-    def without_content(self) -> tuple[ExponentialSum, fmpz_mpoly]:
+    def without_content(self) -> tuple[KernelSum, fmpz_mpoly]:
         """Return the sum with the common factor of all coefficients taken out, and that factor."""
         polynomials = list(self.terms.values())
         common = polynomials[0]
@@ -109,7 +109,7 @@ class ExponentialSum:
             common = -common
         return replace(self, terms={k: p / common for k, p in self.terms.items()}), common
 
-    def in_lengths(self, changes: Sequence[Sequence[Sequence[int]]]) -> ExponentialSum:
+    def in_lengths(self, changes: Sequence[Sequence[Sequence[int]]]) -> KernelSum:
         """Return the sum in other base lengths.
 
         Parameters
@@ -146,7 +146,7 @@ def canonical(pairs: tuple[tuple[int, int], ...], parity: int) -> tuple[Term, in
     return (tuple((a, -b) for a, b in pairs), parity), -1 if parity else 1
 
 
-def expand(ring: Ring, polynomial: fmpz_mpoly, families: Sequence[Family]) -> ExponentialSum:
+def expand(ring: Ring, polynomial: fmpz_mpoly, families: Sequence[Family]) -> KernelSum:
     """Return a polynomial in kernels as a sum of exponentials."""
     positions = {i for family in families for own in family.kernels for _, i in own}
     collected: dict[Key, dict[tuple[int, ...], Fraction]] = {}
@@ -172,7 +172,7 @@ def expand(ring: Ring, polynomial: fmpz_mpoly, families: Sequence[Family]) -> Ex
         whole = {m: int(x * scale) for m, x in terms.items() if x}
         if whole:
             found[key] = ring.context.from_dict(whole)
-    return ExponentialSum(Fraction(1, scale), found)
+    return KernelSum(Fraction(1, scale), found)
 
 
 @cache

@@ -3,8 +3,10 @@
 Expressions are numbers of nodes in a table. The operands of a node there are numbers too, of nodes that stand
 before it; so nothing here recurs, however deep a polynomial nests.
 
-    forge.multiply([forge.s, forge.parameter("k")])      0: Laplace()  1: Parameter('k')  2: Multiply((1, 0))
-    forge.multiply([forge.parameter("k"), forge.s])      the same 2: parameters come first
+    forge.multiply([forge.s, forge.parameter("k")])    0: Laplace()
+                                                       1: ParameterValue('k')
+                                                       2: Multiply((1, 0)), parameters first
+    forge.multiply([forge.parameter("k"), forge.s])    2 again
 """
 
 from __future__ import annotations
@@ -19,9 +21,10 @@ from typing import TYPE_CHECKING, Any, cast
 from symflex.codegen.program.nodes import (
     Add,
     Apply,
+    CodeNode,
     ComplexNumber,
-    Constant,
     Divide,
+    IntegerPower,
     InverseLaplace,
     Item,
     Laplace,
@@ -29,9 +32,8 @@ from symflex.codegen.program.nodes import (
     ModeValues,
     Multiply,
     Negate,
-    Node,
-    Parameter,
-    Power,
+    ParameterValue,
+    RealNumber,
     Roots,
     Solutions,
 )
@@ -54,16 +56,16 @@ class Depends(IntFlag):
 class Forge:
     """Makes expressions; equal ones get the same number."""
 
-    nodes: list[Node] = field(default_factory=list)
+    nodes: list[CodeNode] = field(default_factory=list)
     depends: list[Depends] = field(default_factory=list)
     labels: dict[int, str] = field(default_factory=dict)
-    _numbers: dict[Node, int] = field(default_factory=dict)
+    _numbers: dict[CodeNode, int] = field(default_factory=dict)
 
     def operands(self, x: int) -> tuple[int, ...]:
         """Return what an expression is made of."""
         return cast("tuple[int, ...]", self.nodes[x].children)
 
-    def _make(self, node: Node) -> int:
+    def _make(self, node: CodeNode) -> int:
         known = self._numbers.get(node)
         if known is not None:
             return known
@@ -79,7 +81,7 @@ class Forge:
         exact = Fraction(value)
         if exact == 0:
             pi_power = 0
-        number = self._make(Constant(abs(exact), pi_power))
+        number = self._make(RealNumber(abs(exact), pi_power))
         return self.negate(number) if exact < 0 else number
 
     def complex_number(self, real: Fraction | int, imaginary: Fraction | int) -> int:
@@ -88,7 +90,7 @@ class Forge:
 
     def parameter(self, name: str) -> int:
         """Return a parameter."""
-        return self._make(Parameter(name))
+        return self._make(ParameterValue(name))
 
     @property
     def s(self) -> int:
@@ -103,7 +105,7 @@ class Forge:
     def is_number(self, x: int, value: int) -> bool:
         """Tell whether ``x`` is the given non-negative integer."""
         node = self.nodes[x]
-        return isinstance(node, Constant) and node.value == value and not node.pi_power
+        return isinstance(node, RealNumber) and node.value == value and not node.pi_power
 
     def signed(self, x: int) -> tuple[bool, int]:
         """Return whether ``x`` is minus something, and that."""
@@ -166,7 +168,7 @@ class Forge:
             power = self.power(size, exponent)
             return self.negate(power) if exponent % 2 else power
         if not self.depends[base]:
-            return self._make(Power(_row(base), exponent))
+            return self._make(IntegerPower(_row(base), exponent))
         if exponent % 2:
             return self._product([self.power(base, exponent - 1), base])
         half = self.power(base, exponent // 2)

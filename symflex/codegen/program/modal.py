@@ -21,7 +21,7 @@ from symflex.algebra.normal_form import split
 from symflex.budget import spend
 from symflex.codegen.program.forge import Forge
 from symflex.codegen.program.general_series import GeneralSeries
-from symflex.codegen.program.nodes import Condition, Constant, Piece, Piecewise
+from symflex.codegen.program.nodes import CodePiece, Condition, Piecewise, RealNumber
 from symflex.codegen.program.schedule import straight
 from symflex.codegen.program.site import Site
 from symflex.errors import BudgetError
@@ -146,7 +146,7 @@ class _ModalWorkshop:
         pieces += [2] * len(pieces)
         head = straight(forge, [x for x, _ in tests])
         conditions = tuple(
-            Condition(node, limit, Constant(Fraction(1)))
+            Condition(node, limit, RealNumber(Fraction(1)))
             for node, (_, limit) in zip(head.values, tests, strict=False)
         )
         return self._assembled(head, conditions, tuple(pieces), tuple(code))
@@ -156,7 +156,7 @@ class _ModalWorkshop:
         head: Straight,
         conditions: tuple[Condition, ...],
         pieces: tuple[int, ...],
-        code: tuple[Piece, ...],
+        code: tuple[CodePiece, ...],
     ) -> Piecewise:
         parameters = tuple(p.name for p in self.tf.parameters)
         return Piecewise(parameters, head, conditions, pieces, code, solves=True)
@@ -179,7 +179,7 @@ class _ModalWorkshop:
         ratio = site.value(mode.length / self.longest[id(mode.dispersion)])
         return forge.mode_values(self._roots(site, mode.dispersion), ratio)
 
-    def _modal(self, *, is_mean: bool) -> Piece:
+    def _modal(self, *, is_mean: bool) -> CodePiece:
         forge = Forge()
         site = Site(forge, self.tf, ())
         modes = [self._mode(site, mode) for mode in self.sums.modes]
@@ -196,7 +196,7 @@ class _ModalWorkshop:
         num = forge.multiply([site.value(self.plain.numerator()), values[0], over])
         den = forge.multiply([site.value(self.plain.denominator()), values[1]])
         if not is_mean:
-            return Piece(straight(forge, [num, den]))
+            return CodePiece(straight(forge, [num, den]))
         sizes = [
             forge.apply("abs", forge.item(self._roots(site, law), i))
             for law in self._laws
@@ -204,7 +204,7 @@ class _ModalWorkshop:
         ]
         radius = forge.divide(forge.apply("abs", forge.s), forge.add([forge.constant(2), *sizes]))
         radius = forge.add([radius, *self._step(site)])
-        return Piece(straight(forge, [num, den, growths[1], radius]), CIRCLE)
+        return CodePiece(straight(forge, [num, den, growths[1], radius]), CIRCLE)
 
     def _step(self, site: Site) -> list[int]:
         """Return about how far from s = 0 roots that meet there have moved apart, if that can be told.
@@ -268,7 +268,7 @@ class _ModalWorkshop:
 
     # ------------------------------------------------------------------------------------ small arguments
 
-    def _small(self) -> Piece:
+    def _small(self) -> CodePiece:
         """Return numerator and denominator as power series in all lengths together, where that is short."""
         series = GeneralSeries(self.ring, self.table)
         try:
@@ -279,16 +279,16 @@ class _ModalWorkshop:
         count = sum(len(f) for half in halves for value in half for f, _ in value.factors)
         return self._series_piece(halves) if count <= SERIES_TERMS and all(halves) else self._direct()
 
-    def _direct(self) -> Piece:
+    def _direct(self) -> CodePiece:
         """Return numerator and denominator from the fundamental functions themselves."""
         forge = Forge()
         site = Site(forge, self.tf, ())
         num, den = (site.value(half) for half in self.halves)
         num = forge.multiply([site.value(self.plain.numerator()), num])
         den = forge.multiply([site.value(self.plain.denominator()), den])
-        return Piece(straight(forge, [num, den]))
+        return CodePiece(straight(forge, [num, den]))
 
-    def _series_piece(self, halves: Sequence[Sequence[Factored]]) -> Piece:
+    def _series_piece(self, halves: Sequence[Sequence[Factored]]) -> CodePiece:
         forge = Forge()
         site = Site(forge, self.tf, ())
         gain, values = self.plain, []
@@ -299,7 +299,7 @@ class _ModalWorkshop:
             values.append(forge.add([site.value(value / taken) for value in reversed(half)]))
         num = forge.multiply([site.value(gain.numerator()), values[0]])
         den = forge.multiply([site.value(gain.denominator()), values[1]])
-        return Piece(straight(forge, [num, den]))
+        return CodePiece(straight(forge, [num, den]))
 
     def _size(self, site: Site) -> int:
         """Return what is less than one where all exponents times lengths, together, are within reach.

@@ -23,7 +23,7 @@ Frames = tuple[
 
 
 @dataclass(frozen=True, slots=True)
-class Node:
+class CodeNode:
     """Base of all nodes.
 
     Operands are nodes. In the table of a :class:`~symflex.codegen.program.forge.Forge` they are numbers of
@@ -31,9 +31,9 @@ class Node:
 
     Examples
     --------
-    >>> Divide(Laplace(), Parameter("k")).children
-    (Laplace(), Parameter(name='k'))
-    >>> Divide(Laplace(), Parameter("k")).with_children([Laplace(), Laplace()])
+    >>> Divide(Laplace(), ParameterValue("k")).children
+    (Laplace(), ParameterValue(name='k'))
+    >>> Divide(Laplace(), ParameterValue("k")).with_children([Laplace(), Laplace()])
     Divide(numerator=Laplace(), denominator=Laplace())
     """
 
@@ -41,15 +41,15 @@ class Node:
     """The fields that hold operands, or tuples of them."""
 
     @property
-    def children(self) -> tuple[Node, ...]:
+    def children(self) -> tuple[CodeNode, ...]:
         """The operands, from left to right; empty for a leaf."""
-        found: list[Node] = []
+        found: list[CodeNode] = []
         for name in self.OPERANDS:
             value = getattr(self, name)
             found += value if isinstance(value, tuple) else (value,)
         return tuple(found)
 
-    def with_children(self, children: Iterable[Node]) -> Self:
+    def with_children(self, children: Iterable[CodeNode]) -> Self:
         """Return the same with other operands, as many as there are."""
         given = iter(children)
         changes = {}
@@ -61,7 +61,7 @@ class Node:
 
 
 @dataclass(frozen=True, slots=True)
-class Constant(Node):
+class RealNumber(CodeNode):
     """The non-negative number ``value * pi**pi_power``."""
 
     value: Fraction
@@ -69,7 +69,7 @@ class Constant(Node):
 
 
 @dataclass(frozen=True, slots=True)
-class ComplexNumber(Node):
+class ComplexNumber(CodeNode):
     """The number ``real + 1j*imaginary``."""
 
     real: Fraction
@@ -77,95 +77,95 @@ class ComplexNumber(Node):
 
 
 @dataclass(frozen=True, slots=True)
-class Parameter(Node):
+class ParameterValue(CodeNode):
     """A parameter, by its name in the model."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
-class Laplace(Node):
+class Laplace(CodeNode):
     """The Laplace variable s."""
 
 
 @dataclass(frozen=True, slots=True)
-class InverseLaplace(Node):
+class InverseLaplace(CodeNode):
     """The quotient 1/s."""
 
 
 @dataclass(frozen=True, slots=True)
-class Reference(Node):
+class Assigned(CodeNode):
     """The value of an earlier assignment."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
-class Add(Node):
+class Add(CodeNode):
     """A sum, evaluated from left to right."""
 
     OPERANDS: ClassVar = ("terms",)
 
-    terms: tuple[Node, ...]
+    terms: tuple[CodeNode, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Multiply(Node):
+class Multiply(CodeNode):
     """A product, evaluated from left to right."""
 
     OPERANDS: ClassVar = ("factors",)
 
-    factors: tuple[Node, ...]
+    factors: tuple[CodeNode, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Divide(Node):
+class Divide(CodeNode):
     """A quotient."""
 
     OPERANDS: ClassVar = ("numerator", "denominator")
 
-    numerator: Node
-    denominator: Node
+    numerator: CodeNode
+    denominator: CodeNode
 
 
 @dataclass(frozen=True, slots=True)
-class Power(Node):
+class IntegerPower(CodeNode):
     """An expression free of s raised to an integer of at least two."""
 
     OPERANDS: ClassVar = ("base",)
 
-    base: Node
+    base: CodeNode
     exponent: int
 
 
 @dataclass(frozen=True, slots=True)
-class Negate(Node):
+class Negate(CodeNode):
     """Minus its operand."""
 
     OPERANDS: ClassVar = ("operand",)
 
-    operand: Node
+    operand: CodeNode
 
 
 @dataclass(frozen=True, slots=True)
-class Apply(Node):
+class Apply(CodeNode):
     """An elementary function; ``function`` is a key of ``kernels.FUNCTIONS``, ``abs`` or ``complex_exp``."""
 
     OPERANDS: ClassVar = ("argument",)
 
     function: str
-    argument: Node
+    argument: CodeNode
 
 
 @dataclass(frozen=True, slots=True)
-class Solutions(Node):
+class Solutions(CodeNode):
     """The values at x = 1 of the solutions of ``y^(n) + c_(n-1) y^(n-1) + ... + c_0 y = 0``, as a list.
 
     Solution k starts from ``y^(i)(0) = 1`` for i = k and 0 for the other i below n.
 
     Parameters
     ----------
-    coefficients : tuple of Node
+    coefficients : tuple of CodeNode
         ``c_0, ..., c_(n-1)``.
     terms : int
         Length of their Taylor series; 0 asks for a method that serves coefficients of any size.
@@ -173,52 +173,52 @@ class Solutions(Node):
 
     OPERANDS: ClassVar = ("coefficients",)
 
-    coefficients: tuple[Node, ...]
+    coefficients: tuple[CodeNode, ...]
     terms: int
 
 
 @dataclass(frozen=True, slots=True)
-class Roots(Node):
+class Roots(CodeNode):
     """The roots of ``x^n + c_(n-1) x^(n-1) + ... + c_0``, and last the least distance of two, as a list.
 
     Parameters
     ----------
-    coefficients : tuple of Node
+    coefficients : tuple of CodeNode
         ``c_0, ..., c_(n-1)``.
     """
 
     OPERANDS: ClassVar = ("coefficients",)
 
-    coefficients: tuple[Node, ...]
+    coefficients: tuple[CodeNode, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class ModeValues(Node):
+class ModeValues(CodeNode):
     """What a sum needs of all roots at one length; see :func:`symflex.algebra.mode_values`.
 
     Parameters
     ----------
-    roots : Node
+    roots : CodeNode
         A list as :class:`Roots` gives.
-    length : Node
+    length : CodeNode
         What they are multiplied by.
     """
 
     OPERANDS: ClassVar = ("roots", "length")
 
-    roots: Node
-    length: Node
+    roots: CodeNode
+    length: CodeNode
 
 
 @dataclass(frozen=True, slots=True)
-class ModalValue(Node):
+class ModalValue(CodeNode):
     """A sum of exponentials, over the largest one, and the logarithm of that, as a list.
 
     Parameters
     ----------
-    modes : tuple of ModeValues or Reference
+    modes : tuple of ModeValues or Assigned
         One per mode.
-    coefficients : tuple of Node
+    coefficients : tuple of CodeNode
         As in :class:`symflex.algebra.ModalSum`.
     frames : tuple
         Slots, terms and keys of every frame.
@@ -226,18 +226,18 @@ class ModalValue(Node):
 
     OPERANDS: ClassVar = ("modes", "coefficients")
 
-    modes: tuple[Node, ...]
-    coefficients: tuple[Node, ...]
+    modes: tuple[CodeNode, ...]
+    coefficients: tuple[CodeNode, ...]
     frames: Frames
 
 
 @dataclass(frozen=True, slots=True)
-class Item(Node):
+class Item(CodeNode):
     """One value of a list."""
 
     OPERANDS: ClassVar = ("values",)
 
-    values: Node
+    values: CodeNode
     position: int
 
 
@@ -246,7 +246,7 @@ class Assignment:
     """A named intermediate value; the name is unique in its program, and not yet an identifier."""
 
     name: str
-    value: Node
+    value: CodeNode
 
 
 @dataclass(frozen=True, slots=True)
@@ -254,7 +254,7 @@ class Branch:
     """Assignments in order, and the value they lead to."""
 
     assignments: tuple[Assignment, ...]
-    value: Node
+    value: CodeNode
 
 
 @dataclass(frozen=True, slots=True)
@@ -305,18 +305,18 @@ class Condition:
 
     Parameters
     ----------
-    quantity : Node
+    quantity : CodeNode
         What is tested.
     limit : float
         The condition holds where ``abs(quantity) < limit/abs(scale)``; if it is zero, where the real part of
         ``scale*quantity`` is negative.
-    scale : Node
+    scale : CodeNode
         Free of s.
     """
 
-    quantity: Node
+    quantity: CodeNode
     limit: float
-    scale: Node
+    scale: CodeNode
 
 
 @dataclass(frozen=True, slots=True)
@@ -325,9 +325,9 @@ class Straight:
 
     constants: tuple[Assignment, ...]
     assignments: tuple[Assignment, ...]
-    values: tuple[Node, ...]
+    values: tuple[CodeNode, ...]
 
-    def nodes(self) -> Iterator[Node]:
+    def nodes(self) -> Iterator[CodeNode]:
         """Yield all expressions, parts included, in no particular order."""
         pending = [*self.values, *(a.value for a in (*self.constants, *self.assignments))]
         while pending:
@@ -337,7 +337,7 @@ class Straight:
 
 
 @dataclass(frozen=True, slots=True)
-class Piece:
+class CodePiece:
     """One way of computing a quotient.
 
     Parameters
@@ -371,7 +371,7 @@ class Piecewise:
         Condition i adds ``2**i`` to the number of the piece that serves.
     pieces : tuple of int
         For every such number, which of ``code`` it is.
-    code : tuple of Piece
+    code : tuple of CodePiece
         The pieces.
     turn : int or None
         None for a function of complex s. For a function of angular frequency in real arithmetic, which the
@@ -384,7 +384,7 @@ class Piecewise:
     tests: Straight
     conditions: tuple[Condition, ...]
     pieces: tuple[int, ...]
-    code: tuple[Piece, ...]
+    code: tuple[CodePiece, ...]
     turn: int | None = None
     solves: bool = False
 
@@ -394,7 +394,7 @@ class Piecewise:
         return self.turn is not None
 
 
-def _contains_laplace(root: Node) -> bool:
+def _contains_laplace(root: CodeNode) -> bool:
     pending = [root]
     while pending:
         node = pending.pop()
@@ -404,7 +404,7 @@ def _contains_laplace(root: Node) -> bool:
     return False
 
 
-def _operations(root: Node) -> int:
+def _operations(root: CodeNode) -> int:
     total, pending = 0, [root]
     while pending:
         node = pending.pop()

@@ -23,7 +23,7 @@ Terms = dict[Monomial, int]
 
 
 @dataclass(frozen=True)
-class Images:
+class RingValues:
     """What stands for the generators of a ring.
 
     Parameters
@@ -49,7 +49,7 @@ def degree_of(polynomial: fmpz_mpoly, degrees: Sequence[int]) -> int:
     return max(sum(int(e) * d for e, d in zip(m, degrees, strict=True)) for m in polynomial.monoms())
 
 
-def evaluate_polynomial(forge: Forge, polynomial: fmpz_mpoly, images: Images) -> int:
+def evaluate_polynomial(forge: Forge, polynomial: fmpz_mpoly, images: RingValues) -> int:
     """Return the expression of a polynomial; of ``polynomial / s**degree`` in the far branch.
 
     Powers of s follow Horner's rule, and coefficients depend on parameters only wherever they can.
@@ -82,7 +82,7 @@ def _collect(forge: Forge, terms: Mapping[Monomial, int], values: Sequence[int])
     return forge.multiply([result, forge.power(values[0], exponents[-1])])
 
 
-def _coefficient(forge: Forge, terms: Terms, images: Images) -> int:
+def _coefficient(forge: Forge, terms: Terms, images: RingValues) -> int:
     """Return a polynomial in parameters."""
     numbers: Terms = {}
     for monomial, integer in terms.items():

@@ -15,18 +15,18 @@ from symflex.algebra import Factored
 from symflex.codegen.program.nodes import (
     Add,
     Apply,
+    Assigned,
     Assignment,
-    Constant,
+    CodeNode,
+    CodePiece,
     Divide,
+    IntegerPower,
     Laplace,
     Multiply,
     Negate,
-    Node,
-    Parameter,
-    Piece,
+    ParameterValue,
     Piecewise,
-    Power,
-    Reference,
+    RealNumber,
     Straight,
 )
 
@@ -147,7 +147,7 @@ class RealAxis:
         Parameters
         ----------
         terms : mapping of Key to fmpz_mpoly
-            As in :class:`ExponentialSum`.
+            As in :class:`KernelSum`.
         waves : Factored
             A product of powers of wavenumbers in front.
         families : sequence of Family
@@ -291,7 +291,7 @@ def in_half_angles(program: Piecewise) -> Piecewise | None:
     return replace(program, code=code, conditions=conditions)
 
 
-def needed(code: Straight, values: Sequence[Node]) -> Straight:
+def needed(code: Straight, values: Sequence[CodeNode]) -> Straight:
     """Return the assignments that some values need, and these values."""
     names: set[str] = set()
     kept: dict[bool, list[Assignment]] = {True: [], False: []}
@@ -303,13 +303,13 @@ def needed(code: Straight, values: Sequence[Node]) -> Straight:
             pending.append(assignment.value)
         while pending:
             node = pending.pop()
-            if isinstance(node, Reference):
+            if isinstance(node, Assigned):
                 names.add(node.name)
             pending += node.children
     return Straight(tuple(reversed(kept[True])), tuple(reversed(kept[False])), tuple(values))
 
 
-def _each(code: Straight, change: Callable[[Node], Node]) -> Straight:
+def _each(code: Straight, change: Callable[[CodeNode], CodeNode]) -> Straight:
     return Straight(
         tuple(Assignment(a.name, _everywhere(a.value, change)) for a in code.constants),
         tuple(Assignment(a.name, _everywhere(a.value, change)) for a in code.assignments),
@@ -317,23 +317,23 @@ def _each(code: Straight, change: Callable[[Node], Node]) -> Straight:
     )
 
 
-def _everywhere(node: Node, change: Callable[[Node], Node]) -> Node:
+def _everywhere(node: CodeNode, change: Callable[[CodeNode], CodeNode]) -> CodeNode:
     """Return an expression changed from the leaves up."""
     return change(node.with_children(_everywhere(c, change) for c in node.children))
 
 
-def _positive(node: Node) -> Node:
+def _positive(node: CodeNode) -> CodeNode:
     match node:
         case Apply("abs", Laplace()):
             return Laplace()
-        case Multiply((Constant(value, 0), Reference() as x)) if value == 2:  # noqa: PLR2004
+        case Multiply((RealNumber(value, 0), Assigned() as x)) if value == 2:  # noqa: PLR2004
             return Add((x, x))
-        case Apply(function, Negate(Multiply((Constant() | Parameter() as first, *rest)))):
+        case Apply(function, Negate(Multiply((RealNumber() | ParameterValue() as first, *rest)))):
             return Apply(function, Multiply((Negate(first), *rest)))
     return node
 
 
-def _negated(num: Node, den: Node, constants: set[str]) -> tuple[Node, Node]:
+def _negated(num: CodeNode, den: CodeNode, constants: set[str]) -> tuple[CodeNode, CodeNode]:
     """Return numerator and denominator of minus a quotient; the sign goes to a number if there is one."""
     if (above := _signed(num, constants)) is not None:
         return above, den
@@ -342,12 +342,12 @@ def _negated(num: Node, den: Node, constants: set[str]) -> tuple[Node, Node]:
     return Negate(num), den
 
 
-def _signed(node: Node, constants: set[str]) -> Node | None:
+def _signed(node: CodeNode, constants: set[str]) -> CodeNode | None:
     """Return minus a product whose first factor is a number, ``None`` if it is no such product."""
     match node:
-        case Constant() | Parameter():
+        case RealNumber() | ParameterValue():
             return Negate(node)
-        case Reference(name) if name in constants:
+        case Assigned(name) if name in constants:
             return Negate(node)
         case Multiply((first, *rest)) if (changed := _signed(first, constants)) is not None:
             return Multiply((changed, *rest))
@@ -359,16 +359,16 @@ def _signed(node: Node, constants: set[str]) -> Node | None:
 NEXT_TO_ZERO = 1e-6
 """Of the square of an argument below which series are used, the part that is left to them."""
 
-_Monomial = tuple[Fraction, dict[Node, int]]
+_Monomial = tuple[Fraction, dict[CodeNode, int]]
 _Polynomial = dict[tuple[int, int], Fraction]
 
 
-def _half_angles(piece: Piece) -> tuple[Piece, bool] | None:
+def _half_angles(piece: CodePiece) -> tuple[CodePiece, bool] | None:
     """Return a piece in tangents of half angles, and whether nothing cancels where its argument is small.
 
     ``None`` when it is not of that kind or not shorter.
     """
-    reader = _Reader({a.name: a.value for a in (*piece.code.constants, *piece.code.assignments)})
+    reader = _HalfAngleReader({a.name: a.value for a in (*piece.code.constants, *piece.code.assignments)})
     found = reader.found()
     if found is None:
         return None
@@ -389,16 +389,16 @@ def _half_angles(piece: Piece) -> tuple[Piece, bool] | None:
     gain = _product(gain, law, -omega)
     gain = _product(gain, half, -power)
     square = _fraction(_product(_product(half, half), law))
-    names = [Reference(n) for n in ("x_half", "t_half", "h_half", "t_h")]
+    names = [Assigned(n) for n in ("x_half", "t_half", "h_half", "t_h")]
     x, t, h, both = names
     constants = [Assignment("c_square", square)]
     values = [_sum(p, t, h, both) for p in (above, below)]
     size = _product((Fraction(1), {}), gain, 1 if power >= 0 else -1)
     constants.append(Assignment("c_gain", _fraction(size)))
     side = 0 if power >= 0 else 1
-    values[side] = Multiply((Reference("c_gain"), *[x] * abs(power), values[side]))
+    values[side] = Multiply((Assigned("c_gain"), *[x] * abs(power), values[side]))
     assignments = [
-        Assignment("x_half", Apply("sqrt", Multiply((Reference("c_square"), Laplace())))),
+        Assignment("x_half", Apply("sqrt", Multiply((Assigned("c_square"), Laplace())))),
         Assignment("t_half", Apply("tan", x)),
         Assignment("h_half", Apply("tanh", x)),
         Assignment("t_h", Multiply((t, h))),
@@ -417,7 +417,7 @@ def _is_regular(polynomial: _Polynomial) -> bool:
     return len(signs) == 1
 
 
-def _all(root: Node) -> list[Node]:
+def _all(root: CodeNode) -> list[CodeNode]:
     found, pending = [], [root]
     while pending:
         node = pending.pop()
@@ -432,14 +432,14 @@ def _cost(code: Straight) -> int:
 
 
 @dataclass(frozen=True)
-class _Reader:
+class _HalfAngleReader:
     """Reads a piece's expressions as products of powers and polynomials of ``t_half`` and ``decay``."""
 
-    values: Mapping[str, Node]
+    values: Mapping[str, CodeNode]
 
     @property
-    def mu(self) -> Node:
-        return Reference("mu")
+    def mu(self) -> CodeNode:
+        return Assigned("mu")
 
     def found(self) -> tuple[_Monomial, _Monomial] | None:
         """Return mu^2/omega and half the argument over mu, if there is one of each."""
@@ -453,22 +453,22 @@ class _Reader:
         law, half, whole = (self.monomial(n) for n in (square, angle, exponent))
         if sorted(functions) != ["exp", "sqrt", "tan"] or law is None or half is None or whole is None:
             return None
-        if _product(whole, half, -1) != (Fraction(-2), dict[Node, int]()) or half[1].pop(self.mu, 0) != 1:
+        if _product(whole, half, -1) != (Fraction(-2), dict[CodeNode, int]()) or half[1].pop(self.mu, 0) != 1:
             return None
         if law[1].pop(Laplace(), 0) != 1 or any(self._varies(n) for n in (*law[1], *half[1])):
             return None
         return law, half
 
-    def _varies(self, node: Node) -> bool:
+    def _varies(self, node: CodeNode) -> bool:
         return any(
-            isinstance(n, Laplace) or (isinstance(n, Reference) and self._varies(self.values[n.name]))
+            isinstance(n, Laplace) or (isinstance(n, Assigned) and self._varies(self.values[n.name]))
             for n in _all(node)
         )
 
-    def monomial(self, node: Node) -> _Monomial | None:
+    def monomial(self, node: CodeNode) -> _Monomial | None:
         """Return an expression as a product of powers; sums and functions free of s count as symbols."""
         match node:
-            case Constant(value, 0):
+            case RealNumber(value, 0):
                 return value, {}
             case Negate(operand):
                 inner = self.monomial(operand)
@@ -482,18 +482,18 @@ class _Reader:
             case Divide(above, below):
                 left, right = self.monomial(above), self.monomial(below)
                 return None if left is None or right is None else _product(left, right, -1)
-            case Power(base, exponent):
+            case IntegerPower(base, exponent):
                 inner = self.monomial(base)
                 return None if inner is None else _product((Fraction(1), {}), inner, exponent)
-            case Reference(name) if name not in ("mu", "t_half", "decay"):
+            case Assigned(name) if name not in ("mu", "t_half", "decay"):
                 named = self.values[name]
                 is_symbol = isinstance(named, Apply | Add) and not self._varies(named)
                 return (Fraction(1), {node: 1}) if is_symbol else self.monomial(named)
-            case Reference("mu") | Parameter() | Constant() | Laplace():
+            case Assigned("mu") | ParameterValue() | RealNumber() | Laplace():
                 return Fraction(1), {node: 1}
         return None if self._varies(node) else (Fraction(1), {node: 1})
 
-    def split(self, node: Node) -> tuple[_Monomial, _Polynomial] | None:
+    def split(self, node: CodeNode) -> tuple[_Monomial, _Polynomial] | None:
         """Return an expression as a product of powers times a polynomial with numbers for coefficients."""
         if isinstance(node, Negate):
             inner = self.split(node.operand)
@@ -518,18 +518,18 @@ class _Reader:
             front = _product(front, own)
         return front, rest
 
-    def polynomial(self, node: Node) -> _Polynomial | None:
+    def polynomial(self, node: CodeNode) -> _Polynomial | None:
         """Return a polynomial in ``t_half`` and ``decay``."""
         match node:
-            case Constant(value, 0):
+            case RealNumber(value, 0):
                 return {(0, 0): value}
-            case Reference("t_half"):
+            case Assigned("t_half"):
                 return {(1, 0): Fraction(1)}
-            case Reference("decay"):
+            case Assigned("decay"):
                 return {(0, 1): Fraction(1)}
-            case Reference("mu"):
+            case Assigned("mu"):
                 return None
-            case Reference(name):
+            case Assigned(name):
                 return self.polynomial(self.values[name])
             case Negate(operand):
                 inner = self.polynomial(operand)
@@ -553,17 +553,17 @@ def _product(left: _Monomial, right: _Monomial, power: int = 1) -> _Monomial:
     return left[0] * right[0] ** power, {n: e for n, e in symbols.items() if e}
 
 
-def _fraction(value: _Monomial) -> Node:
+def _fraction(value: _Monomial) -> CodeNode:
     """Return a product of powers as an expression."""
     number, symbols = value
-    sides: list[list[Node]] = [[], []]
+    sides: list[list[CodeNode]] = [[], []]
     for side, whole in enumerate((abs(number.numerator), number.denominator)):
         if whole != 1:
-            sides[side].append(Constant(Fraction(whole)))
+            sides[side].append(RealNumber(Fraction(whole)))
     for node, exponent in symbols.items():
-        sides[exponent < 0].append(node if abs(exponent) == 1 else Power(node, abs(exponent)))
+        sides[exponent < 0].append(node if abs(exponent) == 1 else IntegerPower(node, abs(exponent)))
     above, below = (
-        own[0] if len(own) == 1 else Multiply(tuple(own)) if own else Constant(Fraction(1)) for own in sides
+        own[0] if len(own) == 1 else Multiply(tuple(own)) if own else RealNumber(Fraction(1)) for own in sides
     )
     whole_node = Divide(above, below) if sides[1] else above
     return Negate(whole_node) if number < 0 else whole_node
@@ -603,30 +603,30 @@ def _primitive(polynomials: Sequence[_Polynomial]) -> tuple[Fraction, list[_Poly
     return unit, found
 
 
-def _sum(polynomial: _Polynomial, t: Node, h: Node, both: Node) -> Node:
+def _sum(polynomial: _Polynomial, t: CodeNode, h: CodeNode, both: CodeNode) -> CodeNode:
     """Return a polynomial in t and h by powers of their product."""
-    groups: dict[int, list[Node]] = {}
+    groups: dict[int, list[CodeNode]] = {}
     for (i, j), number in sorted(polynomial.items()):
         shared = min(i, j)
         factors = [*([t] * (i - shared)), *([h] * (j - shared))]
         if abs(number) != 1 or not factors:
-            factors.insert(0, Constant(abs(number)))
-        term: Node = factors[0] if len(factors) == 1 else Multiply(tuple(factors))
+            factors.insert(0, RealNumber(abs(number)))
+        term: CodeNode = factors[0] if len(factors) == 1 else Multiply(tuple(factors))
         groups.setdefault(shared, []).append(term if number > 0 else Negate(term))
-    summands: list[Node] = []
+    summands: list[CodeNode] = []
     for shared, terms in sorted(groups.items()):
         inner = _total(terms)
         minus = isinstance(inner, Negate)
         size = inner.operand if isinstance(inner, Negate) else inner
         factors = [both] * shared
-        if not (shared and size == Constant(Fraction(1))):
+        if not (shared and size == RealNumber(Fraction(1))):
             factors.append(size)
-        product: Node = factors[0] if len(factors) == 1 else Multiply(tuple(factors))
+        product: CodeNode = factors[0] if len(factors) == 1 else Multiply(tuple(factors))
         summands.append(Negate(product) if minus else product)
     return _total(summands)
 
 
-def _total(terms: Sequence[Node]) -> Node:
+def _total(terms: Sequence[CodeNode]) -> CodeNode:
     """Return a sum; a term without minus sign comes first when there is one."""
     if len(terms) == 1:
         return terms[0]

@@ -1,7 +1,8 @@
 """Polynomials as recurrences: the structure of a chain or tree found again in its determinant.
 
 Input: exact polynomials of one ring.
-Output: a :class:`Plan`, in which equal sub-determinants are computed once; :func:`express` follows it.
+Output: a :class:`RecurrencePlan`, in which equal sub-determinants are computed once; :func:`express` follows
+it.
 
 A polynomial is split as ``v**k * q + r`` with ``r`` free of v, and q and r are stripped of common factors.
 For masses in series, ``p_k = m_k s^2 u_k + w_k p_(k+1)`` and ``u_k = p_(k+1) + w_k u_(k+1)`` come out. They
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
     from symflex.algebra import Ring
     from symflex.codegen.program.forge import Forge
-    from symflex.codegen.program.polynomials import Images
+    from symflex.codegen.program.polynomials import RingValues
 
 FACTOR_LIMIT = 400
 """Number of terms up to which a polynomial is factored."""
@@ -67,7 +68,7 @@ class ProductStep:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class RecurrencePlan:
     """How to compute some polynomials together.
 
     Parameters
@@ -82,7 +83,9 @@ class Plan:
     roots: tuple[Scaled, ...]
 
 
-def plan_recurrences(ring: Ring, polynomials: Sequence[fmpz_mpoly], *, splits_s: bool = False) -> Plan:
+def plan_recurrences(
+    ring: Ring, polynomials: Sequence[fmpz_mpoly], *, splits_s: bool = False
+) -> RecurrencePlan:
     """Return how to compute several polynomials of a ring with few operations.
 
     Parameters
@@ -102,10 +105,10 @@ def plan_recurrences(ring: Ring, polynomials: Sequence[fmpz_mpoly], *, splits_s:
     """
     planner = _Planner(ring, splits_s)
     roots = planner.plan_all([_Terms.of(polynomial) for polynomial in polynomials])
-    return Plan(tuple(planner.steps), roots)
+    return RecurrencePlan(tuple(planner.steps), roots)
 
 
-def express(forge: Forge, plan: Plan, images: Images) -> list[tuple[int, int]]:
+def express(forge: Forge, plan: RecurrencePlan, images: RingValues) -> list[tuple[int, int]]:
     """Return the expressions of a plan's polynomials, and their degrees in s.
 
     In the far branch the expressions are those of ``polynomial / s**degree``.

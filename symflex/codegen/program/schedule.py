@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from symflex.codegen.program.forge import Depends
-from symflex.codegen.program.nodes import Assignment, Branch, Negate, Node, Program, Reference, Straight
+from symflex.codegen.program.nodes import Assigned, Assignment, Branch, CodeNode, Negate, Program, Straight
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,7 +34,7 @@ class _Schedule:
     forge: Forge
     near: int
     far: int | None
-    nodes: dict[int, Node] = field(default_factory=dict)
+    nodes: dict[int, CodeNode] = field(default_factory=dict)
     depth: dict[int, int] = field(default_factory=dict)
     taken: dict[str, int] = field(default_factory=dict)
 
@@ -62,7 +62,7 @@ class _Schedule:
                 section = 0 if not self.forge.depends[x] else 2 if x in late else 1
                 name = self._name(x)
                 sections[section].append(Assignment(name, node))
-                node, deep = Reference(name), 0
+                node, deep = Assigned(name), 0
             self.nodes[x], self.depth[x] = node, deep
         constants, early, after = (tuple(section) for section in sections)
         return constants, early, after
@@ -108,7 +108,7 @@ class _Schedule:
                 self.taken[name] = 1
                 return name
 
-    def _node(self, x: int) -> tuple[Node, int]:
+    def _node(self, x: int) -> tuple[CodeNode, int]:
         operands = self.forge.operands(x)
         deep = 1 + max(self.depth[o] for o in operands) if operands else 0
         return self.forge.nodes[x].with_children(self.nodes[o] for o in operands), deep

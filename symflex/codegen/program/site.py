@@ -313,7 +313,7 @@ class Site:
         Parameters
         ----------
         terms : mapping of Key to fmpz_mpoly
-            As in :class:`ExponentialSum`, but for half of every circular term that oscillates.
+            As in :class:`KernelSum`, but for half of every circular term that oscillates.
         scales : mapping of (int, int) to int
             What is divided out.
         """

@@ -11,7 +11,7 @@ from textwrap import TextWrapper
 from typing import TYPE_CHECKING, Any
 
 from symflex.codegen.infix import InfixPrinter
-from symflex.codegen.program import Add, Apply, Divide, Multiply, Negate, Node, Reference
+from symflex.codegen.program import Add, Apply, Assigned, CodeNode, Divide, Multiply, Negate
 from symflex.codegen.program.evaluate import NUMPY_FUNCTIONS, number_of
 from symflex.codegen.program.everywhere import ONE
 
@@ -35,7 +35,7 @@ class PythonPrinter(InfixPrinter):
 
     space: str = "np"
 
-    def assignment(self, name: str, value: Node, indent: str) -> list[str]:
+    def assignment(self, name: str, value: CodeNode, indent: str) -> list[str]:
         """Return the lines of an assignment."""
         return statement(self.locals[name], self.print(value), indent)
 
@@ -44,7 +44,7 @@ class PythonPrinter(InfixPrinter):
         """The number pi."""
         return f"{self.space}.pi"
 
-    def applied(self, function: str, argument: Node) -> str:
+    def applied(self, function: str, argument: CodeNode) -> str:
         """Return the text of a function's value."""
         if function == "complex_exp":
             return f"_complex_exp({self.print(argument)})"
@@ -92,7 +92,7 @@ class ArrayPrinter(PythonPrinter):
         because array libraries take arrays only.
     has_fixed_sizes : bool
         True to print magnitudes as ``_size``, which has no derivative.
-    meanings : mapping of str to Node
+    meanings : mapping of str to CodeNode
         What the assignments say.
     leading : str
         First arguments of functions that look others up.
@@ -100,17 +100,17 @@ class ArrayPrinter(PythonPrinter):
 
     numbers: Mapping[str, Any] = field(default_factory=dict)
     has_fixed_sizes: bool = False
-    meanings: Mapping[str, Node] = field(default_factory=dict)
+    meanings: Mapping[str, CodeNode] = field(default_factory=dict)
     leading: str = ""
 
-    def print(self, node: Node) -> str:
+    def print(self, node: CodeNode) -> str:
         """Return the text of an expression."""
         if (pair := self._pair(node)) is not None:
             middle, product = (self.print(x) for x in pair)
             return f"_larger({self.leading}{middle}, {product})"
         return super().print(node)
 
-    def applied(self, function: str, argument: Node) -> str:
+    def applied(self, function: str, argument: CodeNode) -> str:
         """Return the text of a function's value."""
         number = number_of(Apply(function, argument), self.numbers)
         if number is not None and isfinite(number):
@@ -128,7 +128,7 @@ class ArrayPrinter(PythonPrinter):
         takes_space = function not in ("series_solutions", "mode_values")
         return text.replace("(", f"({self.leading}", 1) if takes_space else text
 
-    def _pair(self, node: Node) -> tuple[Node, Node] | None:
+    def _pair(self, node: CodeNode) -> tuple[CodeNode, CodeNode] | None:
         """Return m and p of ``m*(1 + sqrt(1 - p/(m*m)))``, the larger root of ``x^2 - 2*m*x + p``.
 
         Where m is small beside the root of p, the derivative of this form loses digits that its value keeps.
@@ -140,7 +140,7 @@ class ArrayPrinter(PythonPrinter):
                         return self._under_root(middle, self._meaning(root))
         return None
 
-    def _under_root(self, middle: Node, root: Node) -> tuple[Node, Node] | None:
+    def _under_root(self, middle: CodeNode, root: CodeNode) -> tuple[CodeNode, CodeNode] | None:
         match root:
             case Apply("sqrt", argument):
                 match self._meaning(argument):
@@ -152,8 +152,8 @@ class ArrayPrinter(PythonPrinter):
                                 return middle, product
         return None
 
-    def _meaning(self, node: Node) -> Node:
-        return self.meanings.get(node.name, node) if isinstance(node, Reference) else node
+    def _meaning(self, node: CodeNode) -> CodeNode:
+        return self.meanings.get(node.name, node) if isinstance(node, Assigned) else node
 
 
 def statement(target: str, value: str, indent: str) -> list[str]:

@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Any
 from symflex.codegen.program import (
     Apply,
     Assignment,
+    CodeNode,
+    CodePiece,
     InverseLaplace,
     Laplace,
     Multiply,
-    Node,
-    Piece,
     Piecewise,
     Program,
     Straight,
@@ -105,10 +105,10 @@ class PrivateText(ABC):
         """Return the text of a mean over a circle."""
 
     @abstractmethod
-    def _value(self, piece: Piece, lines: list[str], printer: PythonPrinter) -> list[str]:
+    def _value(self, piece: CodePiece, lines: list[str], printer: PythonPrinter) -> list[str]:
         """Return the last lines of a piece's function."""
 
-    def _piece(self, number: int, piece: Piece) -> list[str]:
+    def _piece(self, number: int, piece: CodePiece) -> list[str]:
         name, parts = (f"_{word}_{number}_of_{self.name}" for word in ("piece", "parts"))
         if piece.circle:
             lines, printer = self._body(piece.code, self.variable)
@@ -212,7 +212,7 @@ class BlockText(PrivateText):
         """Return two functions: of the limits, made once per call, and of the sizes, made per block."""
         _, printer = self._body(program.tests, self.variable)
         limits: list[str] = []
-        sizes: list[Node] = []
+        sizes: list[CodeNode] = []
         for condition in program.conditions:
             if not condition.limit:
                 limits.append("0.0")
@@ -242,7 +242,7 @@ class BlockText(PrivateText):
         given = ", ".join(["z", *self.arguments[1:]])
         return f"_mean_over_circle(lambda z: {parts}({given}), {self.variable}, {points})"
 
-    def _value(self, piece: Piece, lines: list[str], printer: PythonPrinter) -> list[str]:
+    def _value(self, piece: CodePiece, lines: list[str], printer: PythonPrinter) -> list[str]:
         num, den = piece.code.values
         if not isinstance(self.given, Piecewise) or not self.given.is_real:
             return [*lines, *statement("return", printer.quotient(num, den), "    ")]
@@ -341,7 +341,7 @@ class TracedText(PrivateText):
     def _mean(self, parts: str, points: int) -> str:
         return f"_mean_over_circle({self.leading}{parts}, [{', '.join(self.arguments)}], {points})"
 
-    def _value(self, piece: Piece, lines: list[str], printer: PythonPrinter) -> list[str]:
+    def _value(self, piece: CodePiece, lines: list[str], printer: PythonPrinter) -> list[str]:
         num, den = piece.code.values
         value = printer.print(num) if den == ONE else printer.quotient(num, den)
         first = f"    {printer.inverse} = 1.0 / {printer.variable}"
@@ -354,6 +354,6 @@ class TracedText(PrivateText):
         return [*lines, *statement("return", value, "    ")]
 
 
-def _size(scale: Node, printer: ArrayPrinter) -> str:
+def _size(scale: CodeNode, printer: ArrayPrinter) -> str:
     number = number_of(scale, printer.numbers)
     return printer.print(Apply("abs", scale)) if number is None else repr(abs(number))

@@ -18,13 +18,14 @@ from symflex.codegen.program import (
     Add,
     Apply,
     Branch,
-    Constant,
+    CodeNode,
     Divide,
+    IntegerPower,
     Multiply,
     Negate,
-    Node,
-    Power,
+    ParameterValue,
     Program,
+    RealNumber,
     Verification,
     evaluate,
     identifiers,
@@ -33,7 +34,6 @@ from symflex.codegen.program import (
     nearest_double,
     wrapped,
 )
-from symflex.codegen.program import Parameter as ParameterNode
 from symflex.codegen.python.dialects import NUMPY_DIALECT
 from symflex.codegen.python.expression import WIDTH, PythonPrinter, statement
 from symflex.codegen.python.text import docstring, literal, origin, parameter_table
@@ -45,13 +45,13 @@ from symflex.expressions import (
     Name,
     Negative,
     Number,
+    Power,
     Product,
     Quotient,
     Sum,
     format_expression,
     names,
 )
-from symflex.expressions import Power as PowerExpression
 from symflex.model.linearity import integer_exponent
 from symflex.state_space.rounding import Arrays, response
 
@@ -308,17 +308,17 @@ def _table(name: str, rows: Sequence[tuple[str, str, str]]) -> str:
     return "\n".join([f"{name}: tuple[dict[str, str], ...] = (", *lines, ")"]) + "\n"
 
 
-def _node(expression: Expression) -> Node:
+def _node(expression: Expression) -> CodeNode:
     """Return an expression of constants as a program's node."""
     match expression:
         case Number(value) if value < 0:
-            return Negate(Constant(-value))
+            return Negate(RealNumber(-value))
         case Number(value) if value.denominator == 1:
-            return Constant(value)
+            return RealNumber(value)
         case Number(value):
-            return Divide(Constant(Fraction(value.numerator)), Constant(Fraction(value.denominator)))
+            return Divide(RealNumber(Fraction(value.numerator)), RealNumber(Fraction(value.denominator)))
         case Name(name):
-            return Constant(Fraction(1), 1) if name == PI else ParameterNode(name)
+            return RealNumber(Fraction(1), 1) if name == PI else ParameterValue(name)
         case Negative(Quotient(numerator, denominator)):
             return Divide(Negate(_node(numerator)), _node(denominator))
         case Negative(operand):
@@ -329,11 +329,11 @@ def _node(expression: Expression) -> Node:
             return Multiply(tuple(_node(f) for f in factors))
         case Quotient(numerator, denominator):
             return Divide(_node(numerator), _node(denominator))
-        case PowerExpression(base, exponent):
+        case Power(base, exponent):
             order = integer_exponent(exponent) or 0
             inner = _node(base)
-            raised = inner if abs(order) == 1 else Power(inner, abs(order))
-            return raised if order > 0 else Divide(Constant(Fraction(1)), raised)
+            raised = inner if abs(order) == 1 else IntegerPower(inner, abs(order))
+            return raised if order > 0 else Divide(RealNumber(Fraction(1)), raised)
         case Call(name, argument):
             return Apply(name, _node(argument))
     message = f"unexpected expression {type(expression).__name__}"

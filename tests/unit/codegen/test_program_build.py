@@ -13,10 +13,10 @@ import pytest
 
 from symflex import pipeline
 from symflex.codegen.program import (
-    Constant,
+    Assigned,
     Laplace,
     Program,
-    Reference,
+    RealNumber,
     available_forms,
     build_program,
     evaluate,
@@ -137,7 +137,7 @@ def test_what_depends_on_parameters_only_is_kept_apart_from_what_depends_on_s():
     while pending:
         node = pending.pop()
         assert not isinstance(node, Laplace)
-        assert not (isinstance(node, Reference) and node.name in later)
+        assert not (isinstance(node, Assigned) and node.name in later)
         pending += node.children
 
 
@@ -148,7 +148,7 @@ def test_every_reference_is_to_an_earlier_assignment():
         pending = [assignment.value]
         while pending:
             node = pending.pop()
-            assert not isinstance(node, Reference) or node.name in known
+            assert not isinstance(node, Assigned) or node.name in known
             pending += node.children
         assert assignment.name not in known
         known.add(assignment.name)
@@ -198,7 +198,7 @@ def test_zero_is_the_constant_zero():
     outputs = { X = "x", y = "3*u" }
     """
     tfs = {tf.name: tf for tf in pipeline.derive_all(pipeline.loads(text))}
-    assert build_program(tfs["X/u"]).near.value == Constant(Fraction(0))
+    assert build_program(tfs["X/u"]).near.value == RealNumber(Fraction(0))
     assert evaluate(build_program(tfs["X/u"]), np.ones((2, 3)), {}).shape == (2, 3)
     assert evaluate(build_program(tfs["y/u"]), np.ones((2, 3)), {}).tolist() == [[3] * 3] * 2
 

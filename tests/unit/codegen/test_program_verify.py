@@ -12,8 +12,8 @@ from flint import acb, acb_poly
 
 from symflex import pipeline
 from symflex.codegen.program import (
-    Constant,
     Multiply,
+    RealNumber,
     References,
     available_forms,
     build_program,
@@ -41,7 +41,7 @@ TWO_MASS = transfer_functions("two_mass")[0]
 
 def spoiled(program, factor):
     """Return a program whose result is wrong by a factor."""
-    value = Multiply((Constant(Fraction(factor)), program.near.value))
+    value = Multiply((RealNumber(Fraction(factor)), program.near.value))
     return replace(program, near=replace(program.near, value=value))
 
 
