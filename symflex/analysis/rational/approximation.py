@@ -9,17 +9,22 @@ from typing import TYPE_CHECKING
 import mpmath
 import numpy as np
 
-from symflex.analysis.rational.toolboxes import PERCENTS, ApproximateFunction, doubles
+from symflex.analysis.rational.toolboxes import PERCENTS, RationalFunction, end_units
+from symflex.errors import Diagnostic, ModelError
 from symflex.roots.verdict import NOT_EXAMINED, StabilityVerdict
-from symflex.state_space.numeric import BoundStateSpace, not_installed
+from symflex.state_space import Signal
+from symflex.state_space.cascade import cascade
+from symflex.state_space.numeric import BoundState, BoundStateSpace, not_installed
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import numpy.typing as npt
     import sympy
 
     from symflex.analysis.rational.approximation_error import BandError, ErrorScan
     from symflex.analysis.rational.laurent import PrincipalPart
-    from symflex.transfer import BoundTransferFunction
+    from symflex.transfer import BoundTransferFunction, TransferFunction
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +93,7 @@ class RationalEvaluator:
 
 
 @dataclass(frozen=True, eq=False)
-class RationalApproximation:
+class RationalApproximation(RationalFunction):
     """A rational function R(s) in place of a transfer function G(s), for a band of frequencies.
 
     Parameters
@@ -136,6 +141,11 @@ class RationalApproximation:
     scan: ErrorScan
     band: tuple[float, float]
     stability: StabilityVerdict = NOT_EXAMINED
+
+    @property
+    def source(self) -> TransferFunction:
+        """What it approximates."""
+        return self.bound.source
 
     @property
     def tf(self) -> str:
@@ -212,7 +222,7 @@ class RationalApproximation:
         ModelError
             SF233 when a coefficient is too large or too small for double precision.
         """
-        return doubles(self.num, self.tf), doubles(self.den, self.tf)
+        return _doubles(self.num, self.tf), _doubles(self.den, self.tf)
 
     def label(self) -> str:
         """Return a name that says what this is and up to which frequency it is within 1 %.
@@ -233,65 +243,34 @@ class RationalApproximation:
         ModelError
             SF236 when there are more zeros than poles, SF233 when a number does not fit in double precision.
         """
-        return ApproximateFunction(self).state_space()
+        arrays = cascade(self.zeros, self.poles, self.gain, self.tf)
+        states = tuple(BoundState(f"z_{i + 1}", (), "") for i in range(len(arrays.a)))
+        units = end_units(self.source)
+        inputs = (Signal(self.source.input.name, str(units["input_unit"])),)
+        outputs = (Signal(self.source.output.name, str(units["output_unit"])),)
+        return BoundStateSpace(self.label(), arrays, states, inputs, outputs, is_minimal=True)
 
-    def to_control(self, form: str = "transfer-function") -> object:
-        """Return a system of python-control, named by :meth:`label`, with named input and output.
+    def facts(self) -> dict[str, object]:
+        """Return the form, the modes and the frequencies up to which it is within 1 % and 5 %."""
+        return {
+            "exact": self.is_exact,
+            "form": self.form,
+            "modes": self.modes,
+            "valid_to_hz": {f"{percent} %": self.valid_to(percent / 100) for percent in PERCENTS},
+            "valid_to_is_proved": self.is_exact,
+        }
 
-        Parameters
-        ----------
-        form : str
-            ``transfer-function``; or ``state-space``, see :meth:`state_space`, which loses no digits.
+    def zeros_poles_gain(self) -> tuple[list[complex], list[complex], float]:
+        """Return the nearest doubles to zeros, poles and gain."""
+        zeros, poles = ([complex(x) for x in roots] for roots in (self.zeros, self.poles))
+        return zeros, poles, float(_doubles((self.gain,), self.tf)[0])
 
-        Returns
-        -------
-        control.TransferFunction or control.StateSpace
-            Its attribute ``metadata`` holds units, the frequencies up to which it is valid, and what
-            rounding coefficients does to it.
-
-        Raises
-        ------
-        UsageError
-            SF902 when python-control is not installed, and for an unknown form.
-        ModelError
-            SF233 when a coefficient is too large or too small for double precision, SF236 as
-            :meth:`state_space`.
-        """
-        return ApproximateFunction(self).to_control(form)
-
-    def to_frd(self, omega: npt.ArrayLike) -> object:
-        """Return a ``control.FrequencyResponseData`` at angular frequencies [rad/s]; named as the others.
-
-        Raises
-        ------
-        UsageError
-            SF902 when python-control is not installed, when frequencies do not increase, and at a pole.
-        """
-        return ApproximateFunction(self).to_frd(omega)
-
-    def to_scipy(self, form: str = "zeros-poles-gain") -> object:
-        """Return a system of ``scipy.signal``.
-
-        Parameters
-        ----------
-        form : str
-            ``zeros-poles-gain``, which keeps the digits that coefficients lose; ``transfer-function``;
-            ``state-space``.
-
-        Returns
-        -------
-        scipy.signal.ZerosPolesGain, TransferFunction or StateSpace
-            Its attribute ``metadata`` holds name, units and the frequencies up to which it is valid.
-
-        Raises
-        ------
-        UsageError
-            SF902 when scipy is not installed, and for an unknown form.
-        ModelError
-            SF233 when a number is too large or too small for double precision, SF236 as
-            :meth:`state_space`.
-        """
-        return ApproximateFunction(self).to_scipy(form)
+    def value_and_slope(self, s: complex) -> tuple[complex, complex]:
+        """Return value and ``R'/R`` at s [rad/s]."""
+        with np.errstate(all="ignore"):
+            zeros, poles = (np.array([complex(x) for x in roots]) for roots in (self.zeros, self.poles))
+            slope = complex(np.sum(1 / (s - zeros)) - np.sum(1 / (s - poles)))
+        return complex(self(s)), slope
 
     def to_sympy(self, digits: int = 15) -> sympy.Basic:
         """Return a ``sympy.physics.control.TransferFunction`` of the symbol ``s``.
@@ -320,3 +299,12 @@ class RationalApproximation:
             )
 
         return TransferFunction(polynomial(self.num), polynomial(self.den), s)
+
+
+def _doubles(numbers: Sequence[mpmath.mpf], name: str) -> npt.NDArray[np.float64]:
+    """Return the nearest doubles, or raise SF233 when a number is too large or too small for one."""
+    values = np.array([float(number) for number in numbers])
+    if not np.isfinite(values).all() or any(n != 0 and v == 0 for n, v in zip(numbers, values, strict=True)):
+        message = f"a coefficient of the approximation of {name} does not fit into double precision"
+        raise ModelError(Diagnostic("SF233", message, None, "poles, zeros and gain may; or take fewer modes"))
+    return values

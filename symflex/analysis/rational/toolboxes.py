@@ -1,6 +1,12 @@
 """Handing a rational function of s to python-control and scipy.
 
 Input: a bound transfer function, or an approximation of one. Output: what these programs call a system.
+
+    x/F = 1/(m s^2 + k)  --to_control()-->  control.TransferFunction([1/m], [1, 0, k/m])
+                         --to_scipy()-->    scipy.signal.ZerosPolesGain([], [+-j sqrt(k/m)], 1/m)
+
+Each coefficient is the double nearest to the exact one. Of a polynomial of high degree even those lose
+digits: ``metadata["coefficients_error"]`` says how many, and state equations and roots keep them.
 """
 
 from __future__ import annotations
@@ -19,21 +25,18 @@ from symflex.errors.diagnostic import nearest
 from symflex.model import with_numbers
 from symflex.roots.locate import locate
 from symflex.roots.multiprecision import to_complex_mpmath
-from symflex.state_space import Signal, minimal, not_rational, realise, realise_quotient
-from symflex.state_space.cascade import cascade
-from symflex.state_space.numeric import BoundState, BoundStateSpace, bound_state_space, not_installed
+from symflex.state_space import minimal, not_rational, realise, realise_quotient
+from symflex.state_space.numeric import BoundStateSpace, bound_state_space, not_installed
 from symflex.state_space.popov import FieldElement
 from symflex.state_space.rounding import Rounding
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    import mpmath
     import numpy.typing as npt
     from flint import fmpz_mpoly
 
     from symflex.algebra import Ring
-    from symflex.analysis.rational.approximation import RationalApproximation
     from symflex.transfer import BoundTransferFunction, TransferFunction
     from symflex.transfer.bind import Enclosed
 
@@ -48,9 +51,13 @@ SCIPY_ZERO = 1e-14
 """Leading coefficients of a numerator that ``scipy.signal.normalize`` takes away."""
 
 DEFAULT_BAND_HZ = (0.1, 1e4)
+"""Where the loss of digits is sampled if the model names no band: from slow servos to piezo drives."""
 SAMPLES = 200
+"""Forty to a decade of that band."""
 DIGITS = 30
+"""Of the roots: twice what a double holds, so that each is rounded to the nearest one."""
 BITS = 384
+"""Precision of the exact value that rounded coefficients are compared with."""
 
 Coefficients = tuple["npt.NDArray[np.float64]", "npt.NDArray[np.float64]"]
 """Numerator and denominator in descending powers of s; the denominator begins with 1."""
@@ -87,19 +94,35 @@ class RationalFunction(ABC):
         """Return state equations."""
 
     @abstractmethod
-    def value(self, s: complex) -> tuple[complex, complex]:
+    def value_and_slope(self, s: complex) -> tuple[complex, complex]:
         """Return the value at s [rad/s] and ``G'(s)/G(s)``."""
-
-    @abstractmethod
-    def __call__(self, s: complex) -> complex:
-        """Return the value at s [rad/s]."""
 
     def metadata(self) -> dict[str, object]:
         """Return quantity and units, and :meth:`facts`."""
         return {**end_units(self.source), **self.facts()}
 
-    def to_control(self, form: str) -> object:
-        """Return a ``control.TransferFunction`` or ``control.StateSpace``."""
+    def to_control(self, form: str = TRANSFER_FUNCTION) -> object:
+        """Return a system of python-control, named by :meth:`label`, with named input and output.
+
+        Parameters
+        ----------
+        form : str
+            ``transfer-function``; or ``state-space``, see :meth:`state_space`, which loses no digits.
+
+        Returns
+        -------
+        control.TransferFunction or control.StateSpace
+            Its attribute ``metadata`` holds units, the frequencies up to which it is valid, and what
+            rounding coefficients does to it.
+
+        Raises
+        ------
+        UsageError
+            SF902 when python-control is not installed, and for an unknown form.
+        ModelError
+            SF233 when a coefficient is too large or too small for double precision, SF236 as
+            :meth:`state_space`.
+        """
         _check(form, CONTROL_FORMS)
         try:
             import control
@@ -114,11 +137,41 @@ class RationalFunction(ABC):
         return system
 
     def to_frd(self, omega: npt.ArrayLike) -> object:
-        """Return a ``control.FrequencyResponseData``."""
-        return frequency_response_data(self.source, self, omega, self.label(), self.metadata())
+        """Return a ``control.FrequencyResponseData`` at angular frequencies [rad/s]; named as the others.
 
-    def to_scipy(self, form: str) -> object:
-        """Return a ``scipy.signal.ZerosPolesGain``, ``TransferFunction`` or ``StateSpace``."""
+        Raises
+        ------
+        UsageError
+            SF902 when python-control is not installed, when frequencies do not increase, and at a pole.
+        """
+
+        def value(s: complex) -> complex:
+            return self.value_and_slope(s)[0]
+
+        return frequency_response_data(self.source, value, omega, self.label(), self.metadata())
+
+    def to_scipy(self, form: str = ZEROS_POLES_GAIN) -> object:
+        """Return a system of ``scipy.signal``.
+
+        Parameters
+        ----------
+        form : str
+            ``zeros-poles-gain``, which keeps the digits that coefficients lose; ``transfer-function``;
+            ``state-space``.
+
+        Returns
+        -------
+        scipy.signal.ZerosPolesGain, TransferFunction or StateSpace
+            Its attribute ``metadata`` holds name, units and the frequencies up to which it is valid.
+
+        Raises
+        ------
+        UsageError
+            SF902 when scipy is not installed, and for an unknown form.
+        ModelError
+            SF233 when a number is too large or too small for double precision, SF236 as
+            :meth:`state_space`.
+        """
         _check(form, SCIPY_FORMS)
         try:
             from scipy.signal import TransferFunction as Polynomials
@@ -154,7 +207,7 @@ class RationalFunction(ABC):
         low, high = DEFAULT_BAND_HZ if band is None else (float(f) for f in band)
         worst = 0.0
         for omega in tau * np.geomspace(low, high, SAMPLES):
-            exact, slope = self.value(1j * omega)
+            exact, slope = self.value_and_slope(1j * omega)
             if not (np.isfinite(exact) and np.isfinite(slope) and exact):
                 continue
             with np.errstate(all="ignore"):
@@ -252,78 +305,10 @@ class ExactFunction(RationalFunction):
             system = realise(model, [pair])
         return bound_state_space(minimal(system) if self._is_minimal else system, dict(self._bound.values))
 
-    def value(self, s: complex) -> tuple[complex, complex]:
+    def value_and_slope(self, s: complex) -> tuple[complex, complex]:
         """Return value and ``G'/G`` at s [rad/s]."""
         slope = self._enclosed.logarithmic_derivative(acb(s.real, s.imag))
         return self._bound(s), complex(slope.mid()) if slope.is_finite() else complex("nan")
-
-    def __call__(self, s: complex) -> complex:
-        """Return the value at s [rad/s]."""
-        return self._bound(s)
-
-
-class ApproximateFunction(RationalFunction):
-    """A rational approximation.
-
-    Parameters
-    ----------
-    found : RationalApproximation
-        In either form.
-    """
-
-    def __init__(self, found: RationalApproximation) -> None:
-        self._found = found
-
-    @property
-    def source(self) -> TransferFunction:
-        """What it approximates."""
-        return self._found.bound.source
-
-    def label(self) -> str:
-        """Return a name that says where it is valid."""
-        return self._found.label()
-
-    def facts(self) -> dict[str, object]:
-        """Return the form, the modes and the frequencies up to which it is within 1 % and 5 %."""
-        found = self._found
-        valid = {f"{percent} %": found.valid_to(percent / 100) for percent in PERCENTS}
-        return {
-            "exact": found.is_exact,
-            "form": found.form,
-            "modes": found.modes,
-            "valid_to_hz": valid,
-            "valid_to_is_proved": found.is_exact,
-        }
-
-    def coefficients(self) -> Coefficients:
-        """Return the nearest doubles to the coefficients."""
-        return self._found.coefficients()
-
-    def zeros_poles_gain(self) -> ZerosPolesGain:
-        """Return the nearest doubles to zeros, poles and gain."""
-        zeros, poles = ([complex(x) for x in roots] for roots in (self._found.zeros, self._found.poles))
-        return zeros, poles, float(doubles((self._found.gain,), self._found.tf)[0])
-
-    def state_space(self) -> BoundStateSpace:
-        """Return sections of second order in series, one per pair of poles."""
-        found, source = self._found, self.source
-        arrays = cascade(found.zeros, found.poles, found.gain, found.tf)
-        states = tuple(BoundState(f"z_{i + 1}", (), "") for i in range(len(arrays.a)))
-        units = end_units(source)
-        inputs = (Signal(source.input.name, str(units["input_unit"])),)
-        outputs = (Signal(source.output.name, str(units["output_unit"])),)
-        return BoundStateSpace(self.label(), arrays, states, inputs, outputs, is_minimal=True)
-
-    def value(self, s: complex) -> tuple[complex, complex]:
-        """Return value and ``R'/R`` at s [rad/s]."""
-        with np.errstate(all="ignore"):
-            zeros, poles = (np.array([complex(x) for x in r]) for r in (self._found.zeros, self._found.poles))
-            slope = complex(np.sum(1 / (s - zeros)) - np.sum(1 / (s - poles)))
-        return self(s), slope
-
-    def __call__(self, s: complex) -> complex:
-        """Return the value at s [rad/s]."""
-        return complex(self._found.evaluator(np.asarray(s, dtype=np.complex128)))
 
 
 def frequency_response_data(
@@ -371,21 +356,6 @@ def frequency_response_data(
     data = control.FrequencyResponseData(values, grid, name=label, **names)
     data.metadata = metadata
     return data
-
-
-def doubles(numbers: Sequence[mpmath.mpf], name: str) -> npt.NDArray[np.float64]:
-    """Return the nearest doubles.
-
-    Raises
-    ------
-    ModelError
-        SF233 when a number is too large or too small for double precision.
-    """
-    values = np.array([float(number) for number in numbers])
-    if not np.isfinite(values).all() or any(n != 0 and v == 0 for n, v in zip(numbers, values, strict=True)):
-        message = f"a coefficient of the approximation of {name} does not fit into double precision"
-        raise ModelError(Diagnostic("SF233", message, None, "poles, zeros and gain may; or take fewer modes"))
-    return values
 
 
 def end_units(source: TransferFunction) -> dict[str, object]:
