@@ -300,7 +300,7 @@ def _root_table(roots: Sequence[Root], digits: int, width: int) -> list[str]:
         return []
     rows: list[Row] = _root_rows(roots, digits)
     head: Row = ("", "Re [rad/s]", "Im [rad/s]", "radius", "f [Hz]", "zeta")
-    lines = _aligned([head, *rows])
+    lines = aligned([head, *rows])
     if max(map(len, lines)) <= width:
         return lines
     stacked: list[Row] = [("", "Re, Im [rad/s]", *head[3:])]
@@ -308,7 +308,7 @@ def _root_table(roots: Sequence[Root], digits: int, width: int) -> list[str]:
         stacked.append((flags, f"{re}  ", *rest))
         if im != "0":
             stacked.append(("", f"{im} j", "", "", ""))
-    lines = _aligned(stacked)
+    lines = aligned(stacked)
     if max(map(len, lines)) <= width:
         return lines
     return [line for row in rows for line in _root_paragraph(row)][:-1]
@@ -343,9 +343,9 @@ def _root_paragraph(row: Row) -> list[str]:
     return [*(2 * INDENT + line for line in lines), ""]
 
 
-def _aligned(rows: Sequence[Row]) -> list[str]:
+def aligned(rows: Sequence[Row], indent: str = 2 * INDENT) -> list[str]:
+    """Return the rows of a table, numbers under each other; a column without a text takes no room."""
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     return [
-        2 * INDENT + "  ".join(c.rjust(w) for c, w in zip(row, widths, strict=True) if w).rstrip()
-        for row in rows
+        indent + "  ".join(c.rjust(w) for c, w in zip(row, widths, strict=True) if w).rstrip() for row in rows
     ]

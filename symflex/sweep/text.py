@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from symflex.print.text import aligned
 from symflex.sweep.follow import NameOrigin
 from symflex.sweep.points import RootStatus
 
@@ -92,11 +93,7 @@ def _roots(sweep: Sweep) -> list[str]:
                 str(int(np.sum(there))),
             )
         )
-    widths = [max(len(row[i]) for row in rows) for i in range(4)]
-    lines.append("")
-    for row in rows:
-        cells = (cell.rjust(size) for cell, size in zip(row, widths, strict=True))
-        lines.append(INDENT + "  ".join(cells).rstrip())
+    lines += ["", *aligned(rows, INDENT)]
     if len(every) > MODES_SHOWN:
         lines.append(f"{INDENT}and {len(every) - MODES_SHOWN} more")
     return lines

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import mpmath
 
 from symflex.analysis.rational.toolboxes import PERCENTS
+from symflex.print.text import aligned
 from symflex.roots.multiprecision import to_complex_mpmath
 
 if TYPE_CHECKING:
@@ -116,7 +117,7 @@ def _root_table(roots: Sequence[mpmath.mpc]) -> list[str]:
         im = ("+-" if paired else "") + _decimal(root.imag)
         zeta = f"{-float(root.real) / size + 0:.6g}" if size else ""
         rows.append((times, _decimal(root.real), im, f"{size / (2 * pi):.6g}", zeta))
-    return _aligned(rows)
+    return aligned(rows)
 
 
 def _residue_table(found: RationalApproximation) -> list[str]:
@@ -136,19 +137,11 @@ def _residue_table(found: RationalApproximation) -> list[str]:
             imaginary = im if im == "0" else pair[1] + im.removeprefix("-") if pair[1] else im
             place = (_decimal(pole.real), pair[0] + _decimal(pole.imag)) if power == 1 else ("", "")
             rows.append((*place, f"{-power}" if highest > 1 else "", re, imaginary))
-    return _aligned(rows)
+    return aligned(rows)
 
 
 def _middle(root: Root) -> mpmath.mpc:
     return to_complex_mpmath(root.enclosure())
-
-
-def _aligned(rows: Sequence[Row]) -> list[str]:
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    return [
-        2 * INDENT + "  ".join(c.rjust(w) for c, w in zip(row, widths, strict=True) if w).rstrip()
-        for row in rows
-    ]
 
 
 def rational_json(found: RationalApproximation) -> dict[str, object]:

@@ -14,7 +14,7 @@ from typing import Any, Final
 
 import numpy.typing as npt
 
-from symflex.data.measurement.byte_reader import CUT, ByteReader
+from symflex.data.measurement.byte_reader import CUT, ByteReader, require
 
 Arrays = dict[str, npt.NDArray[Any]]
 
@@ -68,35 +68,28 @@ def read_archive(data: bytes, limit: int, members: int) -> Arrays:
 def _check_directory(data: bytes) -> None:
     """Refuse an archive with a list of members that is large itself: each is an object in memory."""
     end = data.rfind(_END, max(len(data) - _END_SIZE - _COMMENT, 0))
-    if end < 0 or len(data) - end < _END_SIZE:
-        message = "it is no archive, or is cut short"
-        raise ValueError(message)
+    require(end >= 0 and len(data) - end >= _END_SIZE, "it is no archive, or is cut short")
     size = int.from_bytes(data[end + 12 : end + 16], "little")
     if size > _DIRECTORY_LIMIT or _END_64 in data[max(end - 20, 0) : end]:
         raise OverflowError
 
 
 def _member(file: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
-    if info.flag_bits & _IS_ENCRYPTED:
-        message = f"'{info.filename[:40]}' in it is encrypted"
-        raise ValueError(message)
-    if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-        message = f"'{info.filename[:40]}' in it is compressed in an unknown way"
-        raise ValueError(message)
+    require(not info.flag_bits & _IS_ENCRYPTED, f"'{info.filename[:40]}' in it is encrypted")
+    require(
+        info.compress_type in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED),
+        f"'{info.filename[:40]}' in it is compressed in an unknown way",
+    )
     with file.open(info) as member:
         content = member.read(info.file_size + 1)
-    if len(content) != info.file_size:
-        message = f"'{info.filename[:40]}' in it is cut short"
-        raise ValueError(message)
+    require(len(content) == info.file_size, f"'{info.filename[:40]}' in it is cut short")
     return content
 
 
 def _array(content: bytes) -> npt.NDArray[Any]:
     """Return the array of an .npy file."""
     reader = ByteReader(content)
-    if bytes(reader.take(len(_MAGIC))) != _MAGIC:
-        message = "a member is no array"
-        raise ValueError(message)
+    require(bytes(reader.take(len(_MAGIC))) == _MAGIC, "a member is no array")
     major = reader.integer("u1")
     reader.take(1)
     header = bytes(reader.take(reader.integer("u2" if major == 1 else "u4"))).decode("latin-1")

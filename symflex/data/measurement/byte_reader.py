@@ -1,4 +1,11 @@
-"""A place in bytes of hostile kind, which never passes their end."""
+"""Bytes that anybody may have written, read without passing their end.
+
+    00 00 00 02 | 3f f0 00 00 00 00 00 00 | ...
+    integer("i4") = 2, and then numbers("f8", (2,)) raises ValueError: it is cut short
+
+What a file claims is compared with what is there before anything is allocated. Readers of .npz, .mat and
+netCDF files share these checks; each raises ValueError with the reason, OverflowError beyond a limit.
+"""
 
 from __future__ import annotations
 
@@ -14,10 +21,18 @@ if TYPE_CHECKING:
 
 CUT = "it is cut short"
 SHOWN = 80
+"""Characters of a message that repeats what a file says."""
 LAST_CHARACTER: Final = 0x10FFFF
 SURROGATES: Final = (0xD800, 0xDFFF)
+"""Unicode's range of characters, and the halves of pairs in it that are none (Unicode 15, section 3.9)."""
 DIMENSIONS_LIMIT = 32
 """Of numpy 1; version 2 takes 64."""
+
+
+def require(is_met: bool, reason: str) -> None:
+    """Raise a ValueError with the reason unless a condition is met."""
+    if not is_met:
+        raise ValueError(reason)
 
 
 class ByteReader:
@@ -58,8 +73,7 @@ class ByteReader:
         ValueError
             When there are fewer.
         """
-        if not 0 <= count <= self.left:
-            raise ValueError(CUT)
+        require(0 <= count <= self.left, CUT)
         self.place += count
         return self.data[self.place - count : self.place]
 
@@ -81,15 +95,14 @@ class ByteReader:
         dtype = np.dtype(self.order + kind)
         count = prod(shape)
         if not count:
-            if max(shape) > len(self.data):  # nothing is there, and yet it would be walked through
-                raise ValueError(CUT)
+            # Nothing is there, and yet it would be walked through.
+            require(max(shape) <= len(self.data), CUT)
             return np.empty(tuple(shape), dtype)
         taken = self.take(count * dtype.itemsize)
         if dtype.kind == "U":
             codes = np.frombuffer(taken, np.dtype(self.order + "u4"))
-            if np.any((codes > LAST_CHARACTER) | ((codes >= SURROGATES[0]) & (codes <= SURROGATES[1]))):
-                message = "a text holds what is no character"
-                raise ValueError(message)
+            wrong = (codes > LAST_CHARACTER) | ((codes >= SURROGATES[0]) & (codes <= SURROGATES[1]))
+            require(not np.any(wrong), "a text holds what is no character")
         return np.frombuffer(taken, dtype).reshape(tuple(shape), order=order)
 
     def integer(self, kind: str) -> int:

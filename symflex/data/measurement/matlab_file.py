@@ -14,7 +14,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from symflex.data.measurement.byte_reader import CUT, SHOWN, SURROGATES, ByteReader
+from symflex.data.measurement.byte_reader import CUT, SHOWN, SURROGATES, ByteReader, require
 
 Arrays = dict[str, npt.NDArray[Any]]
 
@@ -25,7 +25,8 @@ _MATRIX, _COMPRESSED = 14, 15
 _CELL, _CHAR, _NUMERIC = 1, 4, range(6, 16)
 _COMPLEX_FLAG = 0x0800
 _STORED_4: Final = ("f8", "f4", "i4", "i2", "u2", "u1")
-_TEXT_4 = 1
+_TEXT_4, _LAST_MOPT = 1, 4999
+"""Version 4 begins with the decimal digits MOPT: machine, 0, kind of number, kind of matrix."""
 _NAME_LIMIT = 63
 """Characters of a name in MATLAB."""
 VARIABLES_LIMIT: Final = 10_000
@@ -65,8 +66,7 @@ def read_variables(data: bytes, limit: int) -> Arrays:
     """
     if 0 in data[:4]:  # in version 5 text stands there
         return _version_4(data)
-    if len(data) < _HEADER:
-        raise ValueError(CUT)
+    require(len(data) >= _HEADER, CUT)
     order = {b"IM": "<", b"MI": ">"}.get(data[126:128])
     if order is None:
         message = "no mark of byte order"
@@ -74,9 +74,7 @@ def read_variables(data: bytes, limit: int) -> Arrays:
     version = ByteReader(data[_VERSION:126], order).integer("u2") >> 8
     if version == _VERSION_7_3:
         raise NewerFileError
-    if version != _VERSION_5:
-        message = f"unknown version {version}"
-        raise ValueError(message)
+    require(version == _VERSION_5, f"unknown version {version}")
     reader = ByteReader(memoryview(data)[_HEADER:], order)
     found: Arrays = {}
     for _ in range(VARIABLES_LIMIT + 1):
@@ -89,8 +87,7 @@ def read_variables(data: bytes, limit: int) -> Arrays:
             limit -= len(inflated)
             if limit < 0:
                 raise OverflowError
-            if not stream.eof:
-                raise ValueError(CUT)
+            require(stream.eof, CUT)
             kind, content = _element(ByteReader(inflated, order))
         if kind == _MATRIX:
             name, array = _matrix(ByteReader(content, order), are_cells_read=True)
@@ -137,17 +134,13 @@ def _matrix(reader: ByteReader, *, are_cells_read: bool) -> tuple[str, npt.NDArr
 
 
 def _numbers(kind: int, content: memoryview, order: str) -> npt.NDArray[Any]:
-    if kind not in _STORED:
-        message = f"numbers of an unknown kind {kind}"
-        raise ValueError(message)
+    require(kind in _STORED, f"numbers of an unknown kind {kind}")
     stored = _STORED[kind]
     return ByteReader(content, order).numbers(stored, (len(content) // int(stored[1:]),))
 
 
 def _shaped(values: npt.NDArray[Any], shape: list[int]) -> npt.NDArray[Any]:
-    if prod(shape) != values.size:
-        message = f"{values.size} numbers for {' x '.join(map(str, shape))}"[:SHOWN]
-        raise ValueError(message)
+    require(prod(shape) == values.size, f"{values.size} numbers for {' x '.join(map(str, shape))}"[:SHOWN])
     return np.squeeze(values.reshape(shape, order="F")) if values.size else values
 
 
@@ -159,9 +152,7 @@ def _complex(real: npt.NDArray[Any], imaginary: npt.NDArray[Any]) -> npt.NDArray
 
 def _lines(kind: int, content: memoryview, order: str, shape: list[int]) -> npt.NDArray[Any]:
     """Return text as an array of lines; in the file it stands by columns."""
-    if kind not in _TEXT:
-        message = f"text of an unknown kind {kind}"
-        raise ValueError(message)
+    require(kind in _TEXT, f"text of an unknown kind {kind}")
     ending = "" if kind in (2, 16) else "-le" if order == "<" else "-be"
     text = bytes(content).decode(_TEXT[kind] + ending, "replace")
     rows = shape[0] if shape else 0
@@ -169,24 +160,21 @@ def _lines(kind: int, content: memoryview, order: str, shape: list[int]) -> npt.
         return np.array("")
     if rows > VARIABLES_LIMIT:
         raise OverflowError
-    if rows < 1 or len(text) % rows:
-        message = "text does not fill its lines"
-        raise ValueError(message)
+    require(rows >= 1 and len(text) % rows == 0, "text does not fill its lines")
     return np.squeeze(np.array([text[row : rows * TEXT_LIMIT : rows].rstrip(" \0") for row in range(rows)]))
 
 
 def _version_4(data: bytes) -> Arrays:
     found: Arrays = {}
-    order = "<" if int.from_bytes(data[:4], "little") < 5000 else ">"  # noqa: PLR2004 - MOPT, 0 to 4052
+    order = "<" if int.from_bytes(data[:4], "little") <= _LAST_MOPT else ">"
     reader = ByteReader(data, order)
     for _ in range(VARIABLES_LIMIT + 1):
         if not reader.left:
             return found
         mopt, rows, columns, is_complex, length = (reader.integer("i4") for _ in range(5))
         kind, text = mopt // 10 % 10, mopt % 10
-        if not 0 <= mopt < 5000 or kind >= len(_STORED_4) or length < 1:  # noqa: PLR2004
-            message = "no header of a variable"
-            raise ValueError(message)
+        is_header = 0 <= mopt <= _LAST_MOPT and kind < len(_STORED_4) and length >= 1
+        require(is_header, "no header of a variable")
         name = bytes(reader.take(length)).decode("latin-1").split("\0")[0][:_NAME_LIMIT]
         shape = (rows, columns)
         values = reader.numbers(_STORED_4[kind], shape, "F")

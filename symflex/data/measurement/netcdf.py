@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import numpy.typing as npt
 
-from symflex.data.measurement.byte_reader import ByteReader
+from symflex.data.measurement.byte_reader import ByteReader, require
 
 Attributes = dict[str, str]
 Variable = tuple[tuple[str, ...], npt.NDArray[Any], Attributes]
@@ -44,9 +44,7 @@ def read_netcdf(data: bytes, items: int) -> tuple[Attributes, dict[str, Variable
     ValueError: it is neither netCDF 3 nor .npz
     """
     reader = ByteReader(data, ">")
-    if data[:3] != b"CDF" or data[3:4] not in (b"\x01", b"\x02"):
-        message = "it is neither netCDF 3 nor .npz"
-        raise ValueError(message)
+    require(data[:3] == b"CDF" and data[3:4] in (b"\x01", b"\x02"), "it is neither netCDF 3 nor .npz")
     reader.take(3)
     offset = _OFFSETS[reader.integer("u1")]
     records = reader.integer("i4")
@@ -57,24 +55,20 @@ def read_netcdf(data: bytes, items: int) -> tuple[Attributes, dict[str, Variable
     for _ in range(_count(reader, _VARIABLE, items)):
         name = _name(reader)
         numbers = [reader.integer("i4") for _ in range(_checked(reader.integer("i4"), items))]
-        if any(not 0 <= number < len(dimensions) for number in numbers):
-            message = "a variable has an unknown dimension"
-            raise ValueError(message)
+        require(
+            all(0 <= number < len(dimensions) for number in numbers), "a variable has an unknown dimension"
+        )
         about = _attributes(reader, items)
         kind = _type(reader)
         reader.integer("i4")  # the size, which dimensions and type say as well
         begin = reader.integer(offset)
         shape = [dimensions[number][1] for number in numbers]
-        if 0 in shape and records:
-            message = f"variable '{name[:40]}' has an unlimited dimension"
-            raise ValueError(message)
+        require(not (0 in shape and records), f"variable '{name[:40]}' has an unlimited dimension")
         body = ByteReader(data, ">")
         body.take(begin)
         values = body.numbers(kind, shape)
         left -= values.nbytes
-        if left < 0:
-            message = "variables stand in the same place"
-            raise ValueError(message)
+        require(left >= 0, "variables stand in the same place")
         found[name] = tuple(dimensions[number][0] for number in numbers), values, about
     return attributes, found
 
@@ -87,9 +81,7 @@ def _checked(count: int, items: int) -> int:
 
 def _count(reader: ByteReader, tag: int, items: int) -> int:
     found, count = reader.integer("i4"), reader.integer("i4")
-    if found != tag and (found, count) != (_ABSENT, 0):
-        message = f"a list of kind {found}"
-        raise ValueError(message)
+    require(found == tag or (found, count) == (_ABSENT, 0), f"a list of kind {found}")
     return _checked(count, items)
 
 
@@ -101,9 +93,7 @@ def _name(reader: ByteReader) -> str:
 
 def _type(reader: ByteReader) -> str:
     number = reader.integer("i4")
-    if number not in _TYPES:
-        message = f"values of an unknown type {number}"
-        raise ValueError(message)
+    require(number in _TYPES, f"values of an unknown type {number}")
     return _TYPES[number]
 
 
