@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from symflex.expressions import Name
 from symflex.library.elements import ELEMENTS
 from symflex.model import Model
-from symflex.model.model import Input, Node, NodeReference, Output, Parameter, PlacedElement
+from symflex.model.model import Input, ModelParameter, NetworkNode, NodeReference, Output, PlacedElement
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -58,19 +58,19 @@ def network(branches: Iterable[tuple[int, int]]) -> Model:
     """
     links = list(branches)
     masses = sorted({i for link in links for i in link})
-    parameters: list[Parameter] = []
+    parameters: list[ModelParameter] = []
     elements: list[PlacedElement] = []
     for i in masses:
-        parameters.append(Parameter(f"m_{i}", None, "kg"))
+        parameters.append(ModelParameter(f"m_{i}", None, "kg"))
         elements.append(_placed("mass", f"mass_{i}", "at", (i,), ("m", f"m_{i}")))
     for number, ends in enumerate(links, 1):
         for kind, letter, unit in (("spring", "k", "N/m"), ("damper", "b", "N*s/m")):
             name = f"{letter}_{number}"
-            parameters.append(Parameter(name, None, unit))
+            parameters.append(ModelParameter(name, None, unit))
             elements.append(_placed(kind, f"{kind}_{number}", "between", ends, (letter, name)))
     return Model(
         parameters=tuple(parameters),
-        nodes=tuple(Node(f"x_{i}", "translation") for i in masses),
+        nodes=tuple(NetworkNode(f"x_{i}", "translation") for i in masses),
         elements=tuple(elements),
         inputs=(Input("F", "force", (NodeReference("x_1"),), None, "N"),),
         outputs=(

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from symflex.model import Parameter
+    from symflex.model import ModelParameter
     from symflex.quantities import Quantity
 
     Stated = float | Fraction | str
@@ -552,13 +552,13 @@ def axis_ends(given: Ends | None, flag: str, *, is_frequency: bool = False) -> t
 
 
 def gain_ends(
-    limits: tuple[Stated | None, Stated | None] | None, parameter: Parameter
+    limits: tuple[Stated | None, Stated | None] | None, parameter: ModelParameter
 ) -> tuple[Fraction | None, Fraction | None] | None:
     """Return the range of a gain in SI units, None for an end that is infinite."""
     return None if limits is None else (_gain(limits[0], parameter), _gain(limits[1], parameter))
 
 
-def _gain(given: Stated | None, parameter: Parameter) -> Fraction | None:
+def _gain(given: Stated | None, parameter: ModelParameter) -> Fraction | None:
     if given is None or not isinstance(given, str):
         return None if given is None or isinf(given) else exact(given)
     if given.strip().lower() in UNBOUNDED:

@@ -118,7 +118,7 @@ class Model:
         return self.resolved.title
 
     @property
-    def parameters(self) -> tuple[model_room.Parameter, ...]:
+    def parameters(self) -> tuple[model_room.ModelParameter, ...]:
         """The parameters in declared order, with exact values in SI units."""
         return self.resolved.parameters
 

@@ -11,7 +11,7 @@ from symflex.print.latex.table import decimal_text
 from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
-    from symflex.model import Model, Parameter
+    from symflex.model import Model, ModelParameter
     from symflex.print.forms import PrintedForm
     from symflex.transfer import AnyTransferFunction
 
@@ -95,12 +95,12 @@ def headline(tf: AnyTransferFunction, *, is_real: bool = False) -> str:
     return inert(f"{tf.quantity[:1].upper()}{tf.quantity[1:]} {tf.name}{unit}{at}.")
 
 
-def described(parameter: Parameter, name: str) -> str:
+def described(parameter: ModelParameter, name: str) -> str:
     """Return what a parameter is, with its unit, as inert text that ends with a full stop.
 
     Parameters
     ----------
-    parameter : Parameter
+    parameter : ModelParameter
         Of the model.
     name : str
         What it is called in the generated code.
@@ -113,7 +113,7 @@ def described(parameter: Parameter, name: str) -> str:
     return f"{text} {inert(written)} in the model." if written else text
 
 
-def value_as_written(parameter: Parameter) -> str:
+def value_as_written(parameter: ModelParameter) -> str:
     """Return a value in the unit it was written in, empty where that is the SI unit of the code.
 
     Examples
@@ -134,7 +134,7 @@ def value_as_written(parameter: Parameter) -> str:
     return f"{decimal_text(value)} {unit}"
 
 
-def default_value(parameter: Parameter) -> str:
+def default_value(parameter: ModelParameter) -> str:
     """Return the double nearest to a parameter's value as text, empty without a value.
 
     Raises

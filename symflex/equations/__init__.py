@@ -1,6 +1,6 @@
 """The linear equations ``A(s) x + B u = 0`` of a model, over an exact ring."""
 
 from symflex.equations.assemble import assemble
-from symflex.equations.equations import ConstantFunction, Continuum, EquationRow, Equations, OutputRow
+from symflex.equations.equations import ConstantFunction, Continuum, Equations, OutputRow
 
-__all__ = ["ConstantFunction", "Continuum", "EquationRow", "Equations", "OutputRow", "assemble"]
+__all__ = ["ConstantFunction", "Continuum", "Equations", "OutputRow", "assemble"]

@@ -22,11 +22,11 @@ from symflex.algebra import (
 )
 from symflex.budget import spend
 from symflex.equations.distributed import survey, transfer_matrix
-from symflex.equations.equations import ConstantFunction, Continuum, EquationRow, Equations, OutputRow
-from symflex.equations.evaluate import Evaluator, Opener, written_denominator
+from symflex.equations.equations import ConstantFunction, Continuum, Equations, OutputRow
+from symflex.equations.evaluate import ExactEvaluator, Opener, written_denominator
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
 from symflex.expressions import Call, Expression, Name, format_expression, names
-from symflex.library.elements import ElementUse, LinearForm, Stamp, Terminal, Variable
+from symflex.library.elements import ElementUse, EquationRow, LinearForm, PortTerminal, Stamp, Variable
 from symflex.library.elements.line import LineElement
 from symflex.model import scope_of
 from symflex.model.input_kinds import INPUT_KINDS
@@ -36,8 +36,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
     from symflex.equations.distributed import Distributed, FieldSolution
-    from symflex.library.elements import Branch, Injection, Placing
-    from symflex.model import Model, Node, NodeReference, PlacedBlock, PlacedElement
+    from symflex.library.elements import Admittance, Injection, Placing
+    from symflex.model import Model, NetworkNode, NodeReference, PlacedBlock, PlacedElement
 
 PI = "pi"
 GENERATOR_LIMIT = 1_000
@@ -156,14 +156,16 @@ class _Assembly:
         expressions = [e for _, e in self.model.expressions()]
         return survey(self.model, evaluator, expressions, is_nameless=is_nameless, is_joined=is_joined)
 
-    def _evaluator(self, blocks: Mapping[str, Factored]) -> tuple[Evaluator, dict[str, int]]:
+    def _evaluator(self, blocks: Mapping[str, Factored]) -> tuple[ExactEvaluator, dict[str, int]]:
         known = {d.name for d in self.model.definitions}
         point = random_point([n for n in self.ring.names if n not in known])
         scope = scope_of(self.model)
         fields = {*scope.unknowns, *scope.along}
         value = None if self.distributed is None else self._at_point
         definitions = self._definitions
-        return Evaluator(self.ring, scope, blocks, self.through, definitions, point, fields, value), point
+        return ExactEvaluator(
+            self.ring, scope, blocks, self.through, definitions, point, fields, value
+        ), point
 
     def _at_point(self, call: Call) -> LinearForm:
         """Return the value at a point along x that a call names."""
@@ -267,7 +269,7 @@ class _Assembly:
             return ()
         return {s.field.name: s for s in self.distributed.solutions.values()}.values()
 
-    def _impose(self, solution: FieldSolution, evaluator: Evaluator) -> None:
+    def _impose(self, solution: FieldSolution, evaluator: ExactEvaluator) -> None:
         """Take a field's state at its start as unknowns, and its conditions as rows."""
         self.unknowns += solution.initial
         self._extend_field(solution)
@@ -279,7 +281,7 @@ class _Assembly:
                 continue
             form = left + right * Factored.number(self.ring, -1)
             about = Variable("field", solution.field.name, f"condition {i + 1}")
-            self.rows.append(EquationRow(about, "condition", form))
+            self.rows.append(EquationRow(about, form, "condition"))
 
     def _extend_field(self, solution: FieldSolution) -> None:
         """Note what a field's unknowns follow along x."""
@@ -304,7 +306,7 @@ class _Assembly:
     def _definitions(self) -> dict[str, Expression]:
         return {d.name: d.expression for d in self.model.definitions}
 
-    def _define(self, evaluator: Evaluator, point: dict[str, int]) -> tuple[tuple[str, Factored], ...]:
+    def _define(self, evaluator: ExactEvaluator, point: dict[str, int]) -> tuple[tuple[str, Factored], ...]:
         """Return the definitions' values, each placed at the random point for those after it."""
         found = []
         for definition in self.model.definitions:
@@ -332,7 +334,7 @@ class _Assembly:
     def _blocks(self) -> Mapping[str, Factored]:
         found: dict[str, Factored] = {} if self.distributed is None else dict(self.distributed.delays)
         scope = scope_of(self.model)
-        evaluator = Evaluator(self.ring, scope, found, {}, self._definitions)
+        evaluator = ExactEvaluator(self.ring, scope, found, {}, self._definitions)
         s = Factored.generator(self.ring, LAPLACE)
         for block in self._ordered_blocks():
             if block.name in found:
@@ -390,8 +392,8 @@ class _Assembly:
     def _stamp(
         self,
         use: PlacedElement,
-        evaluator: Evaluator,
-        nodes: Mapping[str, Node],
+        evaluator: ExactEvaluator,
+        nodes: Mapping[str, NetworkNode],
         values: list[tuple[Variable, Expression]],
     ) -> Stamp | None:
         signal_ports = {p.name for p in use.element.parameters if p.signal}
@@ -431,14 +433,16 @@ class _Assembly:
         return use.element.stamp(element_use)
 
     @staticmethod
-    def _terminal(reference: NodeReference, domain: Placing, nodes: Mapping[str, Node]) -> Terminal:
+    def _terminal(
+        reference: NodeReference, domain: Placing, nodes: Mapping[str, NetworkNode]
+    ) -> PortTerminal:
         if reference.is_ground:
-            return Terminal()
+            return PortTerminal()
         node = nodes[reference.node]
         if domain == "planar":
             name = reference.node
-            return Terminal(None, Variable("node", name, "y"), Variable("node", name, "theta"))
-        return Terminal(variable_of(reference, node, domain))
+            return PortTerminal(None, Variable("node", name, "y"), Variable("node", name, "theta"))
+        return PortTerminal(variable_of(reference, node, domain))
 
     def _take(self, use: PlacedElement, stamp: Stamp) -> None:
         for branch in stamp.branches:
@@ -446,11 +450,11 @@ class _Assembly:
         for injection in stamp.injections:
             self._inject(injection)
         self.unknowns += stamp.unknowns
-        self.rows += [EquationRow(row.about, row.role, row.form) for row in stamp.rows]
+        self.rows += stamp.rows
         for quantity, form in stamp.through:
             self.through[Variable("through", use.name, quantity)] = form
 
-    def _add_branch(self, branch: Branch) -> None:
+    def _add_branch(self, branch: Admittance) -> None:
         key = (branch.a, branch.b)
         if (branch.b, branch.a) in self.branches:
             key = (branch.b, branch.a)
@@ -470,9 +474,9 @@ class _Assembly:
                 if here is not None:
                     out = LinearForm.of((here, admittance), (there, -admittance))
                     balance[here] = _side_by_side(balance[here], out)
-        return [EquationRow(node, "balance", form) for node, form in balance.items()]
+        return [EquationRow(node, form, "balance") for node, form in balance.items()]
 
-    def _take_inputs(self, nodes: Mapping[str, Node]) -> None:
+    def _take_inputs(self, nodes: Mapping[str, NetworkNode]) -> None:
         one = Factored.number(self.ring, 1)
         for source in self.model.inputs:
             if source.kind == "signal":
@@ -486,7 +490,7 @@ class _Assembly:
                 moved = LinearForm.of(*zip(ends, signs, strict=False)) * rate
                 self.unknowns.append(delivered)
                 self.rows.append(
-                    EquationRow(delivered, "constraint", moved + LinearForm.of((variable, -one)))
+                    EquationRow(delivered, moved + LinearForm.of((variable, -one)), "constraint")
                 )
                 self.through[delivered] = LinearForm.of((delivered, one))
                 variable = delivered
@@ -499,9 +503,9 @@ class _Assembly:
         if self.ring.is_sparse:
             return row  # nothing is expanded, and rows scaled differently would lose their symmetry
         below = common_denominator(self.ring, row.form.coefficients)
-        return row if below.is_one else EquationRow(row.about, row.role, row.form * below)
+        return row if below.is_one else replace(row, form=row.form * below)
 
-    def _equal(self, variable: Variable, expression: Expression, evaluator: Evaluator) -> None:
+    def _equal(self, variable: Variable, expression: Expression, evaluator: ExactEvaluator) -> None:
         """Add the row ``variable = expression``."""
         try:
             form = evaluator.linear(expression)
@@ -510,9 +514,9 @@ class _Assembly:
             return
         row = LinearForm.of((variable, Factored.number(self.ring, -1))) + form
         self.unknowns.append(variable)
-        self.rows.append(EquationRow(variable, "signal", row * self._cancelled(expression, form, evaluator)))
+        self.rows.append(EquationRow(variable, row * self._cancelled(expression, form, evaluator), "signal"))
 
-    def _output(self, name: str, expression: Expression, evaluator: Evaluator) -> OutputRow | None:
+    def _output(self, name: str, expression: Expression, evaluator: ExactEvaluator) -> OutputRow | None:
         try:
             form = evaluator.linear(expression)
         except SymflexError as error:
@@ -523,7 +527,7 @@ class _Assembly:
         divisor = below * self._cancelled(expression, form, evaluator)
         return OutputRow(name, form * divisor, divisor)
 
-    def _cancelled(self, expression: Expression, form: LinearForm, evaluator: Evaluator) -> Factored:
+    def _cancelled(self, expression: Expression, form: LinearForm, evaluator: ExactEvaluator) -> Factored:
         """Return the poles that cancelled within an expression: they stay modes of the model."""
         left = common_denominator(self.ring, form.coefficients)
         return least_common_multiple(left, (written_denominator(expression, evaluator),)) / left

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
     from symflex.algebra import Factored
-    from symflex.equations.evaluate import Evaluator
+    from symflex.equations.evaluate import ExactEvaluator
     from symflex.expressions import Equation
 
 Key = tuple[str, int] | Variable
@@ -33,7 +33,7 @@ class ReadEquation:
         return FieldEquation(self.terms, {str(v): c for v, c in self.loads.items()})
 
 
-def read_equation(equation: Equation, unknowns: Collection[str], evaluator: Evaluator) -> ReadEquation:
+def read_equation(equation: Equation, unknowns: Collection[str], evaluator: ExactEvaluator) -> ReadEquation:
     """Return the coefficients of an equation, linear in unknowns, their derivatives and loads."""
     terms: Terms = {}
     for side, sign in ((equation.left, 1), (equation.right, -1)):
@@ -46,7 +46,7 @@ def read_equation(equation: Equation, unknowns: Collection[str], evaluator: Eval
     )
 
 
-def _read(expression: Expression, unknowns: Collection[str], evaluator: Evaluator) -> Terms:
+def _read(expression: Expression, unknowns: Collection[str], evaluator: ExactEvaluator) -> Terms:
     one = evaluator.s**0
     match expression:
         case Name(name) if name in unknowns:
@@ -85,7 +85,7 @@ def _constant(expression: Expression, value: Factored) -> Terms:
     raise ModelError(Diagnostic("SF221", "the equation has a term without an unknown", expression.span))
 
 
-def _varies(expression: Expression, unknowns: Collection[str], evaluator: Evaluator) -> bool:
+def _varies(expression: Expression, unknowns: Collection[str], evaluator: ExactEvaluator) -> bool:
     """Tell whether an expression holds an unknown, an input or a signal."""
     pending = [expression]
     while pending:

@@ -29,10 +29,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from symflex.algebra import Factored, Propagation
-    from symflex.equations.evaluate import Evaluator
+    from symflex.equations.evaluate import ExactEvaluator
     from symflex.errors import Span
     from symflex.library.fields import FieldSystem, Matrix
-    from symflex.model import Field, Model, PlacedElement
+    from symflex.model import FieldProblem, Model, PlacedElement
 
 
 POLYNOMIAL = -1
@@ -53,7 +53,7 @@ class FieldSolution:
 
     Parameters
     ----------
-    field : Field
+    field : FieldProblem
         As resolved.
     medium : Medium
         Its equations.
@@ -63,7 +63,7 @@ class FieldSolution:
         Where x begins, over the ring without kernels.
     """
 
-    field: Field
+    field: FieldProblem
     medium: Medium
     inputs: tuple[Variable, ...]
     origin: Factored
@@ -130,13 +130,13 @@ class Distributed:
         Per delay block, ``exp(-s*T)``.
     solutions : mapping of str to FieldSolution
         Per unknown of a field, the solution of its field.
-    evaluator : Evaluator
+    evaluator : ExactEvaluator
         Over the ring without kernels, for points.
     lines : mapping of str to (Medium, Factored)
         Per line element, its equations and its length.
     along : mapping of str to str
         Per quantity of a line element along x, the state of its field theory.
-    links : tuple of Link
+    links : tuple of ChainEnd
         Of elements that follow from the start of a chain.
     """
 
@@ -144,10 +144,10 @@ class Distributed:
     transmissions: Mapping[str, Matrix]
     delays: Mapping[str, Factored]
     solutions: Mapping[str, FieldSolution]
-    evaluator: Evaluator
+    evaluator: ExactEvaluator
     lines: Mapping[str, tuple[Medium, Factored]]
     along: Mapping[str, str]
-    links: tuple[Link, ...] = ()
+    links: tuple[ChainEnd, ...] = ()
 
     def value(self, call: Call, states: Mapping[str, Sequence[Variable | None]]) -> LinearForm:
         """Return a field's unknown, an element's quantity, or a derivative, at the point a call names.
@@ -208,7 +208,7 @@ class _Demands:
 
 def survey(
     model: Model,
-    evaluator: Evaluator,
+    evaluator: ExactEvaluator,
     expressions: Iterable[Expression],
     *,
     is_nameless: bool = False,
@@ -220,7 +220,7 @@ def survey(
     ----------
     model : Model
         Resolved.
-    evaluator : Evaluator
+    evaluator : ExactEvaluator
         Over the ring without kernels, with the rational blocks.
     expressions : iterable of Expression
         Everything in which a field may be evaluated at a point.
@@ -310,7 +310,7 @@ def _nameless(
 
 
 def _line(
-    use: PlacedElement, evaluator: Evaluator, demands: _Demands, s: Factored
+    use: PlacedElement, evaluator: ExactEvaluator, demands: _Demands, s: Factored
 ) -> tuple[Medium, Factored]:
     element = use.element
     if not isinstance(element, LineElement):
@@ -329,7 +329,7 @@ def _line(
     return demands.medium(use.name, system, use.span), values[element.length]
 
 
-def _solution(field: Field, evaluator: Evaluator, demands: _Demands) -> FieldSolution:
+def _solution(field: FieldProblem, evaluator: ExactEvaluator, demands: _Demands) -> FieldSolution:
     equations = [read_equation(e, field.unknowns, evaluator) for e in field.equations]
     inputs = tuple(dict.fromkeys(v for e in equations for v in e.loads))
     zero = Factored.number(evaluator.ring, 0)
@@ -426,7 +426,7 @@ def _driven(medium: Medium, length: Factored, propagation: Propagation) -> list[
 
 
 @dataclass(frozen=True, eq=False)
-class Link:
+class ChainEnd:
     """The end of an element in terms of its chain.
 
     Parameters
@@ -447,7 +447,7 @@ class Link:
     entries: tuple[tuple[str, str, Factored], ...]
 
 
-def find_links(model: Model, lines: Mapping[str, tuple[FieldSystem, Factored]]) -> tuple[Link, ...]:
+def find_links(model: Model, lines: Mapping[str, tuple[FieldSystem, Factored]]) -> tuple[ChainEnd, ...]:
     """Return the links of all chains, those with the longest lengths first.
 
     Parameters
@@ -496,13 +496,13 @@ def _entries(system: FieldSystem) -> Iterable[Factored]:
     return (entry for row in system.matrix for entry in row)
 
 
-def _links(chain: Sequence[str], lengths: Sequence[Factored], is_driven: Sequence[bool]) -> list[Link]:
+def _links(chain: Sequence[str], lengths: Sequence[Factored], is_driven: Sequence[bool]) -> list[ChainEnd]:
     """Return the links of one chain, the last first."""
     starts = [lengths[0] * 0]
     for length in lengths:
         starts.append(starts[-1] + length)
     return [
-        Link(
+        ChainEnd(
             chain[n],
             chain[0],
             starts[n + 1],

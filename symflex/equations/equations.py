@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from symflex.algebra import Factored, Propagation, Ring
     from symflex.expressions import Call
-    from symflex.library.elements import LinearForm, Variable
+    from symflex.library.elements import EquationRow, LinearForm, Variable
     from symflex.library.fields import FieldSystem
     from symflex.model import Model
-
-Role = Literal["balance", "law", "constraint", "signal", "condition"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,20 +22,6 @@ class ConstantFunction:
 
     generator: str
     expression: Call
-
-
-@dataclass(frozen=True, slots=True)
-class EquationRow:
-    """One row ``form = 0``, polynomial but over a sparse ring.
-
-    A node's balance, an element's, constraint's or signal's law, or a field's condition.
-
-    A variable may occur several times in ``form``, once per branch that meets it.
-    """
-
-    about: Variable
-    role: Role
-    form: LinearForm
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,7 +79,7 @@ class Equations:
     unknowns, inputs : tuple of Variable
         The names of x and u.
     rows : tuple of EquationRow
-        As many as unknowns.
+        As many as unknowns; polynomial but over a sparse ring.
     outputs : tuple of OutputRow
         The names of y and their forms.
     propagation : Propagation or None

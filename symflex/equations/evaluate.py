@@ -34,7 +34,7 @@ from symflex.library.elements import LinearForm, Variable
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping
 
-    from symflex.model import Scope
+    from symflex.model import ModelScope
 
 
 OPENED_PARTS = 1_000
@@ -42,14 +42,14 @@ OPENED_DEPTH = 200
 
 
 @dataclass(frozen=True)
-class Evaluator:
+class ExactEvaluator:
     """Evaluates the expressions of one model.
 
     Parameters
     ----------
     ring : Ring
         Generators: s, parameters, definitions, pi and elementary functions of constants.
-    scope : Scope
+    scope : ModelScope
         What names mean.
     blocks : mapping of str to Factored
         The blocks' transfer functions.
@@ -66,7 +66,7 @@ class Evaluator:
     """
 
     ring: Ring
-    scope: Scope
+    scope: ModelScope
     blocks: Mapping[str, Factored]
     through: Mapping[Variable, LinearForm]
     definitions: Mapping[str, Expression]
@@ -324,7 +324,7 @@ def _product(
     return left * right
 
 
-def written_denominator(expression: Expression, evaluator: Evaluator) -> Factored:
+def written_denominator(expression: Expression, evaluator: ExactEvaluator) -> Factored:
     """Return the denominator in s of an expression before anything cancels.
 
     A product of blocks has the poles of every factor, also where a zero of the next one cancels them; a sum
@@ -334,7 +334,7 @@ def written_denominator(expression: Expression, evaluator: Evaluator) -> Factore
     ----------
     expression : Expression
         As written; it has been evaluated without error before.
-    evaluator : Evaluator
+    evaluator : ExactEvaluator
         For blocks and constant parts.
     """
     one = Factored.number(evaluator.ring, 1)

@@ -30,7 +30,7 @@ SMALLEST_EXPONENT = -200
 SMALLEST_PLAIN_EXPONENT = -4
 
 
-class _Place(Enum):
+class _Position(Enum):
     """Where a subtree is printed, which decides whether it needs parentheses."""
 
     ALONE = "the whole text, or between parentheses"
@@ -41,14 +41,14 @@ class _Place(Enum):
 
 
 # Tuples: so few places are found sooner by identity than by their hashes.
-_BARE_SUM = (_Place.ALONE,)
-_BARE_NEGATIVE = (_Place.ALONE, _Place.TERM, _Place.FACTOR)
-_BARE_PRODUCT = (_Place.ALONE, _Place.TERM, _Place.LEAD)
-_BARE_POWER = tuple(place for place in _Place if place is not _Place.BASE)
-_BARE_LEAF = tuple(_Place)
+_BARE_SUM = (_Position.ALONE,)
+_BARE_NEGATIVE = (_Position.ALONE, _Position.TERM, _Position.FACTOR)
+_BARE_PRODUCT = (_Position.ALONE, _Position.TERM, _Position.LEAD)
+_BARE_POWER = tuple(place for place in _Position if place is not _Position.BASE)
+_BARE_LEAF = tuple(_Position)
 
 # Work still to do, last piece first: finished text, or a subtree and its place.
-_Work = list["str | tuple[Expression, _Place]"]
+_Work = list["str | tuple[Expression, _Position]"]
 
 
 def format_expression(expression: Expression, *, multiply: str = "*", power: str = "^") -> str:
@@ -85,7 +85,7 @@ def format_expression(expression: Expression, *, multiply: str = "*", power: str
     '(1/3)**s'
     """
     pieces: list[str] = []
-    work: _Work = [(expression, _Place.ALONE)]
+    work: _Work = [(expression, _Position.ALONE)]
     while work:
         item = work.pop()
         if isinstance(item, str):
@@ -99,7 +99,9 @@ def format_expression(expression: Expression, *, multiply: str = "*", power: str
     return "".join(pieces)
 
 
-def _parts(node: Expression, place: _Place, multiply: str, power: str) -> tuple[_Work, tuple[_Place, ...]]:
+def _parts(
+    node: Expression, place: _Position, multiply: str, power: str
+) -> tuple[_Work, tuple[_Position, ...]]:
     """Return the pieces a node prints as, and the places where they need no parentheses."""
     match node:
         case Number(value=value):
@@ -108,28 +110,28 @@ def _parts(node: Expression, place: _Place, multiply: str, power: str) -> tuple[
         case Name() | Attribute() | Derivative():
             return [_leaf_text(node)], _BARE_LEAF
         case Call(name=name, argument=argument, order=order):
-            return [name + "'" * order + "(", (argument, _Place.ALONE), ")"], _BARE_LEAF
+            return [name + "'" * order + "(", (argument, _Position.ALONE), ")"], _BARE_LEAF
         case Negative(operand=operand):
             # A sign before a product is the whole product's, a sign inside one its next factor's alone.
-            within = _Place.FACTOR if place is _Place.FACTOR else _Place.TERM
+            within = _Position.FACTOR if place is _Position.FACTOR else _Position.TERM
             return ["-", (operand, within)], _BARE_NEGATIVE
         case Power(base=Name(name=name), exponent=Number(value=value)) if (
             value.denominator == 1 and value >= 0
         ):
             return [f"{name}{power}{number_text(value)}"], _BARE_POWER
         case Power(base=base, exponent=exponent):
-            return [(base, _Place.BASE), power, (exponent, _Place.FACTOR)], _BARE_POWER
+            return [(base, _Position.BASE), power, (exponent, _Position.FACTOR)], _BARE_POWER
         case Quotient(numerator=numerator, denominator=denominator):
-            return [(numerator, _Place.LEAD), "/", (denominator, _Place.FACTOR)], _BARE_PRODUCT
+            return [(numerator, _Position.LEAD), "/", (denominator, _Position.FACTOR)], _BARE_PRODUCT
         case Product(factors=factors):
-            parts: _Work = [(factors[0], _Place.LEAD)]
+            parts: _Work = [(factors[0], _Position.LEAD)]
             for factor in factors[1:]:
-                parts += [multiply, factor.name if isinstance(factor, Name) else (factor, _Place.FACTOR)]
+                parts += [multiply, factor.name if isinstance(factor, Name) else (factor, _Position.FACTOR)]
             return parts, _BARE_PRODUCT
         case Sum(terms=terms):
             return _sum_parts(terms), _BARE_SUM
         case Equation(left=left, right=right):
-            return [(left, _Place.ALONE), " = ", (right, _Place.ALONE)], _BARE_SUM
+            return [(left, _Position.ALONE), " = ", (right, _Position.ALONE)], _BARE_SUM
         case _:
             raise TypeError(f"no text for {type(node).__name__}")
 
@@ -145,13 +147,13 @@ def _leaf_text(leaf: Name | Attribute | Derivative) -> str:
 
 
 def _sum_parts(terms: tuple[Expression, ...]) -> _Work:
-    parts: _Work = [(terms[0], _Place.TERM)]
+    parts: _Work = [(terms[0], _Position.TERM)]
     for written in terms[1:]:
         term = _unsigned(written)
         if isinstance(term, Negative):
-            parts += [" - ", (term.operand, _Place.TERM)]
+            parts += [" - ", (term.operand, _Position.TERM)]
         else:
-            parts += [" + ", (term, _Place.TERM)]
+            parts += [" + ", (term, _Position.TERM)]
     return parts
 
 

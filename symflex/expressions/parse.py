@@ -152,7 +152,7 @@ class _Piece(NamedTuple):
 
 
 @v_args(inline=True)
-class _Builder(Transformer[Token, _Piece]):
+class _TreeBuilder(Transformer[Token, _Piece]):
     """The parser's callbacks, one for each rule of the grammar; they hold no state."""
 
     def equation(self, left: _Piece, _equal: Token, right: _Piece) -> _Piece:
@@ -333,7 +333,7 @@ def _extent(token: Token) -> tuple[int, int]:
 @cache
 def _grammar() -> Lark:
     grammar = files("symflex.expressions").joinpath("grammar.lark").read_text(encoding="utf-8")
-    return Lark(grammar, parser="lalr", lexer="basic", start=["sum", "equation"], transformer=_Builder())
+    return Lark(grammar, parser="lalr", lexer="basic", start=["sum", "equation"], transformer=_TreeBuilder())
 
 
 def _read(text: Text, limits: Limits, start: str) -> _Piece:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
-    from symflex.model import ExactValue, Parameter
+    from symflex.model import ExactValue, ModelParameter
     from symflex.transfer import BoundTransferFunction, Given, TransferFunction
 
 TRIALS = ("1", "2", "0.37")
@@ -65,7 +65,7 @@ class Loop:
     ----------
     bound : BoundTransferFunction
         Carries the ring, the constants and the kernels; its gain has any value.
-    gain : Parameter
+    gain : ModelParameter
         K.
     nominal : Fraction or None
         The gain's value, where it is a rational number.
@@ -74,7 +74,7 @@ class Loop:
     """
 
     bound: BoundTransferFunction
-    gain: Parameter
+    gain: ModelParameter
     nominal: Fraction | None
     factors: tuple[GainPolynomial, ...]
 
@@ -86,7 +86,7 @@ class Loop:
 
 def characteristic_loop(
     tf: TransferFunction,
-    gain: Parameter,
+    gain: ModelParameter,
     values: Mapping[str, Given] | None = None,
 ) -> Loop:
     """Return the characteristic function of the model a transfer function is of.
@@ -95,7 +95,7 @@ def characteristic_loop(
     ----------
     tf : TransferFunction
         Any of the model's, with the gain as a symbol.
-    gain : Parameter
+    gain : ModelParameter
         Of the model.
     values : mapping of str to number or quantity, optional
         In place of declared values.
@@ -130,7 +130,7 @@ def _depends(tf: TransferFunction, position: int) -> bool:
     return any(degree_in(f, position) for f in polynomials)
 
 
-def _bound(tf: TransferFunction, gain: Parameter, given: dict[str, Given]) -> BoundTransferFunction:
+def _bound(tf: TransferFunction, gain: ModelParameter, given: dict[str, Given]) -> BoundTransferFunction:
     """Return the function with numbers, the gain with one for which nothing is singular."""
     candidates = [given] if gain.name in given or gain.value is not None else []
     candidates += [{**given, gain.name: trial} for trial in TRIALS]
@@ -156,7 +156,7 @@ def coefficients_of(polynomial: fmpz_mpoly, position: int, tf: TransferFunction)
     return tuple(tf.ratio.ring.context.from_dict(part) for part in parts)
 
 
-def pick_gain(parameters: Sequence[Parameter], name: str) -> Parameter:
+def pick_gain(parameters: Sequence[ModelParameter], name: str) -> ModelParameter:
     """Return a model's parameter by its name.
 
     Raises

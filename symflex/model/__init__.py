@@ -4,14 +4,14 @@ from symflex.model.model import (
     Analysis,
     Definition,
     ExactValue,
-    Field,
+    FieldProblem,
     Figure,
     Input,
     Model,
-    Node,
+    ModelParameter,
+    NetworkNode,
     NodeReference,
     Output,
-    Parameter,
     PlacedBlock,
     PlacedElement,
     Published,
@@ -19,25 +19,25 @@ from symflex.model.model import (
 )
 from symflex.model.ranges import check_value
 from symflex.model.resolve import load_model, load_with, resolve
-from symflex.model.scope import Scope, scope_of
+from symflex.model.scope import ModelScope, scope_of
 from symflex.model.settings import Setting, read_settings, with_numbers
 
 __all__ = [
     "Analysis",
     "Definition",
     "ExactValue",
-    "Field",
+    "FieldProblem",
     "Figure",
     "Input",
     "Model",
-    "Node",
+    "ModelParameter",
+    "ModelScope",
+    "NetworkNode",
     "NodeReference",
     "Output",
-    "Parameter",
     "PlacedBlock",
     "PlacedElement",
     "Published",
-    "Scope",
     "Setting",
     "Signal",
     "check_value",

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from symflex.expressions import Expression
     from symflex.model.model import Model
     from symflex.model.reading import Reader
-    from symflex.model.spec import Entry, Value
+    from symflex.model.spec import KeyValue, Value
     from symflex.quantities import Quantity
 
 FIGURE_KINDS = ("bode", "poles_zeros", "nyquist", "locus", "modes", "step")
@@ -42,7 +42,7 @@ def read_analysis(reader: Reader, section: TableValue | None) -> Analysis:
     )
 
 
-def _band(reader: Reader, entry: Entry) -> tuple[Fraction, Fraction] | None:
+def _band(reader: Reader, entry: KeyValue) -> tuple[Fraction, Fraction] | None:
     value = entry.value
     if not isinstance(value, ArrayValue) or len(value.items) != 2:  # noqa: PLR2004
         hint = 'for instance ["0.1 Hz", "1 kHz"]'
@@ -173,7 +173,7 @@ def _gain(reader: Reader, table: TableValue, kind: str, what: str, model: Model)
     return text.value
 
 
-def _kind(reader: Reader, table: TableValue, entry: Entry, what: str) -> str:
+def _kind(reader: Reader, table: TableValue, entry: KeyValue, what: str) -> str:
     kinds = "kinds: " + ", ".join(FIGURE_KINDS)
     found = table.get("kind")
     if found is None:

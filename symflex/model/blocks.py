@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from symflex.model.model import Model
     from symflex.model.reading import Reader
     from symflex.model.settings import Setting
-    from symflex.model.spec import Entry, TableValue, Value
+    from symflex.model.spec import KeyValue, TableValue, Value
 
 NESTING_LIMIT = 8
 DECLARATION = "symflex"
@@ -95,7 +95,7 @@ def read_blocks(reader: Reader, section: TableValue | None, origin: Origin) -> t
     return tuple(b for b in found if b is not None)
 
 
-def _read_block(reader: Reader, entry: Entry, origin: Origin) -> PlacedBlock | None:
+def _read_block(reader: Reader, entry: KeyValue, origin: Origin) -> PlacedBlock | None:
     what = f"block '{entry.key}'"
     if not reader.name(entry, "a block", RESERVED):
         return None
@@ -122,7 +122,7 @@ def _read_block(reader: Reader, entry: Entry, origin: Origin) -> PlacedBlock | N
 
 
 def _read_values(
-    reader: Reader, entry: Entry, table: TableValue, block: Block
+    reader: Reader, entry: KeyValue, table: TableValue, block: Block
 ) -> tuple[tuple[str, Expression], ...] | None:
     reader.keys(
         table, ("type", "doc", *(p.name for p in block.parameters)), f"{block.type_name} '{entry.key}'"
@@ -173,7 +173,9 @@ def _value(reader: Reader, value: Value, where: str, *, coefficients: bool) -> E
     return sum_of(terms) if len(terms) == len(parts) else None
 
 
-def _read_model_block(reader: Reader, entry: Entry, table: TableValue, origin: Origin) -> PlacedBlock | None:
+def _read_model_block(
+    reader: Reader, entry: KeyValue, table: TableValue, origin: Origin
+) -> PlacedBlock | None:
     what = f"block '{entry.key}'"
     reader.keys(table, ("type", "spec", "tf", "doc"), what)
     missing = [key for key in ("spec", "tf") if table.get(key) is None]

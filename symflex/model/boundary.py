@@ -34,10 +34,10 @@ if TYPE_CHECKING:
     from symflex.errors import Span
     from symflex.expressions import Equation, Expression
     from symflex.model.independence import Repetition
-    from symflex.model.model import Definition, Field, PlacedBlock, PlacedElement
+    from symflex.model.model import Definition, FieldProblem, PlacedBlock, PlacedElement
     from symflex.model.points import Line
     from symflex.model.reading import Reader
-    from symflex.model.scope import Scope
+    from symflex.model.scope import ModelScope
 
 ORDER_LIMIT = 12
 SHOWN_NAMES = 6
@@ -49,7 +49,7 @@ class Surroundings:
 
     Parameters
     ----------
-    scope : Scope
+    scope : ModelScope
         What names mean.
     definitions : mapping of str to Expression
         Each uses only earlier ones.
@@ -59,7 +59,7 @@ class Surroundings:
         Where points lie.
     """
 
-    scope: Scope
+    scope: ModelScope
     definitions: Mapping[str, Expression]
     varying: frozenset[str]
     line: Line
@@ -69,7 +69,7 @@ class Surroundings:
 class _Condition:
     """A condition with its field, and the fields and places whose values it holds."""
 
-    field: Field
+    field: FieldProblem
     equation: Equation
     calls: tuple[Call, ...]
 
@@ -88,7 +88,7 @@ def depends_on_s(expression: Expression, varying: frozenset[str]) -> bool:
     return any(isinstance(n, Name) and (n.name == LAPLACE or n.name in varying) for n in names(expression))
 
 
-def check_fields(reader: Reader, fields: Sequence[Field], around: Surroundings) -> frozenset[str]:
+def check_fields(reader: Reader, fields: Sequence[FieldProblem], around: Surroundings) -> frozenset[str]:
     """Note everything wrong with the fields apart from units and from points (:func:`check_points`).
 
     Returns
@@ -146,7 +146,7 @@ class Stretch:
     end: Expression
 
 
-def stretches(fields: Sequence[Field], elements: Sequence[PlacedElement]) -> tuple[Stretch, ...]:
+def stretches(fields: Sequence[FieldProblem], elements: Sequence[PlacedElement]) -> tuple[Stretch, ...]:
     """Return the stretches of a model; of elements, x runs from 0 at the first end."""
     found = [Stretch(f"the domain of field '{f.name}'", f.unknowns, f.start, f.end) for f in fields]
     for use in elements:
@@ -191,7 +191,7 @@ def check_points(
             inside.add((stretch.what, place))
 
 
-def _values_at_points(expression: Expression, scope: Scope) -> Iterator[Call]:
+def _values_at_points(expression: Expression, scope: ModelScope) -> Iterator[Call]:
     yield from (n for n in names(expression) if isinstance(n, Call) and n.name in scope.unknowns)
 
 
@@ -212,7 +212,7 @@ def _named(place: Expression, line: Line) -> str:
     return f"'{text}'" if value is None or shown == text else f"'{text}' ({shown})"
 
 
-def _check_domain(reader: Reader, field: Field, around: Surroundings) -> bool:
+def _check_domain(reader: Reader, field: FieldProblem, around: Surroundings) -> bool:
     good = True
     for end in (field.start, field.end):
         if isinstance(end, QuantityLiteral):
@@ -233,7 +233,9 @@ def _check_domain(reader: Reader, field: Field, around: Surroundings) -> bool:
     return good
 
 
-def _check_equations(reader: Reader, field: Field, around: Surroundings, point: RandomPoint) -> int | None:
+def _check_equations(
+    reader: Reader, field: FieldProblem, around: Surroundings, point: RandomPoint
+) -> int | None:
     """Return the order in x of a field's equations, ``None`` when something is wrong with them."""
     inside = around.scope.within(field.unknowns)
     problems = [p for e in field.equations for p in check_equation(e, inside)]
@@ -273,7 +275,7 @@ def _check_equations(reader: Reader, field: Field, around: Surroundings, point: 
     return order
 
 
-def _repeat(reader: Reader, field: Field, point: RandomPoint) -> bool:
+def _repeat(reader: Reader, field: FieldProblem, point: RandomPoint) -> bool:
     """Note equations that repeat or contradict earlier ones, and tell whether there are any."""
     along = point.within(field.unknowns)
     try:
@@ -326,7 +328,7 @@ def _can_be_solved(found: Sequence[Mapping[str, int]], highest: Mapping[str, int
 
 def _check_counts(
     reader: Reader,
-    fields: Sequence[Field],
+    fields: Sequence[FieldProblem],
     orders: Mapping[str, int],
     conditions: Sequence[_Condition],
     point: RandomPoint,
@@ -355,7 +357,7 @@ def _joined(group_names: Sequence[str], links: Sequence[set[str]]) -> list[set[s
 
 def _check_group(
     reader: Reader,
-    members: Sequence[Field],
+    members: Sequence[FieldProblem],
     orders: Mapping[str, int],
     conditions: Sequence[_Condition],
     point: RandomPoint,
@@ -364,7 +366,7 @@ def _check_group(
     repeated = repetitions([point.condition(c.equation) for c in conditions])
     dropped = {r.condition for r in repeated}
     kept = [c for i, c in enumerate(conditions) if i not in dropped]
-    places = _Places(members, orders, kept, point)
+    places = _PlaceCounts(members, orders, kept, point)
     missing = order - len(kept)
     for repetition in repeated:
         message = _repetition_message("condition", repetition, [c.equation for c in conditions])
@@ -396,7 +398,7 @@ def _text(equation: Equation) -> str:
     return equation.span.text if equation.span else format_expression(equation)
 
 
-class _Places:
+class _PlaceCounts:
     """How many conditions stand at each place along x, and how many are usual there.
 
     An end of a field of even order usually has half as many; where fields are joined, the ends add up.
@@ -404,7 +406,7 @@ class _Places:
 
     def __init__(
         self,
-        members: Sequence[Field],
+        members: Sequence[FieldProblem],
         orders: Mapping[str, int],
         conditions: Sequence[_Condition],
         point: RandomPoint,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, cast
 from symflex.errors import Diagnostic, SpecError, Text
 from symflex.expressions import Expression, Name, names
 from symflex.model.labels import check_label
-from symflex.model.model import ONE, Assumption, Definition, ExactValue, Parameter
+from symflex.model.model import ONE, Assumption, Definition, ExactValue, ModelParameter
 from symflex.model.reading import Reader
 from symflex.model.scope import RESERVED
 from symflex.model.spec import NumberValue, StringValue, TableValue
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symflex.errors import Span
-    from symflex.model.spec import Entry
+    from symflex.model.spec import KeyValue
 
 SHOWN_CIRCLE = 8
 ASSUMPTIONS = ("positive", "nonnegative", "real")
 PARAMETER_KEYS = ("value", "unit", "doc", "latex", "assume")
 
 
-class Reading(Enum):
+class CycleReading(Enum):
     """How the cycles in a parameter's unit are meant where it is used.
 
     ``CYCLES``: as they are. ``TURNED``: as they are, and 2 pi stands beside the name wherever it is used.
@@ -59,19 +59,21 @@ class DeclaredParameter:
             return one_of(self.unit_text) if self.unit_text else None
         return self.quantity if self.has_unit else None
 
-    def resolve(self, reading: Reading, implied_unit: str) -> Parameter:
+    def resolve(self, reading: CycleReading, implied_unit: str) -> ModelParameter:
         """Return the parameter in SI units, in cycles or in radians as it was read."""
         value, unit, measured = None, implied_unit, self.measured
         if self.quantity is not None:
-            is_converted = reading is Reading.CONVERTED
+            is_converted = reading is CycleReading.CONVERTED
             value = ExactValue(*(self.quantity.angular() if is_converted else self.quantity.cyclic()))
-        if measured is not None and (self.quantity is None or reading is Reading.TURNED or not implied_unit):
+        if measured is not None and (
+            self.quantity is None or reading is CycleReading.TURNED or not implied_unit
+        ):
             unit = _unit_text(measured, reading)
-        cycles = measured.cycles if measured is not None and reading is not Reading.CONVERTED else 0
+        cycles = measured.cycles if measured is not None and reading is not CycleReading.CONVERTED else 0
         written = self.quantity.unit if self.quantity is not None else self.unit_text
         if measured is not None and measured.cycles != cycles:
             written = ""
-        return Parameter(
+        return ModelParameter(
             self.name,
             value,
             unit,
@@ -99,14 +101,14 @@ def _scale(written: str) -> ExactValue:
     return ExactValue(unit.scale, unit.pi_power)
 
 
-def _unit_text(quantity: Quantity, reading: Reading) -> str:
+def _unit_text(quantity: Quantity, reading: CycleReading) -> str:
     """Return the SI unit, with rad or rev where the declared unit turned."""
     turns, turn, text = quantity.radians, "rad", str(quantity.dimension)
-    if reading is Reading.CONVERTED:
+    if reading is CycleReading.CONVERTED:
         turns += quantity.cycles
     elif (quantity.cycles, text) == (1, "1/s"):
         return "Hz"
-    elif reading is Reading.TURNED:
+    elif reading is CycleReading.TURNED:
         turns, turn = quantity.cycles, "rev"
     if abs(turns) > 1 and turn == "rev":
         turn = f"{turn}^{abs(turns)}"
@@ -136,7 +138,7 @@ def read_parameters(reader: Reader, section: TableValue | None) -> tuple[Declare
     return tuple(p for p in found if p is not None)
 
 
-def _read_parameter(reader: Reader, entry: Entry) -> DeclaredParameter | None:
+def _read_parameter(reader: Reader, entry: KeyValue) -> DeclaredParameter | None:
     what = f"parameter '{entry.key}'"
     if not reader.name(entry, "a parameter", RESERVED):
         return None
@@ -166,7 +168,7 @@ def _read_parameter(reader: Reader, entry: Entry) -> DeclaredParameter | None:
     )
 
 
-def _quantity(reader: Reader, entry: Entry, what: str) -> tuple[Quantity | None, bool]:
+def _quantity(reader: Reader, entry: KeyValue, what: str) -> tuple[Quantity | None, bool]:
     """Return (quantity, whether a unit was written)."""
     if isinstance(entry.value, NumberValue):
         return Quantity(entry.value.value, 0, 0, DIMENSIONLESS, 0, ""), False
@@ -232,7 +234,7 @@ def _assumption(reader: Reader, table: TableValue | None, what: str) -> Assumpti
     return "positive"
 
 
-def _check_sign(reader: Reader, quantity: Quantity | None, assume: Assumption, entry: Entry) -> None:
+def _check_sign(reader: Reader, quantity: Quantity | None, assume: Assumption, entry: KeyValue) -> None:
     span = entry.value.span
     if isinstance(entry.value, TableValue) and (inner := entry.value.get("value")):
         span = inner.value.span

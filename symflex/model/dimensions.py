@@ -48,7 +48,7 @@ from symflex.expressions import (
     substitute,
 )
 from symflex.library.elements import Variable
-from symflex.model.declarations import Reading
+from symflex.model.declarations import CycleReading
 from symflex.model.linearity import integer_exponent
 from symflex.model.reading import QuantityLiteral
 from symflex.quantities import DIMENSIONLESS, Dimension, unit_of
@@ -57,7 +57,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from symflex.errors import Span
-    from symflex.model.scope import Scope
+    from symflex.model.scope import ModelScope
     from symflex.quantities import Quantity
 
     Solution = tuple[tuple[tuple[Variable, Fraction], ...], Dimension]
@@ -155,7 +155,7 @@ class DimensionSystem:
 
     Parameters
     ----------
-    scope : Scope
+    scope : ModelScope
         The model's names.
     quantities : mapping of str to Quantity or None
         Per parameter, what was declared; ``None`` when without unit.
@@ -169,7 +169,7 @@ class DimensionSystem:
 
     def __init__(
         self,
-        scope: Scope,
+        scope: ModelScope,
         quantities: Mapping[str, Quantity | None],
         definitions: Mapping[str, Expression],
         known: Mapping[Variable, Dimension],
@@ -271,7 +271,7 @@ class DimensionSystem:
         reduced = self._reduce(measure)
         return None if reduced.unknowns or reduced.open else reduced.dimension
 
-    def finish(self) -> Mapping[str, Reading]:
+    def finish(self) -> Mapping[str, CycleReading]:
         """Return how every parameter given in cycles is read; contradictions become problems."""
         angular = {name: uses[0] for name, uses in self._uses.items()}
         for name, uses in self._uses.items():
@@ -290,13 +290,13 @@ class DimensionSystem:
         counted = {name: q for name, q in self._quantities.items() if q is not None and q.cycles}
         return {name: self._reading(name, q, angular.get(name)) for name, q in counted.items()}
 
-    def _reading(self, name: str, quantity: Quantity, use: Use | None) -> Reading:
+    def _reading(self, name: str, quantity: Quantity, use: Use | None) -> CycleReading:
         """Return one parameter's reading; what no use decides is angular."""
         if use is not None and not use.angular:
-            return Reading.CYCLES
+            return CycleReading.CYCLES
         # A pitch in mm/rev at a port in m/rad is converted as mm is to m; a frequency stays what it is.
         is_converted = quantity.cycles < 0 and not any(u.inferred for u in self._uses.get(name, ()))
-        return Reading.CONVERTED if is_converted else Reading.TURNED
+        return CycleReading.CONVERTED if is_converted else CycleReading.TURNED
 
     def _note_contradiction(self, first: str, one: Use, second: str, other: Use) -> None:
         place = f" (line {one.span.line})" if one.span else ""

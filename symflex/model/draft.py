@@ -10,10 +10,10 @@ from symflex.model.declarations import (
 )
 from symflex.model.model import (
     Definition,
-    Field,
-    Node,
+    FieldProblem,
+    ModelParameter,
+    NetworkNode,
     Output,
-    Parameter,
     PlacedBlock,
     Signal,
 )
@@ -23,7 +23,7 @@ from symflex.model.spec import ArrayValue, StringValue, TableValue
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from symflex.model.spec import Entry
+    from symflex.model.spec import KeyValue
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,15 +31,15 @@ class Draft:
     """What was read, before names and units were checked."""
 
     declared: tuple[DeclaredParameter, ...]
-    inherited: tuple[Parameter, ...]
+    inherited: tuple[ModelParameter, ...]
     definitions: tuple[Definition, ...]
-    nodes: tuple[Node, ...]
+    nodes: tuple[NetworkNode, ...]
     elements: tuple[DraftElement, ...]
     inputs: tuple[DraftInput, ...]
     blocks: tuple[PlacedBlock, ...]
     signals: tuple[Signal, ...]
     outputs: tuple[Output, ...]
-    fields: tuple[Field, ...] = ()
+    fields: tuple[FieldProblem, ...] = ()
 
 
 def broken_names(sections: Mapping[str, TableValue | None], draft: Draft) -> frozenset[str]:
@@ -68,7 +68,7 @@ def broken_names(sections: Mapping[str, TableValue | None], draft: Draft) -> fro
     return frozenset(broken)
 
 
-def _listed_names(entries: Iterable[Entry]) -> Iterator[str]:
+def _listed_names(entries: Iterable[KeyValue]) -> Iterator[str]:
     for entry in entries:
         items = entry.value.items if isinstance(entry.value, ArrayValue) else (entry.value,)
         yield from (i.text.value.partition(".")[0] for i in items if isinstance(i, StringValue))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from symflex.errors import SpecError, Text
 from symflex.expressions import FUNCTIONS, Equation, Expression, parse_equation
 from symflex.model.declarations import read_label
-from symflex.model.model import Field
+from symflex.model.model import FieldProblem
 from symflex.model.reading import NAME
 from symflex.model.scope import RESERVED
 from symflex.model.spec import ArrayValue
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection
 
     from symflex.model.reading import Reader
-    from symflex.model.spec import Entry, TableValue
+    from symflex.model.spec import KeyValue, TableValue
 
 FIELD_LIMIT = 100
 UNKNOWN_LIMIT = 12
@@ -26,7 +26,9 @@ KEYS = ("domain", "unknowns", "equation", "equations", "conditions", "latex", "d
 EXAMPLE = """for instance: domain = ["0", "l"], equation = "E*A*u'' = rho*A*s^2*u", conditions = [...]"""
 
 
-def read_fields(reader: Reader, section: TableValue | None, taken: Collection[str]) -> tuple[Field, ...]:
+def read_fields(
+    reader: Reader, section: TableValue | None, taken: Collection[str]
+) -> tuple[FieldProblem, ...]:
     """Return the fields in order.
 
     Parameters
@@ -38,7 +40,7 @@ def read_fields(reader: Reader, section: TableValue | None, taken: Collection[st
     taken : collection of str
         Names of parameters, definitions and blocks, which no unknown may bear.
     """
-    found: list[Field] = []
+    found: list[FieldProblem] = []
     owners: dict[str, str] = {}
     for i, entry in enumerate(section.entries if section else ()):
         if i >= FIELD_LIMIT:
@@ -52,7 +54,9 @@ def read_fields(reader: Reader, section: TableValue | None, taken: Collection[st
     return tuple(found)
 
 
-def _read_field(reader: Reader, entry: Entry, taken: Collection[str], owners: dict[str, str]) -> Field | None:
+def _read_field(
+    reader: Reader, entry: KeyValue, taken: Collection[str], owners: dict[str, str]
+) -> FieldProblem | None:
     what = f"field '{entry.key[:64]}'"
     if not reader.name(entry, "a field"):
         return None
@@ -78,11 +82,11 @@ def _read_field(reader: Reader, entry: Entry, taken: Collection[str], owners: di
             else "each unknown needs an equation",
         )
         return None
-    return Field(entry.key, unknowns, *domain, equations, conditions, entry.key_span, label, doc)
+    return FieldProblem(entry.key, unknowns, *domain, equations, conditions, entry.key_span, label, doc)
 
 
 def _unknowns(
-    reader: Reader, entry: Entry, table: TableValue, taken: Collection[str], owners: dict[str, str]
+    reader: Reader, entry: KeyValue, table: TableValue, taken: Collection[str], owners: dict[str, str]
 ) -> tuple[str, ...] | None:
     """Return the names of the functions of x; ``owners`` keeps which field has which."""
     what, given = f"field '{entry.key}'", table.get("unknowns")
@@ -131,7 +135,7 @@ def _name_problem(
     return None
 
 
-def _domain(reader: Reader, entry: Entry, table: TableValue) -> tuple[Expression, Expression] | None:
+def _domain(reader: Reader, entry: KeyValue, table: TableValue) -> tuple[Expression, Expression] | None:
     what, given = f"domain of field '{entry.key}'", table.get("domain")
     if given is None:
         message = f"field '{entry.key}' has no domain"
@@ -145,7 +149,7 @@ def _domain(reader: Reader, entry: Entry, table: TableValue) -> tuple[Expression
     return None if start is None or end is None else (start, end)
 
 
-def _equations(reader: Reader, entry: Entry, table: TableValue) -> tuple[Equation, ...] | None:
+def _equations(reader: Reader, entry: KeyValue, table: TableValue) -> tuple[Equation, ...] | None:
     what = f"field '{entry.key}'"
     one, many = table.get("equation"), table.get("equations")
     if one is not None and many is not None:
@@ -169,7 +173,7 @@ def _equations(reader: Reader, entry: Entry, table: TableValue) -> tuple[Equatio
     return _parsed(reader, texts)
 
 
-def _conditions(reader: Reader, entry: Entry, table: TableValue) -> tuple[Equation, ...] | None:
+def _conditions(reader: Reader, entry: KeyValue, table: TableValue) -> tuple[Equation, ...] | None:
     given = table.get("conditions")
     if given is None:
         message = f"field '{entry.key}' has no conditions"

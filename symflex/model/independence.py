@@ -28,7 +28,7 @@ from symflex.expressions import (
     Sum,
 )
 from symflex.model.linearity import integer_exponent
-from symflex.model.scope import CONSTANT_KINDS, Scope
+from symflex.model.scope import CONSTANT_KINDS, ModelScope
 from symflex.model.units import lower
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ class Repetition:
 class RandomPoint:
     """Expressions of one model at a random point of a prime field, the same in every run."""
 
-    scope: Scope
+    scope: ModelScope
     definitions: Mapping[str, Expression]
     _opened: dict[str, int] = field(default_factory=dict, repr=False)
 

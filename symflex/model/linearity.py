@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from symflex.errors import Span
-    from symflex.model.scope import Scope
+    from symflex.model.scope import ModelScope
 
 Degree = Literal["constant", "linear", "unknown"]
 """What an expression is in what varies in time; ``unknown`` when it holds a name that means nothing."""
@@ -53,14 +53,14 @@ def integer_exponent(exponent: Expression) -> int | None:
     return None
 
 
-def check_expression(expression: Expression, scope: Scope, *, constant: bool) -> list[Diagnostic]:
+def check_expression(expression: Expression, scope: ModelScope, *, constant: bool) -> list[Diagnostic]:
     """Return everything wrong with an expression apart from its units.
 
     Parameters
     ----------
     expression : Expression
         As parsed.
-    scope : Scope
+    scope : ModelScope
         The model's names.
     constant : bool
         True where no unknown may stand.
@@ -72,15 +72,15 @@ def check_expression(expression: Expression, scope: Scope, *, constant: bool) ->
     return problems
 
 
-def check_equation(equation: Equation, scope: Scope) -> list[Diagnostic]:
+def check_equation(equation: Equation, scope: ModelScope) -> list[Diagnostic]:
     """Return everything wrong with an equation or condition of a field apart from its units.
 
     Parameters
     ----------
     equation : Equation
         As parsed.
-    scope : Scope
-        The model's names; :meth:`Scope.within` the field for one of its equations.
+    scope : ModelScope
+        The model's names; :meth:`ModelScope.within` the field for one of its equations.
     """
     problems: list[Diagnostic] = []
     sides = (equation.left, equation.right)
@@ -99,7 +99,7 @@ def without_signal(span: Span | None) -> Diagnostic:
     )
 
 
-def _degree(expression: Expression, scope: Scope, constant: bool, problems: list[Diagnostic]) -> Degree:
+def _degree(expression: Expression, scope: ModelScope, constant: bool, problems: list[Diagnostic]) -> Degree:
     """Return the degree of an expression; note what is wrong."""
 
     def walk(node: Expression) -> Degree:
@@ -211,7 +211,7 @@ def _power_degree(power: Power, base: Degree, exponent: Expression, problems: li
     return base
 
 
-def _call_degree(call: Call, scope: Scope, constant: bool, problems: list[Diagnostic]) -> Degree:
+def _call_degree(call: Call, scope: ModelScope, constant: bool, problems: list[Diagnostic]) -> Degree:
     owner, dot, _ = call.name.partition(".")
     if owner in scope.broken and call.name not in (*FUNCTIONS, *scope.along):
         return "unknown"
@@ -243,7 +243,7 @@ def _call_degree(call: Call, scope: Scope, constant: bool, problems: list[Diagno
     return inner
 
 
-def _value_degree(call: Call, scope: Scope, constant: bool, problems: list[Diagnostic]) -> Degree:
+def _value_degree(call: Call, scope: ModelScope, constant: bool, problems: list[Diagnostic]) -> Degree:
     """Return the degree of a field at a point."""
     written = f"{call.name}{chr(39) * call.order}(...)"
     if scope.inside:
@@ -263,7 +263,7 @@ def _value_degree(call: Call, scope: Scope, constant: bool, problems: list[Diagn
     return "linear"
 
 
-def _derivative_degree(derivative: Derivative, scope: Scope, problems: list[Diagnostic]) -> Degree:
+def _derivative_degree(derivative: Derivative, scope: ModelScope, problems: list[Diagnostic]) -> Degree:
     """Return the degree of a field differentiated along x and not evaluated."""
     name, span = derivative.name, derivative.span
     if name in scope.inside:
@@ -288,7 +288,7 @@ def _derivative(span: Span | None) -> Diagnostic:
     return Diagnostic("SF223", message, span, "a derivative in time is written with s: s*x")
 
 
-def _not_along(call: Call, scope: Scope) -> Diagnostic:
+def _not_along(call: Call, scope: ModelScope) -> Diagnostic:
     """Return the diagnostic of ``owner.name(...)`` where that is no quantity along x."""
     owner, _, name = call.name.partition(".")
     offered = [each for each in scope.along if each.partition(".")[0] == owner]
@@ -303,7 +303,7 @@ def _not_along(call: Call, scope: Scope) -> Diagnostic:
     return Diagnostic("SF210", f"no element along x is called '{owner}'", call.span, hints)
 
 
-def _unknown_function(call: Call, scope: Scope) -> Diagnostic:
+def _unknown_function(call: Call, scope: ModelScope) -> Diagnostic:
     meanings = scope.meanings.get(call.name)
     if meanings:
         message = f"'{call.name}' is {meanings[0].described}, not a function"

@@ -35,7 +35,7 @@ ONE: Final = ExactValue(Fraction(1))
 
 
 @dataclass(frozen=True, slots=True)
-class Parameter:
+class ModelParameter:
     """A named constant.
 
     Parameters
@@ -74,7 +74,7 @@ class Parameter:
 
         Examples
         --------
-        >>> E = Parameter("E", ExactValue(Fraction(70 * 10**9)), "Pa", written_unit="GPa",
+        >>> E = ModelParameter("E", ExactValue(Fraction(70 * 10**9)), "Pa", written_unit="GPa",
         ...               scale=ExactValue(Fraction(10**9)))
         >>> E.as_written()
         (ExactValue(rational=Fraction(70, 1), pi_power=0), 'GPa')
@@ -99,7 +99,7 @@ class Definition:
 
 
 @dataclass(frozen=True, slots=True)
-class Node:
+class NetworkNode:
     """A place where elements meet."""
 
     name: str
@@ -140,7 +140,7 @@ class PlacedElement:
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class FieldProblem:
     """A boundary-value problem along x, Laplace-transformed in time.
 
     Parameters
@@ -273,13 +273,13 @@ class Model:
         By :func:`symflex.model.resolve`, with every problem of the text at once.
     """
 
-    parameters: tuple[Parameter, ...] = ()
+    parameters: tuple[ModelParameter, ...] = ()
     definitions: tuple[Definition, ...] = ()
-    nodes: tuple[Node, ...] = ()
+    nodes: tuple[NetworkNode, ...] = ()
     elements: tuple[PlacedElement, ...] = ()
     signals: tuple[Signal, ...] = ()
     blocks: tuple[PlacedBlock, ...] = ()
-    fields: tuple[Field, ...] = ()
+    fields: tuple[FieldProblem, ...] = ()
     inputs: tuple[Input, ...] = ()
     outputs: tuple[Output, ...] = ()
     title: str = ""

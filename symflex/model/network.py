@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from symflex.errors import Span, Text
     from symflex.expressions import Expression
     from symflex.library.elements.element import PortDomain
-    from symflex.model.spec import Entry, TableValue
+    from symflex.model.spec import KeyValue, TableValue
     from symflex.quantities import Dimension
 
 TYPES_HINT = "'symflex elements' lists the types"
@@ -88,7 +88,7 @@ class NetworkReader:
             if element is not None:
                 self.elements.append(element)
 
-    def _read_element(self, entry: Entry) -> DraftElement | None:
+    def _read_element(self, entry: KeyValue) -> DraftElement | None:
         reader, what = self.reader, f"element '{entry.key}'"
         if not reader.name(entry, "an element"):
             return None
@@ -114,7 +114,7 @@ class NetworkReader:
         return DraftElement(entry.key, element, attached, values or (), entry.key_span, choices or ())
 
     def _choices(
-        self, table: TableValue, entry: Entry, element: Element
+        self, table: TableValue, entry: KeyValue, element: Element
     ) -> tuple[tuple[str, str], ...] | None:
         """Return what was chosen for every choice; ``None`` when a word is unknown."""
         found: list[tuple[str, str]] = []
@@ -134,7 +134,7 @@ class NetworkReader:
         return tuple(found) if len(found) == len(element.choices) else None
 
     def _values(
-        self, table: TableValue, entry: Entry, element: Element, choices: Mapping[str, str]
+        self, table: TableValue, entry: KeyValue, element: Element, choices: Mapping[str, str]
     ) -> tuple[tuple[str, Expression], ...] | None:
         """Return an expression for every parameter that goes with the choices; ``None`` when one is wrong."""
         reader, who = self.reader, f"{element.type_name} '{entry.key}'"
@@ -175,7 +175,7 @@ class NetworkReader:
                 given[parameter.name] = expression
         return tuple(given.items()) if complete else None
 
-    def _element_type(self, table: TableValue, entry: Entry) -> Element | None:
+    def _element_type(self, table: TableValue, entry: KeyValue) -> Element | None:
         kind = table.get("type")
         if kind is None:
             self.reader.note(
@@ -195,7 +195,7 @@ class NetworkReader:
         return element
 
     def _references(
-        self, table: TableValue, port: Port, entry: Entry, element: Element
+        self, table: TableValue, port: Port, entry: KeyValue, element: Element
     ) -> tuple[NodeReference, ...] | None:
         what = f"{port.name} of {element.type_name} '{entry.key}'"
         found, wanted = table.get(port.name), port.terminals
@@ -276,7 +276,7 @@ class NetworkReader:
             if found is not None:
                 self.inputs.append(found)
 
-    def _read_input(self, entry: Entry) -> DraftInput | None:
+    def _read_input(self, entry: KeyValue) -> DraftInput | None:
         reader, what = self.reader, f"input '{entry.key}'"
         if not reader.name(entry, "an input", RESERVED):
             return None

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic
 from symflex.library.elements import Variable
-from symflex.model.model import Node
+from symflex.model.model import NetworkNode
 from symflex.quantities import unit_of
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ WORDS = {
 }
 
 
-def infer_nodes(attachments: Sequence[Attachment]) -> tuple[tuple[Node, ...], list[Diagnostic]]:
+def infer_nodes(attachments: Sequence[Attachment]) -> tuple[tuple[NetworkNode, ...], list[Diagnostic]]:
     """Return the nodes in order of appearance, with every contradiction found.
 
     A node touched by a planar element, or named with ``.y`` or ``.theta``, is planar; translational
@@ -88,7 +88,7 @@ def infer_nodes(attachments: Sequence[Attachment]) -> tuple[tuple[Node, ...], li
         first.setdefault(reference.node, attachment)
         claim = "planar" if reference.component else attachment.domain
         claims.setdefault(reference.node, {}).setdefault(claim, attachment)
-    nodes: dict[str, Node] = {}
+    nodes: dict[str, NetworkNode] = {}
     for name, claimed in claims.items():
         span = first[name].reference.span
         definite = [d for d in claimed if d in DOMAINS]
@@ -96,17 +96,19 @@ def infer_nodes(attachments: Sequence[Attachment]) -> tuple[tuple[Node, ...], li
             if "electrical" in claimed:
                 one, other = (d for d in claimed if d in ("planar", "electrical"))
                 problems.append(_contradiction(name, claimed[one], claimed[other]))
-            nodes[name] = Node(name, "planar", span)
+            nodes[name] = NetworkNode(name, "planar", span)
             continue
         for other in definite[1:]:
             problems.append(_contradiction(name, claimed[definite[0]], claimed[other]))
         if definite:
-            nodes[name] = Node(name, definite[0], span)
+            nodes[name] = NetworkNode(name, definite[0], span)
     _spread(attachments, nodes, first)
     return tuple(nodes[name] for name in first), problems
 
 
-def _spread(attachments: Sequence[Attachment], nodes: dict[str, Node], first: dict[str, Attachment]) -> None:
+def _spread(
+    attachments: Sequence[Attachment], nodes: dict[str, NetworkNode], first: dict[str, Attachment]
+) -> None:
     """Give nodes that only couplings touch a domain that suits the ratio's unit (translation at last)."""
     waiting: dict[str, list[int]] = {}
     for i, attachment in enumerate(attachments):
@@ -120,21 +122,21 @@ def _spread(attachments: Sequence[Attachment], nodes: dict[str, Node], first: di
         if coupling is None or name in nodes:
             continue
         domain = coupling.suggested(domain_of(coupling.partner, nodes[coupling.partner.node]))
-        nodes[name] = Node(name, domain, first[name].reference.span)
+        nodes[name] = NetworkNode(name, domain, first[name].reference.span)
         for i in waiting.get(name, ()):
             heappush(ready, i)
     for name, attachment in first.items():
-        nodes.setdefault(name, Node(name, "translation", attachment.reference.span))
+        nodes.setdefault(name, NetworkNode(name, "translation", attachment.reference.span))
 
 
-def domain_of(reference: NodeReference, node: Node) -> Domain:
+def domain_of(reference: NodeReference, node: NetworkNode) -> Domain:
     """Return the domain a one-variable port sees at a node; a bare planar node is its deflection y."""
     if node.domain == "planar":
         return "rotation" if reference.component == "theta" else "translation"
     return node.domain
 
 
-def variable_of(reference: NodeReference, node: Node, domain: PortDomain) -> Variable:
+def variable_of(reference: NodeReference, node: NetworkNode, domain: PortDomain) -> Variable:
     """Return the across variable a port of the given domain acts on."""
     if node.domain != "planar":
         return Variable("node", node.name)

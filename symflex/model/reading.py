@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from symflex.errors import Span, Text
-    from symflex.model.spec import Entry, Value
+    from symflex.model.spec import KeyValue, Value
 
 SHOWN = 40
 MAX_PROBLEMS = 100
@@ -82,7 +82,7 @@ class Reader:
         """Add one problem."""
         self.take((Diagnostic(code, message, span, hint),))
 
-    def table(self, entry: Entry, what: str, hint: str | None = None) -> TableValue | None:
+    def table(self, entry: KeyValue, what: str, hint: str | None = None) -> TableValue | None:
         """Return the entry's table."""
         if isinstance(entry.value, TableValue):
             return entry.value
@@ -97,7 +97,7 @@ class Reader:
                 hint = nearest(entry.key, known) or "known keys: " + ", ".join(known)
                 self.note("SF207", f"unknown key '{entry.key}' in {what}", entry.key_span, hint)
 
-    def name(self, entry: Entry, what: str, reserved: Mapping[str, str] | None = None) -> bool:
+    def name(self, entry: KeyValue, what: str, reserved: Mapping[str, str] | None = None) -> bool:
         """Tell whether the entry's key is a name; ``reserved`` says why some are taken."""
         if not NAME.match(entry.key):
             self.note(
@@ -113,7 +113,7 @@ class Reader:
             return False
         return True
 
-    def string(self, entry: Entry, what: str) -> Text | None:
+    def string(self, entry: KeyValue, what: str) -> Text | None:
         """Return the entry's string."""
         if isinstance(entry.value, StringValue):
             return entry.value.text
@@ -127,7 +127,7 @@ class Reader:
         return text.value if text else ""
 
     def strings(
-        self, entry: Entry, what: str, kind: str = "a string or an array of strings"
+        self, entry: KeyValue, what: str, kind: str = "a string or an array of strings"
     ) -> tuple[Text, ...] | None:
         """Return the entry's array of strings; one string counts as an array of one."""
         value = entry.value

@@ -23,7 +23,7 @@ from symflex.model.boundary import (
     stretches,
     varying_constants,
 )
-from symflex.model.declarations import DeclaredParameter, Reading, read_definitions, read_parameters
+from symflex.model.declarations import CycleReading, DeclaredParameter, read_definitions, read_parameters
 from symflex.model.dimensions import turned_name
 from symflex.model.draft import Draft, broken_names
 from symflex.model.fields import read_fields
@@ -31,9 +31,9 @@ from symflex.model.linearity import check_expression, without_signal
 from symflex.model.model import (
     Definition,
     Model,
-    Node,
+    ModelParameter,
+    NetworkNode,
     Output,
-    Parameter,
     PlacedBlock,
     PlacedElement,
 )
@@ -43,7 +43,7 @@ from symflex.model.points import Line
 from symflex.model.printed import check_printed, readable_names
 from symflex.model.ranges import check_ranges, ranged_values
 from symflex.model.reading import QuantityLiteral, Reader, describe
-from symflex.model.scope import Scope, build_scope
+from symflex.model.scope import ModelScope, build_scope
 from symflex.model.settings import check_names, settled
 from symflex.model.signals import read_outputs, read_signals
 from symflex.model.spec import ArrayValue, TableValue, parse_with_recovery
@@ -330,10 +330,10 @@ def _refuse_twins(
 
 def _inherited_parameters(
     reader: Reader, declared: Sequence[DeclaredParameter], blocks: Sequence[PlacedBlock]
-) -> tuple[Parameter, ...]:
+) -> tuple[ModelParameter, ...]:
     """Return the parameters that ``model`` blocks bring along; an equal name must be equal in value."""
-    own = {p.name: p.resolve(Reading.TURNED, "") for p in declared}
-    found: dict[str, Parameter] = {}
+    own = {p.name: p.resolve(CycleReading.TURNED, "") for p in declared}
+    found: dict[str, ModelParameter] = {}
     bringing: dict[str, str] = {}
     for block in blocks:
         for parameter in block.submodel.parameters if block.submodel else ():
@@ -392,11 +392,11 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model
     _check_points(reader, draft, placed, around, fields_placed)
     implied = implied_units(placed, draft.blocks)
     parameters = [
-        p.resolve(readings.get(p.name, Reading.CYCLES), implied.get(p.name, "")) for p in draft.declared
+        p.resolve(readings.get(p.name, CycleReading.CYCLES), implied.get(p.name, "")) for p in draft.declared
     ]
     units = {v: d for v in measured_variables(draft) if (d := system.dimension(system.variable(v)))}
     cycles = {p.name: p.cycles for p in (*parameters, *draft.inherited)}
-    turned = {n: turned_name(n, cycles[n]) for n, r in readings.items() if r is Reading.TURNED}
+    turned = {n: turned_name(n, cycles[n]) for n, r in readings.items() if r is CycleReading.TURNED}
 
     def whole(expression: Expression, unit: str = "") -> Expression:
         return substitute(lower(expression, unit), turned)
@@ -445,7 +445,7 @@ def _turned(equation: Equation, turned: Mapping[str, Expression]) -> Equation:
     return Equation(left, right, span=equation.span)
 
 
-def _place(draft: DraftElement, nodes: Mapping[str, Node]) -> PlacedElement:
+def _place(draft: DraftElement, nodes: Mapping[str, NetworkNode]) -> PlacedElement:
     domains: list[tuple[str, Placing]] = []
     for port, references in draft.nodes:
         live = next((r for r in references if not r.is_ground), None)
@@ -466,9 +466,9 @@ def _place(draft: DraftElement, nodes: Mapping[str, Node]) -> PlacedElement:
     )
 
 
-def _surroundings(draft: Draft, scope: Scope) -> Surroundings:
+def _surroundings(draft: Draft, scope: ModelScope) -> Surroundings:
     """Return what places along x are made of."""
-    parameters = [p.resolve(Reading.TURNED, "") for p in draft.declared]
+    parameters = [p.resolve(CycleReading.TURNED, "") for p in draft.declared]
     parameters += draft.inherited
     extended = bool(draft.fields) or any(True for _ in ranged_values(draft))
     definitions = {d.name: d.expression for d in draft.definitions} if extended else {}
@@ -528,7 +528,7 @@ def _lengths(draft: Draft) -> Iterator[tuple[str, Expression]]:
                     yield f"{name} of {block.block.type_name} '{block.name}'", expression
 
 
-def _check(expression: Expression, scope: Scope, *, constant: bool) -> list[Diagnostic]:
+def _check(expression: Expression, scope: ModelScope, *, constant: bool) -> list[Diagnostic]:
     if not isinstance(expression, QuantityLiteral):
         return check_expression(expression, scope, constant=constant)
     return [] if constant or not expression.quantity.magnitude else [without_signal(expression.span)]

@@ -16,7 +16,16 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from symflex.errors import Span
-    from symflex.model.model import Definition, Field, Input, Model, Node, PlacedBlock, PlacedElement, Signal
+    from symflex.model.model import (
+        Definition,
+        FieldProblem,
+        Input,
+        Model,
+        NetworkNode,
+        PlacedBlock,
+        PlacedElement,
+        Signal,
+    )
 
 Kind = Literal["laplace", "pi", "parameter", "definition", "block", "variable", "through", "broken"]
 CONSTANT_KINDS: frozenset[Kind] = frozenset({"laplace", "pi", "parameter", "definition", "block", "broken"})
@@ -44,7 +53,7 @@ class Meaning:
 
 
 @dataclass(frozen=True)
-class Scope:
+class ModelScope:
     """All names of one model.
 
     Parameters
@@ -73,7 +82,7 @@ class Scope:
     inside: frozenset[str] = frozenset()
     along: Mapping[str, str] = field(default_factory=dict)
 
-    def within(self, unknowns: Iterable[str]) -> Scope:
+    def within(self, unknowns: Iterable[str]) -> ModelScope:
         """Return the scope of the equations of the field with these unknowns."""
         return replace(self, inside=frozenset(unknowns))
 
@@ -243,14 +252,14 @@ def nearest_name(name: str, known: Sequence[str]) -> str | None:
 def build_scope(
     parameters: Sequence[str],
     definitions: Sequence[Definition],
-    nodes: Sequence[Node],
+    nodes: Sequence[NetworkNode],
     elements: Sequence[PlacedElement],
     signals: Sequence[Signal],
     blocks: Sequence[PlacedBlock],
     inputs: Sequence[Input],
     broken: frozenset[str] = frozenset(),
-    fields: Sequence[Field] = (),
-) -> Scope:
+    fields: Sequence[FieldProblem] = (),
+) -> ModelScope:
     """Return what every name of a model means."""
     meanings: dict[str, list[Meaning]] = {
         "s": [Meaning("laplace", "s", "the Laplace variable")],
@@ -300,7 +309,7 @@ def build_scope(
             kind.quantity,
             Meaning("through", source.name, described, kind.delivered(source.name)),
         )
-    return Scope(
+    return ModelScope(
         {name: tuple(found) for name, found in meanings.items()},
         {name: tuple(found) for name, found in attributes.items()},
         {name: tuple(found) for name, found in owners.items()},
@@ -316,7 +325,7 @@ def build_scope(
     )
 
 
-def scope_of(model: Model) -> Scope:
+def scope_of(model: Model) -> ModelScope:
     """Return what every name of a resolved model means."""
     return build_scope(
         [p.name for p in model.parameters],

@@ -16,7 +16,7 @@ from symflex.model.scope import RESERVED
 from symflex.model.spec import TableValue
 
 if TYPE_CHECKING:
-    from symflex.model.spec import Entry
+    from symflex.model.spec import KeyValue
 
 
 def read_signals(reader: Reader, section: TableValue | None) -> tuple[Signal, ...]:
@@ -41,7 +41,7 @@ def read_outputs(reader: Reader, section: TableValue | None) -> tuple[Output, ..
     return tuple(found)
 
 
-def _read_output(reader: Reader, entry: Entry) -> Output | None:
+def _read_output(reader: Reader, entry: KeyValue) -> Output | None:
     what, value, label = f"output '{entry.key}'", entry.value, ""
     if isinstance(value, TableValue):
         reader.keys(value, ("expr", "latex", "doc"), what)

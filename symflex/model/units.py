@@ -9,21 +9,21 @@ from typing import TYPE_CHECKING
 from symflex.errors import Span
 from symflex.expressions import Expression, Name, names, power, product_of, substitute
 from symflex.library.elements import ACROSS_UNIT, THROUGH_UNIT, LineElement, Variable
-from symflex.model.declarations import DeclaredParameter, Reading
+from symflex.model.declarations import CycleReading, DeclaredParameter
 from symflex.model.dimensions import DimensionSystem, Measure
 from symflex.model.input_kinds import INPUT_KINDS
 from symflex.model.model import (
     Definition,
     ExactValue,
     Input,
+    ModelParameter,
     Output,
-    Parameter,
     PlacedBlock,
     PlacedElement,
     Published,
 )
 from symflex.model.reading import QuantityLiteral, Reader, signed_number
-from symflex.model.scope import Scope, build_scope
+from symflex.model.scope import ModelScope, build_scope
 from symflex.quantities import DIMENSIONLESS, Dimension, Quantity, unit_of
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def check_units(
     reader: Reader,
     draft: Draft,
     placed: Sequence[PlacedElement],
-    scope: Scope,
+    scope: ModelScope,
     unsound: Collection[Span | None],
     fields_placed: Collection[str],
 ) -> DimensionSystem:
@@ -98,7 +98,7 @@ def _check_fields(
 
 
 def declared_quantities(
-    declared: Sequence[DeclaredParameter], inherited: Sequence[Parameter]
+    declared: Sequence[DeclaredParameter], inherited: Sequence[ModelParameter]
 ) -> dict[str, Quantity | None]:
     """Return what every parameter is measured in, ``None`` where no unit was written."""
     found = {p.name: p.measured for p in declared}
@@ -108,7 +108,9 @@ def declared_quantities(
 
 
 def constant_measure(
-    declared: Sequence[DeclaredParameter], inherited: Sequence[Parameter], definitions: Sequence[Definition]
+    declared: Sequence[DeclaredParameter],
+    inherited: Sequence[ModelParameter],
+    definitions: Sequence[Definition],
 ) -> Callable[[Expression], Dimension | None]:
     """Return a function that tells the dimension of an expression of parameters, ``None`` when it is open."""
     quantities = declared_quantities(declared, inherited)
@@ -140,7 +142,7 @@ def printed_in_cycles(published: Published, draft: Draft, turned: Mapping[str, E
         if root is not None:
             system.read(root)
     readings = system.finish()
-    used = {n: e for n, e in turned.items() if readings[n] is not Reading.CYCLES and n not in hidden}
+    used = {n: e for n, e in turned.items() if readings[n] is not CycleReading.CYCLES and n not in hidden}
     return replace(
         published,
         expression=substitute(published.expression, used),
@@ -149,7 +151,7 @@ def printed_in_cycles(published: Published, draft: Draft, turned: Mapping[str, E
     )
 
 
-def _in_si(parameter: Parameter) -> Quantity | None:
+def _in_si(parameter: ModelParameter) -> Quantity | None:
     """Return a quantity of a resolved parameter's unit, ``None`` when it has none."""
     if not parameter.unit:
         return None

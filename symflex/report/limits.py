@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 from symflex import pipeline
 from symflex.algebra import LAPLACE
 from symflex.expressions import Name, product_of
-from symflex.model import Parameter, with_numbers
+from symflex.model import ModelParameter, with_numbers
 from symflex.report.structure import STIFFNESS
 
 if TYPE_CHECKING:
@@ -124,7 +124,7 @@ def _limits(
     if elements == model.elements and blocks == model.blocks:
         return {}
     given = with_numbers(replace(model, elements=elements, blocks=blocks))
-    given = replace(given, parameters=(*given.parameters, Parameter(symbol, None)))
+    given = replace(given, parameters=(*given.parameters, ModelParameter(symbol, None)))
     found = {}
     for tf in pipeline.derive_all(given, model.transfer_functions):
         ring = tf.ratio.ring

@@ -2,6 +2,6 @@
 
 from symflex.state_space.realise import not_rational, realise, realise_quotient
 from symflex.state_space.reduction import minimal
-from symflex.state_space.state_space import Signal, State, StateSpace
+from symflex.state_space.state_space import Channel, State, StateSpace
 
-__all__ = ["Signal", "State", "StateSpace", "minimal", "not_rational", "realise", "realise_quotient"]
+__all__ = ["Channel", "State", "StateSpace", "minimal", "not_rational", "realise", "realise_quotient"]

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from symflex.model import ExactValue
     from symflex.state_space.rounding import Arrays
-    from symflex.state_space.state_space import Signal, StateSpace
+    from symflex.state_space.state_space import Channel, StateSpace
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +54,7 @@ class BoundStateSpace:
         The matrices.
     states : tuple of BoundState
         What the states are.
-    inputs, outputs : tuple of Signal
+    inputs, outputs : tuple of Channel
         Their names and units.
     is_minimal : bool
         Every state is controllable and observable.
@@ -63,8 +63,8 @@ class BoundStateSpace:
     name: str
     arrays: Arrays
     states: tuple[BoundState, ...]
-    inputs: tuple[Signal, ...]
-    outputs: tuple[Signal, ...]
+    inputs: tuple[Channel, ...]
+    outputs: tuple[Channel, ...]
     is_minimal: bool
 
     @property

@@ -33,7 +33,7 @@ from symflex.state_space.popov import (
     combined,
     solve,
 )
-from symflex.state_space.state_space import Combination, Signal, State, StateSpace
+from symflex.state_space.state_space import Channel, Combination, State, StateSpace
 from symflex.transfer.derive import nested_transfer
 
 if TYPE_CHECKING:
@@ -115,14 +115,14 @@ def realise(model: Model, pairs: Sequence[tuple[str, str]]) -> StateSpace:
     return replace(builder.state_space(outputs, inputs), model=model)
 
 
-def _built(model: Model, outputs: Sequence[str], inputs: Sequence[str]) -> _Builder:
+def _built(model: Model, outputs: Sequence[str], inputs: Sequence[str]) -> _Realisation:
     equations = assemble(model, nested_transfer)
     rows = _Rows.of(equations, outputs, inputs)
     shown = {_owner(n) for o in model.outputs if o.name in outputs for n in names(o.expression)}
     solved = solve(rows.rows, _weights(rows, model, shown))
     if solved is None:
         raise explain_singular(equations)
-    return _Builder(model, equations.ring, equations.constants, rows, solved)
+    return _Realisation(model, equations.ring, equations.constants, rows, solved)
 
 
 def realise_quotient(
@@ -163,7 +163,7 @@ def realise_quotient(
     if solved is None:
         message = "a denominator is not zero"
         raise AssertionError(message)
-    return _Builder(model, ring, constants, rows, solved).state_space((output,), (source,))
+    return _Realisation(model, ring, constants, rows, solved).state_space((output,), (source,))
 
 
 def not_rational(what: str) -> ModelError:
@@ -344,7 +344,7 @@ def _weights(rows: _Rows, model: Model, shown: set[str]) -> list[tuple[int, int]
 
 
 @dataclass(frozen=True, eq=False)
-class _Builder:
+class _Realisation:
     model: Model
     ring: Ring
     constants: tuple[ConstantFunction, ...]
@@ -380,8 +380,8 @@ class _Builder:
             self.ring,
             self.constants,
             self._states(keys, direct),
-            tuple(Signal(name, given[name]) for name in inputs),
-            tuple(Signal(name, shown[name]) for name in outputs),
+            tuple(Channel(name, given[name]) for name in inputs),
+            tuple(Channel(name, shown[name]) for name in outputs),
             tuple(a),
             tuple(b),
             tuple(c),

@@ -38,7 +38,7 @@ class State:
 
 
 @dataclass(frozen=True, slots=True)
-class Signal:
+class Channel:
     """An input or output."""
 
     name: str
@@ -69,8 +69,8 @@ class StateSpace:
     ring: Ring
     constants: tuple[ConstantFunction, ...]
     states: tuple[State, ...]
-    inputs: tuple[Signal, ...]
-    outputs: tuple[Signal, ...]
+    inputs: tuple[Channel, ...]
+    outputs: tuple[Channel, ...]
     a: tuple[Vector, ...]
     b: tuple[Vector, ...]
     c: tuple[Vector, ...]

@@ -16,7 +16,7 @@ from symflex.transfer.bind import read_values
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symflex.model import Model, Parameter
+    from symflex.model import Model, ModelParameter
     from symflex.sweep.design import Scale
     from symflex.transfer import Given
 
@@ -28,13 +28,13 @@ COUNT_SHOWN = 20
 
 
 def read_design(
-    parameters: Sequence[Parameter], texts: Sequence[str], draws: int = 0, seed: int = 1
+    parameters: Sequence[ModelParameter], texts: Sequence[str], draws: int = 0, seed: int = 1
 ) -> Design:
     """Return the design that texts say.
 
     Parameters
     ----------
-    parameters : sequence of Parameter
+    parameters : sequence of ModelParameter
         Of the model.
     texts : sequence of str
         ``NAME=LO:HI:lin|log:COUNT`` and ``NAME=V1,V2,...`` are axes of a grid; ``NAME=LO:HI``,
@@ -56,8 +56,8 @@ def read_design(
 
     Examples
     --------
-    >>> from symflex.model import Parameter
-    >>> design = read_design([Parameter("k", None)], ["k=1:100:log:3"])
+    >>> from symflex.model import ModelParameter
+    >>> design = read_design([ModelParameter("k", None)], ["k=1:100:log:3"])
     >>> [str(point[0].rational) for point in design.points]
     ['1', '10', '100']
     """
@@ -68,14 +68,18 @@ def read_design(
 
 
 def design_of(
-    parameters: Sequence[Parameter], over: Mapping[str, str | Sequence[Given]], draws: int = 0, seed: int = 1
+    parameters: Sequence[ModelParameter],
+    over: Mapping[str, str | Sequence[Given]],
+    draws: int = 0,
+    seed: int = 1,
 ) -> Design:
     """Return the design that a mapping says: per parameter a text as for :func:`read_design`, or values.
 
     Examples
     --------
-    >>> from symflex.model import Parameter
-    >>> design_of([Parameter("k", None), Parameter("m", None)], {"k": "1:2:lin:2", "m": [0.5, "3"]}).shape
+    >>> from symflex.model import ModelParameter
+    >>> parameters = [ModelParameter(name, None) for name in ("k", "m")]
+    >>> design_of(parameters, {"k": "1:2:lin:2", "m": [0.5, "3"]}).shape
     (2, 2)
     """
     known = {p.name: p for p in parameters}
@@ -133,7 +137,7 @@ def _design(found: Sequence[Axis | Range], draws: int, seed: int) -> Design:
     return Design(tuple(axes), tuple(ranges), draws, seed)
 
 
-def _read(known: dict[str, Parameter], text: str) -> Axis | Range:
+def _read(known: dict[str, ModelParameter], text: str) -> Axis | Range:
     name, sign, said = text.partition("=")
     name, said = name.strip(), said.strip()
     if not sign or not name or not said:
@@ -156,7 +160,7 @@ def _read(known: dict[str, Parameter], text: str) -> Axis | Range:
     return Axis(name, between(limits, count))
 
 
-def _known(known: dict[str, Parameter], name: str) -> Parameter:
+def _known(known: dict[str, ModelParameter], name: str) -> ModelParameter:
     if name not in known:
         hint = nearest(name, known) or "parameters: " + ", ".join(list(known)[:8])
         raise UsageError(Diagnostic("SF902", f"there is no parameter '{name[:64]}'", None, hint))
@@ -189,7 +193,7 @@ def _count(whole: str, exponent: str | None) -> int:
     return int(whole + int(zeros or 0) * "0")
 
 
-def _about(parameter: Parameter, said: str, text: str) -> Range:
+def _about(parameter: ModelParameter, said: str, text: str) -> Range:
     """Return a range about the declared value: ``5%`` of it, or an amount in its unit."""
     if parameter.value is None:
         message = f"'{parameter.name}' has no declared value to vary about"
@@ -217,7 +221,7 @@ def _about(parameter: Parameter, said: str, text: str) -> Range:
     return _range(parameter, low, high, "lin", text)
 
 
-def _range(parameter: Parameter, low: ExactValue, high: ExactValue, scale: Scale, text: str) -> Range:
+def _range(parameter: ModelParameter, low: ExactValue, high: ExactValue, scale: Scale, text: str) -> Range:
     if low.pi_power != high.pi_power and low.rational and high.rational:
         message = f"the limits of '{parameter.name}' differ by a power of pi"
         raise UsageError(Diagnostic("SF902", message, None, "write both in the same unit"))
@@ -231,7 +235,7 @@ def _range(parameter: Parameter, low: ExactValue, high: ExactValue, scale: Scale
     return Range(parameter.name, low, high, scale)
 
 
-def _value(parameter: Parameter, item: str, text: str) -> ExactValue:
+def _value(parameter: ModelParameter, item: str, text: str) -> ExactValue:
     if not item:
         raise _unreadable(text)
     try:
@@ -242,7 +246,7 @@ def _value(parameter: Parameter, item: str, text: str) -> ExactValue:
         raise UsageError(Diagnostic("SF902", message, None, error.diagnostics[0].hint)) from None
 
 
-def _assumed(parameter: Parameter, given: Given) -> ExactValue:
+def _assumed(parameter: ModelParameter, given: Given) -> ExactValue:
     """Return a value that a specification could declare too.
 
     To leave an effect out, binding takes a zero anywhere; a point of a sweep is a model of its own.

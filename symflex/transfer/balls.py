@@ -150,7 +150,7 @@ Step = tuple[int, tuple[int, ...], int]
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class EvaluationPlan:
     """How to evaluate one polynomial.
 
     Parameters
@@ -178,7 +178,7 @@ class Plan:
         return total
 
 
-def plan(polynomial: fmpz_mpoly) -> Plan:
+def plan(polynomial: fmpz_mpoly) -> EvaluationPlan:
     """Return how to evaluate a polynomial."""
     numbers: dict[tuple[int, int], int] = {}
     steps: list[Step] = []
@@ -191,7 +191,7 @@ def plan(polynomial: fmpz_mpoly) -> Plan:
             kept += 1
         steps.append((kept, powers[kept:], int(coefficient)))
         last = powers
-    return Plan(tuple(numbers), tuple(steps))
+    return EvaluationPlan(tuple(numbers), tuple(steps))
 
 
 FIRST_BITS = 96

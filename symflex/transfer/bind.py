@@ -33,7 +33,7 @@ from symflex.model import ExactValue, with_numbers
 from symflex.quantities import parse_quantity, unit_of
 from symflex.transfer.balls import (
     FIRST_BITS,
-    Plan,
+    EvaluationPlan,
     ball,
     double_value,
     enclosure,
@@ -53,7 +53,7 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
-    from symflex.model import Parameter
+    from symflex.model import ModelParameter
 
 Given = int | float | Fraction | Decimal | str | ExactValue
 """A value as a user gives it; one that was read before stays exact."""
@@ -220,7 +220,7 @@ class BoundTransferFunction:
         return KernelValues(self.ratio.ring.names, self.kernels, constants, self._modal_sums, self._plans)
 
     @cached_property
-    def _plans(self) -> PolynomialMemo[Plan]:
+    def _plans(self) -> PolynomialMemo[EvaluationPlan]:
         return PolynomialMemo(plan)
 
     @cached_property
@@ -294,7 +294,7 @@ def coefficients_in_s(polynomial: fmpz_mpoly, constants: Ring) -> tuple[fmpz_mpo
 
 
 def read_values(
-    parameters: tuple[Parameter, ...], given: Mapping[str, Given]
+    parameters: tuple[ModelParameter, ...], given: Mapping[str, Given]
 ) -> tuple[tuple[str, ExactValue], ...]:
     """Return every parameter's exact value, the given ones instead of the declared ones.
 
@@ -321,7 +321,7 @@ def read_values(
     return tuple((name, value) for name, value in values if value is not None)
 
 
-def _without_value(missing: Sequence[Parameter]) -> Diagnostic:
+def _without_value(missing: Sequence[ModelParameter]) -> Diagnostic:
     """Return one diagnostic for all parameters without a value: a symbolic model may have hundreds."""
     if len(missing) == 1:
         hint = "give it a value here, or to bind() in Python"
@@ -332,7 +332,7 @@ def _without_value(missing: Sequence[Parameter]) -> Diagnostic:
     return Diagnostic("SF229", f"{len(missing)} parameters have no value: {shown}{more}", None, hint)
 
 
-def _check_sign(parameter: Parameter, value: ExactValue | None) -> None:
+def _check_sign(parameter: ModelParameter, value: ExactValue | None) -> None:
     if value is None or parameter.assume == "real":
         return
     # Zero is let through: leaving an effect out is what binding is often for.
@@ -341,7 +341,9 @@ def _check_sign(parameter: Parameter, value: ExactValue | None) -> None:
         raise UsageError(Diagnostic("SF209", message, None, 'say assume = "real" in the model'))
 
 
-def _read_value(parameter: Parameter, given: float | Fraction | Decimal | str | ExactValue) -> ExactValue:
+def _read_value(
+    parameter: ModelParameter, given: float | Fraction | Decimal | str | ExactValue
+) -> ExactValue:
     if isinstance(given, ExactValue):
         return given
     if isinstance(given, str):

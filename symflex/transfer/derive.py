@@ -17,7 +17,7 @@ from symflex.equations.elimination import Determinants, explain_singular
 from symflex.errors import Diagnostic, ModelError
 from symflex.transfer.distributed import KernelReduction, embedded_table
 from symflex.transfer.expansion import Expansion, Opening
-from symflex.transfer.lowest_terms import DeterminantsOnLine, Images, cancel
+from symflex.transfer.lowest_terms import DeterminantsOnLine, LineImages, cancel
 from symflex.transfer.quantity import name_quantity, unit_of_quotient
 from symflex.transfer.transfer_function import ClosedForm, HiddenFactor, TransferFunction
 
@@ -54,14 +54,14 @@ def derive(equations: Equations, output: str, source: str) -> TransferFunction:
 def derive_all(equations: Equations, pairs: Sequence[tuple[str, str]]) -> tuple[TransferFunction, ...]:
     """Return several transfer functions that share one elimination; see :func:`derive`."""
     determinants = Determinants.of(equations)
-    workshop = _Workshop(equations, determinants)
+    workshop = _CramerQuotients(equations, determinants)
     outputs = {row.name: row for row in equations.outputs}
     return tuple(
         workshop.finish(outputs[output], source, determinants.num(output, source)) for output, source in pairs
     )
 
 
-class _Workshop:
+class _CramerQuotients:
     """Reduces one Cramer quotient after the other over the same denominator."""
 
     def __init__(self, equations: Equations, determinants: Determinants) -> None:
@@ -70,7 +70,7 @@ class _Workshop:
         self._closure = determinants.system.closure
         self._den = determinants.den
         self._expansion = Expansion.of(equations)
-        self._images = Images(self._expansion.ring)
+        self._images = LineImages(self._expansion.ring)
         self._opening = Opening(self._closure, self._expansion)
         propagation = equations.propagation
         self._reduction = None if propagation is None else self._kernel_reduction(propagation)

@@ -1,7 +1,7 @@
 """Lowest terms of transfer functions with kernels: common factors cancelled, both parts entire.
 
 Input: numerator and denominator over the ring of wavenumbers and kernels.
-Output: a :class:`Reduced`; what cancelled is kept, as hidden modes.
+Output: a :class:`ReducedQuotient`; what cancelled is kept, as hidden modes.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ WAYS = 12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Reduced:
+class ReducedQuotient:
     """A quotient in lowest terms.
 
     Parameters
@@ -118,7 +118,7 @@ class KernelReduction:
         degrees = factor.degrees()
         return any(int(degrees[self.ring.index[w]]) for w in self.table.wavenumbers)
 
-    def reduce(self, num: Factored, den: Factored, cancelled: Factored) -> Reduced | None:
+    def reduce(self, num: Factored, den: Factored, cancelled: Factored) -> ReducedQuotient | None:
         """Return a quotient in lowest terms, ``None`` when the denominator is zero by the kernels' relations.
 
         Parameters
@@ -140,7 +140,7 @@ class KernelReduction:
             return None
         if above.is_zero:
             one, modes = Factored.number(self.ring, 1), self.normal.reduce_factored(den * cancelled)
-            return Reduced(one * 0, one, self._modes(modes), self.table)
+            return ReducedQuotient(one * 0, one, self._modes(modes), self.table)
         before = self._solved_for(cancelled)
         if self._are_apart(above, below):
             table, quotient, shared = self.table, *self._lowest(above, below, before, self._kernel_content)
@@ -154,7 +154,7 @@ class KernelReduction:
         if table is self.table:
             ratio, modes, table = self._lifted(ratio, modes)
         num, den = self._entire(ratio, table)
-        return Reduced(num, den, modes, table)
+        return ReducedQuotient(num, den, modes, table)
 
     def _lowest(
         self, above: Factored, below: Factored, before: Factored, contents: Split
@@ -211,7 +211,7 @@ class KernelReduction:
             result = result * images**exponent
         return result
 
-    def hidden_where_waves_vanish(self, determinant: Factored, reduced: Reduced) -> Factored:
+    def hidden_where_waves_vanish(self, determinant: Factored, reduced: ReducedQuotient) -> Factored:
         """Return the factors that only the determinant has: rigid-body modes out of sight."""
         result = Factored.number(self.ring, 1)
         if reduced.num.is_zero:

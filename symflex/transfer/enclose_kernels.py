@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.algebra import Dispersion, Factored, Kernel, KernelTable, PolynomialMemo
-    from symflex.transfer.balls import Plan, Value
+    from symflex.transfer.balls import EvaluationPlan, Value
 
 
 SIGNS = (1, -1)
@@ -47,7 +47,7 @@ class KernelValues:
         Enclosures of the constants.
     sums : ModalSums
         Over the same ring.
-    plans : PolynomialMemo of Plan
+    plans : PolynomialMemo of EvaluationPlan
         Shared by all precisions.
     """
 
@@ -55,7 +55,7 @@ class KernelValues:
     table: KernelTable
     constants: Mapping[str, arb]
     sums: ModalSums
-    plans: PolynomialMemo[Plan]
+    plans: PolynomialMemo[EvaluationPlan]
 
     def at(self, s: Value, near: Mapping[str, Value] | None = None) -> dict[str, Value]:
         """Return the values of all generators at ``s`` [rad/s], and characteristic roots without names.

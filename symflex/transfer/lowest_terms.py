@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 def cancel(
-    numerator: Factored, denominator: Factored, images: Images | None = None
+    numerator: Factored, denominator: Factored, images: LineImages | None = None
 ) -> tuple[Factored, Factored]:
     """Return numerator/denominator in lowest terms, and the common factor that was found.
 
@@ -49,7 +49,7 @@ def cancel(
             shared = shared * Factored(ring, Fraction(1), ((factor, min(exponent, other)),))
     above = [(f, e) for f, e in quotient.factors if e > 0]
     below = [(f, -e) for f, e in quotient.factors if e < 0]
-    images = images or Images(ring)
+    images = images or LineImages(ring)
     i, changed = 0, False
     while i < len(above):
         j = 0
@@ -94,7 +94,7 @@ LINE = Ring((LAPLACE,))
 
 
 @dataclass
-class Images:
+class LineImages:
     """The images of polynomials with every generator but s set to an integer, each made once.
 
     Parameters

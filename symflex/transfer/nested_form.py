@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from symflex.equations import ConstantFunction, Equations
-    from symflex.model import ExactValue, Input, Model, Output, Parameter
+    from symflex.model import ExactValue, Input, Model, ModelParameter, Output
 
 CONSTANT_BITS = 256
 
@@ -119,7 +119,7 @@ class NestedTransferFunction:
         return frozenset(self.program.names[operands[i][0]] for i in self.steps if kinds[i] == Step.GENERATOR)
 
     @cached_property
-    def parameters(self) -> tuple[Parameter, ...]:
+    def parameters(self) -> tuple[ModelParameter, ...]:
         """The parameters that occur, in declared order."""
         used = set(self.generators)
         for constant in self.constants:

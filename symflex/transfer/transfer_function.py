@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from symflex.algebra import Factored, Ring
     from symflex.equations import ConstantFunction
     from symflex.equations.elimination import Closure
-    from symflex.model import Input, Model, Output, Parameter
+    from symflex.model import Input, Model, ModelParameter, Output
     from symflex.transfer.expansion import Opening
 
 
@@ -213,7 +213,7 @@ class TransferFunction:
         return f"{self.output.name}/{self.input.name}"
 
     @cached_property
-    def parameters(self) -> tuple[Parameter, ...]:
+    def parameters(self) -> tuple[ModelParameter, ...]:
         """The parameters that occur, in declared order."""
         if self._large is not None:
             return self._parameters_named(self._opened_names(self._large.generators))
@@ -230,11 +230,11 @@ class TransferFunction:
         return ModalSums(self.ratio.ring, self.kernels)
 
     @cached_property
-    def hidden_parameters(self) -> tuple[Parameter, ...]:
+    def hidden_parameters(self) -> tuple[ModelParameter, ...]:
         """The parameters that occur in hidden factors, in declared order."""
         return self._parameters_in([h.polynomial for h in self.hidden])
 
-    def _parameters_in(self, polynomials: Sequence[fmpz_mpoly]) -> tuple[Parameter, ...]:
+    def _parameters_in(self, polynomials: Sequence[fmpz_mpoly]) -> tuple[ModelParameter, ...]:
         return self._parameters_named(self.ring.used_in(polynomials))
 
     def _opened_names(self, found: frozenset[str]) -> set[str]:
@@ -245,7 +245,7 @@ class TransferFunction:
                 used |= value.ring.used_in(f for f, _ in value.factors)
         return used
 
-    def _parameters_named(self, used: Set[str]) -> tuple[Parameter, ...]:
+    def _parameters_named(self, used: Set[str]) -> tuple[ModelParameter, ...]:
         for constant in self.constants:
             if constant.generator in used:
                 used |= {n.name for n in names(constant.expression) if isinstance(n, Name)}

@@ -19,7 +19,7 @@ from symflex.library.elements import (
     ElementUse,
     LinearForm,
     LineElement,
-    Terminal,
+    PortTerminal,
     Variable,
 )
 from symflex.library.fields import FIELDS
@@ -45,9 +45,9 @@ def use_of(element, any_domain="translation"):
             count += 1
             if domains[port.name] == "planar":
                 y, theta = (Variable("node", f"n{count}", c) for c in ("y", "theta"))
-                found.append(Terminal(None, y, theta))
+                found.append(PortTerminal(None, y, theta))
             else:
-                found.append(Terminal(Variable("node", f"n{count}")))
+                found.append(PortTerminal(Variable("node", f"n{count}")))
         terminals[port.name] = tuple(found)
     p = Factored.generator(RING, "p")
     values = {x.name: p + i for i, x in enumerate(element.parameters) if not x.signal}
@@ -266,7 +266,7 @@ def test_a_line_element_at_ground_has_no_across_there(kind):
     element = ELEMENTS[kind]
     use = use_of(element)
     (port,) = use.terminals
-    grounded = replace(use, terminals={port: (Terminal(), use.terminals[port][1])})
+    grounded = replace(use, terminals={port: (PortTerminal(), use.terminals[port][1])})
     stamp = element.stamp(grounded)
     assert not any(str(v).startswith("n1") for row in stamp.rows for v, _ in row.form.terms)
     assert len(stamp.rows) == len(stamp.unknowns)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from symflex.analysis.explanation.coordinates import Coordinates
     from symflex.expressions import Expression
     from symflex.library.elements import Placing, Variable
-    from symflex.model import Field, Input, Model
+    from symflex.model import FieldProblem, Input, Model
 
 HOLD = "hold"
 PAIR = 2
@@ -156,7 +156,7 @@ class ReplacedCondition:
 
     Parameters
     ----------
-    field : Field
+    field : FieldProblem
         As it was.
     number : int
         Which condition holds the input.
@@ -166,7 +166,7 @@ class ReplacedCondition:
         The model with the condition replaced.
     """
 
-    field: Field
+    field: FieldProblem
     number: int
     measured: Call
     constraint: Constraint

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from symflex.algebra import Factored
     from symflex.equations import Equations
     from symflex.expressions import Equation, Expression
-    from symflex.model import Field, Input, Model, NodeReference, Output, PlacedElement
+    from symflex.model import FieldProblem, Input, Model, NodeReference, Output, PlacedElement
 
 
 BENDING = {(True, True): "clamped", (True, False): "pinned", (False, True): "sliding", (False, False): "free"}
@@ -83,7 +83,7 @@ def _end(
     return f"{word} at {reference.node}{with_others}"
 
 
-def ends_of_field(field: Field) -> str:
+def ends_of_field(field: FieldProblem) -> str:
     """Return how both ends of a field of one unknown are held; nothing when no word stands for it.
 
     A force or moment that an input applies leaves the end what it is.

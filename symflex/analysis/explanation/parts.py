@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symflex.algebra import Factored
-    from symflex.equations import EquationRow, Equations
+    from symflex.equations import Equations
+    from symflex.library.elements import EquationRow
     from symflex.model import Model, PlacedElement
 
 SUPPORTS = (Fixed, Pin, Slider)

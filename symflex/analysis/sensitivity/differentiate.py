@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from symflex.algebra import Factored
     from symflex.analysis.sensitivity.sensitivity import Kind, Status
     from symflex.analysis.sensitivity.tangents import Tangents
-    from symflex.model import ExactValue, Parameter
+    from symflex.model import ExactValue, ModelParameter
     from symflex.roots import PoleZeroMap, Root
     from symflex.transfer import TransferFunction
 
@@ -44,7 +44,7 @@ def differentiate(
     tf: TransferFunction,
     values: Mapping[str, ExactValue],
     found: PoleZeroMap,
-    parameters: Sequence[Parameter] | None = None,
+    parameters: Sequence[ModelParameter] | None = None,
     digits: int = 15,
 ) -> tuple[RootDerivative, ...]:
     """Return how poles and zeros move with parameters.
@@ -57,7 +57,7 @@ def differentiate(
         Of all parameters that occur in it.
     found : PoleZeroMap
         Its poles and zeros with these values.
-    parameters : sequence of Parameter, optional
+    parameters : sequence of ModelParameter, optional
         All that occur by default; those that do not are left out.
     digits : int
         Significant digits wanted in each derivative; fewer are certified where that takes too long.

@@ -12,7 +12,7 @@ from symflex.roots.root import GUARD_BITS, decimals
 from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
-    from symflex.model import ExactValue, Parameter
+    from symflex.model import ExactValue, ModelParameter
     from symflex.roots import Root
 
 Kind = Literal["pole", "zero"]
@@ -33,7 +33,7 @@ class RootDerivative:
         Position of the root among the map's poles or zeros.
     root : Root
         The root.
-    parameter : Parameter
+    parameter : ModelParameter
         What varies.
     value : ExactValue
         The parameter's value [its unit].
@@ -49,7 +49,7 @@ class RootDerivative:
     kind: Kind
     index: int
     root: Root
-    parameter: Parameter
+    parameter: ModelParameter
     value: ExactValue
     status: Status
     place: acb

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from symflex.algebra import Dispersion, Factored, Kernel
     from symflex.model import ExactValue
     from symflex.transfer import TransferFunction
-    from symflex.transfer.balls import Plan
+    from symflex.transfer.balls import EvaluationPlan
 
 
 Point = dict[str, acb_series]
@@ -122,7 +122,7 @@ class Tangents:
         return _lifted(prepared.value([_power(point[names[i]], e) for i, e in prepared.powers]))
 
     @cached_property
-    def _plans(self) -> PolynomialMemo[Plan]:
+    def _plans(self) -> PolynomialMemo[EvaluationPlan]:
         return PolynomialMemo(plan)
 
     @cached_property

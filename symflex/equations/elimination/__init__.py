@@ -1,6 +1,12 @@
 """Exact elimination: closed sub-impedances, unit pivots, memoised minors, and singular systems explained."""
 
-from symflex.equations.elimination.closing import ClosedSystem, Closure, Reduced, close, eliminate_unit_pivots
+from symflex.equations.elimination.closing import (
+    ClosedSystem,
+    Closure,
+    ReducedSystem,
+    close,
+    eliminate_unit_pivots,
+)
 from symflex.equations.elimination.determinants import Determinants, Minors, expanded_terms, expansion_order
 from symflex.equations.elimination.singular import explain_singular, is_singular, unreached
 from symflex.equations.elimination.star_mesh import Elimination, eliminate
@@ -13,7 +19,7 @@ __all__ = [
     "Determinants",
     "Elimination",
     "Minors",
-    "Reduced",
+    "ReducedSystem",
     "Step",
     "StraightLine",
     "Workbench",

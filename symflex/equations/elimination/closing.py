@@ -162,7 +162,7 @@ def close(equations: Equations) -> ClosedSystem:
 
 
 @dataclass(frozen=True)
-class Reduced:
+class ReducedSystem:
     """What remains: square rows over ``columns`` (unknowns), borders over the inputs, and the outputs.
 
     ``kept`` are the positions of the remaining rows in the original system.
@@ -176,7 +176,7 @@ class Reduced:
 
 def eliminate_unit_pivots(
     rows: tuple[SparseRow, ...], outputs: tuple[SparseRow, ...], unknowns: int
-) -> Reduced:
+) -> ReducedSystem:
     """Eliminate unknowns by unit pivots, the cheapest first (Markowitz 1957).
 
     Parameters
@@ -188,7 +188,7 @@ def eliminate_unit_pivots(
 
     Returns
     -------
-    Reduced
+    ReducedSystem
         The quotient of bordered determinant and determinant is that of the full system.
     """
     live: dict[int, SparseRow] = {i: dict(r) for i, r in enumerate(rows)}
@@ -217,7 +217,7 @@ def eliminate_unit_pivots(
         columns.discard(c)
         del users[c]
     kept = tuple(sorted(live))
-    return Reduced(tuple(live[i] for i in kept), tuple(goals), tuple(sorted(columns)), kept)
+    return ReducedSystem(tuple(live[i] for i in kept), tuple(goals), tuple(sorted(columns)), kept)
 
 
 def _cheapest(

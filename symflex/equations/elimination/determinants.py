@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 
 from symflex.algebra import LAPLACE, Ring, terms_of
 from symflex.budget import spend
-from symflex.equations.elimination.closing import ClosedSystem, Reduced, close, eliminate_unit_pivots
+from symflex.equations.elimination.closing import ClosedSystem, ReducedSystem, close, eliminate_unit_pivots
 from symflex.equations.elimination.singular import explain_singular
 from symflex.equations.elimination.straight_line import Step
 from symflex.errors import BudgetError, Diagnostic
@@ -48,7 +48,7 @@ class Determinants:
         The system.
     system : ClosedSystem
         The same over the closed ring.
-    reduced : Reduced
+    reduced : ReducedSystem
         What remains of it without unit pivots.
     minors : Minors
         Shared by all determinants.
@@ -58,7 +58,7 @@ class Determinants:
 
     equations: Equations
     system: ClosedSystem
-    reduced: Reduced
+    reduced: ReducedSystem
     minors: Minors
     den: fmpz_mpoly
 

@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from flint import nmod_mat, nmod_poly
 
     from symflex.algebra import Factored, Propagation
-    from symflex.equations import EquationRow, Equations
+    from symflex.equations import Equations
     from symflex.errors import Span
-    from symflex.library.elements import LinearForm, Variable
+    from symflex.library.elements import EquationRow, LinearForm, Variable
     from symflex.model import Model, PlacedElement
 
 

@@ -58,7 +58,7 @@ class Elimination:
 
 
 @dataclass(slots=True)
-class _Row:
+class _NetworkRow:
     """``pivot * x = sum(entries)``: entries are minus the coefficients, each a list of terms to be added.
 
     With ``implicit`` that column's coefficient is not stored: it is the sum of ``ground`` and of the entries
@@ -72,14 +72,14 @@ class _Row:
     load: list[int] = field(default_factory=list)
     is_balance: bool = False
 
-    def copy(self) -> _Row:
+    def copy(self) -> _NetworkRow:
         """Return the row for an elimination of its own, which sets the load."""
         entries = {column: terms.copy() for column, terms in self.entries.items()}
         return replace(self, entries=entries, ground=self.ground.copy())
 
 
 @dataclass(frozen=True, slots=True)
-class _Solved:
+class _SolvedUnknown:
     """``below * x = sum(entries[k] * x_k) + load``."""
 
     column: int
@@ -122,7 +122,7 @@ def _eliminate(equations: Equations, pairs: Sequence[tuple[str, str]]) -> Elimin
     for source in sources:
         wanted = [o for o, i in dict.fromkeys(pairs) if i == source]
         rows = [network.output(outputs[name].form, source) for name in wanted]
-        run = _Run(network, source, is_only=len(sources) == 1)
+        run = _StarMesh(network, source, is_only=len(sources) == 1)
         pivots = tuple(solved.below for solved in run.solved)
         quotients = run.quotients([row for row, _ in rows], [load for _, load in rows])
         for name, (num, den) in zip(wanted, quotients, strict=True):
@@ -145,7 +145,7 @@ class _Network:
     bench: Workbench
     columns: dict[tuple[str, str, str], int]
     classes: list[int]
-    rows: list[tuple[_Row, dict[str, list[int]]]]
+    rows: list[tuple[_NetworkRow, dict[str, list[int]]]]
 
     @staticmethod
     def of(equations: Equations, bench: Workbench) -> _Network:
@@ -166,11 +166,11 @@ class _Network:
 
     def _row(
         self, about: Variable, form: LinearForm, *, is_balance: bool
-    ) -> tuple[_Row, dict[str, list[int]]]:
+    ) -> tuple[_NetworkRow, dict[str, list[int]]]:
         """Return a row, and what inputs contribute to it."""
         bench, columns = self.bench, self.columns
         own = columns[about.kind, about.owner, about.component]
-        row = _Row({}, own, is_balance=is_balance)
+        row = _NetworkRow({}, own, is_balance=is_balance)
         loads: dict[str, list[int]] = {}
         diagonal: list[int] = []
         for variable, coefficient in form.terms:
@@ -190,7 +190,7 @@ class _Network:
             row.implicit, row.ground = own, ground
         return row, loads
 
-    def _ground(self, row: _Row, diagonal: list[int]) -> list[int] | None:
+    def _ground(self, row: _NetworkRow, diagonal: list[int]) -> list[int] | None:
         """Return what joins a node to ground: its own terms but for those of branches to other nodes."""
         left: dict[int, int] = {}
         for step in diagonal:
@@ -224,20 +224,20 @@ class _Network:
         return {c: step for c, step in found.items() if step}, self.bench.add(load)
 
 
-class _Run:
+class _StarMesh:
     """One elimination, for one input."""
 
     def __init__(self, network: _Network, source: str, *, is_only: bool = False) -> None:
         self.network = network
         self.bench = network.bench
-        self.rows: list[_Row | None] = []
+        self.rows: list[_NetworkRow | None] = []
         size = len(network.classes)
         self.users: list[dict[int, None]] = [{} for _ in range(size)]
         self.hidden: list[int] = [0] * size
         """Per column, how many rows hold it implicitly."""
         self.handed: dict[int, dict[int, None]] = {}
         """Per column, the rows other than its own that do."""
-        self.solved: list[_Solved] = []
+        self.solved: list[_SolvedUnknown] = []
         loaded = 0
         for i, (row, loads) in enumerate(network.rows):
             own = row if is_only else row.copy()
@@ -253,7 +253,7 @@ class _Run:
 
     # ------------------------------------------------------------------------------------------- ordering
 
-    def _cost(self, row: _Row) -> int:
+    def _cost(self, row: _NetworkRow) -> int:
         """Return how many entries the elimination of a row can make at most."""
         entries, users, hidden = row.entries, self.users, self.hidden
         own = row.own
@@ -294,7 +294,7 @@ class _Run:
 
     # -------------------------------------------------------------------------------------------- a pivot
 
-    def _pivot(self, i: int, row: _Row) -> list[int]:
+    def _pivot(self, i: int, row: _NetworkRow) -> list[int]:
         """Eliminate an unknown by a row; return the rows that changed."""
         bench, users = self.bench, self.users
         add, classes = bench.add, self.network.classes
@@ -326,10 +326,10 @@ class _Run:
             load = bench.negate(load)
             ground = bench.negate(ground)
         self.rows[i] = None
-        self.solved.append(_Solved(pivot, below, values, load))
+        self.solved.append(_SolvedUnknown(pivot, below, values, load))
         return self._substitute(row, pivot, below, values, ground, load)
 
-    def _chosen(self, row: _Row, values: dict[int, int]) -> int:
+    def _chosen(self, row: _NetworkRow, values: dict[int, int]) -> int:
         """Return the column to eliminate: the row's own, else by a number, else the one used least."""
         if row.own in values:
             return row.own
@@ -343,7 +343,7 @@ class _Run:
         return min(values, key=rank)
 
     def _substitute(
-        self, row: _Row, pivot: int, below: int, values: dict[int, int], ground: int, load: int
+        self, row: _NetworkRow, pivot: int, below: int, values: dict[int, int], ground: int, load: int
     ) -> list[int]:
         bench, users = self.bench, self.users
         classes = self.network.classes
@@ -393,7 +393,7 @@ class _Run:
                 return False
         return True
 
-    def _join(self, j: int, row: _Row, quotient: int, values: dict[int, int]) -> None:
+    def _join(self, j: int, row: _NetworkRow, quotient: int, values: dict[int, int]) -> None:
         multiply = self.bench.multiply
         for column, value in values.items():
             if column != row.implicit:
@@ -409,7 +409,7 @@ class _Run:
                 enter(j, row, other.own, product)
                 enter(k, other, row.own, product)
 
-    def _enter(self, j: int, row: _Row, column: int, product: int) -> None:
+    def _enter(self, j: int, row: _NetworkRow, column: int, product: int) -> None:
         """Add a term to an entry."""
         known = row.entries.get(column)
         if known is None:
@@ -418,7 +418,7 @@ class _Run:
         else:
             known.append(product)
 
-    def _row(self, j: int) -> _Row:
+    def _row(self, j: int) -> _NetworkRow:
         """Return a row that is not eliminated yet."""
         row = self.rows[j]
         if row is None:
@@ -433,7 +433,7 @@ class _Run:
             j for j in dict.fromkeys(candidates) if (row := rows[j]) is not None and row.implicit == column
         ]
 
-    def _unfold(self, j: int, row: _Row, pivot: int, values: dict[int, int]) -> int:
+    def _unfold(self, j: int, row: _NetworkRow, pivot: int, values: dict[int, int]) -> int:
         """Return an implicit entry, and hand its place to another column that the pivot row brings in."""
         bench, classes = self.bench, self.network.classes
         kind = classes[pivot]

@@ -8,11 +8,11 @@ from symflex.library.elements.element import (
     Choice,
     Element,
     ElementUse,
+    EquationRow,
     Injection,
     LinearForm,
     ParameterPort,
     Port,
-    Row,
     Stamp,
 )
 from symflex.library.elements.line import LineElement
@@ -99,7 +99,7 @@ class MasslessBeam(Element):
         )
         return Stamp(
             unknowns=(force, moment),
-            rows=(Row(force, deflection), Row(moment, slope)),
+            rows=(EquationRow(force, deflection), EquationRow(moment, slope)),
             injections=(
                 Injection(b.y, LinearForm.of((force, one))),
                 Injection(b.theta, LinearForm.of((moment, one))),

@@ -9,11 +9,11 @@ from symflex.library.elements.element import (
     THROUGH_NAME,
     Element,
     ElementUse,
+    EquationRow,
     Injection,
     LinearForm,
     ParameterPort,
     Port,
-    Row,
     Stamp,
 )
 
@@ -65,7 +65,7 @@ class Transformer(Element):
         delivered = LinearForm.of((through, denominator))
         return Stamp(
             unknowns=(through,),
-            rows=(Row(through, law, "constraint"),),
+            rows=(EquationRow(through, law, "constraint"),),
             injections=(
                 Injection(target, delivered),
                 Injection(source, LinearForm.of((through, -numerator))),
@@ -112,8 +112,12 @@ class Gyrator(Element):
         flow_from = self._flow(use, "from", source, drawn)
         flow_to = self._flow(use, "to", target, delivered)
         rows = (
-            Row(drawn, LinearForm.of((effort_from, denominator)) + flow_to * (-numerator), "constraint"),
-            Row(delivered, LinearForm.of((effort_to, denominator)) + flow_from * (-numerator), "constraint"),
+            EquationRow(
+                drawn, LinearForm.of((effort_from, denominator)) + flow_to * (-numerator), "constraint"
+            ),
+            EquationRow(
+                delivered, LinearForm.of((effort_to, denominator)) + flow_from * (-numerator), "constraint"
+            ),
         )
         return Stamp(
             unknowns=(drawn, delivered),

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 from symflex.library.elements.element import (
     Element,
     ElementUse,
+    EquationRow,
     Injection,
     LinearForm,
     ParameterPort,
     Port,
-    Row,
     Stamp,
     two_terminal,
 )
@@ -32,7 +32,7 @@ def _impedance(use: ElementUse, impedance: Factored) -> Stamp:
     flow = LinearForm.of((current, use.one))
     return Stamp(
         unknowns=(current,),
-        rows=(Row(current, law),),
+        rows=(EquationRow(current, law),),
         injections=(Injection(a, flow * (-use.one)), Injection(b, flow)),
         through=(("i", flow),),
     )

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 Domain = Literal["translation", "rotation", "electrical"]
 PortDomain = Literal["translation", "rotation", "electrical", "planar", "any", "whole"]
 
+Role = Literal["balance", "law", "constraint", "signal", "condition"]
 Sign = Literal["any", "nonnegative", "positive"]
 
 Placing = Literal["translation", "rotation", "electrical", "planar"]
@@ -95,7 +96,7 @@ class LinearForm:
 
 
 @dataclass(frozen=True, slots=True)
-class Branch:
+class Admittance:
     """A two-terminal admittance: ``admittance * (a - b)`` flows from ``a`` to ``b``.
 
     Parallel branches between the same variables are added before elimination, so a spring
@@ -108,12 +109,16 @@ class Branch:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
-    """An equation ``form = 0`` that determines (or constrains) ``about``."""
+class EquationRow:
+    """An equation ``form = 0`` that determines (or constrains) ``about``.
+
+    An element's or constraint's law; in the equations of a model also a node's balance, a signal's law or a
+    field's condition. A variable may occur several times in ``form``, once per branch that meets it.
+    """
 
     about: Variable
     form: LinearForm
-    role: Literal["law", "constraint", "signal"] = "law"
+    role: Role = "law"
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,10 +136,10 @@ class Stamp:
     ``through`` gives the element's quantities (``motor.i``) as linear forms.
     """
 
-    branches: tuple[Branch, ...] = ()
+    branches: tuple[Admittance, ...] = ()
     injections: tuple[Injection, ...] = ()
     unknowns: tuple[Variable, ...] = ()
-    rows: tuple[Row, ...] = ()
+    rows: tuple[EquationRow, ...] = ()
     through: tuple[tuple[str, LinearForm], ...] = ()
 
 
@@ -226,7 +231,7 @@ class Choice:
 
 
 @dataclass(frozen=True, slots=True)
-class Terminal:
+class PortTerminal:
     """The across variables of one attached node, ``None`` where it is the reference.
 
     A non-planar node has only ``across``; a planar one has ``y`` and ``theta``.
@@ -247,7 +252,7 @@ class ElementUse:
         The element's name.
     s : Factored
         The Laplace variable.
-    terminals : mapping of str to tuple of Terminal
+    terminals : mapping of str to tuple of PortTerminal
         Per port, in the order written.
     domains : mapping of str to str
         Per port, the domain it was found to have.
@@ -264,7 +269,7 @@ class ElementUse:
 
     name: str
     s: Factored
-    terminals: Mapping[str, tuple[Terminal, ...]]
+    terminals: Mapping[str, tuple[PortTerminal, ...]]
     domains: Mapping[str, Placing]
     values: Mapping[str, Factored]
     forms: Mapping[str, LinearForm] = field(default_factory=dict)
@@ -323,14 +328,14 @@ def two_terminal(use: ElementUse, port: str, quantity: str, admittance: Factored
     denominator = admittance.denominator()
     if not denominator.depends_on("s"):
         form = LinearForm.of((a, admittance), (b, -admittance))
-        return Stamp(branches=(Branch(a, b, admittance),), through=((quantity, form),))
+        return Stamp(branches=(Admittance(a, b, admittance),), through=((quantity, form),))
     through = use.unknown(quantity)
     numerator = admittance * denominator
     law = LinearForm.of((through, denominator), (a, -numerator), (b, numerator))
     flow = LinearForm.of((through, use.one))
     return Stamp(
         unknowns=(through,),
-        rows=(Row(through, law),),
+        rows=(EquationRow(through, law),),
         injections=(Injection(a, flow * (-use.one)), Injection(b, flow)),
         through=((quantity, flow),),
     )

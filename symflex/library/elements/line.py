@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from symflex.library.elements.element import Element, ElementUse, Injection, LinearForm, Row, Stamp
+from symflex.library.elements.element import Element, ElementUse, EquationRow, Injection, LinearForm, Stamp
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from symflex.algebra import Factored
-    from symflex.library.elements.element import Terminal, Variable
+    from symflex.library.elements.element import PortTerminal, Variable
 
 
 class LineElement(Element):
@@ -69,7 +69,7 @@ class LineElement(Element):
         state_b = self.final_state(use)
         unknowns = (*first, *second)
         rows = [
-            Row(about, LinearForm.of(end, *((v, -c) for v, c in zip(state_a, line, strict=True))))
+            EquationRow(about, LinearForm.of(end, *((v, -c) for v, c in zip(state_a, line, strict=True))))
             for about, end, line in zip(unknowns, state_b, use.transmission, strict=True)
         ]
         delivered = [*zip(self._across(a), first, strict=True), *zip(self._across(b), second, strict=True)]
@@ -92,5 +92,5 @@ class LineElement(Element):
     def _delivered_first(self, use: ElementUse) -> list[Variable]:
         return [use.unknown(f"{quantity}_a") for quantity in self.through]
 
-    def _across(self, terminal: Terminal) -> tuple[Variable | None, ...]:
+    def _across(self, terminal: PortTerminal) -> tuple[Variable | None, ...]:
         return tuple(getattr(terminal, end) for end in self.ends)

@@ -11,11 +11,11 @@ from symflex.library.elements.element import (
     THROUGH_NAME,
     Element,
     ElementUse,
+    EquationRow,
     Injection,
     LinearForm,
     ParameterPort,
     Port,
-    Row,
     Stamp,
 )
 
@@ -81,12 +81,12 @@ class RigidLink(Element):
         return Stamp(
             unknowns=(force, moment),
             rows=(
-                Row(
+                EquationRow(
                     force,
                     LinearForm.of((b.y, scale), (a.y, -scale), (a.theta, -length * scale)),
                     "constraint",
                 ),
-                Row(moment, LinearForm.of((b.theta, one), (a.theta, -one)), "constraint"),
+                EquationRow(moment, LinearForm.of((b.theta, one), (a.theta, -one)), "constraint"),
             ),
             injections=(
                 Injection(b.y, LinearForm.of((force, one))),
@@ -103,7 +103,9 @@ def _hold(use: ElementUse, held: tuple[tuple[str, Variable | None], ...]) -> Sta
     kept = [(use.unknown(quantity), quantity, variable) for quantity, variable in held]
     return Stamp(
         unknowns=tuple(reaction for reaction, _, _ in kept),
-        rows=tuple(Row(reaction, LinearForm.of((v, use.one)), "constraint") for reaction, _, v in kept),
+        rows=tuple(
+            EquationRow(reaction, LinearForm.of((v, use.one)), "constraint") for reaction, _, v in kept
+        ),
         injections=tuple(Injection(v, LinearForm.of((reaction, use.one))) for reaction, _, v in kept),
         through=tuple((quantity, LinearForm.of((reaction, use.one))) for reaction, quantity, _ in kept),
     )

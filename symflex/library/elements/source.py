@@ -5,11 +5,11 @@ from __future__ import annotations
 from symflex.library.elements.element import (
     Element,
     ElementUse,
+    EquationRow,
     Injection,
     LinearForm,
     ParameterPort,
     Port,
-    Row,
     Stamp,
 )
 
@@ -84,7 +84,7 @@ class VoltageSource(Element):
         law = LinearForm.of(*ends) + use.forms["v"] * (-use.one)
         return Stamp(
             unknowns=(current,),
-            rows=(Row(current, law, "constraint"),),
+            rows=(EquationRow(current, law, "constraint"),),
             injections=_delivered(use, flow),
             through=(("i", flow),),
         )

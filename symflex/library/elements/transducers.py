@@ -5,11 +5,11 @@ from __future__ import annotations
 from symflex.library.elements.element import (
     Element,
     ElementUse,
+    EquationRow,
     Injection,
     LinearForm,
     ParameterPort,
     Port,
-    Row,
     Stamp,
 )
 
@@ -48,7 +48,7 @@ class DcMotor(Element):
         torque = LinearForm.of((current, use.values["k_t"]))
         return Stamp(
             unknowns=(current,),
-            rows=(Row(current, law),),
+            rows=(EquationRow(current, law),),
             injections=(
                 Injection(a, flow * (-use.one)),
                 Injection(b, flow),
@@ -92,7 +92,7 @@ class Piezo(Element):
             (current, use.values["C"] * use.s, alpha * use.s * -1),
         )
         rows = tuple(
-            Row(
+            EquationRow(
                 out,
                 LinearForm.of((out, one), (p, -per_volt), (q, per_volt), (a, -per_metre), (b, per_metre)),
             )

@@ -5,7 +5,7 @@ from symflex.model.spec.read import read
 from symflex.model.spec.values import (
     ArrayValue,
     BooleanValue,
-    Entry,
+    KeyValue,
     NumberValue,
     OtherValue,
     Spec,
@@ -18,7 +18,7 @@ from symflex.model.spec.write import write
 __all__ = [
     "ArrayValue",
     "BooleanValue",
-    "Entry",
+    "KeyValue",
     "NumberValue",
     "OtherValue",
     "Spec",

@@ -21,7 +21,7 @@ from symflex.model.spec.scan import quote_width
 from symflex.model.spec.values import (
     ArrayValue,
     BooleanValue,
-    Entry,
+    KeyValue,
     NumberValue,
     OtherValue,
     StringValue,
@@ -81,7 +81,7 @@ class _Table:
         self.entries.setdefault(key, (key_span, value))
 
     def freeze(self) -> TableValue:
-        entries = (Entry(key, span, _frozen(value)) for key, (span, value) in self.entries.items())
+        entries = (KeyValue(key, span, _frozen(value)) for key, (span, value) in self.entries.items())
         return TableValue(tuple(entries), self.span)
 
 
@@ -123,9 +123,9 @@ def locate(document: Document, decoded: Mapping[str, Any]) -> TableValue:
     """
     tree = Parser(_TOML).parse(document.masked.encode("ascii"))
     if tree.root_node.has_error:
-        span = _Places(document).span(_first_error(tree.root_node))
+        span = _PositionReader(document).span(_first_error(tree.root_node))
         raise SpecError(Diagnostic("SF101", "this is not TOML 1.0", span))
-    return _Places(document).root(tree.root_node, decoded)
+    return _PositionReader(document).root(tree.root_node, decoded)
 
 
 def _first_error(node: Node) -> Node:
@@ -138,7 +138,7 @@ def _first_error(node: Node) -> Node:
 
 
 @dataclass(frozen=True, slots=True)
-class _Places:
+class _PositionReader:
     document: Document
 
     def span(self, node: Node) -> Span:

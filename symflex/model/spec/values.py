@@ -70,22 +70,22 @@ class TableValue:
 
     Parameters
     ----------
-    entries : tuple of Entry
+    entries : tuple of KeyValue
         Keys are unique.
     span : Span
         The header ``[a.b]`` of the table, or the key of an inline or dotted one, or all of
         ``{...}`` inside an array. The root's is empty and at the start of the text.
     """
 
-    entries: tuple[Entry, ...]
+    entries: tuple[KeyValue, ...]
     span: Span
-    _by_key: Mapping[str, Entry] = field(init=False, repr=False, compare=False)
+    _by_key: Mapping[str, KeyValue] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Index the entries, so that a table of thousands is not searched end to end."""
         object.__setattr__(self, "_by_key", {entry.key: entry for entry in self.entries})
 
-    def get(self, key: str) -> Entry | None:
+    def get(self, key: str) -> KeyValue | None:
         """Return the entry of ``key``, or ``None``."""
         return self._by_key.get(key)
 
@@ -112,7 +112,7 @@ class OtherValue:
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class KeyValue:
     """One ``key = value``, or a table under its key.
 
     Parameters

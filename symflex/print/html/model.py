@@ -10,7 +10,7 @@ from symflex.print.latex import model_labels
 from symflex.print.latex.table import decimal_text
 
 if TYPE_CHECKING:
-    from symflex.model import Model, Parameter
+    from symflex.model import Model, ModelParameter
 
 LONGEST_TEXT: Final = 400
 MOST_FUNCTIONS: Final = 60
@@ -53,7 +53,7 @@ def escape_label(latex: str) -> str:
     return latex.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
 
 
-def _written(parameter: Parameter) -> tuple[str, str]:
+def _written(parameter: ModelParameter) -> tuple[str, str]:
     value, unit = parameter.as_written()
     shown = "symbolic" if value is None else decimal_text(value)
     return shown, escape_html("" if unit == "1" else unit)

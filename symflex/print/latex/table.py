@@ -28,7 +28,7 @@ from symflex.print.latex.width import EM_MM
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from symflex.model import ExactValue, Model, Parameter
+    from symflex.model import ExactValue, Model, ModelParameter
     from symflex.roots import PoleZeroMap, Root
 
 VALUE_DIGITS: Final = 7
@@ -252,14 +252,14 @@ def _cut(text: str) -> str:
     return text if len(text) <= LONGEST_MEANING else f"{text[:LONGEST_MEANING]}\u2026"
 
 
-def _value(parameter: Parameter) -> str:
+def _value(parameter: ModelParameter) -> str:
     value, unit = parameter.as_written()
     if value is None:
         return f"symbolic, in {unit_latex(unit)}" if unit and unit != "1" else "symbolic"
     return quantity_latex(decimal_text(value), unit)
 
 
-def _value_width(parameter: Parameter) -> float:
+def _value_width(parameter: ModelParameter) -> float:
     value, written = parameter.as_written()
     unit = "" if written == "1" else written
     width = text_width(unit) * (1.0 if siunitx_unit(written) is None else 1.1) + 0.4

@@ -31,7 +31,7 @@ from symflex.report.claims.predicates import PREDICATES
 
 if TYPE_CHECKING:
     from symflex.errors import Span
-    from symflex.model.spec import Entry
+    from symflex.model.spec import KeyValue
 
 CLAIMS: Final = "claims.toml"
 VERSION: Final = "symflex-claims"
@@ -127,7 +127,7 @@ def _check(reader: Reader, table: TableValue) -> Check | None:
     return Check(partial(predicate, **values), of, *texts)
 
 
-def _value(reader: Reader, entry: Entry, kind: str) -> object:
+def _value(reader: Reader, entry: KeyValue, kind: str) -> object:
     """Return the value of a key, of the type that the predicate takes."""
     value = entry.value
     if kind == "tuple[str, ...]":
@@ -151,7 +151,7 @@ def _value(reader: Reader, entry: Entry, kind: str) -> object:
     return float(numbers[0]) if kind == "float" else tuple(float(x) for x in numbers)
 
 
-def _tables(reader: Reader, entry: Entry | None, what: str, at: Span | None = None) -> list[TableValue]:
+def _tables(reader: Reader, entry: KeyValue | None, what: str, at: Span | None = None) -> list[TableValue]:
     if entry is None:
         if at is not None:
             reader.note("SF214", f"'{what}' is missing", at)

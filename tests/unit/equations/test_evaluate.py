@@ -10,7 +10,7 @@ import pytest
 from symflex import pipeline
 from symflex.algebra import PRIME, Factored, Ring, residue
 from symflex.equations.coefficients import read_equation
-from symflex.equations.evaluate import Evaluator, exact_root, extent
+from symflex.equations.evaluate import ExactEvaluator, exact_root, extent
 from symflex.errors import BudgetError, ModelError, Source, Span, Text
 from symflex.expressions import Name, format_expression, names, parse_equation
 from symflex.expressions import parse as parse_text
@@ -50,7 +50,7 @@ def parse(text):
 def evaluator(**more):
     definitions = {d.name: d.expression for d in MODEL.definitions}
     through = {SPRING: LinearForm.of((Variable("node", "x"), K))}
-    return Evaluator(RING, scope_of(MODEL), {"G": K / (S + M)}, through, definitions, POINT, **more)
+    return ExactEvaluator(RING, scope_of(MODEL), {"G": K / (S + M)}, through, definitions, POINT, **more)
 
 
 def in_field(value):
@@ -145,7 +145,7 @@ def test_what_is_not_constant_or_not_linear_is_refused_at_its_place(method, text
 )  # fmt: skip
 def test_what_is_not_available_is_said_with_what_is(blocks, text, message, hint):
     with pytest.raises(ModelError) as caught:
-        Evaluator(RING, scope_of(MODEL), blocks, {}, {}, POINT).constant(parse(text))
+        ExactEvaluator(RING, scope_of(MODEL), blocks, {}, {}, POINT).constant(parse(text))
     (problem,) = caught.value.diagnostics
     assert (problem.code, problem.message, problem.hint) == ("SF910", message, hint)
     assert problem.span.text == text
@@ -209,7 +209,7 @@ def test_what_too_many_terms_would_come_of_is_refused_at_its_place():
         'symflex = 1\ninputs.u = {}\noutputs.y = "u"\n[parameters]\n'
         + "".join(f"{n} = {{}}\n" for n in names)
     )
-    wide = Evaluator(Ring(("s", *names)), scope_of(model), {}, {}, {})
+    wide = ExactEvaluator(Ring(("s", *names)), scope_of(model), {}, {}, {})
     text = f"({' + '.join(names)})^40 + 1"
     with pytest.raises(BudgetError) as caught:
         wide.constant(parse(text))
@@ -233,7 +233,7 @@ def chain(link, last):
 )
 def test_definitions_are_opened_in_a_function_up_to_a_size(link, accepted, refused):
     for last, code in ((accepted, None), (refused, "SF103")):
-        opener = Evaluator(RING, scope_of(MODEL), {}, {}, chain(link, last)).opener
+        opener = ExactEvaluator(RING, scope_of(MODEL), {}, {}, chain(link, last)).opener
         call = parse(f"sqrt(d{last})")
         if code is None:
             assert not {n.name for n in names(opener.open(call)) if isinstance(n, Name)} - {"k"}
@@ -244,7 +244,7 @@ def test_definitions_are_opened_in_a_function_up_to_a_size(link, accepted, refus
 
 
 def test_definitions_opened_once_serve_the_next_call():
-    opener = Evaluator(RING, scope_of(MODEL), {}, {}, {"a": parse("k + 1"), "b": parse("a*m")}).opener
+    opener = ExactEvaluator(RING, scope_of(MODEL), {}, {}, {"a": parse("k + 1"), "b": parse("a*m")}).opener
     assert [format_expression(opener.open(parse(t))) for t in ("sqrt(b)", "exp(a - b)")] == [
         "sqrt((k + 1)*m)", "exp(k + 1 - (k + 1)*m)"
     ]  # fmt: skip

@@ -10,7 +10,7 @@ from symflex.errors import Source, Span
 from symflex.model.spec import (
     ArrayValue,
     BooleanValue,
-    Entry,
+    KeyValue,
     NumberValue,
     OtherValue,
     StringValue,
@@ -19,7 +19,7 @@ from symflex.model.spec import (
 )
 
 
-def entry(text: str, *path: str) -> Entry:
+def entry(text: str, *path: str) -> KeyValue:
     """Return the entry at a path of keys."""
     table = parse(Source("a.toml", text)).root
     for key in path[:-1]:

@@ -10,7 +10,7 @@ import pytest
 from flint import arb
 
 from symflex import pipeline
-from symflex.model import Parameter
+from symflex.model import ModelParameter
 from symflex.print.html import bound_html, escape_html, model_html, roots_html
 from symflex.print.html.table import LONGEST, NUMBER, html_table
 from symflex.roots import Certificate, Everything, HiddenRoot, PoleZeroMap, Root
@@ -134,7 +134,7 @@ def test_a_long_table_says_how_many_rows_it_leaves_out():
 def test_no_text_of_a_model_is_markup_or_mathematics(model, text):
     parameters = (
         *(replace(p, doc=text, unit=text) for p in model.parameters),
-        Parameter("q", None, text, doc=text),
+        ModelParameter("q", None, text, doc=text),
     )
     hostile = replace(model, title=f"t{text}", source=f"s{text}", parameters=parameters)
     tame = replace(

@@ -8,7 +8,7 @@ import pytest
 from flint import arb
 
 from symflex.errors import UsageError
-from symflex.model.model import ExactValue, Model, Parameter
+from symflex.model.model import ExactValue, Model, ModelParameter
 from symflex.print.latex import COLUMNS_MM, column_width, mode_table, parameter_table, root_table
 from symflex.print.latex.table import decimal_text
 from symflex.print.latex.tabular import SETTINGS, TabularColumn, fitting, tabular
@@ -65,9 +65,9 @@ def test_a_value_is_a_short_decimal(value, text):
 
 MODEL = Model(
     parameters=(
-        Parameter("m_1", ExactValue(Fraction(60)), "kg", doc="actuator & 100 %"),
-        Parameter("omega_p1", ExactValue(Fraction(22), 1), "rad/s"),
-        Parameter("k", None, "N/m"),
+        ModelParameter("m_1", ExactValue(Fraction(60)), "kg", doc="actuator & 100 %"),
+        ModelParameter("omega_p1", ExactValue(Fraction(22), 1), "rad/s"),
+        ModelParameter("k", None, "N/m"),
     )
 )
 
@@ -86,7 +86,7 @@ def test_a_parameter_without_a_value_is_called_symbolic():
 
 
 def test_a_long_table_is_set_in_parts_with_the_same_head():
-    many = tuple(Parameter(f"k_{i}", ExactValue(Fraction(i)), "N/m") for i in range(100))
+    many = tuple(ModelParameter(f"k_{i}", ExactValue(Fraction(i)), "N/m") for i in range(100))
     table = parameter_table(Model(parameters=many))
     assert table.count(r"\begin{tabular}") == table.count("Symbol & Value") == 3
     assert "longtable" not in table  # which two columns refuse
@@ -94,14 +94,14 @@ def test_a_long_table_is_set_in_parts_with_the_same_head():
 
 
 def test_a_meaning_is_broken_into_lines_where_it_has_no_room():
-    long = Model(parameters=(Parameter("k", ExactValue(Fraction(1)), "N/m", doc="stiffness " * 9),))
+    long = Model(parameters=(ModelParameter("k", ExactValue(Fraction(1)), "N/m", doc="stiffness " * 9),))
     assert r"\raggedright" not in parameter_table(long, width_mm=300)
     assert r"p{" in parameter_table(long, width_mm=170)
 
 
 def test_a_value_stands_below_its_meaning_where_neither_has_room_beside_the_other():
     unit = "kg*m^2*rad/(s^3*V*A*K*mol)"
-    wide = Model(parameters=(Parameter("x" * 20, ExactValue(Fraction(1, 3)), unit, doc="word " * 9),))
+    wide = Model(parameters=(ModelParameter("x" * 20, ExactValue(Fraction(1, 3)), unit, doc="word " * 9),))
     assert r"\newline \qty{0.3333333}" in parameter_table(wide, width_mm=80)
 
 

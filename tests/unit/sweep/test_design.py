@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 from symflex.errors import BudgetError, UsageError
-from symflex.model import ExactValue, Parameter
+from symflex.model import ExactValue, ModelParameter
 from symflex.sweep import Design, Range, design_of, read_design
 from symflex.sweep.design import number
 from tests.unit.sweep.models import oscillator
@@ -154,7 +154,7 @@ def test_zero_is_a_value_of_what_may_vanish():
     assert rationals("b=0:1:lin:3") == [0, Fraction(1, 2), 1]
     (limits,) = read_design(PARAMETERS, ["b=+-100%"], 5).ranges
     assert (limits.low.rational, limits.high.rational) == (0, 1)
-    signed = [Parameter("c", None, assume="real")]
+    signed = [ModelParameter("c", None, assume="real")]
     assert [p[0].rational for p in read_design(signed, ["c=-1:1:lin:3"]).points] == [-1, 0, 1]
 
 
