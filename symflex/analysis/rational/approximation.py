@@ -12,7 +12,7 @@ import numpy as np
 from symflex.analysis.rational.toolboxes import PERCENTS, RationalFunction, end_units
 from symflex.errors import Diagnostic, ModelError
 from symflex.roots.verdict import NOT_EXAMINED, StabilityVerdict
-from symflex.state_space import Signal
+from symflex.state_space import Channel
 from symflex.state_space.cascade import cascade
 from symflex.state_space.numeric import BoundState, BoundStateSpace, not_installed
 
@@ -246,8 +246,8 @@ class RationalApproximation(RationalFunction):
         arrays = cascade(self.zeros, self.poles, self.gain, self.tf)
         states = tuple(BoundState(f"z_{i + 1}", (), "") for i in range(len(arrays.a)))
         units = end_units(self.source)
-        inputs = (Signal(self.source.input.name, str(units["input_unit"])),)
-        outputs = (Signal(self.source.output.name, str(units["output_unit"])),)
+        inputs = (Channel(self.source.input.name, str(units["input_unit"])),)
+        outputs = (Channel(self.source.output.name, str(units["output_unit"])),)
         return BoundStateSpace(self.label(), arrays, states, inputs, outputs, is_minimal=True)
 
     def facts(self) -> dict[str, object]:
