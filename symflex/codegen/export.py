@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from fractions import Fraction
 
-    from symflex.codegen.program import Piecewise, Program, Verification
+    from symflex.codegen.program import Piecewise, Verification
     from symflex.model import Model
     from symflex.transfer import AnyTransferFunction
 
@@ -94,7 +94,7 @@ class Member:
     ----------
     tf : TransferFunction or NestedTransferFunction
         Whose values it computes.
-    program : Program or Piecewise
+    program : Piecewise
         Of s; of the angular frequency where it is real.
     wanted : str
         The name it has where the language and the other names admit it.
@@ -103,7 +103,7 @@ class Member:
     """
 
     tf: AnyTransferFunction
-    program: Program | Piecewise
+    program: Piecewise
     wanted: str
     verification: Verification
 

@@ -14,7 +14,7 @@ from symflex.codegen.c.choice import choose, conditions_of
 from symflex.codegen.c.expression import Kind, Term, complex_term, quotient
 from symflex.codegen.c.lanes import fits_lanes, is_rational_in_lanes, lanes, rational_lanes
 from symflex.codegen.c.scope import AXIS, POSITIVE, STEP, WIDTH, Body, S
-from symflex.codegen.program import CodePiece, Piecewise, Program
+from symflex.codegen.program import CodePiece, Piecewise
 from symflex.codegen.program.real_axis import needed
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ class Functions:
         Name of the type that holds the parameters.
     members : mapping of str to str
         The structure's members by the parameters' names.
-    program : Program or Piecewise
+    program : Piecewise
         The function of s.
     axis : Piecewise, optional
         The frequency response in real arithmetic, where there is one.
@@ -45,7 +45,7 @@ class Functions:
     prefix: str
     structure: str
     members: Mapping[str, str]
-    program: Program | Piecewise
+    program: Piecewise
     axis: Piecewise | None = None
 
     @property
@@ -79,7 +79,7 @@ class Functions:
         """Return the definitions, and the largest order of a differential equation they solve."""
         orders: set[int] = set()
         blocks: list[list[str]] = []
-        if isinstance(self.program, Program):
+        if self.program.is_lumped:
             blocks.append(self._lumped_value(self.program))
         else:
             blocks += self._pieces(self.program, orders)
@@ -95,7 +95,7 @@ class Functions:
         unused = [] if any(_mentions(line, "s") for line in scope.lines) else [f"{STEP}(void)s;"]
         return [*head, *scope.opening(self.members), *unused, *scope.lines, "}"]
 
-    def _lumped_value(self, program: Program) -> list[str]:
+    def _lumped_value(self, program: Piecewise) -> list[str]:
         scope = Body.of(self.members, S)
         _lumped(program, scope, lambda inner, term: inner.say("return", complex_term(term).text))
         return self._wrapped_value(self._ends(scope, self._head(f"value_of_{self.name}")))
@@ -151,13 +151,13 @@ class Functions:
         if self.axis is not None and fits_lanes(self.axis):
             return [*self.freq_prototype.split("\n"), "{", *lanes(self.axis, self.members), "}"]
         program = self.axis or self.program
-        if isinstance(program, Program) and is_rational_in_lanes(program):
+        if program.is_lumped and is_rational_in_lanes(program):
             return [*self.freq_prototype.split("\n"), "{", *rational_lanes(program, self.members), "}"]
         is_axis = self.axis is not None
         outer = Body.of(self.members, POSITIVE if is_axis else AXIS)
         # Names are unique in the whole function; the loop's statements come after all constants.
         inner = outer.within()
-        if isinstance(program, Program):
+        if program.is_lumped:
             _lumped(program, outer, self._store, inner)
         else:
             self._axis_pieces(program, outer, inner)
@@ -237,7 +237,7 @@ def _mentions(line: str, name: str) -> bool:
 
 
 def _lumped(
-    program: Program,
+    program: Piecewise,
     scope: Body,
     store: Callable[[Body, Term], None],
     varying: Body | None = None,
@@ -246,24 +246,24 @@ def _lumped(
     inner = varying or scope
     near = program.near
     far = program.far
-    scope.assign(program.constants)
+    scope.assign(near.constants)
     if varying is not None:
         inner.known = dict(scope.known)
     inner.assign(near.assignments)
     if far is None:
-        store(inner, inner.term(near.value))
+        store(inner, inner.term(near.values[0]))
         return
     size = "cx_abs(s)" if inner.s.kind is Kind.COMPLEX else f"fabs({inner.s.text})"
     inner.lines.append(f"{STEP * inner.depth}if ({size} > {program.limit!r}) {{")
     block = inner.within()
-    block.assign(far.assignments)
-    store(block, block.term(far.value))
+    block.assign(program.late)
+    store(block, block.term(far.values[0]))
     inner.lines += block.lines
     if varying is None:
         inner.lines.append(f"{STEP * inner.depth}}}")
-        store(inner, inner.term(near.value))
+        store(inner, inner.term(near.values[0]))
         return
     inner.lines.append(f"{STEP * inner.depth}}} else {{")
     block = inner.within()
-    store(block, block.term(near.value))
+    store(block, block.term(near.values[0]))
     inner.lines += [*block.lines, f"{STEP * inner.depth}}}"]

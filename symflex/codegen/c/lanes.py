@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from symflex.codegen.c.choice import limit_text
 from symflex.codegen.c.expression import LANE_FUNCTIONS, Kind, Term, quotient
 from symflex.codegen.c.scope import AXIS_LANE, LANE, STEP, Body
-from symflex.codegen.program import Apply, Assigned, CodeNode, Divide, Piecewise, Program, Solutions, Straight
+from symflex.codegen.program import Apply, Assigned, CodeNode, Divide, Piecewise, Solutions, Straight
 from symflex.codegen.program.real_axis import needed
 
 if TYPE_CHECKING:
@@ -53,10 +53,10 @@ def fits_lanes(program: Piecewise) -> bool:
     )
 
 
-def is_rational_in_lanes(program: Program) -> bool:
+def is_rational_in_lanes(program: Piecewise) -> bool:
     """Tell whether a program varies, has one branch, and calls no function of s."""
     near = program.near
-    values = (*(a.value for a in near.assignments), near.value)
+    values = (*(a.value for a in near.assignments), *near.values)
     calls = (n for value in values for n in _all(value) if isinstance(n, Apply | Solutions))
     return program.varies and program.far is None and not any(calls)
 
@@ -113,21 +113,21 @@ def lanes(program: Piecewise, members: Mapping[str, str]) -> list[str]:
     return _looped(outer, loop, members)
 
 
-def rational_lanes(program: Program, members: Mapping[str, str]) -> list[str]:
+def rational_lanes(program: Piecewise, members: Mapping[str, str]) -> list[str]:
     """Return the body of the function that computes the frequency response.
 
     Parameters
     ----------
-    program : Program
+    program : Piecewise
         Such that :func:`is_rational_in_lanes` holds.
     members : mapping of str to str
         The structure's members by the parameters' names.
     """
     outer = Body.of(members, AXIS_LANE)
-    outer.assign(program.constants)
+    outer.assign(program.near.constants)
     block = outer.within(3)
     block.assign(program.near.assignments)
-    value = block.term(program.near.value)
+    value = block.term(program.near.values[0])
     parts = {"re": "0.0", "im": "0.0"}
     if value.kind is Kind.COMPLEX:
         block.say("const cx g =", value.text)

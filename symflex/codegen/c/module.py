@@ -21,7 +21,7 @@ from symflex.codegen.module_text import (
     origin_lines,
     value_as_written,
 )
-from symflex.codegen.program import Piecewise, identifiers, inert, wrapped
+from symflex.codegen.program import identifiers, inert, wrapped
 from symflex.codegen.program.calls import RuntimeCalls
 from symflex.codegen.source_parts import called_parts
 from symflex.errors import Diagnostic, UsageError
@@ -112,8 +112,7 @@ class _Files:
         self.functions = {key: self._functions(key, names[key]) for key in self.of_s}
 
     def _functions(self, key: str, name: str) -> Functions:
-        real = self.on_axis[key].program if key in self.on_axis else None
-        axis = real if isinstance(real, Piecewise) else None
+        axis = self.on_axis[key].program if key in self.on_axis else None
         return Functions(name, self.prefix, self.structure, self.members, self.of_s[key].program, axis)
 
     def made(self) -> Export:
@@ -225,7 +224,7 @@ class _Files:
         if key in self.on_axis:
             real = self.on_axis[key].verification.text(self.digits)
             sentences = [f"Of s, {said}.", f"At s = j omega, in real arithmetic, {real}."]
-        if isinstance(program, Piecewise) and program.solves:
+        if program.solves:
             sentences.append(ITERATED if RuntimeCalls.of([program]).roots else COST)
         lines.append("")
         for sentence in sentences:

@@ -21,7 +21,7 @@ from symflex.codegen.module_text import (
     headline,
     origin_lines,
 )
-from symflex.codegen.program import Piecewise, identifiers, inert, wrapped
+from symflex.codegen.program import identifiers, inert, wrapped
 from symflex.codegen.source_parts import called_parts, parts_of
 
 if TYPE_CHECKING:
@@ -188,7 +188,7 @@ def _public(member: Member, functions: PrivateFunctions, digits: int) -> str:
         lines += wrapped(text, WIDTH, "", "  ")
     lines += ["", *wrapped(_disarmed(inert(f"{member.verification.text(digits)}.")), WIDTH)]
     lines.append("Not finite at poles.")
-    if isinstance(member.program, Piecewise) and member.program.solves:
+    if member.program.solves:
         lines += wrapped(COST, WIDTH)
     whole = f"{opening}{'; ' if signature else ''}{', '.join(signature)})"
     first = [f"function {whole}"]

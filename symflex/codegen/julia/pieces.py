@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from symflex.codegen.julia.expression import JuliaPrinter, head, statement
-from symflex.codegen.program import Assignment, CodePiece, Piecewise, Program, identifiers
+from symflex.codegen.program import Assignment, CodePiece, Piecewise, identifiers
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -18,7 +18,7 @@ class PrivateFunctions:
 
     Parameters
     ----------
-    program : Program or Piecewise
+    program : Piecewise
         What they compute.
     name : str
         Identifier of the public function.
@@ -28,7 +28,7 @@ class PrivateFunctions:
         Identifiers that intermediate values cannot have.
     """
 
-    program: Program | Piecewise
+    program: Piecewise
     name: str
     parameters: Mapping[str, str]
     reserved: Collection[str]
@@ -40,7 +40,7 @@ class PrivateFunctions:
 
     def blocks(self) -> list[str]:
         """Return the functions, each as text that ends with a line end."""
-        if isinstance(self.program, Program):
+        if self.program.is_lumped:
             return [self._lumped(self.program)]
         blocks = [self._choice(self.program)]
         for i, piece in enumerate(self.program.code):
@@ -62,10 +62,9 @@ class PrivateFunctions:
         found = [names[key] for key in own]
         return JuliaPrinter(self.parameters, names, found[0], found[-1]), found
 
-    def _lumped(self, program: Program) -> str:
-        early = (*program.constants, *program.near.assignments)
-        far = program.far
-        late = far.assignments if far else ()
+    def _lumped(self, program: Piecewise) -> str:
+        near, far, late = program.near, program.far, program.late
+        early = (*near.constants, *near.assignments)
         printer, (s, inverse) = self._scope((*early, *late), "s", "inverse")
         lines = _assigned(early, printer)
         if far is not None:
@@ -73,10 +72,10 @@ class PrivateFunctions:
                 f"    if abs({s}) > {program.limit!r}",
                 *statement(inverse, f"1.0 / {s}", "        "),
                 *_assigned(late, printer, "        "),
-                *statement("return", printer.print(far.value), "        "),
+                *statement("return", printer.print(far.values[0]), "        "),
                 "    end",
             ]
-        return self._function("value", s, [*lines, *statement("return", printer.print(program.near.value))])
+        return self._function("value", s, [*lines, *statement("return", printer.print(near.values[0]))])
 
     def _choice(self, program: Piecewise) -> str:
         """Return the function that finds the piece that serves."""

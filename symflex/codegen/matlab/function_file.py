@@ -21,7 +21,7 @@ from symflex.codegen.module_text import (
     headline,
     origin_lines,
 )
-from symflex.codegen.program import Piecewise, identifiers, inert, wrapped
+from symflex.codegen.program import identifiers, inert, wrapped
 from symflex.codegen.source_parts import called_parts, parts_of
 
 if TYPE_CHECKING:
@@ -285,7 +285,7 @@ def _public(member: Member, name: str, functions: LocalFunctions, digits: int) -
     if origin := origin_lines(tf.model, _ROOM):
         help_text += [*(_disarmed(line) for line in origin), ""]
     help_text += wrapped(_text(member.verification.text(digits)), _ROOM)
-    if isinstance(member.program, Piecewise) and member.program.solves:
+    if member.program.solves:
         help_text += wrapped(COST, _ROOM)
     lines += _comment(help_text)
     names = ", ".join(f"'{functions.parameters[p]}'" for p in member.program.parameters)

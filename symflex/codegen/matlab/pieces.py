@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from symflex.codegen.matlab.expression import MatlabPrinter, continued, statement
-from symflex.codegen.program import Assignment, CodePiece, Piecewise, Program, identifiers
+from symflex.codegen.program import Assignment, CodePiece, Piecewise, identifiers
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -15,9 +15,9 @@ LONGEST = 63
 """Characters that MATLAB tells identifiers apart by."""
 
 
-def roles_of(program: Program | Piecewise) -> list[str]:
+def roles_of(program: Piecewise) -> list[str]:
     """Return what the local functions behind a program are for; their names end so."""
-    if isinstance(program, Program):
+    if program.is_lumped:
         return ["value"]
     roles = ["number"]
     for i, piece in enumerate(program.code):
@@ -31,7 +31,7 @@ class LocalFunctions:
 
     Parameters
     ----------
-    program : Program or Piecewise
+    program : Piecewise
         What they compute.
     names : mapping of str to str
         Identifiers of these functions, by their roles.
@@ -41,7 +41,7 @@ class LocalFunctions:
         Identifiers that intermediate values cannot have.
     """
 
-    program: Program | Piecewise
+    program: Piecewise
     names: Mapping[str, str]
     parameters: Mapping[str, str]
     reserved: Collection[str]
@@ -53,7 +53,7 @@ class LocalFunctions:
 
     def call(self) -> list[str]:
         """Return the statement that computes the value of ``s``, or ``omega``, and ``given``."""
-        if isinstance(self.program, Program):
+        if self.program.is_lumped:
             return statement("value", f"everywhere(@{self.names['value']}, s, given)")
         pieces = ", ".join(f"@{self.names[str(i)]}" for i in self.program.pieces)
         arguments = f"@{self.names['number']}, {{{pieces}}}, {self.variable}, given"
@@ -63,7 +63,7 @@ class LocalFunctions:
 
     def blocks(self) -> list[str]:
         """Return the functions, each as text that ends with a line end."""
-        if isinstance(self.program, Program):
+        if self.program.is_lumped:
             return [self._lumped(self.program)]
         blocks = [self._number(self.program)]
         for i, piece in enumerate(self.program.code):
@@ -86,24 +86,24 @@ class LocalFunctions:
         printer = MatlabPrinter(self.parameters, names, found[0], found[-1])
         return printer, found
 
-    def _lumped(self, program: Program) -> str:
-        early = (*program.constants, *program.near.assignments)
-        if program.far is None:
+    def _lumped(self, program: Piecewise) -> str:
+        near, far, late = program.near, program.far, program.late
+        early = (*near.constants, *near.assignments)
+        if far is None:
             printer, (s, value) = self._scope(early, "s", "value")
-            lines = [*_assigned(early, printer), *statement(value, printer.print(program.near.value))]
+            lines = [*_assigned(early, printer), *statement(value, printer.print(near.values[0]))]
             return self._function(value, "value", s, lines)
-        late = program.far.assignments
         words = ("s", "value", "limit", "is_far", "far_value", "inverse")
         printer, (s, value, limit, is_far, far_value, inverse) = self._scope((*early, *late), *words)
         lines = [
             *_assigned(early, printer),
-            *statement(value, printer.print(program.near.value)),
+            *statement(value, printer.print(near.values[0])),
             *statement(limit, repr(program.limit)),
             *statement(is_far, f"abs({s}) > {limit}"),
             f"  if any({is_far})",
             *statement(inverse, f"1.0 ./ {s}", "    "),
             *_assigned(late, printer, "    "),
-            *statement(far_value, printer.print(program.far.value), "    "),
+            *statement(far_value, printer.print(far.values[0]), "    "),
             *statement(f"{value}({is_far})", f"{far_value}({is_far})", "    "),
             "  end",
         ]
@@ -138,7 +138,7 @@ class LocalFunctions:
             lines += statement(value, printer.quotient(above, below))
             return [self._function(value, str(number), variable, lines)]
         text = printer.print(above)
-        if piece.is_complex and isinstance(self.program, Piecewise) and self.program.turn:
+        if piece.is_complex and self.program.turn:
             # The factor that the real pieces leave out comes after.
             text = f"(-1.0i) .* ({text})"
         lines += [*statement(num, text), *statement(den, printer.print(below))]

@@ -1,9 +1,9 @@
 """From a transfer function to the programs that compute it.
 
 Input: a :class:`symflex.transfer.TransferFunction`.
-Output: a :class:`Program` per way of evaluating it. ``closed``, ``closed in s`` and ``nested`` keep sums such
-as k + b*s and definitions as intermediates: the first in recurrences over the elements, the second in
-recurrences that part powers of s too, the third by powers of s; ``factors`` multiplies out every factor by
+Output: a lumped :class:`Piecewise` per way of evaluating it. ``closed``, ``closed in s`` and ``nested`` keep
+sums such as k + b*s and definitions as intermediates: the first in recurrences over the elements, the second
+in recurrences that part powers of s too, the third by powers of s; ``factors`` multiplies out every factor by
 powers of s.
 """
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.algebra import Ring
-    from symflex.codegen.program.nodes import Program
+    from symflex.codegen.program.nodes import Piecewise
     from symflex.model import Model
     from symflex.transfer import ClosedForm, TransferFunction
 
@@ -46,7 +46,7 @@ FAR_FROM = 1e15
 PI = "pi"
 
 
-def build_program(tf: TransferFunction, form: str | None = None) -> Program:
+def build_program(tf: TransferFunction, form: str | None = None) -> Piecewise:
     """Return the program of one form, ``closed`` or ``factors``; by default the first there is.
 
     Raises

@@ -16,7 +16,6 @@ from symflex.codegen.program.nodes import (
     Apply,
     Assigned,
     Assignment,
-    Branch,
     CodeNode,
     CodePiece,
     ComplexNumber,
@@ -31,7 +30,6 @@ from symflex.codegen.program.nodes import (
     Negate,
     ParameterValue,
     Piecewise,
-    Program,
     RealNumber,
     Roots,
     Solutions,
@@ -91,14 +89,12 @@ def nearest_double(value: Fraction, pi_power: int = 0) -> float:
     return result
 
 
-def evaluate(
-    program: Program | Piecewise, s: ArrayLike, values: Mapping[str, ArrayLike]
-) -> NDArray[np.complex128]:
+def evaluate(program: Piecewise, s: ArrayLike, values: Mapping[str, ArrayLike]) -> NDArray[np.complex128]:
     """Return the values of a program, exactly those that the generated code returns.
 
     Parameters
     ----------
-    program : Program or Piecewise
+    program : Piecewise
         Of one transfer function.
     s : array_like of complex
         Laplace variable [rad/s]; the angular frequency for a program in real arithmetic.
@@ -110,28 +106,8 @@ def evaluate(
     ndarray of complex
         Of the shape that ``s`` and the parameters broadcast to. Poles and overflows are inf or nan.
     """
-    is_real = isinstance(program, Piecewise) and program.turn is not None
-    point = np.asarray(s, dtype=float if is_real else complex)[()]
+    point = np.asarray(s, dtype=float if program.is_real else complex)[()]
     given = {name: _number(values[name]) for name in program.parameters}
-    if isinstance(program, Piecewise):
-        return _piecewise(program, point, given)
-    run = _ProgramRun(point, given)
-    with np.errstate(all="ignore"):
-        run.assign(program.constants)
-        value = run.branch(program.near)
-        if program.far is not None:
-            is_far = np.abs(point) > program.limit
-            if np.any(is_far):
-                value = np.where(is_far, run.branch(program.far), value)
-    shape = np.broadcast_shapes(np.shape(point), *(np.shape(v) for v in given.values()))
-    return np.array(np.broadcast_to(value, shape), dtype=complex)
-
-
-def _piecewise(
-    program: Piecewise,
-    point: Any,  # noqa: ANN401
-    given: Mapping[str, Any],
-) -> NDArray[np.complex128]:
     shape = np.broadcast_shapes(np.shape(point), *(np.shape(v) for v in given.values()))
     columns = [np.broadcast_to(v, shape).reshape(-1) if np.ndim(v) else v for v in (point, *given.values())]
     turn = 1 if program.turn is None else (1, 1j, -1, -1j)[program.turn % 4]
@@ -169,13 +145,15 @@ def numbers_of_pieces(program: Piecewise, point: Any, given: Mapping[str, Any]) 
     for i, condition in enumerate(program.conditions):
         tested = run.value(condition.quantity)
         scale = run.value(condition.scale)
-        is_small = np.abs(tested) < condition.limit / np.abs(scale)
+        # The far piece of a lumped program begins beyond the limit.
+        is_below = np.less_equal if program.is_lumped else np.less
+        is_small = is_below(np.abs(tested), condition.limit / np.abs(scale))
         number = number + 2**i * (is_small if condition.limit else np.real(scale * tested) < 0.0)
     return number
 
 
 def value_of_piece(piece: CodePiece, point: Any, given: Mapping[str, Any]) -> Any:  # noqa: ANN401
-    """Return the quotient that a piece computes, wherever its argument lies.
+    """Return the value that a piece computes, wherever its argument lies.
 
     Parameters
     ----------
@@ -193,8 +171,8 @@ def value_of_piece(piece: CodePiece, point: Any, given: Mapping[str, Any]) -> An
 
     if piece.circle:
         return mean_over_circle(parts, point, piece.circle)
-    num, den = parts(point)
-    return num / den
+    num, *den = parts(point)
+    return num / den[0] if den else num
 
 
 def number_of(node: CodeNode, known: Mapping[str, Any]) -> Any:  # noqa: ANN401
@@ -243,10 +221,6 @@ class _ProgramRun:
     def assign(self, assignments: tuple[Assignment, ...]) -> None:
         for assignment in assignments:
             self.assigned[assignment.name] = self.value(assignment.value)
-
-    def branch(self, branch: Branch) -> Any:  # noqa: ANN401
-        self.assign(branch.assignments)
-        return self.value(branch.value)
 
     def value(self, node: CodeNode) -> Any:  # noqa: ANN401, PLR0912
         """Return the value of an expression: a number, an array, or a list of these."""

@@ -9,29 +9,19 @@ Output: its pieces, the results of tests under which each serves, and each one's
 
 from __future__ import annotations
 
-from fractions import Fraction
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from symflex.codegen.program.evaluate import numbers_of_pieces, value_of_piece
-from symflex.codegen.program.nodes import (
-    CodePiece,
-    Condition,
-    Laplace,
-    Piecewise,
-    Program,
-    RealNumber,
-    Straight,
-)
+from symflex.codegen.program.nodes import ONE, CodePiece, Piecewise
 from symflex.codegen.program.real_axis import needed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
-
-ONE = RealNumber(Fraction(1))
 
 Cases = tuple[tuple[tuple[int, bool], ...], ...]
 """Alternatives; each is a number of tests with the results they must have."""
@@ -48,29 +38,16 @@ INWARDS = 1.5
 BESIDE = np.array([1.0, 0.999, 1.001])
 
 
-def in_pieces(program: Program | Piecewise) -> Piecewise:
-    """Return a program as pieces, each of which can be computed without the others.
+def in_pieces(program: Piecewise) -> Piecewise:
+    """Return a program whose pieces are quotients that can be computed without the others.
 
-    Parameters
-    ----------
-    program : Program or Piecewise
-        Of one transfer function; a :class:`Piecewise` is returned as it is. A piece whose denominator is the
-        number one is no quotient.
+    The denominator of a lumped one is the number one.
     """
-    if isinstance(program, Piecewise):
+    if not program.is_lumped:
         return program
-    near = Straight(program.constants, program.near.assignments, (program.near.value,))
-    if program.far is None:
-        return Piecewise(program.parameters, Straight((), (), ()), (), (0,), (_whole(near),))
-    assignments = (*near.assignments, *program.far.assignments)
-    far = Straight(program.constants, assignments, (program.far.value,))
-    tests = (Condition(Laplace(), program.limit, ONE),)
-    return Piecewise(program.parameters, Straight((), (), ()), tests, (0, 1), (_whole(far), _whole(near)))
-
-
-def _whole(code: Straight) -> CodePiece:
-    kept = needed(code, code.values)
-    return CodePiece(Straight(kept.constants, kept.assignments, (*code.values, ONE)))
+    needs = (needed(piece.code, piece.code.values) for piece in program.code)
+    code = tuple(CodePiece(replace(own, values=(*own.values, ONE))) for own in needs)
+    return replace(program, code=code)
 
 
 def cases_of(program: Piecewise) -> tuple[Cases, ...]:
@@ -78,6 +55,7 @@ def cases_of(program: Piecewise) -> tuple[Cases, ...]:
 
     Examples
     --------
+    >>> from symflex.codegen.program import Condition, Laplace, Straight
     >>> piece = CodePiece(Straight((), (), (ONE, ONE)))
     >>> test = Condition(Laplace(), 1.0, ONE)
     >>> cases_of(Piecewise((), Straight((), (), ()), (test, test), (0, 0, 0, 1), (piece, piece)))

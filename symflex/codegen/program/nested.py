@@ -1,7 +1,7 @@
 """From a nested transfer function to the program that computes it, one assignment per shared step.
 
 Input: a :class:`symflex.transfer.NestedTransferFunction`.
-Output: a :class:`Program` without a far branch: nothing in it is a power of s above the second or so, nor a
+Output: a :class:`Piecewise` of one piece: nothing in it is a power of s above the second or so, nor a
 product of many impedances, so nothing overflows long before the value does.
 """
 
@@ -19,14 +19,14 @@ from symflex.errors import BudgetError, Diagnostic
 from symflex.print.forms import step_names
 
 if TYPE_CHECKING:
-    from symflex.codegen.program.nodes import Program
+    from symflex.codegen.program.nodes import Piecewise
     from symflex.transfer import NestedTransferFunction
 
 OPERATION_LIMIT = 100_000
 """Operations a program may have; beyond that its text would be many megabytes."""
 
 
-def build_nested(tf: NestedTransferFunction) -> Program:
+def build_nested(tf: NestedTransferFunction) -> Piecewise:
     """Return the program of a nested transfer function.
 
     Raises

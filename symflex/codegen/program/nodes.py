@@ -1,19 +1,25 @@
 """The language-neutral program tree: what generated code computes, before any language prints it.
 
-A :class:`Program` is straight-line code: assignments that need parameters only, then one or two branches that
-depend on s. Sums and products are n-ary and are evaluated from left to right, so that every language computes
-the same floating-point numbers in the same order.
+A :class:`Piecewise` is straight-line code in pieces, and tests that tell which piece serves. Sums and
+products are n-ary and are evaluated from left to right, so that every language computes the same
+floating-point numbers in the same order. A mass m on a damper b, driven by a force, has the velocity
+1/(m s + b) per newton:
+
+    lumped(("m", "b"), Straight((), (), (Divide(ONE, Add((Multiply((m, Laplace())), b))),)))
+
+where ``m`` is ``ParameterValue("m")``.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from itertools import islice
+from math import inf
 from typing import TYPE_CHECKING, ClassVar, Self
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
-    from fractions import Fraction
 
 Frames = tuple[
     tuple[tuple[int, ...], tuple[tuple[tuple[int, ...], int], ...], tuple[tuple[tuple[int, ...], int], ...]],
@@ -66,6 +72,9 @@ class RealNumber(CodeNode):
 
     value: Fraction
     pi_power: int = 0
+
+
+ONE = RealNumber(Fraction(1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -250,56 +259,6 @@ class Assignment:
 
 
 @dataclass(frozen=True, slots=True)
-class Branch:
-    """Assignments in order, and the value they lead to."""
-
-    assignments: tuple[Assignment, ...]
-    value: CodeNode
-
-
-@dataclass(frozen=True, slots=True)
-class Program:
-    """How to compute one transfer function.
-
-    Parameters
-    ----------
-    parameters : tuple of str
-        Names of the parameters it takes, as in the model.
-    constants : tuple of Assignment
-        Intermediates that do not depend on s.
-    near : Branch
-        Valid where ``abs(s) <= limit``.
-    far : Branch or None
-        The same function in powers of 1/s, for larger ``abs(s)``, where powers of s would overflow.
-        It may refer to assignments of ``near``. ``None`` when ``near`` serves everywhere.
-    limit : float
-        Infinite when there is no far branch.
-    """
-
-    parameters: tuple[str, ...]
-    constants: tuple[Assignment, ...]
-    near: Branch
-    far: Branch | None
-    limit: float
-
-    @property
-    def is_real(self) -> bool:
-        """False: it takes complex s."""
-        return False
-
-    @property
-    def varies(self) -> bool:
-        """False when the value does not depend on s."""
-        return bool(self.near.assignments) or _contains_laplace(self.near.value)
-
-    @property
-    def size(self) -> int:
-        """The number of operations that depend on s: what an array of frequencies pays for, per element."""
-        roots = [*(a.value for a in self.near.assignments), self.near.value]
-        return sum(_operations(root) for root in roots)
-
-
-@dataclass(frozen=True, slots=True)
 class Condition:
     """A test made for every value of s.
 
@@ -343,8 +302,8 @@ class CodePiece:
     Parameters
     ----------
     code : Straight
-        Its values are numerator and denominator; with a circle also the logarithm of the factor that both
-        were divided by, and the radius of the circle.
+        Its values are numerator and denominator, in a lumped program the quotient alone; with a circle also
+        the logarithm of the factor that both were divided by, and the radius of the circle.
     circle : int
         Number of points on a circle around s over which numerator and denominator are averaged, because
         the formula itself is singular near s though they are not; 0 for none.
@@ -359,7 +318,10 @@ class CodePiece:
 
 @dataclass(frozen=True, slots=True)
 class Piecewise:
-    """How to compute a transfer function of a distributed system.
+    """How to compute a transfer function.
+
+    A lumped one has one piece; or two, of which the first is in powers of 1/s, for ``abs(s)`` so large that
+    powers of s would overflow, and begins with the assignments of the second.
 
     Parameters
     ----------
@@ -393,15 +355,52 @@ class Piecewise:
         """True for a function of angular frequency in real arithmetic."""
         return self.turn is not None
 
+    @property
+    def is_lumped(self) -> bool:
+        """True when every piece computes the value itself."""
+        return len(self.code[0].code.values) == 1
 
-def _contains_laplace(root: CodeNode) -> bool:
-    pending = [root]
-    while pending:
-        node = pending.pop()
-        if isinstance(node, Laplace):
-            return True
-        pending += node.children
-    return False
+    @property
+    def near(self) -> Straight:
+        """What serves for small ``abs(s)``, in a lumped program."""
+        return self.code[-1].code
+
+    @property
+    def far(self) -> Straight | None:
+        """What serves beyond ``limit`` in a lumped program; ``None`` where ``near`` serves everywhere."""
+        return self.code[0].code if self.conditions else None
+
+    @property
+    def late(self) -> tuple[Assignment, ...]:
+        """The assignments of ``far`` that ``near`` does not have."""
+        return () if self.far is None else self.far.assignments[len(self.near.assignments) :]
+
+    @property
+    def limit(self) -> float:
+        """Up to which ``near`` serves in a lumped program; infinite if it serves everywhere."""
+        return self.conditions[0].limit if self.conditions else inf
+
+    @property
+    def varies(self) -> bool:
+        """False when the value of a lumped program does not depend on s."""
+        return bool(self.near.assignments) or any(isinstance(n, Laplace) for n in self.near.nodes())
+
+    @property
+    def size(self) -> int:
+        """The number of operations of ``near`` that depend on s: what an array pays for, per element."""
+        roots = [*(a.value for a in self.near.assignments), *self.near.values]
+        return sum(_operations(root) for root in roots)
+
+
+def lumped(
+    parameters: tuple[str, ...], near: Straight, far: Straight | None = None, limit: float = inf
+) -> Piecewise:
+    """Return the program that computes ``near``, or ``far`` where ``abs(s)`` exceeds a limit."""
+    nothing = Straight((), (), ())
+    if far is None:
+        return Piecewise(parameters, nothing, (), (0,), (CodePiece(near),))
+    tests = (Condition(Laplace(), limit, ONE),)
+    return Piecewise(parameters, nothing, tests, (0, 1), (CodePiece(far), CodePiece(near)))
 
 
 def _operations(root: CodeNode) -> int:

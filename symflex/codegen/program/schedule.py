@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from symflex.codegen.program.forge import Depends
-from symflex.codegen.program.nodes import Assigned, Assignment, Branch, CodeNode, Negate, Program, Straight
+from symflex.codegen.program.nodes import Assigned, Assignment, CodeNode, Negate, Piecewise, Straight, lumped
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,7 +17,9 @@ DEEPEST = 8
 """Nesting from which an intermediate value gets a name, for the reader's sake and the parser's."""
 
 
-def schedule(forge: Forge, parameters: tuple[str, ...], near: int, far: int | None, limit: float) -> Program:
+def schedule(
+    forge: Forge, parameters: tuple[str, ...], near: int, far: int | None, limit: float
+) -> Piecewise:
     """Return the program that computes ``near``, or ``far`` where ``abs(s)`` exceeds ``limit``."""
     return _Schedule(forge, near, far).program(parameters, limit)
 
@@ -38,12 +40,14 @@ class _Schedule:
     depth: dict[int, int] = field(default_factory=dict)
     taken: dict[str, int] = field(default_factory=dict)
 
-    def program(self, parameters: tuple[str, ...], limit: float) -> Program:
+    def program(self, parameters: tuple[str, ...], limit: float) -> Piecewise:
         roots = [x for x in (self.near, self.far) if x is not None]
         late = set() if self.far is None else self._reached([self.far]) - self._reached([self.near])
         constants, at_near, at_far = self.sections(roots, late)
-        far = None if self.far is None else Branch(at_far, self.nodes[self.far])
-        return Program(parameters, constants, Branch(at_near, self.nodes[self.near]), far, limit)
+        near = Straight(constants, at_near, (self.nodes[self.near],))
+        if self.far is None:
+            return lumped(parameters, near)
+        return lumped(parameters, near, Straight(constants, at_near + at_far, (self.nodes[self.far],)), limit)
 
     def sections(
         self, roots: list[int], late: set[int], *, shared: bool = False

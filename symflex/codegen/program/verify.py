@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from symflex.codegen.program.nodes import Piecewise, Program
+    from symflex.codegen.program.nodes import Piecewise
     from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction
     from symflex.transfer.bind import Enclosed
 
@@ -201,7 +201,7 @@ def choose_program(
     tf: AnyTransferFunction,
     band_hz: tuple[Fraction, Fraction] | None = None,
     samples: int = SAMPLES,
-) -> tuple[Program | Piecewise, Verification]:
+) -> tuple[Piecewise, Verification]:
     """Return the program of the form with the smallest measured error, and the measurement.
 
     Without values for all parameters nothing can be measured; recurrences are taken unless another form is
@@ -230,7 +230,7 @@ def choose_programs(
     tf: AnyTransferFunction,
     band_hz: tuple[Fraction, Fraction] | None = None,
     samples: int = SAMPLES,
-) -> tuple[tuple[Program | Piecewise, Verification], tuple[Piecewise, Verification] | None]:
+) -> tuple[tuple[Piecewise, Verification], tuple[Piecewise, Verification] | None]:
     """Return what :func:`choose_program` does, and the same for the frequency response in real arithmetic.
 
     The latter is there for lossless distributed systems only.
@@ -308,7 +308,7 @@ def _gauge(tf: AnyTransferFunction, band_hz: tuple[Fraction, Fraction] | None, s
         return _Gauge(tf, band, None, problem.diagnostics[0].message)
 
 
-def _choose(gauge: _Gauge) -> tuple[Program | Piecewise, Verification]:
+def _choose(gauge: _Gauge) -> tuple[Piecewise, Verification]:
     tf, references = gauge.tf, gauge.references
     if isinstance(tf, NestedTransferFunction):
         nested = build_nested(tf)
@@ -322,7 +322,7 @@ def _choose(gauge: _Gauge) -> tuple[Program | Piecewise, Verification]:
     if references is None:
         return _unmeasured(gauge, tf, forms)
     is_long = tf.length > LONG
-    candidates: list[tuple[Program, str, float]] = []
+    candidates: list[tuple[Piecewise, str, float]] = []
     for form in forms:
         is_spare = form == "closed in s" or (form == "factors" and is_long)
         if is_spare and any(error < ACCURATE for _, _, error in candidates):
@@ -396,7 +396,7 @@ def _choose_general(
     return program, gauge.verified("pieces", references.worst_error(program), measured)
 
 
-def _program(tf: TransferFunction, form: str) -> Program | None:
+def _program(tf: TransferFunction, form: str) -> Piecewise | None:
     """Return the program of a form, ``None`` when it is too large."""
     try:
         return build_program(tf, form)
@@ -405,7 +405,7 @@ def _program(tf: TransferFunction, form: str) -> Program | None:
         return None
 
 
-def _unmeasured(gauge: _Gauge, tf: TransferFunction, forms: Sequence[str]) -> tuple[Program, Verification]:
+def _unmeasured(gauge: _Gauge, tf: TransferFunction, forms: Sequence[str]) -> tuple[Piecewise, Verification]:
     # Expanded coefficients of a model without numbers would be pages long.
     compact = [form for form in forms if form != "factors"] or forms
     programs = [(form, program) for form in compact if (program := _program(tf, form)) is not None]
@@ -536,7 +536,7 @@ class References:
         self._references = [reference for _, reference in found if reference is not None]
         self.s = np.array([s for s, reference in found if reference is not None], dtype=complex)
 
-    def worst_error(self, program: Program | Piecewise) -> float:
+    def worst_error(self, program: Piecewise) -> float:
         """Return a bound of the error at all frequencies, for a program that gets the nearest doubles."""
         return max(self._errors(program), default=0.0)
 
@@ -545,7 +545,7 @@ class References:
         pairs = zip(self._references, values, strict=True)
         return max((r.error_of(complex(v)) for r, v in pairs), default=0.0)
 
-    def reach(self, program: Program | Piecewise, band_hz: tuple[Fraction, Fraction]) -> Reach:
+    def reach(self, program: Piecewise, band_hz: tuple[Fraction, Fraction]) -> Reach:
         """Return up to which frequency every sample was measured and is accurate."""
         worst, end = 0.0, min(self._lost, default=inf)
         highest: complex | None = None
@@ -559,7 +559,7 @@ class References:
         hertz = None if highest is None else Fraction(f"{highest.imag / tau:.3g}")
         return Reach(hertz, worst)
 
-    def down(self, program: Program | Piecewise, start: Fraction) -> tuple[Fraction, float]:
+    def down(self, program: Piecewise, start: Fraction) -> tuple[Fraction, float]:
         """Return down to which frequency [Hz] every sample is accurate, and the worst error of these."""
         lowest, worst, end = start, 0.0, max(self._lost, default=0.0)
         for s, error in reversed(list(zip(self.s, self._errors(program), strict=True))):
@@ -568,7 +568,7 @@ class References:
             lowest, worst = Fraction(f"{s.imag / tau:.3g}"), max(worst, error)
         return lowest, worst
 
-    def _errors(self, program: Program | Piecewise) -> list[float]:
+    def _errors(self, program: Piecewise) -> list[float]:
         values = evaluate(program, _arguments(program, self.s), doubles(self.bound))
         return [r.error_of(complex(v)) for r, v in zip(self._references, values, strict=True)]
 
@@ -650,12 +650,12 @@ class _Reference:
             return float((distance / self.size).upper())
 
 
-def _arguments(program: Program | Piecewise, s: NDArray[Any]) -> NDArray[Any]:
+def _arguments(program: Piecewise, s: NDArray[Any]) -> NDArray[Any]:
     """Return what a program takes for values of s on the imaginary axis."""
     return s.imag if program.is_real else s
 
 
-def keeps_its_value(program: Program | Piecewise, bound: BoundTransferFunction | BoundNested) -> bool:
+def keeps_its_value(program: Piecewise, bound: BoundTransferFunction | BoundNested) -> bool:
     """Tell whether a program is finite, and not spuriously zero, from 1e-9 to 1e12 rad/s."""
     values = evaluate(program, _arguments(program, 1j * REACH), doubles(bound))
     keeps = np.isfinite(values) & (values != 0)

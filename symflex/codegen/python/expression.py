@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from symflex.codegen.infix import InfixPrinter
 from symflex.codegen.program import Add, Apply, Assigned, CodeNode, Divide, Multiply, Negate
 from symflex.codegen.program.evaluate import NUMPY_FUNCTIONS, number_of
-from symflex.codegen.program.everywhere import ONE
+from symflex.codegen.program.nodes import ONE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from symflex.codegen.export import Export, Language
 from symflex.codegen.module_text import COST, ITERATED, default_value
-from symflex.codegen.program import Piecewise, identifiers, nearest_double
+from symflex.codegen.program import identifiers, nearest_double
 from symflex.codegen.program.calls import RuntimeCalls
 from symflex.codegen.python.dialects import ARRAY_API_DIALECT, JAX_DIALECT, NUMPY_DIALECT
 from symflex.codegen.python.expression import statement
@@ -75,7 +75,7 @@ def python_module(contents: Contents, dialect: Dialect) -> Export:
         code += "\n".join([*function.body(), own, ""])
     blocks += dialect.support(code)
     blocks.append(function_table("TRANSFER_FUNCTIONS", functions))
-    is_piecewise = any(isinstance(member.program, Piecewise) for member in members)
+    is_piecewise = not all(member.program.is_lumped for member in members)
     if is_piecewise:
         blocks.append(function_table("FREQUENCY_RESPONSES", responses))
     text = header(dialect.first, model, contents.verified[: len(functions)], contents.digits, dialect.remark)
@@ -130,7 +130,7 @@ class _Function:
             more if dialect.is_argument else (),
         )
         notes = [self.sentence, *([MEASURED] if dialect.is_traced else [])]
-        if isinstance(program, Piecewise) and program.solves:
+        if program.solves:
             notes.append(ITERATED if dialect.is_traced and RuntimeCalls.of([program]).roots else COST)
         return function_docstring(self.member.tf, signature, notes)
 

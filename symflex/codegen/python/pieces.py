@@ -22,12 +22,12 @@ from symflex.codegen.program import (
     Laplace,
     Multiply,
     Piecewise,
-    Program,
     Straight,
     identifiers,
 )
 from symflex.codegen.program.evaluate import number_of
-from symflex.codegen.program.everywhere import ONE, cases_of, in_pieces, places_of
+from symflex.codegen.program.everywhere import cases_of, in_pieces, places_of
+from symflex.codegen.program.nodes import ONE
 from symflex.codegen.program.real_axis import needed
 from symflex.codegen.python.expression import WIDTH, ArrayPrinter, PythonPrinter, statement
 
@@ -45,7 +45,7 @@ class PrivateText(ABC):
 
     Parameters
     ----------
-    given : Program or Piecewise
+    given : Piecewise
         What they compute.
     name : str
         Identifier of the public function.
@@ -57,7 +57,7 @@ class PrivateText(ABC):
         Of Python.
     """
 
-    given: Program | Piecewise
+    given: Piecewise
     name: str
     parameters: Mapping[str, str]
     values: Mapping[str, float]
@@ -137,7 +137,7 @@ class BlockText(PrivateText):
     def call(self) -> list[str]:
         """Return the statements that compute the value of ``arguments``."""
         program, name = self.given, self.name
-        if isinstance(program, Program):
+        if program.is_lumped:
             text = f"_in_blocks(_value_of_{name}, arguments)"
         elif program.is_real:
             parts = ", ".join(f"_{part}_of_{name}" for part in ("limits", "sizes", "pieces"))
@@ -151,7 +151,7 @@ class BlockText(PrivateText):
     def functions(self) -> list[str]:
         """Return the lines of all functions; no text of the model is in them."""
         program = self.given
-        if isinstance(program, Program):
+        if program.is_lumped:
             return self._lumped(program)
         lines = [*(self._real_tests(program) if program.is_real else self._tests(program)), "", ""]
         for i, piece in enumerate(program.code):
@@ -160,21 +160,21 @@ class BlockText(PrivateText):
         comma = "," if len(names) == 1 else ""
         return [*lines, *statement(f"_pieces_of_{self.name}", f"({', '.join(names)}{comma})", "")]
 
-    def _lumped(self, program: Program) -> list[str]:
+    def _lumped(self, program: Piecewise) -> list[str]:
         """Return the function that computes with numbers or arrays of any shape."""
         lines = [f"def _value_of_{self.name}("]
         lines += [f"    {name}: NDArray[np.complex128]," for name in self.arguments]
         lines.append(") -> NDArray[np.complex128]:")
-        far = program.far
+        near, far = program.near, program.far
         used = {*self.dialect.reserved, *self.arguments[1:]}
         own = identifiers({n: n for n in ("value", "limit", "is_far", "inverse")}, used)
         used |= set(own.values())
-        assignments = [*program.constants, *program.near.assignments, *(far.assignments if far else ())]
+        assignments = [*near.constants, *near.assignments, *program.late]
         intermediates = identifiers({a.name: a.name for a in assignments}, used)
         printer = PythonPrinter(self.parameters, intermediates, "s", own["inverse"])
-        for assignment in (*program.constants, *program.near.assignments):
+        for assignment in (*near.constants, *near.assignments):
             lines += printer.assignment(assignment.name, assignment.value, "    ")
-        value = printer.print(program.near.value)
+        value = printer.print(near.values[0])
         if far is None:
             return [*lines, *statement("return", value if program.varies else f"np.asarray({value})", "    ")]
         lines += statement(own["value"], value, "    ")
@@ -182,9 +182,9 @@ class BlockText(PrivateText):
         lines.append(f"    {own['is_far']} = np.abs(s) > {own['limit']}")
         lines.append(f"    if np.any({own['is_far']}):")
         lines.append(f"        {own['inverse']} = 1.0 / s")
-        for assignment in far.assignments:
+        for assignment in program.late:
             lines += printer.assignment(assignment.name, assignment.value, "        ")
-        whole = f"np.where({own['is_far']}, {printer.print(far.value)}, {own['value']})"
+        whole = f"np.where({own['is_far']}, {printer.print(far.values[0])}, {own['value']})"
         return [*lines, *statement(own["value"], whole, "        "), f"    return {own['value']}"]
 
     def _body(self, code: Straight, variable: str) -> tuple[list[str], PythonPrinter]:
@@ -244,7 +244,7 @@ class BlockText(PrivateText):
 
     def _value(self, piece: CodePiece, lines: list[str], printer: PythonPrinter) -> list[str]:
         num, den = piece.code.values
-        if not isinstance(self.given, Piecewise) or not self.given.is_real:
+        if not self.given.is_real:
             return [*lines, *statement("return", printer.quotient(num, den), "    ")]
         above, below = printer.print(num), printer.print(den)
         if piece.is_complex:

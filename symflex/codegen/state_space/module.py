@@ -7,7 +7,6 @@ Output: an :class:`Export`, the module's text and how well its numbers agree wit
 from __future__ import annotations
 
 from fractions import Fraction
-from math import inf
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,19 +16,19 @@ from symflex.codegen.module_text import default_value, described
 from symflex.codegen.program import (
     Add,
     Apply,
-    Branch,
     CodeNode,
     Divide,
     IntegerPower,
     Multiply,
     Negate,
     ParameterValue,
-    Program,
     RealNumber,
+    Straight,
     Verification,
     evaluate,
     identifiers,
     inert,
+    lumped,
     measure_values,
     nearest_double,
     wrapped,
@@ -204,7 +203,7 @@ class _Module:
         for letter, _, shape in self._system.matrices:
             array = np.zeros(shape)
             for place, node in self._entries[letter].items():
-                program = Program(tuple(given), (), Branch((), node), None, inf)
+                program = lumped(tuple(given), Straight((), (), (node,)))
                 array[place] = float(evaluate(program, 0.0, given).real)
             arrays.append(array)
         return Arrays(*arrays)

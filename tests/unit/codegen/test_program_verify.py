@@ -18,6 +18,7 @@ from symflex.codegen.program import (
     available_forms,
     build_program,
     choose_program,
+    lumped,
 )
 from symflex.codegen.program.verify import (
     DEFAULT_BAND,
@@ -41,8 +42,8 @@ TWO_MASS = transfer_functions("two_mass")[0]
 
 def spoiled(program, factor):
     """Return a program whose result is wrong by a factor."""
-    value = Multiply((RealNumber(Fraction(factor)), program.near.value))
-    return replace(program, near=replace(program.near, value=value))
+    value = Multiply((RealNumber(Fraction(factor)), program.near.values[0]))
+    return lumped(program.parameters, replace(program.near, values=(value,)))
 
 
 MANY_DECIMALS = ("fitted_resonances",)
