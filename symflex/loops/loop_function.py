@@ -8,26 +8,26 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property, lru_cache
-from math import inf, lcm
+from functools import cached_property
+from math import lcm
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_series, arb
 
 from symflex.algebra import Factored
+from symflex.algebra.exponential_sum import arguments_of, exponential_sum
 from symflex.roots import precision
-from symflex.roots.functions.exponential_sum import ExponentialValues, arguments_of, exponential_sum
+from symflex.roots.functions.exponential_values import ExponentialValues
 from symflex.transfer.enclose_kernels import expansion
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
-    from symflex.roots.functions.exponential_sum import Argument, ExponentialSum, Place
+    from symflex.algebra.exponential_sum import Argument, ExponentialSum
     from symflex.transfer import BoundTransferFunction
     from symflex.transfer.balls import Value
     from symflex.transfer.enclose_kernels import KernelValues
 
-Powers = tuple[tuple[int, int, int], ...]
 NOTHING = acb(0)
 
 
@@ -162,9 +162,9 @@ class LoopFunction:
             else:
                 around_place = sums.at(_series(wide, order))
                 centre_place = sums.at(_series(acb(0, middle), order), around_place)
-                less = _largest(sums, centre_place)
+                less = sums.largest((0, 1), centre_place)
                 values = [
-                    [_sum(sums, i, place, less) for i in (0, 1)] for place in (around_place, centre_place)
+                    [sums.value(i, place, less) for i in (0, 1)] for place in (around_place, centre_place)
                 ]
             (a, b), (a_mid, b_mid) = ([_derivatives(v) for v in pair] for pair in values)
             off = acb(0, omega - middle)
@@ -184,8 +184,8 @@ class LoopFunction:
                 values = [kernels.polynomial(f, place) for f in (self.a, self.b)]
             else:
                 at = sums.at(point)
-                less = _largest(sums, at)
-                values = [_sum(sums, i, at, less) for i in (0, 1)]
+                less = sums.largest((0, 1), at)
+                values = [sums.value(i, at, less) for i in (0, 1)]
             (a, a_slope, _), (b, b_slope, _) = (_derivatives(value) for value in values)
             return complex(a.mid()), complex(a_slope.mid()), complex(b.mid()), complex(b_slope.mid())
 
@@ -207,44 +207,3 @@ def _derivatives(value: Value) -> tuple[acb, acb, acb]:
     if not isinstance(value, acb_series):
         return value, NOTHING, NOTHING
     return value[0], value[1], 2 * value[2]
-
-
-def _number(value: Value) -> acb:
-    return value[0] if isinstance(value, acb_series) else value
-
-
-def _largest(sums: ExponentialValues, place: Place) -> Powers:
-    """Return the exponent, as powers of the arguments, of the largest term of both sums."""
-    best = -inf
-    chosen: Powers = ()
-    for i, (terms, _) in enumerate(sums.sums):
-        pairs = zip(terms.terms, sums.amplitudes(i, place), sums.exponents(i, place), strict=True)
-        for term, amplitude, exponent in pairs:
-            size = abs(_number(amplitude).mid())
-            if size > 0:
-                growth = 0.0 if exponent is None else float(_number(exponent).real.mid())
-                total = growth + float(size.log())
-                if total > best:
-                    best, chosen = total, term.powers
-    return chosen
-
-
-def _sum(sums: ExponentialValues, number: int, place: Place, less: Powers) -> Value:
-    """Return one sum divided by an exponential."""
-    total: Value = acb(0)
-    terms = sums.sums[number][0].terms
-    for term, amplitude in zip(terms, sums.amplitudes(number, place), strict=True):
-        exponent: Value | None = None
-        for i, factor in _difference(term.powers, less):
-            step = place.arguments[i] * factor
-            exponent = step if exponent is None else exponent + step
-        total = total + (amplitude if exponent is None else amplitude * exponent.exp())
-    return total
-
-
-@lru_cache(maxsize=4096)
-def _difference(powers: Powers, less: Powers) -> tuple[tuple[int, acb], ...]:
-    own = {i: complex(a, b) for i, a, b in powers}
-    for i, a, b in less:
-        own[i] = own.get(i, 0) - complex(a, b)
-    return tuple((i, acb(c.real, c.imag)) for i, c in sorted(own.items()) if c)

@@ -11,10 +11,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from math import comb
 from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored, KernelTable, Ring
+from symflex.algebra.exponential_sum import power, spread, times
 from symflex.algebra.normal_form import NormalForm, split
 from symflex.print.forms.notation import angles_of, coefficient_name
 from symflex.transfer.expansion import compose_rational
@@ -392,23 +392,11 @@ def laurent(cosh: int, sinh: int, cos: int, sin: int) -> Laurent:
 
     ``E = exp(q)`` and ``z = exp(j q)``; coefficients are pairs of real and imaginary part.
     """
-    hyperbolic = _binomials(cosh, sinh)
-    circular = _binomials(cos, sin)
+    hyperbolic = spread(cosh, sinh)
+    circular = spread(cos, sin)
     # 2 sin q = -j (z - 1/z)
-    re, im = ((1, 0), (0, -1), (-1, 0), (0, 1))[sin % 4]
-    return {
-        (a, b): (x * y * re, x * y * im) for a, x in hyperbolic.items() for b, y in circular.items() if x * y
-    }
-
-
-def _binomials(plus: int, minus: int) -> dict[int, int]:
-    """Return the coefficients of ``(E + 1/E)^plus (E - 1/E)^minus``."""
-    found: dict[int, int] = {}
-    for a in range(plus + 1):
-        for b in range(minus + 1):
-            n = plus + minus - 2 * (a + b)
-            found[n] = found.get(n, 0) + comb(plus, a) * comb(minus, b) * (-1) ** b
-    return found
+    unit = power((0, -1), sin)
+    return {(a, b): times((x * y, 0), unit) for a, x in hyperbolic.items() for b, y in circular.items()}
 
 
 class _Powers:

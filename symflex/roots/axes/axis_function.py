@@ -20,6 +20,8 @@ from symflex.roots.precision import precision
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from symflex.algebra.exponential_sum import AxisWave, Monomial, Multiples, Polynomial
+
 FLOAT_BITS = 64
 LINEAR, QUADRATIC = 1, 2
 REAL, IMAGINARY = 0, 1
@@ -27,32 +29,8 @@ DECAYED = 2
 """What is smaller than the last bit by this power is bounded rather than evaluated."""
 
 Doubles = npt.NDArray[np.float64]
-Monomial = tuple[tuple[int, int], ...]
-"""Positions of constants, and exponents."""
-Polynomial = dict[int, dict[Monomial, int]]
-"""Per power of t and monomial of constants, a number."""
-Multiples = tuple[int, ...]
-"""Of every argument, one integer."""
 Rate = tuple[arb, arb]
 """Of t and of t^2."""
-
-
-@dataclass(frozen=True, slots=True)
-class AxisWave:
-    """Terms ``exp(g) (even(t) cos(p) + odd(t) sin(p))``.
-
-    Parameters
-    ----------
-    growth, phase : tuple of int
-        Multiples of the arguments, which make up g and p.
-    even, odd : Polynomial
-        Coefficients.
-    """
-
-    growth: Multiples
-    phase: Multiples
-    even: Polynomial
-    odd: Polynomial
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,12 +21,9 @@ from symflex.roots.axes.axis_function import (
     IMAGINARY,
     LINEAR,
     QUADRATIC,
+    REAL,
     AxisFunction,
-    AxisWave,
     Enclosures,
-    Monomial,
-    Multiples,
-    Polynomial,
 )
 from symflex.roots.precision import precision
 
@@ -34,43 +31,24 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symflex.algebra import Factored
-    from symflex.roots.functions.exponential_sum import Argument, ExponentialSum
+    from symflex.algebra.exponential_sum import (
+        Amplitude,
+        Argument,
+        AxisWave,
+        Exponent,
+        ExponentialSum,
+        Gaussian,
+        Monomial,
+        Multiples,
+    )
     from symflex.roots.functions.kernel_function import KernelFunction
     from symflex.transfer import BoundTransferFunction
     from symflex.transfer.balls import Value
 
 LOSSLESS: Mapping[str, int] = {"bending": LINEAR, "wave": QUADRATIC}
 """Power of x that wavenumbers are proportional to, by kind of dispersion."""
-QUARTERS = 4
-
-Key = tuple[tuple[int, int, int], ...]
-"""Positions of arguments, and what they are multiplied with, a + j b."""
-Gaussian = tuple[int, int]
-"""An integer a + j b."""
-Place = tuple[int, Monomial]
-"""A power of x, and a product of constants."""
-Terms = dict[Key, dict[Place, Gaussian]]
-"""Per exponential, what it is multiplied with; all times the same power of two."""
-
-
-def _times(a: Gaussian, b: Gaussian) -> Gaussian:
-    return a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]
-
-
-def _plus(a: Gaussian, b: Gaussian) -> Gaussian:
-    return a[0] + b[0], a[1] + b[1]
-
-
-def _conjugate(a: Gaussian) -> Gaussian:
-    return a[0], -a[1]
-
-
-def _unit(axis: int, power: int) -> Gaussian:
-    """Return a power of 1, or of 1 + j."""
-    unit = (1, 0)
-    for _ in range(power if axis == IMAGINARY else 0):
-        unit = _times(unit, (1, 1))
-    return unit
+UNITS: Mapping[int, Gaussian] = {REAL: (1, 0), IMAGINARY: (1, 1)}
+"""What t is multiplied with to be x."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,13 +57,13 @@ class LosslessFunction:
 
     Parameters
     ----------
-    factors : tuple of (Terms, int)
-        The sums, and their exponents.
+    factors : tuple of (ExponentialSum, int)
+        The sums over x, and their exponents; the first generator is x, the others are constants.
     enclosures : Enclosures
         What terms are made of.
     """
 
-    factors: tuple[tuple[Terms, int], ...]
+    factors: tuple[tuple[ExponentialSum, int], ...]
     enclosures: Enclosures
 
     def on_axis(self, number: int, axis: int) -> AxisFunction | None:
@@ -94,13 +72,7 @@ class LosslessFunction:
         ``None`` if it is not real there.
         """
         degrees = self.enclosures.degrees
-        turned: Terms = {}
-        for key, terms in self.factors[number][0].items():
-            new_key = tuple((i, *_times((a, b), _unit(axis, degrees[i]))) for i, a, b in key)
-            own = turned.setdefault(new_key, {})
-            for (power, monomial), value in terms.items():
-                own[power, monomial] = _times(value, _unit(axis, power))
-        waves = _real_waves(turned, len(degrees))
+        waves = self.factors[number][0].turned(UNITS[axis], degrees).waves(len(degrees))
         if waves is None:
             return None
         fastest = max((wave.growth for wave in waves), key=self._growth)
@@ -142,78 +114,27 @@ class LosslessFunction:
         """The factors and their exponents, as sums over exponentials in balls."""
         with precision(FLOAT_BITS):
             return tuple(
-                (ArcSum(tuple(_exponential(*item, self.enclosures) for item in terms.items())), exponent)
+                (
+                    ArcSum(tuple(_arc_term(*item, self.enclosures) for item in terms.terms.items())),
+                    exponent,
+                )
                 for terms, exponent in self.factors
             )
 
 
-def _exponential(key: Key, terms: dict[Place, Gaussian], numbers: Enclosures) -> ArcTerm:
+def _arc_term(exponent: Exponent, amplitude: Amplitude, numbers: Enclosures) -> ArcTerm:
     linear, square = acb(0), acb(0)
-    for i, a, b in key:
+    for i, a, b in exponent:
         if numbers.degrees[i] == LINEAR:
             linear += acb(a, b) * numbers.rates[i]
         else:
             square += acb(a, b) * numbers.rates[i]
     powers: dict[int, acb] = {}
-    for (power, monomial), number in terms.items():
-        powers[power] = powers.get(power, acb(0)) + acb(*number) * numbers.product(monomial)
+    for monomial, number in amplitude.items():
+        n = sum(e for i, e in monomial if i == 0)
+        factor = numbers.product(tuple((i - 1, e) for i, e in monomial if i))
+        powers[n] = powers.get(n, acb(0)) + acb(*number) * factor
     return ArcTerm(linear, square, tuple(sorted(powers.items())))
-
-
-def _real_waves(turned: Terms, arguments: int) -> tuple[AxisWave, ...] | None:
-    """Return real terms, if all complex ones times one unit come in conjugate pairs."""
-    pairs: dict[tuple[Multiples, Multiples], dict[Place, Gaussian]] = {}
-    for key, terms in turned.items():
-        growth, phase = [0] * arguments, [0] * arguments
-        for i, a, b in key:
-            growth[i], phase[i] = growth[i] + a, phase[i] + b
-        own = pairs.setdefault((tuple(growth), tuple(phase)), {})
-        for place, value in terms.items():
-            own[place] = _plus(own.get(place, (0, 0)), value)
-    unit = _unit_that_makes_real(pairs)
-    waves = []
-    done: set[tuple[Multiples, Multiples]] = set()
-    for (growing, turning), own in pairs.items():
-        if (growing, turning) in done:
-            continue
-        opposite = tuple(-p for p in turning)
-        done |= {(growing, turning), (growing, opposite)}
-        here = {place: _times(value, unit) for place, value in own.items()}
-        other = pairs.get((growing, opposite), {})
-        there = {place: _conjugate(_times(value, unit)) for place, value in other.items()}
-        if any(here.get(place, (0, 0)) != there.get(place, (0, 0)) for place in {*here, *there}):
-            return None
-        wave = _wave(growing, turning, here)
-        if wave.even or wave.odd:
-            waves.append(wave)
-    return tuple(waves)
-
-
-def _unit_that_makes_real(pairs: Mapping[tuple[Multiples, Multiples], dict[Place, Gaussian]]) -> Gaussian:
-    """Return a power of 1 + j by which the first pair becomes conjugate, if any does."""
-    for (growing, turning), own in pairs.items():
-        other = pairs.get((growing, tuple(-p for p in turning)), {})
-        for place, value in own.items():
-            for power in range(QUARTERS):
-                unit = _unit(IMAGINARY, power)
-                if any(value) and _times(value, unit) == _conjugate(_times(other.get(place, (0, 0)), unit)):
-                    return unit
-    return 1, 0
-
-
-def _wave(growth: Multiples, phase: Multiples, terms: Mapping[Place, Gaussian]) -> AxisWave:
-    """Return one of two conjugate exponentials and the other as cosine and sine of a phase of one sign."""
-    opposite = tuple(-p for p in phase)
-    weight = 1 + (opposite != phase)
-    sign = -1 if phase > opposite else 1
-    even: Polynomial = {}
-    odd: Polynomial = {}
-    for (power, monomial), (re, im) in terms.items():
-        if re:
-            even.setdefault(power, {})[monomial] = weight * re
-        if im and opposite != phase:
-            odd.setdefault(power, {})[monomial] = weight * sign * im
-    return AxisWave(growth, max(phase, opposite), even, odd)
 
 
 def _divided(wave: AxisWave, growth: Multiples) -> AxisWave:
@@ -254,7 +175,16 @@ def lossless_function(function: KernelFunction, bits: int) -> LosslessFunction |
     wavenumbers = enclosures.constants[len(bound.constants) :]
     if not all(rate.is_finite() and rate > 0 for rate in wavenumbers):
         return None
-    factors = tuple((_terms(terms, position), exponent) for terms, exponent in sums)
+
+    def in_root_of_s(monomial: Monomial) -> Monomial:
+        power, others = 0, []
+        for i, e in monomial:
+            place, degree = position[i] if i else (-1, 2)
+            power += degree * e
+            others += [(place + 1, e)] if i else []
+        return (*(((0, power),) if power else ()), *others)
+
+    factors = tuple((terms.mapped(in_root_of_s), exponent) for terms, exponent in sums)
     return LosslessFunction(factors, enclosures)
 
 
@@ -310,29 +240,3 @@ def _enclosures(
             [wavenumbers[argument.wavenumber] * number(argument.length) for argument in arguments],
             [laws[argument.wavenumber].degree for argument in arguments],
         )
-
-
-def _terms(terms: ExponentialSum, position: Mapping[int, tuple[int, int]]) -> Terms:
-    """Return a sum over exponentials of x.
-
-    Parameters
-    ----------
-    terms : ExponentialSum
-        In s, constants and wavenumbers; all halved equally often.
-    position : mapping of int to (int, int)
-        Of constants and wavenumbers: where they stand among the constants, and the power of x they bring.
-    """
-    found: Terms = {}
-    for term in terms.terms:
-        own = found.setdefault(tuple(sorted(term.powers)), {})
-        for polynomial, unit in ((term.re, (1, 0)), (term.im, (0, 1))):
-            for monomial, coefficient in polynomial.terms():
-                power, constants = 2 * int(monomial[0]), []
-                for i, e in enumerate(monomial):
-                    if i and e:
-                        place, degree = position[i]
-                        power += degree * int(e)
-                        constants.append((place, int(e)))
-                key = (power, tuple(constants))
-                own[key] = _plus(own.get(key, (0, 0)), _times((int(coefficient), 0), unit))
-    return found

@@ -1,7 +1,7 @@
 """Counting roots by the argument principle, with proof: every step of a path is a ball of s.
 
 A sum of exponentials is followed through the largest of these, whose argument is known, and the ratio to it,
-whose values on a step's ball must keep to one side of 0: :mod:`~symflex.roots.functions.exponential_sum`.
+whose values on a step's ball must keep to one side of 0: :mod:`~symflex.roots.functions.exponential_values`.
 Any other
 function leaves its value F(m) in the middle by no more than the bound of abs(F') over the ball times half the
 step; where that is less than abs(F(m)), the argument stays within the arc sine of the ratio.

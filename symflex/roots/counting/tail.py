@@ -18,8 +18,9 @@ from typing import TYPE_CHECKING
 from flint import acb, arb
 
 from symflex.algebra import LAPLACE, Ring, degree_in
+from symflex.algebra.exponential_sum import arguments_of, exponential_sum
 from symflex.budget import spend
-from symflex.roots.functions.exponential_sum import ExponentialValues, arguments_of, exponential_sum
+from symflex.roots.functions.exponential_values import ExponentialValues
 from symflex.roots.precision import precision
 from symflex.transfer import coefficients_in_s
 
@@ -29,11 +30,9 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.algebra import Dispersion, Factored
+    from symflex.algebra.exponential_sum import Exponent
     from symflex.transfer import BoundTransferFunction
     from symflex.transfer.enclose_kernels import KernelValues
-
-Powers = tuple[tuple[int, int, int], ...]
-"""Positions of arguments, and what each is multiplied with: a + j b."""
 
 BITS = 64
 SECTORS = 48
@@ -174,7 +173,7 @@ class _FunctionFarOut:
         delayed = max((p for own, p in highest.items() if own), default=Fraction(-1))
         return ADVANCED if delayed > highest[()] else NEUTRAL
 
-    def _powers(self, radius: float) -> tuple[dict[Powers, dict[Fraction, acb]], list[_Power]] | None:
+    def _powers(self, radius: float) -> tuple[dict[Exponent, dict[Fraction, acb]], list[_Power]] | None:
         """Return amplitudes and arguments of the exponentials as powers of s, beyond a radius."""
         named = {LAPLACE: _Power(Fraction(1), acb(1))}
         for law in self.laws:
@@ -206,12 +205,12 @@ class _FunctionFarOut:
             power, value = found
             is_delay = power == 1 and bool(value.imag == 0) and bool(value.real * length.real > 0)
             arguments.append(_Power(Fraction(power), -value * length, is_delay))
-        terms: dict[Powers, dict[Fraction, acb]] = {}
+        terms: dict[Exponent, dict[Fraction, acb]] = {}
         for (each, _), coefficients, scale in zip(
             self.sums.sums, self.sums.coefficients, self.scales, strict=True
         ):
-            for term, amplitude in zip(each.terms, coefficients, strict=True):
-                own = terms.setdefault(term.powers, {})
+            for powers, amplitude in zip(each.terms, coefficients, strict=True):
+                own = terms.setdefault(powers, {})
                 for number, factors in amplitude:
                     exponent, unit = Fraction(0), number * scale
                     for name, e in factors:
@@ -266,17 +265,17 @@ def _constant(polynomial: fmpz_mpoly, names: Sequence[str], values: Mapping[str,
     return total
 
 
-def _is_dominated(terms: dict[Powers, dict[Fraction, acb]], arguments: list[_Power], radius: arb) -> bool:
+def _is_dominated(terms: dict[Exponent, dict[Fraction, acb]], arguments: list[_Power], radius: arb) -> bool:
     """Tell whether one term is larger than all others from a radius on."""
 
-    def growth(powers: Powers) -> arb:
+    def growth(powers: Exponent) -> arb:
         total = arb(0)
         for i, a, b in powers:
             own = arguments[i]
             total += (own.unit * acb(a, b)).real.mid() * radius ** _ratio(own.power)
         return total.mid()
 
-    def size(powers: Powers) -> float:
+    def size(powers: Exponent) -> float:
         weight = sum((abs(c).mid() * radius ** _ratio(p) for p, c in terms[powers].items()), arb(0)).mid()
         return float((growth(powers) + weight.log()).mid()) if weight > 0 else float("-inf")
 

@@ -10,13 +10,14 @@ import numpy as np
 import numpy.typing as npt
 from flint import acb
 
+from symflex.algebra.exponential_sum import amplitude_of
 from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symflex.algebra import Dispersion, Factored
-    from symflex.roots.functions.exponential_sum import Amplitude, ExponentialValues
+    from symflex.roots.functions.exponential_values import ExponentialValues, Valued
 
 Numbers = npt.NDArray[np.complex128]
 Doubles = npt.NDArray[np.float64]
@@ -92,7 +93,7 @@ class _SampledProduct:
 
     def __init__(self, values: ExponentialValues, product: Factored) -> None:
         self._unit = complex(acb(ball(product.unit)))
-        self._factors = [(_Amplitudes((values.amplitude(f),)), e) for f, e in product.factors]
+        self._factors = [(_Amplitudes((values.valued(amplitude_of(f)),)), e) for f, e in product.factors]
 
     def value(self, values: Mapping[str, Numbers]) -> Numbers:
         total = np.full_like(values["s"], self._unit)
@@ -104,7 +105,7 @@ class _SampledProduct:
 class _Amplitudes:
     """Polynomials in s and wavenumbers."""
 
-    def __init__(self, polynomials: Sequence[Amplitude]) -> None:
+    def __init__(self, polynomials: Sequence[Valued]) -> None:
         self._powers = list(dict.fromkeys(key for terms in polynomials for _, key in terms))
         place = {key: i for i, key in enumerate(self._powers)}
         self._numbers = np.zeros((len(polynomials), len(place)), dtype=np.complex128)
@@ -125,7 +126,7 @@ class _SampledTerms:
     """One sum."""
 
     def __init__(
-        self, amplitudes: Sequence[Amplitude], combinations: Sequence[Mapping[int, complex]], arguments: int
+        self, amplitudes: Sequence[Valued], combinations: Sequence[Mapping[int, complex]], arguments: int
     ) -> None:
         self._amplitudes = _Amplitudes(amplitudes)
         self.combinations = np.zeros((len(combinations), arguments), dtype=np.complex128)

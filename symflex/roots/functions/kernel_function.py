@@ -16,11 +16,12 @@ from typing import TYPE_CHECKING, Final
 from flint import acb, acb_series, arb
 
 from symflex.algebra import Factored, degree_in
+from symflex.algebra.exponential_sum import REAL, arguments_of, combination, exponential_sum
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.roots.argument import ROOM, deviation
 from symflex.roots.functions.double_sums import DoubleSums
-from symflex.roots.functions.exponential_sum import ExponentialValues, Place, arguments_of, exponential_sum
+from symflex.roots.functions.exponential_values import ExponentialValues, Place
 from symflex.roots.precision import precision
 from symflex.transfer.enclose_kernels import expansion
 
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.algebra import Dispersion, KernelTable
-    from symflex.roots.functions.exponential_sum import Argument, ExponentialSum
+    from symflex.algebra.exponential_sum import Argument, ExponentialSum
     from symflex.transfer import BoundTransferFunction
     from symflex.transfer.balls import Value
     from symflex.transfer.enclose_kernels import KernelValues
@@ -227,12 +228,13 @@ class KernelFunction:
         first, last = sums.at(start, around), sums.at(end, around)
         total, widest = arb(0), 0.0
         for i, (terms, exponent) in enumerate(sums.sums):
-            largest = sums.largest(i, around) if len(terms.terms) > 1 else 0
+            largest = sums.largest([i], around) if len(terms.terms) > 1 else next(iter(terms.terms), REAL)
             widest = max(widest, deviation(_number(sums.value(i, around, largest))))
             if widest > ROOM:
                 return widest, total
             ratio = _number(sums.value(i, last, largest)) / _number(sums.value(i, first, largest))
-            own = [sums.exponents(i, place)[largest] for place in (first, last)]
+            factors = combination(largest)
+            own = [place.combined(factors) for place in (first, last)]
             if own[0] is not None and own[1] is not None:
                 total += exponent * _number(own[1] - own[0]).imag
             total += exponent * ratio.arg()

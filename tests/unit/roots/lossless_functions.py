@@ -7,6 +7,7 @@ from itertools import product
 from flint import arb
 from mpmath import mpc
 
+from symflex.algebra.exponential_sum import ExponentialSum
 from symflex.roots.axes.axis_function import Enclosures
 from symflex.roots.axes.harmonic_sum import LosslessFunction
 
@@ -26,7 +27,7 @@ def expanded(sums):
     """Return sums of (number, power of x, power of the constant, kernels by argument), 8 times, as terms."""
     found = {}
     for number, power, of_constant, kernels in sums:
-        monomial = ((0, of_constant),) if of_constant else ()
+        monomial = (*(((0, power),) if power else ()), *(((1, of_constant),) if of_constant else ()))
         scale = number * 2 ** (3 - len(kernels))
         for pieces in product(*(KERNELS[name] for _, name in kernels)):
             exponents, factor = {}, mpc(scale)
@@ -36,9 +37,9 @@ def expanded(sums):
                 factor *= mpc(*weight)
             key = tuple(sorted((i, a, b) for i, (a, b) in exponents.items() if a or b))
             terms = found.setdefault(key, {})
-            re, im = terms.get((power, monomial), (0, 0))
-            terms[power, monomial] = (re + int(factor.real), im + int(factor.imag))
-    return found
+            re, im = terms.get(monomial, (0, 0))
+            terms[monomial] = (re + int(factor.real), im + int(factor.imag))
+    return ExponentialSum(found)
 
 
 def function_of(*sums):

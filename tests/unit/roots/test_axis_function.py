@@ -8,12 +8,12 @@ import pytest
 from flint import arb
 from mpmath import mp, mpf
 
+from symflex.algebra.exponential_sum import AxisWave
 from symflex.roots.axes.axis_function import (
     FLOAT_BITS,
     IMAGINARY,
     REAL,
     AxisFunction,
-    AxisWave,
     Enclosures,
     _products,
 )

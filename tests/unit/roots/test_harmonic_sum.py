@@ -9,6 +9,7 @@ import pytest
 from flint import arb
 from mpmath import mp, mpc, mpf
 
+from symflex.algebra.exponential_sum import ExponentialSum
 from symflex.roots import precision
 from symflex.roots.axes.axis_function import IMAGINARY, REAL
 from symflex.roots.axes.harmonic_sum import LosslessFunction, lossless_function
@@ -114,7 +115,7 @@ def test_what_is_not_real_on_an_axis_is_none(sums, axis):
 
 def test_what_turns_one_way_only_is_not_real():
     # exp(j x), with the smallest coefficient there is.
-    alone = LosslessFunction((({((0, 0, 1),): {(0, ()): (1, 0)}}, 1),), function_of().enclosures)
+    alone = LosslessFunction(((ExponentialSum({((0, 0, 1),): {(): (1, 0)}}), 1),), function_of().enclosures)
     assert alone.on_axis(0, REAL) is None
 
 

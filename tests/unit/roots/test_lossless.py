@@ -9,9 +9,10 @@ import pytest
 from flint import acb, arb, ctx
 from mpmath import exp, findroot, mp, mpf, sin
 
+from symflex.algebra.exponential_sum import AxisWave
 from symflex.roots import Mode, Modes
 from symflex.roots.axes.arc_sum import ArcSum, ArcTerm
-from symflex.roots.axes.axis_function import IMAGINARY, REAL, AxisFunction, AxisWave, Enclosures
+from symflex.roots.axes.axis_function import IMAGINARY, REAL, AxisFunction, Enclosures
 from symflex.roots.axes.axis_root import AxisNewton, bits_of, bracketed, changes_sign
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.precision import precision

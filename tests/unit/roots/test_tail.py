@@ -11,6 +11,7 @@ import pytest
 from flint import acb, arb
 
 from symflex import pipeline
+from symflex.algebra.exponential_sum import MOST_EXPONENTIALS
 from symflex.roots import precision
 from symflex.roots.counting.tail import (
     ADVANCED,
@@ -29,7 +30,6 @@ from symflex.roots.counting.tail import (
     _turned,
     right_tail,
 )
-from symflex.roots.functions.exponential_sum import MOST_EXPONENTIALS
 
 
 def bound(text):

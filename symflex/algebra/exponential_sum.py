@@ -1,0 +1,351 @@
+"""Sums of exponentials, exact: what polynomials in kernels are when they are multiplied out.
+
+    4 cosh(q) cos(q)  =  e^((1 + j) q) + e^((1 - j) q) + e^((-1 + j) q) + e^((-1 - j) q)
+
+An exponent is a combination of arguments (q is a wavenumber times a length) with Gaussian integers, an
+amplitude a polynomial with Gaussian integers over a power of two. What evaluates sums stands where it is
+used: in balls and in doubles at any s, on the axes where there are no losses, on arcs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import product
+from math import comb
+from typing import TYPE_CHECKING
+
+from flint import acb
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.algebra.dispersion import Kernel, KernelTable
+    from symflex.algebra.factored import Factored
+    from symflex.algebra.ring import Ring
+
+MOST_EXPONENTIALS = 1500
+"""Terms up to which a sum is written out: each is evaluated at every step of every path."""
+
+Gaussian = tuple[int, int]
+"""An integer a + j b."""
+Exponent = tuple[tuple[int, int, int], ...]
+"""Positions of arguments, ascending, and what each is multiplied with: a + j b."""
+Monomial = tuple[tuple[int, int], ...]
+"""Positions of generators, ascending, and exponents; the first generator is s, or what stands for it."""
+Amplitude = dict[Monomial, Gaussian]
+Multiples = tuple[int, ...]
+"""Of every argument, one integer."""
+Polynomial = dict[int, dict[Monomial, int]]
+"""Per power of the first generator and monomial of the others, counted from 0, a number."""
+Combination = tuple[tuple[int, acb], ...]
+"""Positions of arguments, and what they are multiplied with."""
+REAL: Exponent = ()
+"""The exponent 0."""
+
+
+def times(a: Gaussian, b: Gaussian) -> Gaussian:
+    """Return a product."""
+    return a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]
+
+
+def power(a: Gaussian, n: int) -> Gaussian:
+    """Return a power that is not negative."""
+    found = (1, 0)
+    for _ in range(n):
+        found = times(found, a)
+    return found
+
+
+def _add(amplitude: Amplitude, monomial: Monomial, value: Gaussian) -> None:
+    re, im = amplitude.get(monomial, (0, 0))
+    amplitude[monomial] = (re + value[0], im + value[1])
+
+
+def parts(amplitude: Mapping[Monomial, Gaussian]) -> Iterator[tuple[Monomial, Gaussian]]:
+    """Yield all real coefficients, then all imaginary ones."""
+    yield from ((m, (re, 0)) for m, (re, _) in amplitude.items() if re)
+    yield from ((m, (0, im)) for m, (_, im) in amplitude.items() if im)
+
+
+def amplitude_of(polynomial: fmpz_mpoly) -> Amplitude:
+    """Return a polynomial as an amplitude."""
+    return {_sparse(monomial): (int(c), 0) for monomial, c in polynomial.terms()}
+
+
+def _sparse(exponents: Sequence[int]) -> Monomial:
+    return tuple((i, int(e)) for i, e in enumerate(exponents) if e)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Argument:
+    """What an exponential is taken of, but for a factor.
+
+    Parameters
+    ----------
+    wavenumber : str
+        Generator; empty for the decay all solutions of an equation share.
+    rate : Factored
+        The shift of a decay; not used for a wavenumber.
+    length : Factored
+        [m], for a delay [s].
+    """
+
+    wavenumber: str
+    rate: Factored
+    length: Factored
+
+    def is_of(self, kernel: Kernel) -> bool:
+        """Tell whether a kernel has this argument."""
+        same = self.wavenumber == kernel.wavenumber and self.length is kernel.length
+        return same and (bool(self.wavenumber) or self.rate is kernel.dispersion.shift)
+
+
+@dataclass(frozen=True, slots=True)
+class AxisWave:
+    """Terms ``exp(g) (even(t) cos(p) + odd(t) sin(p))``.
+
+    Parameters
+    ----------
+    growth, phase : tuple of int
+        Multiples of the arguments, which make up g and p.
+    even, odd : Polynomial
+        Coefficients.
+    """
+
+    growth: Multiples
+    phase: Multiples
+    even: Polynomial
+    odd: Polynomial
+
+
+@dataclass(frozen=True, eq=False)
+class ExponentialSum:
+    """A sum of amplitudes times exponentials, over two to a power.
+
+    Parameters
+    ----------
+    terms : mapping of Exponent to Amplitude
+        What is summed.
+    halvings : int
+        What all amplitudes are divided by two so often.
+    """
+
+    terms: Mapping[Exponent, Amplitude]
+    halvings: int = 0
+
+    _known: dict[Exponent, tuple[Combination, ...]] = field(default_factory=dict, repr=False)
+
+    @cached_property
+    def combinations(self) -> tuple[dict[int, complex], ...]:
+        """The exponent of every term: positions of arguments, and what they are multiplied with."""
+        return tuple({i: complex(a, b) for i, a, b in exponent} for exponent in self.terms)
+
+    def exponents(self, less: Exponent = REAL) -> tuple[Combination, ...]:
+        """Return the exponents of all terms, less another one, as combinations of the arguments."""
+        if less not in self._known:
+            self._known[less] = tuple(combination(exponent, less) for exponent in self.terms)
+        return self._known[less]
+
+    def mapped(self, image: Callable[[Monomial], Monomial]) -> ExponentialSum:
+        """Return the sum with other monomials in place of its own; where two become equal, they are added."""
+        found: dict[Exponent, Amplitude] = {}
+        for exponent, amplitude in self.terms.items():
+            own = found.setdefault(exponent, {})
+            for monomial, value in parts(amplitude):
+                _add(own, image(monomial), value)
+        return ExponentialSum(found, self.halvings)
+
+    def turned(self, unit: Gaussian, degrees: Sequence[int]) -> ExponentialSum:
+        """Return the sum with a multiple of the first generator in its place.
+
+        Parameters
+        ----------
+        unit : (int, int)
+            What it is multiplied with.
+        degrees : sequence of int
+            Of every argument, to which power of the generator it is proportional.
+        """
+        found: dict[Exponent, Amplitude] = {}
+        for exponent, amplitude in self.terms.items():
+            moved = tuple((i, *times((a, b), power(unit, degrees[i]))) for i, a, b in exponent)
+            own = found.setdefault(moved, {})
+            for monomial, value in amplitude.items():
+                own[monomial] = times(value, power(unit, _degree(monomial)))
+        return ExponentialSum(found, self.halvings)
+
+    def waves(self, arguments: int) -> tuple[AxisWave, ...] | None:
+        """Return real terms for real arguments, if all terms times one number come in conjugate pairs.
+
+        ``2 e^q cos(q)`` comes from ``e^((1 + j) q) + e^((1 - j) q)``; ``None`` for one of these alone.
+
+        Parameters
+        ----------
+        arguments : int
+            How many there are.
+        """
+        pairs: dict[tuple[Multiples, Multiples], Amplitude] = {}
+        for exponent, amplitude in self.terms.items():
+            growth, phase = [0] * arguments, [0] * arguments
+            for i, a, b in exponent:
+                growth[i], phase[i] = growth[i] + a, phase[i] + b
+            own = pairs.setdefault((tuple(growth), tuple(phase)), {})
+            for monomial, value in amplitude.items():
+                _add(own, monomial, value)
+        unit = _unit_that_makes_real(pairs)
+        found = []
+        done: set[tuple[Multiples, Multiples]] = set()
+        for (growing, turning), own in pairs.items():
+            if (growing, turning) in done:
+                continue
+            opposite = _opposite(turning)
+            done |= {(growing, turning), (growing, opposite)}
+            here = {m: times(value, unit) for m, value in own.items()}
+            other = pairs.get((growing, opposite), {})
+            there = {m: _conjugate(times(value, unit)) for m, value in other.items()}
+            if any(here.get(m, (0, 0)) != there.get(m, (0, 0)) for m in {*here, *there}):
+                return None
+            wave = _wave(growing, turning, here)
+            if wave.even or wave.odd:
+                found.append(wave)
+        return tuple(found)
+
+
+def combination(exponent: Exponent, less: Exponent = REAL) -> Combination:
+    """Return one exponent less another as a combination of the arguments."""
+    factors = {i: complex(a, b) for i, a, b in exponent}
+    for i, a, b in less:
+        factors[i] = factors.get(i, 0) - complex(a, b)
+    return tuple((i, acb(f.real, f.imag)) for i, f in sorted(factors.items()) if f)
+
+
+def arguments_of(table: KernelTable) -> tuple[Argument, ...] | None:
+    """Return the arguments of all kernels, ``None`` where some have no formula."""
+    found: list[Argument] = []
+    for kernel in table.kernels:
+        if kernel.function == "fundamental":
+            return None
+        if not any(argument.is_of(kernel) for argument in found):
+            found.append(Argument(kernel.wavenumber, kernel.dispersion.shift, kernel.length))
+    return tuple(found)
+
+
+def exponential_sum(
+    ring: Ring, table: KernelTable, arguments: Sequence[Argument], polynomial: fmpz_mpoly
+) -> ExponentialSum | None:
+    """Return a polynomial in kernels as a sum of exponentials, ``None`` where these are too many."""
+    places = {
+        ring.index[kernel.generator]: (
+            kernel.function,
+            next(i for i, argument in enumerate(arguments) if argument.is_of(kernel)),
+        )
+        for kernel in table.kernels
+    }
+    collected: dict[Exponent, dict[tuple[int, ...], Gaussian]] = {}
+    halved = [i for i, (function, _) in places.items() if function != "exp"]
+    degree = max((sum(int(m[i]) for i in halved) for m in polynomial.monoms()), default=0)
+    for monomial, coefficient in polynomial.terms():
+        exponents = [int(e) for e in monomial]
+        by_argument: dict[int, dict[str, int]] = {}
+        own = 0
+        for i, (function, argument) in places.items():
+            if exponents[i]:
+                by_argument.setdefault(argument, {})[function] = exponents[i]
+                own += exponents[i] if function != "exp" else 0
+            exponents[i] = 0
+        rest = tuple(exponents)
+        number = int(coefficient) << (degree - own)
+        pieces = [[(x, *piece) for piece in _expanded(powers)] for x, powers in by_argument.items()]
+        for chosen in product(*pieces):
+            factor = (number, 0)
+            key = []
+            for x, a, b, weight in chosen:
+                factor = times(factor, weight)
+                if a or b:
+                    key.append((x, a, b))
+            terms = collected.setdefault(tuple(sorted(key)), {})
+            re, im = terms.get(rest, (0, 0))
+            terms[rest] = (re + factor[0], im + factor[1])
+        if len(collected) > MOST_EXPONENTIALS:
+            return None
+    # Descending, as in the ring, so that sums of balls are the same on every way here.
+    found = {
+        exponent: {_sparse(m): terms[m] for m in sorted(terms, reverse=True) if any(terms[m])}
+        for exponent, terms in collected.items()
+    }
+    return ExponentialSum({exponent: own for exponent, own in found.items() if own}, degree)
+
+
+def _expanded(powers: Mapping[str, int]) -> Iterator[tuple[int, int, Gaussian]]:
+    """Yield a, b and the coefficient of every exponential in a product of kernels of one argument.
+
+    The product is the sum of ``coefficient * exp((a + j b) x)``, over two to the power of its degree.
+    """
+    decay = powers.get("exp", 0)
+    hyperbolic = spread(powers.get("cosh", 0), powers.get("sinh", 0))
+    circular = spread(powers.get("cos", 0), powers.get("sin", 0))
+    # sin x = -j (e^(jx) - e^(-jx))/2
+    turns = power((0, -1), powers.get("sin", 0))
+    for a, one in hyperbolic.items():
+        for b, other in circular.items():
+            yield a + decay, b, times((one * other, 0), turns)
+
+
+def spread(even: int, odd: int) -> dict[int, int]:
+    """Return the coefficients of ``(u + 1/u)^even * (u - 1/u)^odd`` by powers of u.
+
+    Examples
+    --------
+    >>> spread(1, 2)
+    {3: 1, 1: -1, -1: -1, -3: 1}
+    """
+    found: dict[int, int] = {}
+    for i in range(even + 1):
+        for k in range(odd + 1):
+            exponent = even - 2 * i + odd - 2 * k
+            found[exponent] = found.get(exponent, 0) + comb(even, i) * comb(odd, k) * (-1) ** k
+    return {exponent: number for exponent, number in found.items() if number}
+
+
+def _degree(monomial: Monomial) -> int:
+    return monomial[0][1] if monomial and monomial[0][0] == 0 else 0
+
+
+def _opposite(multiples: Multiples) -> Multiples:
+    return tuple(-n for n in multiples)
+
+
+def _conjugate(a: Gaussian) -> Gaussian:
+    return a[0], -a[1]
+
+
+def _unit_that_makes_real(pairs: Mapping[tuple[Multiples, Multiples], Amplitude]) -> Gaussian:
+    """Return a power of 1 + j by which the first pair becomes conjugate, if any does."""
+    for (growing, turning), own in pairs.items():
+        other = pairs.get((growing, _opposite(turning)), {})
+        for monomial, value in own.items():
+            for eighths in range(4):
+                unit = power((1, 1), eighths)
+                there = times(other.get(monomial, (0, 0)), unit)
+                if any(value) and times(value, unit) == _conjugate(there):
+                    return unit
+    return 1, 0
+
+
+def _wave(growth: Multiples, phase: Multiples, amplitude: Amplitude) -> AxisWave:
+    """Return one of two conjugate exponentials and the other as cosine and sine of a phase of one sign."""
+    opposite = _opposite(phase)
+    weight = 1 + (opposite != phase)
+    sign = -1 if phase > opposite else 1
+    even: Polynomial = {}
+    odd: Polynomial = {}
+    for monomial, (re, im) in amplitude.items():
+        degree = _degree(monomial)
+        others = tuple((i - 1, e) for i, e in monomial if i)
+        if re:
+            even.setdefault(degree, {})[others] = weight * re
+        if im and opposite != phase:
+            odd.setdefault(degree, {})[others] = weight * sign * im
+    return AxisWave(growth, max(phase, opposite), even, odd)
