@@ -23,6 +23,8 @@ KernelFunction = Literal["cosh", "sinh", "cos", "sin", "exp", "fundamental"]
 class Dispersion:
     """The characteristic polynomial of a set of field equations, and what its roots are called.
 
+    Two of them are the same if they are one object; as such they may be keys, as lengths may.
+
     Parameters
     ----------
     name : str
@@ -118,13 +120,13 @@ class KernelTable:
     def restricted(self, names: Container[str]) -> KernelTable:
         """Return the table of the dispersions of which some generator is among the names."""
         kept = {
-            id(d)
+            d
             for d in self.dispersions
             if any(n in names for n in (*d.wavenumbers, *(k.generator for k in self.kernels_of(d))))
         }
         return KernelTable(
-            tuple(d for d in self.dispersions if id(d) in kept),
-            tuple(k for k in self.kernels if id(k.dispersion) in kept),
+            tuple(d for d in self.dispersions if d in kept),
+            tuple(k for k in self.kernels if k.dispersion in kept),
         )
 
     def kernels_of(self, dispersion: Dispersion) -> tuple[Kernel, ...]:

@@ -60,11 +60,11 @@ class Exponentials:
     def angles(self) -> tuple[KernelPair, ...]:
         """The pairs of kernels."""
         found = []
-        kernels = {(k.function, k.wavenumber, id(k.length)): k for k in self.table.kernels}
+        kernels = {(k.function, k.wavenumber, k.length): k for k in self.table.kernels}
         for kernel in self.table.kernels:
             if kernel.function in ("cosh", "cos"):
                 odd_function = "sinh" if kernel.function == "cosh" else "sin"
-                odd = kernels[odd_function, kernel.wavenumber, id(kernel.length)]  # type: ignore[index]
+                odd = kernels[odd_function, kernel.wavenumber, kernel.length]  # type: ignore[index]
                 tail = kernel.generator.partition("[")[2]
                 if kernel.function == "cosh":
                     found.append(KernelPair("hyperbolic", kernel, odd, (f"E[{tail}",)))
@@ -228,12 +228,11 @@ class Exponentials:
 
     def halved(self, kernels: Sequence[Kernel]) -> KernelTable:
         """Return the table with the lengths of the given kernels' angles divided by two."""
-        lengths = {id(k.length): k.length / 2 for k in kernels}
+        lengths = {k.length: k.length / 2 for k in kernels}
         return KernelTable(
             self.table.dispersions,
             tuple(
-                replace(k, length=lengths[id(k.length)]) if id(k.length) in lengths else k
-                for k in self.table.kernels
+                replace(k, length=lengths[k.length]) if k.length in lengths else k for k in self.table.kernels
             ),
         )
 

@@ -156,7 +156,7 @@ class ModalSums:
     table: KernelTable
 
     @cached_property
-    def _modes(self) -> Mapping[tuple[int, int, bool], CharacteristicMode]:
+    def _modes(self) -> Mapping[tuple[Dispersion, Factored, bool], CharacteristicMode]:
         return {
             _key(k): CharacteristicMode(k.dispersion, k.length, k.function == "exp")
             for k in self.table.kernels
@@ -247,18 +247,18 @@ class ModalSums:
 
     def _pattern(self, slots: tuple[int, ...], key: Key) -> Key:
         """Return the key with the roots of every dispersion numbered in the order they come in."""
-        labels: dict[tuple[int, bool], dict[int, int]] = {}
+        labels: dict[tuple[Dispersion, bool], dict[int, int]] = {}
         found = []
         for slot, root in zip(slots, key, strict=True):
             mode = self.modes[slot]
-            own = labels.setdefault((id(mode.dispersion), mode.is_decay), {})
+            own = labels.setdefault((mode.dispersion, mode.is_decay), {})
             found.append(own.setdefault(root, len(own)))
         return tuple(found)
 
 
-def _key(kernel: Kernel) -> tuple[int, int, bool]:
+def _key(kernel: Kernel) -> tuple[Dispersion, Factored, bool]:
     """Return what tells modes apart."""
-    return id(kernel.dispersion), id(kernel.length), kernel.function == "exp"
+    return kernel.dispersion, kernel.length, kernel.function == "exp"
 
 
 def _arrangements(slots: tuple[int, ...], orders: tuple[int, ...]) -> list[tuple[int, ...]]:
@@ -302,15 +302,14 @@ class _RootAlgebra:
         terms: Sequence[tuple[tuple[int, ...], fmpz_mpoly]],
     ) -> bool:
         """Tell whether a sum of coefficients times powers of roots, ``x_(pattern i)^(order i)``, is zero."""
-        laws: dict[int, tuple[Dispersion, int]] = {}
+        laws: dict[Dispersion, int] = {}
         for slot, label in zip(slots, pattern, strict=True):
             mode = self.modes[slot]
             if not mode.is_decay:
-                _, count = laws.get(id(mode.dispersion), (mode.dispersion, 0))
-                laws[id(mode.dispersion)] = (mode.dispersion, max(count, label + 1))
-        first: dict[int, int] = {}
+                laws[mode.dispersion] = max(laws.get(mode.dispersion, 0), label + 1)
+        first: dict[Dispersion, int] = {}
         size = len(self.ring.names)
-        for law, (_, count) in laws.items():
+        for law, count in laws.items():
             first[law] = size
             size += count
         names = (*self.ring.names, *(f"root[{i}]" for i in range(size - len(self.ring.names))))
@@ -320,10 +319,10 @@ class _RootAlgebra:
             powers = [0] * (size - len(self.ring.names))
             for slot, label, order in zip(slots, pattern, orders, strict=True):
                 if order:
-                    powers[first[id(self.modes[slot].dispersion)] + label - len(self.ring.names)] += order
+                    powers[first[self.modes[slot].dispersion] + label - len(self.ring.names)] += order
             total = total + larger.context.from_dict(_extended(coefficient, tuple(powers)))
-        for law, (dispersion, count) in laws.items():
-            total = self._reduced(larger, total, dispersion, first[law], count)
+        for law, count in laws.items():
+            total = self._reduced(larger, total, law, first[law], count)
         return not len(total)
 
     def _reduced(

@@ -56,12 +56,12 @@ class NormalForm:
     def _squares(self) -> tuple[tuple[int, fmpz_mpoly], ...]:
         """Positions of sinh and sin with what their squares are."""
         found = []
-        by_key = {(k.function, k.wavenumber, id(k.length)): k for k in self.table.kernels}
+        by_key = {(k.function, k.wavenumber, k.length): k for k in self.table.kernels}
         for kernel in self.table.kernels:
             partner = {"sinh": "cosh", "sin": "cos"}.get(kernel.function)
             if partner is None:
                 continue
-            even = by_key[partner, kernel.wavenumber, id(kernel.length)]  # type: ignore[index]
+            even = by_key[partner, kernel.wavenumber, kernel.length]  # type: ignore[index]
             c = self.ring.generator(even.generator)
             square = c * c - 1 if partner == "cosh" else 1 - c * c
             found.append((self.ring.index[kernel.generator], square))

@@ -120,15 +120,15 @@ def find_point(
 def _with_kernels(
     ring: Ring, table: KernelTable, values: dict[str, nmod_poly], field: TaylorField
 ) -> dict[str, nmod_poly] | None:
-    starts: dict[tuple[str, int], int] = {}
-    known: dict[tuple[int, str, int, bool], tuple[nmod_poly, nmod_poly]] = {}
+    starts: dict[tuple[str, Factored], int] = {}
+    known: dict[tuple[Dispersion, str, Factored, bool], tuple[nmod_poly, nmod_poly]] = {}
     for kernel in table.kernels:
         if kernel.function == "fundamental":
             continue
-        key = (kernel.wavenumber, id(kernel.length))
+        key = (kernel.wavenumber, kernel.length)
         start = starts.setdefault(key, pow(BASE, 1001 + 2 * len(starts), field.prime))
         circular = kernel.function in ("cos", "sin")
-        pair = (id(kernel.dispersion), *key, circular)
+        pair = (kernel.dispersion, *key, circular)
         if pair not in known:
             length = field.rational(kernel.length, ring.names, values)
             shift = field.rational(kernel.dispersion.shift, ring.names, values)

@@ -82,7 +82,7 @@ class Vanishing:
                 if found is None:
                     return None
                 values[name] = found
-        lengths: dict[int, int] = {}
+        lengths: dict[Factored, int] = {}
         for kernel in self.table.kernels:
             if not kernel.wavenumber or kernel.wavenumber not in (moving, meeting):
                 continue
@@ -90,7 +90,7 @@ class Vanishing:
             if length is None:
                 return None
             # Where two wavenumbers meet, both start from one exponential per length.
-            start = lengths.setdefault(id(kernel.length), pow(BASE, 1001 + 2 * len(lengths), field.prime))
+            start = lengths.setdefault(kernel.length, pow(BASE, 1001 + 2 * len(lengths), field.prime))
             argument = field.times(values[kernel.wavenumber], length)
             circular = kernel.function in ("cos", "sin")
             even, odd = field.even_odd(argument, start, circular=circular)
