@@ -30,8 +30,11 @@ if TYPE_CHECKING:
 RANGE_OF_NOMINAL = 100
 """How many times the nominal gain is examined of a loop with kernels: it may have boundaries without end."""
 GUARD_DIGITS = 6
+"""Beyond those printed."""
 SAMPLE_BITS = (6, 12, 24, 48, 96, 192, 384, 768)
+"""Of gains between boundaries: the fewest that lie between them."""
 BITS = 128
+"""Of gains."""
 Limits = tuple[Fraction | None, Fraction | None]
 
 

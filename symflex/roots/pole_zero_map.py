@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 SCHEMA = "symflex.roots/1"
 REFINEMENTS = 4
+"""Doublings of the digits before a root counts as on the boundary."""
 
 
 @dataclass(frozen=True, slots=True)

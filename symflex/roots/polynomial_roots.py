@@ -25,11 +25,13 @@ if TYPE_CHECKING:
     from symflex.roots.problem import RootProblem
 
 DISTINCTION_ROUNDS = 5
+"""Doublings of the digits until roots of different factors are told apart."""
 SEARCH_SHARE = 0.8
 """Of the time given; the rest is for proving one by one what a search that takes longer leaves."""
 SINGLE_DIGITS = 50
 """Most digits of a root proved on its own: more roots say more than more digits do."""
 ROUNDING = 1e-12
+"""Relative difference of two doubles below which their order is asked of the balls."""
 
 
 def find_polynomial_roots(

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 
 ZERO_TEST_BITS = (64, 256, 1024, 4096)
+"""At which a coefficient is compared with zero, one after the other."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,9 +15,13 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 GUARD_BITS = 32
+"""Beyond the bits of what is computed with."""
 FLOAT_BITS = 128
+"""Of frequencies and comparisons: more than twice the bits of a double."""
 PLAIN_FROM = -5
+"""Decimal exponent from which numbers are written without one."""
 HUNDRED = 100
+"""Two digits are fewer."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -182,15 +182,15 @@ class KernelReduction:
         """Return the values in kernels of longer lengths that were asked for, where these suffice."""
         table = self.table
         for length, multiples in self._multiples:
-            angles = [a for a in self.coordinates.angles if id(a.even.length) == length]
+            angles = [a for a in self.coordinates.angles if a.even.length is length]
             for n in multiples:
                 found = [self._lift(v, angles, n) for v in (ratio, modes)]
                 if found[0] is not None and found[1] is not None:
                     ratio, modes = found[0], found[1]
-                    longer = {id(a.even.length): a.even.length * n for a in angles}
+                    longer = {a.even.length: a.even.length * n for a in angles}
                     table = KernelTable(
                         table.dispersions,
-                        tuple(replace(k, length=longer.get(id(k.length), k.length)) for k in table.kernels),
+                        tuple(replace(k, length=longer.get(k.length, k.length)) for k in table.kernels),
                     )
                     break
         return ratio, modes, table
@@ -287,9 +287,9 @@ class KernelReduction:
         if not odd:
             return self.table, plain
         angles = self.coordinates.angles
-        lengths = {id(angles[i].even.length) for i in odd}
-        table = self.coordinates.halved([a.even for a in angles if id(a.even.length) in lengths])
-        doubled = tuple(i for i, a in enumerate(angles) if id(a.even.length) in lengths)
+        lengths = {angles[i].even.length for i in odd}
+        table = self.coordinates.halved([a.even for a in angles if a.even.length in lengths])
+        doubled = tuple(i for i, a in enumerate(angles) if a.even.length in lengths)
         return table, _Restorer(self.coordinates, Exponentials(self.ring, table), doubled)
 
     def _entire(self, ratio: Factored, table: KernelTable) -> tuple[Factored, Factored]:
@@ -298,7 +298,7 @@ class KernelReduction:
         one = Factored.number(self.ring, 1)
         above, below = [one], [one]
         rest = Factored.number(self.ring, ratio.unit)
-        splits = {id(d): self._split(d) for d in table.dispersions if d.kind == "pair"}
+        splits = {d: self._split(d) for d in table.dispersions if d.kind == "pair"}
         for factor, exponent in ratio.factors:
             if not self.has_kernels(factor):
                 rest = rest * Factored(self.ring, Fraction(1), ((factor, exponent),))
@@ -329,7 +329,7 @@ class KernelReduction:
         return first**2 - second**2
 
     def _orders(
-        self, vanishing: Vanishing, factor: fmpz_mpoly, table: KernelTable, splits: dict[int, Factored]
+        self, vanishing: Vanishing, factor: fmpz_mpoly, table: KernelTable, splits: dict[Dispersion, Factored]
     ) -> Factored:
         """Return the powers of wavenumbers, and of their differences, that a factor vanishes like."""
         result = Factored.number(self.ring, 1)
@@ -347,10 +347,10 @@ class KernelReduction:
                 first, second = (Factored.generator(self.ring, w) for w in dispersion.wavenumbers)
                 at_zero = vanishing.at_zero_of_pair(factor, dispersion) or 0
                 meeting = vanishing.at_confluence(factor, dispersion) or 0
-                result = result * (first * second) ** at_zero * splits[id(dispersion)] ** meeting
+                result = result * (first * second) ** at_zero * splits[dispersion] ** meeting
         return result
 
-    def _whole(self, rest: Factored, table: KernelTable, splits: dict[int, Factored]) -> Factored:
+    def _whole(self, rest: Factored, table: KernelTable, splits: dict[Dispersion, Factored]) -> Factored:
         """Return a product of wavenumber powers as a rational function of s."""
         rest = self.normal.balance(rest)
         for dispersion in table.dispersions:
@@ -363,7 +363,7 @@ class KernelReduction:
             if power and power == exponents.get(str(second), 0) and power % 2 == 0:
                 one, other = (Factored.generator(self.ring, w) for w in dispersion.wavenumbers)
                 rest = rest / (one * other) ** power * c0 ** (power // 2)
-            split = splits[id(dispersion)]
+            split = splits[dispersion]
             ((polynomial, _),) = split.factors
             meeting = exponents.get(str(polynomial), 0)
             if meeting and meeting % 2 == 0:
@@ -406,13 +406,13 @@ def _without(polynomial: fmpz_mpoly, factors: Sequence[fmpz_mpoly]) -> fmpz_mpol
 
 def _multiples(
     table: KernelTable, coordinates: Sequence[Sequence[Sequence[int]]]
-) -> tuple[tuple[int, tuple[int, ...]], ...]:
-    """Return per base length (by identity) the multiples of it alone that were asked for, longest first."""
-    found: list[tuple[int, tuple[int, ...]]] = []
+) -> tuple[tuple[Factored, tuple[int, ...]], ...]:
+    """Return per base length the multiples of it alone that were asked for, longest first."""
+    found: list[tuple[Factored, tuple[int, ...]]] = []
     for dispersion, wanted in zip(table.dispersions, coordinates, strict=False):
         if dispersion.kind == "general" or not dispersion.shift.is_zero:
             continue
-        lengths = list({id(k.length): None for k in table.kernels_of(dispersion)})
+        lengths = list({k.length: None for k in table.kernels_of(dispersion)})
         for i, length in enumerate(lengths):
             alone = {abs(c[i]) for c in wanted if not any(x for j, x in enumerate(c) if j != i)}
             if multiples := sorted((n for n in alone if n > 1), reverse=True):
@@ -629,18 +629,17 @@ class _Restorer:
 
 def embedded_table(table: KernelTable, image: Sequence[tuple[Factored, Factored]]) -> KernelTable:
     """Return a table with its values replaced, by identity."""
-    found = {id(old): new for old, new in image}
+    found = {old: new for old, new in image}
 
     def of(value: Factored) -> Factored:
-        return found[id(value)]
+        return found[value]
 
     dispersions = {
-        id(d): replace(d, characteristic=tuple(of(c) for c in d.characteristic), shift=of(d.shift))
+        d: replace(d, characteristic=tuple(of(c) for c in d.characteristic), shift=of(d.shift))
         for d in table.dispersions
     }
-    lengths = {id(k.length): of(k.length) for k in table.kernels}
+    lengths = {k.length: of(k.length) for k in table.kernels}
     kernels = tuple(
-        replace(k, dispersion=dispersions[id(k.dispersion)], length=lengths[id(k.length)])
-        for k in table.kernels
+        replace(k, dispersion=dispersions[k.dispersion], length=lengths[k.length]) for k in table.kernels
     )
     return KernelTable(tuple(dispersions.values()), kernels)

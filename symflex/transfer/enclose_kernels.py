@@ -70,27 +70,27 @@ class KernelValues:
             Values at a ball that holds ``s``: wavenumbers take the same branch.
         """
         values: dict[str, Value] = {"s": s, **self._numbers}
-        coefficients: dict[int, tuple[Value, ...]] = {}
-        shifts: dict[int, Value] = {}
+        coefficients: dict[Dispersion, tuple[Value, ...]] = {}
+        shifts: dict[Dispersion, Value] = {}
         for law in self.table.dispersions:
             found = tuple(ZERO if c.is_zero else self.value(c, values) for c in law.characteristic)
-            coefficients[id(law)] = found
+            coefficients[law] = found
             if not law.shift.is_zero:
-                shifts[id(law)] = self.value(law.shift, values)
+                shifts[law] = self.value(law.shift, values)
             values.update(_wavenumbers(law, found, near))
-        fundamental: dict[tuple[int, int], tuple[Value, ...]] = {}
+        fundamental: dict[tuple[Dispersion, Factored], tuple[Value, ...]] = {}
         roots = self._roots(coefficients, values)
         values.update(roots)
         for kernel in self.table.kernels:
             law = kernel.dispersion
             if kernel.function == "exp":
                 length = self.value(kernel.length, values)
-                values[kernel.generator] = (-shifts.get(id(law), acb(0)) * length + acb(0)).exp()
+                values[kernel.generator] = (-shifts.get(law, acb(0)) * length + acb(0)).exp()
             elif kernel.function == "fundamental" and not roots:
-                key = (id(law), id(kernel.length))
+                key = (law, kernel.length)
                 if key not in fundamental:
                     length = self.value(kernel.length, values)
-                    fundamental[key] = fundamental_functions(coefficients[id(law)], length)
+                    fundamental[key] = fundamental_functions(coefficients[law], length)
                 values[kernel.generator] = fundamental[key][kernel.order]
             elif kernel.wavenumber:
                 argument = values[kernel.wavenumber] * self.value(kernel.length, values)
@@ -113,17 +113,17 @@ class KernelValues:
     @cached_property
     def _laws(self) -> tuple[tuple[int, Dispersion], ...]:
         """The dispersions with fundamental functions, and their positions."""
-        used = {id(m.dispersion) for m in self.sums.modes if not m.is_decay}
-        return tuple((n, law) for n, law in enumerate(self.table.dispersions) if id(law) in used)
+        used = {m.dispersion for m in self.sums.modes if not m.is_decay}
+        return tuple((n, law) for n, law in enumerate(self.table.dispersions) if law in used)
 
     def _roots(
-        self, coefficients: Mapping[int, Sequence[Value]], values: Mapping[str, Value]
+        self, coefficients: Mapping[Dispersion, Sequence[Value]], values: Mapping[str, Value]
     ) -> dict[str, Value]:
         """Return the roots of all dispersions that have fundamental functions; none if some nearly meet."""
         found: dict[str, Value] = {}
         for number, law in self._laws:
             centred = self._centred(law, values)
-            roots = characteristic_roots(coefficients[id(law)], centred, even=_is_even(law))
+            roots = characteristic_roots(coefficients[law], centred, even=_is_even(law))
             if roots is None:
                 return {}
             found.update({_root_name(number, i): root for i, root in enumerate(roots)})
@@ -164,9 +164,9 @@ class KernelValues:
 
     def value(self, value: Factored, values: Mapping[str, Value]) -> Value:
         """Return a product of powers of polynomials."""
-        known = self._products.get(id(value))
+        known = self._products.get(value)
         if known is None:
-            # What does not depend on s is evaluated once; the product is kept, so that its id stays its own.
+            # What does not depend on s is evaluated once.
             varying = {self.names[0], *self.table.generators}
             plans = [(self.plans(f), e) for f, e in value.factors]
             is_constant = not any(self.names[i] in varying for p, _ in plans for i, _ in p.powers)
@@ -177,14 +177,14 @@ class KernelValues:
                     total = total * power_of(self.polynomial(factor, values), exponent)
                 else:
                     moving.append((factor, exponent))
-            known = self._products[id(value)] = (value, total, tuple(moving))
-        _, total, moving_factors = known
+            known = self._products[value] = (total, tuple(moving))
+        total, moving_factors = known
         for factor, exponent in moving_factors:
             total = total * power_of(self.polynomial(factor, values), exponent)
         return total
 
     @cached_property
-    def _products(self) -> dict[int, tuple[Factored, Value, tuple[tuple[fmpz_mpoly, int], ...]]]:
+    def _products(self) -> dict[Factored, tuple[Value, tuple[tuple[fmpz_mpoly, int], ...]]]:
         return {}
 
     def polynomial(self, polynomial: fmpz_mpoly, values: Mapping[str, Value]) -> Value:

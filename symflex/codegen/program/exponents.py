@@ -11,8 +11,9 @@ from collections import defaultdict
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
-from math import comb
 from typing import TYPE_CHECKING
+
+from symflex.algebra.exponential_sum import spread
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -214,17 +215,10 @@ def _combined(
 @cache
 def _product(cosh: int, sinh: int, cos: int, sin: int, exp: int) -> tuple[tuple[Single, Fraction], ...]:
     """Return a product of powers of the kernels of one length; ``exp`` is exp(-q)."""
-    hyperbolic: dict[int, Fraction] = defaultdict(Fraction)
-    for i in range(cosh + 1):
-        for j in range(sinh + 1):
-            weight = Fraction(comb(cosh, i) * comb(sinh, j) * (-1) ** j, 2 ** (cosh + sinh))
-            hyperbolic[cosh + sinh - 2 * i - 2 * j - exp] += weight
+    half = Fraction(1, 2)
+    hyperbolic = {a - exp: x * half ** (cosh + sinh) for a, x in spread(cosh, sinh).items()}
     # exp(j b q) with Gaussian coefficients; 1/j^sin is taken out.
-    circular: dict[int, Fraction] = defaultdict(Fraction)
-    for i in range(cos + 1):
-        for j in range(sin + 1):
-            weight = Fraction(comb(cos, i) * comb(sin, j) * (-1) ** j, 2 ** (cos + sin))
-            circular[cos + sin - 2 * i - 2 * j] += weight
+    circular = {b: y * half ** (cos + sin) for b, y in spread(cos, sin).items()}
     sign = -1 if sin % 4 in (2, 3) else 1
     waves: dict[tuple[int, int], Fraction] = {}
     for b, weight in circular.items():

@@ -31,7 +31,9 @@ FALL = 4.0
 MARGIN = 1.1
 """Of the width of a layer, because terms do not fall behind evenly."""
 FIRST_STEP = 0.5
+"""Of the arc that is followed in steps."""
 SHORTEST = 1e-12
+"""Share of the arc; a step that would have to be shorter says that a root lies on it."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from symflex.algebra.exponential_sum import AxisWave, Monomial, Multiples, Polynomial
 
 FLOAT_BITS = 64
+"""Of signs and counts: a few more than doubles have."""
 LINEAR, QUADRATIC = 1, 2
 REAL, IMAGINARY = 0, 1
 DECAYED = 2
@@ -143,6 +144,7 @@ class AxisFunction:
 
 
 NONE = -1
+"""Stands for the position of an exponential in a term without one."""
 ZERO = arb(0)
 Powers = tuple[tuple[int, arb], ...]
 """Exponents of t, and coefficients."""

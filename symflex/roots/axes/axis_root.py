@@ -23,9 +23,13 @@ if TYPE_CHECKING:
 GUESS_BITS = 46
 """Bits of a guess in doubles that are right as a rule."""
 LEAST_BITS = 16
+"""Right bits of a point below which no proof is tried."""
 MARGIN_BITS = 4
+"""By which less is believed than a Newton step says."""
 ROUNDS = 40
+"""Interval Newton steps; each nearly doubles what is known, so that few are ever taken."""
 BISECTIONS = 100
+"""Nearly twice the bits of a double."""
 CLOSE = 1e-12
 """Relative to t: no further Newton step is needed after one as short as this."""
 

@@ -32,13 +32,17 @@ BESIDE = 1e-13
 TILT = 0.1
 """Largest deviation [rad] from a real function that rounding may cause."""
 HALVINGS = 3
+"""Of a step whose slopes say that it may hold two roots."""
 MOST = 500.0
+"""Difference of two logarithms beyond which the smaller size is nothing; exp(709) is the largest double."""
 AT_ONCE = 4096
+"""Samples of one grid."""
 LONGEST_GRID = 0.7
 """Length of a grid of equal steps [in ln(abs(s))]."""
 LOST = 1e-10
 """Share of what is summed below which a sum is lost in rounding."""
 SECANTS = 4
+"""Each adds half as many digits again: enough for what Newton steps begin with."""
 HALF = log(2)
 
 

@@ -35,24 +35,34 @@ if TYPE_CHECKING:
 GRID = 0.8
 """Largest change of a phase [rad] from one sample to the next."""
 BATCH = 4096
+"""Samples taken at once."""
 MOST_SAMPLES = 2_000_000
+"""Of one search, before it is given up."""
 NEWTON_STEPS = 6
+"""From a tenth of an oscillation to all digits of a double."""
 CLOSER = 1e-12
 """Relative to t: no further Newton step is needed after one as short as this."""
 COUNT_BITS = 64
+"""Of turns, of which only the nearest integer is wanted."""
 HALF = 0.5
 """From one integer, to tell it from all others."""
 ROUNDS = 40
+"""Tries to aim a circle at a mode by its number; the first or second hits as a rule."""
 SECANTS = 30
+"""Steps that aim a circle."""
 NEARLY = 0.2
+"""Turns [rad] to which a circle is aimed."""
 ASIDE = (0.0, 0.6, -0.6, 1.2)
 """Turns by which circles are moved that meet roots; the first passes midway between two as a rule."""
 WITHIN, BEYOND = -1, 1
 SHARES = (0.5, 0.4, 0.6)
 """Where a ring is cut in two."""
 HALVINGS = 60
+"""Of a ring, by when it is as thin as doubles can tell."""
 FEW = 8
+"""Modes up to which their density says little of where the next ones are."""
 CLOSE = 1e-9
+"""Relative distance of two frequencies between which no circle is drawn."""
 DEPTH = 30.0
 """How far below the first resonances roots are sought, in ln."""
 HIGHEST = 1e130
@@ -64,7 +74,7 @@ FIRST_PHASE = 1e-3
 
 
 @dataclass(frozen=True, slots=True)
-class Guess:
+class SignChange:
     """A sign change of one factor on one axis.
 
     Parameters
@@ -178,7 +188,7 @@ class LosslessSearch:
         if not self._sources:
             return [], self.smallest()
         low = 0.0
-        guesses: list[Guess] = []
+        guesses: list[SignChange] = []
         high, about = self.function.first_frequency, self._about(modes + 1)
         samples = 0
         while sum(g.exponent for g in guesses) <= modes:
@@ -190,7 +200,7 @@ class LosslessSearch:
             known = len(guesses)
             growth = 4.0 if known < FEW else max(1.05, (1.1 * modes / known) ** 2)
             low, high = high, about if about > high else high * growth
-        chosen: list[Guess] = []
+        chosen: list[SignChange] = []
         total = 0
         for guess in guesses:
             if total >= modes and guess.frequency > chosen[-1].frequency * (1 + CLOSE):
@@ -210,14 +220,14 @@ class LosslessSearch:
         """Return the roots with abs(s) between two [rad/s] at which a factor changes its sign."""
         return self._proved(self._guesses(low, high)[0])
 
-    def _guesses(self, low: float, high: float) -> tuple[list[Guess], int]:
+    def _guesses(self, low: float, high: float) -> tuple[list[SignChange], int]:
         """Return all sign changes between two abs(s), ascending, and how many samples it took."""
-        found: list[Guess] = []
+        found: list[SignChange] = []
         samples = 0
         for source, exponent in self._sources:
             changes, used = self._sign_changes(source, low, high)
             samples += used
-            found += [Guess(source.natural_frequency(t), t, source, exponent) for t in changes]
+            found += [SignChange(source.natural_frequency(t), t, source, exponent) for t in changes]
         found.sort(key=lambda guess: guess.frequency)
         return found, samples
 
@@ -247,7 +257,7 @@ class LosslessSearch:
                 found += _polished(source, t[at], t[at + 1], values[at], values[at + 1]).tolist()
         return found, count
 
-    def _proved(self, guesses: Sequence[Guess]) -> list[Root]:
+    def _proved(self, guesses: Sequence[SignChange]) -> list[Root]:
         proved = (self._proved_at(guess.source, guess.t, guess.exponent) for guess in guesses)
         return [root for root in proved if root is not None]
 

@@ -26,11 +26,15 @@ if TYPE_CHECKING:
     from symflex.roots.functions.kernel_function import KernelFunction
 
 BITS = 64
+"""Of turns, of which only the nearest integer is wanted."""
 LAST_BITS = 2048
+"""Where a factor is still lost with so many, a root is on the path."""
 FIRST_STEP = 0.2
 """Of the first step [in z]."""
 SMALLEST = 1e-12
+"""Step [in z] below which a root is said to lie on the path."""
 SMALLEST_TURN = 1e-6
+"""The same about a disc [rad]."""
 LOSSY = 0.01
 """Share of its bound below which a turn says that the bound is poor: nearly equal exponentials cancel."""
 

@@ -23,12 +23,17 @@ TERMS = 16
 SHRUNK = 2.0**-6
 """Radius of the circle where values are taken, over that where they are bounded."""
 ARCS = 32
+"""Into which a circle is cut to bound a function on it, at first."""
 MOST_ARCS = 1024
+"""After halvings of those on which nothing is known."""
 WIDE_BITS = 64
+"""Of bounds on wide balls, which lose all digits anyway."""
 REACH = 0.04
 """Relative radius of the circle on which a function is bounded to expand it about a point."""
 SERIES_POINTS = 20
+"""Values that make a series of the usual accuracy."""
 SERIES_BITS = 128
+"""Precision of these values."""
 BITS_A_POINT = 6
 """What every value more adds to the accuracy of a series."""
 

@@ -20,12 +20,17 @@ if TYPE_CHECKING:
     from symflex.roots.functions.kernel_function import KernelFunction
 
 LEAST = 2
+"""Coefficients without which nothing can be told."""
 FEWEST = 20
+"""Terms where a bound is as small as the function."""
 MOST = 250
+"""Terms; where more were needed, shorter steps are better."""
 SHRUNK = 0.25
 """Radius of the circle where values are taken, over that where they are bounded."""
 ARCS = 16
+"""Into which a circle is cut to bound a function on it, at first."""
 BITS = 160
+"""Least precision: sums that cancel lose about half of them."""
 WIDER = 4
 """Radius to which a series is bounded, over that of the step it is made for."""
 BEYOND = 3

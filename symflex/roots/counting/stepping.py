@@ -17,12 +17,15 @@ if TYPE_CHECKING:
 GOAL = 1.15
 """Deviation that the next step aims at."""
 GROWTH = 1.5
+"""Most that one step may be longer than the last, or shorter."""
 SHRINKING = 0.5
+"""Least that is tried of a step that was too long."""
 NEARER = 0.5
 """Of the last step that was too long, what is tried next: deviations grow exponentially."""
 FORGETTING = 1.1
 """Growth of that bound with every step."""
 WIDENED = 1 + 2.0**-40
+"""Makes up for the rounding of half a step."""
 SPREAD = 2.0**-50
 """Relative width that makes up for the rounding of a step's middle."""
 

@@ -35,7 +35,9 @@ if TYPE_CHECKING:
     from symflex.transfer.enclose_kernels import KernelValues
 
 BITS = 64
+"""Of bounds, which need few digits."""
 SECTORS = 48
+"""Into which the right angle is cut: less than two degrees each."""
 LARGEST = 1e36
 """Of a radius, relative to the frequency of about one wave in the longest part."""
 NARROW = 1.05

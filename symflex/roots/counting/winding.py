@@ -22,8 +22,11 @@ if TYPE_CHECKING:
 
 RING = log(2)
 LARGEST_RING = 120
+"""Octaves searched for the lowest root, from that of one wave: more than 36 decades."""
 SAME_ORDER = 0.05
+"""Difference of a count from the order at 0, in turns, that rounding may cause."""
 LONGEST_STEP = 0.4
+"""Of a path [in z]."""
 PHASE_STEP = 2.0
 """Largest change [rad] of a kernel's argument over a step: no row of roots is stepped over."""
 DISAGREEMENT = 0.3
@@ -31,7 +34,9 @@ DISAGREEMENT = 0.3
 BEND = 2.0
 """Largest change of ln F over a step that a change of slope may cause."""
 SMALLEST_STEP = 1e-13
+"""Of a path [in z]; where it would have to be shorter, it meets a root."""
 NEARLY_WHOLE = 0.05
+"""Difference from an integer, in turns, that rounding may cause."""
 WORK_LIMIT = 5_000_000
 """Terms evaluated in one search."""
 SHORTER = "ask for fewer modes or a smaller region"

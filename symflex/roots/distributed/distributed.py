@@ -36,7 +36,9 @@ if TYPE_CHECKING:
     from symflex.transfer import BoundTransferFunction
 
 DEFAULT_MODES = 5
+"""Where neither the model nor the user says how many."""
 MATCHING_ROUNDS = 4
+"""Searches that go further because poles and zeros took each other out."""
 
 
 def default_region(bound: BoundTransferFunction) -> Region:

@@ -40,8 +40,11 @@ if TYPE_CHECKING:
     from symflex.transfer import BoundTransferFunction
 
 ACCUMULATION_DIGITS = 20
+"""Of points that are only avoided."""
 FEW = 40
+"""Roots that are sooner searched all than a part of them."""
 MORE_DIGITS = 30
+"""Beyond twice the digits asked for, in which a pole and a zero agree that are said to cancel."""
 
 
 class Side:

@@ -37,15 +37,19 @@ if TYPE_CHECKING:
     from symflex.transfer.enclose_kernels import KernelValues
 
 FIRST_BITS = 64
+"""Of values; more where these do not suffice."""
 LAST_BITS = 4096
+"""Where values are not settled with so many, they are at a root."""
 SETTLED_BITS = 24
 """Accuracy asked of every factor before its sign, phase or slope is used."""
 ORIGIN = -140.0
 """ln(abs(s)) where the order of a root at 0 is read off."""
 BRANCH_BITS = 256
+"""Of one value that is compared on all branches."""
 ANYWHERE = (0.7, 1.3)
 """Real and imaginary part of a frequency like any other."""
 BRANCHES = (1, 2, 4)
+"""Powers in which the choice of a wavenumber may cease to matter; four roots have no other."""
 SINGLE: Final = {"wave": 2, "bending": 4}
 """Dispersions of one wavenumber, and how many branches it has."""
 TWINS: Final = {"cosh": "cos", "cos": "cosh", "sinh": "sin", "sin": "sinh"}

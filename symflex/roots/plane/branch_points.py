@@ -20,13 +20,19 @@ if TYPE_CHECKING:
 MOST_POINTS = 400
 """Enough for some 600 digits of one root."""
 CENTRINGS = 3
+"""Least number of times that a disc is moved to the middle of its roots."""
 GUESSED_DIGITS = 14
 """Of a centre to begin with; like Newton's, every step doubles them."""
 GROWTH = 100
+"""Of a disc without other roots next to it, and of one that was too small."""
 SHRINKINGS = 5
+"""Of a disc, until no other root is next to it."""
 WIDER = 5
+"""Radius of a disc that holds one moved to an axis, in radii of that."""
 DIGITS_A_SHRINKING = 2
+"""The logarithm of ``GROWTH``."""
 FIRST_BITS = 128
+"""Of a look whether wavenumbers have branches."""
 
 
 def prove_together(

@@ -23,9 +23,11 @@ if TYPE_CHECKING:
     from symflex.roots.root import Root
 
 POINTS = 64
+"""On a circle: the trapezoidal rule's error falls like the roots' distance from its centre to this power."""
 MOST = 12
 """Roots one cluster may have."""
 NEARLY_WHOLE = 0.01
+"""Difference from an integer of a number of roots that is believed."""
 ACCURACY = 2.0**-120
 """Of the guesses, in radii: clusters are small in their circle."""
 

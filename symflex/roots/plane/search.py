@@ -35,11 +35,15 @@ RIGHT_HALF = 1.3
 SHARES = (0.5127, 0.4631, 0.5719, 0.4213, 0.55, 0.38, 0.61)
 """Where a cell may be cut: off its middle, where symmetry puts roots."""
 NUDGES = (0.0, 0.0123, 0.0371, 0.0743, 0.113, 0.171)
+"""By which a path is moved that meets a root [in z], ever further."""
 CLOSEST = 1e-11
 """Cells smaller than this are not split further."""
 SEARCH_STEPS = 30
+"""Of Newton's method in doubles."""
 CONVERGED = 1e-11
+"""Step [in z] after which no further one is needed."""
 FIRST_BITS = 128
+"""Of points handed to proofs."""
 SMALL = 1e-9
 """Size of cells in which roots that cannot be told apart by splitting are told apart by their moments."""
 NEAR = 0.1
@@ -47,8 +51,11 @@ NEAR = 0.1
 NEIGHBOURS = 1e-4
 """Relative radius of the circle about one of several roots in a cell within which the others are sought."""
 CLUSTER_BITS = 256
+"""Of moments; twice as many each time they do not tell roots apart."""
 CLUSTER_DOUBLINGS = 4
+"""After which roots are left as one."""
 DISC_GROWTH = 100
+"""Of a disc that does not yet hold all roots of a cluster."""
 APART = 8
 """Radii of a disc about several roots at which the circle goes by whose moments they are told apart."""
 FEW = 8
@@ -58,6 +65,7 @@ UNCHECKED = 12
 HIGHEST = 300.0
 """ln of the radius [rad/s] beyond which nothing is sought."""
 MODES_LIMIT = 2000
+"""Of one search; further ones are asked for by a band."""
 
 
 @dataclass(frozen=True, slots=True)

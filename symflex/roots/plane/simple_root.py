@@ -23,14 +23,19 @@ if TYPE_CHECKING:
     from symflex.roots.functions.kernel_function import KernelFunction
 
 LEAST_BITS = 96
+"""Of a box, whatever the digits wanted."""
 BOX_SHARE = 0.4
 """The box is so many of the bits smaller than the root is large."""
 DOUBLINGS = 5
+"""Of the precision, after which a root is left to other means."""
 CLOSE = BOX_SHARE + 0.02
 """The last Newton step before a box is drawn is by so many of the bits smaller."""
 FIRST_BITS = 64
+"""Of the first Newton steps."""
 STEPS = 80
+"""Newton steps in all."""
 SMALLER = 4
+"""A middle this many times closer to an axis than the box is large is put on it."""
 PATIENCE = 10
 """Newton steps at one precision, after the first, beyond which they converge too slowly for a simple root."""
 

@@ -25,9 +25,12 @@ if TYPE_CHECKING:
     Proposer = Callable[[acb_poly], tuple[acb, ...] | None]
 
 NEWTON_STEPS = 60
+"""Each doubles the digits of a simple root; more only next to others."""
 GROUPING = 2.0**-30
 PELLET_DOUBLINGS = 60
+"""Of a radius, until a term outweighs all others."""
 CENTRE_STEPS = 40
+"""That move a disc to the middle of its roots."""
 
 
 @dataclass(frozen=True, slots=True)

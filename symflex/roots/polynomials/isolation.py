@@ -35,8 +35,11 @@ if TYPE_CHECKING:
     Goal = Callable[[acb], arb]
 
 GUARD_DIGITS = 2
+"""Beyond those wanted."""
 LARGEST_CLUSTER = 64
+"""Roots of one disc that are parted by a polynomial of their own."""
 EXTRA_BITS = 64
+"""At first, beyond the digits and two bits a degree."""
 GROWTH_WITH_CONSTANTS = 4
 GROWTH_EXACT = 64
 GROWTH_FLOOR = 2048

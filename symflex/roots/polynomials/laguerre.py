@@ -28,13 +28,21 @@ if TYPE_CHECKING:
 
 
 ITERATIONS = 80
+"""For one root; five are enough as a rule."""
 CONVERGED = 1e-13
+"""Relative step after which none follows."""
 STALLED = 1e-6
+"""The same where steps do not become shorter any more: next to other roots."""
 NEARLY_REAL = 1e-8
+"""Relative imaginary part that is taken for zero."""
 RESTART = 1e-3
+"""How far beside the last root the next search begins."""
 FRESH_ANGLES = (0.7, 2.5, 1.6)
+"""Of starting points where the first leads nowhere [rad]."""
 LARGEST_LOGARITHM = 600.0
+"""Of a modulus in doubles."""
 KICK_EVERY = 20
+"""Steps after which one is turned aside, to leave a cycle."""
 DOUBLE_BITS = 64
 
 

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 STEPS = 4
 """Newton steps beyond the digits wanted: each doubles the digits."""
 BOUND_BITS = 64
+"""Of bounds, which need few digits."""
 
 
 def prove_singly(
