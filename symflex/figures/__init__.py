@@ -15,10 +15,9 @@ from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.figures.bode import draw_bode, draw_response
 from symflex.figures.drawing import FREE, AxisLimits, Drawing
-from symflex.figures.fit import draw_fit
 from symflex.figures.labels import label_of_name
 from symflex.figures.locus import draw_locus, number_label
-from symflex.figures.measured import draw_measured
+from symflex.figures.measured import draw_fit, draw_measured
 from symflex.figures.modes import draw_modes
 from symflex.figures.nyquist import draw_nyquist
 from symflex.figures.pgf import MM_PER_INCH
@@ -133,8 +132,7 @@ def draw(
     for bound in bounds:
         if bound.ratio.is_zero:
             raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero: nothing to draw"))
-    band = _checked_band(band_hz)
-    width = None if width_mm is None else checked_width(width_mm) / MM_PER_INCH
+    band, width = _checked_band(band_hz), _inches(width_mm)
     with paper_style(font):
         figure = FIGURES[kind](tfs, bounds, band_hz=band, frame=frame, title=title, width=width)
     return _with_every_letter(figure, font)
@@ -154,6 +152,10 @@ def _checked_band(band_hz: tuple[float | Fraction, float | Fraction] | None) -> 
         message = f"a band runs from a lower to a higher frequency, not from {low:g} to {high:g} Hz"
         raise UsageError(Diagnostic("SF227", message))
     return low, high
+
+
+def _inches(width_mm: float | None) -> float | None:
+    return None if width_mm is None else checked_width(width_mm) / MM_PER_INCH
 
 
 def _check_frame(kind: str, frame: AxisLimits) -> None:
@@ -221,8 +223,7 @@ def draw_loop(
             Diagnostic("SF208", f"no figure of kind '{kind[:64]}' is drawn of a loop", None, hint)
         )
     _check_frame(kind, frame)
-    band = _checked_band(band_hz)
-    width = None if width_mm is None else checked_width(width_mm) / MM_PER_INCH
+    band, width = _checked_band(band_hz), _inches(width_mm)
     with paper_style(font):
         if kind == "locus":
             locus = trace_locus(loop, limits, modes, band_hz=band)

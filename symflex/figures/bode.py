@@ -4,30 +4,28 @@ from __future__ import annotations
 
 from fractions import Fraction
 from itertools import cycle
-from math import ceil, log10
+from math import ceil
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from matplotlib.ticker import (
-    FuncFormatter,
-    LogLocator,
-    MaxNLocator,
-    MultipleLocator,
-    NullFormatter,
-    NullLocator,
-    ScalarFormatter,
-)
+from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from symflex.analysis.response import adaptive_grid, default_band, respond, roots_if_found
+from symflex.figures.axes import (
+    add_legend_above,
+    label_magnitudes,
+    magnitude_over_phase,
+    set_frequency_axis,
+    set_magnitude_ticks,
+    write_title,
+)
 from symflex.figures.drawing import FREE
-from symflex.figures.labels import label_of_frequency, label_of_tf, label_of_unit
+from symflex.figures.labels import label_of_tf, label_of_unit
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
     DASHES,
-    TITLE_POINTS,
-    TITLE_SPACING,
-    new_figure,
+    LINE_INCHES,
     paper_style,
     stability_lines,
     title_lines,
@@ -48,13 +46,11 @@ if TYPE_CHECKING:
 
 HEIGHT_INCHES: Final = 3.2
 LEGEND_COLUMNS, LEGEND_COLUMNS_WITH_UNITS = 3, 2
-LINE_INCHES: Final = 0.13
+RATIO: Final = 1.25
+"""Height of the panel of magnitudes over that of phases."""
 PHASE_MARGIN: Final = 1.12
 PHASE_STEPS: Final = (45, 90, 180, 360, 720, 1440)
 PHASE_TICKS: Final = 7.5
-SHORT_BAND_DECADES: Final = 1.3
-NARROW_BAND_DECADES: Final = 0.6
-"""Between a frequency and four times it there may be one tick of 1, 2 and 5."""
 UNDAMPED: Final = 1e-4
 UNDAMPED_REACH: Final = 0.01
 UNDAMPED_MARGIN_DB: Final = 15.0
@@ -93,9 +89,7 @@ def draw_bode(
     units = {response.unit for response in responses}
     legend_columns = min(len(tfs), LEGEND_COLUMNS if len(units) == 1 else LEGEND_COLUMNS_WITH_UNITS)
     height = HEIGHT_INCHES + LINE_INCHES * (len(lines) + len(said) + ceil(len(tfs) / legend_columns))
-    figure = new_figure(width, height)
-    figure.set_layout_engine("constrained", h_pad=0.02, w_pad=0.03, hspace=0.03)
-    top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[1.25, 1])
+    figure, top, bottom = magnitude_over_phase(width, height, RATIO)
     limits = frame.y or _magnitude_limits(responses, maps)
     looks = zip(cycle(COLOURS), cycle(DASHES), strict=False)
     for tf, response, found, (colour, dash) in zip(tfs, responses, maps, looks, strict=False):
@@ -105,27 +99,13 @@ def draw_bode(
         top.plot(*_magnitude_curve(response, found, limits), color=colour, linestyle=dash, label=label)
         bottom.plot(response.frequency_hz, np.degrees(response.phase), color=colour, linestyle=dash)
     top.set_ylim(*limits)
-    top.yaxis.set_major_locator(MaxNLocator(nbins=7, steps=[1, 2, 4, 5, 10], min_n_ticks=3))
-    unit = label_of_unit(units.pop()) if len(units) == 1 else ""
-    top.set_ylabel(f"Magnitude [dB re 1 {unit}]" if unit else "Magnitude [dB]")
+    set_magnitude_ticks(top)
+    label_magnitudes(top, units.pop() if len(units) == 1 else "")
     _set_phase_axis(bottom, responses, frame.phase)
     set_frequency_axis(bottom, low, high)
-    for axes in (top, bottom):
-        axes.grid(visible=True)
     figure.align_ylabels([top, bottom])
-    top.legend(
-        title="\n".join(said) or None,
-        loc="lower center",
-        bbox_to_anchor=(0.5, 1.0),
-        ncols=legend_columns,
-        frameon=False,
-        handlelength=2.4,
-        columnspacing=1.4,
-        borderaxespad=0.2,
-        borderpad=0.1,
-    )
-    if lines:
-        figure.suptitle("\n".join(lines), fontsize=TITLE_POINTS, linespacing=TITLE_SPACING, parse_math=False)
+    add_legend_above(top, legend_columns, "\n".join(said) or None)
+    write_title(figure, lines)
     return figure
 
 
@@ -154,20 +134,14 @@ def draw_response(response: SampledResponse) -> Figure | None:
     level = response.magnitude_db[kept][order]
     level = np.where(np.isfinite(level), level, np.nan)
     with paper_style():
-        figure = new_figure(COLUMN_INCHES, HEIGHT_INCHES + LINE_INCHES)
-        figure.set_layout_engine("constrained", h_pad=0.02, w_pad=0.03, hspace=0.03)
-        top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[1.25, 1])
+        figure, top, bottom = magnitude_over_phase(COLUMN_INCHES, HEIGHT_INCHES + LINE_INCHES, RATIO)
         top.plot(frequency, level, color=COLOURS[0])
         bottom.plot(frequency, np.degrees(response.phase[kept][order]), color=COLOURS[0])
-        unit = label_of_unit(response.unit)
-        top.set_ylabel(f"Magnitude [dB re 1 {unit}]" if unit else "Magnitude [dB]")
+        label_magnitudes(top, response.unit)
         _set_phase_axis(bottom, [response])
         set_frequency_axis(bottom, float(frequency[0]), float(frequency[-1]))
-        for axes in (top, bottom):
-            axes.grid(visible=True)
         figure.align_ylabels([top, bottom])
-        lines = title_lines(response.tf, COLUMN_INCHES)
-        figure.suptitle("\n".join(lines), fontsize=TITLE_POINTS, linespacing=TITLE_SPACING, parse_math=False)
+        write_title(figure, title_lines(response.tf, COLUMN_INCHES))
     return figure
 
 
@@ -233,19 +207,3 @@ def _set_phase_axis(axes: Axes, responses: Sequence[SampledResponse], limits: Li
     is_plain = limits is not None and not 2 * PHASE_STEPS[0] <= highest - lowest < PHASE_TICKS * step
     axes.yaxis.set_major_locator(MaxNLocator(nbins=7) if is_plain else MultipleLocator(step))
     axes.set_ylabel("Phase [deg]")
-
-
-def set_frequency_axis(axes: Axes, low: float, high: float) -> None:
-    """Label a logarithmic axis of frequencies [Hz]."""
-    axes.set_xscale("log")
-    axes.set_xlim(low, high)
-    axes.set_xlabel("Frequency [Hz]")
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: label_of_frequency(value)))
-    decades = log10(high / low)
-    if decades < NARROW_BAND_DECADES:
-        axes.xaxis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10]))
-        axes.xaxis.set_major_formatter(ScalarFormatter(useMathText=True))
-        axes.xaxis.set_minor_locator(NullLocator())
-    elif decades < SHORT_BAND_DECADES:
-        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axes.xaxis.set_minor_formatter(NullFormatter())

@@ -6,20 +6,18 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from matplotlib.patches import Circle
-from matplotlib.ticker import MaxNLocator
 
-from symflex.figures.curves import drawable
+from symflex.figures.axes import (
+    RIGHT_HALF_PLANE,
+    draw_zero_lines,
+    drawable,
+    label_s_plane,
+    point_of,
+    write_title,
+)
 from symflex.figures.drawing import FREE
 from symflex.figures.labels import label_of_name
-from symflex.figures.style import (
-    COLOURS,
-    COLUMN_INCHES,
-    QUIET,
-    TITLE_POINTS,
-    TITLE_SPACING,
-    new_figure,
-    title_lines,
-)
+from symflex.figures.style import COLOURS, COLUMN_INCHES, LINE_INCHES, QUIET, new_figure, title_lines
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,10 +25,8 @@ if TYPE_CHECKING:
 
     from symflex.figures.drawing import AxisLimits
     from symflex.loops import RootLocus
-    from symflex.roots import Root
 
 HEIGHT_INCHES: Final = 3.3
-LINE_INCHES: Final = 0.13
 ROOM: Final = 1.12
 ZERO_REACH: Final = 1.6
 """Zeros are shown up to so many times the largest pole."""
@@ -63,15 +59,16 @@ def draw_locus(
     figure = new_figure(width, HEIGHT_INCHES + LINE_INCHES * (len(lines) + 3))
     figure.set_layout_engine("constrained", h_pad=0.03, w_pad=0.03)
     axes = figure.subplots()
-    starts, zeros = ([_point(root) for root in roots] for roots in (locus.start.all_poles, locus.start.zeros))
+    starts, zeros = (
+        [point_of(root) for root in roots] for roots in (locus.start.all_poles, locus.start.zeros)
+    )
     ends = list(locus.ends)
     _set_view(axes, locus, starts, zeros, reach)
     axes.set_xlim(*(frame.x or axes.get_xlim()))
     axes.set_ylim(*(frame.y or axes.get_ylim()))
     right, seen = max(axes.get_xlim()[1], 0.0), float(np.max(np.abs([axes.get_xlim(), axes.get_ylim()])))
-    axes.axvspan(0, right, color="#FBEDE4", zorder=0, linewidth=0)
-    for value, draw in ((0, axes.axhline), (0, axes.axvline)):
-        draw(value, color=QUIET, linewidth=0.5, zorder=1)
+    axes.axvspan(0, right, color=RIGHT_HALF_PLANE, zorder=0, linewidth=0)
+    draw_zero_lines(axes)
     low, high = (number_label(float(x)) for x in locus.limits)
     name = label_of_name(locus.gain)
     marks = (
@@ -114,10 +111,7 @@ def draw_locus(
                 label=None if i else legend,
             )
     _draw_holes(axes, locus)
-    axes.set_xlabel(r"$\mathrm{Re}(s)$ [rad/s]")
-    axes.set_ylabel(r"$\mathrm{Im}(s)$ [rad/s]")
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(MaxNLocator(nbins=6, steps=[1, 2, 2.5, 5, 10]))
+    label_s_plane(axes)
     verdicts = (locus.start.verdict.headline, locus.end.verdict.headline)
     said = [f"${name} = {gain}$, {verdict}" for gain, verdict in zip((low, high), verdicts, strict=True)]
     letters = sum(len(str(label).replace("$", "")) for label in axes.get_legend_handles_labels()[1])
@@ -129,8 +123,7 @@ def draw_locus(
         handletextpad=0.2,
         columnspacing=1.0,
     )
-    if lines:
-        figure.suptitle("\n".join(lines), fontsize=TITLE_POINTS, linespacing=TITLE_SPACING, parse_math=False)
+    write_title(figure, lines)
     return figure
 
 
@@ -191,7 +184,3 @@ def _draw_holes(axes: Axes, locus: RootLocus) -> None:
                 Circle((re, im), radius, fill=False, edgecolor=QUIET, linewidth=0.8, zorder=1.5, label=label)
             )
             label = ""
-
-
-def _point(root: Root) -> complex:
-    return complex(float(root.re.mid()), float(root.im.mid()))

@@ -7,15 +7,15 @@ from itertools import cycle
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from matplotlib.ticker import MaxNLocator
 
 from symflex.analysis.response import adaptive_grid, default_band, respond, roots_if_found
-from symflex.figures.curves import drawable
+from symflex.figures.axes import draw_zero_lines, drawable, set_round_ticks
 from symflex.figures.drawing import FREE
 from symflex.figures.labels import label_of_tf
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
+    LINE_INCHES,
     QUIET,
     TITLE_POINTS,
     TITLE_SPACING,
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
 HEIGHT_INCHES: Final = 3.3
-LINE_INCHES: Final = 0.13
 WIDENED: Final = 10.0
 """How far beyond the band of poles and zeros the curve is drawn, to both sides."""
 REACHES: Final = (1.5, 2.5)
@@ -73,8 +72,7 @@ def draw_nyquist(
     figure = new_figure(width, HEIGHT_INCHES + LINE_INCHES * (len(lines) + 1))
     figure.set_layout_engine("constrained", h_pad=0.03, w_pad=0.03)
     axes = figure.subplots()
-    for value, draw in ((0, axes.axhline), (0, axes.axvline)):
-        draw(value, color=QUIET, linewidth=0.5, zorder=1)
+    draw_zero_lines(axes)
     circle = np.exp(1j * np.linspace(0, 2 * np.pi, 361))
     axes.plot(circle.real, circle.imag, ":", color=QUIET, linewidth=0.7, zorder=1)
     found = [_curve(bound, band_hz) for bound in bounds]
@@ -95,8 +93,7 @@ def draw_nyquist(
         axes.set_aspect("equal", adjustable="box")
     for values, colour in zip(curves, cycle(COLOURS), strict=False):
         _point_along(axes, values, colour)
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10]))
+    set_round_ticks(axes, 5, 5)
     axes.set_xlabel("Real part")
     axes.set_ylabel("Imaginary part")
     # A title of the figure would stand over a legend outside of the axes.

@@ -6,8 +6,7 @@ from fractions import Fraction
 from math import ceil
 from typing import TYPE_CHECKING, Final
 
-from matplotlib.ticker import MaxNLocator
-
+from symflex.figures.axes import draw_zero_lines, set_round_ticks
 from symflex.figures.drawing import FREE
 from symflex.figures.labels import label_of_tf
 from symflex.figures.placement import Panel, text_width
@@ -18,7 +17,6 @@ from symflex.figures.style import (
     LINE_INCHES,
     NOTE_POINTS,
     PAGE_INCHES,
-    QUIET,
     new_figure,
     stability_lines,
     title_lines,
@@ -130,10 +128,8 @@ def _draw_panel(axes: Axes, marks: Sequence[RootMark], view: View, width: float,
     axes.set_xlim(*view.re)
     axes.set_ylim(*view.im)
     axes.set_aspect("equal", adjustable="box")
-    axes.axhline(0, color=QUIET, linewidth=0.5, zorder=1)
-    axes.axvline(0, color=QUIET, linewidth=0.5, zorder=1)
-    axes.xaxis.set_major_locator(MaxNLocator(nbins=max(2, int(width / 0.36)), steps=[1, 2, 2.5, 5, 10]))
-    axes.yaxis.set_major_locator(MaxNLocator(nbins=max(2, int(height / 0.32)), steps=[1, 2, 2.5, 5, 10]))
+    draw_zero_lines(axes)
+    set_round_ticks(axes, max(2, int(width / 0.36)), max(2, int(height / 0.32)))
     inside = [mark for mark in marks if view.shows(mark)]
     for kind, shape, size in (("zero", "o", 4.6), ("pole", "x", 4.8)):
         chosen = [mark.s for mark in inside if mark.kind == kind]

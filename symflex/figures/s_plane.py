@@ -9,10 +9,12 @@ from dataclasses import dataclass
 from math import atan2, isclose, pi
 from typing import TYPE_CHECKING, Final, Literal
 
+from symflex.figures.axes import point_of
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from symflex.roots import PoleZeroMap, Root
+    from symflex.roots import PoleZeroMap
 
 GAP_RATIO: Final = 5.0
 """Neighbouring natural frequencies further apart than this do not belong together."""
@@ -102,8 +104,8 @@ class View:
 
 def marks_of(found: PoleZeroMap) -> tuple[RootMark, ...]:
     """Return the poles and zeros of a transfer function in double precision."""
-    poles = tuple(RootMark("pole", _point(root), root.multiplicity) for root in found.all_poles)
-    return poles + tuple(RootMark("zero", _point(root), root.multiplicity) for root in found.zeros)
+    poles = tuple(RootMark("pole", point_of(root), root.multiplicity) for root in found.all_poles)
+    return poles + tuple(RootMark("zero", point_of(root), root.multiplicity) for root in found.zeros)
 
 
 def choose_view(marks: Sequence[RootMark], high_hz: float | None, ratios: tuple[float, float]) -> View:
@@ -190,10 +192,6 @@ def _first_run(sizes: Iterable[float]) -> float:
             break
         reached = size
     return reached
-
-
-def _point(root: Root) -> complex:
-    return complex(float(root.re.mid()), float(root.im.mid()))
 
 
 def _number(value: float) -> str:

@@ -8,19 +8,23 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.collections import LineCollection
 from matplotlib.colors import ListedColormap, LogNorm, Normalize
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from symflex.errors import Diagnostic, ModelError
-from symflex.figures.bode import set_frequency_axis
+from symflex.figures.axes import (
+    RIGHT_HALF_PLANE,
+    label_s_plane,
+    set_frequency_axis,
+    write_title,
+)
 from symflex.figures.labels import label_of_frequency, label_of_name, label_of_unit
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
     DASHES,
     DEFAULT_FONT,
+    LINE_INCHES,
     QUIET,
-    TITLE_POINTS,
-    TITLE_SPACING,
     new_figure,
     paper_style,
     title_lines,
@@ -41,7 +45,6 @@ if TYPE_CHECKING:
     Panel = Callable[[Axes, Sweep, int | None], None]
 
 PANEL_INCHES: Final = 2.1
-LINE_INCHES: Final = 0.13
 MAP: Final = "viridis"
 MAP_END: Final = 0.92
 """The yellow at the end of the map is too pale for a line."""
@@ -105,10 +108,7 @@ def draw_sweep(
         every = figure.subplots(len(panels), squeeze=False)[:, 0]
         for axes, panel in zip(every, panels, strict=True):
             PANELS[panel](axes, sweep, modes)
-        if lines:
-            figure.suptitle(
-                "\n".join(lines), fontsize=TITLE_POINTS, linespacing=TITLE_SPACING, parse_math=False
-            )
+        write_title(figure, lines)
         return figure
 
 
@@ -332,17 +332,14 @@ def _loci(axes: Axes, sweep: Sweep, modes: int | None) -> None:
     axes.axvline(0, color=QUIET, linewidth=0.5, zorder=1)
     right = axes.get_xlim()[1]
     if right > 0 and np.max(re[there]) > 0:
-        axes.axvspan(0, right, color="#FBEDE4", zorder=0, linewidth=0)
+        axes.axvspan(0, right, color=RIGHT_HALF_PLANE, zorder=0, linewidth=0)
         axes.set_xlim(right=right)
     axes.set_ylim(bottom=0)
     farthest = -OVERDAMPED * float(np.max(im[there]))
     if farthest < 0 and float(np.min(re[there])) < farthest:
         rightmost = max(float(np.max(re[there])), 0.0)
         axes.set_xlim(farthest, rightmost - 0.06 * farthest)
-    axes.set_xlabel(r"$\mathrm{Re}(s)$ [rad/s]")
-    axes.set_ylabel(r"$\mathrm{Im}(s)$ [rad/s]")
-    for each in (axes.xaxis, axes.yaxis):
-        each.set_major_locator(MaxNLocator(nbins=6, steps=[1, 2, 2.5, 5, 10]))
+    label_s_plane(axes)
     bar = axes.figure.colorbar(marks, ax=axes, pad=0.02, aspect=25)
     bar.set_label(_label(parameter), fontsize=7)
 

@@ -1,0 +1,146 @@
+"""Axes that several kinds of figures share: magnitude over phase, and the s plane."""
+
+from __future__ import annotations
+
+from math import log10
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.ticker import (
+    FuncFormatter,
+    LogLocator,
+    MaxNLocator,
+    NullFormatter,
+    NullLocator,
+    ScalarFormatter,
+)
+
+from symflex.figures.labels import label_of_frequency, label_of_unit
+from symflex.figures.style import QUIET, TITLE_POINTS, TITLE_SPACING, new_figure
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from symflex.roots import Root
+
+SHORT_BAND_DECADES: Final = 1.3
+NARROW_BAND_DECADES: Final = 0.6
+"""Between a frequency and four times it there may be one tick of 1, 2 and 5."""
+FARTHEST: Final = 50.0
+"""Times what is shown; numbers beyond a page would overflow in what reads the figure."""
+RIGHT_HALF_PLANE: Final = "#FBEDE4"
+"""A tint, pale enough for every line on it."""
+
+
+# ------------------------------------------------------------------------------------ magnitude over phase
+
+
+def magnitude_over_phase(width: float, height: float, ratio: float) -> tuple[Figure, Axes, Axes]:
+    """Return a figure [inches]: a panel for magnitudes, ``ratio`` times as high as the one for phases."""
+    figure = new_figure(width, height)
+    figure.set_layout_engine("constrained", h_pad=0.02, w_pad=0.03, hspace=0.03)
+    top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[ratio, 1])
+    for axes in (top, bottom):
+        axes.grid(visible=True)
+    return figure, top, bottom
+
+
+def label_magnitudes(axes: Axes, unit: str) -> None:
+    """Label an axis of magnitudes over one of a unit."""
+    label = label_of_unit(unit)
+    axes.set_ylabel(f"Magnitude [dB re 1 {label}]" if label else "Magnitude [dB]")
+
+
+def set_magnitude_ticks(axes: Axes) -> None:
+    """Put ticks at round numbers of decibels."""
+    axes.yaxis.set_major_locator(MaxNLocator(nbins=7, steps=[1, 2, 4, 5, 10], min_n_ticks=3))
+
+
+def set_frequency_axis(axes: Axes, low: float, high: float) -> None:
+    """Label a logarithmic axis of frequencies [Hz]."""
+    axes.set_xscale("log")
+    axes.set_xlim(low, high)
+    axes.set_xlabel("Frequency [Hz]")
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: label_of_frequency(value)))
+    decades = log10(high / low)
+    if decades < NARROW_BAND_DECADES:
+        axes.xaxis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10]))
+        axes.xaxis.set_major_formatter(ScalarFormatter(useMathText=True))
+        axes.xaxis.set_minor_locator(NullLocator())
+    elif decades < SHORT_BAND_DECADES:
+        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+
+
+def add_legend_above(axes: Axes, columns: int, title: str | None = None, *, is_tight: bool = False) -> None:
+    """Put a legend over a panel; a tight one has shorter lines and gaps."""
+    axes.legend(
+        title=title,
+        loc="lower center",
+        bbox_to_anchor=(0.5, 1.0),
+        ncols=columns,
+        frameon=False,
+        handlelength=2.0 if is_tight else 2.4,
+        columnspacing=1.2 if is_tight else 1.4,
+        borderaxespad=0.2,
+        borderpad=0.1,
+    )
+
+
+def write_title(figure: Figure, lines: Sequence[str]) -> None:
+    """Write the lines of a title over a figure, as they are: nothing in them is mathematics."""
+    if lines:
+        figure.suptitle("\n".join(lines), fontsize=TITLE_POINTS, linespacing=TITLE_SPACING, parse_math=False)
+
+
+# ------------------------------------------------------------------------------------------- the s plane
+
+
+def draw_zero_lines(axes: Axes) -> None:
+    """Draw the real and the imaginary axis."""
+    axes.axhline(0, color=QUIET, linewidth=0.5, zorder=1)
+    axes.axvline(0, color=QUIET, linewidth=0.5, zorder=1)
+
+
+def label_s_plane(axes: Axes) -> None:
+    """Label real and imaginary part of s, with ticks at round numbers."""
+    axes.set_xlabel(r"$\mathrm{Re}(s)$ [rad/s]")
+    axes.set_ylabel(r"$\mathrm{Im}(s)$ [rad/s]")
+    set_round_ticks(axes, 6, 6)
+
+
+def set_round_ticks(axes: Axes, across: int, upwards: int) -> None:
+    """Put at most so many intervals between ticks, at round numbers."""
+    for axis, count in ((axes.xaxis, across), (axes.yaxis, upwards)):
+        axis.set_major_locator(MaxNLocator(nbins=count, steps=[1, 2, 2.5, 5, 10]))
+
+
+def point_of(root: Root) -> complex:
+    """Return the midpoint of a root's enclosure in double precision."""
+    return complex(float(root.re.mid()), float(root.im.mid()))
+
+
+def drawable(values: npt.NDArray[np.complex128], reach: float) -> npt.NDArray[np.complex128]:
+    """Return values with those far outside brought nearer, in their own directions.
+
+    Parameters
+    ----------
+    values : array of complex
+        A curve; infinite values become gaps.
+    reach : float
+        Half the width of what is shown.
+
+    Examples
+    --------
+    >>> drawable(np.array([1 + 1j, 3e9j, -np.inf]), 2.0).tolist()
+    [(1+1j), 100j, (nan+nanj)]
+    """
+    finite = np.where(np.isfinite(values), values, np.nan + 1j * np.nan)
+    size = np.abs(finite)
+    limit = FARTHEST * reach
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.asarray(np.where(size > limit, finite / size * limit, finite), np.complex128)
