@@ -1,5 +1,9 @@
 """The smallest change that makes a printed formula right.
 
+    printed     1/(m*s^2 - k)
+    derived     1/(m*s^2 + k)
+    with ? for the printed -k:   1/(m*s^2 + ?) = 1/(m*s^2 + k),   so ? = k, which is -1 times the part
+
 One part of the formula after the other is taken as unknown. Where the formula is linear in it, the value
 that makes printed and derived function equal is exact; the change is small when that value is the part times
 a number, the part with another exponent, another symbol, or a sum of the same terms.
@@ -42,6 +46,7 @@ if TYPE_CHECKING:
 
     from symflex.transfer import TransferFunction
 
+# Limits of the search, which is an offer and need not find anything.
 MOST_PARTS = 150
 MOST_TERMS = 1000
 MOST_WORK = 20_000

@@ -1,5 +1,11 @@
 """The exact field in which printed and derived functions are compared.
 
+    printed     2*sinh(x)*cosh(x), x = l*sqrt(s)      (E - 1/E)*(E + 1/E)/2
+    derived     sinh(2*x)                             (E^2 - 1/E^2)/2
+
+With a generator E for exp(x), which satisfies no relation to s, both sides are quotients of polynomials, and
+multiplied out they are the same: equal, proved.
+
 Generators are roots of s, of positive parameters, of primes and of sums of them, the imaginary unit, and
 ``exp``, ``cos`` and ``sin`` of lengths times wavenumbers. Real radicals of multiplicatively independent
 positive numbers are linearly independent (Mordell 1953), and exponentials and circular functions of
@@ -26,6 +32,8 @@ from symflex.errors import BudgetError, Diagnostic
 if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
+# Limits of what is read exactly, so that a hostile formula cannot take minutes; beyond them, the printed and
+# the derived function are compared by numbers.
 FINEST_ROOT = 96
 MOST_GENERATORS = 40
 SQUARE = 2

@@ -19,11 +19,7 @@ from symflex.algebra import LAPLACE, Factored
 from symflex.audit.factors import LowestTerms, full_angles, lowest_terms
 from symflex.audit.limits import behaviour_at_zero
 from symflex.audit.notation import factor_expression, monomial_expression, polynomial_expression
-from symflex.expressions import (
-    Expression,
-    format_expression,
-    quotient,
-)
+from symflex.expressions import Expression, format_expression, quotient
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

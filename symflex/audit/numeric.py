@@ -265,10 +265,7 @@ def largest_deviation(numbers: Numbers) -> Deviation | None:
 
 
 def _largest(
-    numbers: Numbers,
-    grid: Sequence[float],
-    values: Sequence[tuple[float, float] | None],
-    which: int,
+    numbers: Numbers, grid: Sequence[float], values: Sequence[tuple[float, float] | None], which: int
 ) -> tuple[float, float] | None:
     """Return the largest magnitude (0) or angle (1), or the first without bound, and where it is."""
     sizes = [0.0 if z is None else abs(z[which]) for z in values]

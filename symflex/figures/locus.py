@@ -102,13 +102,7 @@ def draw_locus(
         for i, branch in enumerate(shown):
             s = drawable(np.array(branch), seen)
             axes.plot(
-                s.real,
-                s.imag,
-                line,
-                color=COLOURS[0],
-                linewidth=1.0,
-                zorder=2,
-                label=None if i else legend,
+                s.real, s.imag, line, color=COLOURS[0], linewidth=1.0, zorder=2, label=None if i else legend
             )
     _draw_holes(axes, locus)
     label_s_plane(axes)

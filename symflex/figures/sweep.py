@@ -11,12 +11,7 @@ from matplotlib.colors import ListedColormap, LogNorm, Normalize
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from symflex.errors import Diagnostic, ModelError
-from symflex.figures.axes import (
-    RIGHT_HALF_PLANE,
-    label_s_plane,
-    set_frequency_axis,
-    write_title,
-)
+from symflex.figures.axes import RIGHT_HALF_PLANE, label_s_plane, set_frequency_axis, write_title
 from symflex.figures.labels import label_of_frequency, label_of_name, label_of_unit
 from symflex.figures.style import (
     COLOURS,

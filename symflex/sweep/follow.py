@@ -1,5 +1,10 @@
 """Names of modes along a sweep: which root at one point is which at the next.
 
+    point    roots [rad/s]       names     how
+      1      1.00 j   1.30 j     1   2     START
+      2      1.12 j   1.18 j     1   2     DOUBTFUL: the paths come closer than what was foretold is right
+      3      1.06 j   1.24 j     2   1     DOUBTFUL: each went on along its line, and they crossed
+
 Every point but one has a predecessor next to it in the design, whose names it takes over. Where the
 functions at both are similar, roots correspond one to one, exactly. Elsewhere it is foretold where each root
 goes: along the line through the last two points, by one factor with all others, or nowhere. Distances are
@@ -43,6 +48,7 @@ FAR = 1.5
 MEETING = 1e-9
 """Closer than this in ln(s), paths meet."""
 NEIGHBOURS = 32
+"""Nearest draws that are looked through for one closer to the middle, before all are."""
 PIECES = (4, 16)
 """Into how many a step is divided on which names are in doubt."""
 
@@ -267,7 +273,7 @@ def _divided(
         for there in (*(np.log(s) for s in found), own):
             if len(there) != len(here):
                 break
-            # Nobody sleeps and nobody is new: all roots go on.
+            # All roots go on: none is missing, and none is new.
             now, links = _continued(here, names, here[:0], there, step, 0)
             if not np.isin(links, (NameOrigin.CLEAR, NameOrigin.DOUBTFUL)).all():
                 break
@@ -284,12 +290,7 @@ def _divided(
 
 
 def _continued(
-    before: Complexes,
-    old: Integers,
-    last: Complexes,
-    now: Complexes,
-    step: Complexes | None,
-    modes: int,
+    before: Complexes, old: Integers, last: Complexes, now: Complexes, step: Complexes | None, modes: int
 ) -> tuple[Integers, npt.NDArray[np.int8]]:
     """Return names and links of roots, from those of the predecessor."""
     names = np.full(len(now), -1, np.int64)

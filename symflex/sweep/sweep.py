@@ -153,11 +153,7 @@ def _described(each: Labelled) -> dict[str, str]:
 
 
 def assembled(
-    task: Task,
-    design: Design,
-    rows: Rows,
-    attributes: Mapping[str, str],
-    between: Between | None = None,
+    task: Task, design: Design, rows: Rows, attributes: Mapping[str, str], between: Between | None = None
 ) -> Sweep:
     """Return the sweep that the rows of all points make.
 

@@ -161,10 +161,7 @@ def seen_at_the_input(model: Model, output: str, source: Input) -> Model:
         if any(holds(condition, source.name) for condition in field.conditions)
         for unknown in field.unknowns
     }
-    chosen = next(
-        (v for v in group if (v.name in loaded if isinstance(v, Call) else not loaded)),
-        None,
-    )
+    chosen = next((v for v in group if (v.name in loaded if isinstance(v, Call) else not loaded)), None)
     if chosen is None:
         return model
     changed = replace(wanted, expression=replace_values(wanted.expression, dict.fromkeys(shown, chosen)))

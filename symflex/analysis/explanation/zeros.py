@@ -4,6 +4,11 @@ Input: a transfer function with numbers, its poles and zeros, and the model they
 Output: a :class:`ZeroExplanation`: the constrained system whose poles the zeros are, whether that is proved,
 what the system separates into, and what zeros off the imaginary axis mean.
 
+    F pushes the first of two masses joined by a spring k; X is its displacement.
+    numerator of X/F                           m_2 s^2 + k
+    determinant of the system with x held      m_2 s^2 + k
+    colocated, proved: the zeros +-j sqrt(k/m_2) are the poles of the second mass on its spring.
+
 The zeros are the poles of the system in which the output is kept at zero by whatever the input takes: the
 numerator is the determinant bordered by the output's row and the input's column (Cramer). Where the input
 acts on the coordinate that the output shows, keeping the output at zero is holding that coordinate (Miu 1991,
@@ -52,6 +57,7 @@ Status = Literal["proved", "compared", "not shown"]
 SYMBOLIC_ELEMENTS = 12
 """Lumped models up to this size keep their symbols, so that factors print in them."""
 LONGEST = 100
+"""Characters of a factor that is printed."""
 
 
 @dataclass(frozen=True, slots=True)

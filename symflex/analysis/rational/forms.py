@@ -198,9 +198,7 @@ def _taylor(pole: acb, power: int, i: int) -> acb:
     return total
 
 
-def exact_coefficients(
-    bound: BoundTransferFunction,
-) -> tuple[tuple[mpmath.mpf, ...], tuple[mpmath.mpf, ...]]:
+def exact_coefficients(bound: BoundTransferFunction) -> tuple[tuple[mpmath.mpf, ...], tuple[mpmath.mpf, ...]]:
     """Return numerator and denominator of a rational transfer function, the latter beginning with 1.
 
     They are those of the function itself, to the working precision.

@@ -1,5 +1,9 @@
 """Laurent series of a bound transfer function, at a pole and at s = 0, in balls.
 
+    G(s) = (s + 3)/(s^2 (s + 1))
+    at s = 0:     order -2, coefficients 3, -2, 2, ...:   3/s^2 - 2/s + 2 - ...
+    at s = -1:    order -1, coefficient 2:                2/(s + 1), a residue of 2
+
 Numerator and denominator are expanded as power series; how many of their first coefficients are zero is known
 from the pole's multiplicity, at s = 0 from series over a prime field, so a quotient of balls is enough.
 
@@ -52,12 +56,15 @@ Taylor = Callable[[acb, int], list[acb] | None]
 
 FIRST_BITS = 192
 LAST_BITS = 12288
+"""Precision of the first attempt, and where doubling it ends: six times."""
 DETECTION_BITS = 768
 """From which a coefficient of a series whose ball holds zero counts as zero where nothing proves it."""
 SLACK = 16
 """Terms that roots of vanishing coefficients may cost."""
 LONGEST = 160
+"""Terms of the longest series tried."""
 NEWTON_STEPS = 16
+"""Each doubles the digits: eight take a double to the last precision; a poor start has as many again."""
 COINCIDENT = 2
 """Zeros on top of a pole that are looked for."""
 
@@ -418,10 +425,7 @@ class PrincipalPart:
 
 
 def find_residues(
-    bound: BoundTransferFunction,
-    region: Region | None = None,
-    digits: int = 15,
-    budget: Budget | None = None,
+    bound: BoundTransferFunction, region: Region | None = None, digits: int = 15, budget: Budget | None = None
 ) -> tuple[PrincipalPart, ...]:
     r"""Return the principal parts at the poles in a region.
 

@@ -18,7 +18,7 @@ from __future__ import annotations
 from fractions import Fraction
 from itertools import pairwise
 from math import ceil, exp, log, pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 import numpy as np
 from flint import acb
@@ -30,7 +30,7 @@ from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.root import exact_fraction
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     import numpy.typing as npt
 
@@ -167,8 +167,13 @@ class _Walk:
         return sum(self._step(a, b) for a, b in pairwise(points))
 
     def _step(self, here: Point, there: Point) -> float:
-        total = 0.0
-        pending = [(here, there)]
+        return self._divided([here, there], SMALLEST_STEP, self._around)
+
+    def _divided(
+        self, points: Sequence[Point], shortest: float, past: Callable[[Point, Point], float]
+    ) -> float:
+        """Return the change along a path, divided until no step is ambiguous; ``past`` takes the shortest."""
+        total, pending = 0.0, list(pairwise(points))
         while pending:
             spend()
             a, b = pending.pop()
@@ -177,10 +182,10 @@ class _Walk:
                 total += change
                 continue
             middle = self._clear([(a[0] + b[0]) / 2])
-            if middle and abs(b[0] - a[0]) > SMALLEST_STEP:
+            if middle and abs(b[0] - a[0]) > shortest:
                 pending += [(a, middle[0]), (middle[0], b)]
             else:
-                total += self._around(a, b)
+                total += past(a, b)
         return total
 
     def _clear(self, points: Sequence[complex]) -> list[Point]:
@@ -191,20 +196,11 @@ class _Walk:
     def _around(self, here: Point, there: Point) -> float:
         """Pass a root on its right."""
         aside = -1j * DETOUR * max(abs(there[0] - here[0]), SMALLEST_STEP)
+
+        def refuse(*_: Point) -> NoReturn:
+            hertz = exp(here[0].real) / (2 * pi)
+            message = f"the phase of {self.function.bound.name} cannot be followed past {hertz:g} Hz"
+            raise UncertifiedError(Diagnostic("SF404", message))
+
         points = [here, *self._clear([here[0] + aside, there[0] + aside]), there]
-        total = 0.0
-        pending = list(pairwise(points))
-        while pending:
-            spend()
-            a, b = pending.pop()
-            change = continuous_step(a[1], b[1], b[0] - a[0])
-            if change is not None:
-                total += change
-                continue
-            middle = self._clear([(a[0] + b[0]) / 2])
-            if not middle or abs(b[0] - a[0]) < SHORTEST_SHARE * abs(aside):
-                hertz = exp(here[0].real) / (2 * pi)
-                message = f"the phase of {self.function.bound.name} cannot be followed past {hertz:g} Hz"
-                raise UncertifiedError(Diagnostic("SF404", message))
-            pending += [(a, middle[0]), (middle[0], b)]
-        return total
+        return self._divided(points, SHORTEST_SHARE * abs(aside), refuse)

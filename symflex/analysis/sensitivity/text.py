@@ -23,10 +23,7 @@ DIGITS = 6
 INDENT = "    "
 HEAD = ("Re [rad/s]", "Im [rad/s]", "p", "(p/f) df/dp", "p dzeta/dp")
 TITLES = {"pole": "  sensitivity of poles", "zero": "  sensitivity of zeros"}
-OBSTACLES = {
-    "multiple": "no derivative: multiple roots part",
-    "undecided": "not decided",
-}
+OBSTACLES = {"multiple": "no derivative: multiple roots part", "undecided": "not decided"}
 
 
 def sensitivity_text(moved: Sequence[RootDerivative], width: int = WIDTH) -> str:

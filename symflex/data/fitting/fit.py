@@ -187,9 +187,7 @@ class ResonanceFit:
 
 
 def fit_resonances(
-    measured: Sequence[MeasuredResponse],
-    bases: Sequence[Base] | None = None,
-    given: FitOptions = DEFAULTS,
+    measured: Sequence[MeasuredResponse], bases: Sequence[Base] | None = None, given: FitOptions = DEFAULTS
 ) -> ResonanceFit:
     """Fit simple resonances, in cascade with a known base, to one or several measured responses.
 
@@ -249,10 +247,7 @@ def fit_resonances(
 
 
 def _fit(
-    measured: Sequence[MeasuredResponse],
-    bases: tuple[Base, ...],
-    given: FitOptions,
-    slopes: tuple[int, ...],
+    measured: Sequence[MeasuredResponse], bases: tuple[Base, ...], given: FitOptions, slopes: tuple[int, ...]
 ) -> ResonanceFit:
     has_base = any(base.tf for base in bases)
     modes, start = given.modes, given.start

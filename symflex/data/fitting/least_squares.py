@@ -1,6 +1,11 @@
 """Nonlinear least squares from a start, and how accurate the result is.
 
-Two residuals are used one after the other.
+Two residuals are used one after the other. Where the model G misses a peak of H by a factor of two on one
+line, and a trough on another, both measured to sigma = 1 %:
+
+    line     H    G    ln(G/H)    (G - H)/sigma
+    peak     6    3     -0.69         -50
+    trough   3    6      0.69         100
 
 ``logarithmic``: ln(G/H), the logarithm of the quotient of model and measurement. A peak missed by a factor
 of two counts as much as a trough missed by a factor of two, in magnitude and in phase, and the way from a
@@ -33,14 +38,20 @@ Real = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
 STEPS = 100
+"""Evaluations of each residual; a search that takes more has lost its way."""
 TOLERANCE = 1e-9
+"""Relative, of parameters and cost: far below any standard error, far above rounding."""
 CAP = 0.05
-"""Added to the deviation in the logarithmic residual: no line may be so heavy that a poor start is torn by
-it."""
+"""Added to the deviation in the logarithmic residual, so that no single line pulls a poor start astray."""
 LARGEST_LAG = 3
+"""Lines apart: one more than a Hann window correlates."""
 HANN_SHARES = (4 / 9, 1 / 36, 0.0)
-"""Correlation of noise on lines 1, 2 and 3 apart, seen through a Hann window."""
+"""Correlation of noise on lines 1, 2 and 3 apart, seen through a Hann window.
+
+They are the squares of 2/3, 1/6 and 0, the correlations of its spectrum -1/4, 1/2, -1/4 with itself.
+"""
 SINGULAR = 1e-12
+"""Reciprocal condition number below which the inverse in doubles has four digits at most."""
 EDGE = 12.0
 """Logarithms of parameters are kept within this of their start, so that nothing overflows on the way."""
 

@@ -35,10 +35,7 @@ Complex = npt.NDArray[np.complex128]
 STEP = 1e-6
 """Of the logarithms by which derivatives are taken."""
 
-KINDS = {
-    (Fraction(-1), Fraction(0)): "kg^(-1/2)",
-    (Fraction(-1), Fraction(-2)): "kg^(-1/2)*m^(-1)",
-}
+KINDS = {(Fraction(-1), Fraction(0)): "kg^(-1/2)", (Fraction(-1), Fraction(-2)): "kg^(-1/2)*m^(-1)"}
 """Units of mode shapes by the exponents of kg and m in a motion over a force, and over a torque."""
 
 RIGHT_ANGLE = 90.0

@@ -1,4 +1,15 @@
-"""From data to the best fit with a number of resonances, given or chosen by an information criterion."""
+"""From data to the best fit with a number of resonances, given or chosen by an information criterion.
+
+One resonance at 10 Hz, measured on 300 lines with 1 % of noise:
+
+    resonances                        0      1      2      3
+    sum of squares per freedom     3267   0.995  0.972  0.955
+    BIC                            4860     24     31     42
+
+One is chosen: its BIC is the least, and two or three explain less than their parameters cost. A number is
+tried with few steps of the search first; the one preferred is then fitted to the end, and given up where a
+damping ratio is lost in its own error, or where the evidence for it is not strong.
+"""
 
 from __future__ import annotations
 
@@ -32,10 +43,13 @@ if TYPE_CHECKING:
 
 CRITERIA = ("bic", "aicc")
 MOST_MODES = 12
+"""Beyond, ask for a number: each one tried costs a fit from up to three kinds of starts."""
 PATIENCE, MORE_PATIENCE = 1, 3
 """Numbers of resonances tried after the best: where the noise is nearly reached, and where it is far."""
 QUICK_STEPS = 25
+"""A quarter of the steps of a whole search, enough to compare numbers of resonances."""
 EXPLAINED = 1.15
+"""Sum of squares per degree of freedom up to which noise explains what is left; 1 is expected."""
 WEAK = 0.5
 """Standard error of ln zeta beyond which fewer resonances are preferred, unless that is far worse."""
 FAR_BETTER = 4.0
@@ -45,7 +59,11 @@ LOWER = 0.5
 NEGLIGIBLE = 1e-6
 """Mean square, in units of the noise, below which residuals are rounding and tell nothing apart."""
 MOST_NUMERATORS = 3
+"""The likeliest numerators over each choice of poles that are fitted."""
 SAME = 1e-3
+"""Relative distance below which two starts have the same poles."""
+MOST_RISE = 1.5
+"""Zeros moved to the other half plane are a start where the misfit rises by no more than this factor."""
 CLEAR = 6.0
 """Difference of BIC that is strong evidence (Kass & Raftery, J. Am. Stat. Assoc. 90, 1995)."""
 UNLIKELY = 1e-5
@@ -382,21 +400,21 @@ def _signs_tried(problem: FitProblem, best: Candidate) -> Candidate:
             flipped = now.zeta_z.copy()
             flipped[r, i] = -flipped[r, i]
             start = replace(now, zeta_z=flipped)
-            residual = sum(
-                float(np.sum(np.abs(np.log(problem.values(start, k) / line.measured.values)) ** 2))
-                for k, line in enumerate(problem.lines)
-            )
-            before = sum(
-                float(np.sum(np.abs(np.log(problem.values(now, k) / line.measured.values)) ** 2))
-                for k, line in enumerate(problem.lines)
-            )
-            if residual > 1.5 * before:
+            if _logarithmic_cost(problem, start) > MOST_RISE * _logarithmic_cost(problem, now):
                 continue
             refined = refine_directly(problem, start)
             found = replace(best, refined=refined, failure=_failure(problem, refined))
             if _is_better(problem, found, best):
                 best = found
     return best
+
+
+def _logarithmic_cost(problem: FitProblem, resonances: Resonances) -> float:
+    """Return the sum of squares of ln(G/H), which counts peaks and troughs alike."""
+    return sum(
+        float(np.sum(np.abs(np.log(problem.values(resonances, r) / line.measured.values)) ** 2))
+        for r, line in enumerate(problem.lines)
+    )
 
 
 def _is_enough(problem: FitProblem, best: Candidate) -> bool:

@@ -1,5 +1,11 @@
 """Is the measured function minimum phase? The test of the paper.
 
+A resonance at 10 Hz with a pair of zeros at 12 Hz in the right half plane, zeta_z = -0.3:
+
+    fitted to the magnitude alone      zeta_z = +0.3, with the same magnitude on every line
+    measured less fitted phase         146 degrees at 5 Hz, -121 degrees at 20 Hz: they part
+    magnitude and phase together       no zeros in the left half plane have both: nonminimum phase
+
 The resonances are fitted to the magnitude alone, with all zeros in the left half plane. "The phase plots
 should match also, if the data to be matched actually represent a minimum-phase system" (Eppinger & Seering
 1988, section "Polynomial Resonance Model"): where the measured phase leaves the fitted one, they do not. The
@@ -31,13 +37,20 @@ Complex = npt.NDArray[np.complex128]
 Verdict = Literal["minimum", "undetermined", "nonminimum"]
 
 LIMIT_DEGREES = 10.0
+"""Phases part beyond this, or beyond the noise where that is larger."""
 SIGNIFICANT = 4.0
+"""Standard deviations of the phase that noise alone is not taken to reach."""
 SMOOTHED_LINES = 5
+"""Width of the running median; single lines that are off do not count."""
 SHORTEST_RUN, LONGEST_GAP = 4, 10
+"""Lines that a band where phases part has at least, and has between two that are one."""
 STEPS = 100
 CAP = 0.05
+"""Added to the noise, as in :mod:`symflex.data.fitting.least_squares`."""
 LOWEST_DAMPING = 1e-4
+"""Of mirrored zeros, whose logarithms are searched for."""
 EDGE = 12.0
+"""Logarithms of parameters are kept within this of their start, so that nothing overflows on the way."""
 MOST_LAG: Final = np.pi / 2
 """The phase of a lag at the highest line up to which poles above the band, or a sensor, may be its cause."""
 WORSE: Final = 1.25
