@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Literal
 
@@ -36,9 +37,12 @@ Degree = Literal["constant", "linear", "unknown"]
 """What an expression is in what varies in time; ``unknown`` when it holds a name that means nothing."""
 
 EXPONENT_LIMIT = 64
+"""As in the text of an expression, see :mod:`symflex.expressions.limits`."""
 SHOWN_PROBLEMS = 20
+"""More of one expression than anybody reads."""
 ORDER_LIMIT = 24
 """Of a derivative at a point; what is beyond the field's own order follows from its equations."""
+DELAY_HINT = 'exp(-s*T) is the block { type = "delay", T = "T" }'
 FUNCTION_HINT = "functions of s enter through [fields], through distributed elements, and as delays"
 LINEARISE = "linearise about an operating point, so that only one factor varies in time"
 
@@ -65,11 +69,11 @@ def check_expression(expression: Expression, scope: ModelScope, *, constant: boo
     constant : bool
         True where no unknown may stand.
     """
-    problems: list[Diagnostic] = []
-    degree = _degree(expression, scope, constant, problems)
-    if not constant and degree == "constant" and not problems and not is_number(expression, 0):
-        problems.append(without_signal(expression.span))
-    return problems
+    degrees = _Degrees(scope, constant)
+    degree = degrees.of(expression)
+    if not constant and degree == "constant" and not degrees.problems and not is_number(expression, 0):
+        degrees.problems.append(without_signal(expression.span))
+    return degrees.problems
 
 
 def check_equation(equation: Equation, scope: ModelScope) -> list[Diagnostic]:
@@ -82,11 +86,11 @@ def check_equation(equation: Equation, scope: ModelScope) -> list[Diagnostic]:
     scope : ModelScope
         The model's names; :meth:`ModelScope.within` the field for one of its equations.
     """
-    problems: list[Diagnostic] = []
+    degrees = _Degrees(scope, constant=False)
     sides = (equation.left, equation.right)
     terms = [t for side in sides for t in (side.terms if isinstance(side, Sum) else (side,))]
-    _degree(Sum(tuple(terms), span=equation.span), scope, False, problems)
-    return problems
+    degrees.of(Sum(tuple(terms), span=equation.span))
+    return degrees.problems
 
 
 def without_signal(span: Span | None) -> Diagnostic:
@@ -99,188 +103,165 @@ def without_signal(span: Span | None) -> Diagnostic:
     )
 
 
-def _degree(expression: Expression, scope: ModelScope, constant: bool, problems: list[Diagnostic]) -> Degree:
-    """Return the degree of an expression; note what is wrong."""
+@dataclass(frozen=True)
+class _Degrees:
+    """Finds the degree of every part of an expression, and notes what is wrong.
 
-    def walk(node: Expression) -> Degree:
-        return _degree(node, scope, constant, problems)
+    With x and F varying in time ``k*x + F`` is linear; ``x*F`` is noted (SF222), and so is ``x + 1`` (SF221).
+    """
 
-    match expression:
-        case Number():
-            return "constant"
-        case Name() | Attribute():
-            if len(problems) >= SHOWN_PROBLEMS:
-                return "unknown"
-            try:
-                meaning = scope.lookup(expression, constant=constant)
-            except SpecError as error:
-                problems.extend(error.diagnostics)
-                return "unknown"
-            if meaning.kind == "broken":
-                return "unknown"
-            return "linear" if meaning.kind in ("variable", "through") else "constant"
-        case Negative(operand):
-            return walk(operand)
-        case Sum(terms):
-            return _sum_degree([(term, walk(term)) for term in terms if not is_number(term, 0)], problems)
-        case Product(factors):
-            degrees = [walk(factor) for factor in factors]
-            if degrees.count("linear") > 1:
-                problems.append(
-                    Diagnostic(
-                        "SF222",
-                        "a product of two quantities that vary in time is not linear",
-                        expression.span,
-                        LINEARISE,
-                    )
+    scope: ModelScope
+    constant: bool
+    problems: list[Diagnostic] = field(default_factory=list)
+
+    def note(self, code: str, message: str, span: Span | None, hint: str | None = None) -> None:
+        self.problems.append(Diagnostic(code, message, span, hint))
+
+    def of(self, expression: Expression) -> Degree:
+        match expression:
+            case Number():
+                return "constant"
+            case Name() | Attribute():
+                return self._name(expression)
+            case Negative(operand):
+                return self.of(operand)
+            case Sum(terms):
+                return self._sum([term for term in terms if not is_number(term, 0)])
+            case Product(factors):
+                degrees = [self.of(factor) for factor in factors]
+                if degrees.count("linear") > 1:
+                    message = "a product of two quantities that vary in time is not linear"
+                    self.note("SF222", message, expression.span, LINEARISE)
+                return _strongest(degrees)
+            case Quotient(numerator, denominator):
+                top, bottom = self.of(numerator), self.of(denominator)
+                if bottom == "linear":
+                    message = "division by a quantity that varies in time is not linear"
+                    self.note("SF222", message, denominator.span, LINEARISE)
+                if is_number(denominator, 0):
+                    self.note("SF224", "division by zero", denominator.span)
+                return _strongest([top, bottom])
+            case Power():
+                return self._power(expression)
+            case Call():
+                return self._call(expression)
+            case Derivative():
+                return self._derivative(expression)
+        message = f"unexpected expression {type(expression).__name__}"
+        raise TypeError(message)
+
+    def _name(self, expression: Name | Attribute) -> Degree:
+        if len(self.problems) >= SHOWN_PROBLEMS:
+            return "unknown"
+        try:
+            kind = self.scope.lookup(expression, constant=self.constant).kind
+        except SpecError as error:
+            self.problems.extend(error.diagnostics)
+            return "unknown"
+        if kind == "broken":
+            return "unknown"
+        return "linear" if kind in ("variable", "through") else "constant"
+
+    def _sum(self, terms: Sequence[Expression]) -> Degree:
+        degrees = [self.of(term) for term in terms]
+        total = _strongest(degrees)
+        for term, degree in zip(terms, degrees, strict=True):
+            if total == "linear" and degree == "constant":
+                message = (
+                    "this term is constant and the others vary in time; a linear model has no constant terms"
                 )
-            return _strongest(degrees)
-        case Quotient(numerator, denominator):
-            top, bottom = walk(numerator), walk(denominator)
-            if bottom == "linear":
-                problems.append(
-                    Diagnostic(
-                        "SF222",
-                        "division by a quantity that varies in time is not linear",
-                        denominator.span,
-                        LINEARISE,
-                    )
-                )
-            if is_number(denominator, 0):
-                problems.append(Diagnostic("SF224", "division by zero", denominator.span))
-            return _strongest([top, bottom])
-        case Power(base, exponent):
-            return _power_degree(expression, walk(base), exponent, problems)
-        case Call():
-            return _call_degree(expression, scope, constant, problems)
-        case Derivative():
-            return _derivative_degree(expression, scope, problems)
-    message = f"unexpected expression {type(expression).__name__}"
-    raise TypeError(message)
+                self.note("SF221", message, term.span, "leave it out, or multiply it by an input")
+        return total
+
+    def _power(self, power: Power) -> Degree:
+        base, exponent = self.of(power.base), power.exponent
+        value = integer_exponent(exponent)
+        if value is None:
+            half = isinstance(exponent, Quotient) or is_number(exponent, Fraction(1, 2))
+            hint = "write sqrt(x) for a square root" if half else "write one number, such as 2 or -1"
+            self.note("SF225", "an exponent must be an integer number", exponent.span or power.span, hint)
+            return base
+        if abs(value) > EXPONENT_LIMIT:
+            message = f"exponent {value} is larger than {EXPONENT_LIMIT}"
+            self.note(
+                "SF103", message, exponent.span, "write a product of lower powers, in blocks of their own"
+            )
+        if base == "linear" and value != 1:
+            message = "a power of a quantity that varies in time is not linear"
+            self.note("SF222", message, power.span, LINEARISE)
+        return base
+
+    def _call(self, call: Call) -> Degree:
+        scope = self.scope
+        owner, dot, _ = call.name.partition(".")
+        if owner in scope.broken and call.name not in (*FUNCTIONS, *scope.along):
+            return "unknown"
+        if dot and call.name not in scope.along:
+            self.problems.append(_not_along(call, scope))
+            return "unknown"
+        if (call.name in scope.unknowns and call.name not in FUNCTIONS) or call.name in scope.along:
+            return self._value(call)
+        if call.order:
+            self.problems.append(_derivative(call.span))
+            return "unknown"
+        if call.name not in FUNCTIONS:
+            self.problems.append(_unknown_function(call, scope))
+            return "unknown"
+        inner = self.of(call.argument)
+        if inner == "linear":
+            message = f"{call.name} of a quantity that varies in time is not linear"
+            self.note("SF222", message, call.span, LINEARISE)
+            return "unknown"
+        if any(isinstance(n, Name) and n.name == LAPLACE for n in names(call.argument)):
+            message = f"{call.name} of an expression in s is not available yet"
+            self.note("SF910", message, call.span, DELAY_HINT if call.name == "exp" else FUNCTION_HINT)
+        return inner
+
+    def _value(self, call: Call) -> Degree:
+        """Return the degree of a field at a point."""
+        written = f"{call.name}{chr(39) * call.order}(...)"
+        if self.scope.inside:
+            message = f"{written} is the value at one point; the equations of a field hold at every x"
+            hint = "write the unknown bare here; what holds at a point belongs in the conditions"
+            self.note("SF241", message, call.span, hint)
+            return "unknown"
+        if self.constant:
+            message = f"{written} varies in time; only parameters, definitions, s and pi may stand here"
+            self.note("SF212", message, call.span)
+            return "unknown"
+        if call.order > ORDER_LIMIT:
+            message = f"a derivative of order {call.order}; at most {ORDER_LIMIT} is allowed"
+            self.note(
+                "SF103", message, call.span, "the field's equation gives higher derivatives by lower ones"
+            )
+        replace(self, constant=True).of(call.argument)
+        return "linear"
+
+    def _derivative(self, derivative: Derivative) -> Degree:
+        """Return the degree of a field differentiated along x and not evaluated."""
+        name, span, scope = derivative.name, derivative.span, self.scope
+        if name in scope.inside:
+            return "linear"
+        if name in scope.unknowns:
+            written = name + "'" * derivative.order
+            described = f"a derivative of an unknown of field '{scope.unknowns[name]}'"
+            problem = (
+                outside(written, described, span) if scope.inside else without_point(name, written, span)
+            )
+        elif name in scope.broken:
+            return "unknown"
+        elif scope.inside:
+            hint = nearest(name, scope.inside) or "its unknowns: " + ", ".join(sorted(scope.inside))
+            problem = Diagnostic("SF210", f"'{name}' is not an unknown of this field", span, hint)
+        else:
+            problem = _derivative(span)
+        self.problems.append(problem)
+        return "unknown"
 
 
 def _strongest(degrees: Iterable[Degree]) -> Degree:
     found = set(degrees)
     return "linear" if "linear" in found else "unknown" if "unknown" in found else "constant"
-
-
-def _sum_degree(terms: Sequence[tuple[Expression, Degree]], problems: list[Diagnostic]) -> Degree:
-    total = _strongest(degree for _, degree in terms)
-    if total == "linear":
-        problems += [
-            Diagnostic(
-                "SF221",
-                "this term is constant and the others vary in time; a linear model has no constant terms",
-                term.span,
-                "leave it out, or multiply it by an input",
-            )
-            for term, degree in terms
-            if degree == "constant"
-        ]
-    return total
-
-
-def _power_degree(power: Power, base: Degree, exponent: Expression, problems: list[Diagnostic]) -> Degree:
-    value = integer_exponent(exponent)
-    if value is None:
-        half = isinstance(exponent, Quotient) or is_number(exponent, Fraction(1, 2))
-        problems.append(
-            Diagnostic(
-                "SF225",
-                "an exponent must be an integer number",
-                exponent.span or power.span,
-                "write sqrt(x) for a square root" if half else "write one number, such as 2 or -1",
-            )
-        )
-        return base
-    if abs(value) > EXPONENT_LIMIT:
-        problems.append(
-            Diagnostic(
-                "SF103",
-                f"exponent {value} is larger than {EXPONENT_LIMIT}",
-                exponent.span,
-                "write a product of lower powers, in blocks of their own",
-            )
-        )
-    if base == "linear" and value != 1:
-        problems.append(
-            Diagnostic(
-                "SF222", "a power of a quantity that varies in time is not linear", power.span, LINEARISE
-            )
-        )
-    return base
-
-
-def _call_degree(call: Call, scope: ModelScope, constant: bool, problems: list[Diagnostic]) -> Degree:
-    owner, dot, _ = call.name.partition(".")
-    if owner in scope.broken and call.name not in (*FUNCTIONS, *scope.along):
-        return "unknown"
-    if dot and call.name not in scope.along:
-        problems.append(_not_along(call, scope))
-        return "unknown"
-    if (call.name in scope.unknowns and call.name not in FUNCTIONS) or call.name in scope.along:
-        return _value_degree(call, scope, constant, problems)
-    if call.order:
-        problems.append(_derivative(call.span))
-        return "unknown"
-    if call.name not in FUNCTIONS:
-        problems.append(_unknown_function(call, scope))
-        return "unknown"
-    inner = _degree(call.argument, scope, constant, problems)
-    if inner == "linear":
-        message = f"{call.name} of a quantity that varies in time is not linear"
-        problems.append(Diagnostic("SF222", message, call.span, LINEARISE))
-        return "unknown"
-    if any(isinstance(n, Name) and n.name == LAPLACE for n in names(call.argument)):
-        problems.append(
-            Diagnostic(
-                "SF910",
-                f"{call.name} of an expression in s is not available yet",
-                call.span,
-                'exp(-s*T) is the block { type = "delay", T = "T" }' if call.name == "exp" else FUNCTION_HINT,
-            )
-        )
-    return inner
-
-
-def _value_degree(call: Call, scope: ModelScope, constant: bool, problems: list[Diagnostic]) -> Degree:
-    """Return the degree of a field at a point."""
-    written = f"{call.name}{chr(39) * call.order}(...)"
-    if scope.inside:
-        message = f"{written} is the value at one point; the equations of a field hold at every x"
-        hint = "write the unknown bare here; what holds at a point belongs in the conditions"
-        problems.append(Diagnostic("SF241", message, call.span, hint))
-        return "unknown"
-    if constant:
-        message = f"{written} varies in time; only parameters, definitions, s and pi may stand here"
-        problems.append(Diagnostic("SF212", message, call.span))
-        return "unknown"
-    if call.order > ORDER_LIMIT:
-        message = f"a derivative of order {call.order}; at most {ORDER_LIMIT} is allowed"
-        hint = "the field's equation gives higher derivatives by lower ones"
-        problems.append(Diagnostic("SF103", message, call.span, hint))
-    _degree(call.argument, scope, True, problems)
-    return "linear"
-
-
-def _derivative_degree(derivative: Derivative, scope: ModelScope, problems: list[Diagnostic]) -> Degree:
-    """Return the degree of a field differentiated along x and not evaluated."""
-    name, span = derivative.name, derivative.span
-    if name in scope.inside:
-        return "linear"
-    if name in scope.unknowns:
-        written = name + "'" * derivative.order
-        described = f"a derivative of an unknown of field '{scope.unknowns[name]}'"
-        problem = outside(written, described, span) if scope.inside else without_point(name, written, span)
-    elif name in scope.broken:
-        return "unknown"
-    elif scope.inside:
-        hint = nearest(name, scope.inside) or "its unknowns: " + ", ".join(sorted(scope.inside))
-        problem = Diagnostic("SF210", f"'{name}' is not an unknown of this field", span, hint)
-    else:
-        problem = _derivative(span)
-    problems.append(problem)
-    return "unknown"
 
 
 def _derivative(span: Span | None) -> Diagnostic:

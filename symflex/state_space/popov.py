@@ -7,6 +7,14 @@ The form is that of Popov (1972, SIAM J. Control 10, 252), with weights on the u
 Labahn and Villard (2006, J. Symb. Comp. 41, 708): which derivatives count as higher decides what the states
 are. It is found as the Groebner basis of the rows' module over the polynomials in s.
 
+Example: a mass on a spring k to a massless plate that follows u, weights as they come.
+
+    before    m s^2 x + k x - k y = 0,   y - u = 0
+    after     s^2 x = (k/m) (u - x),     y = u
+
+Of x the lowest derivative that follows from lower ones is the second, so x and s x are states; of y it is y
+itself, which has none.
+
 The field in which the rows are solved is that of quotients of polynomials free of s, :class:`FieldElement`.
 """
 

@@ -6,6 +6,11 @@ The equations ``A(s) x + B(s) u = 0`` of all elements are brought to Popov form,
 current and signal how many of its derivatives are independent: these are the states. One that follows an
 input directly, or its derivatives, stands for what is left when that part is taken away. The result is
 substituted into the model's equations, which it must satisfy identically.
+
+Example: a mass on a spring and a damper, pushed by F and read at its node.
+
+    before    (m s^2 + b s + k) x = F
+    after     states x, v:   s x = v,   s v = -(k/m) x - (b/m) v + (1/m) F,   X = x
 """
 
 from __future__ import annotations

@@ -2,6 +2,13 @@
 
 Input: a :class:`TransferFunction` and exact values of its parameters.
 Output: a :class:`BoundTransferFunction`, whose coefficients are exact in pi and functions of constants.
+
+Example: a mass on a spring and a damper with m = 2 kg, b = 3 N s/m, k = 5 N/m.
+
+    before    1 / (m s^2 + b s + k)
+    after     1 / (2 s^2 + 3 s + 5)
+
+With values that make two factors equal, such as k_1 = k_2, what was apart before cancels: it is hidden now.
 """
 
 from __future__ import annotations

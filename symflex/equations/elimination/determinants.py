@@ -11,6 +11,12 @@ that grows linearly with its size (Gentleman & Johnson 1976 compare the method w
 entries).
 
 How many terms an expanded determinant would have is estimated before anything is multiplied out.
+
+Example: a mass on a spring and a damper, pushed by F and read at its node.
+
+    before    (m s^2 + b s + k) x - F = 0          X = x
+    after     den = |m s^2 + b s + k|       num = -|       1           0|  =  1
+                                                   |m s^2 + b s + k   -1|
 """
 
 from __future__ import annotations
@@ -108,7 +114,9 @@ class Determinants:
 
 
 MINOR_LIMIT = 200_000
+"""Minors of one system. A full matrix of 17 rows has 2^17 = 131,072 of them; those of a chain are few."""
 ROW_LIMIT = 700
+"""Unknowns left after elimination; systems of more are given as nested expressions."""
 MEMORY_LIMIT = 300_000_000
 """Bytes that all minors of a system may take together: a free chain of sixteen masses needs 270 MB. The
 engine takes almost three times as much for a while."""

@@ -11,6 +11,18 @@ subtraction is that of Grassmann, Taksar and Heyman ("Regenerative analysis and 
 Markov chains", Operations Research 33, 1985). For a chain it writes down the recurrence of Holzer (1921).
 It holds for any row whose sum over some columns is known, so the same code serves constraints, motors and
 signals. Which unknown is next is Markowitz's rule (1957): the one that can make the fewest new entries.
+
+Example: a mass m_1 on a spring k_1 to ground, a spring k_2 from it to a mass m_2 that F acts on.
+
+    before    (Z_1 + k_2) x_1 = k_2 x_2            Z_1 = m_1 s^2 + k_1
+              (Z_2 + k_2) x_2 = k_2 x_1 + F        Z_2 = m_2 s^2
+
+Node 1 has one neighbour, so no w_j w_k arises; node 2 is joined to ground by k_2 Z_1 / (Z_1 + k_2), which is
+the spring k_2 in series with Z_1:
+
+    after     (Z_2 + k_2 Z_1/(Z_1 + k_2)) x_2 = F
+
+No difference is taken: every entry is made by adding, multiplying and dividing.
 """
 
 from __future__ import annotations

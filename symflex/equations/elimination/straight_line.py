@@ -3,6 +3,12 @@
 Input: generators, numbers, and what is done with them.
 Output: a :class:`StraightLine`, flat lists of steps whose length is what a long expression with shared parts
 really needs.
+
+    (m*s^2 + k)^2 / (m*s^2 + k + b*s)
+
+    2: s   3: m   4: s^2   5: 3 * 4   6: k   7: 5 + 6 = w   8: 7^2   9: b   10: 9 * 2   11: 7 + 10   12: 8 / 11
+
+The sum w = m*s^2 + k stands once, though it is used twice; steps 0 and 1 are the numbers zero and one.
 """
 
 from __future__ import annotations
@@ -328,7 +334,11 @@ class Workbench:
         return Fraction(above, below)
 
     def polynomial(self, polynomial: fmpz_mpoly) -> int:
-        """Return a polynomial of the generators; it must outlive the workbench."""
+        """Return a polynomial of the generators.
+
+        The engine's polynomials have no hash, so an object is known again by its address: it must outlive the
+        workbench, as the equations' entries do.
+        """
         known = self._polynomials.get(id(polynomial))
         if known is not None:
             return known

@@ -22,13 +22,22 @@ if TYPE_CHECKING:
 
     from symflex.library.elements.element import Placing, Variable
 
-_PORTS = (
-    Port("from", 1, "any", "node of the driving side"),
-    Port("to", 1, "any", "node of the driven side"),
-)
+
+class Coupling(Element):
+    """Base of what joins two nodes of any domains, and is named after what it delivers at ``to``."""
+
+    ports = (
+        Port("from", 1, "any", "node of the driving side"),
+        Port("to", 1, "any", "node of the driven side"),
+    )
+    through = ("f", "tau", "i")
+
+    def quantities(self, domains: Mapping[str, Placing]) -> tuple[str, ...]:
+        """Return the quantity delivered at ``to``."""
+        return (THROUGH_NAME[domains["to"]],)
 
 
-class Transformer(Element):
+class Transformer(Coupling):
     """A gear, rack, screw, lever or electrical transformer: ``to = ratio * from``.
 
     The across variables (displacement [m], angle [rad], voltage [V]) are in the given ratio;
@@ -38,13 +47,7 @@ class Transformer(Element):
 
     type_name = "transformer"
     summary = "Gear, rack, screw, lever or electrical transformer: to = ratio * from"
-    ports = _PORTS
     parameters = (ParameterPort("ratio", "", "a transformer ratio"),)
-    through = ("f", "tau", "i")
-
-    def quantities(self, domains: Mapping[str, Placing]) -> tuple[str, ...]:
-        """Return the quantity delivered at ``to``."""
-        return (THROUGH_NAME[domains["to"]],)
 
     def unit_of(self, quantity: str, domains: Mapping[str, Placing]) -> str:
         """Return the ratio's unit, that of ``to`` over that of ``from``."""
@@ -74,7 +77,7 @@ class Transformer(Element):
         )
 
 
-class Gyrator(Element):
+class Gyrator(Coupling):
     """A lossless crossing: ``effort_from = ratio*flow_to``, ``effort_to = ratio*flow_from``.
 
     Effort is force [N], torque [N m] or voltage [V]; flow is velocity [m/s, rad/s] or current [A].
@@ -84,13 +87,7 @@ class Gyrator(Element):
 
     type_name = "gyrator"
     summary = "Gyrator: effort at one port proportional to flow at the other"
-    ports = _PORTS
     parameters = (ParameterPort("ratio", "", "a gyrator ratio"),)
-    through = ("f", "tau", "i")
-
-    def quantities(self, domains: Mapping[str, Placing]) -> tuple[str, ...]:
-        """Return the quantity delivered at ``to``."""
-        return (THROUGH_NAME[domains["to"]],)
 
     def unit_of(self, quantity: str, domains: Mapping[str, Placing]) -> str:
         """Return the ratio's unit, effort at ``from`` over flow at ``to``."""

@@ -14,18 +14,23 @@ from symflex.library.elements.element import (
 )
 
 
-def _through_source(use: ElementUse, quantity: str) -> Stamp:
-    form = use.forms[quantity]
-    return Stamp(injections=_delivered(use, form), through=((quantity, form),))
-
-
 def _delivered(use: ElementUse, form: LinearForm) -> tuple[Injection, ...]:
     """Return what is delivered into the node, with the reaction where there is a second one."""
     signs = (use.one, -use.one)
     return tuple(Injection(n, form * sign) for n, sign in zip(use.across("at"), signs, strict=False))
 
 
-class ForceSource(Element):
+class ThroughSource(Element):
+    """Base of the sources whose value is what they deliver."""
+
+    def stamp(self, use: ElementUse) -> Stamp:
+        """Contribute one injection, and its reaction where there is a second node."""
+        (quantity,) = self.through
+        form = use.forms[quantity]
+        return Stamp(injections=_delivered(use, form), through=((quantity, form),))
+
+
+class ForceSource(ThroughSource):
     """A force f [N] applied to a node, or between two, on the first; ``f`` is the force delivered."""
 
     type_name = "force_source"
@@ -34,12 +39,8 @@ class ForceSource(Element):
     parameters = (ParameterPort("f", "N", "a force", signal=True),)
     through = ("f",)
 
-    def stamp(self, use: ElementUse) -> Stamp:
-        """Contribute one injection."""
-        return _through_source(use, "f")
 
-
-class TorqueSource(Element):
+class TorqueSource(ThroughSource):
     """A torque tau [N m] applied to a node, or between two, on the first; ``tau`` is the torque delivered."""
 
     type_name = "torque_source"
@@ -48,12 +49,8 @@ class TorqueSource(Element):
     parameters = (ParameterPort("tau", "N*m", "a torque", signal=True),)
     through = ("tau",)
 
-    def stamp(self, use: ElementUse) -> Stamp:
-        """Contribute one injection."""
-        return _through_source(use, "tau")
 
-
-class CurrentSource(Element):
+class CurrentSource(ThroughSource):
     """A current i [A] delivered into a node from ground, or into the first of two from the second."""
 
     type_name = "current_source"
@@ -61,10 +58,6 @@ class CurrentSource(Element):
     ports = (Port("at", 1, "electrical", "node the current enters", pair="between"),)
     parameters = (ParameterPort("i", "A", "a current", signal=True),)
     through = ("i",)
-
-    def stamp(self, use: ElementUse) -> Stamp:
-        """Contribute one injection."""
-        return _through_source(use, "i")
 
 
 class VoltageSource(Element):
