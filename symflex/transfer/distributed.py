@@ -8,8 +8,8 @@ Example: a rod clamped at one end and pulled at the other, ``gamma^2 = rho s^2/E
     before    sinh(gamma l) / (E A gamma cosh(gamma l))
     after     num = sinh(gamma l)/gamma       den = E A cosh(gamma l)
 
-Both are functions of s without poles: sinh(gamma l)/gamma is even in gamma, and l where gamma is zero. Taken as
-it stood before, the wavenumber below would count as a pole at s = 0, which the rod does not have.
+Both are functions of s without poles: sinh(gamma l)/gamma is even in gamma, and l where gamma is zero. As it
+stood before, the wavenumber below would count as a pole at s = 0, which the rod does not have.
 """
 
 from __future__ import annotations

@@ -6,9 +6,10 @@ really needs.
 
     (m*s^2 + k)^2 / (m*s^2 + k + b*s)
 
-    2: s   3: m   4: s^2   5: 3 * 4   6: k   7: 5 + 6 = w   8: 7^2   9: b   10: 9 * 2   11: 7 + 10   12: 8 / 11
+    2: s   3: m   4: 2^2   5: 3 * 4   6: k   7: 5 + 6   8: 7^2   9: b   10: 9 * 2   11: 7 + 10   12: 8 / 11
 
-The sum w = m*s^2 + k stands once, though it is used twice; steps 0 and 1 are the numbers zero and one.
+After a colon a number is a step, but for exponents. The sum m*s^2 + k stands once, as step 7, though it is
+used twice; steps 0 and 1 are the numbers zero and one.
 """
 
 from __future__ import annotations
