@@ -1,1 +1,10 @@
-"""Generated code: one program tree, and what prints it in each language."""
+"""Generated code: from a transfer function to a verified program, and from that to a file of some language.
+
+- ``program``: programs in no language, built, scheduled and measured against ball arithmetic
+- ``export``: the driver; programs are chosen, and handed to a language as the contents of a file
+- ``infix``, ``module_text``: what languages share, expressions and what is said of a model
+- ``python``, ``c``, ``julia``, ``matlab``: a language each
+- ``sources``, ``source_parts``: the functions that generated code calls, in files of its language
+- ``state_space``, ``targets``: what is made otherwise, state equations and LaTeX documents
+- ``exporters``: the registry
+"""

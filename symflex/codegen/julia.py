@@ -1,0 +1,409 @@
+"""Transfer functions as a Julia module without dependencies: everything that is printed in Julia.
+
+Input: the contents of a module.
+Output: its text. Read from the top: expressions, the private functions that compute, the module around them.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from symflex.codegen.export import Export, Language
+from symflex.codegen.infix import InfixPrinter, in_lines
+from symflex.codegen.module_text import (
+    COST,
+    default_value,
+    described,
+    formula_lines,
+    headline,
+    origin_lines,
+)
+from symflex.codegen.program import Assignment, CodePiece, Piecewise, identifiers, inert, wrapped
+from symflex.codegen.source_parts import called_parts, parts_of
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Mapping, Sequence
+
+    from symflex.codegen.export import Contents, Member
+    from symflex.codegen.program.nodes import Frames
+    from symflex.model import Model
+
+WIDTH = 92
+"""Columns, as Julia's own style has it."""
+
+LAST_OF_FOUR_DIGITS = 0xFFFF
+"""The last character that ``\\u`` names."""
+
+KEYWORDS = frozenset(
+    "abstract as baremodule begin break catch const continue do else elseif end export false finally for "
+    "function global if import in isa let local macro module mutable outer primitive public quote return "
+    "struct true try type using where while".split()
+)
+
+NAMES = frozenset(
+    "pi im e Inf NaN Inf64 NaN64 nothing missing exp log sqrt sin cos tan sinh cosh tanh abs abs2 real imag "
+    "conj complex float signbit cis zero one zeros length eltype iszero isfinite all max min maximum ceil "
+    "log2 fill push findfirst zip Base Core Main LinearAlgebra Number Real Complex ComplexF64 Float64 Int "
+    "Tuple Vector Vararg Dict String NamedTuple eval include PARAMETERS TRANSFER_FUNCTIONS "
+    "FREQUENCY_RESPONSES".split()
+)
+"""What generated code uses, and names that a reader or the module itself would miss."""
+
+RESERVED = KEYWORDS | NAMES | {"s"}
+
+WORDS_OF_TITLE = 4
+
+
+# ---------------------------------------------------------------------------------- expressions
+
+
+@dataclass(frozen=True)
+class JuliaPrinter(InfixPrinter):
+    """Prints expressions whose values are numbers."""
+
+    def complex_number(self, real: float, imaginary: float) -> str:
+        """Return a number as text that needs no parentheses."""
+        return f"complex({real!r}, {imaginary!r})"
+
+    def power(self, base: str, exponent: int) -> str:
+        """Return a power of text that needs no parentheses."""
+        return f"{base}^{exponent}"
+
+    def listed(self, texts: Iterable[str]) -> str:
+        """Return a vector."""
+        return f"[{', '.join(texts)}]"
+
+    def item(self, values: str, position: int) -> str:
+        """Return one value of a vector, counted from 0."""
+        return f"{values}[{position + 1}]"
+
+    def call(self, function: str, arguments: Sequence[str]) -> str:
+        """Return a call of a run-time function."""
+        return f"_{function}({', '.join(arguments)})"
+
+    def frames(self, frames: Frames) -> str:
+        """Return a triple per frame: slots, terms, and keys with their divisors."""
+        texts = []
+        for slots, terms, keys in frames:
+            pairs = self.listed(f"({_tuple(orders)}, {i + 1})" for orders, i in terms)
+            products = self.listed(f"({_tuple(key)}, {divisor})" for key, divisor in keys)
+            texts.append(f"({_tuple(slots)}, {pairs}, {products})")
+        return self.listed(texts)
+
+
+def _tuple(numbers: Sequence[int]) -> str:
+    """Return positions, counted from 0, as a tuple of those counted from 1."""
+    return repr(tuple(n + 1 for n in numbers))
+
+
+def statement(target: str, value: str, indent: str = "    ") -> list[str]:
+    """Return ``target = value``, or ``return value``, in parentheses where it takes several lines.
+
+    Examples
+    --------
+    >>> statement("x", "1.0 * y")
+    ['    x = 1.0 * y']
+    """
+    opening = f"{indent}{target} " if target == "return" else f"{indent}{target} = "
+    if len(opening) + len(value) <= WIDTH:
+        return [opening + value]
+    lines = in_lines(value, WIDTH - len(indent) - 4)
+    return [f"{opening}(", *(f"{indent}    {line}" for line in lines), f"{indent})"]
+
+
+def head(name: str, arguments: Sequence[str]) -> list[str]:
+    """Return the first lines of a function.
+
+    Examples
+    --------
+    >>> head("f", ["s", "l"])
+    ['function f(s, l)']
+    """
+    line = f"function {name}({', '.join(arguments)})"
+    if len(line) <= WIDTH:
+        return [line]
+    return [f"function {name}(", *(f"    {a}," for a in arguments[:-1]), f"    {arguments[-1]}", ")"]
+
+
+# ---------------------------------------------------------------------------- private functions
+
+
+@dataclass(frozen=True)
+class PrivateFunctions:
+    """Prints the functions that compute, of positional arguments; all begin with an underscore.
+
+    Parameters
+    ----------
+    program : Piecewise
+        What they compute.
+    name : str
+        Identifier of the public function.
+    parameters : mapping of str to str
+        Identifiers of the parameters.
+    reserved : collection of str
+        Identifiers that intermediate values cannot have.
+    """
+
+    program: Piecewise
+    name: str
+    parameters: Mapping[str, str]
+    reserved: Collection[str]
+
+    @property
+    def variable(self) -> str:
+        """The first argument's name."""
+        return "omega" if self.program.is_real else "s"
+
+    def blocks(self) -> list[str]:
+        """Return the functions, each as text that ends with a line end."""
+        if self.program.is_lumped:
+            return [self._lumped(self.program)]
+        blocks = [self._choice(self.program)]
+        for i, piece in enumerate(self.program.code):
+            blocks += self._piece(self.program, i, piece)
+        return blocks
+
+    def _arguments(self, variable: str) -> list[str]:
+        return [variable, *(self.parameters[p] for p in self.program.parameters)]
+
+    def _function(self, kind: str, variable: str, body: Sequence[str]) -> str:
+        lines = [*head(f"_{kind}_of_{self.name}", self._arguments(variable)), *body]
+        return "\n".join([*lines, "end", ""])
+
+    def _scope(self, assignments: Sequence[Assignment], *words: str) -> tuple[JuliaPrinter, list[str]]:
+        """Return a printer, and identifiers for the code's own words, the first one s or its like."""
+        own = {f"{word} of the code": word for word in words}
+        taken = {*self.reserved, *self.parameters.values()}
+        names = identifiers({**own, **{a.name: a.name for a in assignments}}, taken)
+        found = [names[key] for key in own]
+        return JuliaPrinter(self.parameters, names, found[0], found[-1]), found
+
+    def _lumped(self, program: Piecewise) -> str:
+        near, far, late = program.near, program.far, program.late
+        early = (*near.constants, *near.assignments)
+        printer, (s, inverse) = self._scope((*early, *late), "s", "inverse")
+        lines = _assigned(early, printer)
+        if far is not None:
+            lines += [
+                f"    if abs({s}) > {program.limit!r}",
+                *statement(inverse, f"1.0 / {s}", "        "),
+                *_assigned(late, printer, "        "),
+                *statement("return", printer.print(far.values[0]), "        "),
+                "    end",
+            ]
+        return self._function("value", s, [*lines, *statement("return", printer.print(near.values[0]))])
+
+    def _choice(self, program: Piecewise) -> str:
+        """Return the function that finds the piece that serves."""
+        assignments = (*program.tests.constants, *program.tests.assignments)
+        printer, (variable, number) = self._scope(assignments, self.variable, "number")
+        lines: list[str] = []
+        if program.is_real:
+            negative = ", ".join(self._arguments(f"-{variable}"))
+            lines += [
+                f"    if signbit({variable})",
+                *statement("return", f"conj(_value_of_{self.name}({negative}))", "        "),
+                "    end",
+            ]
+        lines += _assigned(assignments, printer)
+        if program.conditions:
+            lines += statement(number, printer.piece_number(program))
+        given = ", ".join(self._arguments(variable))
+        served = {k: [n for n, own in enumerate(program.pieces) if own == k] for k in set(program.pieces)}
+        *others, last = sorted(served)
+        for k in others:
+            conditions = " || ".join(f"{number} == {n}" for n in served[k])
+            lines += [
+                f"    if {conditions}",
+                *statement("return", f"_piece_{k}_of_{self.name}({given})", "        "),
+                "    end",
+            ]
+        return self._function(
+            "value", variable, [*lines, *statement("return", f"_piece_{last}_of_{self.name}({given})")]
+        )
+
+    def _piece(self, program: Piecewise, number: int, piece: CodePiece) -> list[str]:
+        assignments = (*piece.code.constants, *piece.code.assignments)
+        if piece.circle:
+            printer, (variable,) = self._scope(assignments, self.variable)
+            values = ", ".join(printer.print(v) for v in piece.code.values)
+            lines = [*_assigned(assignments, printer), *statement("return", f"({values})")]
+            return [self._function(f"parts_{number}", variable, lines), self._mean(number, piece.circle)]
+        words = (self.variable, *(["s"] if piece.is_complex else []))
+        printer, (variable, *place) = self._scope(assignments, *words)
+        lines = []
+        for s in place:
+            printer = replace(printer, variable=s)
+            lines += statement(s, f"complex(0.0, {variable})")
+        lines += _assigned(assignments, printer)
+        whole = printer.quotient(*piece.code.values)
+        if program.is_real and not piece.is_complex:
+            whole = f"complex(0.0, {whole})" if program.turn else f"complex({whole}, 0.0)"
+        return [self._function(f"piece_{number}", variable, [*lines, *statement("return", whole)])]
+
+    def _mean(self, number: int, points: int) -> str:
+        _, (variable, z) = self._scope((), self.variable, "z")
+        given = ", ".join(self._arguments(z))
+        whole = f"_mean_over_circle({z} -> _parts_{number}_of_{self.name}({given}), {variable}, {points})"
+        return self._function(f"piece_{number}", variable, statement("return", whole))
+
+
+def _assigned(assignments: Sequence[Assignment], printer: JuliaPrinter, indent: str = "    ") -> list[str]:
+    lines: list[str] = []
+    for assignment in assignments:
+        lines += statement(printer.locals[assignment.name], printer.print(assignment.value), indent)
+    return lines
+
+
+# -------------------------------------------------------------------------------------- the module
+
+
+def julia_module(contents: Contents) -> Export:
+    """Return a module with one function ``OUT_over_IN(s; parameter = default, ...)`` per transfer function.
+
+    Its name is made from the file's, or from the model's title.
+    """
+    model, members, digits = contents.model, contents.members, contents.digits
+    main = module_name(contents.stem or model.title)
+    taken = RESERVED | {main}
+    public = identifiers({m.key: m.wanted for m in members}, taken)
+    taken |= set(public.values())
+    parameters = identifiers({p.name: p.name for p in model.parameters}, taken)
+    blocks, code = [_parameter_table(model, parameters)], ""
+    for m in members:
+        functions = PrivateFunctions(m.program, public[m.key], parameters, taken - {"s"})
+        private = functions.blocks()
+        blocks += [_public(m, functions, digits), *private]
+        code += "\n".join(private)
+    called = called_parts(code, parts_of("julia.jl"))
+    blocks += called
+    for table, is_real in (("TRANSFER_FUNCTIONS", False), ("FREQUENCY_RESPONSES", True)):
+        blocks.append(_function_table(table, [m for m in members if m.program.is_real == is_real], public))
+    header = [*_docstring(_header(model, members, digits)), f"module {main}", ""]
+    if any("LinearAlgebra." in text for text in called):
+        header += ["import LinearAlgebra", ""]
+    if public:
+        header += [*_exported(list(public.values())), ""]
+    text = "\n".join([*header, "\n".join(blocks), f"end # module {main}", ""])
+    return Export(text, name=main)
+
+
+def module_name(text: str) -> str:
+    """Return a text as the name of a module, capitals for the first letters of words.
+
+    Examples
+    --------
+    >>> module_name("six_mass"), module_name("Main"), module_name("2 masses, joined"), module_name("")
+    ('SixMass', 'Main_', 'P2MassesJoined', 'TransferFunctions')
+    """
+    words = re.findall(r"[A-Za-z0-9]+", text)[:WORDS_OF_TITLE]
+    joined = "".join(word[:1].upper() + word[1:] for word in words) or "TransferFunctions"
+    plain = joined if joined[0].isalpha() else f"P{joined}"
+    return identifiers({"main": plain}, RESERVED)["main"]
+
+
+def _disarmed(text: str) -> str:
+    """Return inert text in which no Markdown fence begins, for these may hold code to be run."""
+    return text.replace("`", "'").replace("~~~", "~ ~ ~")
+
+
+def _docstring(lines: Sequence[str]) -> list[str]:
+    """Return lines, which hold no double quote, as a docstring."""
+    escaped = (line.rstrip().replace("\\", "\\\\").replace("$", "\\$") for line in lines)
+    return ['"""', *escaped, '"""']
+
+
+def _string(text: str) -> str:
+    """Return a string literal that holds only printable characters."""
+    return '"' + "".join(_character(c) for c in text) + '"'
+
+
+def _character(c: str) -> str:
+    if c in '"\\$':
+        return f"\\{c}"
+    if c.isprintable():
+        return c
+    return f"\\u{ord(c):04x}" if ord(c) <= LAST_OF_FOUR_DIGITS else f"\\U{ord(c):08x}"
+
+
+def _header(model: Model, members: Sequence[Member], digits: int) -> list[str]:
+    lines = ["Transfer functions of a linear system.", ""]
+    if origin := origin_lines(model, WIDTH):
+        lines += [*(_disarmed(line) for line in origin), ""]
+    lines += wrapped(
+        "Written by symflex. Each function evaluates OUT/IN at the Laplace variable s [rad/s], a number; "
+        "with a dot, as in OUT_over_IN.(s), it takes arrays.",
+        WIDTH,
+    )
+    own = [m for m in members if not m.program.is_real]
+    for m in own:
+        text = _disarmed(inert(f"{m.tf.name}: {m.verification.text(digits)}"))
+        lines += ["", *wrapped(text, WIDTH)]
+    return lines
+
+
+def _parameter_table(model: Model, names: Mapping[str, str]) -> str:
+    lines = ['"""', "Values in SI units, units and descriptions of the model's parameters.", '"""']
+    if not model.parameters:
+        return "\n".join([*lines, "const PARAMETERS = NamedTuple()", ""])
+    lines.append("const PARAMETERS = (")
+    for p in model.parameters:
+        value = default_value(p) or "nothing"
+        entries = f"value = {value}, unit = {_string(p.unit)}, doc = {_string(p.doc)}"
+        lines.append(f"    {names[p.name]} = ({entries}),")
+    return "\n".join([*lines, ")", ""])
+
+
+def _function_table(table: str, members: Sequence[Member], public: Mapping[str, str]) -> str:
+    lines = [f"    {_string(m.tf.name)} => {public[m.key]}," for m in members]
+    opening = f"const {table} = Dict{{String, Function}}("
+    return "\n".join([opening, *lines, ")", ""] if lines else [f"{opening})", ""])
+
+
+def _exported(names: Sequence[str]) -> list[str]:
+    first, *others = in_lines(", ".join(names), WIDTH - len("export "))
+    return [f"export {first}", *(f"    {line}" for line in others)]
+
+
+def _public(member: Member, functions: PrivateFunctions, digits: int) -> str:
+    """Return the function that a user calls."""
+    tf, variable = member.tf, functions.variable
+    kind = "Real" if member.program.is_real else "Number"
+    parameters = [(p, functions.parameters[p.name]) for p in tf.parameters]
+    signature, arguments = (
+        [],
+        [f"float({variable})" if member.program.is_real else f"complex(float({variable}))"],
+    )
+    for p, name in parameters:
+        default = default_value(p)
+        signature.append(f"{name}::{kind}{f' = {default}' if default else ''}")
+        arguments.append(f"float({name})")
+    opening = f"{functions.name}({variable}::{kind}"
+    lines = [f"    {functions.name}({variable}{'; ...' if parameters else ''})", ""]
+    lines += [_disarmed(headline(tf, is_real=member.program.is_real)), ""]
+    lines += [f"    {_disarmed(line)}" for line in formula_lines(tf, WIDTH - 4)]
+    what = "angular frequency" if member.program.is_real else "Laplace variable"
+    lines += ["", "# Arguments", f"- {variable}: {what} [rad/s]."]
+    for p, name in parameters:
+        value = default_value(p)
+        text = f"- {name}{f' = {value}' if value else ''}: {_disarmed(described(p, name))}"
+        lines += wrapped(text, WIDTH, "", "  ")
+    lines += ["", *wrapped(_disarmed(inert(f"{member.verification.text(digits)}.")), WIDTH)]
+    lines.append("Not finite at poles.")
+    if member.program.solves:
+        lines += wrapped(COST, WIDTH)
+    whole = f"{opening}{'; ' if signature else ''}{', '.join(signature)})"
+    first = [f"function {whole}"]
+    if len(first[0]) > WIDTH:
+        first = [f"function {opening};", *(f"    {x}," for x in signature[:-1]), f"    {signature[-1]})"]
+    call = f"complex(_value_of_{functions.name}({', '.join(arguments)}))"
+    body = f"    return {call}"
+    if len(body) > WIDTH:
+        inside = [f"        {a}," for a in arguments[:-1]] + [f"        {arguments[-1]}))"]
+        body = "\n".join([f"    return complex(_value_of_{functions.name}(", *inside])
+    return "\n".join([*_docstring(lines), *first, body, "end", ""])
+
+
+JULIA = Language(".jl", "Julia module, one function per transfer function, verified likewise", julia_module)
