@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 from matplotlib.mathtext import MathTextParser
 
 from symflex.model.labels import GREEK
-from symflex.print.latex.label import read_label
+from symflex.print.label import read_label
 
 if TYPE_CHECKING:
     from symflex.model import Input, Output

@@ -2,7 +2,7 @@ r"""Figures in PGF, for ``\input`` into a paper: TeX draws the lines and sets th
 
 No TeX is needed to write one. How much room a text has is computed from the metrics of the fonts that come
 with matplotlib; where it is centred or ends, TeX measures it itself. A text is either mathematics that
-:func:`~symflex.print.latex.label.read_label` reads completely, or it is escaped: nothing that a specification
+:func:`~symflex.print.label.read_label` reads completely, or it is escaped: nothing that a specification
 says reaches a command.
 """
 
@@ -17,7 +17,7 @@ from matplotlib.backend_bases import RendererBase
 from matplotlib.colors import to_rgba
 from matplotlib.path import Path
 
-from symflex.print.latex.label import read_label
+from symflex.print.label import read_label
 from symflex.print.latex.text import escape_text
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, assert_never
 from symflex.print.latex import TEXT_WIDTH_MM, escape_text
 from symflex.print.latex.preamble import preamble
 from symflex.print.latex.text import text_width
-from symflex.print.latex.width import EM_MM
+from symflex.print.width import EM_MM
 from symflex.report.document import (
     Aside,
     Badge,

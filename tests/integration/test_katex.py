@@ -97,7 +97,7 @@ def test_katex_sets_the_equations_of_every_model(refused, path):
 
 
 def test_katex_sets_labels_of_every_kind(refused):
-    from symflex.print.latex.label import read_label
+    from symflex.print.label import read_label
 
     sound = [label for label in LABELS if read_label(label) is not None]
     assert sound

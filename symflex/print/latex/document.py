@@ -27,8 +27,8 @@ from symflex.print.latex.table import (
 )
 from symflex.print.latex.text import escape_text
 from symflex.print.latex.units import unit_latex
-from symflex.print.latex.width import EM_MM
 from symflex.print.text import region_text
+from symflex.print.width import EM_MM
 from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
@@ -324,7 +324,7 @@ def _hidden_mode(
     else:
         piece = writer.piece(printed)
         if piece.width <= _LONGEST_HIDDEN * width_mm / EM_MM:
-            what = f"The factor ${piece.latex}$"
+            what = f"The factor ${piece.markup}$"
         else:
             what = "A transcendental factor" if is_transcendental else f"A factor of degree {count} in $s$"
         where = f"the {noun} at its {'root' if count == 1 and not is_transcendental else 'roots'}"

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.algebra import LAPLACE
 from symflex.expressions import Call, Derivative, Expression, Name, Negative, is_number, names, number
+from symflex.print.label import labels_of, symbol
 from symflex.print.latex.column import NARROWEST_MM
-from symflex.print.latex.expression import Piece, Style, Writer
-from symflex.print.latex.label import labels_of, symbol
+from symflex.print.latex.expression import Writer
 from symflex.print.latex.lines import break_lines
-from symflex.print.latex.width import EM_MM, FRACTION_EDGES, MINUS, QUAD, RELATION
+from symflex.print.width import EM_MM, FRACTION_EDGES, MINUS, QUAD, RELATION
+from symflex.print.writer import ExpressionWriter, Style, Written
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -167,8 +168,8 @@ def inline_latex(tf: AnyTransferFunction, form: PrintedForm) -> str:
     formula = f"{_left_side(tf, form, writer)[0]} = {_right_side(form, writer)[0]}"
     if not (form.where or form.laws):
         return formula
-    where = [f"{writer.label(n).latex} = {writer.piece(e).latex}" for n, e in form.where]
-    where += [f"{law.latex} = {value}" for law, value in _laws(form, writer)]
+    where = [f"{writer.label(n).latex} = {writer.piece(e).markup}" for n, e in form.where]
+    where += [f"{law.markup} = {value}" for law, value in _laws(form, writer)]
     return rf"{formula},\quad \text{{where }} " + r",\; ".join(where)
 
 
@@ -208,9 +209,9 @@ def form_labels(tf: AnyTransferFunction, form: PrintedForm) -> dict[str, str]:
     return labels_of(own, labels)
 
 
-def _end(end: Input | Output, argument: Piece) -> tuple[str, float]:
+def _end(end: Input | Output, argument: Written) -> tuple[str, float]:
     label = symbol(end.name, {end.name: end.latex})
-    return f"{label.latex}({argument.latex})", label.width + argument.width + _PARENTHESES
+    return f"{label.latex}({argument.markup})", label.width + argument.width + _PARENTHESES
 
 
 def _left_side(tf: AnyTransferFunction, form: PrintedForm, writer: Writer) -> tuple[str, float]:
@@ -228,11 +229,11 @@ def split_sign(form: PrintedForm) -> tuple[str, Expression]:
 def _right_side(form: PrintedForm, writer: Writer) -> tuple[str, float]:
     if is_number(form.den, 1):
         piece = writer.piece(form.num)
-        return piece.latex, piece.width
+        return piece.markup, piece.width
     sign, num = split_sign(form)
     above, below = writer.piece(num, Style.TEXT), writer.piece(form.den, Style.TEXT)
     width = max(above.width, below.width) + FRACTION_EDGES.text + (MINUS if sign else 0)
-    return rf"{sign}\frac{{{above.latex}}}{{{below.latex}}}", width
+    return rf"{sign}\frac{{{above.markup}}}{{{below.markup}}}", width
 
 
 def _formula(
@@ -270,8 +271,8 @@ def _named_parts(
         piece = writer.piece(expression, Style.TEXT)
         is_long = left_width + RELATION + MINUS + FRACTION_EDGES.text + piece.width + _TAG > width
         depends = any(n.name in varying for n in names(expression))
-        head = f"{name}({argument.latex})" if depends else name
-        parts.append((head if is_long else piece.latex, expression, is_long))
+        head = f"{name}({argument.markup})" if depends else name
+        parts.append((head if is_long else piece.markup, expression, is_long))
     rows = [_DisplayRow(left, left_width, (rf"{sign}\frac{{{parts[0][0]}}}{{{parts[1][0]}}}",))]
     rows += [
         _row(head, MINUS + argument.width + _PARENTHESES, expression, writer, width, left_width)
@@ -298,7 +299,7 @@ def varying_names(form: PrintedForm) -> frozenset[str]:
     return frozenset(varying)
 
 
-def free_names(form: PrintedForm, writer: Writer) -> tuple[str, str]:
+def free_names(form: PrintedForm, writer: ExpressionWriter) -> tuple[str, str]:
     """Return names for numerator and denominator that no symbol of the formula bears."""
     expressions = [form.num, form.den, *(e for _, e in form.where)]
     used = {n.name for e in expressions for n in names(e) if isinstance(n, Name)}
@@ -315,18 +316,18 @@ def _where_rows(form: PrintedForm, writer: Writer, width: float | None) -> list[
     if not (form.where or form.laws):
         return []
     rows = _broken_rows(form.where, writer, width) if form.where else []
-    rows += [_DisplayRow(left.latex, left.width, (value,)) for left, value in _laws(form, writer)]
+    rows += [_DisplayRow(left.markup, left.width, (value,)) for left, value in _laws(form, writer)]
     first = rows[0]
     rows[0] = _DisplayRow(f"{_WHERE}{first.left}", first.left_width, first.right)
     return rows
 
 
-def _laws(form: PrintedForm, writer: Writer) -> list[tuple[Piece, str]]:
+def _laws(form: PrintedForm, writer: Writer) -> list[tuple[Written, str]]:
     """Return the differential equations of functions of x and their values at x = 0."""
     rows = []
     for name, law in form.laws:
         order = max(node.order for node in names(law) if isinstance(node, Derivative))
-        rows.append((writer.piece(law.left), writer.piece(law.right).latex))
+        rows.append((writer.piece(law.left), writer.piece(law.right).markup))
         at_zero = [writer.piece(Call(name, number(0), k)) for k in range(order)]
         rows += [(piece, "1" if k == order - 1 else "0") for k, piece in enumerate(at_zero)]
     return rows
@@ -370,7 +371,7 @@ def _row(
         Room that the first line leaves for its number.
     """
     if width is None:
-        return _DisplayRow(left, left_width, (writer.piece(expression).latex,))
+        return _DisplayRow(left, left_width, (writer.piece(expression).markup,))
     room = width - column - RELATION
     if room - tag < _LEAST_ROOM:
         # The left side stands in a line of its own.

@@ -12,22 +12,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from symflex.algebra.functions import FUNCTIONS
 from symflex.expressions import Call, Expression, Negative, Number, Power, Product, Quotient, Sum
 from symflex.expressions.format import number_text
-from symflex.print.latex.expression import (
-    FENCES,
-    Shape,
-    Writer,
-    as_base,
-    as_factor,
-    as_term,
-    between_factors,
-    fenced,
-    is_half,
-    joined,
-    number_piece,
-    numbers_first,
-    operator_size,
-)
-from symflex.print.latex.width import (
+from symflex.print.width import (
     BIG_FENCES,
     BIGGER_FENCES,
     CDOT,
@@ -40,11 +25,13 @@ from symflex.print.latex.width import (
     SLASH,
     TIMES,
 )
+from symflex.print.writer import FENCES, Shape, is_half, numbers_first, operator_size
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from symflex.print.latex.expression import Piece
+    from symflex.print.latex.expression import Writer
+    from symflex.print.writer import Written
 
 DEEPEST_INDENT: Final = 3
 # In proportion to a line: the width from which a factor is broken rather than moved, and those of what may
@@ -104,6 +91,7 @@ def break_lines(expression: Expression, writer: Writer, first: float, others: fl
     Examples
     --------
     >>> from symflex.expressions import Name
+    >>> from symflex.print.latex.expression import Writer
     >>> letters = Sum(tuple(map(Name, "abcdef")))
     >>> break_lines(letters, Writer({}), 6.0, 6.0)
     ['a + b + c + d', '{}+ e + f']
@@ -114,7 +102,7 @@ def break_lines(expression: Expression, writer: Writer, first: float, others: fl
     return filler.finish()
 
 
-def as_is(piece: Piece) -> Piece:
+def as_is(piece: Written) -> Written:
     """Return a piece that stands alone."""
     return piece
 
@@ -138,7 +126,7 @@ class _Filler:
         glue: Glue,
         left: Edge,
         node: Expression,
-        fence: Callable[[Piece], Piece],
+        fence: Callable[[Written], Written],
         right: Edge,
         depth: int,
         hang: int = 0,
@@ -147,10 +135,10 @@ class _Filler:
         bare = self._writer.piece(node)
         piece = fence(bare)
         width = left.width + piece.width + right.width
-        if self._append(glue, f"{left.latex}{piece.latex}{right.latex}", width):
+        if self._append(glue, f"{left.latex}{piece.markup}{right.latex}", width):
             return
         # A slash binds less tightly than the fraction bar it replaces.
-        is_looser = bare.shape is Shape.FRACTION and fence in (as_factor, _as_denominator)
+        is_looser = bare.shape is Shape.FRACTION and fence in (self._writer.as_factor, self._as_denominator)
         if piece is not bare or is_looser:
             # Fences round what is broken have one size, chosen by what they hold.
             size = r"\Big" if bare.is_tall else r"\big"
@@ -202,7 +190,7 @@ class _Filler:
         glue: Glue,
         left: Edge,
         node: Expression,
-        bare: Piece,
+        bare: Written,
         right: Edge,
         depth: int,
         hang: int,
@@ -214,23 +202,28 @@ class _Filler:
                 self._split_product(glue, left, numbers_first(factors), right, depth, hang)
             case Negative(operand=operand):
                 minus = Edge(f"{left.latex}-", left.width + MINUS)
-                self.place(glue, minus, operand, as_term, right, depth, hang)
+                self.place(glue, minus, operand, self._writer.as_term, right, depth, hang)
             case Quotient(numerator=above, denominator=below):
-                self.place(glue, left, above, _as_numerator, Edge(), depth)
+                self.place(glue, left, above, self._writer.as_numerator, Edge(), depth)
                 self.place(
-                    _SLASH._replace(depth=depth + hang), Edge(), below, _as_denominator, right, depth + hang
+                    _SLASH._replace(depth=depth + hang),
+                    Edge(),
+                    below,
+                    self._as_denominator,
+                    right,
+                    depth + hang,
                 )
             case Power(base=base, exponent=exponent):
                 raised = self._raised(exponent)
                 after = Edge(f"{raised.latex}{right.latex}", raised.width + right.width)
-                self.place(glue, left, base, as_base, after, depth)
+                self.place(glue, left, base, self._writer.as_base, after, depth)
             case Call(name=name, argument=argument):
                 self._split_call(glue, left, name, argument, right, depth)
             case Number():
                 self._split_number(glue, left, node, right, depth)
             case _:
                 self._force(
-                    glue, f"{left.latex}{bare.latex}{right.latex}", left.width + bare.width + right.width
+                    glue, f"{left.latex}{bare.markup}{right.latex}", left.width + bare.width + right.width
                 )
 
     def _split_sum(
@@ -248,42 +241,49 @@ class _Filler:
                     sign = _MINUS._replace(depth=depth)
                 else:
                     before = Edge(f"{left.latex}-", left.width + MINUS)
-                self.place(sign, before, term.operand, as_term, after, depth, 1)
+                self.place(sign, before, term.operand, self._writer.as_term, after, depth, 1)
             else:
-                self.place(sign, before, term, as_term, after, depth, 1)
+                self.place(sign, before, term, self._writer.as_term, after, depth, 1)
 
     def _split_product(
         self, glue: Glue, left: Edge, factors: list[Expression], right: Edge, depth: int, hang: int
     ) -> None:
-        pieces = [as_factor(self._writer.piece(factor)) for factor in factors]
+        pieces = [self._writer.as_factor(self._writer.piece(factor)) for factor in factors]
         long = [i for i, piece in enumerate(pieces) if piece.width > _LONG * self._others]
         if len(long) == 1 and factors[long[0]].children:
             # Short factors stay with the parentheses of the one that is broken.
             (k,) = long
-            before, after = _beside(pieces[: k + 1]), _beside(pieces[k:], leading=True)
+            before, after = self._beside(pieces[: k + 1]), self._beside(pieces[k:], leading=True)
             if before.width <= _LONGEST_LEAD * self._others and after.width <= _LONGEST_TAIL * self._others:
                 left = Edge(f"{left.latex}{before.latex}", left.width + before.width)
                 right = Edge(f"{after.latex}{right.latex}", after.width + right.width)
-                self.place(glue, left, factors[k], as_factor, right, depth)
+                self.place(glue, left, factors[k], self._writer.as_factor, right, depth)
                 return
         for index, (factor, piece) in enumerate(zip(factors, pieces, strict=True)):
             sign, edge = glue, left
             if index:
-                between, gap = between_factors(pieces[index - 1], piece)
+                between, gap = self._writer.between(pieces[index - 1], piece)
                 start, start_width = (_DOT, CDOT) if gap == CDOT_SIZES else (_TIMES, TIMES)
                 sign, edge = Glue(between, gap.text, start, start_width, depth + hang), Edge()
             inner = depth + hang if index else depth
-            self.place(sign, edge, factor, as_factor, right if index == len(factors) - 1 else Edge(), inner)
+            self.place(
+                sign,
+                edge,
+                factor,
+                self._writer.as_factor,
+                right if index == len(factors) - 1 else Edge(),
+                inner,
+            )
 
     def _split_call(
         self, glue: Glue, left: Edge, name: str, argument: Expression, right: Edge, depth: int
     ) -> None:
         if name == "sqrt":
             after = Edge(f"^{{1/2}}{right.latex}", _SQUARE_ROOT + right.width)
-            self.place(glue, left, argument, fenced, after, depth)
+            self.place(glue, left, argument, self._writer.fenced, after, depth)
             return
         head = Edge(f"{left.latex}{FUNCTIONS[name].latex}", left.width + operator_size(name).text)
-        self.place(glue, head, argument, fenced, right, depth)
+        self.place(glue, head, argument, self._writer.fenced, right, depth)
 
     def _split_number(self, glue: Glue, left: Edge, node: Number, right: Edge, depth: int) -> None:
         above, _, below = number_text(node.value).partition("/")
@@ -298,9 +298,9 @@ class _Filler:
         depth = max(depth, glue.depth)
         edges = left.width + right.width + glue.start_width
         if "e" in text or DIGIT * len(text) + edges <= self._rest(depth):
-            piece = number_piece(text)
+            piece = self._writer.number(text)
             width = left.width + piece.width + right.width
-            self._force(glue, f"{left.latex}{piece.latex}{right.latex}", width)
+            self._force(glue, f"{left.latex}{piece.markup}{right.latex}", width)
             return
         count = max(1, int((self._rest(depth) - edges) / DIGIT))
         for start in range(0, len(text), count):
@@ -315,22 +315,16 @@ class _Filler:
         if is_half(exponent):
             return Edge("^{1/2}", _SQUARE_ROOT)
         piece = self._writer.exponent(exponent)
-        return Edge(f"^{{{piece.latex}}}", piece.size.script + SCRIPT_SPACE.text)
+        return Edge(f"^{{{piece.markup}}}", piece.size.script + SCRIPT_SPACE.text)
 
+    def _beside(self, pieces: Sequence[Written], *, leading: bool = False) -> Edge:
+        """Return all pieces but the last, or the first, side by side as they stand next to it."""
+        if len(pieces) == 1:
+            return Edge()
+        alone = pieces[0] if leading else pieces[-1]
+        parts, extra = self._writer.joined(pieces)
+        rest = "".join(parts[1:] if leading else parts[:-1])
+        return Edge(rest, sum(piece.width for piece in pieces) - alone.width + extra.text)
 
-def _beside(pieces: Sequence[Piece], *, leading: bool = False) -> Edge:
-    """Return all pieces but the last, or the first, side by side as they stand next to it."""
-    if len(pieces) == 1:
-        return Edge()
-    alone = pieces[0] if leading else pieces[-1]
-    latex, extra = joined(pieces)
-    rest = latex.removeprefix(alone.latex) if leading else latex.removesuffix(alone.latex)
-    return Edge(rest, sum(piece.width for piece in pieces) - alone.width + extra.text)
-
-
-def _as_numerator(piece: Piece) -> Piece:
-    return piece if piece.shape >= Shape.PRODUCT else fenced(piece)
-
-
-def _as_denominator(piece: Piece) -> Piece:
-    return piece if piece.shape >= Shape.FRACTION else fenced(piece)
+    def _as_denominator(self, piece: Written) -> Written:
+        return piece if piece.shape >= Shape.FRACTION else self._writer.fenced(piece)

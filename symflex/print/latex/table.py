@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Final
 
 from flint import arb
 
+from symflex.print.label import symbol
 from symflex.print.latex.column import COLUMNS_MM
 from symflex.print.latex.equation import model_labels
-from symflex.print.latex.label import symbol
 from symflex.print.latex.tabular import (
     SETTINGS,
     Setting,
@@ -23,7 +23,7 @@ from symflex.print.latex.tabular import (
 )
 from symflex.print.latex.text import escape_text, text_width
 from symflex.print.latex.units import quantity_latex, siunitx_unit, unit_latex
-from symflex.print.latex.width import EM_MM
+from symflex.print.width import EM_MM
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from symflex.print.latex.width import CDOT, DIGIT, MINUS, OPERATOR, SCRIPT, THIN
+from symflex.print.width import CDOT, DIGIT, MINUS, OPERATOR, SCRIPT, THIN
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -11,7 +11,7 @@ import re
 import unicodedata
 from typing import Final
 
-from symflex.print.latex.width import DIGIT, ROMAN, WIDEST
+from symflex.print.width import DIGIT, ROMAN, WIDEST
 
 # Letters and signs between the control characters are escaped one by one; an empty group after a command
 # keeps the space that follows, and one after - ' < > , ! ? ` keeps pairs of them from becoming ligatures.

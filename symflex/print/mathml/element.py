@@ -58,7 +58,7 @@ def row(*parts: str) -> str:
     return parts[0] if len(parts) == 1 else f"<mrow>{''.join(parts)}</mrow>"
 
 
-def fence(content: str, nesting: int, *, is_tall: bool) -> str:
+def fence(content: str, nesting: int, is_tall: bool) -> str:
     """Return content in parentheses, or in brackets or braces around those."""
     opening, closing = fence_signs(nesting, is_tall=is_tall)
     return f"<mrow>{opening}{content}{closing}</mrow>"

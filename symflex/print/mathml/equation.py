@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.expressions import Call, Derivative, Name, is_number, names, number
 from symflex.print.latex.equation import form_labels, free_names, split_sign, varying_names
-from symflex.print.latex.expression import Style, Writer
 from symflex.print.mathml.element import identifier, operator, row
 from symflex.print.mathml.expression import MathmlWriter
 from symflex.print.mathml.label import label_mathml
+from symflex.print.writer import Style
 
 if TYPE_CHECKING:
     from symflex.expressions import Expression
@@ -71,7 +71,7 @@ def transfer_function_mathml(tf: TransferFunction, form: PrintedForm) -> tuple[M
     """
     labels = form_labels(tf, form)
     writer = MathmlWriter(labels)
-    rows = [*_formula(tf, form, writer, labels), *_where(form, writer)]
+    rows = [*_formula(tf, form, writer, labels), *_where(form, writer, labels)]
     size = sum(len(r.left) + sum(map(len, r.pieces)) for r in rows)
     return tuple(rows) if size <= LONGEST else None
 
@@ -91,15 +91,13 @@ def _formula(
     minus = operator("-", "prefix") if sign else ""
     widths = [writer.width(part, Style.TEXT) for part in (num, form.den)]
     if max(widths) <= WIDEST_FRACTION:
-        above, below = (writer.markup(part, Style.TEXT).mathml for part in (num, form.den))
+        above, below = (writer.piece(part, Style.TEXT).markup for part in (num, form.den))
         return [MathRow(left, (row(*filter(None, (minus, f"<mfrac>{above}{below}</mfrac>"))),))]
     varying = varying_names(form)
     parts, rows = [], []
-    for name, expression, width in zip(
-        free_names(form, Writer(labels)), (num, form.den), widths, strict=True
-    ):
+    for name, expression, width in zip(free_names(form, writer), (num, form.den), widths, strict=True):
         if width <= WIDEST_FRACTION / 2:
-            parts.append(writer.markup(expression, Style.TEXT).mathml)
+            parts.append(writer.piece(expression, Style.TEXT).markup)
             continue
         depends = any(n.name in varying for n in names(expression) if isinstance(n, Name | Call))
         head = identifier(_LETTERS.get(name, name))
@@ -110,8 +108,8 @@ def _formula(
     return [MathRow(left, (row(*filter(None, (minus, fraction))),)), *rows]
 
 
-def _where(form: PrintedForm, writer: MathmlWriter) -> list[MathRow]:
-    rows = [MathRow(writer.label(name), writer.pieces(e), is_where=True) for name, e in form.where]
+def _where(form: PrintedForm, writer: MathmlWriter, labels: dict[str, str]) -> list[MathRow]:
+    rows = [MathRow(label_mathml(name, labels), writer.pieces(e), is_where=True) for name, e in form.where]
     for name, law in form.laws:
         order = max(node.order for node in names(law) if isinstance(node, Derivative))
         rows.append(_equation(law.left, law.right, writer))
@@ -122,4 +120,4 @@ def _where(form: PrintedForm, writer: MathmlWriter) -> list[MathRow]:
 
 
 def _equation(left: Expression, right: Expression, writer: MathmlWriter) -> MathRow:
-    return MathRow(writer.markup(left).mathml, writer.pieces(right), is_where=True)
+    return MathRow(writer.piece(left).markup, writer.pieces(right), is_where=True)

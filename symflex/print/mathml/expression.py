@@ -1,40 +1,15 @@
 r"""Expressions as MathML, whole or in pieces between which a page may break a line.
 
-The layout is that of :mod:`symflex.print.latex.expression`: quotients are fractions, one level of fractions
-within fractions, slashes below that and in exponents. Invisible operators stand where none is seen, so that
-a screen reader speaks products as products.
+The notation of :mod:`symflex.print.writer` for pages. Invisible operators stand where none is seen, so that a
+screen reader speaks products as products.
 """
 
 from __future__ import annotations
 
-from fractions import Fraction
-from itertools import pairwise
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
-from symflex.algebra.functions import FUNCTIONS
-from symflex.expressions import (
-    Call,
-    Derivative,
-    Expression,
-    Name,
-    Negative,
-    Number,
-    Power,
-    Product,
-    Quotient,
-    Sum,
-)
-from symflex.expressions.format import number_text
-from symflex.print.latex.expression import (
-    TRIGONOMETRIC,
-    Shape,
-    Style,
-    Writer,
-    inner_styles,
-    is_half,
-    is_short,
-    numbers_first,
-)
+from symflex.expressions import Expression, Negative, Power, Product, Quotient, Sum
+from symflex.print.latex.expression import Writer
 from symflex.print.mathml.element import (
     APPLY_FUNCTION,
     INVISIBLE_TIMES,
@@ -47,6 +22,17 @@ from symflex.print.mathml.element import (
     row,
 )
 from symflex.print.mathml.label import label_mathml
+from symflex.print.width import NOTHING, Width
+from symflex.print.writer import (
+    MOST_PRIMES,
+    ExpressionWriter,
+    Notation,
+    Shape,
+    Style,
+    Written,
+    is_half,
+    numbers_first,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -54,18 +40,7 @@ if TYPE_CHECKING:
 PIECE_EM: Final = 17.0
 """Width up to which a piece is not broken [em]: that of a narrow telephone's screen."""
 
-_MOST_PRIMES: Final = 3
-
-
-class Markup(NamedTuple):
-    """A printed subtree and what its surroundings must know."""
-
-    mathml: str
-    shape: Shape
-    is_tall: bool = False
-    nesting: int = 0
-    has_superscript: bool = False
-    is_wordy: bool = False
+_MINUS: Final = operator("-", "prefix")
 
 
 def mathml_expression(expression: Expression, labels: Mapping[str, str]) -> str:
@@ -85,17 +60,17 @@ def mathml_expression(expression: Expression, labels: Mapping[str, str]) -> str:
 
     Examples
     --------
-    >>> from symflex.expressions import number, power, product_of, sum_of
+    >>> from symflex.expressions import Name, number, power, product_of, sum_of
     >>> mathml_expression(sum_of([power(Name("s"), 2), Name("k")]), {})
     '<mrow><msup><mi>s</mi><mn>2</mn></msup><mo>+</mo><mi>k</mi></mrow>'
     >>> mathml_expression(product_of([number(2), Name("b")]), {})
     '<mrow><mn>2</mn><mo>&#x2062;</mo><mi>b</mi></mrow>'
     """
-    return MathmlWriter(labels).markup(expression).mathml
+    return MathmlWriter(labels).piece(expression).markup
 
 
-class MathmlWriter:
-    """Writes expressions with one set of labels.
+class MathmlWriter(ExpressionWriter):
+    """Writes expressions as MathML with one set of labels.
 
     Parameters
     ----------
@@ -104,45 +79,12 @@ class MathmlWriter:
     """
 
     def __init__(self, labels: Mapping[str, str]) -> None:
-        self._labels = labels
+        super().__init__(labels, MATHML)
         self._widths = Writer(labels)
-
-    def label(self, name: str) -> str:
-        """Return the label of a name."""
-        return label_mathml(name, self._labels)
 
     def width(self, expression: Expression, style: Style = Style.DISPLAY) -> float:
         """Return about how wide an expression is [em]; type for LaTeX is about as wide."""
         return self._widths.piece(expression, style).width
-
-    def markup(self, expression: Expression, style: Style = Style.DISPLAY) -> Markup:
-        """Return a subtree printed in a style."""
-        done: list[Markup] = []
-        pending: list[tuple[Expression, Style, bool]] = [(expression, style, False)]
-        while pending:
-            node, where, is_ready = pending.pop()
-            if isinstance(node, Name):
-                done.append(self._name(node.name))
-            elif isinstance(node, Derivative):
-                done.append(self._primed(node.name, node.order))
-            elif isinstance(node, Number):
-                done.append(_number(node.value, where))
-            elif not is_ready:
-                pending.append((node, where, True))
-                inner = zip(node.children, inner_styles(node, where), strict=True)
-                pending.extend((child, style, False) for child, style in reversed(list(inner)))
-            else:
-                pieces = done[-len(node.children) :]
-                del done[-len(node.children) :]
-                if isinstance(node, Call) and node.name not in FUNCTIONS:
-                    head = self._primed(node.name, node.order).mathml
-                    inside = _fenced(pieces[0])
-                    done.append(
-                        Markup(row(head, APPLY_FUNCTION, inside.mathml), Shape.CALL, nesting=inside.nesting)
-                    )
-                else:
-                    done.append(_combined(node, pieces, where))
-        return done[0]
 
     def pieces(self, expression: Expression, width: float = PIECE_EM) -> tuple[str, ...]:
         """Return an expression as pieces that follow each other, with a line's end allowed between them.
@@ -163,7 +105,7 @@ class MathmlWriter:
             before, node, after = pending.pop()
             parts = self._parts(node) if self.width(node) > width else None
             if parts is None:
-                found.append(f"{before}{self.markup(node).mathml}{after}")
+                found.append(f"{before}{self.piece(node).markup}{after}")
                 continue
             parts[0] = (before + parts[0][0], *parts[0][1:])
             parts[-1] = (*parts[-1][:2], parts[-1][2] + after)
@@ -194,8 +136,8 @@ class MathmlWriter:
                     self._fenced_part(operator("/"), below, Sum, Negative, Product, Quotient),
                 ]
             case Power(base=Sum() as base, exponent=exponent) if not is_half(exponent):
-                opening, closing = fence_signs(self.markup(base).nesting)
-                raised = self.markup(exponent, Style.INLINE).mathml
+                opening, closing = fence_signs(self.piece(base).nesting)
+                raised = self.exponent(exponent).markup
                 return [(opening, base, f"<msup>{closing}{raised}</msup>")]
             case _:
                 return None
@@ -205,24 +147,8 @@ class MathmlWriter:
     ) -> tuple[str, Expression, str]:
         if not isinstance(node, loose):
             return before, node, ""
-        opening, closing = fence_signs(self.markup(node).nesting)
+        opening, closing = fence_signs(self.piece(node).nesting)
         return before + opening, node, closing
-
-    def _primed(self, name: str, order: int) -> Markup:
-        piece = self._name(name)
-        if not order:
-            return piece
-        primes = (
-            operator("′" * order)
-            if order <= _MOST_PRIMES
-            else row(operator("("), numeral(str(order)), operator(")"))
-        )
-        return Markup(f"<msup>{piece.mathml}{primes}</msup>", Shape.ATOM, has_superscript=True)
-
-    def _name(self, name: str) -> Markup:
-        label = self._widths.label(name)
-        shape = Shape.SUM if label.is_sum else Shape.PRODUCT if label.is_product else Shape.ATOM
-        return Markup(self.label(name), shape, has_superscript=label.has_superscript, is_wordy=label.is_wordy)
 
 
 def _joined(
@@ -242,134 +168,52 @@ def _joined(
     return joined if len(joined) > 1 or joined[0][2] else None
 
 
-def _number(value: Fraction, style: Style) -> Markup:
-    text = number_text(abs(value))
-    above, _, below = text.partition("/")
-    found = _decimal(above) if not below else _quotient(_decimal(above), _decimal(below), style)
-    return found if value >= 0 else _negative(found)
+def _primed(name: str, order: int) -> str:
+    counted = row(operator("("), numeral(str(order)), operator(")"))
+    return MATHML.power.format(name, operator("′" * order) if order <= MOST_PRIMES else counted)
 
 
-def _decimal(text: str) -> Markup:
-    mantissa, _, exponent = text.partition("e")
-    if not exponent:
-        return Markup(numeral(text), Shape.ATOM)
-    power = (
-        row(operator("-", "prefix"), numeral(exponent[1:])) if exponent.startswith("-") else numeral(exponent)
-    )
-    ten = f"<msup>{numeral('10')}{power}</msup>"
-    return Markup(row(numeral(mantissa), operator("⋅"), ten), Shape.PRODUCT)
+def _scientific(mantissa: str, exponent: str) -> str:
+    power = numeral(exponent.removeprefix("-"))
+    power = row(_MINUS, power) if exponent.startswith("-") else power
+    return row(numeral(mantissa), operator("⋅"), MATHML.power.format(numeral("10"), power))
 
 
-def _combined(node: Expression, pieces: Sequence[Markup], style: Style) -> Markup:
-    match node:
-        case Sum(terms=terms):
-            return _sum(terms, pieces)
-        case Product(factors=factors):
-            order = sorted(range(len(pieces)), key=lambda i: not isinstance(factors[i], Number))
-            return _product([_as_factor(pieces[i]) for i in order])
-        case Negative():
-            return _negative(pieces[0])
-        case Quotient():
-            return _quotient(pieces[0], pieces[1], style)
-        case Power(base=base, exponent=exponent):
-            return _power(base, exponent, pieces)
-        case Call(order=0):
-            return _call(node, pieces[0])
-        case _:
-            raise TypeError(f"no MathML for {type(node).__name__}")
-
-
-def _fenced(piece: Markup) -> Markup:
-    content = fence(piece.mathml, piece.nesting, is_tall=piece.is_tall)
-    return Markup(content, Shape.ATOM, piece.is_tall, piece.nesting + 1)
-
-
-def _as_factor(piece: Markup) -> Markup:
-    return _fenced(piece) if piece.shape <= Shape.RATIO else piece
-
-
-def _as_term(piece: Markup) -> Markup:
-    return _fenced(piece) if piece.shape <= Shape.NEGATIVE else piece
-
-
-def _sum(terms: Sequence[Expression], pieces: Sequence[Markup]) -> Markup:
+def _sum(terms: Sequence[tuple[str, bool]]) -> str:
     parts: list[str] = []
-    is_tall, nesting = False, 0
-    for i, (term, written) in enumerate(zip(terms, pieces, strict=True)):
-        is_negative = isinstance(term, Negative)
-        # A negative term's minus sign is the sum's own.
-        piece = written if is_negative else _as_term(written)
-        content = piece.mathml
-        if is_negative:
-            content = content.removeprefix("<mrow>").removesuffix("</mrow>")
-            content = content.removeprefix(_MINUS)
+    for i, (term, is_negative) in enumerate(terms):
         if i or is_negative:
             parts.append(operator("-" if is_negative else "+", "" if i else "prefix"))
-        parts.append(content)
-        is_tall, nesting = is_tall or piece.is_tall, max(nesting, piece.nesting)
-    return Markup(row(*parts), Shape.SUM, is_tall, nesting)
+        bare = term.removeprefix("<mrow>").removesuffix("</mrow>").removeprefix(_MINUS)
+        parts.append(bare if is_negative else term)
+    return row(*parts)
 
 
-_MINUS: Final = operator("-", "prefix")
+def _between(left: Written, right: Written) -> tuple[str, Width]:
+    # Two numbers would read as one, a name and a function's name too. The width is not asked for.
+    if right.markup.startswith("<mn>"):
+        return operator("⋅"), NOTHING
+    wordy = (p.is_wordy and p.shape is not Shape.POWER for p in (left, right))
+    is_worded = Shape.CALL in (left.shape, right.shape) or any(wordy)
+    return SPACED_TIMES if is_worded else INVISIBLE_TIMES, NOTHING
 
 
-def _negative(operand: Markup) -> Markup:
-    piece = _as_term(operand)
-    return Markup(f"<mrow>{_MINUS}{piece.mathml}</mrow>", Shape.NEGATIVE, piece.is_tall, piece.nesting)
-
-
-def _product(factors: Sequence[Markup]) -> Markup:
-    parts = [factors[0].mathml]
-    for left, right in pairwise(factors):
-        parts += [_between(left, right), right.mathml]
-    is_tall = any(f.is_tall for f in factors)
-    return Markup(row(*parts), Shape.PRODUCT, is_tall, max(f.nesting for f in factors))
-
-
-def _between(left: Markup, right: Markup) -> str:
-    # Two numbers would read as one, a name and a function's name too.
-    if right.mathml.startswith("<mn>"):
-        return operator("⋅")
-    is_worded = Shape.CALL in (left.shape, right.shape) or left.is_wordy or right.is_wordy
-    return SPACED_TIMES if is_worded else INVISIBLE_TIMES
-
-
-def _quotient(above: Markup, below: Markup, style: Style) -> Markup:
-    if style is Style.INLINE:
-        left = above if above.shape >= Shape.PRODUCT else _fenced(above)
-        right = below if below.shape >= Shape.CALL else _fenced(below)
-        is_tall = left.is_tall or right.is_tall
-        return Markup(
-            row(left.mathml, operator("/"), right.mathml),
-            Shape.RATIO,
-            is_tall,
-            max(left.nesting, right.nesting),
-        )
-    return Markup(f"<mfrac>{above.mathml}{below.mathml}</mfrac>", Shape.FRACTION, is_tall=True)
-
-
-def _power(base: Expression, exponent: Expression, pieces: Sequence[Markup]) -> Markup:
-    below, above = pieces
-    if is_half(exponent):
-        return _root(below)
-    if isinstance(base, Call) and base.name in TRIGONOMETRIC and isinstance(exponent, Number):
-        # The exponent of a function stands at its name.
-        name = identifier(base.name)
-        content = below.mathml.replace(name, f"<msup>{name}{above.mathml}</msup>", 1)
-        return Markup(content, Shape.CALL, below.is_tall, below.nesting)
-    foot = below if below.shape is Shape.ATOM and not below.has_superscript else _fenced(below)
-    return Markup(f"<msup>{foot.mathml}{above.mathml}</msup>", Shape.POWER, foot.is_tall, foot.nesting)
-
-
-def _root(radicand: Markup) -> Markup:
-    return Markup(f"<msqrt>{radicand.mathml}</msqrt>", Shape.CALL, radicand.is_tall)
-
-
-def _call(node: Call, argument: Markup) -> Markup:
-    if node.name == "sqrt":
-        return _root(argument)
-    if node.name == "exp" and is_short(node.argument):
-        return Markup(f"<msup>{identifier('e', 'rm')}{argument.mathml}</msup>", Shape.POWER)
-    inside = _fenced(argument)
-    content = row(identifier(node.name), APPLY_FUNCTION, inside.mathml)
-    return Markup(content, Shape.CALL, inside.is_tall, inside.nesting)
+MATHML: Final = Notation(
+    fraction="<mfrac>{}{}</mfrac>",
+    slash=row("{}", operator("/"), "{}"),
+    power="<msup>{}{}</msup>",
+    applied=row("{}", APPLY_FUNCTION, "{}"),
+    digits=numeral("{}"),
+    negative=row(_MINUS, "{}"),
+    root="<msqrt>{}</msqrt>",
+    exponential=f"<msup>{identifier('e', 'rm')}{{}}</msup>",
+    name=label_mathml,
+    function=identifier,
+    primed=_primed,
+    scientific=_scientific,
+    fenced=fence,
+    sum=_sum,
+    product=lambda parts: row(*parts),
+    between=_between,
+    function_power=lambda head, call, exponent: call.replace(head, f"<msup>{head}{exponent}</msup>", 1),
+)

@@ -1,6 +1,6 @@
 r"""Labels of names as MathML: the same labels that print in LaTeX.
 
-A label is sound LaTeX of a small language (:mod:`symflex.print.latex.label` reads it completely before use);
+A label is sound LaTeX of a small language (:mod:`symflex.print.label` reads it completely before use);
 here its atoms and scripts become elements.
 """
 
@@ -11,7 +11,7 @@ import re
 from typing import TYPE_CHECKING, Final
 
 from symflex.model.labels import ACCENTS, FONTS, GREEK, SYMBOLS
-from symflex.print.latex.label import symbol
+from symflex.print.label import symbol
 from symflex.print.mathml.element import identifier, numeral, operator, row, words
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def latex_label(latex: str) -> str:
     Raises
     ------
     ValueError
-        For what is no label that :func:`symflex.print.latex.label.read_label` lets through.
+        For what is no label that :func:`symflex.print.label.read_label` lets through.
 
     Examples
     --------

@@ -7,9 +7,16 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.audit.json_format import audit_document
 from symflex.audit.text import VERDICTS
+from symflex.print.label import labels_of
 from symflex.print.latex import TEXT_WIDTH_MM, formula_latex, model_labels, ratio_latex
-from symflex.print.latex.label import labels_of
-from symflex.print.mathml import WIDEST_FRACTION, MathmlWriter, MathRow, ratio_mathml
+from symflex.print.mathml import (
+    WIDEST_FRACTION,
+    MathmlWriter,
+    MathRow,
+    label_mathml,
+    mathml_expression,
+    ratio_mathml,
+)
 from symflex.report.document import (
     Badge,
     DisplayedFormula,
@@ -118,7 +125,7 @@ def _mathematics(audit: Audit, expression: Expression) -> Mathematics:
     from symflex.print.latex import latex_expression
 
     labels = _labels(audit)
-    return Mathematics(MathmlWriter(labels).markup(expression).mathml, latex_expression(expression, labels))
+    return Mathematics(mathml_expression(expression, labels), latex_expression(expression, labels))
 
 
 def _formula(
@@ -127,8 +134,8 @@ def _formula(
     labels = _labels(audit)
     writer = MathmlWriter(labels)
     is_narrow = writer.width(expression) <= WIDEST_FRACTION
-    pieces = (writer.markup(expression).mathml,) if is_narrow else writer.pieces(expression)
+    pieces = (writer.piece(expression).markup,) if is_narrow else writer.pieces(expression)
     rows = [MathRow(ratio_mathml(audit.tf), pieces)]
-    rows += [MathRow(writer.label(n), writer.pieces(e), is_where=True) for n, e in where]
+    rows += [MathRow(label_mathml(n, labels), writer.pieces(e), is_where=True) for n, e in where]
     latex = formula_latex(ratio_latex(audit.tf), expression, where, labels, width_mm=TEXT_WIDTH_MM)
     return DisplayedFormula(tuple(rows), latex, name)

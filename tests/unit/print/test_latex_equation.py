@@ -14,6 +14,7 @@ from symflex.expressions import Name, negative, number, power, product_of, quoti
 from symflex.model import load_model
 from symflex.model.spec import read
 from symflex.print.forms import PrintedForm, print_form
+from symflex.print.label import read_label
 from symflex.print.latex import (
     equation_label,
     inline_latex,
@@ -22,7 +23,6 @@ from symflex.print.latex import (
     latex_fragment,
     transfer_function_latex,
 )
-from symflex.print.latex.label import read_label
 from symflex.roots import Certificate, Everything, PoleZeroMap, Root
 from symflex.transfer import derive, derive_all
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from symflex.print.label import labels_of, read_label, symbol
 from symflex.print.latex import label_of
-from symflex.print.latex.label import labels_of, read_label, symbol
 
 # By hand, after the habits of journals: variables italic, words in subscripts upright, Greek as letters.
 MADE = {

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from symflex.model.labels import ACCENTS, FONTS, GREEK, SYMBOLS
-from symflex.print.latex.width import (
+from symflex.print.width import (
     COMMA_SIZES,
     FENCE_SIZES,
     ITALIC,
