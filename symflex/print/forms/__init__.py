@@ -8,7 +8,6 @@ from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import format_expression
 from symflex.print.forms.arrange import Arranger
-from symflex.print.forms.counts import counts_of
 from symflex.print.forms.definitions import definitions_form
 from symflex.print.forms.economical import economical
 from symflex.print.forms.frequency import frequency_form
@@ -19,7 +18,7 @@ from symflex.print.forms.krylov import krylov_form
 from symflex.print.forms.nested import nested_form, step_names
 from symflex.print.forms.polynomial import constant_form, factored_form, monic_form, polynomial_form
 from symflex.print.forms.printed import Arrange, PrintedForm
-from symflex.print.forms.usage import forms_of
+from symflex.print.forms.usage import counts_of, forms_of
 from symflex.print.forms.vaughan import vaughan_form
 from symflex.print.forms.zpk import zpk_form
 from symflex.transfer import NestedTransferFunction

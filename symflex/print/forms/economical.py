@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored, KernelTable, Ring
 from symflex.algebra.normal_form import NormalForm
-from symflex.print.forms.invariants import IMAGINARY, laurent, real_powers
+from symflex.print.forms.invariants import IMAGINARY, in_exponentials, real_powers
 from symflex.print.forms.notation import angles_of
 
 if TYPE_CHECKING:
@@ -108,24 +108,8 @@ def _in_doubles(tf: TransferFunction, factor: fmpz_mpoly, angles: Sequence[Angle
 
 def angle_doubled(ring: Ring, work: fmpz_mpoly, angle: Angle) -> tuple[fmpz_mpoly, int] | None:
     """Return 2^n times a polynomial in kernels of twice one angle, and n."""
-    functions = ("cosh", "sinh", "cos", "sin")
-    places = [ring.index[angle.kernels[f]] if f in angle.kernels else None for f in functions]
-    parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
-    for monomial, coefficient in work.terms():
-        m = [int(e) for e in monomial]
-        key = tuple(0 if p is None else m[p] for p in places)
-        for p in places:
-            if p is not None:
-                m[p] = 0
-        parts.setdefault(key, {})[tuple(m)] = int(coefficient)
-    highest = max(sum(key) for key in parts)
+    coefficients, highest = in_exponentials(ring, work, angle)
     j = ring.generator(IMAGINARY)
-    coefficients: dict[tuple[int, int], fmpz_mpoly] = {}
-    for (ch, sh, co, si), terms in parts.items():
-        part = ring.context.from_dict(terms) * 2 ** (highest - ch - sh - co - si)
-        for (a, b), (re, im) in laurent(ch, sh, co, si).items():
-            term = part * (re + im * j)
-            coefficients[a, b] = coefficients[a, b] + term if (a, b) in coefficients else term
     kernels = {f: ring.generator(g) for f, g in angle.kernels.items()}
     total = ring.constant(0)
     for (a, b), part in coefficients.items():

@@ -24,10 +24,10 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.print.forms.arrange import Arranger
-from symflex.print.forms.constants import constant_symbols
 from symflex.print.forms.economical import LARGE, angle_doubled, is_half
 from symflex.print.forms.invariants import IMAGINARY, in_krylov_functions, krylov_name
 from symflex.print.forms.kept import KeptDefinitions
+from symflex.print.forms.names import constant_symbols
 from symflex.print.forms.notation import (
     Line,
     Naming,

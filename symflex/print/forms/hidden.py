@@ -25,8 +25,8 @@ from symflex.expressions import (
     substitute,
 )
 from symflex.print.forms.arrange import Arranger
-from symflex.print.forms.constants import constant_symbols
 from symflex.print.forms.hyperbolic import kernel_printer
+from symflex.print.forms.names import constant_symbols
 from symflex.print.forms.notation import (
     Naming,
     Notation,

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symflex.print.forms.arrange import Arranger
-from symflex.print.forms.constants import constant_symbols
 from symflex.print.forms.kept import KeptDefinitions
+from symflex.print.forms.names import constant_symbols
 from symflex.print.forms.notation import Naming, Notation, notation_of, wavenumber_laws
 from symflex.print.forms.printed import PrintedForm
 from symflex.print.forms.products import ProductPrinter, shortest_sides

@@ -278,22 +278,8 @@ class Invariants:
         self, work: fmpz_mpoly, i: int, angle: Angle, mu: fmpz_mpoly
     ) -> tuple[fmpz_mpoly, int] | None:
         """Replace the kernels of one angle; return also the power of two that was multiplied in."""
-        places = [self.ring.index[angle.kernels[f]] for f in ("cosh", "sinh", "cos", "sin")]
-        parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
-        for monomial, coefficient in work.terms():
-            m = [int(e) for e in monomial]
-            key = tuple(m[p] for p in places)
-            for p in places:
-                m[p] = 0
-            parts.setdefault(key, {})[tuple(m)] = int(coefficient)
-        highest = max(sum(key) for key in parts)
+        coefficients, highest = in_exponentials(self.ring, work, angle)
         j = self.ring.generator(IMAGINARY)
-        coefficients: dict[tuple[int, int], fmpz_mpoly] = {}
-        for key, terms in parts.items():
-            part = self.ring.context.from_dict(terms) * 2 ** (highest - sum(key))
-            for (a, b), (re, im) in laurent(*key).items():
-                term = part * (re + im * j)
-                coefficients[a, b] = coefficients[a, b] + term if (a, b) in coefficients else term
         k = [self._k(i, order) for order in range(4)]
         powers = _Powers(self, k, mu, j)
         total = self.ring.constant(0)
@@ -385,6 +371,33 @@ def real_powers(ring: Ring, work: fmpz_mpoly) -> fmpz_mpoly:
         (part * j ** (n % 2) * (-1) ** (n // 2) for n, part in split(ring, work, index).items()),
         ring.constant(0),
     )
+
+
+def in_exponentials(
+    ring: Ring, work: fmpz_mpoly, angle: Angle
+) -> tuple[dict[tuple[int, int], fmpz_mpoly], int]:
+    """Return 2^n times a polynomial in kernels of one angle as the coefficients of ``E^a z^b``, and n.
+
+    ``cosh(q)*cos(q)`` has four of them, each 1, and n = 2; see :func:`laurent`.
+    """
+    places = [ring.index.get(angle.kernels.get(f, "")) for f in ("cosh", "sinh", "cos", "sin")]
+    parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
+    for monomial, coefficient in work.terms():
+        m = [int(e) for e in monomial]
+        key = tuple(0 if p is None else m[p] for p in places)
+        for p in places:
+            if p is not None:
+                m[p] = 0
+        parts.setdefault(key, {})[tuple(m)] = int(coefficient)
+    highest = max(sum(key) for key in parts)
+    j = ring.generator(IMAGINARY)
+    coefficients: dict[tuple[int, int], fmpz_mpoly] = {}
+    for key, terms in parts.items():
+        part = ring.context.from_dict(terms) * 2 ** (highest - sum(key))
+        for (a, b), (re, im) in laurent(*key).items():
+            term = part * (re + im * j)
+            coefficients[a, b] = coefficients[a, b] + term if (a, b) in coefficients else term
+    return coefficients, highest
 
 
 def laurent(cosh: int, sinh: int, cos: int, sin: int) -> Laurent:

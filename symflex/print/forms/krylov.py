@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 from symflex.algebra import Factored
 from symflex.expressions import Expression, Name, negative, number, power, product_of, quotient, sum_of
 from symflex.print.forms.arrange import Arranger
-from symflex.print.forms.constants import constant_symbols
 from symflex.print.forms.hyperbolic import in_kernels
 from symflex.print.forms.invariants import Invariants, in_krylov_functions, krylov_name
 from symflex.print.forms.kept import KeptDefinitions
-from symflex.print.forms.names import free_family
+from symflex.print.forms.names import constant_symbols, free_family
 from symflex.print.forms.notation import (
     Line,
     Naming,

@@ -1,4 +1,4 @@
-"""Names for what a form abbreviates, free of collision with every name of the model."""
+"""Names for what a form abbreviates, free of collision with every name of the model; symbols of constants."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from symflex.expressions import FUNCTIONS
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
+    from symflex.expressions import Expression
     from symflex.model import Model
+    from symflex.transfer import TransferFunction
 
 
 def names_of(model: Model) -> frozenset[str]:
@@ -60,3 +62,8 @@ def free_family(stems: Sequence[str], members: int, taken: Collection[str]) -> t
             if not set(family) & set(taken):
                 return family
     raise AssertionError
+
+
+def constant_symbols(tf: TransferFunction) -> dict[str, Expression]:
+    """Return what the generators of functions of constants print as."""
+    return {c.generator: c.expression for c in tf.constants}

@@ -21,9 +21,8 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.print.forms.arrange import Arranger
-from symflex.print.forms.constants import constant_symbols
 from symflex.print.forms.kept import KeptDefinitions
-from symflex.print.forms.names import free_family, free_names, names_of
+from symflex.print.forms.names import constant_symbols, free_family, free_names, names_of
 from symflex.print.forms.products import ProductPrinter
 
 if TYPE_CHECKING:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 from symflex.algebra import LAPLACE, Factored, Ring, degree_in, irreducible_factors
 from symflex.expressions import Expression, Name, number, power, product_of, quotient, sum_of
 from symflex.print.forms.arrange import Arranger, coefficients
-from symflex.print.forms.constants import constant_symbols
 from symflex.print.forms.hyperbolic import collected_form, in_kernels
 from symflex.print.forms.irreducible import irreducible_kernels
 from symflex.print.forms.kept import KeptDefinitions
+from symflex.print.forms.names import constant_symbols
 from symflex.print.forms.printed import PrintedForm
 from symflex.print.forms.usage import require_rational
 

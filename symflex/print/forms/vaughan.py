@@ -25,8 +25,8 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.print.forms.arrange import Arranger
-from symflex.print.forms.constants import constant_symbols
 from symflex.print.forms.kept import KeptDefinitions
+from symflex.print.forms.names import constant_symbols
 from symflex.print.forms.notation import (
     Line,
     Naming,
