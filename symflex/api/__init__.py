@@ -3,13 +3,12 @@
 from symflex.api.bound import BoundTransferFunction
 from symflex.api.fitted import Fit, fit
 from symflex.api.form import Form
-from symflex.api.mode import Mode
 from symflex.api.mode_shape import ModeShape
 from symflex.api.model import Model, Table, load, loads
 from symflex.api.nested import NestedTransferFunction
 from symflex.api.report import WrittenReport, write_report
 from symflex.api.residue import Residue
-from symflex.api.root import Root
+from symflex.api.root import Mode, Root
 from symflex.api.sensitivity import Sensitivity
 from symflex.api.stability import Stability, StabilityBoundary
 from symflex.api.state_space import StateSpace

@@ -8,11 +8,9 @@ from typing import TYPE_CHECKING
 
 from symflex import pipeline
 from symflex.api.budget import budget_of
-from symflex.api.mode import Mode, plain_mode
 from symflex.api.mode_shape import ModeShape
-from symflex.api.pole_zero_map import PoleZeroMap
 from symflex.api.residue import Residue
-from symflex.api.root import Root
+from symflex.api.root import Mode, PoleZeroMap, Root, plain_mode
 from symflex.api.sensitivity import Sensitivity
 from symflex.options import RootsOptions
 from symflex.roots.region import region_of

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import mpmath
 
-from symflex.api.radius import radius_of
-from symflex.api.root import Root
+from symflex.api.root import Root, radius_of
 from symflex.errors import Diagnostic, UsageError
 from symflex.roots import precision
 from symflex.roots.multiprecision import to_complex_mpmath

@@ -1,19 +1,35 @@
-"""A pole or zero as mpmath numbers."""
+"""Poles and zeros as mpmath numbers, and what a user may call a mode by."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 import mpmath
 
-from symflex.api.radius import radius_of
+from symflex import roots as roots_room
+from symflex.roots import HiddenRoot, precision
+from symflex.roots import Root as CertifiedRoot
 from symflex.roots.multiprecision import to_complex_mpmath, to_mpmath
 
 if TYPE_CHECKING:
-    from symflex import roots as roots_room
+    from flint import acb
 
 SHOWN_DIGITS = 12
+RADIUS_BITS = 64
+
+
+def radius_of(ball: acb) -> mpmath.mpf:
+    """Return an upper bound on the distance from the midpoint to any point of a ball, in the ball's unit.
+
+    Examples
+    --------
+    >>> from flint import acb, arb
+    >>> round(float(radius_of(acb(arb(1, 3), arb(0, 4)))), 6)
+    5.0
+    """
+    with precision(RADIUS_BITS):
+        return to_mpmath((ball.real.rad() ** 2 + ball.imag.rad() ** 2).sqrt().upper())
 
 
 @dataclass(frozen=True)
@@ -88,3 +104,34 @@ class Root:
 
     def __complex__(self) -> complex:
         return complex(self.re, self.im)
+
+
+Mode = int | Root | CertifiedRoot | HiddenRoot
+
+
+def plain_mode(mode: Mode) -> int | CertifiedRoot:
+    """Return a mode as :mod:`symflex.analysis.modes` takes it: its number, or its root.
+
+    Examples
+    --------
+    >>> plain_mode(2)
+    2
+    """
+    if isinstance(mode, Root):
+        return mode.certified_root
+    return mode.root if isinstance(mode, HiddenRoot) else mode
+
+
+@dataclass(frozen=True, slots=True)
+class PoleZeroMap(roots_room.PoleZeroMap):
+    """Poles, zeros and hidden modes; in a notebook, a table. See :class:`symflex.roots.PoleZeroMap`."""
+
+    @staticmethod
+    def of(found: roots_room.PoleZeroMap) -> PoleZeroMap:
+        """Return the face of a map."""
+        return PoleZeroMap(*(getattr(found, field.name) for field in fields(found)))
+
+    def _repr_html_(self) -> str:
+        from symflex.print.html import roots_html  # only notebooks ask
+
+        return roots_html(self)

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import mpmath
 
-from symflex.api.radius import radius_of
-from symflex.api.root import SHOWN_DIGITS, Root
+from symflex.api.root import SHOWN_DIGITS, Root, radius_of
 from symflex.roots import decimals
 from symflex.roots.multiprecision import to_complex_mpmath, to_mpmath
 
