@@ -3,7 +3,7 @@ r"""Expressions as mathematics: where parentheses stand and how quotients print,
     1/(m*s)     LaTeX  \frac{1}{m s}     MathML  <mfrac><mn>1</mn><mrow><mi>m</mi>...<mi>s</mi></mrow></mfrac>
 
 Quotients are fractions, one level of fractions within fractions, slashes below that and in exponents;
-parentheses, brackets and braces take turns outwards and grow only around something tall. A :class:`Notation`
+parentheses, brackets and braces take turns outwards and grow only around something tall. A :class:`Spelling`
 only says how a piece is spelt; widths are those of LaTeX, and MathML is about as wide.
 """
 
@@ -97,7 +97,7 @@ class Written(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Notation:
+class Spelling:
     """How pieces are spelt.
 
     Parameters
@@ -161,13 +161,13 @@ class ExpressionWriter:
     ----------
     labels : Mapping of str to str
         Declared labels in LaTeX.
-    notation : Notation
+    spelling : Spelling
         How pieces are spelt.
     """
 
-    def __init__(self, labels: Mapping[str, str], notation: Notation) -> None:
+    def __init__(self, labels: Mapping[str, str], spelling: Spelling) -> None:
         self._labels = labels
-        self._notation = notation
+        self._spelling = spelling
         self._names: dict[str, Written] = {}
         self._powers: dict[tuple[str, Fraction], Written] = {}
 
@@ -209,10 +209,10 @@ class ExpressionWriter:
         """Return a number as its digits, or as a decimal times a power of ten."""
         mantissa, _, exponent = text.partition("e")
         if not exponent:
-            return Written(self._notation.digits.format(mantissa), DIGIT_SIZES * len(mantissa), Shape.ATOM)
+            return Written(self._spelling.digits.format(mantissa), DIGIT_SIZES * len(mantissa), Shape.ATOM)
         power = DIGIT_SIZES * len(exponent) + MINUS_SIZES * exponent.startswith("-")
         size = DIGIT_SIZES * (len(mantissa) + 2) + CDOT_SIZES + power.raised + SCRIPT_SPACE
-        return Written(self._notation.scientific(mantissa, exponent), size, Shape.PRODUCT)
+        return Written(self._spelling.scientific(mantissa, exponent), size, Shape.PRODUCT)
 
     def joined(self, factors: Sequence[Written]) -> tuple[list[str], Width]:
         """Return factors, already fenced where they must be, with the signs between, and the signs' width."""
@@ -227,12 +227,12 @@ class ExpressionWriter:
 
     def between(self, left: Written, right: Written) -> tuple[str, Width]:
         """Return what stands between two factors, and its width."""
-        return self._notation.between(left, right)
+        return self._spelling.between(left, right)
 
     def fenced(self, piece: Written) -> Written:
         """Return a piece in parentheses, or in brackets or braces around those."""
         fence = (TALL_FENCES if piece.is_tall else FENCE_SIZES)[piece.nesting % len(FENCES)]
-        markup = self._notation.fenced(piece.markup, piece.nesting, piece.is_tall)
+        markup = self._spelling.fenced(piece.markup, piece.nesting, piece.is_tall)
         return Written(markup, piece.size + fence * 2, Shape.ATOM, piece.is_tall, piece.nesting + 1)
 
     def as_term(self, piece: Written) -> Written:
@@ -276,7 +276,7 @@ class ExpressionWriter:
             label = self.label(name)
             shape = Shape.SUM if label.is_sum else Shape.PRODUCT if label.is_product else Shape.ATOM
             piece = Written(
-                self._notation.name(name, self._labels),
+                self._spelling.name(name, self._labels),
                 label.size,
                 shape,
                 is_wordy=label.is_wordy,
@@ -294,7 +294,7 @@ class ExpressionWriter:
         size = piece.size + PRIME_SIZES * order + SCRIPT_SPACE
         if order > MOST_PRIMES:
             size = piece.size + (FENCE_SIZES[0] * 2 + DIGIT_SIZES * len(str(order))).raised + SCRIPT_SPACE
-        markup = self._notation.primed(piece.markup, order)
+        markup = self._spelling.primed(piece.markup, order)
         return piece._replace(markup=markup, size=size, has_superscript=True, subscript=NOTHING)
 
     def _number(self, value: Fraction, style: Style) -> Written:
@@ -337,19 +337,19 @@ class ExpressionWriter:
             terms.append((piece.markup, is_negative))
             size += piece.size + (sign if index else NOTHING)
             is_tall, nesting = is_tall or piece.is_tall, max(nesting, piece.nesting)
-        return Written(self._notation.sum(terms), size, Shape.SUM, is_tall, nesting)
+        return Written(self._spelling.sum(terms), size, Shape.SUM, is_tall, nesting)
 
     def _negative(self, operand: Written) -> Written:
         piece = self.as_term(operand)
         size = piece.size + MINUS_SIZES
         return Written(
-            self._notation.negative.format(piece.markup), size, Shape.NEGATIVE, piece.is_tall, piece.nesting
+            self._spelling.negative.format(piece.markup), size, Shape.NEGATIVE, piece.is_tall, piece.nesting
         )
 
     def _product(self, factors: Sequence[Written]) -> Written:
         parts, between = self.joined(factors)
         return Written(
-            self._notation.product(parts),
+            self._spelling.product(parts),
             total([between, *(factor.size for factor in factors)]),
             Shape.PRODUCT,
             any(f.is_tall for f in factors),
@@ -361,7 +361,7 @@ class ExpressionWriter:
         if style is Style.INLINE:
             left, right = self.as_numerator(above), below if below.shape >= Shape.CALL else self.fenced(below)
             return Written(
-                self._notation.slash.format(left.markup, right.markup),
+                self._spelling.slash.format(left.markup, right.markup),
                 left.size + SLASH_SIZES + right.size,
                 Shape.RATIO,
                 left.is_tall or right.is_tall,
@@ -370,7 +370,7 @@ class ExpressionWriter:
         inside = widest(above.size, below.size)
         size = (inside if style is Style.DISPLAY else inside.raised) + FRACTION_EDGES
         return Written(
-            self._notation.fraction.format(above.markup, below.markup), size, Shape.FRACTION, is_tall=True
+            self._spelling.fraction.format(above.markup, below.markup), size, Shape.FRACTION, is_tall=True
         )
 
     def _power(self, base: Expression, exponent: Expression, below: Written, above: Written) -> Written:
@@ -378,21 +378,21 @@ class ExpressionWriter:
             return self._root(below)
         size = above.size.raised + SCRIPT_SPACE
         if isinstance(base, Call) and base.name in TRIGONOMETRIC and isinstance(exponent, Number):
-            function = self._notation.function(base.name)
-            markup = self._notation.function_power(function, below.markup, above.markup)
+            function = self._spelling.function(base.name)
+            markup = self._spelling.function_power(function, below.markup, above.markup)
             return Written(markup, below.size + size, Shape.CALL, below.is_tall, below.nesting)
         root = self.as_base(below)
-        markup = self._notation.power.format(root.markup, above.markup)
+        markup = self._spelling.power.format(root.markup, above.markup)
         size = root.size + size.beyond(root.subscript)
         return Written(markup, size, Shape.POWER, root.is_tall, root.nesting, root.is_wordy)
 
     def _root(self, radicand: Written) -> Written:
         size = radicand.size + (TALL_ROOT if radicand.is_tall else ROOT)
-        return Written(self._notation.root.format(radicand.markup), size, Shape.CALL, radicand.is_tall)
+        return Written(self._spelling.root.format(radicand.markup), size, Shape.CALL, radicand.is_tall)
 
     def _applied(self, function: str, size: Width, argument: Written) -> Written:
         inside = self.fenced(argument)
-        markup = self._notation.applied.format(function, inside.markup)
+        markup = self._spelling.applied.format(function, inside.markup)
         return Written(markup, size + inside.size, Shape.CALL, inside.is_tall, inside.nesting)
 
     def _call(self, node: Call, argument: Written) -> Written:
@@ -400,8 +400,8 @@ class ExpressionWriter:
             return self._root(argument)
         if node.name == "exp" and is_short(node.argument):
             size = argument.size.raised + UPRIGHT.widths["e"] + SCRIPT_SPACE
-            return Written(self._notation.exponential.format(argument.markup), size, Shape.POWER)
-        return self._applied(self._notation.function(node.name), operator_size(node.name), argument)
+            return Written(self._spelling.exponential.format(argument.markup), size, Shape.POWER)
+        return self._applied(self._spelling.function(node.name), operator_size(node.name), argument)
 
 
 def inner_styles(node: Expression, style: Style) -> tuple[Style, ...]:

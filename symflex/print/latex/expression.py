@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 from symflex.algebra.functions import FUNCTIONS
 from symflex.print.label import symbol
 from symflex.print.width import CDOT_SIZES, NOTHING, THIN_SIZES, Width
-from symflex.print.writer import FENCES, MOST_PRIMES, ExpressionWriter, Notation, Shape, Style, Written
+from symflex.print.writer import FENCES, MOST_PRIMES, ExpressionWriter, Shape, Spelling, Style, Written
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -81,7 +81,7 @@ def _between(left: Written, right: Written) -> tuple[str, Width]:
     return " ", NOTHING
 
 
-LATEX: Final = Notation(
+LATEX: Final = Spelling(
     fraction=r"\frac{{{}}}{{{}}}",
     slash="{}/{}",
     power="{}^{{{}}}",

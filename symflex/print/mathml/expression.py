@@ -26,8 +26,8 @@ from symflex.print.width import NOTHING, Width
 from symflex.print.writer import (
     MOST_PRIMES,
     ExpressionWriter,
-    Notation,
     Shape,
+    Spelling,
     Style,
     Written,
     is_half,
@@ -198,7 +198,7 @@ def _between(left: Written, right: Written) -> tuple[str, Width]:
     return SPACED_TIMES if is_worded else INVISIBLE_TIMES, NOTHING
 
 
-MATHML: Final = Notation(
+MATHML: Final = Spelling(
     fraction="<mfrac>{}{}</mfrac>",
     slash=row("{}", operator("/"), "{}"),
     power="<msup>{}{}</msup>",
