@@ -5,7 +5,6 @@ A new kind is one file with a drawing function, and one line in :data:`FIGURES`.
 
 from __future__ import annotations
 
-from math import pi
 from typing import TYPE_CHECKING
 
 from matplotlib.text import Text
@@ -14,7 +13,7 @@ from symflex.analysis.response import roots_if_found
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.figures.bode import draw_bode, draw_response
-from symflex.figures.drawing import FREE, AxisLimits, Drawing
+from symflex.figures.drawing import FREE, AxisLimits, Canvas, Drawing
 from symflex.figures.labels import label_of_name
 from symflex.figures.locus import draw_locus, number_label
 from symflex.figures.measured import draw_fit, draw_measured
@@ -132,9 +131,9 @@ def draw(
     for bound in bounds:
         if bound.ratio.is_zero:
             raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero: nothing to draw"))
-    band, width = _checked_band(band_hz), _inches(width_mm)
+    canvas = _canvas(band_hz, frame, title, width_mm)
     with paper_style(font):
-        figure = FIGURES[kind](tfs, bounds, band_hz=band, frame=frame, title=title, width=width)
+        figure = FIGURES[kind](tfs, bounds, canvas)
     return _with_every_letter(figure, font)
 
 
@@ -144,18 +143,19 @@ def unavailable(kind: str) -> Diagnostic:
     return Diagnostic("SF911", f"figures of kind '{kind}' are not available yet", None, hint)
 
 
-def _checked_band(band_hz: tuple[float | Fraction, float | Fraction] | None) -> tuple[float, float] | None:
-    if band_hz is None:
-        return None
-    low, high = float(band_hz[0]), float(band_hz[1])
-    if not 0 <= low < high < float("inf"):
-        message = f"a band runs from a lower to a higher frequency, not from {low:g} to {high:g} Hz"
+def _canvas(
+    band_hz: tuple[float | Fraction, float | Fraction] | None,
+    frame: AxisLimits,
+    title: str | None,
+    width_mm: float | None,
+) -> Canvas:
+    """Return what is asked of a figure, checked and in the units of matplotlib."""
+    band = None if band_hz is None else (float(band_hz[0]), float(band_hz[1]))
+    if band is not None and not 0 <= band[0] < band[1] < float("inf"):
+        message = f"a band runs from a lower to a higher frequency, not from {band[0]:g} to {band[1]:g} Hz"
         raise UsageError(Diagnostic("SF227", message))
-    return low, high
-
-
-def _inches(width_mm: float | None) -> float | None:
-    return None if width_mm is None else checked_width(width_mm) / MM_PER_INCH
+    width = None if width_mm is None else checked_width(width_mm) / MM_PER_INCH
+    return Canvas(band, frame, title, width)
 
 
 def _check_frame(kind: str, frame: AxisLimits) -> None:
@@ -223,23 +223,13 @@ def draw_loop(
             Diagnostic("SF208", f"no figure of kind '{kind[:64]}' is drawn of a loop", None, hint)
         )
     _check_frame(kind, frame)
-    band, width = _checked_band(band_hz), _inches(width_mm)
+    canvas = _canvas(band_hz, frame, title, width_mm)
     with paper_style(font):
         if kind == "locus":
-            locus = trace_locus(loop, limits, modes, band_hz=band)
+            locus = trace_locus(loop, limits, modes, band_hz=canvas.band_hz)
             require_arrival(locus)
-            reach = None if band is None else 2 * pi * band[1]
-            return _with_every_letter(draw_locus(locus, title, width, reach=reach, frame=frame), font)
+            return _with_every_letter(draw_locus(locus, canvas), font)
         bound = loop_gain(loop)
         label = f"loop gain, ${label_of_name(loop.gain.name)} = {number_label(float(loop.nominal or 0))}$"
-        figure = draw_nyquist(
-            [bound.source],
-            [bound],
-            band_hz=band,
-            frame=frame,
-            title=title,
-            width=width,
-            labels=[label],
-            verdict=f"closed loop {roots_if_found(closed_loop(loop)).verdict.headline}",
-        )
-        return _with_every_letter(figure, font)
+        verdict = f"closed loop {roots_if_found(closed_loop(loop)).verdict.headline}"
+        return _with_every_letter(draw_nyquist([bound.source], [bound], canvas, [label], verdict), font)

@@ -19,7 +19,6 @@ from symflex.figures.axes import (
     set_magnitude_ticks,
     write_title,
 )
-from symflex.figures.drawing import FREE
 from symflex.figures.labels import label_of_tf, label_of_unit
 from symflex.figures.style import (
     COLOURS,
@@ -40,7 +39,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from symflex.analysis.response import SampledResponse
-    from symflex.figures.drawing import AxisLimits, Limits
+    from symflex.figures.drawing import Canvas, Limits
     from symflex.roots import PoleZeroMap
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
@@ -57,13 +56,7 @@ UNDAMPED_MARGIN_DB: Final = 15.0
 
 
 def draw_bode(
-    tfs: Sequence[TransferFunction],
-    bounds: Sequence[BoundTransferFunction],
-    *,
-    band_hz: Limits | None = None,
-    frame: AxisLimits = FREE,
-    title: str | None = None,
-    width: float | None = None,
+    tfs: Sequence[TransferFunction], bounds: Sequence[BoundTransferFunction], canvas: Canvas
 ) -> Figure:
     """Draw magnitude and phase of transfer functions in one figure; see :func:`symflex.figures.draw`.
 
@@ -71,7 +64,7 @@ def draw_bode(
     plane, or may lie there, the legend says so.
     """
     # The default roots of distributed systems serve for nothing but a band.
-    given = band_hz or _band_of_model(tfs[0])
+    given = canvas.band_hz or _band_of_model(tfs[0])
     low, high = given or default_band(*(roots_if_found(bound) for bound in bounds))
     band = Band(Fraction(low), Fraction(high))
     maps = [roots_if_found(bound, band) for bound in bounds]
@@ -79,10 +72,10 @@ def draw_bode(
         respond(bound, adaptive_grid(bound, low, high, roots=found), found)
         for bound, found in zip(bounds, maps, strict=True)
     ]
-    width = width or COLUMN_INCHES
+    width = canvas.width or COLUMN_INCHES
     shaky = [found for found in maps if found.verdict.word in ("unstable", "unknown")]
     lines = [
-        *title_lines(title, width),
+        *title_lines(canvas.title, width),
         *(line for m in maps for line in title_lines(said_of_grid(m), width)),
     ]
     said = stability_lines(shaky, width)
@@ -90,7 +83,7 @@ def draw_bode(
     legend_columns = min(len(tfs), LEGEND_COLUMNS if len(units) == 1 else LEGEND_COLUMNS_WITH_UNITS)
     height = HEIGHT_INCHES + LINE_INCHES * (len(lines) + len(said) + ceil(len(tfs) / legend_columns))
     figure, top, bottom = magnitude_over_phase(width, height, RATIO)
-    limits = frame.y or _magnitude_limits(responses, maps)
+    limits = canvas.frame.y or _magnitude_limits(responses, maps)
     looks = zip(cycle(COLOURS), cycle(DASHES), strict=False)
     for tf, response, found, (colour, dash) in zip(tfs, responses, maps, looks, strict=False):
         label = label_of_tf(tf)
@@ -101,7 +94,7 @@ def draw_bode(
     top.set_ylim(*limits)
     set_magnitude_ticks(top)
     label_magnitudes(top, units.pop() if len(units) == 1 else "")
-    _set_phase_axis(bottom, responses, frame.phase)
+    _set_phase_axis(bottom, responses, canvas.frame.phase)
     set_frequency_axis(bottom, low, high)
     figure.align_ylabels([top, bottom])
     add_legend_above(top, legend_columns, "\n".join(said) or None)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, UsageError
 
@@ -62,18 +63,27 @@ FREE = AxisLimits()
 """Every axis is as the figure chooses it."""
 
 
-class Drawing(Protocol):
-    """A function that draws transfer functions; :func:`symflex.figures.draw` sets the style."""
+@dataclass(frozen=True, slots=True)
+class Canvas:
+    """What is asked of a figure, whatever its kind.
 
-    def __call__(
-        self,
-        tfs: Sequence[TransferFunction],
-        bounds: Sequence[BoundTransferFunction],
-        *,
-        band_hz: Limits | None,
-        frame: AxisLimits,
-        title: str | None,
-        width: float | None,
-    ) -> Figure:
-        """Return the figure, as wide as asked for [inches] or as suits it."""
-        ...
+    Parameters
+    ----------
+    band_hz : (float, float), optional
+        Frequencies shown [Hz].
+    frame : AxisLimits
+        Of axes, in place of those that suit what is drawn.
+    title : str, optional
+        Printed as it is.
+    width : float, optional
+        [inches]; by default what suits the figure.
+    """
+
+    band_hz: Limits | None = None
+    frame: AxisLimits = FREE
+    title: str | None = None
+    width: float | None = None
+
+
+Drawing = Callable[["Sequence[TransferFunction]", "Sequence[BoundTransferFunction]", Canvas], "Figure"]
+"""A function that draws transfer functions; :func:`symflex.figures.draw` sets the style."""

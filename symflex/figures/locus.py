@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import pi
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -15,7 +16,6 @@ from symflex.figures.axes import (
     point_of,
     write_title,
 )
-from symflex.figures.drawing import FREE
 from symflex.figures.labels import label_of_name
 from symflex.figures.style import COLOURS, COLUMN_INCHES, LINE_INCHES, QUIET, new_figure, title_lines
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from symflex.figures.drawing import AxisLimits
+    from symflex.figures.drawing import Canvas
     from symflex.loops import RootLocus
 
 HEIGHT_INCHES: Final = 3.3
@@ -38,15 +38,8 @@ CLOSE: Final = 0.3
 """Narrowest width shown, over the height."""
 
 
-def draw_locus(
-    locus: RootLocus,
-    title: str | None = None,
-    width: float | None = None,
-    *,
-    reach: float | None = None,
-    frame: AxisLimits = FREE,
-) -> Figure:
-    """Draw a root locus, of what lies up to ``reach`` [rad/s] from 0, or within limits.
+def draw_locus(locus: RootLocus, canvas: Canvas) -> Figure:
+    """Draw a root locus, of what lies up to the end of a band, or within limits.
 
     Crosses are the poles at the first gain, squares those at the last, circles the zeros; all three are
     proved. The lines between are traced numerically: solid from poles at the first gain, dashed from
@@ -54,8 +47,9 @@ def draw_locus(
     surround points at which poles accumulate. Right of the imaginary axis the ground is tinted. Poles there
     are among those marked wherever they lie, and the title says how many there are at both gains.
     """
-    width = width or COLUMN_INCHES
-    lines = title_lines(title, width)
+    width = canvas.width or COLUMN_INCHES
+    reach = None if canvas.band_hz is None else 2 * pi * canvas.band_hz[1]
+    lines = title_lines(canvas.title, width)
     figure = new_figure(width, HEIGHT_INCHES + LINE_INCHES * (len(lines) + 3))
     figure.set_layout_engine("constrained", h_pad=0.03, w_pad=0.03)
     axes = figure.subplots()
@@ -64,8 +58,8 @@ def draw_locus(
     )
     ends = list(locus.ends)
     _set_view(axes, locus, starts, zeros, reach)
-    axes.set_xlim(*(frame.x or axes.get_xlim()))
-    axes.set_ylim(*(frame.y or axes.get_ylim()))
+    axes.set_xlim(*(canvas.frame.x or axes.get_xlim()))
+    axes.set_ylim(*(canvas.frame.y or axes.get_ylim()))
     right, seen = max(axes.get_xlim()[1], 0.0), float(np.max(np.abs([axes.get_xlim(), axes.get_ylim()])))
     axes.axvspan(0, right, color=RIGHT_HALF_PLANE, zorder=0, linewidth=0)
     draw_zero_lines(axes)

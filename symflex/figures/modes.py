@@ -13,7 +13,6 @@ from matplotlib.ticker import FixedLocator, MaxNLocator, NullFormatter
 
 from symflex.analysis.modes import lowest_modes
 from symflex.errors import Diagnostic, ModelError, UsageError
-from symflex.figures.drawing import FREE
 from symflex.figures.labels import PLAIN_HIGH, label_of_name
 from symflex.figures.pgf import MM_PER_INCH
 from symflex.figures.runs import Run, Stems, panels_of
@@ -38,7 +37,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from symflex.analysis.modes import EnclosedModeShape
-    from symflex.figures.drawing import AxisLimits, Limits
+    from symflex.figures.drawing import Canvas
     from symflex.figures.runs import Panel
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
@@ -64,13 +63,7 @@ Curve = tuple["npt.NDArray[np.float64]", "npt.NDArray[np.complex128]"]
 
 
 def draw_modes(
-    tfs: Sequence[TransferFunction],
-    bounds: Sequence[BoundTransferFunction],
-    *,
-    band_hz: Limits | None = None,
-    frame: AxisLimits = FREE,
-    title: str | None = None,
-    width: float | None = None,
+    tfs: Sequence[TransferFunction], bounds: Sequence[BoundTransferFunction], canvas: Canvas
 ) -> Figure:
     """Draw the shapes of the lowest modes of the first function's model, hidden ones among them.
 
@@ -86,7 +79,7 @@ def draw_modes(
     UsageError
         SF902 when the panels have no room in the width asked for.
     """
-    del frame  # largest displacements are 1, and :func:`draw` refuses others
+    band_hz = canvas.band_hz
     band = None if band_hz is None else Band(Fraction(band_hz[0]), Fraction(band_hz[1]))
     count = min(tfs[0].model.analysis.modes or (MODES_LIMIT if band else DEFAULT_MODES), MODES_LIMIT)
     numbered, verdict = lowest_modes(bounds[0], count, band)
@@ -96,8 +89,8 @@ def draw_modes(
         where = "" if band_hz is None else f" between {band_hz[0]:g} and {band_hz[1]:g} Hz"
         message = f"{bounds[0].name} has no mode other than at 0 that has a shape{where}"
         raise ModelError(Diagnostic("SF402", message))
-    width = width or (COLUMN_INCHES if len(panels) <= PANELS_IN_COLUMN else PAGE_INCHES)
-    titles = (title_lines(title, width), title_lines(verdict.headline, width))
+    width = canvas.width or (COLUMN_INCHES if len(panels) <= PANELS_IN_COLUMN else PAGE_INCHES)
+    titles = (title_lines(canvas.title, width), title_lines(verdict.headline, width))
     lines = [line for group in titles for line in group]
     per_metre = all(_unit_of_reference(shape) == "m" for shape in shapes)
     names = {**UNIT_NAMES, "rad": "angle [rad/m]"} if per_metre else UNIT_NAMES

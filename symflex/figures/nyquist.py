@@ -10,7 +10,6 @@ import numpy as np
 
 from symflex.analysis.response import adaptive_grid, default_band, respond, roots_if_found
 from symflex.figures.axes import draw_zero_lines, drawable, set_round_ticks
-from symflex.figures.drawing import FREE
 from symflex.figures.labels import label_of_tf
 from symflex.figures.style import (
     COLOURS,
@@ -31,7 +30,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from symflex.figures.drawing import AxisLimits, Limits
+    from symflex.figures.drawing import Canvas
     from symflex.roots.verdict import StabilityVerdict
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
@@ -52,11 +51,7 @@ SHAFT: Final = 0.01
 def draw_nyquist(
     tfs: Sequence[TransferFunction],
     bounds: Sequence[BoundTransferFunction],
-    *,
-    band_hz: Limits | None = None,
-    frame: AxisLimits = FREE,
-    title: str | None = None,
-    width: float | None = None,
+    canvas: Canvas,
     labels: Sequence[str] = (),
     verdict: str | None = None,
 ) -> Figure:
@@ -67,18 +62,18 @@ def draw_nyquist(
     the right half plane: a closed loop is stable if the curve winds P times counterclockwise about -1.
     ``verdict`` says below the title whether it is.
     """
-    width = width or COLUMN_INCHES
-    lines = [*title_lines(title, width), *title_lines(verdict, width)]
+    width = canvas.width or COLUMN_INCHES
+    lines = [*title_lines(canvas.title, width), *title_lines(verdict, width)]
     figure = new_figure(width, HEIGHT_INCHES + LINE_INCHES * (len(lines) + 1))
     figure.set_layout_engine("constrained", h_pad=0.03, w_pad=0.03)
     axes = figure.subplots()
     draw_zero_lines(axes)
     circle = np.exp(1j * np.linspace(0, 2 * np.pi, 361))
     axes.plot(circle.real, circle.imag, ":", color=QUIET, linewidth=0.7, zorder=1)
-    found = [_curve(bound, band_hz) for bound in bounds]
+    found = [_curve(bound, canvas.band_hz) for bound in bounds]
     curves = [curve for curve, _ in found]
     reach = _reach(np.concatenate(curves), is_loop=bool(labels))
-    across, upwards = frame.x or (-reach, reach), frame.y or (-reach, reach)
+    across, upwards = canvas.frame.x or (-reach, reach), canvas.frame.y or (-reach, reach)
     axes.set_xlim(*across)
     axes.set_ylim(*upwards)
     reach = max(map(abs, (*across, *upwards)))

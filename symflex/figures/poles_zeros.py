@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from symflex.figures.drawing import AxisLimits, Limits
+    from symflex.figures.drawing import Canvas
     from symflex.roots import PoleZeroMap
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
@@ -47,13 +47,7 @@ COLOUR_OF: Final = {"pole": COLOURS[1], "zero": COLOURS[0]}
 
 
 def draw_poles_zeros(
-    tfs: Sequence[TransferFunction],
-    bounds: Sequence[BoundTransferFunction],
-    *,
-    band_hz: Limits | None = None,
-    frame: AxisLimits = FREE,
-    title: str | None = None,
-    width: float | None = None,
+    tfs: Sequence[TransferFunction], bounds: Sequence[BoundTransferFunction], canvas: Canvas
 ) -> Figure:
     """Draw poles (crosses) and zeros (circles); see :func:`symflex.figures.draw`.
 
@@ -63,11 +57,12 @@ def draw_poles_zeros(
     the right half plane. Within limits asked for, scales may differ, and the title counts what is outside.
     What it says of stability holds for all poles, drawn or not.
     """
+    band_hz, frame = canvas.band_hz, canvas.frame
     region = None if band_hz is None else Band(Fraction(0), Fraction(band_hz[1]))
     maps = [locate(bound, region if bound.is_distributed else None) for bound in bounds]
     panels = [marks_of(found) for found in maps]
     count = len(panels)
-    width = width or (COLUMN_INCHES if count <= PANELS_IN_COLUMN else PAGE_INCHES)
+    width = canvas.width or (COLUMN_INCHES if count <= PANELS_IN_COLUMN else PAGE_INCHES)
     columns = min(count, PANELS_IN_COLUMN if width < (COLUMN_INCHES + PAGE_INCHES) / 2 else PANELS_ON_PAGE)
     rows = ceil(count / columns)
     room = (width - LEFT - RIGHT - GAP * (columns - 1)) / columns
@@ -85,7 +80,7 @@ def draw_poles_zeros(
     panel_height = panel_width / shape
     outside = [_said_of_rest(found, view) for found in maps] if is_asked else []
     titles = (
-        title_lines(title, width),
+        title_lines(canvas.title, width),
         stability_lines(maps, width),
         [line for said in outside if said for line in title_lines(said, width)],
     )
