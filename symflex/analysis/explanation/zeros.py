@@ -183,6 +183,13 @@ class _Case:
         except ModelError:
             return None
 
+    def explained(
+        self, kind: Kind, status: Status, constraint: Constraint, *, is_direct: bool, order: int = 0
+    ) -> ZeroExplanation:
+        """Return that the zeros are the poles of a constrained system, or how they are related to them."""
+        held = (constraint.held, constraint.words, constraint.spec)
+        return ZeroExplanation("/".join(self.pair), kind, status, *self.pair, is_direct, *held, order)
+
 
 def explain_zeros(
     model: Model, bound: BoundTransferFunction, found: PoleZeroMap, nested: Nested | None = None
@@ -260,26 +267,20 @@ def _by_coordinate(case: _Case, found: PoleZeroMap) -> ZeroExplanation | None:
         return _compared(case, constraint, found) if is_direct else None
     separation = separate(held.equations, case.pair[1], case.model)
     kind, rest = _kind(case, relation, separation)
-    explained = ZeroExplanation(
-        found.tf,
-        kind,
-        "proved",
-        *case.pair,
-        is_direct,
-        constraint.held,
-        constraint.words,
-        constraint.spec,
-        relation.order,
-        _text(case.equations, relation.filtered),
-        "" if kind in ("noncolocated", "partly") else _text(case.equations, relation.apart),
-        "" if kind == "noncolocated" else _text(case.equations, rest),
-        relation.is_delayed,
+    plain = replace(
+        case.explained(kind, "proved", constraint, is_direct=is_direct, order=relation.order),
+        filtered=_text(case.equations, relation.filtered),
+        is_delayed=relation.is_delayed,
+    )
+    if kind == "noncolocated":
+        return replace(plain, spec="", words="")
+    return replace(
+        plain,
+        extra="" if kind == "partly" else _text(case.equations, relation.apart),
+        transmission=_text(case.equations, rest),
         parts=separation.parts,
         ends=_end_changes(case, separation),
     )
-    if kind != "noncolocated":
-        return explained
-    return replace(explained, spec="", words="", parts=(), ends=())
 
 
 def _kind(case: _Case, relation: Relation, separation: Separation) -> tuple[Kind, Factored]:
@@ -310,9 +311,7 @@ def _compared(case: _Case, constraint: Constraint, found: PoleZeroMap) -> ZeroEx
     poles = [h.root for h in locate(bind(zero), found.region, found.digits).hidden]
     zeros = [*found.zeros, *(h.root for h in found.hidden)]
     status: Status = "compared" if agree(zeros, poles) else "not shown"
-    return ZeroExplanation(
-        found.tf, "colocated", status, *case.pair, True, constraint.held, constraint.words, constraint.spec
-    )
+    return case.explained("colocated", status, constraint, is_direct=True)
 
 
 def _by_condition(case: _Case, found: PoleZeroMap) -> ZeroExplanation | None:
@@ -338,17 +337,9 @@ def _by_condition(case: _Case, found: PoleZeroMap) -> ZeroExplanation | None:
     after = next(f for f in constraint.model.fields if f.name == replaced.field.name)
     ends = (ends_of_field(replaced.field), ends_of_field(after))
     kind: Kind = "colocated" if replaced.is_dual else "noncolocated"
-    return ZeroExplanation(
-        found.tf,
-        kind,
-        "proved",
-        *case.pair,
-        replaced.is_dual,
-        constraint.held,
-        constraint.words,
-        constraint.spec,
-        order,
-        _text(case.equations, filtered),
+    return replace(
+        case.explained(kind, "proved", constraint, is_direct=replaced.is_dual, order=order),
+        filtered=_text(case.equations, filtered),
         parts=separate(held.equations, case.pair[1], case.model).parts,
         ends=(EndChange(replaced.field.name, *ends),) if all(ends) else (),
     )
@@ -373,19 +364,9 @@ def _by_terminals(case: _Case) -> ZeroExplanation | None:
     order = relation.transmission.exponent_of(case.equations.ring.generator(LAPLACE))
     if relation.transmission.filter(lambda f: f != case.equations.ring.generator(LAPLACE)).factors:
         return None
-    name = "/".join(case.pair)
-    return ZeroExplanation(
-        name,
-        "free" if case.input.kind not in ("voltage", "signal") else "open circuit",
-        "proved",
-        *case.pair,
-        True,
-        constraint.held,
-        constraint.words,
-        constraint.spec,
-        order,
-        parts=separate(held.equations, case.pair[1], case.model).parts,
-    )
+    kind: Kind = "open circuit" if case.input.kind in ("voltage", "signal") else "free"
+    plain = case.explained(kind, "proved", constraint, is_direct=True, order=order)
+    return replace(plain, parts=separate(held.equations, case.pair[1], case.model).parts)
 
 
 # --------------------------------------------------------------------------------------------- in words
