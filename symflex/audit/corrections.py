@@ -115,7 +115,8 @@ def _in_expression(reading: FormulaReading) -> Iterator[Correction]:
     parts = [(p, place) for p, place in _parts(formula.expression) if p is not formula.expression]
     if formula.scale is not None:
         parts += [(p, "scale") for p, _ in _parts(formula.scale)]
-    wanted, work = [], 0
+    wanted: list[_Wanted] = []
+    work = 0
     for part, place in parts[:MOST_PARTS]:
         spend()
         if work > MOST_WORK:
@@ -125,13 +126,13 @@ def _in_expression(reading: FormulaReading) -> Iterator[Correction]:
         except (UnreadError, GrowError, BudgetError, SpecError, ZeroDivisionError):
             continue
         if value is not None:
-            wanted.append((part, place, value))
+            wanted.append(_Wanted(reading, part, place, value))
             work += sum(len(f) for f, _ in value.factors)
     for rule in (_times_number, _other_exponent, _other_symbol, _times_monomial, _other_terms, _more_terms):
-        for part, place, value in wanted:
+        for each in wanted:
             spend()
             try:
-                yield from rule(reading, part, place, value)
+                yield from rule(each)
             except (UnreadError, GrowError, BudgetError, ZeroDivisionError):
                 continue
 
@@ -170,23 +171,29 @@ def _needed(reading: FormulaReading, part: Expression) -> Factored | None:
     return None if constant.is_zero else -constant / Factored.polynomial(field.ring, powers[1])
 
 
-def _corrected(
-    reading: FormulaReading, part: Expression, new: Expression, changes: tuple[Change, ...]
-) -> Correction:
-    formula = reading.formula
-    expression = _replaced(formula.expression, part, new)
-    scale = None if formula.scale is None else _replaced(formula.scale, part, new)
-    return Correction(changes, expression, scale, formula.lines)
+@dataclass(frozen=True, eq=False)
+class _Wanted:
+    """A part of a formula, where it stands, and the value with which the formula would be right."""
+
+    reading: FormulaReading
+    part: Expression
+    place: str
+    value: Factored
+
+    def replaced_by(self, new: Expression, *changes: Change) -> Correction:
+        """Return the formula with another part; the part itself is the change where none is given."""
+        formula = self.reading.formula
+        expression = _replaced(formula.expression, self.part, new)
+        scale = None if formula.scale is None else _replaced(formula.scale, self.part, new)
+        return Correction(changes or (Change(self.place, self.part, new),), expression, scale, formula.lines)
 
 
-def _times_number(
-    reading: FormulaReading, part: Expression, place: str, value: Factored
-) -> Iterator[Correction]:
+def _times_number(wanted: _Wanted) -> Iterator[Correction]:
     """Yield the part times a rational number: a coefficient, sign or factor."""
-    ratio = reading.field.constant_ratio(value, reading.value(part))
+    reading, part = wanted.reading, wanted.part
+    ratio = reading.field.constant_ratio(wanted.value, reading.value(part))
     if ratio is not None and ratio.is_constant:
-        new = _times(ratio.unit, part)
-        yield _corrected(reading, part, new, (Change(place, part, new),))
+        yield wanted.replaced_by(_times(ratio.unit, part))
 
 
 def _times(ratio: Fraction, part: Expression) -> Expression:
@@ -204,49 +211,37 @@ def _times(ratio: Fraction, part: Expression) -> Expression:
     return product
 
 
-def _times_monomial(
-    reading: FormulaReading, part: Expression, place: str, value: Factored
-) -> Iterator[Correction]:
+def _times_monomial(wanted: _Wanted) -> Iterator[Correction]:
     """Yield the part times powers of s and the parameters."""
-    ratio = reading.field.constant_ratio(value, reading.value(part))
+    reading, part = wanted.reading, wanted.part
+    ratio = reading.field.constant_ratio(wanted.value, reading.value(part))
     factor = None if ratio is None else monomial_expression(reading.field, ratio)
     if factor is not None:
-        new = quotient(product_of([_above(factor), part]), _below(factor))
-        yield _corrected(reading, part, new, (Change(place, part, new),))
+        yield wanted.replaced_by(quotient(product_of([_above(factor), part]), _below(factor)))
 
 
-def _other_exponent(
-    reading: FormulaReading, part: Expression, place: str, value: Factored
-) -> Iterator[Correction]:
+def _other_exponent(wanted: _Wanted) -> Iterator[Correction]:
     """Yield the part with another exponent."""
+    field, part = wanted.reading.field, wanted.part
     base, known = (part.base, part.exponent) if isinstance(part, Power) else (part, Number(Fraction(1)))
     if not isinstance(base, Name | Call | Sum):
         return
-    inner = reading.value(base)
+    inner = wanted.reading.value(base)
     for exponent in EXPONENTS:
         if number(exponent) == known:
             continue
         try:
-            power = reading.field.power(inner, exponent)
+            power = field.power(inner, exponent)
         except (UnreadError, GrowError):
             continue
-        if reading.field.equal(power, value):
-            new = base if exponent == 1 else number(1) if exponent == 0 else Power(base, _exponent(exponent))
-            yield _corrected(reading, part, new, (Change(place, part, new),))
+        if field.equal(power, wanted.value):
+            new = base if exponent == 1 else number(1) if exponent == 0 else Power(base, _rational(exponent))
+            yield wanted.replaced_by(new)
 
 
-def _exponent(value: Fraction) -> Expression:
-    return (
-        number(value)
-        if value.denominator == 1
-        else quotient(number(value.numerator), number(value.denominator))
-    )
-
-
-def _other_symbol(
-    reading: FormulaReading, part: Expression, place: str, value: Factored
-) -> Iterator[Correction]:
+def _other_symbol(wanted: _Wanted) -> Iterator[Correction]:
     """Yield another name, or another function of the same argument."""
+    reading, part = wanted.reading, wanted.part
     others: list[Expression] = []
     if isinstance(part, Name):
         others = [
@@ -255,17 +250,16 @@ def _other_symbol(
     elif isinstance(part, Call):
         others = [Call(f, part.argument) for f in FUNCTION_SWAPS if f != part.name]
     for other in others:
-        if reading.field.equal(reading.value(other), value):
-            yield _corrected(reading, part, other, (Change(place, part, other),))
+        if reading.field.equal(reading.value(other), wanted.value):
+            yield wanted.replaced_by(other)
 
 
-def _other_terms(
-    reading: FormulaReading, part: Expression, place: str, value: Factored
-) -> Iterator[Correction]:
+def _other_terms(wanted: _Wanted) -> Iterator[Correction]:
     """Yield a sum of the same terms with other coefficients, and another number in front of all."""
+    reading, part, place = wanted.reading, wanted.part, wanted.place
     if not isinstance(part, Sum):
         return
-    coefficients = solve_linear(reading.field, value, [reading.value(t) for t in part.terms])
+    coefficients = solve_linear(reading.field, wanted.value, [reading.value(t) for t in part.terms])
     if coefficients is None:
         return
     common = _shared(reading, part, coefficients)
@@ -275,7 +269,7 @@ def _other_terms(
         terms.append(new)
         if coefficient != common:
             changes.append(Change(place, term, new))
-    corrected = _corrected(reading, part, sum_of(terms), ())
+    corrected = wanted.replaced_by(sum_of(terms))
     expression = corrected.expression
     if common != 1:
         expression, before, after = _scaled(expression, common if place == "numerator" else 1 / common)
@@ -379,20 +373,18 @@ def _with_sums(
     return Correction(tuple(changes), expression, reading.formula.scale, reading.formula.lines)
 
 
-def _more_terms(
-    reading: FormulaReading, part: Expression, place: str, value: Factored
-) -> Iterator[Correction]:
+def _more_terms(wanted: _Wanted) -> Iterator[Correction]:
     """Yield terms that are not printed."""
+    reading, part = wanted.reading, wanted.part
     if not isinstance(part, Sum):
         return
     field = reading.field
-    missing = field.reduced(value - reading.value(part))
+    missing = field.reduced(wanted.value - reading.value(part))
     term = monomial_expression(field, missing)
     if term is None:
         term = in_symbols(field, missing, symbols_of(reading))
     if term is not None:
-        new = sum_of([*part.terms, term])
-        yield _corrected(reading, part, new, (Change(place, number(0), term),))
+        yield wanted.replaced_by(sum_of([*part.terms, term]), Change(wanted.place, number(0), term))
 
 
 def _in_lines(reading: FormulaReading) -> Iterator[Correction]:
