@@ -31,10 +31,14 @@ if TYPE_CHECKING:
 
 How = Literal["proved", "measured"]
 AXIS_POINTS = 800
+"""Frequencies at which signs are compared, evenly spaced in their logarithm."""
 AXIS_BITS = 256
 HALVINGS = 30
+"""Bisections of a step, until it is a thousand millionth of itself."""
 LONGEST_TEXT = 80
+"""Characters of a factor that is shown."""
 PROBES = 5
+"""Frequencies at which the phase of a lossless system is looked at."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,8 +18,10 @@ if TYPE_CHECKING:
 
 FIRST_TERMS = 8
 LAST_TERMS = 64
+"""Terms of a power series: tried first, and doubled until the last."""
 MOST_TERMS = 60
 MOST_WAVES = 3
+"""Larger factors take too long; the limit is then left open."""
 
 
 def behaviour_at_zero(field: Arithmetic, value: Factored) -> tuple[Factored, Fraction] | None:

@@ -66,7 +66,7 @@ def symbols_of(reading: FormulaReading) -> tuple[Symbol, ...]:
 
 
 def in_symbols(field: Arithmetic, value: Factored, symbols: Sequence[Symbol]) -> Expression | None:
-    """Return a value as a sum of products of symbols with rational coefficients, ``None`` when it is none.
+    """Return a value as a sum of products of symbols with rational coefficients, ``None`` when it is not one.
 
     The lowest degree that will do is used.
     """

@@ -49,10 +49,14 @@ RATIO: Final = 1.25
 """Height of the panel of magnitudes over that of phases."""
 PHASE_MARGIN: Final = 1.12
 PHASE_STEPS: Final = (45, 90, 180, 360, 720, 1440)
+"""Degrees between ticks: the first that leaves fewer ticks than :data:`PHASE_TICKS`."""
 PHASE_TICKS: Final = 7.5
 UNDAMPED: Final = 1e-4
+"""Damping ratio below which a peak or trough has no end worth showing and is cut off at the frame."""
 UNDAMPED_REACH: Final = 0.01
+"""Values this close to such a root, relative to its frequency, do not count for the limits."""
 UNDAMPED_MARGIN_DB: Final = 15.0
+"""Room beyond the damped values where peaks are cut off."""
 
 
 def draw_bode(

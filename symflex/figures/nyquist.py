@@ -42,6 +42,7 @@ REACHES: Final = (1.5, 2.5)
 OBLONG: Final = 4.0
 """Limits asked for whose ratio exceeds this have a scale each."""
 QUANTILE: Final = 0.9
+"""Share of the values of a function that is not a loop gain for which the square is made."""
 WITHIN: Final = 0.9
 """An arrow stands in so much of what is shown."""
 SHAFT: Final = 0.01

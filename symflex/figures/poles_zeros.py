@@ -41,6 +41,7 @@ LEFT, RIGHT, BOTTOM, TOP, GAP = 0.54, 0.15, 0.38, 0.20, 0.24
 NARROWEST, WIDEST = 0.6, 1.25
 TALLEST_INCHES: Final = 2.6
 LISTED: Final = 5
+"""Roots that are named at one arrow; of the others their number is told."""
 NOTE_LINE_POINTS: Final = 7.5
 GLYPHS: Final = {"pole": r"$\times$", "zero": r"$\circ$"}
 COLOUR_OF: Final = {"pole": COLOURS[1], "zero": COLOURS[0]}

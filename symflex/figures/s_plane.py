@@ -23,13 +23,18 @@ REAL_REACH: Final = 2.5
 UNSTABLE_REACH: Final = 10.0
 """Poles in the right half plane are shown up to so many times what else is; the others at the border."""
 MARGIN: Final = 0.2
+"""Room around the roots shown, over their size."""
 MARGIN_FOR_NOTES: Final = 0.5
+"""The same at a side where notes name the roots outside."""
 LEFT_SHARE: Final = 0.65
+"""Of room that is to be added, how much goes to the left, where stable poles lie."""
 RIM: Final = (0.95, 1.03)
 """A root so near the frame, relative to its distance from the origin, would be cut by it."""
 WIDER: Final = 1.085
 WIDENINGS: Final = 8
+"""Times the view may be widened so that no root is cut by its frame."""
 SAME_DIRECTION: Final = pi / 30
+"""Roots outside within six degrees share an arrow."""
 PLAIN_LIMIT: Final = 1e5
 
 

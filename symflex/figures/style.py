@@ -20,12 +20,14 @@ if TYPE_CHECKING:
 
 COLUMN_INCHES: Final = 3.5
 PAGE_INCHES: Final = 7.16
+"""A column and the text of a page in journals of the IEEE."""
 NOTE_POINTS: Final = 6.0
 TITLE_POINTS: Final = 8.0
 LINE_INCHES: Final = 0.13
 """Height of a line of a title."""
 TITLE_SPACING: Final = 0.95
 LETTERS_PER_INCH: Final = 18
+"""Of a title in eight points, so that lines are broken before they are too long."""
 
 # Okabe and Ito (2008), told apart with every kind of colour blindness; their yellow is too pale for a line.
 COLOURS: Final = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")

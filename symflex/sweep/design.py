@@ -18,6 +18,7 @@ Scale = Literal["lin", "log"]
 Point = tuple[ExactValue, ...]
 
 POINTS_LIMIT = 1_000_000
+"""Points of one sweep."""
 DIGITS = 15
 """Significant digits of values between limits: as many as a double tells apart, so that files hold all."""
 WORKING_DIGITS = 40

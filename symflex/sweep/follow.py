@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 Doubles = npt.NDArray[np.float64]
 Complexes = npt.NDArray[np.complex128]
 Between = Callable[[int, int, int], Sequence[Complexes] | None]
-"""From two points and a number of pieces to the roots where pieces meet; ``None`` where they are not had."""
+"""From two points and a number of pieces to the roots where pieces meet; ``None`` if they cannot be found."""
 Integers = npt.NDArray[np.int64]
 
 CLEAR = 2.0

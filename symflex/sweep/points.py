@@ -49,6 +49,7 @@ LADDER = (20, 40, 80)
 SIMILAR_DIGITS = 40
 SCALE_BITS = 192
 REMEMBERED = 256
+"""Points that stand for all similar ones, of which so many are kept."""
 FAMILY_BYTES = 7
 
 

@@ -99,7 +99,7 @@ def design_of(
 
 
 def check_design(model: Model, design: Design) -> None:
-    """Refuse values with which a part that extends along x, or a delay, is what none can be.
+    """Refuse values that would give a beam a length of zero, a delay a negative time, and the like.
 
     The smallest and the largest value of each swept parameter are looked at, with the declared values of
     those that are not swept.

@@ -233,7 +233,9 @@ def _roots(design: Design, rows: Rows, between: Between | None) -> tuple[list[Na
     """Return the arrays of roots, sorted by the names of modes, and how many modes there are."""
     s = rows["re"] + 1j * rows["im"]
     names = follow(s, rows["family"].astype(np.int64), predecessors(design), between)
-    modes_kept = max(names.modes, 1)  # one that is absent everywhere: formats and readers know no empty axis
+    modes_kept = max(
+        names.modes, 1
+    )  # one at least, absent everywhere: not all formats and readers take an empty axis
     shape = (design.count, modes_kept)
     points, places = np.nonzero(names.mode >= 0)
     modes = names.mode[points, places]

@@ -36,9 +36,9 @@ class Relation:
     filtered : Factored
         The rest of ``factor`` that depends on s.
     transmission : Factored
-        What else the numerator has: zeros that are no poles of the constrained system.
+        What else the numerator has: zeros that are not poles of the constrained system.
     apart : Factored
-        What only the constrained system has: poles of it that are no zeros.
+        What only the constrained system has: poles of it that are not zeros.
     has_zeros : bool
         Whether the numerator depends on s but for ``factor``.
     is_delayed : bool

@@ -127,7 +127,7 @@ def same_sign(coordinates: Coordinates) -> Coordinates:
 
 
 def measured(equations: Equations, output: str) -> MeasuredCoordinate | None:
-    """Return what an output measures, ``None`` when that is no coordinate and no difference of two."""
+    """Return what an output measures, ``None`` if neither a coordinate nor the difference of two."""
     row = next(o for o in equations.outputs if o.name == output)
     terms = _in_nodes(equations, row.form)
     if terms is None or not 0 < len(terms) <= PAIR or any(v.kind != "node" for v in terms):

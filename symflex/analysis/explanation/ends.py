@@ -1,6 +1,6 @@
 """What holds the ends of beams, rods, shafts and strings, and what lies between an input and an output.
 
-Input: the variables at rest, or a field's conditions. Output: such as "clamped at x_act, free at x_tip".
+Input: the variables at rest, or a field's conditions. Output: words like "clamped at x_act, free at x_tip".
 
 In a beam that bends without loss the spatial exponents at a real s are ``mu*(+-1 +-j)`` with a real mu: every
 solution grows or decays along x, none travels. Real zeros of noncolocated transfer functions come of such

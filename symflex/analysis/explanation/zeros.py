@@ -323,7 +323,7 @@ def _by_condition(case: _Case, found: PoleZeroMap) -> ZeroExplanation | None:
     held = case.constrained(constraint)
     if held is None:
         return None
-    # What cleared the denominators of the condition with the input is no part of the numerator.
+    # The factor that cleared the denominators of the condition with the input is not part of the numerator.
     scale = _coefficient(case.equations, case.pair[1])
     relation = relate(case.whole, case.pair, scale, held)
     if relation is None and replaced.is_dual:

@@ -30,6 +30,7 @@ AXIS_GAP = 1e-7
 """Distance kept from poles on the imaginary axis, relative to theirs from 0."""
 POINTS = 400
 BISECTIONS = 60
+"""More than a double has bits."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,6 +21,7 @@ SCHEMA = "symflex.rational/1"
 INDENT = "  "
 DIGITS = 10
 JSON_DIGITS = 17
+"""So many give a double back exactly."""
 
 Row = tuple[str, ...]
 

@@ -189,7 +189,7 @@ class _Walk:
         return total
 
     def _clear(self, points: Sequence[complex]) -> list[Point]:
-        """Return the points that are no roots, with their samples."""
+        """Return the points that are not roots, with their samples."""
         sampled = ((z, self._winding.function.at_logarithm(z)) for z in points)
         return [(z, sample) for z, sample in sampled if sample is not None]
 

@@ -147,7 +147,7 @@ def _conjugate(value: acb) -> acb:
 Obstacle = Literal["multiple", "undecided"]
 
 ROUNDS_OF_ROOTS = 4
-"""Doublings of the precision after which rounding is no reason any more."""
+"""After so many doublings of the precision, rounding is no longer the reason."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

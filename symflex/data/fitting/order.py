@@ -85,7 +85,7 @@ class Candidate:
     refined : Refined
         Where it ended.
     failure : Diagnostic or None
-        Why it is no result.
+        Why it cannot be a result.
     rival : Refined or None
         The best fit met with another power of s.
     """
@@ -427,7 +427,7 @@ def _is_explained(problem: FitProblem, refined: Refined) -> bool:
 
 
 def _failure(problem: FitProblem, refined: Refined, *, is_quick: bool = False) -> Diagnostic | None:
-    """Return why a minimum is no result, None when it is one."""
+    """Return why a minimum cannot be a result, None when it can."""
     if not (refined.has_converged or is_quick) or not np.isfinite(refined.cost):
         hint = "ask for fewer resonances, or for another --start"
         return Diagnostic("SF612", "the fit did not converge", None, hint)

@@ -159,7 +159,7 @@ class _PhaseSearch:
     """Fits of one response by resonances whose zeros lie in the left half plane."""
 
     def __init__(self, problem: FitProblem, response: int, fitted: Resonances) -> None:
-        # A dead time is no part of the question: it stays as it was fitted.
+        # A dead time is not part of the question: it stays as it was fitted.
         free = replace(problem.free, delay=False)
         self.single = replace(
             problem, lines=problem.lines[response : response + 1], delays=(), free=free

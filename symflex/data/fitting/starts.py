@@ -243,7 +243,7 @@ def _conspicuous(problem: FitProblem, poles: Complex, count: int) -> Complex:
             share = np.abs(basis[:, 2 * i : 2 * i + 2] @ solved[2 * i : 2 * i + 2]) * weight
             size[i] += float(np.sum(share**2))
     size = np.where((np.abs(poles) >= low) & (np.abs(poles) <= high), size, 0.0)
-    # A smooth rise is no resonance, however large it is.
+    # A smooth rise is not a resonance, however large it is.
     size = size * np.minimum(1.0, LARGEST_START / (-poles.real / np.abs(poles)))
     chosen = np.sort(np.argsort(-size, kind="stable")[:count])
     return poles[chosen]

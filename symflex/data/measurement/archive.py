@@ -1,4 +1,4 @@
-"""Numpy archives of hostile kind: nothing is unpickled, and nothing is allocated that is not there.
+"""Numpy archives that anybody may have written: nothing is unpickled or allocated that is not there.
 
 The layouts are PKWARE's APPNOTE 6.3.10 for the archive and numpy's enhancement proposal 1 for what is in it.
 ``numpy.load`` allocates what a header claims before it reads: 144 bytes ask for gigabytes.
@@ -24,9 +24,11 @@ _DESCRIPTION: Final = re.compile(r"'descr': '([<>|=]?)([biufcSU?]\d{0,6})'")
 _ORDER: Final = re.compile(r"'fortran_order': (True|False)")
 _SHAPE: Final = re.compile(r"'shape': \(((?:\d{1,12}, ?)*\d{0,12}),?\)")
 _END, _END_SIZE, _END_64, _COMMENT = b"PK\x05\x06", 22, b"PK\x06\x07", 0xFFFF
+"""The record that ends an archive: signature, size, its locator of 64 bits, the longest comment."""
 _DIRECTORY_LIMIT: Final = 2**20
 """Bytes of an archive's list of members: some ten thousand of them."""
 _IS_ENCRYPTED = 1
+"""Bit of a member's flags."""
 
 
 def read_archive(data: bytes, limit: int, members: int) -> Arrays:

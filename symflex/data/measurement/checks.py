@@ -18,9 +18,12 @@ if TYPE_CHECKING:
 MAX_BYTES: Final = 50_000_000
 MAX_LINES: Final = 1_000_000
 MAX_RESPONSES: Final = 100
+"""Larger files are refused before they fill the memory."""
 MAX_ERRORS: Final = 20
+"""Problems of one file that are listed."""
 FEWEST_LINES = 3
 MOST_AVERAGES = 1e9
+"""Of a number of averages, beyond which it is a mistake."""
 SHOWN_NAMES = 8
 SMALLEST, LARGEST = 1e-100, 1e100
 """Of a magnitude: its square, and the square of that over another, have to be numbers too."""

@@ -22,6 +22,7 @@ _HEADER, _VERSION, _VERSION_5, _VERSION_7_3 = 128, 124, 1, 2
 _STORED: Final = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
 _TEXT: Final = {2: "utf-8", 16: "utf-8", 4: "utf-16", 17: "utf-16", 18: "utf-32"}
 _MATRIX, _COMPRESSED = 14, 15
+"""Data types of elements: an array, and a compressed element."""
 _CELL, _CHAR, _NUMERIC = 1, 4, range(6, 16)
 _COMPLEX_FLAG = 0x0800
 _STORED_4: Final = ("f8", "f4", "i4", "i2", "u2", "u1")

@@ -1,4 +1,4 @@
-"""Arrays in netCDF 3 files of hostile kind: nothing is allocated that is not there.
+"""Arrays in netCDF 3 files that anybody may have written: nothing is allocated that is not there.
 
 The layout is that of Unidata, NetCDF Classic Format Specification (versions 1 and 2: 32 and 64-bit offsets).
 """
@@ -16,6 +16,7 @@ Variable = tuple[tuple[str, ...], npt.NDArray[Any], Attributes]
 
 _TYPES: Final = {1: "i1", 2: "S1", 3: "i2", 4: "i4", 5: "f4", 6: "f8"}
 _DIMENSION, _VARIABLE, _ATTRIBUTE, _ABSENT, _TEXT = 10, 11, 12, 0, 2
+"""Tags of lists, and the type of characters, as the specification numbers them."""
 _OFFSETS: Final = {1: "i4", 2: "i8"}
 
 

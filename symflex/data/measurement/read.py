@@ -1,6 +1,6 @@
 """Reading a data file: which reader its name asks for, and no more of it than the limit.
 
-What a user knows of responses besides what their files say is added to them afterwards.
+What a user knows of the responses, and their files do not say, is added afterwards.
 """
 
 from __future__ import annotations

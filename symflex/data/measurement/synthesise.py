@@ -29,7 +29,7 @@ Complex = npt.NDArray[np.complex128]
 OVERLAP_WORTH: Final = 0.947
 """Independent averages per record at half an overlap with a Hann window: 1/(1 + 2/36) (Welch 1967)."""
 SAMPLING: Final = 2.56
-"""Sampling rate over the highest line, as analysers have it."""
+"""Sampling rate over the highest line, as is usual in analysers."""
 SENSOR_DAMPING: Final = 0.7
 LOWEST_HZ: Final = 1e-15
 HIGHEST_HZ: Final = 1e15

@@ -23,9 +23,13 @@ if TYPE_CHECKING:
 
 MARK: Final = b"    -1"
 HEADER_LINES: Final = 11
+"""Records of a dataset 58 before its data."""
 RESPONSE, TRANSMISSIBILITY, COHERENCE, MULTIPLE_COHERENCE = 4, 5, 6, 26
+"""Function types of datasets 58."""
 FREQUENCY_AXIS: Final = 18
+"""Data type of an abscissa that is a frequency."""
 ORDINATE_TYPES: Final = (2, 4, 5, 6)
+"""Real in single and double precision, complex in single and double precision."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,7 +148,7 @@ def _read(pyuff: ModuleType, name: str, data: bytes, places: Sequence[DatasetPla
             try:
                 entry = pyuff.UFF(path).read_sets(place.number)
             except Exception as error:
-                # Whatever goes wrong in it, pyuff raises Exception itself and no class derived from it.
+                # Whatever goes wrong in it, pyuff raises Exception itself, never a class derived from it.
                 if type(error) is not Exception:
                     raise
                 entry = None
