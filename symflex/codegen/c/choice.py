@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from symflex.codegen.c.expression import Kind, Term, product
 from symflex.codegen.c.scope import POSITIVE, STEP, Body
 from symflex.codegen.program import Condition, Piecewise, RealNumber
-from symflex.codegen.program.real_axis import needed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -17,10 +16,10 @@ if TYPE_CHECKING:
 def conditions_of(program: Piecewise, scope: Body, varying: Body | None = None) -> list[str]:
     """Print what conditions need, and return the conditions; limits go to the outer scope."""
     inner = varying or scope
-    fixed = needed(program.tests, [c.scale for c in program.conditions])
+    fixed = program.tests.needed([c.scale for c in program.conditions])
     scope.assign(fixed.constants)
     limits = [limit_text(c, scope) for c in program.conditions]
-    varied = needed(program.tests, [c.quantity for c in program.conditions])
+    varied = program.tests.needed([c.quantity for c in program.conditions])
     scope.assign(varied.constants)
     if varying is not None:
         inner.known = dict(scope.known)

@@ -15,7 +15,6 @@ from symflex.codegen.c.expression import Kind, Term, complex_term, quotient
 from symflex.codegen.c.lanes import fits_lanes, is_rational_in_lanes, lanes, rational_lanes
 from symflex.codegen.c.scope import AXIS, POSITIVE, STEP, WIDTH, Body, S
 from symflex.codegen.program import CodePiece, Piecewise
-from symflex.codegen.program.real_axis import needed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -130,7 +129,7 @@ class Functions:
 
     def _piece(self, name: str, piece: CodePiece, orders: set[int]) -> list[list[str]]:
         scope = Body.of(self.members, S)
-        code = needed(piece.code, piece.code.values)
+        code = piece.code.needed(piece.code.values)
         scope.assign((*code.constants, *code.assignments))
         values = [scope.term(v) for v in piece.code.values]
         if not piece.circle:
@@ -183,7 +182,7 @@ class Functions:
 
     def _axis_pieces(self, program: Piecewise, outer: Body, inner: Body) -> None:
         conditions = conditions_of(program, outer, inner)
-        codes = [needed(piece.code, piece.code.values) for piece in program.code]
+        codes = [piece.code.needed(piece.code.values) for piece in program.code]
         fixed: list[dict[str, Term]] = []
         for piece, code in zip(program.code, codes, strict=True):
             outer.known = {}

@@ -14,7 +14,6 @@ from symflex.codegen.c.choice import limit_text
 from symflex.codegen.c.expression import LANE_FUNCTIONS, Kind, Term, quotient
 from symflex.codegen.c.scope import AXIS_LANE, LANE, STEP, Body
 from symflex.codegen.program import Apply, Assigned, CodeNode, Divide, Piecewise, Solutions, Straight
-from symflex.codegen.program.real_axis import needed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -57,7 +56,7 @@ def is_rational_in_lanes(program: Piecewise) -> bool:
     """Tell whether a program varies, has one branch, and calls no function of s."""
     near = program.near
     values = (*(a.value for a in near.assignments), *near.values)
-    calls = (n for value in values for n in _all(value) if isinstance(n, Apply | Solutions))
+    calls = (n for value in values for n in value.walk() if isinstance(n, Apply | Solutions))
     return program.varies and program.far is None and not any(calls)
 
 
@@ -73,15 +72,15 @@ def lanes(program: Piecewise, members: Mapping[str, str]) -> list[str]:
     """
     outer = Body.of(members, LANE)
     (condition,) = program.conditions
-    fixed = needed(program.tests, [condition.scale])
+    fixed = program.tests.needed([condition.scale])
     outer.assign(fixed.constants)
     limit = limit_text(condition, outer)
-    tested = needed(program.tests, [condition.quantity])
+    tested = program.tests.needed([condition.quantity])
     outer.assign(tested.constants)
     tests = outer.within(3)
     pieces: list[tuple[Straight, dict[str, Term]]] = []
     for k in program.pieces:
-        code = needed(program.code[k].code, program.code[k].code.values)
+        code = program.code[k].code.needed(program.code[k].code.values)
         outer.known = {}
         outer.assign(code.constants)
         pieces.append((code, outer.known))
@@ -198,7 +197,7 @@ def _stages(code: Straight, scope: Body, condition: str) -> None:
 
 def _is_used_later(name: str, stage: int, values: Sequence[CodeNode], stages: Sequence[int]) -> bool:
     return any(
-        other > stage and any(isinstance(n, Assigned) and n.name == name for n in _all(value))
+        other > stage and any(isinstance(n, Assigned) and n.name == name for n in value.walk())
         for value, other in zip(values, stages, strict=True)
     )
 
@@ -206,13 +205,4 @@ def _is_used_later(name: str, stage: int, values: Sequence[CodeNode], stages: Se
 def _calls(root: CodeNode) -> bool:
     """Tell whether an expression has a function that there is only in the library."""
     others = ("abs", *LANE_FUNCTIONS)
-    return any(isinstance(node, Apply) and node.function not in others for node in _all(root))
-
-
-def _all(root: CodeNode) -> list[CodeNode]:
-    found, pending = [], [root]
-    while pending:
-        node = pending.pop()
-        found.append(node)
-        pending += node.children
-    return found
+    return any(isinstance(node, Apply) and node.function not in others for node in root.walk())

@@ -22,7 +22,6 @@ from symflex.codegen.module_text import (
     value_as_written,
 )
 from symflex.codegen.program import identifiers, inert, wrapped
-from symflex.codegen.program.calls import RuntimeCalls
 from symflex.codegen.source_parts import called_parts
 from symflex.errors import Diagnostic, UsageError
 
@@ -225,7 +224,7 @@ class _Files:
             real = self.on_axis[key].verification.text(self.digits)
             sentences = [f"Of s, {said}.", f"At s = j omega, in real arithmetic, {real}."]
         if program.solves:
-            sentences.append(ITERATED if RuntimeCalls.of([program]).roots else COST)
+            sentences.append(ITERATED if program.finds_roots else COST)
         lines.append("")
         for sentence in sentences:
             lines += wrapped(inert(sentence), WIDTH - 3)

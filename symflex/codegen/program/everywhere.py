@@ -16,7 +16,6 @@ import numpy as np
 
 from symflex.codegen.program.evaluate import numbers_of_pieces, value_of_piece
 from symflex.codegen.program.nodes import ONE, CodePiece, Piecewise
-from symflex.codegen.program.real_axis import needed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -45,7 +44,7 @@ def in_pieces(program: Piecewise) -> Piecewise:
     """
     if not program.is_lumped:
         return program
-    needs = (needed(piece.code, piece.code.values) for piece in program.code)
+    needs = (piece.code.needed(piece.code.values) for piece in program.code)
     code = tuple(CodePiece(replace(own, values=(*own.values, ONE))) for own in needs)
     return replace(program, code=code)
 

@@ -19,7 +19,7 @@ from math import inf
 from typing import TYPE_CHECKING, ClassVar, Self
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
 Frames = tuple[
     tuple[tuple[int, ...], tuple[tuple[tuple[int, ...], int], ...], tuple[tuple[tuple[int, ...], int], ...]],
@@ -54,6 +54,14 @@ class CodeNode:
             value = getattr(self, name)
             found += value if isinstance(value, tuple) else (value,)
         return tuple(found)
+
+    def walk(self) -> Iterator[CodeNode]:
+        """Yield the node and all it is made of, in no particular order."""
+        pending: list[CodeNode] = [self]
+        while pending:
+            node = pending.pop()
+            yield node
+            pending += node.children
 
     def with_children(self, children: Iterable[CodeNode]) -> Self:
         """Return the same with other operands, as many as there are."""
@@ -288,11 +296,21 @@ class Straight:
 
     def nodes(self) -> Iterator[CodeNode]:
         """Yield all expressions, parts included, in no particular order."""
-        pending = [*self.values, *(a.value for a in (*self.constants, *self.assignments))]
-        while pending:
-            node = pending.pop()
-            yield node
-            pending += node.children
+        for root in (*self.values, *(a.value for a in (*self.constants, *self.assignments))):
+            yield from root.walk()
+
+    def needed(self, values: Sequence[CodeNode]) -> Straight:
+        """Return the assignments that some values need, and these values."""
+        names = {n.name for value in values for n in value.walk() if isinstance(n, Assigned)}
+        kept: list[list[Assignment]] = []
+        for group in (self.assignments, self.constants):
+            own: list[Assignment] = []
+            for assignment in reversed(group):
+                if assignment.name in names:
+                    own.insert(0, assignment)
+                    names |= {n.name for n in assignment.value.walk() if isinstance(n, Assigned)}
+            kept.append(own)
+        return Straight(tuple(kept[1]), tuple(kept[0]), tuple(values))
 
 
 @dataclass(frozen=True, slots=True)
@@ -356,6 +374,12 @@ class Piecewise:
         return self.turn is not None
 
     @property
+    def finds_roots(self) -> bool:
+        """True when exponents are roots of polynomials without a formula."""
+        codes = (self.tests, *(piece.code for piece in self.code))
+        return any(isinstance(n, Roots) for code in codes for n in code.nodes())
+
+    @property
     def is_lumped(self) -> bool:
         """True when every piece computes the value itself."""
         return len(self.code[0].code.values) == 1
@@ -404,9 +428,4 @@ def lumped(
 
 
 def _operations(root: CodeNode) -> int:
-    total, pending = 0, [root]
-    while pending:
-        node = pending.pop()
-        total += max(len(node.children) - 1, 0)
-        pending += node.children
-    return total
+    return sum(max(len(node.children) - 1, 0) for node in root.walk())

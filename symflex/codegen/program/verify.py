@@ -20,7 +20,7 @@ from symflex.codegen.program.build import available_forms, build_program
 from symflex.codegen.program.distributed import build_piecewise, build_real, reaches_of
 from symflex.codegen.program.evaluate import evaluate, nearest_double
 from symflex.codegen.program.nested import build_nested
-from symflex.codegen.program.real_axis import for_positive, in_half_angles
+from symflex.codegen.program.positive_frequencies import for_positive, in_half_angles
 from symflex.errors import BudgetError, ModelError
 from symflex.transfer import BoundNested, NestedTransferFunction, bind, bind_nested
 from symflex.transfer.bind import EnclosedTransferFunction

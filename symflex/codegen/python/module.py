@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 from symflex.codegen.export import Export, Language
 from symflex.codegen.module_text import COST, ITERATED, default_value
 from symflex.codegen.program import identifiers, nearest_double
-from symflex.codegen.program.calls import RuntimeCalls
 from symflex.codegen.python.dialects import ARRAY_API_DIALECT, JAX_DIALECT, NUMPY_DIALECT
 from symflex.codegen.python.expression import statement
 from symflex.codegen.python.pieces import BlockText, TracedText
@@ -131,7 +130,7 @@ class _Function:
         )
         notes = [self.sentence, *([MEASURED] if dialect.is_traced else [])]
         if program.solves:
-            notes.append(ITERATED if dialect.is_traced and RuntimeCalls.of([program]).roots else COST)
+            notes.append(ITERATED if dialect.is_traced and program.finds_roots else COST)
         return function_docstring(self.member.tf, signature, notes)
 
 

@@ -28,7 +28,6 @@ from symflex.codegen.program import (
 from symflex.codegen.program.evaluate import number_of
 from symflex.codegen.program.everywhere import cases_of, in_pieces, places_of
 from symflex.codegen.program.nodes import ONE
-from symflex.codegen.program.real_axis import needed
 from symflex.codegen.python.expression import WIDTH, ArrayPrinter, PythonPrinter, statement
 
 if TYPE_CHECKING:
@@ -222,9 +221,9 @@ class BlockText(PrivateText):
             limits.append(repr(condition.limit) + (f" / np.abs({scale})" if scale != "1.0" else ""))
             is_positive = isinstance(condition.quantity, Laplace)
             sizes.append(condition.quantity if is_positive else Apply("abs", condition.quantity))
-        fixed = needed(program.tests, [c.scale for c in program.conditions if c.limit])
+        fixed = program.tests.needed([c.scale for c in program.conditions if c.limit])
         lines: list[list[str]] = []
-        for code in (fixed, needed(program.tests, sizes)):
+        for code in (fixed, program.tests.needed(sizes)):
             own = (*code.constants, *code.assignments)
             lines.append([line for a in own for line in printer.assignment(a.name, a.value, "    ")])
         return [
