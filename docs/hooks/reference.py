@@ -20,7 +20,7 @@ from symflex.quantities.units import PLAIN_UNITS, PREFIXABLE_UNITS, PREFIXES
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from symflex.library.blocks import Block, BlockParameter
+    from symflex.library.blocks import Block
     from symflex.library.elements import Choice, Element, ParameterPort, Port
 
 PLACE = re.compile(r"^<!-- reference: (\w+) -->$", re.MULTILINE)
@@ -107,7 +107,7 @@ def _port_row(port: Port) -> tuple[str, ...]:
     return f"`{port.name}`", f"{count} ({port.domain})", port.doc, default
 
 
-def _parameter_row(parameter: ParameterPort | BlockParameter) -> tuple[str, ...]:
+def _parameter_row(parameter: ParameterPort) -> tuple[str, ...]:
     unit = f"`{parameter.unit}`" if parameter.unit else "inferred"
     default = "required" if parameter.default is None else f"`{parameter.default}`"
     return f"`{parameter.name}`", unit, parameter.doc, default

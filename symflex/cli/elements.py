@@ -14,7 +14,7 @@ from symflex.errors.diagnostic import nearest
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.library.blocks import Block, BlockParameter
+    from symflex.library.blocks import Block
     from symflex.library.elements import Element, ParameterPort
 
 MODEL_BLOCK = "model"
@@ -123,7 +123,7 @@ def _describe_model_block() -> None:
     say(_key("tf", "OUT/IN of that specification"))
 
 
-def _parameter(parameter: ParameterPort | BlockParameter, only: str = "") -> str:
+def _parameter(parameter: ParameterPort, only: str = "") -> str:
     default = f", default {parameter.default}" if parameter.default is not None else ""
     unit = f" [{parameter.unit}]" if parameter.unit else ""
     return _key(parameter.name, f"{parameter.doc}{unit}{default}{only}")
@@ -184,7 +184,7 @@ def _block_json(block: Block) -> dict[str, object]:
     }
 
 
-def _parameter_json(parameter: ParameterPort | BlockParameter) -> dict[str, object]:
+def _parameter_json(parameter: ParameterPort) -> dict[str, object]:
     return {
         "name": parameter.name,
         "unit": parameter.unit or None,

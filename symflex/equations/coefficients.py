@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, ModelError
-from symflex.expressions import Derivative, Expression, Name, Negative, Product, Quotient, Sum
+from symflex.expressions import Derivative, Expression, Name, Negative, Product, Quotient, Sum, nodes
 from symflex.library.elements import Variable
 from symflex.library.fields import FieldEquation
 
@@ -87,15 +87,10 @@ def _constant(expression: Expression, value: Factored) -> Terms:
 
 def _varies(expression: Expression, unknowns: Collection[str], evaluator: ExactEvaluator) -> bool:
     """Tell whether an expression holds an unknown, an input or a signal."""
-    pending = [expression]
-    while pending:
-        node = pending.pop()
-        if isinstance(node, Derivative):
-            return True
-        if isinstance(node, Name):
-            if node.name in unknowns:
-                return True
-            if evaluator.scope.lookup(node, constant=False).variable is not None:
-                return True
-        pending.extend(node.children)
-    return False
+
+    def varies(node: Expression) -> bool:
+        if not isinstance(node, Name):
+            return isinstance(node, Derivative)
+        return node.name in unknowns or evaluator.scope.lookup(node, constant=False).variable is not None
+
+    return any(varies(node) for node in nodes(expression))

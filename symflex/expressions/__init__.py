@@ -26,7 +26,7 @@ from symflex.expressions.nodes import (
 )
 from symflex.expressions.parse import parse, parse_equation
 from symflex.expressions.slips import FUNCTIONS
-from symflex.expressions.walk import measured, names, replace_values, substitute
+from symflex.expressions.walk import measured, names, nodes, replace_values, substitute
 
 __all__ = [
     "FUNCTIONS",
@@ -51,6 +51,7 @@ __all__ = [
     "measured",
     "names",
     "negative",
+    "nodes",
     "number",
     "parse",
     "parse_equation",

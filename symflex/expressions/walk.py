@@ -43,15 +43,16 @@ def names(expression: Expression) -> tuple[Name | Attribute | Call | Derivative,
     (Call(name='sin', argument=Name(name='x'), order=0), Name(name='x'), Attribute(owner='motor', name='i'),
      Name(name='x'))
     """
-    return tuple(n for n in _nodes(expression) if isinstance(n, Name | Attribute | Call | Derivative))
+    return tuple(n for n in nodes(expression) if isinstance(n, Name | Attribute | Call | Derivative))
 
 
 def measured(expression: Expression) -> tuple[Measured, ...]:
     """Return every number with a unit, in order of appearance."""
-    return tuple(n for n in _nodes(expression) if isinstance(n, Measured))
+    return tuple(n for n in nodes(expression) if isinstance(n, Measured))
 
 
-def _nodes(expression: Expression) -> list[Expression]:
+def nodes(expression: Expression) -> list[Expression]:
+    """Return an expression and all its parts, in order of appearance, each before its own parts."""
     found: list[Expression] = []
     pending = [expression]
     while pending:

@@ -5,9 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from symflex.model.declarations import (
-    DeclaredParameter,
-)
+from symflex.model.declarations import DeclaredParameter
 from symflex.model.model import (
     Definition,
     FieldProblem,

@@ -178,12 +178,7 @@ class NetworkReader:
     def _element_type(self, table: TableValue, entry: KeyValue) -> Element | None:
         kind = table.get("type")
         if kind is None:
-            self.reader.note(
-                "SF214",
-                f"element '{entry.key}' has no type",
-                entry.key_span,
-                TYPES_HINT,
-            )
+            self.reader.note("SF214", f"element '{entry.key}' has no type", entry.key_span, TYPES_HINT)
             return None
         text = self.reader.string(kind, f"type of element '{entry.key}'")
         if text is None:

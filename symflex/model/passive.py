@@ -29,13 +29,6 @@ OF_ANY_SIGN = frozenset({"cg", "length", "ratio", "k_t", "k_e"})
 def is_passive(model: Model, values: Iterable[tuple[str, ExactValue]]) -> bool:
     """Tell whether it is proved that a model supplies no energy.
 
-    Parameters
-    ----------
-    model : Model
-        Resolved.
-    values : iterable of (str, ExactValue)
-        Of its parameters.
-
     Returns
     -------
     bool

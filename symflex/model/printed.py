@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from symflex.algebra import LAPLACE
 from symflex.errors import Diagnostic
 from symflex.errors.diagnostic import nearest
-from symflex.expressions import FUNCTIONS, Attribute, Call, Derivative, Expression, Name, Power, names
+from symflex.expressions import FUNCTIONS, Attribute, Call, Derivative, Expression, Name, Power, names, nodes
 from symflex.model.points import Line
 
 if TYPE_CHECKING:
@@ -62,13 +62,6 @@ def readable_names(model: Model, broken: Collection[str] = ()) -> Readable:
 def check_printed(published: Published, readable: Readable) -> list[Diagnostic]:
     """Return everything wrong with the names and exponents of a printed formula.
 
-    Parameters
-    ----------
-    published : Published
-        As parsed.
-    readable : Readable
-        What names mean.
-
     Returns
     -------
     list of Diagnostic
@@ -112,10 +105,7 @@ def _unknown(node: Name, known: Collection[str], readable: Readable) -> Diagnost
 
 
 def _exponent_problems(expression: Expression) -> Iterator[Diagnostic]:
-    pending = [expression]
-    while pending:
-        part = pending.pop()
-        pending.extend(part.children)
+    for part in nodes(expression):
         if isinstance(part, Power) and (names(part.exponent) or NUMBERS.value(part.exponent) is None):
             message = "an exponent in a printed formula is a rational number"
             yield Diagnostic("SF225", message, part.exponent.span or part.span)

@@ -4,13 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symflex.model.declarations import (
-    read_label,
-)
-from symflex.model.model import (
-    Output,
-    Signal,
-)
+from symflex.model.declarations import read_label
+from symflex.model.model import Output, Signal
 from symflex.model.reading import Reader
 from symflex.model.scope import RESERVED
 from symflex.model.spec import TableValue

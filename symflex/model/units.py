@@ -50,6 +50,16 @@ def check_units(
     system = DimensionSystem(
         scope, quantities, {d.name: d.expression for d in draft.definitions}, known, blocks
     )
+
+    def require(expression: Expression, unit: str, what: str, doc: str) -> None:
+        if expression.span in unsound:
+            system.measure(expression)
+        elif not isinstance(expression, QuantityLiteral):
+            system.require(expression, unit, what, doc)
+        elif unit and expression.quantity.dimension != unit_of(unit).dimension:
+            message = f"{what} is in '{expression.quantity.unit}'; {doc} is in '{unit}'"
+            reader.note("SF203", message, expression.span)
+
     system.place_lines()
     for definition in draft.definitions:
         # In this order each one finds those it uses already measured, however long the chain.
@@ -58,18 +68,11 @@ def check_units(
         for name, expression in use.values:
             where = f"{name} of {use.element.type_name} '{use.name}'"
             doc = next(p.doc for p in use.element.parameters if p.name == name)
-            if expression.span in unsound:
-                system.measure(expression)
-            else:
-                _require(reader, system, expression, port_unit(use, name), where, doc)
+            require(expression, port_unit(use, name), where, doc)
     for block in draft.blocks:
         for name, expression in block.values:
             doc = next(p.doc for p in block.block.parameters if p.name == name) if block.block else ""
-            where = f"{name} of block '{block.name}'"
-            if expression.span in unsound:
-                system.measure(expression)
-            else:
-                _require(reader, system, expression, block_unit(block, name), where, doc)
+            require(expression, block_unit(block, name), f"{name} of block '{block.name}'", doc)
     _check_fields(draft, system, unsound, fields_placed)
     for signal in draft.signals:
         if signal.expression.span in unsound:
@@ -157,17 +160,6 @@ def _in_si(parameter: ModelParameter) -> Quantity | None:
         return None
     unit = unit_of(parameter.unit)
     return Quantity(Fraction(1), 0, parameter.cycles, unit.dimension, unit.radians, parameter.unit)
-
-
-def _require(
-    reader: Reader, system: DimensionSystem, expression: Expression, unit: str, what: str, doc: str
-) -> None:
-    if not isinstance(expression, QuantityLiteral):
-        system.require(expression, unit, what, doc)
-        return
-    found = expression.quantity
-    if unit and found.dimension != unit_of(unit).dimension:
-        reader.note("SF203", f"{what} is in '{found.unit}'; {doc} is in '{unit}'", expression.span)
 
 
 def _known_dimensions(draft: Draft, placed: Sequence[PlacedElement]) -> dict[Variable, Dimension]:

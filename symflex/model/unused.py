@@ -24,11 +24,6 @@ ALIKE = 0.8
 def unused(model: Model) -> tuple[Diagnostic, ...]:
     """Return a warning for every loose node and for every name that nothing uses.
 
-    Parameters
-    ----------
-    model : Model
-        Resolved.
-
     Returns
     -------
     tuple of Diagnostic

@@ -42,11 +42,6 @@ FEW = 2
 def minimal(system: StateSpace) -> StateSpace:
     """Return the controllable and observable part.
 
-    Parameters
-    ----------
-    system : StateSpace
-        Of any kind.
-
     Returns
     -------
     StateSpace

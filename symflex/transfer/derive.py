@@ -101,7 +101,7 @@ class _CramerQuotients:
         output = next(o for o in model.outputs if o.name == row.name)
         given = next(i for i in model.inputs if i.name == source)
         if self._reduction is None and row.divisor.is_one and self._line.prove_coprime(row.name, source):
-            return self._lumped(output, given, self._primitive(row.name, source, num), None)
+            return self._made(output, given, self._primitive(row.name, source, num), None)
         # For a zero numerator the common factor is the whole denominator: every mode is hidden.
         common = num.gcd(self._den)
         num_closed, den_closed = num / common, self._den / common
@@ -121,7 +121,7 @@ class _CramerQuotients:
         numerator = self._expansion.expanded(self._closure.open(num_closed))
         ratio, cancelled = cancel(numerator, denominator, self._images)
         closed = ClosedForm(self._opening, num_closed, den_closed) if cancelled.is_one else None
-        return self._lumped(output, given, closed, ratio, self._hidden(shared * cancelled))
+        return self._made(output, given, closed, ratio, self._hidden(shared * cancelled))
 
     def _primitive(self, output: str, source: str, num: fmpz_mpoly) -> ClosedForm:
         """Return a quotient of coprime determinants without common integer, the denominator positive."""
@@ -136,36 +136,38 @@ class _CramerQuotients:
         sign = 1 if den.leading_coefficient() > 0 else -1
         return ClosedForm(self._opening, sign * num, sign * den, order)
 
-    def _lumped(
+    def _made(
         self,
         output: Output,
         given: Input,
         closed: ClosedForm | None,
         ratio: Factored | None,
         hidden: tuple[HiddenFactor, ...] = (),
+        table: KernelTable = NO_KERNELS,
+        parts: tuple[Factored, Factored] | None = None,
     ) -> TransferFunction:
-        known = dict(self._equations.model.quotients).get((output.name, given.name))
+        equations, model = self._equations, self._equations.model
+        known = dict(model.quotients).get((output.name, given.name))
+        quantity, unit = name_quantity(output, given, known), unit_of_quotient(output, given, known)
+        ring, definitions, constants = equations.ring, equations.definitions, equations.constants
         return TransferFunction(
             output,
             given,
             ratio,
             closed,
             hidden,
-            name_quantity(output, given, known),
-            unit_of_quotient(output, given, known),
-            self._equations.ring,
-            self._equations.definitions,
-            self._equations.constants,
-            self._equations.model,
+            quantity,
+            unit,
+            ring,
+            definitions,
+            constants,
+            model,
+            table,
+            parts,
         )
 
     def _finish_distributed(
-        self,
-        output: Output,
-        given: Input,
-        num: fmpz_mpoly,
-        denominator: Factored,
-        hidden: Factored,
+        self, output: Output, given: Input, num: fmpz_mpoly, denominator: Factored, hidden: Factored
     ) -> TransferFunction:
         """Return the transfer function of a distributed system, with the kernels' relations used."""
         reduction = self._reduction
@@ -192,23 +194,8 @@ class _CramerQuotients:
             table = table.restricted(
                 above.ring.used_in(f for v in (above, below, cancelled) for f, _ in v.factors)
             )
-        model = self._equations.model
-        known = dict(model.quotients).get((output.name, given.name))
-        return TransferFunction(
-            output,
-            given,
-            ratio,
-            None,
-            self._hidden(cancelled, table),
-            name_quantity(output, given, known),
-            unit_of_quotient(output, given, known),
-            self._equations.ring,
-            self._equations.definitions,
-            self._equations.constants,
-            model,
-            table,
-            (above, below) if table else None,
-        )
+        parts = (above, below) if table else None
+        return self._made(output, given, None, ratio, self._hidden(cancelled, table), table, parts)
 
     def _without_kernels(self, value: Factored) -> Factored:
         """Return the factors that hold no kernel or wavenumber, over the ring without them."""

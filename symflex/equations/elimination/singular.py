@@ -228,11 +228,6 @@ def is_singular(equations: Equations) -> bool:
 def unreached(equations: Equations) -> tuple[Diagnostic, ...]:
     """Return a warning for every input that reaches nothing, output that stays zero, and idle element.
 
-    Parameters
-    ----------
-    equations : Equations
-        Not singular.
-
     Returns
     -------
     tuple of Diagnostic

@@ -2,7 +2,6 @@
 
 from symflex.library.blocks.library import (
     Block,
-    BlockParameter,
     Delay,
     Integrator,
     Lag,
@@ -28,4 +27,4 @@ BLOCKS: dict[str, Block] = {
 MODEL_BLOCK = "model"
 """The block that stands for another specification's transfer function; resolved by the model room."""
 
-__all__ = ["BLOCKS", "MODEL_BLOCK", "Block", "BlockParameter"]
+__all__ = ["BLOCKS", "MODEL_BLOCK", "Block"]

@@ -3,23 +3,14 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
+
+from symflex.library.parameter import ParameterPort
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from symflex.algebra import Factored
-
-
-@dataclass(frozen=True, slots=True)
-class BlockParameter:
-    """A value a block takes: its key, SI unit (empty: any), meaning and default expression."""
-
-    name: str
-    unit: str
-    doc: str
-    default: str | None = None
 
 
 class Block(ABC):
@@ -31,7 +22,7 @@ class Block(ABC):
 
     type_name: ClassVar[str]
     summary: ClassVar[str]
-    parameters: ClassVar[tuple[BlockParameter, ...]]
+    parameters: ClassVar[tuple[ParameterPort, ...]]
     kernel_time: ClassVar[str] = ""
 
     @abstractmethod
@@ -50,10 +41,10 @@ class Resonance(Block):
         "(omega_p/omega_z)^2 (s^2 + 2 zeta_z omega_z s + omega_z^2)/(s^2 + 2 zeta_p omega_p s + omega_p^2)"
     )
     parameters = (
-        BlockParameter("omega_p", "rad/s", "an angular frequency"),
-        BlockParameter("zeta_p", "1", "a damping ratio"),
-        BlockParameter("omega_z", "rad/s", "an angular frequency"),
-        BlockParameter("zeta_z", "1", "a damping ratio"),
+        ParameterPort("omega_p", "rad/s", "an angular frequency"),
+        ParameterPort("zeta_p", "1", "a damping ratio"),
+        ParameterPort("omega_z", "rad/s", "an angular frequency"),
+        ParameterPort("zeta_z", "1", "a damping ratio"),
     )
 
     def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
@@ -70,8 +61,8 @@ class TransferFunctionBlock(Block):
     type_name = "tf"
     summary = "num/den, each an expression in s or a list of coefficients (highest power first)"
     parameters = (
-        BlockParameter("num", "", "a numerator"),
-        BlockParameter("den", "", "a denominator", "1"),
+        ParameterPort("num", "", "a numerator"),
+        ParameterPort("den", "", "a denominator", "1"),
     )
 
     def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
@@ -84,7 +75,7 @@ class Integrator(Block):
 
     type_name = "integrator"
     summary = "k/s"
-    parameters = (BlockParameter("k", "", "a gain", "1"),)
+    parameters = (ParameterPort("k", "", "a gain", "1"),)
 
     def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
         """Return ``k/s``."""
@@ -97,9 +88,9 @@ class LeadLag(Block):
     type_name = "lead_lag"
     summary = "k (1 + T_1 s)/(1 + T_2 s)"
     parameters = (
-        BlockParameter("k", "", "a gain", "1"),
-        BlockParameter("T_1", "s", "a time constant"),
-        BlockParameter("T_2", "s", "a time constant"),
+        ParameterPort("k", "", "a gain", "1"),
+        ParameterPort("T_1", "s", "a time constant"),
+        ParameterPort("T_2", "s", "a time constant"),
     )
 
     def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
@@ -112,7 +103,7 @@ class Lag(Block):
 
     type_name = "lag"
     summary = "k/(1 + T s)"
-    parameters = (BlockParameter("k", "", "a gain", "1"), BlockParameter("T", "s", "a time constant"))
+    parameters = (ParameterPort("k", "", "a gain", "1"), ParameterPort("T", "s", "a time constant"))
 
     def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
         """Return the filter's transfer function."""
@@ -125,10 +116,10 @@ class Pid(Block):
     type_name = "pid"
     summary = "k_p + k_i/s + k_d s/(1 + T_f s)"
     parameters = (
-        BlockParameter("k_p", "", "a proportional gain"),
-        BlockParameter("k_i", "", "an integral gain", "0"),
-        BlockParameter("k_d", "", "a derivative gain", "0"),
-        BlockParameter("T_f", "s", "a time constant", "0"),
+        ParameterPort("k_p", "", "a proportional gain"),
+        ParameterPort("k_i", "", "an integral gain", "0"),
+        ParameterPort("k_d", "", "a derivative gain", "0"),
+        ParameterPort("T_f", "s", "a time constant", "0"),
     )
 
     def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
@@ -145,7 +136,7 @@ class Delay(Block):
 
     type_name = "delay"
     summary = "exp(-s T)"
-    parameters = (BlockParameter("T", "s", "a dead time"),)
+    parameters = (ParameterPort("T", "s", "a dead time"),)
     kernel_time = "T"
 
     def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:

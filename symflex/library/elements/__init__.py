@@ -17,11 +17,9 @@ from symflex.library.elements.element import (
     EquationRow,
     Injection,
     LinearForm,
-    ParameterPort,
     Placing,
     Port,
     PortTerminal,
-    Sign,
     Stamp,
     Variable,
 )
@@ -31,6 +29,7 @@ from symflex.library.elements.rotation import Inertia, RotaryDamper, TorsionSpri
 from symflex.library.elements.source import CurrentSource, ForceSource, TorqueSource, VoltageSource
 from symflex.library.elements.transducers import DcMotor, Piezo
 from symflex.library.elements.translation import Damper, Mass, Spring
+from symflex.library.parameter import ParameterPort, Sign
 
 ELEMENTS: dict[str, Element] = {
     element.type_name: element

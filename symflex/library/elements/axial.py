@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from symflex.library.elements.element import ParameterPort, Port
+from symflex.library.elements.element import Port
 from symflex.library.elements.line import LineElement
+from symflex.library.parameter import ParameterPort
 
 
 class Rod(LineElement):

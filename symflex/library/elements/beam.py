@@ -11,11 +11,11 @@ from symflex.library.elements.element import (
     EquationRow,
     Injection,
     LinearForm,
-    ParameterPort,
     Port,
     Stamp,
 )
 from symflex.library.elements.line import LineElement
+from symflex.library.parameter import ParameterPort
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

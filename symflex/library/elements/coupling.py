@@ -12,10 +12,10 @@ from symflex.library.elements.element import (
     EquationRow,
     Injection,
     LinearForm,
-    ParameterPort,
     Port,
     Stamp,
 )
+from symflex.library.parameter import ParameterPort
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -10,11 +10,11 @@ from symflex.library.elements.element import (
     EquationRow,
     Injection,
     LinearForm,
-    ParameterPort,
     Port,
     Stamp,
     two_terminal,
 )
+from symflex.library.parameter import ParameterPort
 
 if TYPE_CHECKING:
     from symflex.algebra import Factored

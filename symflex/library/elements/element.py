@@ -11,15 +11,15 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping
+    from collections.abc import Iterable, Mapping
 
     from symflex.algebra import Factored
+    from symflex.library.parameter import ParameterPort
 
 Domain = Literal["translation", "rotation", "electrical"]
 PortDomain = Literal["translation", "rotation", "electrical", "planar", "any", "whole"]
 
 Role = Literal["balance", "law", "constraint", "signal", "condition"]
-Sign = Literal["any", "nonnegative", "positive"]
 
 Placing = Literal["translation", "rotation", "electrical", "planar"]
 
@@ -170,42 +170,6 @@ class Port:
     doc: str
     default: tuple[str, ...] | None = None
     pair: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class ParameterPort:
-    """A value an element or block takes.
-
-    Parameters
-    ----------
-    name : str
-        The key.
-    unit : str
-        Its SI unit; empty when it depends on the ports (see :meth:`Element.unit_of`).
-    doc : str
-        What it is, in the words of an error message: "a mass", "a torque constant".
-    default : str, optional
-        The expression used when the key is missing; ``None`` makes the key required.
-    signal : bool
-        True when the value may be an expression of signals, inputs and nodes.
-    only : tuple of str
-        Values of the element's choices with which the key may be given; empty when with all of them.
-    sign : str
-        What the value must be: ``any``, ``nonnegative`` or ``positive``; of distributed elements, told as
-        far as values and assumptions tell. A distributed element's length is always positive.
-    """
-
-    name: str
-    unit: str
-    doc: str
-    default: str | None = None
-    signal: bool = False
-    only: tuple[str, ...] = ()
-    sign: Sign = "any"
-
-    def applies(self, chosen: Collection[str]) -> bool:
-        """Tell whether the key may be given with the chosen values."""
-        return not self.only or any(value in self.only for value in chosen)
 
 
 @dataclass(frozen=True, slots=True)

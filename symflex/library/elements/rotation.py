@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from symflex.library.elements.element import Element, ElementUse, ParameterPort, Port, Stamp, two_terminal
+from symflex.library.elements.element import Element, ElementUse, Port, Stamp, two_terminal
+from symflex.library.parameter import ParameterPort
 
 
 class Inertia(Element):

@@ -8,10 +8,10 @@ from symflex.library.elements.element import (
     EquationRow,
     Injection,
     LinearForm,
-    ParameterPort,
     Port,
     Stamp,
 )
+from symflex.library.parameter import ParameterPort
 
 
 def _delivered(use: ElementUse, form: LinearForm) -> tuple[Injection, ...]:

@@ -8,10 +8,10 @@ from symflex.library.elements.element import (
     EquationRow,
     Injection,
     LinearForm,
-    ParameterPort,
     Port,
     Stamp,
 )
+from symflex.library.parameter import ParameterPort
 
 
 class DcMotor(Element):

@@ -57,19 +57,6 @@ def diagnose_unclosed(source: Source, text: str, statement: Statement) -> Diagno
 def diagnose_toml(source: Source, scan: Scan, statement: Statement, message: str, offset: int) -> Diagnostic:
     """Return the diagnostic of a statement tomllib refuses.
 
-    Parameters
-    ----------
-    source : Source
-        What the span refers to.
-    scan : Scan
-        Its statements.
-    statement : Statement
-        The one that is wrong.
-    message : str
-        What tomllib says.
-    offset : int
-        Where it says so.
-
     Returns
     -------
     Diagnostic

@@ -111,11 +111,6 @@ _EXPONENT = re.compile(r"[+-]?[0-9][0-9_]*+(?:\.[0-9_]*+)?[eE]([+-]?[0-9_]++)")
 def number_problem(literal: str) -> str | None:
     """Say why a number is refused, or ``None`` when it is not (or is no number).
 
-    Parameters
-    ----------
-    literal : str
-        A number as it is written.
-
     Examples
     --------
     >>> number_problem("1e999999999")

@@ -234,11 +234,6 @@ class Scan:
 def scan(source: Source) -> Scan:
     r"""Cut a text into statements.
 
-    Parameters
-    ----------
-    source : Source
-        Any text.
-
     Returns
     -------
     Scan
