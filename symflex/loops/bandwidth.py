@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 from flint import acb, arb
 
 from symflex.roots import precision
+from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -72,7 +73,7 @@ def allowed_bandwidth(
     gain = end / MARGIN
     found = loop_gain.crossovers(gain)
     with precision(BITS):
-        size = arb(gain.numerator) / gain.denominator
+        size = ball(gain)
         if not found or not abs(loop_gain.ratio(found[0][0].mid() / 2)) * size > 1:
             return AllowedBandwidth(gain, None, None, is_limited)
         angles = [(-ratio * acb(size)).arg() for _, ratio in found]

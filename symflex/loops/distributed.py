@@ -29,6 +29,7 @@ from symflex.roots.distributed.side import Side
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.functions.square_free_kernels import without_squares
 from symflex.roots.root import exact_fraction
+from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -96,7 +97,7 @@ class DistributedFactors:
 
         Where it is not, ``reasons`` says why.
         """
-        low, high = (arb(x.numerator) / x.denominator for x in self.limits)
+        low, high = (ball(x) for x in self.limits)
         proved: list[float] = []
         for factor in self.factors:
             if factor.multiplicity < 0:
@@ -220,12 +221,12 @@ class DistributedFactors:
             return False
         a, b = origin.sizes(radius)
         most = max(abs(x) for x in self.limits)
-        bound = arb(most.numerator) / most.denominator * b.abs_upper() * radius ** (second - first)
+        bound = ball(most) * b.abs_upper() * radius ** (second - first)
         return bool(a.abs_lower() > bound)
 
     def _is_far(self, value: LoopValue) -> bool:
         """Tell whether the gain of a pole at these values is out of the range."""
-        low, high = (arb(x.numerator) / x.denominator for x in self.limits)
+        low, high = (ball(x) for x in self.limits)
         most = abs(low).max(abs(high))
         size = value.a.abs_lower()
         if size > most * value.b.abs_upper():
@@ -238,7 +239,7 @@ class DistributedFactors:
         return bool(gain < low) or bool(gain > high)
 
     def _may_be_in_range(self, gain: arb) -> bool:
-        low, high = (arb(x.numerator) / x.denominator for x in self.limits)
+        low, high = (ball(x) for x in self.limits)
         return not (gain < low or gain > high)
 
     def count(self, gain: Fraction) -> PoleCount:

@@ -20,6 +20,7 @@ from symflex.loops.margins import LoopGain
 from symflex.loops.stability_map import Boundary, GainInterval, GainMargin, PhaseMargin, StabilityMap
 from symflex.roots import precision
 from symflex.roots.root import exact_fraction
+from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -229,7 +230,7 @@ def _is_touching(count: PoleCount, group: Sequence[Crossing]) -> bool:
 
 def _ball(value: Fraction) -> arb:
     with precision(BITS):
-        return arb(value.numerator) / value.denominator
+        return ball(value)
 
 
 def _upper(one: arb, other: arb) -> arb:

@@ -11,6 +11,7 @@ from symflex.algebra import Factored
 from symflex.roots import RootProblem, find_polynomial_roots, precision
 from symflex.roots.counting.tail import right_tail
 from symflex.roots.problem import polynomial_in_s
+from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -109,7 +110,7 @@ def _mirrored(value: Factored) -> Factored:
 
 
 def _value(bound: BoundTransferFunction, part: Factored, s: acb) -> acb:
-    total = acb(arb(part.unit.numerator) / part.unit.denominator)
+    total = acb(ball(part.unit))
     for factor, exponent in part.factors:
         total = total * polynomial_in_s(bound, factor).enclosure()(s) ** exponent
     return total
@@ -120,7 +121,7 @@ def distributed_crossovers(
 ) -> list[tuple[arb, acb]]:
     """Return the same for a loop with kernels; where it is not proved is added to its reasons."""
     (function,) = distributed.with_gain
-    gain = arb(nominal.numerator) / nominal.denominator
+    gain = ball(nominal)
 
     def equation(value: LoopValue) -> tuple[arb, arb]:
         return value.excess(gain)

@@ -16,6 +16,7 @@ from symflex.roots import precision
 from symflex.roots.counting.local_series import SERIES_POINTS, local_series
 from symflex.roots.counting.winding import Winding
 from symflex.roots.functions.kernel_function import KernelFunction
+from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
     from symflex.loops.loop_function import LoopFunction
@@ -156,7 +157,7 @@ def loop_at_origin(function: LoopFunction, budget: Budget) -> LoopAtOrigin | Non
             if own is None:
                 return None
             # Functions whose roots are sought are known but for a factor, which counts here.
-            scale = arb(unit.numerator) / unit.denominator
+            scale = ball(unit)
             scaled = tuple(scale * coefficient for coefficient in own.coefficients)
             series.append(replace(own, coefficients=scaled, bound=own.bound * abs(scale)))
     return LoopAtOrigin((orders[0], orders[1]), (series[0], series[1]))

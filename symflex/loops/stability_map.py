@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from flint import arb
 
 from symflex.roots import decimals, precision
+from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -60,7 +61,7 @@ class GainInterval:
     def holds(self, gain: Fraction) -> bool:
         """Tell whether a gain is proved to lie inside."""
         with precision(BITS):
-            value = arb(gain.numerator) / gain.denominator
+            value = ball(gain)
             above = self.low is None or bool(value > self.low)
             return above and (self.high is None or bool(value < self.high))
 

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING
 
-from flint import arb, fmpq
+from flint import arb
 
 from symflex.errors import Diagnostic, UsageError
 from symflex.options import band_ends, frequency
 from symflex.roots.precision import precision
+from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -69,9 +70,9 @@ class Band:
         frequency = root.natural_frequency()
         with precision(root.working_bits()):
             turn = 2 * arb.pi()
-            signs = [_sign(_bound(self.high) * turn - frequency)]
+            signs = [_sign(ball(self.high) * turn - frequency)]
             if self.low:
-                signs.append(_sign(frequency - _bound(self.low) * turn))
+                signs.append(_sign(frequency - ball(self.low) * turn))
         return _position(signs)
 
     def to_json_dict(self) -> dict[str, object]:
@@ -108,10 +109,10 @@ class Rectangle:
         with precision(root.working_bits()):
             return _position(
                 [
-                    _sign(root.re - _bound(self.re_low)),
-                    _sign(_bound(self.re_high) - root.re),
-                    _sign(root.im - _bound(self.im_low)),
-                    _sign(_bound(self.im_high) - root.im),
+                    _sign(root.re - ball(self.re_low)),
+                    _sign(ball(self.re_high) - root.re),
+                    _sign(root.im - ball(self.im_low)),
+                    _sign(ball(self.im_high) - root.im),
                 ]
             )
 
@@ -266,10 +267,6 @@ def _mirrored(a: Root, b: Root) -> bool:
             bool(abs(x.mid()) == abs(y.mid())) and bool(x.rad() == y.rad())
             for x, y in ((a.re, b.re), (a.im, b.im))
         )
-
-
-def _bound(value: Fraction) -> arb:
-    return arb(fmpq(value.numerator, value.denominator))
 
 
 def _sign(difference: arb) -> int | None:

@@ -42,6 +42,11 @@ def ball(value: Fraction) -> arb:
     return arb(fmpq(value.numerator, value.denominator))
 
 
+def at_centre(value: Value) -> acb:
+    """Return the first coefficient of a series, itself what is none."""
+    return value[0] if isinstance(value, acb_series) else value
+
+
 def rational_value(expression: Expression, values: Mapping[str, ExactValue]) -> Fraction | None:
     """Return the exact value of an expression of rational numbers, ``None`` when it is anything else.
 

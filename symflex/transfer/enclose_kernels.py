@@ -22,7 +22,7 @@ from flint import acb, acb_mat, acb_poly, acb_series, arb, ctx
 
 from symflex.algebra import ModalSums, modal_amplitudes, mode_values
 from symflex.algebra.interval_newton import narrowed, stays_inside
-from symflex.transfer.balls import Value, ball
+from symflex.transfer.balls import Value, at_centre, ball
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -136,13 +136,13 @@ class KernelValues:
     def _centred(self, law: Dispersion, values: Mapping[str, Value]) -> list[acb] | None:
         """Return a law's coefficients in the middle of a wide ball of s, and how they move on it."""
         s = values["s"]
-        ball = s[0] if isinstance(s, acb_series) else s
+        ball = at_centre(s)
         if ball.rad() < abs(ball).mid() * NARROW:
             return None
         middle = ball.mid()
         there = {**values, "s": middle}
         along = {**values, "s": expansion(ball)}
-        central = [_number(self.value(c, there)) for c in law.characteristic]
+        central = [at_centre(self.value(c, there)) for c in law.characteristic]
         slopes = [self.value(c, along) for c in law.characteristic]
         drift = [c[1] * (ball - middle) if isinstance(c, acb_series) else ZERO for c in slopes]
         return [*central, *drift]
@@ -238,7 +238,7 @@ def _wavenumbers(law: Dispersion, c: Sequence[Value], near: Mapping[str, Value] 
 
 
 def _middle(value: Value) -> acb:
-    return (value[0] if isinstance(value, acb_series) else value).mid()
+    return at_centre(value).mid()
 
 
 def _turned(value: Value, branches: int) -> tuple[Value, ...]:
@@ -266,10 +266,6 @@ def _is_even(law: Dispersion) -> bool:
     return law.order % 2 == 0 and all(c.is_zero for c in law.characteristic[1::2])
 
 
-def _number(value: Value) -> acb:
-    return value[0] if isinstance(value, acb_series) else value
-
-
 def _root_name(dispersion: int, i: int) -> str:
     return f"x_{i}[{dispersion}]"
 
@@ -291,9 +287,9 @@ def fundamental_functions(coefficients: Sequence[Value], length: Value) -> tuple
         return tuple(grown[i, n - 1] for i in range(n))
     # First order about a point: the derivative of h with respect to c_k is minus h * h^(k), a convolution,
     # and is the block above the diagonal of the exponential of a block matrix (Van Loan 1978).
-    base = [c[0] if isinstance(c, acb_series) else c for c in coefficients]
+    base = [at_centre(c) for c in coefficients]
     slope = [c[1] if isinstance(c, acb_series) else acb(0) for c in coefficients]
-    reach = length[0] if isinstance(length, acb_series) else length
+    reach = at_centre(length)
     block = acb_mat(2 * n, 2 * n)
     for offset in (0, n):
         for i in range(n - 1):
@@ -327,7 +323,7 @@ def square_root(x: Value) -> Value:
     >>> bool((square_root(acb(arb(-4, 1))) ** 2).contains(acb(-4)))
     True
     """
-    base = x[0] if isinstance(x, acb_series) else x
+    base = at_centre(x)
     middle = base.mid()
     if middle == 0:
         return x.sqrt()
@@ -391,14 +387,14 @@ def characteristic_roots(
         return None
     if even:
         roots = [x for root in map(square_root, roots) for x in (root, -root)]
-    boxes = [_number(x) for x in roots]
+    boxes = [at_centre(x) for x in roots]
     return tuple(roots) if all(x.is_finite() for x in boxes) and _are_apart(boxes) else None
 
 
 def _roots(
     coefficients: Sequence[Value], middle: Sequence[acb] | None, drift: Sequence[acb] | None
 ) -> list[Value] | None:
-    base = [_number(c) for c in coefficients]
+    base = [at_centre(c) for c in coefficients]
     if not all(c.is_finite() for c in base):
         return None
     moving = None if middle is None or drift is None else (acb_poly([*middle, acb(1)]), acb_poly(list(drift)))

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 import flint
 from flint import acb, acb_mat, acb_series
 
+from symflex.transfer.balls import at_centre
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
@@ -77,7 +79,7 @@ def local_values(
             values.update(zip(law.wavenumbers, roots, strict=True))
         fundamental: dict[tuple[Dispersion, Factored], tuple[acb_series, ...]] = {}
         for kernel in evaluator.table.kernels:
-            length = _number(evaluator.value(kernel.length, plain))
+            length = at_centre(evaluator.value(kernel.length, plain))
             coefficients, shift = laws[kernel.dispersion]
             if kernel.function == "exp":
                 values[kernel.generator] = _inflated((-shift * length).exp(), branches, terms)
@@ -90,10 +92,6 @@ def local_values(
             else:
                 values[kernel.generator] = _kernel(kernel, values[kernel.wavenumber] * length)
         return values
-
-
-def _number(value: Value) -> acb:
-    return value[0] if isinstance(value, acb_series) else value
 
 
 def _inflated(value: Value, branches: int, terms: int) -> acb_series:

@@ -26,6 +26,7 @@ from symflex.roots.axes.axis_function import (
     Enclosures,
 )
 from symflex.roots.precision import precision
+from symflex.transfer.balls import at_centre
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -228,7 +229,7 @@ def _enclosures(
 
         def number(value: Factored) -> arb:
             found = values.value(value, places)
-            return (found if isinstance(found, acb) else found[0]).real
+            return at_centre(found).real
 
         wavenumbers = {}
         for name, law in laws.items():

@@ -23,6 +23,7 @@ from symflex.budget import spend
 from symflex.roots.functions.exponential_values import ExponentialValues
 from symflex.roots.precision import precision
 from symflex.transfer import coefficients_in_s
+from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -229,18 +230,14 @@ def _turned(arguments: Sequence[_Power], sector: int) -> list[_Power]:
     """
     step = arb.pi() / (2 * SECTORS)
     turn = acb(0, (step * sector).union(step * (sector + 1)))
-    return [replace(a, unit=a.unit * (turn * _ratio(a.power)).exp()) for a in arguments]
-
-
-def _ratio(value: Fraction) -> arb:
-    return arb(value.numerator) / value.denominator
+    return [replace(a, unit=a.unit * (turn * ball(a.power)).exp()) for a in arguments]
 
 
 def _at_infinity(kernels: KernelValues, value: Factored, radius: float) -> tuple[int, acb] | None:
     """Return a power of s, and a ball around what a rational function of s is times it, beyond a radius."""
     small = acb(arb(0, 1 / radius), arb(0, 1 / radius))
     power = 0
-    total = acb(arb(value.unit.numerator) / value.unit.denominator)
+    total = acb(ball(value.unit))
     names = kernels.names
     constants = Ring(tuple(names[1:]))
     for factor, exponent in value.factors:
@@ -274,11 +271,11 @@ def _is_dominated(terms: dict[Exponent, dict[Fraction, acb]], arguments: list[_P
         total = arb(0)
         for i, a, b in powers:
             own = arguments[i]
-            total += (own.unit * acb(a, b)).real.mid() * radius ** _ratio(own.power)
+            total += (own.unit * acb(a, b)).real.mid() * radius ** ball(own.power)
         return total.mid()
 
     def size(powers: Exponent) -> float:
-        weight = sum((abs(c).mid() * radius ** _ratio(p) for p, c in terms[powers].items()), arb(0)).mid()
+        weight = sum((abs(c).mid() * radius ** ball(p) for p, c in terms[powers].items()), arb(0)).mid()
         return float((growth(powers) + weight.log()).mid()) if weight > 0 else float("-inf")
 
     chosen = max(terms, key=size)
@@ -289,7 +286,7 @@ def _is_dominated(terms: dict[Exponent, dict[Fraction, acb]], arguments: list[_P
     lead = abs(own[highest]).lower()
     for power, coefficient in own.items():
         if power != highest:
-            lead -= (abs(coefficient) * radius ** _ratio(power - highest)).upper()
+            lead -= (abs(coefficient) * radius ** ball(power - highest)).upper()
     total = arb(0)
     base = {i: complex(a, b) for i, a, b in chosen}
     for powers, amplitude in terms.items():
@@ -308,11 +305,11 @@ def _is_dominated(terms: dict[Exponent, dict[Fraction, acb]], arguments: list[_P
                 if not (arguments[i].is_delay and c.imag == 0 and c.real > 0):
                     return False
                 continue
-            degree = _ratio(arguments[i].power)
+            degree = ball(arguments[i].power)
             exponent += rate * radius**degree
             slope += rate * degree * radius**degree
         for power, coefficient in amplitude.items():
-            over = _ratio(power - highest)
+            over = ball(power - highest)
             if over > 0 and not -slope > over:
                 return False
             total += abs(coefficient).upper() * radius**over * exponent.exp()

@@ -12,9 +12,10 @@ from functools import cached_property
 from math import inf
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_series, arb
+from flint import acb, arb
 
 from symflex.algebra.exponential_sum import REAL, parts
+from symflex.transfer.balls import at_centre
 from symflex.transfer.enclose_kernels import power_of
 
 if TYPE_CHECKING:
@@ -75,7 +76,7 @@ class ExponentialValues:
     def lengths(self) -> tuple[acb, ...]:
         """Of the arguments [m], for delays [s]."""
         values = {"s": acb(1), **{n: acb(c) for n, c in self.evaluator.constants.items()}}
-        return tuple(_number(self.evaluator.value(a.length, values)) for a in self.arguments)
+        return tuple(at_centre(self.evaluator.value(a.length, values)) for a in self.arguments)
 
     def at(self, s: Value, near: Place | None = None) -> Place:
         """Return what sums are made of at a point or on a ball, or as series about these.
@@ -143,8 +144,8 @@ class ExponentialValues:
                 self.sums[i][0].terms, self.amplitudes(i, place), self.exponents(i, place), strict=True
             )
             for own, amplitude, exponent in known:
-                size = abs(_number(amplitude).mid())
-                growth = 0.0 if exponent is None else float(_number(exponent).real.mid())
+                size = abs(at_centre(amplitude).mid())
+                growth = 0.0 if exponent is None else float(at_centre(exponent).real.mid())
                 total = growth + float(size.log()) if size > 0 else -inf
                 if total > best:
                     best, chosen = total, own
@@ -177,7 +178,3 @@ class Place:
             term = self.arguments[i] * factor
             total = term if total is None else total + term
         return total
-
-
-def _number(value: Value) -> acb:
-    return value[0] if isinstance(value, acb_series) else value

@@ -23,6 +23,7 @@ from symflex.roots.argument import ROOM, deviation
 from symflex.roots.functions.double_sums import DoubleSums
 from symflex.roots.functions.exponential_values import ExponentialValues, Place
 from symflex.roots.precision import precision
+from symflex.transfer.balls import at_centre
 from symflex.transfer.enclose_kernels import expansion
 
 if TYPE_CHECKING:
@@ -176,7 +177,7 @@ class KernelFunction:
             wide = values.at(expansion(ball))
             exact = values.at(centre, wide)
             return [
-                (_number(values.value(i, exact)), series[1], exponent)
+                (at_centre(values.value(i, exact)), series[1], exponent)
                 for i, (_, exponent) in enumerate(self.part.factors)
                 if isinstance(series := values.value(i, wide), acb_series)
             ]
@@ -189,7 +190,7 @@ class KernelFunction:
             values = self._evaluator(bits)
             place = values.at(s)
             for i, (_, exponent) in enumerate(self.part.factors):
-                total *= _number(values.value(i, place)) ** (exponent * self.power)
+                total *= at_centre(values.value(i, place)) ** (exponent * self.power)
         return total
 
     def is_analytic_on(self, disc: acb, bits: int) -> bool:
@@ -200,7 +201,7 @@ class KernelFunction:
             laws = [
                 value for law in evaluator.table.dispersions for value in (*law.characteristic, law.shift)
             ]
-            return all(_number(evaluator.value(value, values)).is_finite() for value in laws)
+            return all(at_centre(evaluator.value(value, values)).is_finite() for value in laws)
 
     def fastest(self, z: complex) -> float:
         """Return the largest exponent at ``s = exp(z)``, in absolute value; 0 where none is known."""
@@ -233,14 +234,14 @@ class KernelFunction:
         total, widest = arb(0), 0.0
         for i, (terms, exponent) in enumerate(sums.sums):
             largest = sums.largest([i], around) if len(terms.terms) > 1 else next(iter(terms.terms), REAL)
-            widest = max(widest, deviation(_number(sums.value(i, around, largest))))
+            widest = max(widest, deviation(at_centre(sums.value(i, around, largest))))
             if widest > ROOM:
                 return widest, total
-            ratio = _number(sums.value(i, last, largest)) / _number(sums.value(i, first, largest))
+            ratio = at_centre(sums.value(i, last, largest)) / at_centre(sums.value(i, first, largest))
             factors = combination(largest)
             own = [place.combined(factors) for place in (first, last)]
             if own[0] is not None and own[1] is not None:
-                total += exponent * _number(own[1] - own[0]).imag
+                total += exponent * at_centre(own[1] - own[0]).imag
             total += exponent * ratio.arg()
         return widest, total * self.power
 
@@ -280,7 +281,7 @@ class KernelFunction:
             with precision(bits):
                 evaluator = self._values(bits)
                 values = evaluator.at(acb(*ANYWHERE))
-                value = _number(evaluator.value(self.part, values))
+                value = at_centre(evaluator.value(self.part, values))
             if value.is_finite() and value.rel_accuracy_bits() >= FIRST_BITS:
                 return bits, values, value
             bits *= 4
@@ -300,7 +301,7 @@ class KernelFunction:
         with precision(bits):
             for law in self.bound.kernels.dispersions:
                 for other in other_branches(law, self.bound.kernels, values):
-                    turned = _number(self._values(bits).value(self.part, {**values, **other})) / value
+                    turned = at_centre(self._values(bits).value(self.part, {**values, **other})) / value
                     if law.kind in SINGLE:
                         step = acb(0, 1) if law.kind == "bending" else acb(-1)
                         powers = range(SINGLE[law.kind])
@@ -322,13 +323,13 @@ class KernelFunction:
             values = evaluator.at(acb(s))
             sizes = []
             for kernel in self.bound.kernels.kernels:
-                law, length = kernel.dispersion, _number(evaluator.value(kernel.length, values))
+                law, length = kernel.dispersion, at_centre(evaluator.value(kernel.length, values))
                 if kernel.function == "exp":
-                    rate = _number(evaluator.value(law.shift, values))
+                    rate = at_centre(evaluator.value(law.shift, values))
                 elif kernel.function == "fundamental":
-                    rate = _spectral_size([_number(evaluator.value(c, values)) for c in law.characteristic])
+                    rate = _spectral_size([at_centre(evaluator.value(c, values)) for c in law.characteristic])
                 else:
-                    rate = _number(values[kernel.wavenumber])
+                    rate = at_centre(values[kernel.wavenumber])
                 sizes.append(abs(rate * length).mid())
             return max(float(size) if size.is_finite() else 0.0 for size in sizes)
 
@@ -455,10 +456,6 @@ def _spectral_size(coefficients: Sequence[acb]) -> acb:
     return acb(
         max((size.root(order - i) for i, size in enumerate(sizes) if size > 0), key=float, default=arb(0))
     )
-
-
-def _number(value: Value) -> acb:
-    return value[0] if isinstance(value, acb_series) else value
 
 
 def split_off_kernels(value: Factored, table: KernelTable) -> tuple[Factored, Factored]:
