@@ -43,10 +43,15 @@ Complex = npt.NDArray[np.complex128]
 
 SLOPES = tuple(range(-4, 5))
 FEWEST_LINES = 8
+"""Of a response that is fitted."""
 WEAK = 0.5
+"""Standard error over the value from which a damping ratio, or a zero, is hardly determined."""
 LARGE = 2.0
+"""Sum of squares per degree of freedom from which coherence does not explain the residual."""
 OVERDAMPED = 2.0
+"""Damping ratio of a pair of zeros that had better be called two real ones."""
 LEAST_DAMPING = 0.05
+"""Damping ratios of zeros below this are not held against their own error."""
 DEFAULTS = FitOptions()
 SMOOTH = 3.0
 """A Hann window makes this 2, see :attr:`symflex.data.fitting.least_squares.Refined.correlation`."""

@@ -44,7 +44,7 @@ SINGULAR = 1e13
 """Condition of the normal equations from which a covariance means nothing."""
 
 MOST_TURNED = 45.0
-"""Degrees off the real axis from which a modal constant at the driven point is none."""
+"""Degrees off the positive real axis beyond which a value at the driven point is not a modal constant."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -31,6 +31,21 @@ Real = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
 FEWEST_FOR_SLOPE = 5
+"""Lines from which a power of s is guessed."""
+STEPS = 60
+"""Multiplicative steps for the shares of the variance; none of them makes it worse."""
+POWERS = (0, 2, 4, -2, -4)
+"""Of the frequency, by which the variance of the noise is described."""
+LEAST = 1e-6
+"""Relative deviation below which no line is taken to be known: that of six digits in a file."""
+MOST_PAIRS = 14
+"""Of poles of the function without structure, where the number of resonances is open."""
+LINES_PER_PARAMETER = 2.0
+"""Real values that each parameter of that function takes at least."""
+PATIENCE = 2
+"""Numbers of pairs tried after the best one."""
+FEWEST = 5
+"""Lines from which the noise is guessed at all."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,16 +211,6 @@ def fit_problem(
         everywhere = at_lines if observation.matrix is None else base(observation.omega)
         lines.append(FittedLines(response, observation, everywhere, at_lines, response.relative_deviation()))
     return FitProblem(tuple(lines), free, has_base, slopes)
-
-
-STEPS = 60
-POWERS = (0, 2, 4, -2, -4)
-LEAST = 1e-6
-"""Relative deviation below which no line is taken to be known: that of six digits in a file."""
-MOST_PAIRS = 14
-LINES_PER_PARAMETER = 2.0
-PATIENCE = 2
-FEWEST = 5
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,16 +32,50 @@ if TYPE_CHECKING:
 
 
 Real = npt.NDArray[np.float64]
+Complex = npt.NDArray[np.complex128]
 
 LEAST_PROMINENCE = 0.02
 """Of the logarithm of the magnitude: 0.2 dB, below the shoulders that close pairs leave."""
 NOISE_MULTIPLE = 5.0
+"""A peak stands out by so many times the scatter from line to line."""
 TYPICAL_RATIO, TYPICAL_DAMPING = 1.1, 0.05
 """omega_z over omega_p, and the damping ratio, that the paper calls typical."""
 LOWEST_DAMPING, HIGHEST_DAMPING = 1e-4, 0.5
+"""Damping ratios of a start are kept between these."""
 MATCHING_STEPS = 30
+"""Of the iteration that matches height and depth in turn."""
 SMOOTHED = 5
+"""Lines through which a parabola is laid (Savitzky and Golay 1964)."""
 APART = 3
+"""Lines between a peak that shows up later and those that are known."""
+
+# Of vector fitting and AAA.
+ITERATIONS = 25
+"""Of vector fitting, which mostly settles in fewer."""
+FIRST_DAMPING = 0.01
+"""Of the poles that vector fitting begins with, as its authors recommend."""
+SETTLED = 1e-6
+"""Relative change of the poles at which vector fitting has settled, and the least of its free constant."""
+SPARE = 2
+"""Poles, or pairs of them, more than are looked for, which noise or a delay may take up."""
+GENEROUS = 10
+"""Steps of a vector fit from which only a level of noise, or a first choice of poles, is taken."""
+LARGEST_START = 0.3
+"""Damping ratio beyond which a pole counts less and less as a resonance."""
+FREE_POWERS = (-2, -1, 0, 1, 2)
+"""Beside the fractions where the power of s is not known: receptances to accelerances, free or held."""
+
+# Of dead times.
+PER_TURN = 5
+"""Dead times tried per turn of the phase at the highest line."""
+MOST_TURNS = 40.0
+LEAST_TURNS = 2.0
+"""Of the phase at the highest line: how far the dead times tried reach, at most and at least."""
+MOST_LINES = 300
+"""Lines on which dead times are compared."""
+
+
+# ------------------------------------------------------------------ from the magnitude alone
 
 
 def find_modes(problem: FitProblem) -> list[int]:
@@ -159,6 +193,8 @@ def _noise(level: Real) -> float:
     """Return the scatter of a smoothed level from line to line."""
     if level.size < SMOOTHED:
         return 0.0
+    # The median size of normal noise is 0.6745 of its deviation; its second differences are sqrt(6) times as
+    # large; a parabola through five lines leaves 17/35 of its variance.
     second = np.diff(level, 2)
     return float(np.median(np.abs(second)) / 0.6745 / np.sqrt(6) * np.sqrt(0.49))
 
@@ -167,17 +203,7 @@ def _smoothed(level: Real) -> Real:
     return savgol_filter(level, SMOOTHED, 2) if level.size > SMOOTHED else level
 
 
-Complex = npt.NDArray[np.complex128]
-
-ITERATIONS = 25
-FIRST_DAMPING = 0.01
-SETTLED = 1e-6
-SPARE = 2
-GENEROUS = 10
-"""Steps of a vector fit from which only a level of noise, or a first choice of poles, is taken."""
-LARGEST_START = 0.3
-FREE_POWERS = (-2, -1, 0, 1, 2)
-"""Beside the fractions where the power of s is not known: receptances to accelerances, free or held."""
+# ------------------------------------------------------------------ from rational approximation
 
 
 def poles_from_vector_fitting(problem: FitProblem, count: int) -> list[Complex]:
@@ -402,11 +428,7 @@ def _aaa_poles(omega: Real, values: Complex, degree: int) -> list[tuple[float, c
     return found
 
 
-PER_TURN = 5
-"""Dead times tried per turn of the phase at the highest line."""
-MOST_TURNS = 40.0
-LEAST_TURNS = 2.0
-MOST_LINES = 300
+# ------------------------------------------------------------------ with which dead time
 
 
 def with_delays(problem: FitProblem, count: int | None) -> FitProblem:

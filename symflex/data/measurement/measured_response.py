@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
-
-if TYPE_CHECKING:
-    pass
-
 
 SMALLEST_NOISE = 1e-6
 """The least share of incoherent power assumed: a coherence rounded to 1 does not make a line exact."""
@@ -113,16 +108,9 @@ class MeasuredResponse:
     def between(self, low_hz: float, high_hz: float) -> MeasuredResponse:
         """Return the lines within a band [Hz], its ends included."""
         kept = (self.frequency_hz >= low_hz) & (self.frequency_hz <= high_hz)
-        return MeasuredResponse(
-            self.name,
-            self.frequency_hz[kept],
-            self.values[kept],
-            None if self.coherence is None else self.coherence[kept],
-            self.averages,
-            self.window,
-            self.unit,
-            self.is_synthetic,
-            self.notes,
+        coherence = None if self.coherence is None else self.coherence[kept]
+        return replace(
+            self, frequency_hz=self.frequency_hz[kept], values=self.values[kept], coherence=coherence
         )
 
 
