@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from math import isfinite
 from typing import TYPE_CHECKING
 
@@ -53,7 +54,7 @@ def audit_json(audit: Audit) -> dict[str, object]:
         "counterexample": _counterexample(audit.comparison),
         "agreed_points": None if audit.comparison is None else audit.comparison.agreed,
         "deviation": _deviation(audit.deviation),
-        "laws": [{"law": x.law, "kept": x.kept, "how": x.how, "detail": x.detail} for x in audit.laws],
+        "laws": [asdict(law) for law in audit.laws],
     }
 
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from symflex.data.measurement.archive import read_archive
+from symflex.data.measurement.byte_reader import require
 from symflex.data.measurement.netcdf import read_netcdf
 from symflex.errors import DataError, Diagnostic, UsageError
 from symflex.files import write
@@ -285,18 +286,15 @@ def _sweep(attributes: Mapping[str, str], arrays: list[Labelled], coordinates: s
     sizes: dict[str, int] = {}
     for each in arrays:
         for dim, size in zip(each.dims, each.values.shape, strict=True):
-            if sizes.setdefault(dim, size) != size:
-                message = f"arrays disagree about the length of '{dim}'"
-                raise ValueError(message)
+            require(sizes.setdefault(dim, size) == size, f"arrays disagree about the length of '{dim}'")
     found = Sweep(
         tuple((str(k), str(v)) for k, v in attributes.items()),
         tuple(each for each in arrays if each.name in coordinates),
         tuple(each for each in arrays if each.name not in coordinates),
     )
     known = {each.name: each for each in (*found.coordinates, *found.variables)}
-    if found.of not in ARRAYS or "point_status" not in known:
-        message = f"it holds no {found.of[:40] or 'results'} with their status"
-        raise ValueError(message)
+    is_known = found.of in ARRAYS and "point_status" in known
+    require(is_known, f"it holds no {found.of[:40] or 'results'} with their status")
     own, names = ARRAYS[found.of]
     points = known["point_status"].dims
     swept = found.attribute("parameters").split()
@@ -304,10 +302,8 @@ def _sweep(attributes: Mapping[str, str], arrays: list[Labelled], coordinates: s
     expected |= {"point_status": (points, "fiu"), "code": (points, "U")}
     expected |= {name: ((DRAW,) if (name,) != known[name].dims else (name,), "fiu") for name in swept}
     for name, (dims, kinds) in expected.items():
-        if name not in known or known[name].dims != dims or known[name].values.dtype.kind not in kinds:
-            message = f"'{name[:40]}' is missing, or of another shape or kind"
-            raise ValueError(message)
-    if not set(points) <= {*swept, DRAW} or 0 in known["point_status"].values.shape:
-        message = "its axes are no parameters, or empty"
-        raise ValueError(message)
+        fits = name in known and known[name].dims == dims and known[name].values.dtype.kind in kinds
+        require(fits, f"'{name[:40]}' is missing, or of another shape or kind")
+    are_swept = set(points) <= {*swept, DRAW} and 0 not in known["point_status"].values.shape
+    require(are_swept, "its axes are no parameters, or empty")
     return found

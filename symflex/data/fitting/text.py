@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from dataclasses import asdict
 from math import floor, isfinite, log10, pi, sqrt
 from typing import TYPE_CHECKING, Final
 
@@ -194,15 +195,7 @@ def _response_json(fit: ResonanceFit, r: int) -> dict[str, object]:
             "verdict": test.verdict,
             "lag_s": test.lag_s,
             "magnitude_residual_db": test.magnitude_db,
-            "parted": [
-                {
-                    "low_hz": b.low_hz,
-                    "high_hz": b.high_hz,
-                    "worst_degrees": b.worst_degrees,
-                    "worst_hz": b.worst_hz,
-                }
-                for b in test.bands
-            ],
+            "parted": [asdict(band) for band in test.bands],
         },
     }
 
