@@ -12,6 +12,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Protocol
 
 from symflex.codegen.program import choose_programs
+from symflex.codegen.program.verify import SAMPLES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -23,9 +24,6 @@ if TYPE_CHECKING:
 
 ACCURACY = 1e-13
 """Relative error of exported code above which the user is warned."""
-
-SAMPLES = 400
-"""Frequencies at which the error is measured, besides those around poles and zeros."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -54,6 +54,7 @@ NAMES = frozenset(
 RESERVED = KEYWORDS | NAMES | {"s"}
 
 WORDS_OF_TITLE = 4
+"""Of those a module is named by."""
 
 
 # ---------------------------------------------------------------------------------- expressions

@@ -16,7 +16,11 @@ if TYPE_CHECKING:
     from symflex.transfer import AnyTransferFunction
 
 FORMULA_LINES = 20
+"""Lines of a formula that a docstring shows."""
+
 FORMULA_TERMS = 1000
+"""Terms up to which a formula is written out."""
+
 NESTED_SIZE = 300
 """Operations of a nested form up to which its formula is written out."""
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from symflex.codegen.c.expression import LANE_FUNCTIONS
 from symflex.codegen.c.functions import Functions
 from symflex.codegen.c.names import KEYWORDS, PARTS, RESERVED
+from symflex.codegen.c.scope import WIDTH
 from symflex.codegen.export import Export, Language
 from symflex.codegen.module_text import (
     COST,
@@ -29,8 +30,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symflex.codegen.export import Contents
-
-WIDTH = 88
 
 _FILE_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")
 

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 WIDTH = 88
+"""Columns of generated C."""
+
 STEP = "    "
 
 S = Term("s", Kind.COMPLEX, varies=True)

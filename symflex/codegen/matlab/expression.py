@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from symflex.codegen.program.nodes import Frames
 
 WIDTH = 88
+"""Columns of generated MATLAB."""
 
 
 @dataclass(frozen=True)

@@ -62,6 +62,7 @@ NAMES = frozenset({"default_parameters"}.union(*PARTS))
 RESERVED = KEYWORDS | FUNCTIONS | NAMES | WORDS
 
 TITLE_LENGTH = 30
+"""Characters of a title that a function is named by."""
 
 LONGEST_STEM = 64
 """Characters of a file's name that a message shows."""

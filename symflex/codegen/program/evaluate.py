@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 CONSTANT_BITS = 256
+"""Of powers of pi before they are rounded to a double."""
 
 NUMPY_FUNCTIONS = {
     name: name for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh", "abs")

@@ -1,7 +1,7 @@
 """Polynomials in kernels as sums of exponentials, in exact arithmetic.
 
 Input: a polynomial over the ring of kernels.
-Output: an :class:`KernelSum`: per product of functions ``exp(sum(a_i q_i)) cos(sum(b_i q_i))``, one for
+Output: a :class:`KernelSum`: per product of functions ``exp(sum(a_i q_i)) cos(sum(b_i q_i))``, one for
 every wavenumber, a polynomial in s, the parameters and the wavenumbers.
 """
 

@@ -1,4 +1,9 @@
-"""From expressions to straight-line code: which values get a name, and in which order they are computed."""
+"""From expressions to straight-line code: which values get a name, and in which order they are computed.
+
+k*(k + s)^2 + b*k*(k + s)    becomes    c_1 = b*k             free of s: once a call
+t_1 = k + s           used more than once
+k*(t_1*t_1) + c_1*t_1
+"""
 
 from __future__ import annotations
 

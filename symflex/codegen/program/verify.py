@@ -39,6 +39,8 @@ DEFAULT_BAND = (Fraction(1, 10), Fraction(10_000))
 """Hz."""
 
 SAMPLES = 400
+"""Frequencies at which the error is measured, besides those around poles and zeros."""
+
 ASIDE = (0.0, 1e-9, 1e-6, 1e-3, 1e-2)
 """Relative distances from a pole's or zero's frequency at which the error is measured as well."""
 
@@ -55,10 +57,12 @@ LONG = 500
 """Terms from which coefficients of powers of s are not expanded if another form is accurate."""
 
 ACCURATE = 1e-14
+"""Error below which no other form is looked for: some fifty roundings of a double."""
 
 FIRST_BITS = 128
 LAST_BITS = 4096
 ENOUGH_BITS = 64
+"""Of reference values: where work begins, where it is given up, and how many must be certain."""
 
 SCAN = 3000
 """Frequencies over the band among which a distributed system's resonances and antiresonances are sought."""

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from symflex.codegen.program.nodes import Frames
 
 WIDTH = 88
+"""Columns of generated Python."""
 
 
 @dataclass(frozen=True)

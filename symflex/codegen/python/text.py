@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from symflex.transfer import AnyTransferFunction
 
 LITERAL_WIDTH = 60
+"""Characters of a string literal on one line."""
 
 
 @dataclass(frozen=True, slots=True)
