@@ -15,7 +15,7 @@ import numpy as np
 from flint import acb, acb_mat, arb, ctx
 
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
-from symflex.transfer.balls import ball, enclose
+from symflex.transfer.balls import enclosure, later, value_at
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from flint import fmpz_mpoly
 
-    from symflex.expressions import Expression
     from symflex.model import ExactValue
     from symflex.state_space.popov import FieldElement
     from symflex.state_space.state_space import StateSpace
@@ -101,10 +100,10 @@ def rounded(system: StateSpace, values: Mapping[str, ExactValue] | None = None) 
 def rounding_of(system: StateSpace, values: Mapping[str, ExactValue] | None = None) -> Rounding:
     """Return what rounds the entries of a realisation."""
     known = values or {}
-    later: dict[str, Callable[[], arb]] = {n: _enclosure(v) for n, v in known.items()}
-    constants = {c.generator: _later(c.expression, later) for c in system.constants}
+    given = {name: enclosure(value) for name, value in known.items()}
+    constants = {c.generator: later(c.expression, given) for c in system.constants}
     exact = {name: v.rational for name, v in known.items() if not v.pi_power}
-    return Rounding(system.ring.names, {"pi": arb.pi, **later, **constants}, exact)
+    return Rounding(system.ring.names, {"pi": arb.pi, **given, **constants}, exact)
 
 
 class Rounding:
@@ -159,16 +158,10 @@ class Rounding:
         return above / below
 
     def _exact_value(self, polynomial: fmpz_mpoly) -> Fraction | None:
-        total = Fraction(0)
-        for monomial, coefficient in polynomial.terms():
-            term = Fraction(int(coefficient))
-            for name, exponent in zip(self._names, monomial, strict=True):
-                if exponent:
-                    if name not in self._exact:
-                        return None
-                    term *= self._exact[name] ** int(exponent)
-            total += term
-        return total
+        degrees = zip(self._names, polynomial.degrees(), strict=True)
+        if any(degree and name not in self._exact for name, degree in degrees):
+            return None
+        return value_at(polynomial, lambda i: self._exact[self._names[i]], Fraction)
 
     def _of_ball(self, value: FieldElement, what: str) -> float:
         bits = FIRST_BITS
@@ -186,29 +179,19 @@ class Rounding:
 
     def _enclosed(self, polynomial: fmpz_mpoly, bits: int) -> arb:
         known = self._balls.setdefault(bits, {})
-        total = arb(0)
-        for monomial, coefficient in polynomial.terms():
-            term = arb(int(coefficient))
-            for name, exponent in zip(self._names, monomial, strict=True):
-                if exponent:
-                    if name not in known:
-                        known[name] = self._constant(name)
-                    term = term * known[name] ** int(exponent)
-            total = total + term
-        return total
+
+        def value(i: int) -> arb:
+            name = self._names[i]
+            if name not in known:
+                known[name] = self._constant(name)
+            return known[name]
+
+        return value_at(polynomial, value, arb)
 
     def _constant(self, name: str) -> arb:
         if name not in self._constants:
             raise ModelError(Diagnostic("SF229", f"parameter '{name}' has no value"))
         return self._constants[name]()
-
-
-def _enclosure(value: ExactValue) -> Callable[[], arb]:
-    return lambda: ball(value.rational) * arb.pi() ** value.pi_power
-
-
-def _later(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> Callable[[], arb]:
-    return lambda: enclose(expression, values)
 
 
 def _float(value: Fraction) -> float:

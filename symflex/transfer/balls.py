@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from math import inf, isfinite, nan, prod
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from flint import acb, acb_series, arb, ctx, fmpq
 
@@ -37,6 +37,9 @@ if TYPE_CHECKING:
     Ball = Callable[[acb], acb]
 
 
+Numeral = TypeVar("Numeral", Fraction, arb)
+
+
 def ball(value: Fraction) -> arb:
     """Return a rational number as a ball at the current precision."""
     return arb(fmpq(value.numerator, value.denominator))
@@ -45,6 +48,20 @@ def ball(value: Fraction) -> arb:
 def at_centre(value: Value) -> acb:
     """Return the first coefficient of a series, itself what is none."""
     return value[0] if isinstance(value, acb_series) else value
+
+
+def value_at(
+    polynomial: fmpz_mpoly, values: Callable[[int], Numeral], number: Callable[[int], Numeral]
+) -> Numeral:
+    """Return a polynomial's value, term by term; ``values`` gives that of the generator at a position."""
+    total = number(0)
+    for monomial, coefficient in polynomial.terms():
+        term = number(int(coefficient))
+        for i, exponent in enumerate(monomial):
+            if exponent:
+                term = term * values(i) ** int(exponent)
+        total = total + term
+    return total
 
 
 def rational_value(expression: Expression, values: Mapping[str, ExactValue]) -> Fraction | None:

@@ -48,6 +48,7 @@ from symflex.transfer.balls import (
     order_near,
     plan,
     rational_value,
+    value_at,
 )
 from symflex.transfer.derive import derive, nested_transfer
 from symflex.transfer.distributed import embedded_table
@@ -60,7 +61,7 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
-    from symflex.model import ModelParameter
+    from symflex.model import Model, ModelParameter
 
 Given = int | float | Fraction | Decimal | str | ExactValue
 """A value as a user gives it; one that was read before stays exact."""
@@ -210,10 +211,12 @@ class BoundTransferFunction:
             return self.enclosed_part(self.ratio, bits)
         with ctx.workprec(bits):
             values = [evaluate() for _, evaluate in self.constants]
-            factors = tuple(
-                (acb_poly([_value(c, values) for c in coefficients_in_s(f, self.constant_ring)]), e)
-                for f, e in self.ratio.factors
-            )
+
+            def coefficients(factor: fmpz_mpoly) -> list[arb]:
+                found = coefficients_in_s(factor, self.constant_ring)
+                return [value_at(c, values.__getitem__, arb) for c in found]
+
+            factors = tuple((acb_poly(coefficients(f)), e) for f, e in self.ratio.factors)
             return EnclosedTransferFunction(bits, acb(ball(self.ratio.unit)), factors)
 
     def enclosed_part(self, part: Factored, bits: int) -> EnclosedDistributed:
@@ -280,18 +283,6 @@ class BoundTransferFunction:
         return float(value.real.mid()) if order == 0 else 0.0
 
 
-def _value(coefficient: fmpz_mpoly, values: list[arb]) -> arb:
-    """Return an integer polynomial in the constants as a ball."""
-    total = arb(0)
-    for monomial, integer in coefficient.terms():
-        term = arb(integer)
-        for value, exponent in zip(values, monomial, strict=True):
-            if exponent:
-                term = term * value ** int(exponent)
-        total = total + term
-    return total
-
-
 def coefficients_in_s(polynomial: fmpz_mpoly, constants: Ring) -> tuple[fmpz_mpoly, ...]:
     """Return the ascending coefficients of s (the first generator) over the ring of the other generators."""
     parts: list[dict[tuple[int, ...], int]] = [{} for _ in range(degree_in(polynomial, 0) + 1)]
@@ -326,6 +317,16 @@ def read_values(
     if missing:
         raise ModelError(_without_value(missing))
     return tuple((name, value) for name, value in values if value is not None)
+
+
+def values_for(
+    model: Model, used: tuple[ModelParameter, ...], given: Mapping[str, Given]
+) -> tuple[tuple[str, ExactValue], ...]:
+    """Return the values of parameters that are used, and of others that are given; see :func:`read_values`."""
+    known = {p.name: p for p in model.parameters}
+    if unknown := [n for n in given if n not in known]:
+        read_values(model.parameters, {unknown[0]: given[unknown[0]]})
+    return read_values((*used, *(known[n] for n in given if known[n] not in used)), given)
 
 
 def _without_value(missing: Sequence[ModelParameter]) -> Diagnostic:
@@ -392,13 +393,8 @@ def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> Bou
     UsageError
         SF902 an unknown parameter.
     """
-    given = dict(values or {})
     used = (*tf.parameters, *(p for p in tf.hidden_parameters if p not in tf.parameters))
-    everything = {p.name: p for p in tf.model.parameters}
-    extra = tuple(everything[n] for n in given if n in everything and everything[n] not in used)
-    if unknown := [n for n in given if n not in everything]:
-        read_values(tuple(everything.values()), {unknown[0]: given[unknown[0]]})
-    exact = read_values((*used, *extra), given)
+    exact = values_for(tf.model, used, dict(values or {}))
     table = dict(exact)
     if tf.is_large:
         return _derived_with_numbers(tf, exact)

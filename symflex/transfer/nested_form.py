@@ -20,7 +20,7 @@ from symflex.equations.elimination import Step, StraightLine, eliminate
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import Name, names
 from symflex.transfer.balls import FIRST_BITS, ball, double_value, enclosure, later
-from symflex.transfer.bind import read_values
+from symflex.transfer.bind import values_for
 from symflex.transfer.quantity import name_quantity, unit_of_quotient
 from symflex.transfer.transfer_function import TransferFunction
 
@@ -417,10 +417,4 @@ def bind_nested(
     UsageError
         SF902 an unknown parameter.
     """
-    given = dict(values or {})
-    everything = {p.name: p for p in tf.model.parameters}
-    if unknown := [n for n in given if n not in everything]:
-        read_values(tf.model.parameters, {unknown[0]: given[unknown[0]]})
-    used = {p.name for p in tf.parameters}
-    extra = tuple(everything[n] for n in given if n not in used)
-    return BoundNested(tf, read_values((*tf.parameters, *extra), given))
+    return BoundNested(tf, values_for(tf.model, tf.parameters, dict(values or {})))
