@@ -41,7 +41,9 @@ if TYPE_CHECKING:
 
 PI = "pi"
 GENERATOR_LIMIT = 1_000
+"""Names over a dense ring, whose monomials hold an exponent for each of them."""
 UNKNOWN_LIMIT = 2_500
+"""Unknowns over a dense ring; a singular system of so many can still be explained with a dense matrix."""
 SPARSE_LIMIT = 500_000
 """Names, and unknowns, of equations over a sparse ring."""
 

@@ -24,7 +24,7 @@ from symflex.expressions.nodes import (
 if TYPE_CHECKING:
     from fractions import Fraction
 
-# A decimal is short up to so many significant digits, and readable back down to this decimal exponent.
+# A decimal is short up to so many significant digits, and can be read back down to this decimal exponent.
 SHORT_DIGITS = 40
 SMALLEST_EXPONENT = -200
 SMALLEST_PLAIN_EXPONENT = -4

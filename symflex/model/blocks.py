@@ -35,6 +35,7 @@ NESTING_LIMIT = 8
 DECLARATION = "symflex"
 ALLOW_HINT = "--allow-outside FOLDER, in Python allow_outside, lets model blocks read another folder"
 BLOCK_LIMIT = 100
+"""``model`` blocks with those inside them: files of two blocks each would double them at every level."""
 
 
 @dataclass(slots=True)

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from symflex.model.spec import KeyValue
 
 SHOWN_CIRCLE = 8
+"""Names of a circle of definitions that a message lists."""
 ASSUMPTIONS = ("positive", "nonnegative", "real")
 PARAMETER_KEYS = ("value", "unit", "doc", "latex", "assume")
 

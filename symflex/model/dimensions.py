@@ -65,6 +65,7 @@ if TYPE_CHECKING:
 PER_SECOND = unit_of("1/s").dimension
 SECOND = unit_of("s").dimension
 EXTREME_EXPONENT = 10**6
+"""Of a unit, larger than any meant in earnest: definitions that square each other reach it after twenty."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Whether an expression is linear in the unknowns and rational in the rest, told from its tree alone."""
+"""Whether an expression is linear in the unknowns and rational in the rest; its tree alone decides."""
 
 from __future__ import annotations
 
@@ -270,7 +270,7 @@ def _derivative(span: Span | None) -> Diagnostic:
 
 
 def _not_along(call: Call, scope: ModelScope) -> Diagnostic:
-    """Return the diagnostic of ``owner.name(...)`` where that is no quantity along x."""
+    """Return the diagnostic of ``owner.name(...)`` where that is not a quantity along x."""
     owner, _, name = call.name.partition(".")
     offered = [each for each in scope.along if each.partition(".")[0] == owner]
     if name in scope.owners.get(owner, ()) and not offered:

@@ -1,4 +1,4 @@
-"""Where points along x lie, as far as that can be told from expressions of parameters.
+"""Where points along x lie, as far as expressions of parameters say.
 
 A point or length is read as a polynomial in the parameters (exponents may be negative). Of a difference that
 is such a polynomial the sign is known when all its coefficients agree, since parameters are positive, or when
@@ -27,6 +27,7 @@ Polynomial = dict[Monomial, Fraction]
 TERM_LIMIT = 64
 DEGREE_LIMIT = 64
 BIT_LIMIT = 4_000
+"""Lengths people write stay far below; beyond, no sign is told rather than much computed."""
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,9 @@ if TYPE_CHECKING:
     from symflex.model.spec import KeyValue, Value
 
 SHOWN = 40
+"""Characters of a value that a message repeats."""
 MAX_PROBLEMS = 100
+"""More than anybody reads at once."""
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}\Z")
 
 

@@ -84,6 +84,7 @@ SECTIONS = (
     "figures",
 )
 MAX_PAIRS = 10_000
+"""Transfer functions of one model: every list of them is printed in full."""
 CONSEQUENCES = ("SF210", "SF218")
 """What is noted of a name that was lost with a mistake elsewhere."""
 TOP_KEYS = ("symflex", "title", "source", "doc", *SECTIONS)

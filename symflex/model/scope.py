@@ -36,7 +36,9 @@ RESERVED: dict[str, str] = {
 }
 """Names that have a meaning of their own, and which."""
 LISTED_NAMES = 8
+"""Names that a hint lists."""
 COMPARED_NAMES = 500
+"""Names among which the nearest to a misspelt one is sought: comparing costs time for each."""
 
 
 @dataclass(frozen=True, slots=True)

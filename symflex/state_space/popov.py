@@ -85,7 +85,7 @@ class SolvedRows:
         return result
 
     def _equal(self, key: Key) -> Row:
-        """Return what a derivative that is no state equals."""
+        """Return what a derivative that is not a state equals."""
         column, power = key
         self._known.setdefault((column, self.orders[column]), self.tails[column])
         start = power

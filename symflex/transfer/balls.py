@@ -236,7 +236,7 @@ def double_value(enclosed: Callable[[int], Ball], first: Ball, s: complex, patie
     s : complex
         [rad/s].
     patience : int or None
-        How often the precision is doubled before a value that is no number is sought as a limit; None for
+        How often the precision is doubled before a value that is not a number is sought as a limit; None for
         never, where only a pole has none.
 
     Returns

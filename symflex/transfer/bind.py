@@ -301,7 +301,7 @@ def read_values(
     Raises
     ------
     UsageError
-        SF902 for an unknown name or a value that is no finite number.
+        SF902 for an unknown name or a value that is not a finite number.
     ModelError
         SF229 when a parameter has no value.
     """
@@ -322,7 +322,7 @@ def read_values(
 def values_for(
     model: Model, used: tuple[ModelParameter, ...], given: Mapping[str, Given]
 ) -> tuple[tuple[str, ExactValue], ...]:
-    """Return the values of parameters that are used, and of others that are given; see :func:`read_values`."""
+    """Return the values of parameters that are used, and of others that are given: :func:`read_values`."""
     known = {p.name: p for p in model.parameters}
     if unknown := [n for n in given if n not in known]:
         read_values(model.parameters, {unknown[0]: given[unknown[0]]})

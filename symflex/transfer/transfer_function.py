@@ -255,7 +255,7 @@ class TransferFunction:
     def order(self) -> tuple[int, int]:
         """Degrees in s of numerator and denominator.
 
-        Those of a large function are told from random numbers in place of all else.
+        Those of a large function are found with random numbers in place of everything but s.
         """
         if self._large is not None and self._large.order is not None:
             return self._large.order

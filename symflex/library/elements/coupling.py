@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from symflex.library.elements.element import Placing, Variable
 
 
-class Coupling(Element):
+class TwoPort(Element):
     """Base of what joins two nodes of any domains, and is named after what it delivers at ``to``."""
 
     ports = (
@@ -37,7 +37,7 @@ class Coupling(Element):
         return (THROUGH_NAME[domains["to"]],)
 
 
-class Transformer(Coupling):
+class Transformer(TwoPort):
     """A gear, rack, screw, lever or electrical transformer: ``to = ratio * from``.
 
     The across variables (displacement [m], angle [rad], voltage [V]) are in the given ratio;
@@ -77,7 +77,7 @@ class Transformer(Coupling):
         )
 
 
-class Gyrator(Coupling):
+class Gyrator(TwoPort):
     """A lossless crossing: ``effort_from = ratio*flow_to``, ``effort_to = ratio*flow_from``.
 
     Effort is force [N], torque [N m] or voltage [V]; flow is velocity [m/s, rad/s] or current [A].

@@ -20,7 +20,7 @@ SHORTER = "give fewer digits, or a unit in which the number lies nearer to 1"
 FLATTER = "no key of a specification needs as many"
 _SURROGATE = re.compile(r"[\ud800-\udfff]")
 _SHORT_ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r", "\b": "\\b", "\f": "\\f"}
-_BITS_PER_DIGIT = 3.3219280948873626
+_BITS_PER_DIGIT = 3.3219280948873626  # log2(10)
 
 
 def write(mapping: Mapping[str, object]) -> str:
@@ -33,7 +33,7 @@ def write(mapping: Mapping[str, object]) -> str:
     ----------
     mapping : mapping
         Of str, int, Fraction, Decimal, float, bool, list, tuple and mappings of these. A fraction
-        that is no finite decimal becomes the string ``"p/q"``.
+        that is not a finite decimal becomes the string ``"p/q"``.
 
     Returns
     -------
