@@ -228,6 +228,8 @@ def is_singular(equations: Equations) -> bool:
 def unreached(equations: Equations) -> tuple[Diagnostic, ...]:
     """Return a warning for every input that reaches nothing, output that stays zero, and idle element.
 
+    The equations must not be singular.
+
     Returns
     -------
     tuple of Diagnostic
