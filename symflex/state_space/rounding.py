@@ -159,7 +159,7 @@ class Rounding:
 
     def _exact_value(self, polynomial: fmpz_mpoly) -> Fraction | None:
         degrees = zip(self._names, polynomial.degrees(), strict=True)
-        if any(degree and name not in self._exact for name, degree in degrees):
+        if any(degree > 0 and name not in self._exact for name, degree in degrees):
             return None
         return value_at(polynomial, lambda i: self._exact[self._names[i]], Fraction)
 
