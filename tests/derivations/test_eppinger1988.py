@@ -307,6 +307,7 @@ def test_the_noncolocated_zeros_of_the_bending_beam_are_proved_real():
     assert all(zero.is_real for zero in derive("lumped_bending_beam", "X_tip", "F").bind().zeros())
 
 
+@pytest.mark.slow
 def test_the_noncolocated_zeros_of_the_bending_beam_have_equal_magnitude():
     values = parameters("lumped_bending_beam")
     B = eppinger1988.bracket(**beam_values(values["h"]))

@@ -74,6 +74,7 @@ def test_there_are_diffs():
     assert len(DIFFS) > 5
 
 
+@pytest.mark.slow
 def test_an_inerter_adds_to_the_mass(extended):
     assert derived(extended, "polynomial")["X/F"] == ("1", "(m + B)*s^2 + k")
 
@@ -99,6 +100,7 @@ def test_the_new_form_multiplies_by_s_once_at_a_time(extended):
     assert derived(extended, "horner")["Y/F"] == ("1", "((T*(m + B)*s + m + B)*s + k*T)*s + k")
 
 
+@pytest.mark.slow
 def test_the_new_target_writes_a_module_that_runs(extended):
     text = python(extended, "-m", "symflex", "export", "model.toml", "--to", "sympy")
     (extended / "exported.py").write_text(text, encoding="utf-8")
@@ -106,11 +108,13 @@ def test_the_new_target_writes_a_module_that_runs(extended):
     assert python(extended, "-c", code).strip() == "2"
 
 
+@pytest.mark.slow
 def test_the_new_root_finder_proves_its_roots(extended):
     # s^2 + 6 s + 25 = (s + 3)^2 + 4^2
     assert python(extended, "-c", ROOTS).strip() == "[('-3.00', '4.00', True), ('-3.00', '-4.00', True)]"
 
 
+@pytest.mark.slow
 def test_the_contract_tests_pass_with_the_additions(extended):
     options = [
         "-q",

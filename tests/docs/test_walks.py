@@ -58,6 +58,7 @@ def pole(_):
 WALKS = {"`k` of a spring": spring, "A beam": beam, "A pole": pole}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("heading", WALKS)
 def test_a_walk_passes_the_files_it_lists_in_order(heading, tmp_path):
     order = passed(lambda: WALKS[heading](tmp_path))

@@ -163,11 +163,13 @@ def test_a_chain_of_definitions_is_answered(count, first, step, function, tmp_pa
     check(tmp_path, model(f"{function}(Z{count - 1})*x", parameters="a = 2", definitions=chain))
 
 
+@pytest.mark.slow
 def test_ten_thousand_definitions_from_last_to_first_are_answered(tmp_path):
     chain = "\n".join(f'Z{i} = "Z{i - 1} + k"' for i in range(10_000, 0, -1))
     check(tmp_path, model("x", definitions=f'{chain}\nZ0 = "k"'))
 
 
+@pytest.mark.slow
 def test_a_circle_of_ten_thousand_definitions_is_refused(tmp_path):
     chain = lines('Z{i} = "Z{before} + k"', 10_000, 1)
     code, printed = check(tmp_path, model("x", definitions=f'{chain}\nZ0 = "Z9999"'))
@@ -532,6 +534,7 @@ def test_model_blocks_that_multiply_from_file_to_file_are_answered(count, tmp_pa
     assert "SF103" in printed
 
 
+@pytest.mark.slow
 def test_a_file_whose_name_is_not_utf_8_is_accepted(tmp_path):
     name = os.fsdecode(b"\xff\x1b[31m.toml")
     try:
@@ -558,6 +561,7 @@ def dense(value):
     )
 
 
+@pytest.mark.slow
 def test_a_dense_network_of_thirty_masses_is_checked(tmp_path):
     code, _ = check(tmp_path, dense(lambda i, j: f'"k{i}_{j}"'))
     assert code == 0
@@ -577,6 +581,7 @@ def test_the_closed_form_of_a_dense_network_of_thirty_masses_is_refused_as_too_l
     assert "error[SF5" in printed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "value",
     [

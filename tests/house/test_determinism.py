@@ -47,6 +47,7 @@ def test_there_are_derivations_to_compare():
     assert SPECIFICATIONS
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "path", slow_ones(SPECIFICATIONS, lambda path: path.stem not in EACH_TIME), ids=lambda path: path.stem
 )

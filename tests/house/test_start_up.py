@@ -54,11 +54,13 @@ def modules_after(*arguments):
     return set(done.stdout.partition("modules:")[2].split())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("arguments", "allowed"), ALLOWED, ids=[" ".join(a) for a, _ in ALLOWED])
 def test_a_command_imports_the_libraries_it_needs_and_no_other(arguments, allowed):
     assert modules_after(*arguments) & LIBRARIES == allowed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["check", "derive"])
 def test_what_prints_formulas_does_not_import_the_rooms_of_numbers(command):
     imported = modules_after(command, LUMPED)

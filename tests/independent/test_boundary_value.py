@@ -239,6 +239,7 @@ def test_the_exact_evaluation_is_right_beyond_the_range_of_exponentials(name):
     assert relative_error(found, expected_at(name, points, FAST_DIGITS)) < WORST_RELATIVE_ERROR
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", slow_ones(COLOCATED, lambda name: name not in FAR_EACH_TIME))
 def test_the_exported_function_is_right_beyond_the_range_of_exponentials(exported, name):
     points = very_fast(name)

@@ -245,6 +245,7 @@ def finite_elements(count):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", slow_ones(LOADED_STRING, lambda count: count > 200))
 def test_the_discretised_loaded_string_has_the_published_eigenvalues(count):
     found = [omega**2 for omega in natural(finite_elements(count), 6, 20)]

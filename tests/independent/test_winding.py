@@ -67,6 +67,7 @@ def test_cutting_a_beam_changes_no_count():
     assert all(whole.count(w) == cut.count(w) for w in (0.1, 3.3, 17.0, 123.4, 999.0, 12345.0))
 
 
+@pytest.mark.slow
 def test_both_counts_are_the_same():
     values = {name: mpf(1) for name in ("E", "I", "rho", "A")}
 

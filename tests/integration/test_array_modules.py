@@ -140,6 +140,7 @@ FEW = ("sliding_free_beam", "six_mass", "timoshenko_cantilever")
 """Of all models the error is measured in ``test_error_table.py``."""
 
 
+@pytest.mark.slow
 @needs_strict
 @pytest.mark.parametrize("name", slow_ones(SPECS, lambda name: name not in FEW))
 def test_array_api_strict_agrees_with_ball_arithmetic(name, over_any, strict):
@@ -154,6 +155,7 @@ def test_array_api_strict_agrees_with_ball_arithmetic(name, over_any, strict):
             assert error(response[on_axis], name, key, on_axis) < 1e-13
 
 
+@pytest.mark.slow
 @needs_jax
 @pytest.mark.parametrize("name", slow_ones(SPECS, lambda name: name not in FEW[:2]))
 def test_jax_agrees_with_ball_arithmetic(name, over_jax, jnp):
@@ -354,6 +356,7 @@ def test_functions_that_find_wavenumbers_are_mapped_over_parameters(over_jax, ov
     assert np.allclose(mapped, over_numpy(PIPE).Y_over_p(30j, U=speeds), rtol=1e-12, atol=0)
 
 
+@pytest.mark.slow
 @needs_strict
 def test_functions_that_find_wavenumbers_broadcast_s_and_parameters(over_any, over_numpy, strict):
     s, speeds = 1j * np.logspace(-3, 3, 4), np.array([[5.0], [11.0]])
@@ -363,6 +366,7 @@ def test_functions_that_find_wavenumbers_broadcast_s_and_parameters(over_any, ov
     assert np.allclose(np.asarray(found), expected, rtol=1e-12, atol=0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "library", [pytest.param("array_api_strict", marks=needs_strict), pytest.param("jax", marks=needs_jax)]
 )
@@ -416,6 +420,7 @@ def test_compiled_functions_give_what_others_give(name, function, over_jax, jax)
     assert np.max(np.abs(compiled / eager - 1)) < 1e-11
 
 
+@pytest.mark.slow
 @needs_jax
 def test_the_array_api_module_can_be_compiled_by_jax(over_any, jax, jnp):
     function = over_any("rod_tip_mass").X_tip_over_F
@@ -442,6 +447,7 @@ def test_the_derivative_by_s_agrees_with_ball_arithmetic(name, function, over_ja
     assert np.max(np.abs(computed - value * slope) / size) < 1e-12
 
 
+@pytest.mark.slow
 @needs_jax
 def test_the_derivative_by_a_parameter_is_that_of_the_formula(over_jax, jax, jnp):
     # Eppinger & Seering 1988, fig. 8a: X_tip/F = (b s + k)/(s^2 (m_1 m_2 s^2 + (m_1 + m_2)(b s + k))).
@@ -550,6 +556,7 @@ def test_functions_are_mapped_over_parameters(name, function, over_jax, over_num
     assert np.allclose(mapped, expected, rtol=1e-12, atol=0)
 
 
+@pytest.mark.slow
 @needs_jax
 def test_a_response_in_real_arithmetic_is_differentiated_by_frequency(over_jax, jax, jnp):
     module, omega = over_jax("sliding_free_beam"), 200.0
@@ -571,6 +578,7 @@ def test_single_precision_is_told_of(over_jax, jax):
 # --------------------------------------------------------------------------------------------- the text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("dialect", "roots"),
     [

@@ -83,6 +83,7 @@ def derived(path):
     return model, derive_all(assemble(model, nested), model.transfer_functions)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("path", "form"),
     [
@@ -145,6 +146,7 @@ LABELS = (
 UNITS = ("kg", "zz_%", "m^(1/2)", "", "1/s", r"\input{x}", "kN*m^2/rad", "1", "furlong", "m/(V*s)")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text", [pytest.param(t, id=n, marks=marks_of(n == "commands")) for n, t in HOSTILE.items()]
 )
@@ -212,6 +214,7 @@ def test_random_formulas_fit_whatever_their_names_and_numbers(width, tmp_path):
     assert complaints(tmp_path, WRAPPER % (width, "\n\n".join(fragments))) == []
 
 
+@pytest.mark.slow
 def test_estimated_widths_are_never_below_those_of_tex(tmp_path):
     chance = random.Random(8)
     expressions = [tree(chance, chance.randint(0, 3)) for _ in range(300)]

@@ -128,6 +128,7 @@ def test_fragments_fit_the_columns_of_a_paper_with_other_packages(engine, fragme
     assert beyond(tmp_path, [(14, 14 + 88.5), (14 + 93.5, 14 + 182)], OVERHANG) == []
 
 
+@pytest.mark.slow
 @pytest.mark.needs_tool("pdftotext")
 @pytest.mark.parametrize("engine", engines("lualatex"))
 def test_a_document_of_hostile_texts_in_the_narrowest_column_is_like_any_other(engine, tmp_path):

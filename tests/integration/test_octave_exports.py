@@ -64,6 +64,7 @@ def test_powers_that_overflow_are_taken_of_one_over_s(octave):
 # ------------------------------------------------------------------------------------------ what is called
 
 
+@pytest.mark.slow
 def test_parameters_are_given_by_name_or_in_a_struct_and_expand_against_s(octave):
     (tf, *_), _ = exported(octave, "sliding_free_beam", samples=5)
     name, s = public_name(tf), 1j * np.array([3.0, 400.0, 9e4])
@@ -105,6 +106,7 @@ def test_complex_stiffness_and_integers_serve_as_arguments(octave):
     assert abs(other / same - 1) < 1e-12
 
 
+@pytest.mark.slow
 def test_what_cannot_be_computed_is_an_error_that_says_what(octave):
     exported(octave, "clamped_free", samples=5)
     calls = {

@@ -6,6 +6,7 @@ The matrices are put together here from the branches, and solved by numpy.
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -51,6 +52,7 @@ def held_frequencies(masses, springs, driven):
     return squares, sorted(2 * len(piece) for piece in pieces)
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(trees())
 def test_colocated_zeros_are_the_poles_of_the_held_network(tree):

@@ -86,6 +86,7 @@ def test_every_form_of_a_random_network_reads_back_to_the_derived_function(netwo
             assert_every_form_agrees(tf)
 
 
+@pytest.mark.slow
 @given(network=networks())
 @quiet(40)
 def test_a_random_network_s_function_is_in_lowest_terms(network):
@@ -93,6 +94,7 @@ def test_a_random_network_s_function_is_in_lowest_terms(network):
         assert_lowest_terms(tf)
 
 
+@pytest.mark.slow
 @given(network=networks())
 @quiet(40)
 def test_a_hidden_factor_contains_s_and_divides_neither_numerator_nor_denominator_by_itself(network):

@@ -59,6 +59,7 @@ def built(draw, depth=4):
     return negative(inner) if kind == 4 or inner == number(0) else power(inner, exponent)
 
 
+@pytest.mark.slow
 @given(expression=built())
 @QUIET
 def test_any_built_tree_is_read_back_as_itself(expression):

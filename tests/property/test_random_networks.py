@@ -105,6 +105,7 @@ def test_the_bound_transfer_functions_agree_with_the_dense_tableau(network):
             assert_close(H(at), reference(network, output, source, at))
 
 
+@pytest.mark.slow
 @given(network=reciprocal_networks())
 @quiet(100)
 def test_a_passive_network_is_reciprocal(network):
@@ -116,6 +117,7 @@ def test_a_passive_network_is_reciprocal(network):
         assert abs(complex(there(at)) - complex(back(at))) <= WORST_RELATIVE_ERROR * scale
 
 
+@pytest.mark.slow
 @given(network=passive_networks())
 @quiet(100)
 def test_the_poles_of_a_passive_network_are_not_in_the_right_half_plane(network):
@@ -123,6 +125,7 @@ def test_the_poles_of_a_passive_network_are_not_in_the_right_half_plane(network)
     assert not any(pole.re > 0 for pole in H.poles())  # a ball is positive only when all of it is
 
 
+@pytest.mark.slow
 @given(network=passive_networks())
 @quiet(100)
 def test_the_zeros_of_a_driving_point_are_not_in_the_right_half_plane(network):

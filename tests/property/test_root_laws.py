@@ -218,6 +218,7 @@ def alternate(poles, zeros):
         assert kind_a != kind_b
 
 
+@pytest.mark.slow
 @given(beams())
 @quiet(6)
 def test_a_driving_point_of_beams_has_as_many_poles_and_zeros_as_wittrick_and_williams_count(model):

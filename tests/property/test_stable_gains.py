@@ -22,6 +22,7 @@ def polynomial(coefficients):
     return " + ".join(f"({c})*s^{i}" if i else f"({c})" for i, c in enumerate(coefficients))
 
 
+@pytest.mark.slow
 @given(
     a=st.lists(COEFFICIENTS, min_size=2, max_size=6).filter(lambda c: c[-1] != 0),
     b=st.lists(COEFFICIENTS, min_size=1, max_size=4).filter(any),

@@ -140,6 +140,7 @@ def test_every_element_and_block_occurs_in_some_random_network(kind):
     assert find(networks(), lambda network: kind in network.kinds, settings=search)
 
 
+@pytest.mark.slow
 @given(networks())
 @QUIET
 def test_every_random_network_is_a_toml_document_with_an_input_and_an_output(network):
@@ -148,6 +149,7 @@ def test_every_random_network_is_a_toml_document_with_an_input_and_an_output(net
     assert entries["outputs"]
 
 
+@pytest.mark.slow
 @given(networks())
 @QUIET
 def test_every_random_network_responds_somewhere(network):
@@ -160,6 +162,7 @@ def test_every_random_network_responds_somewhere(network):
     assert solved
 
 
+@pytest.mark.slow
 @given(passive_networks())
 @QUIET
 def test_every_random_passive_network_is_nonsingular_in_the_right_half_plane(network):
@@ -167,6 +170,7 @@ def test_every_random_passive_network_is_nonsingular_in_the_right_half_plane(net
         assert respond(network, "Y_1", "U_1", at)
 
 
+@pytest.mark.slow
 @given(reciprocal_networks())
 @QUIET
 def test_the_tableau_of_a_passive_network_is_reciprocal(network):
@@ -175,6 +179,7 @@ def test_the_tableau_of_a_passive_network_is_reciprocal(network):
         assert abs(there.value - back.value) <= 1e-11 * max(there.scale, back.scale)
 
 
+@pytest.mark.slow
 @given(passive_networks())
 @QUIET
 def test_the_driving_point_of_a_passive_network_is_positive_real(network):

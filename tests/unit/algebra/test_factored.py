@@ -78,6 +78,7 @@ def assert_canonical(value):
             assert all(min(column) == 0 for column in zip(*monomials, strict=True))
 
 
+@pytest.mark.slow
 @given(pair=EXPRESSIONS)
 @QUIET
 def test_every_operation_is_that_of_sympy(pair):
@@ -85,12 +86,14 @@ def test_every_operation_is_that_of_sympy(pair):
     assert sympy.cancel(to_sympy(value) - expected) == 0
 
 
+@pytest.mark.slow
 @given(pair=EXPRESSIONS)
 @QUIET
 def test_every_result_is_canonical(pair):
     assert_canonical(pair[0])
 
 
+@pytest.mark.slow
 @given(pair=EXPRESSIONS)
 @QUIET
 def test_numerator_over_denominator_is_the_value(pair):
@@ -101,6 +104,7 @@ def test_numerator_over_denominator_is_the_value(pair):
     assert all(e > 0 for _, e in (*above.factors, *below.factors))
 
 
+@pytest.mark.slow
 @given(pair=EXPRESSIONS)
 @QUIET
 def test_an_expanded_numerator_is_sympys_expansion(pair):
@@ -108,6 +112,7 @@ def test_an_expanded_numerator_is_sympys_expansion(pair):
     assert sympy.expand(to_sympy(above) - polynomial_to_sympy(above.expand())) == 0
 
 
+@pytest.mark.slow
 @given(one=EXPRESSIONS, other=EXPRESSIONS)
 @QUIET
 def test_a_value_minus_itself_written_differently_is_zero(one, other):

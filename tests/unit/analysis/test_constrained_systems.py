@@ -172,6 +172,7 @@ def test_the_tip_zeros_of_the_sliding_beam_are_real_and_come_of_nonpropagating_b
     assert told.bending is not None and told.bending.is_evanescent
 
 
+@pytest.mark.slow
 def test_a_motors_winding_gives_no_zero_and_the_held_link_does():
     model = pipeline.load(f"{DERIVATIONS}/eppinger1988/robot_axis.toml")
     told, _ = explained(model, "V_act/V_cmd", Band(0, 100), 8)

@@ -56,12 +56,14 @@ def test_negative_frequencies_have_the_opposite_phase():
     assert response.phase[0] == pytest.approx(-response.phase[1])
 
 
+@pytest.mark.slow
 def test_the_phase_of_a_lossy_beam_is_continuous_through_its_resonances():
     omega = np.geomspace(1, 300, 4000)
     phase = respond(bound(KELVIN_VOIGT), omega).phase
     assert np.abs(np.diff(phase)).max() < 0.5
 
 
+@pytest.mark.slow
 def test_a_delay_outside_a_loop_lags_without_bound():
     # exp(-s/2) times a loop whose phase tends to -90 degrees.
     phase = respond(bound(DELAY_LOOP, 1), [1000.0]).phase - respond(bound(DELAY_LOOP), [1000.0]).phase
@@ -97,6 +99,7 @@ def test_the_band_shown_ends_a_little_above_the_last_pole():
     assert last < high < following * 1.1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["bode", "poles_zeros"])
 def test_distributed_systems_are_drawn(kind):
     bounds = [bound(SLIDING_FREE), bound(SLIDING_FREE, 1)]

@@ -267,6 +267,7 @@ def test_the_highest_of_many_modes_is_as_accurate_as_the_first():
 # ------------------------------------------------------------------------------------------- networks
 
 
+@pytest.mark.slow
 def test_motor_amplifier_screw_and_link_move_together():
     path = ROOT / "derivations" / "eppinger1988" / "robot_axis.toml"
     shape = symflex.load(path).transfer_function("V_tip", "V_cmd").bind().mode_shape(2)

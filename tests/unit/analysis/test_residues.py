@@ -211,6 +211,7 @@ def test_the_laurent_series_of_a_free_beam():
         assert abs(terms - exact) < s**4  # the next term
 
 
+@pytest.mark.slow
 def test_a_field_without_names_for_its_wavenumbers():
     # The third derivative leaves no formula for the roots: series of the exponential of a matrix.
     text = """
@@ -262,6 +263,7 @@ c_f = "c_f"
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("declared", "used"),
     [

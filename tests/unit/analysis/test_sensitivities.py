@@ -143,6 +143,7 @@ def test_a_kelvin_voigt_beam_between_pins():
                 assert close(pole[name].derivative, slope, 12), name
 
 
+@pytest.mark.slow
 def test_waves_without_a_formula():
     # rho w_tt = c w'''''' with w = w'' = w'''' = 0 at both ends: s^2 = -(c/rho) (n pi/l)^6, by inspection.
     model = pipeline.loads(SIXTH_ORDER)
@@ -299,6 +300,7 @@ def motor_polynomial(L, R, k_t, k_e, J_1, J_2, k, b, d):
     return np.polyadd(np.polymul([L, R], determinant), np.polymul([k_t * k_e, 0], second))
 
 
+@pytest.mark.slow
 def test_a_motor_and_a_flexible_load_by_finite_differences():
     at = dict(L="2e-3", R="0.8", k_t="0.05", k_e="0.05", J_1="1e-4", J_2="3e-4", k="20", b="0.002", d="0.001")
     found = moved(pipeline.loads(MOTOR), digits=25)

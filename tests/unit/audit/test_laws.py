@@ -40,6 +40,7 @@ def test_an_added_pole_is_named():
     assert "missing" not in found.detail
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("expr", "ratio"),
     [
@@ -53,6 +54,7 @@ def test_a_wrong_limit_is_named(expr, ratio):
     assert found.detail == f"printed/derived behaves as {ratio} as s tends to 0"
 
 
+@pytest.mark.slow
 def test_half_powers_of_s_in_a_limit_are_named():
     # sin q for cos q: the ratio is tan q ~ q = mu*l.
     where = KRYLOV | {"d": "cosh(q)*sinh(q) + cos(q)*sin(q)"}
@@ -60,10 +62,12 @@ def test_half_powers_of_s_in_a_limit_are_named():
     assert "l*sqrt(2*s)*(rho*A/(E*I))^(1/4)/2 as" in found.detail
 
 
+@pytest.mark.slow
 def test_zeros_of_a_noncolocated_function_need_not_interlace():
     assert "interlacing" not in laws("V_tip", TIP.replace("-2", "-3"), VAUGHAN, SCALE)
 
 
+@pytest.mark.slow
 def test_a_formula_that_is_right_up_to_a_factor_violates_the_limit_only():
     found = laws("V_act", COLOCATED.replace("-1/2", "-1"), VAUGHAN, SCALE)
     assert [name for name, law in found.items() if not law.kept] == ["limit at zero"]

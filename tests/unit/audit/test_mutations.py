@@ -127,6 +127,7 @@ WRONG = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", WRONG)
 def test_a_wrong_formula_is_proved_to_differ(name):
     given, _ = WRONG[name]
@@ -151,18 +152,21 @@ RATIOS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", RATIOS)
 def test_a_constant_ratio_is_named(name):
     expr, scale, expected = RATIOS[name]
     assert format_expression(audited("V_act", expr, VAUGHAN, scale).ratio) == expected
 
 
+@pytest.mark.slow
 def test_a_formula_of_another_kind_is_proved_to_differ_without_a_correction():
     found = audited("V_tip", "2*mu/(rho*A*s)/(tanh(q) + tan(q))", KRYLOV)
     assert found.verdict == "differs"
     assert found.correction is None
 
 
+@pytest.mark.slow
 def test_the_derived_function_is_written_in_the_symbols_of_a_hopeless_print():
     found = audited("V_tip", "(S^3 - C)/(S - 7*C^2)", VAUGHAN)
     assert "(C^3 + S^2*C + C)/(C^4 + 2*S^2*C^2 + S^4 - 4*S*C - 1)" in format_expression(found.derived)

@@ -38,12 +38,14 @@ def test_an_equal_formula_exits_with_zero_under_strict(shell, beam):
     assert shell("audit", beam(TIP), "--strict").code == 0
 
 
+@pytest.mark.slow
 def test_a_difference_is_a_result(shell, beam):
     done = shell("audit", beam(COLOCATED))
     assert done.code == 0
     assert "DIFFERS" in done.out
 
 
+@pytest.mark.slow
 def test_a_difference_exits_with_four_under_strict(shell, beam):
     assert shell("audit", beam(COLOCATED), "--strict").code == 4
 
@@ -54,12 +56,14 @@ def test_what_is_not_proved_exits_with_four_under_strict(shell, beam):
     assert "NOT PROVED" in done.out
 
 
+@pytest.mark.slow
 def test_json_has_the_documented_keys(shell, beam):
     document = shell("audit", beam(COLOCATED), "--json").json
     assert document["schema"] == "symflex.audit/1"
     assert [set(entry) for entry in document["audits"]] == [KEYS]
 
 
+@pytest.mark.slow
 def test_json_says_what_changes(shell, beam):
     (entry,) = shell("audit", beam(TIP.replace("*C*(", "*S*(")), "--json").json["audits"]
     assert entry["changes"] == [{"place": "numerator", "printed": "S", "derived": "C"}]

@@ -63,6 +63,7 @@ def test_memory_is_read_in_decimal_and_binary_units(given, bytes_):
     assert Memory().convert(given, None, None) == bytes_
 
 
+@pytest.mark.slow
 @linux
 def test_a_memory_beyond_what_systems_count_is_no_limit():
     assert ended(started("sys.exit(3)", "--memory", "999999999 TB"))[::2] == (3, "")
@@ -74,6 +75,7 @@ def test_a_command_called_from_python_does_not_answer_for_what_its_caller_holds(
     assert shell("roots", "x.toml").code == 0
 
 
+@pytest.mark.slow
 @linux
 def test_what_cannot_be_asked_is_ended_and_said():
     code, out, err = ended(started(ENDLESS, "--budget", "0.5"))
@@ -82,6 +84,7 @@ def test_what_cannot_be_asked_is_ended_and_said():
     assert "Traceback" not in err
 
 
+@pytest.mark.slow
 @linux
 def test_what_takes_more_memory_than_given_is_told_so():
     code, _, err = ended(started("block = bytearray(b'x') * 10**9", "--memory", "500 MB"))
@@ -100,6 +103,7 @@ def test_a_library_that_crashes_is_an_error_with_a_code():
     assert (code, "SF508" in err) == (5, True)
 
 
+@pytest.mark.slow
 @linux
 def test_the_exit_code_is_that_of_the_process_that_worked():
     assert ended(started("sys.exit(3)"))[0] == 3
@@ -129,6 +133,7 @@ def is_gone(pid):
     return False
 
 
+@pytest.mark.slow
 @linux
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
 def test_a_signal_is_passed_on(name):
@@ -141,6 +146,7 @@ def test_a_signal_is_passed_on(name):
     assert is_gone(worker)
 
 
+@pytest.mark.slow
 @linux
 def test_the_work_ends_with_who_watches_it():
     process = started(ENDLESS)

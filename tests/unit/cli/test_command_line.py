@@ -173,10 +173,12 @@ def error_on_a_terminal(folder, **environment):
     return written
 
 
+@pytest.mark.slow
 def test_an_error_is_coloured_on_a_terminal(shell):
     assert b"\x1b[31m" in error_on_a_terminal(shell.folder, NO_COLOR="")
 
 
+@pytest.mark.slow
 def test_no_color_is_respected_on_a_terminal(shell):
     assert b"\x1b" not in error_on_a_terminal(shell.folder, NO_COLOR="1")
 

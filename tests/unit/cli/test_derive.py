@@ -152,6 +152,7 @@ def chain(count):
     return "\n".join([*lines, "[inputs]", 'F = { force = "x1" }', "[outputs]", f'X = "x{count}"'])
 
 
+@pytest.mark.slow
 def test_a_long_print_is_announced_and_a_short_one_is_not(shell):
     (shell.folder / "long.toml").write_text(chain(10))
     done = shell("derive", "long.toml", "--representation", "expanded")

@@ -49,6 +49,7 @@ def test_the_fitted_specification_is_the_one_in_the_repository(shell):
     assert frequencies == pytest.approx(PAPER_HZ, abs=0.06)
 
 
+@pytest.mark.slow
 def test_synthetic_is_said_wherever_the_data_appear(shell):
     done = shell("fit", DATA, *BASE, "--modes", "5", "--plot", "a.svg", "-o", "a.toml")
     assert "SYNTHETIC" in done.out
@@ -56,6 +57,7 @@ def test_synthetic_is_said_wherever_the_data_appear(shell):
     assert "SYNTHETIC" in DATA.read_text().splitlines()[0]
 
 
+@pytest.mark.slow
 def test_the_report_fits_eighty_columns_and_shows_errors_and_phase_test(shell):
     out = shell("fit", DATA, *BASE, "--modes", "5").out
     assert max(map(len, out.splitlines())) <= 80
@@ -80,6 +82,7 @@ def test_a_fit_without_base_is_a_specification_of_its_own(oscillator):
     assert oscillator("export", "one.toml", "--to", "numpy").code == 0
 
 
+@pytest.mark.slow
 def test_a_poor_fit_says_so_first_and_strict_makes_it_exit_code_4(oscillator):
     f = np.arange(2.0, 60.0, 0.25)
     noise = np.random.default_rng(1).standard_normal((2, f.size)) * 0.02
@@ -191,6 +194,7 @@ def test_data_without_any_resonance_are_refused_without_speaking_of_a_base(shell
     assert "base" not in done.err
 
 
+@pytest.mark.slow
 def test_measure_writes_what_fit_reads(shell):
     (shell.folder / "damped.toml").write_text(
         'symflex = 1\nparameters = { m = "2 kg", k = "20 kN/m", b = "10 N*s/m" }\n'

@@ -77,6 +77,7 @@ def test_a_function_is_normalised_as_asked(shell, form, denominator):
     )
 
 
+@pytest.mark.slow
 def test_a_folder_holds_a_file_for_every_function_and_table(chain):
     done = chain("export", "chain.toml", "--to", "latex", "-o", "paper/")
     assert (done.code, done.out, done.err) == (0, "", "wrote 12 files to paper/\n")
@@ -120,6 +121,7 @@ def test_a_model_without_values_has_no_poles_but_a_document(shell):
     assert "symbolic" in done.out
 
 
+@pytest.mark.slow
 def test_functions_whose_files_would_share_a_name_have_two(shell):
     text = (shell.folder / "x.toml").read_text().replace('V = "s*x"', 'V = "s*x", v = "2*s*x"')
     (shell.folder / "case.toml").write_text(text, encoding="utf-8")

@@ -103,6 +103,7 @@ def test_a_figure_shows_the_part_asked_for(shell, arguments):
     assert (done.code, done.err) == (0, "wrote a.svg\n")
 
 
+@pytest.mark.slow
 def test_a_band_on_the_command_line_comes_before_that_of_the_figure(shell):
     text = (shell.folder / "x.toml").read_text(encoding="utf-8")
     figure = '\n[figures.near]\nkind = "bode"\nof = ["X/F"]\nband = ["1 Hz", "2 Hz"]\n'

@@ -18,6 +18,7 @@ def rod(shell):
     return shell
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["product", "modal"])
 def test_json_has_the_documented_keys(rod, form):
     done = rod("rational", "rod.toml", "--tf", "X/F", "--modes", "2", "--form", form, "--json")

@@ -13,6 +13,7 @@ def _no_tex(monkeypatch):
     monkeypatch.setattr("symflex.report.pdf.shutil.which", lambda _: None)
 
 
+@pytest.mark.slow
 def test_a_report_is_written_and_its_page_named_last(shell):
     done = shell("report", "x.toml", "-o", "out", "-j", "1", "--date", "1988-12-31")
     assert done.code == 0
@@ -23,6 +24,7 @@ def test_a_report_is_written_and_its_page_named_last(shell):
     }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_without_pdflatex_the_report_says_how_to_get_it(shell):
     done = shell("report", "x.toml", "-j", "1", "--pdf")
     assert done.code == 2
@@ -30,6 +32,7 @@ def test_without_pdflatex_the_report_says_how_to_get_it(shell):
     assert (shell.folder / "report" / "report.tex").exists()
 
 
+@pytest.mark.slow
 def test_a_pdf_that_does_not_compile_is_said_and_the_page_is_there(shell, monkeypatch):
     def fail(*_):
         raise SymflexError(Diagnostic("SF912", "pdflatex failed"))

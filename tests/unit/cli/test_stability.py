@@ -102,6 +102,7 @@ def test_outputs_that_are_not_together_are_told(files):
     assert document["colocated_at_start"] is False
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "arguments", [("paths",), ("nyquist", "--gain", "K"), ("nyquist", "--tf", "E/r")], ids=str
 )

@@ -151,6 +151,7 @@ KINDS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", slow_ones(KINDS, lambda kind: kind == "two beams"))
 def test_other_kinds_of_kernels_agree_with_balls(kind, tmp_path):
     model = pipeline.loads(KINDS[kind])
@@ -368,6 +369,7 @@ def test_no_compiler_warns_whatever_it_supports(written, flags):
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.needs_tool("nm")
 def test_the_objects_call_no_allocator_and_hold_no_variables(written):
     sources = [f"{name}.c" for name in MIXED]
@@ -532,6 +534,7 @@ def test_c_finds_roots_of_any_sizes(tmp_path):
     assert np.all(np.isnan(found[:4]))
 
 
+@pytest.mark.slow
 def test_only_functions_that_are_called_are_in_the_file():
     two_mass = pipeline.load(ROOT / "derivations" / "eppinger1988" / "two_mass.toml")
     lumped = C99.export(two_mass, pipeline.derive_all(two_mass), stem="plant", is_alone=False, samples=5).text
@@ -601,6 +604,7 @@ def test_a_quotient_of_numbers_of_any_size_neither_overflows_nor_vanishes(functi
 # -------------------------------------------------------------------------------- the page and the command
 
 
+@pytest.mark.slow
 def test_the_example_of_the_page_prints_what_it_says(tmp_path):
     page = blocks(ROOT / "docs" / "export-c.md")
     (program,) = [block.text for block in page if block.title == "main.c"]

@@ -99,6 +99,7 @@ def test_prose_changes_no_token(text):
         part.encode("utf-8")
 
 
+@pytest.mark.slow
 @pytest.mark.needs_tool("gcc")
 def test_compilers_take_all_prose_without_a_warning(tmp_path):
     for i, text in enumerate(IN_COMMENTS):

@@ -29,6 +29,7 @@ conditions = [
 FAR = (1e8j, -5e7 + 1e8j, 1e10j, 1e12j)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "model",
     [

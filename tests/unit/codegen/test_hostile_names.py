@@ -334,6 +334,7 @@ def expected_of_springs():
     return 1 / (2 * S**2 + 3 * S + TOTAL)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "target", ["numpy", "array-api", pytest.param("jax", marks=pytest.mark.needs_module("jax"))]
 )
@@ -351,6 +352,7 @@ def test_parameters_of_any_names_keep_their_values(target):
     assert np.asarray(changed) == pytest.approx(1 / (2 * S**2 + 3 * S + 2 * TOTAL), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_state_equations_with_parameters_of_any_names_keep_their_values():
     space = in_python(with_parameters("state-space", PARAMETERS))
     a, b, c, d = space["state_space"]()
@@ -358,6 +360,7 @@ def test_state_equations_with_parameters_of_any_names_keep_their_values():
     assert found == pytest.approx(expected_of_springs(), rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.needs_tool("gcc")
 def test_c_takes_members_of_any_names(tmp_path):
     model, tfs = springs(PARAMETERS)

@@ -79,6 +79,7 @@ def test_every_private_function_that_julia_calls_is_in_the_module(name):
     assert ("import LinearAlgebra" in text) == ("_characteristic_roots(" in text)
 
 
+@pytest.mark.slow
 def test_matlab_needs_no_complex_one_to_take_roots_of_negative_numbers():
     text = made("matlab", "two_beams").text
     assert "sqrt(" in text
@@ -144,6 +145,7 @@ def test_lines_of_code_end_after_operators():
     assert not any(line.startswith(("+", "-", "*", ".*")) for line in lines)
 
 
+@pytest.mark.slow
 def test_a_model_of_the_python_interface_exports_both():
     text = DERIVATIONS["rod_tip_mass"].read_text()
     model = symflex.loads(text)

@@ -217,6 +217,7 @@ def test_an_exported_function_agrees_with_the_boundary_value_problem(name):
     assert max(relative_errors(function, EXPECTED[name])) < 1e-14
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("output", [0, 1], ids=["V_act", "V_tip"])
 def test_the_sliding_free_beam_agrees_with_its_boundary_value_problem(output):
     made = module(specification("sliding_free"), "sliding_free")
@@ -224,6 +225,7 @@ def test_the_sliding_free_beam_agrees_with_its_boundary_value_problem(output):
     assert max(relative_errors(function, lambda s: sliding_free(s)[output])) < 1e-14
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "x"), [("V_mid_over_F", "0.5"), ("V_s_over_F", "0.31")])
 def test_a_sensor_inside_agrees_with_the_boundary_value_problem(name, x):
     function = getattr(module(SENSOR, "sensor"), name)
@@ -297,6 +299,7 @@ def test_real_arithmetic_raises_nothing_whatever_numpy_is_told_about_errors(name
             assert not np.any(np.isnan(response(omega)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("output", [0, 1], ids=["V_act", "V_tip"])
 def test_the_sliding_free_beam_in_real_arithmetic_agrees_with_its_boundary_value_problem(output):
     made = module(specification("sliding_free"), "sliding_free")

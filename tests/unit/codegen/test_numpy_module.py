@@ -76,6 +76,7 @@ def symbolic(folder):
 # ------------------------------------------------------------------------------------------------ values
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("spec", SPECS, ids=lambda p: p.stem)
 def test_every_function_agrees_with_ball_arithmetic_at_complex_points(spec, folder):
     model = pipeline.load(spec)
@@ -279,6 +280,7 @@ def test_parameters_have_value_unit_and_doc(two_mass, symbolic):
     assert list(two_mass.PARAMETERS) == ["m_1", "m_2", "k", "b"]
 
 
+@pytest.mark.slow
 def test_defaults_are_the_doubles_nearest_to_the_exact_values(folder):
     module = imported(
         exported(pipeline.load(DERIVATIONS / "polynomial_resonance.toml")).text, folder, "resonance"
@@ -289,6 +291,7 @@ def test_defaults_are_the_doubles_nearest_to_the_exact_values(folder):
     assert signature.parameters["r"].default == 0.0039788735772973835
 
 
+@pytest.mark.slow
 def test_a_frequency_in_hertz_is_taken_in_hertz(folder):
     module = imported(
         exported(pipeline.load(DERIVATIONS / "polynomial_resonance.toml")).text, folder, "in_hertz"
@@ -369,6 +372,7 @@ def test_every_line_fits_in_88_columns_but_the_linters_own():
         assert all(len(line) <= 88 for line in lines if not line.startswith("# ruff"))
 
 
+@pytest.mark.slow
 def test_the_text_is_the_same_in_every_process():
     code = (
         "from symflex import pipeline\n"

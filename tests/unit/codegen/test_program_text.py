@@ -14,6 +14,7 @@ from symflex.codegen.program import identifiers, inert, wrapped
 RESERVED = frozenset({*keyword.kwlist, "np", "s"})
 
 
+@pytest.mark.slow
 @given(st.lists(st.text(max_size=20), unique=True, max_size=12))
 def test_different_names_have_different_identifiers(names):
     found = identifiers({n: n for n in names}, RESERVED)

@@ -89,6 +89,7 @@ def test_samples_stand_at_every_pole_and_zero():
     assert len(frequencies) > 400
 
 
+@pytest.mark.slow
 def test_recurrences_are_taken_for_the_six_masses_because_they_are_the_most_accurate():
     tf = transfer_functions("six_mass")[0]
     _, verification = choose_program(tf)

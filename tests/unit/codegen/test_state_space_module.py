@@ -87,6 +87,7 @@ def test_the_verified_error_is_small_and_stands_in_the_header(name):
         assert f"{v.name}: verified: worst relative error {v.error:.1e}" in made.text
 
 
+@pytest.mark.slow
 def test_the_measured_error_bounds_what_the_module_is_off_by(loaded):
     model = pipeline.load(PAPER / "six_mass.toml")
     made = exported(model, samples=60)

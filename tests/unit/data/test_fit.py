@@ -35,6 +35,7 @@ def test_every_start_leads_to_the_paper_s_modes(start):
     assert fit.resonances.omega_z[0] / (2 * np.pi) == pytest.approx(PAPER.f_z, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_the_close_pair_is_not_swapped_and_five_modes_are_chosen():
     fit = fit_resonances([noisy(PAPER)], UNIT)
     assert fit.resonances.count == 5
@@ -76,6 +77,7 @@ def test_a_minimum_phase_function_passes_the_phase_test():
     assert fit_resonances([noisy(PAPER)], UNIT, FitOptions(modes=5)).phase_tests[0].is_minimum_phase
 
 
+@pytest.mark.slow
 def test_zeros_in_the_right_half_plane_are_found_and_fail_the_phase_test():
     mirrored = replace(PAPER, zeta_z=np.array([0.05, 0.05, 0.05, -0.05, 0.05]))
     fit = fit_resonances([noisy(mirrored)], UNIT, FitOptions(modes=5))
@@ -114,6 +116,7 @@ def test_damped_zeros_in_the_right_half_plane_are_not_explained_away(damping):
     assert fit_resonances([data], UNIT, FitOptions(modes=1)).phase_tests[0].verdict == "nonminimum"
 
 
+@pytest.mark.slow
 def test_a_delay_that_could_be_a_sensor_s_is_undetermined_and_a_long_one_is_not():
     def verdict(delay):
         data = noisy(lambda f: ONE(f) * np.exp(-2j * np.pi * f * delay))
@@ -125,6 +128,7 @@ def test_a_delay_that_could_be_a_sensor_s_is_undetermined_and_a_long_one_is_not(
     assert verdict(0.02).verdict == "nonminimum"
 
 
+@pytest.mark.slow
 def test_the_tip_of_a_bending_beam_is_not_minimum_phase():
     # Poles and zeros of derivations/eppinger1988/lumped_bending_beam.toml, X_tip/F, with 1 % of damping:
     # a zero at 28 Hz in either half plane, none others.
@@ -148,6 +152,7 @@ def test_zeros_that_stand_for_a_power_of_s_are_said_and_turn_no_verdict():
     assert fit.phase_tests[0].verdict != "nonminimum"
 
 
+@pytest.mark.slow
 def test_where_no_resonances_describe_the_magnitude_its_phase_says_nothing():
     # One resonance for data with a real zero in the right half plane at 30 Hz: 4 dB are left.
     data = noisy(lambda f: ONE(f) * (1 - 1j * f / 30))

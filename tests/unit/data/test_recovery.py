@@ -30,6 +30,7 @@ def recover(count, seed, **settings):
     return np.abs(np.array(errors)), np.array(deviations)
 
 
+@pytest.mark.slow
 def test_ten_systems_are_recovered():
     errors, deviations = recover(10, seed=1)
     assert errors[:, 0].max() < 0.002

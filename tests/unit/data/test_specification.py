@@ -104,6 +104,7 @@ def test_a_dead_time_is_found_and_written_as_a_delay_block(folder):
     assert function(S[40]) == pytest.approx(fit.values()[40], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_dead_time_and_a_lag_are_not_negative_unless_asked(folder):
     lead = noisy(2.5 * resonance() * np.exp(S * 1e-3))
     assert symflex.fit(lead, modes=1, slope=0, delay=True).resonances.delay[0] >= 0

@@ -203,6 +203,7 @@ def test_more_rows_than_the_limit_are_refused():
     assert caught.value.diagnostics[0].code == "SF502"
 
 
+@pytest.mark.slow
 def test_a_chain_may_be_longer_than_calls_may_be_deep():
     # The determinant of tridiagonal (-1, 2, -1) with n rows is n + 1.
     n = 520

@@ -52,6 +52,7 @@ def test_double_stars_are_read_back_too(tree):
     assert read(format_expression(tree, power="**")) == tree
 
 
+@pytest.mark.slow
 @given(trees, trees)
 def test_a_printed_equation_is_read_back_as_itself(left, right):
     printed = format_expression(Equation(left, right))
@@ -172,6 +173,7 @@ def test_a_sum_of_thousands_of_terms_is_printed_and_read_back(count):
     assert parse(text_of(format_expression(tree)), limits=PROGRAM_LIMITS) == tree
 
 
+@pytest.mark.slow
 def test_a_tree_deeper_than_the_interpreter_can_call_is_printed():
     tree = a
     for _ in range(50_000):

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -49,6 +50,7 @@ def exponent(value):
 sized = st.recursive(numbers, grown, max_leaves=15)
 
 
+@pytest.mark.slow
 @given(sized)
 def test_no_value_exceeds_its_bound(pair):
     value, size = pair
@@ -56,6 +58,7 @@ def test_no_value_exceeds_its_bound(pair):
     assert value.denominator <= 2**size.lower
 
 
+@pytest.mark.slow
 @given(sized)
 def test_a_followed_value_is_the_value(pair):
     value, size = pair

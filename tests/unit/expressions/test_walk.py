@@ -104,6 +104,7 @@ def test_substituting_nothing_gives_the_tree_itself(expression):
     assert substitute(expression, {}) is expression
 
 
+@pytest.mark.slow
 @given(trees, trees)
 def test_a_substituted_tree_is_printed_and_read_back_as_itself(expression, value):
     bare = {name.name for name in names(expression) if isinstance(name, Name)}

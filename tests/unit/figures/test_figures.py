@@ -126,6 +126,7 @@ def test_the_bytes_do_not_depend_on_the_hash_seed():
     assert python(DRAW_ALL, PYTHONHASHSEED="1") == python(DRAW_ALL, PYTHONHASHSEED="2")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", FIGURES)
 def test_the_user_s_own_settings_do_not_matter(kind, tfs):
     expected = render(drawn(kind, tfs), "svg")
@@ -142,6 +143,7 @@ def test_global_settings_are_left_as_they_were(kind, tfs):
     assert dict(matplotlib.rcParams) == before
 
 
+@pytest.mark.slow
 def test_pyplot_is_never_imported():
     code = f"{DRAW_ALL}\nimport sys\nprint('matplotlib.pyplot' in sys.modules)"
     assert python(code).splitlines()[-1] == "False"
@@ -188,6 +190,7 @@ def test_save_does_not_write_through_a_link(tfs, tmp_path):
         save(drawn("bode", tfs), tmp_path / "a.svg", "svg")
 
 
+@pytest.mark.slow
 def test_no_date_is_in_the_file(tfs):
     figure = drawn("bode", tfs)
     assert b"CreationDate" not in render(figure, "pdf")

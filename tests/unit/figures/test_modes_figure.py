@@ -60,18 +60,21 @@ def test_the_curve_is_the_displacement_along_the_beam():
     assert y == pytest.approx(np.sin(2 * np.pi * np.asarray(x)), abs=1e-9)
 
 
+@pytest.mark.slow
 def test_nodes_with_inertia_at_the_ends_are_marked():
     axes = drawn(pipeline.load(CLASSICS / "kelvin_voigt_cantilever.toml")).axes[0]
     marks = [line for line in axes.lines if line.get_marker() == "o"]
     assert [tuple(map(float, mark.get_xydata()[0])) for mark in marks] == [pytest.approx((0, 1))]
 
 
+@pytest.mark.slow
 def test_what_lags_is_drawn_apart_and_explained():
     figure = drawn(pipeline.load(EPPINGER / "robot_axis.toml"), modes=2)
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["in phase", "in quadrature"]
     assert not drawn(pipeline.load(EPPINGER / "six_mass.toml")).legends
 
 
+@pytest.mark.slow
 def test_a_link_driven_by_a_motor_has_a_panel_each():
     run, stems = panels(pipeline.load(EPPINGER / "robot_axis.toml"))
     assert [segment.name for segment in run.segments] == ["link"]
@@ -167,6 +170,7 @@ def test_a_model_without_modes_has_nothing_to_draw():
         drawn(model_of('a = { type = "mass", at = "x", m = "1 kg" }'))
 
 
+@pytest.mark.slow
 def test_a_real_pole_is_named_by_its_place():
     model = pipeline.load(EPPINGER / "robot_axis.toml")
     (bound,) = pipeline.derive_bound(model, model.transfer_functions[:1])

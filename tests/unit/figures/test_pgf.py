@@ -126,6 +126,7 @@ def test_equal_figures_give_equal_text(bounds):
     assert text_of("modes", bounds[:1]) == text_of("modes", bounds[:1])
 
 
+@pytest.mark.slow
 def test_a_figure_in_the_font_of_latex_embeds_computer_modern(bounds):
     sources = [bound.source for bound in bounds]
     for font, name in (("latex", b"Cmr10"), ("times", b"STIX"), ("sans", b"DejaVuSans")):
@@ -142,6 +143,7 @@ def test_a_font_or_width_that_does_not_exist_is_refused(asked, bounds):
         draw("bode", [bound.source for bound in bounds], bounds, **asked)
 
 
+@pytest.mark.slow
 def test_the_figures_of_a_model_and_one_of_each_other_kind_are_among_the_files():
     figures = '[figures.fig_7]\nkind = "bode"\nof = ["Y/F"]\ntitle = "100 % \\\\input{x}"\n'
     model = pipeline.loads(SPEC + figures)

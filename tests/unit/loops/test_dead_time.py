@@ -79,6 +79,7 @@ def cascade(speed, current, voltage):
     return pipeline.loads(CASCADE.format(speed=speed, current=current, voltage=voltage))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", PLACES, ids=str)
 def test_a_cascade_is_proved_wherever_the_dead_time_is(place):
     found = pipeline.stability(cascade(*place), StabilityOptions("K_v", (Fraction(3), Fraction(5))))

@@ -71,6 +71,7 @@ def newton(function, slope, s):
     return s
 
 
+@pytest.mark.slow
 def test_poles_that_come_from_infinity_are_traced(loop):
     # s + 1 + K (s + 3) exp(-s/10): one pole at K = 0, infinitely many for any K > 0.
     locus = trace_locus(
@@ -157,6 +158,7 @@ F_tip = "k*tip"
 """
 
 
+@pytest.mark.slow
 def test_poles_that_go_where_poles_accumulate_stop_there():
     # Of a Kelvin-Voigt beam poles accumulate at -1/eta = -5000; which are there, no search can tell.
     locus = trace_locus(characteristic(symflex.loads(FORCE_LOOP)))
@@ -193,6 +195,7 @@ def texts_and_frame(loop, expression, limits, **more):
     return [text.get_text() for text in figure.legends[0].get_texts()], axes
 
 
+@pytest.mark.slow
 def test_the_frame_holds_the_poles_at_the_last_gain(loop):
     labels, axes = texts_and_frame(loop, "K*D*(s + 3)/(s + 1)", (0, Fraction(9, 10)), T="0.1 s")
     assert labels == ["poles, $K = 0$", "poles, $K = 0.9$", "zeros", "poles from infinity"]
@@ -219,6 +222,7 @@ def test_as_many_modes_are_traced_as_a_band_holds(loop):
     assert np.allclose(sorted(found, key=lambda s: (s.imag, s.real)), wanted, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_poles_in_the_band_at_the_last_gain_are_traced_too(loop):
     # At the gain 0 there is one pole; at the last one, poles are at 10 W(-2 exp(1/10)/10) - 1.
     known = [10 * lambertw(-0.2 * np.exp(0.1), n) - 1 for n in range(-8, 8)]

@@ -95,6 +95,7 @@ def test_all_digits_of_a_transcendental_boundary(loop):
     assert printed == "3.1415926535897932384626433832795028841971693993751"
 
 
+@pytest.mark.slow
 def test_a_neutral_loop_is_certified_only_below_a_gain_of_one(loop):
     below = loop("K*D*(s + 3)/(s + 1)").stability("K", (0, 0.9))
     beyond = loop("K*D*(s + 3)/(s + 1)").stability("K", (0, 3))
@@ -104,6 +105,7 @@ def test_a_neutral_loop_is_certified_only_below_a_gain_of_one(loop):
     assert float(beyond.boundaries[0].gain) == float(below.boundaries[0].gain)
 
 
+@pytest.mark.slow
 def test_what_is_not_proved_of_a_beam_without_loss_is_said(lossless_beam):
     found = lossless_beam("act", is_damped=True).stability("K", up_to_hz=100)
     assert not found.certified
@@ -112,6 +114,7 @@ def test_what_is_not_proved_of_a_beam_without_loss_is_said(lossless_beam):
     assert counts(found) == [(0, 0)]
 
 
+@pytest.mark.slow
 def test_crossing_where_a_damper_at_the_actuator_does_nothing(lossless_beam):
     # Poles cross where the damped end is at rest: at a colocated zero, 2 + cosh 2q + cos 2q = 0.
     found = lossless_beam("tip", is_damped=True).stability("K", up_to_hz=60)

@@ -95,6 +95,7 @@ values = st.recursive(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=300, deadline=None)
 @given(mappings(values))
 def test_what_is_written_is_read_back(mapping: dict[str, object]) -> None:

@@ -246,6 +246,7 @@ for tf in pipeline.derive_all(pipeline.load("derivations/eppinger1988/lumped_ben
 """
 
 
+@pytest.mark.slow
 def test_the_forms_do_not_depend_on_the_hash_seed():
     seen = {
         subprocess.run(

@@ -103,6 +103,7 @@ def test_a_tree_of_any_depth_is_printed():
     assert latex_expression(expression, {}).count("a") == 5000
 
 
+@pytest.mark.slow
 def test_a_sum_of_twenty_thousand_terms_is_printed():
     terms = [product_of([Name(f"m_{i % 9}"), power(Name("s"), i + 2)]) for i in range(20_000)]
     assert latex_expression(sum_of(terms), {}).count(" + ") == 19_999

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from fractions import Fraction
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -151,6 +152,7 @@ def test_an_expression_means_what_its_tree_means(tree):
     assert meaning(latex_expression(tree, {})) == value_of(tree)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=200)
 @given(trees.filter(is_finite), st.sampled_from([6.0, 9.0, 15.0]))
 def test_a_broken_expression_means_what_its_tree_means(tree, width):

@@ -72,6 +72,7 @@ def test_the_equations_of_a_paper_add_only_numbers_and_page_breaks(printed):
     assert environments(equations) <= {"equation", "align", "align*"}
 
 
+@pytest.mark.slow
 def test_a_formula_that_a_page_would_take_seconds_to_set_is_left_out(printed):
     lengths = [len(latex) for tf, form in printed if (latex := notebook_latex(tf, form))]
     assert max(lengths) <= LONGEST_IN_NOTEBOOK

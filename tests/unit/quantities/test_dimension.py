@@ -109,6 +109,7 @@ def test_a_preferred_unit_is_coherent(unit):
     assert unit_of(unit).scale == 1
 
 
+@pytest.mark.slow
 @given(dimensions)
 def test_any_printed_dimension_reads_back_as_itself(dimension):
     assert unit_of(str(dimension)).dimension == dimension

@@ -200,6 +200,7 @@ def test_the_stable_gains_of_a_loop_are_in_its_chapter_and_in_a_table_of_loops(t
     assert not re.search(rb"[0-9]{12}", report.files["figures/loop_locus.svg"])
 
 
+@pytest.mark.slow
 def test_a_figure_that_cannot_be_drawn_is_told_in_its_place_and_on_the_terminal(tmp_path):
     text = LOOP.replace("[outputs]", '[figures.square]\nkind = "locus"\ngain = "R"\n[outputs]')
     text = text.replace("K = ", "R = 2\nK = ").replace('"K*i"', '"K*R^2*i"')
@@ -226,6 +227,7 @@ def test_modes_of_a_structure_that_a_spring_holds_to_ground_are_counted(tmp_path
     assert "no response when rigid" in report_page(report)
 
 
+@pytest.mark.slow
 def test_measured_responses_in_a_folder_are_drawn_with_the_models_over_them(tmp_path):
     # Two masses of 3 and 2 kg, 24 N/m and 0.1 N s/m between; the data are 1 dB smaller and 30 degrees behind.
     frequency = np.arange(0.2, 5.0, 0.1)

@@ -551,6 +551,7 @@ POINT = mpf(-10)
 AROUND = Case("accumulation inside", KELVIN_VOIGT, damped_rod, region=(-400.0, 1.0, -50.0, 50.0))
 
 
+@pytest.mark.slow
 def test_a_region_around_an_accumulation_leaves_its_neighbourhood_out_and_says_so():
     result = AROUND.solve()
     (part,) = result.excluded
@@ -564,6 +565,7 @@ def test_a_region_around_an_accumulation_leaves_its_neighbourhood_out_and_says_s
             assert min(abs(s - value) for s, _ in left) < mpf(10) ** -25 * abs(value)
 
 
+@pytest.mark.slow
 def test_certified_all_but_the_neighbourhood_of_an_accumulation_is_proved():
     result = AROUND.solve()
     assert result.certificate.certified
@@ -574,6 +576,7 @@ def test_certified_all_but_the_neighbourhood_of_an_accumulation_is_proved():
         check_exactly(outside, not_left_out(AROUND, result, expected))
 
 
+@pytest.mark.slow
 def test_certified_a_region_without_the_accumulation_leaves_nothing_out():
     case = Case("left of it", KELVIN_VOIGT, damped_rod, region=(-400.0, -12.5, -50.0, 50.0))
     result = case.solve()

@@ -69,6 +69,7 @@ def test_a_free_beam_on_a_viscous_foundation_comes_to_rest():
     assert [s for s in found if s] == pytest.approx(expected, rel=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("damping", ["400", "400.01"])
 def test_a_cantilever_on_a_critically_damped_foundation(damping):
     text = beam(f'k_f = "10 kN/m^2", c_f = "{damping} N*s/m^2"', '["tip", "ground"]')
@@ -107,6 +108,7 @@ def timoshenko_rows(s):
     )
 
 
+@pytest.mark.slow
 def test_a_timoshenko_cantilever_on_a_damped_foundation_against_shooting():
     text = beam(f'k_f = "10 kN/m^2", c_f = "40 N*s/m^2", {TIMOSHENKO}', '["ground", "tip"]')
 

@@ -108,6 +108,7 @@ def test_poles_of_a_kelvin_voigt_beam_solve_a_quadratic_per_mode():
     agree(upper(found(KELVIN_VOIGT, Modes(4)).poles), expected)
 
 
+@pytest.mark.slow
 def test_overdamped_poles_of_a_kelvin_voigt_beam_are_found_outside_the_neighbourhood_left_out():
     region = Rectangle(Fraction(-1000), Fraction(-255), Fraction(-1), Fraction(1))
     eta, expected = mpf("0.004"), []
@@ -180,6 +181,7 @@ def test_the_model_says_how_many_modes_are_shown_by_default():
     assert (result.region, len(upper(result.poles))) == (Modes(2), 2)
 
 
+@pytest.mark.slow
 def test_the_model_s_band_is_the_default_without_modes():
     result = found(SLIDING_FREE + '[analysis]\nband = ["1 Hz", "12 Hz"]\n', None, digits=12)
     assert result.region == Band(Fraction(1), Fraction(12))

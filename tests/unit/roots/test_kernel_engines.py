@@ -126,6 +126,7 @@ def test_a_region_about_0_holds_the_rigid_body_poles_only(text, region):
     assert [root.multiplicity for root in found.poles] == expected
 
 
+@pytest.mark.slow
 def test_what_lies_below_all_that_was_searched_is_not_overlooked():
     # The springs cancel only as numbers: the rod is free, and its poles at 0 are not seen in the formula.
     text = """

@@ -214,6 +214,7 @@ def test_roots_beyond_the_range_of_doubles_are_solved():
     assert (upper.decimal(20).im, lower.decimal(20).im) == (f"1.{'0' * 19}e450", f"-1.{'0' * 19}e450")
 
 
+@pytest.mark.slow
 def test_all_600_roots_of_dense_integer_coefficients_are_isolated():
     coefficients = [(7919 * k * k + 104729) % 2003 - 1001 for k in range(601)]
     roots = find_polynomial_roots(problem_of(fmpz_poly(coefficients)), 15)

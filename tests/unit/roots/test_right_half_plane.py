@@ -63,6 +63,7 @@ def test_whatever_is_asked_for_the_unstable_poles_of_a_delay_are_those_of_lamber
     assert max(abs(a - b) for a, b in zip(right, expected, strict=True)) < 1e-12
 
 
+@pytest.mark.slow
 def test_by_default_they_are_among_the_poles():
     shown = found(HAYES.format(gain=200))
     assert sum(bool(p.re > 0) for p in shown.poles) == len(unstable_by_lambert_of_many(200))

@@ -72,6 +72,7 @@ def test_translation_of_a_free_beam_on_a_foundation(digits):
     assert result.certificate.certified
 
 
+@pytest.mark.slow
 def test_translation_on_a_damped_foundation():
     # 2 s^2 + s + 18 = 0
     result = solved(DAMPED, 60, Modes(1))
@@ -96,6 +97,7 @@ def test_where_two_wavenumbers_meet_there_is_no_mode():
     assert not any(abs(float(root.im.mid()) - float(meeting)) < 1e-3 for root in found)
 
 
+@pytest.mark.slow
 def test_sections_of_a_pinned_timoshenko_beam_turn_alike_at_the_cut_off_frequency():
     cut_off = Band(Fraction("0.4"), Fraction("0.44"))  # sqrt(7) rad/s = 0.421 Hz
     result = solved(TIMOSHENKO, 50, cut_off, PINNED, 'torque = "a.theta"', "a.theta")

@@ -95,6 +95,7 @@ def test_combinations_that_grow_too_large_are_refused(monkeypatch):
         G.state_space(minimal=True)
 
 
+@pytest.mark.slow
 @given(network=networks())
 @settings(
     max_examples=40,

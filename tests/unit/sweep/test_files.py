@@ -53,6 +53,7 @@ def test_parquet_holds_the_same_table(sweep):
     assert table.schema.metadata[b"of"] == b"poles"
 
 
+@pytest.mark.slow
 @pytest.mark.needs_module("xarray")
 def test_xarray_reads_the_file_and_selects_by_label(sweep, tmp_path):
     import xarray
@@ -184,6 +185,7 @@ def slow(arguments):
     return pytest.param(arguments, marks=pytest.mark.slow)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -219,6 +221,7 @@ def test_many_values_of_two_parameters_are_bars():
     assert len(bar.get_xdata()) == 2
 
 
+@pytest.mark.slow
 def test_loci_show_every_point(sweep):
     figure = draw_sweep(sweep)
     marks = [c for axes in figure.axes for c in axes.collections if len(c.get_offsets()) > 1]

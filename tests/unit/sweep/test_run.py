@@ -45,6 +45,7 @@ def task_and_design(count):
     return sweep_task(model, ("X", "F"), design), design
 
 
+@pytest.mark.slow
 def test_the_order_in_which_chunks_come_back_does_not_matter():
     task, design = task_and_design(401)
     here, there = run_sweep(task, design), run_sweep(task, design, Backwards(), workers=3)
@@ -245,6 +246,7 @@ def test_the_workers_of_a_sweep_that_is_killed_end(tmp_path):
     assert not left
 
 
+@pytest.mark.slow
 @pytest.mark.needs_module("distributed")
 def test_an_address_that_is_none_is_refused_and_leaves_nothing_to_close():
     # Finalizers complain when the interpreter ends, and not before.

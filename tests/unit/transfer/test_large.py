@@ -78,6 +78,7 @@ def test_the_number_of_terms_is_bounded_before_opening():
         assert bound >= sum(len(f) for f, _ in tf.ratio.factors if len(f) > 2)
 
 
+@pytest.mark.slow
 def test_orders_and_parameters_are_told_without_opening():
     driving, transfer = pipeline.derive_all(chain(16))
     assert driving.order == (30, 32)
@@ -87,6 +88,7 @@ def test_orders_and_parameters_are_told_without_opening():
         _ = driving.ratio
 
 
+@pytest.mark.slow
 def test_a_large_function_is_bound_without_opening():
     model = valued_chain(16)
     s = mpmath.mpc("-0.25", "1.5")
@@ -168,6 +170,7 @@ def test_a_definition_with_a_pole_leaves_the_question_to_the_general_way():
     assert not on_line(pipeline.loads(text)).prove_coprime("X", "F")
 
 
+@pytest.mark.slow
 def test_a_chain_of_ten_is_printed_closed():
     tf = pipeline.derive_all(chain(10))[1]
     printed = print_form(tf)

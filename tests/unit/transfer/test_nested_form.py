@@ -192,6 +192,7 @@ def test_the_strings_of_the_document_lead_to_the_function(text):
         assert document["hidden"] is None
 
 
+@pytest.mark.slow
 @given(network=networks())
 @quiet(40)
 def test_random_networks_agree_with_the_dense_tableau(network):
