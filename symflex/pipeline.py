@@ -1,10 +1,12 @@
 """The pipeline, one function per arrow: text, model, equations, transfer functions, and what is made of them.
 
 text --parse--> Spec --resolve--> Model --assemble--> Equations --derive--> TransferFunction
-                                                                               | bind(values)
-   PoleZeroMap <--roots--  SampledResponse <--response--  RationalApproximation <--rational--
-                                                                               |
-                                                 print, codegen: text, JSON, LaTeX, numpy, figure
+                                                                                   | bind(values)
+          --roots--> PoleZeroMap                                         BoundTransferFunction
+          --response--> SampledResponse                                            |
+          --rational--> RationalApproximation                <---------------------+
+
+any of them --print, codegen--> text, JSON, LaTeX, numpy, figure
 
 The arrows to transfer functions and warnings are imported from their rooms; those after them import a room
 when they are called, as most commands need few of them.
