@@ -79,6 +79,7 @@ def test_an_inerter_adds_to_the_mass(extended):
     assert derived(extended, "polynomial")["X/F"] == ("1", "(m + B)*s^2 + k")
 
 
+@pytest.mark.slow
 def test_the_new_theory_adds_the_lateral_inertia_to_the_stiffness(extended):
     (extended / "rod.toml").write_text(ROD, encoding="utf-8")
     text = python(extended, "-m", "symflex", "derive", "rod.toml", "--json", "--form", "hyperbolic")
@@ -92,10 +93,12 @@ def test_the_new_theory_adds_the_lateral_inertia_to_the_stiffness(extended):
     assert abs(found - cmath.tanh(1.5 * gamma) / (stiffness * gamma)) < 1e-13
 
 
+@pytest.mark.slow
 def test_the_low_pass_multiplies_the_displacement(extended):
     assert derived(extended, "factored")["Y/F"] == ("1", "(T*s + 1)*((m + B)*s^2 + k)")
 
 
+@pytest.mark.slow
 def test_the_new_form_multiplies_by_s_once_at_a_time(extended):
     assert derived(extended, "horner")["Y/F"] == ("1", "((T*(m + B)*s + m + B)*s + k*T)*s + k")
 

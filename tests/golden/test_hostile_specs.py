@@ -409,6 +409,7 @@ NAMES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("group", NAMES.values(), ids=NAMES)
 def test_ordinary_names_with_another_meaning_elsewhere_are_accepted_everywhere(group, tmp_path):
     names = group.split()

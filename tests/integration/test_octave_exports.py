@@ -90,6 +90,7 @@ def test_parameters_are_given_by_name_or_in_a_struct_and_expand_against_s(octave
             assert abs(value / bind(tf, {"l": length})(complex(at)) - 1) < 1e-12, expression
 
 
+@pytest.mark.slow
 def test_complex_stiffness_and_integers_serve_as_arguments(octave):
     tfs, _ = exported(octave, "kelvin_voigt_cantilever", samples=5)
     exported(octave, "two_mass", samples=5)
@@ -134,6 +135,7 @@ def test_the_struct_tells_what_is_in_it(octave):
     assert printed[5].startswith("ROD_TIP_MASS  Transfer functions of:")
 
 
+@pytest.mark.slow
 def test_poles_are_not_finite_and_the_rest_of_an_array_is(octave):
     exported(octave, "two_mass", samples=5)
     octave.do("disp(isfinite(G.X_act_over_F([0, 1i])));")

@@ -131,6 +131,7 @@ def test_no_pole_is_skipped_between_bands():
     assert (R.error.low_hz, R.error.high_hz) == (0.01, 1.3)
 
 
+@pytest.mark.slow
 def test_more_modes_reach_further():
     for form in FORMS:
         reached = [approximate(bound(CLAMPED_ROD, "X/F"), n, form).valid_to(0.05) for n in (1, 3, 6)]
@@ -200,6 +201,7 @@ def test_the_modal_form_of_a_delay_in_a_loop():
         assert R(s) == pytest.approx(1 / (s + 2 * np.exp(-s / 2)), rel=0.01)
 
 
+@pytest.mark.slow
 def test_zeros_of_a_modal_form_are_roots_of_its_numerator():
     R = approximate(distributed.bound(distributed.KELVIN_VOIGT), 3, "modal")
     num, den = R.coefficients()

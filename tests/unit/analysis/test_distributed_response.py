@@ -70,6 +70,7 @@ def test_a_delay_outside_a_loop_lags_without_bound():
     assert phase == pytest.approx([-500])
 
 
+@pytest.mark.slow
 def test_far_up_a_delay_within_a_loop_does_not_matter():
     phase = np.degrees(respond(bound(DELAY_LOOP), [0.01, 1000.0]).phase)
     direct = np.degrees(cmath.phase(1 / (1000j + 2 * cmath.exp(-500j))))

@@ -149,6 +149,7 @@ def test_a_cantilever_bends_as_blevins_prints(mode):
     assert shape.along("w", X) == pytest.approx(expected / expected[-1], abs=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mode", range(1, 3))
 def test_a_clamped_beam_bends_as_blevins_prints(mode):
     beta = float(CLAMPED_CLAMPED[:30]) if mode == 1 else wavenumber(1, 3.5 * pi)  # the symmetric ones

@@ -521,6 +521,7 @@ def test_the_formula_of_the_oscillator():
     assert not (above / below).has(k)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "parameter"), [("kelvin_voigt_cantilever", "E"), ("clamped_free", "l"), ("six_mass", "k_3")]
 )

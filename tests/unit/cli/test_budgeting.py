@@ -91,12 +91,14 @@ def test_what_takes_more_memory_than_given_is_told_so():
     assert (code, "SF504" in err) == (5, True)
 
 
+@pytest.mark.slow
 @linux
 def test_a_library_that_aborts_for_want_of_memory_is_told_so():
     code, _, err = ended(started("from flint import fmpz; x = fmpz(1) << 16 * 10**9", "--memory", "500 MB"))
     assert (code, "SF504" in err) == (5, True)
 
 
+@pytest.mark.slow
 @linux
 def test_a_library_that_crashes_is_an_error_with_a_code():
     code, _, err = ended(started("os.kill(os.getpid(), 11)"))

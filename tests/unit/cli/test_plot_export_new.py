@@ -115,6 +115,7 @@ def test_a_band_on_the_command_line_comes_before_that_of_the_figure(shell):
     assert own != other
 
 
+@pytest.mark.slow
 def test_a_figure_takes_the_font_asked_for(shell):
     done = shell("plot", "x.toml", "bode", "--font", "latex", "-o", "a.pdf")
     assert (done.code, done.err) == (0, "wrote a.pdf\n")

@@ -106,6 +106,7 @@ def exported(text, **options):
 # ------------------------------------------------------------------------------------------ values
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", slow_ones(SPECS, lambda path: path.stem not in FEW), ids=lambda p: p.stem)
 def test_values_agree_with_balls_over_the_band_and_beside_resonances(path, tmp_path, monkeypatch):
     model = pipeline.load(path)

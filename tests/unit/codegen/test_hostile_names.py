@@ -290,6 +290,7 @@ def in_c(folder, tfs, model):
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.needs_tool("gcc")
 def test_c_tells_functions_named_like_parts_of_others_apart(tmp_path):
     model, tfs = of_a_rod()

@@ -39,6 +39,7 @@ def read(written):
     return parse(text_of(written), limits=SHAPE_LIMITS)
 
 
+@pytest.mark.slow
 @given(trees)
 @example(Product((a, Negative(Product((b, c))), c)))
 @example(Sum((Negative(Negative(a)), Negative(Sum((b, c))))))
@@ -47,6 +48,7 @@ def test_a_printed_tree_is_read_back_as_itself(tree):
     assert read(format_expression(tree)) == tree
 
 
+@pytest.mark.slow
 @given(trees)
 def test_double_stars_are_read_back_too(tree):
     assert read(format_expression(tree, power="**")) == tree

@@ -508,6 +508,7 @@ def test_deep_nesting_does_not_nest_calls_of_functions():
     assert found == expected
 
 
+@pytest.mark.slow
 def test_the_program_reads_more_than_a_user_may_write():
     assert len(parse(text_of("a + " * 20_000 + "b"), limits=PROGRAM_LIMITS).terms) == 20_001
 

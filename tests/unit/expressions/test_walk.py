@@ -99,6 +99,7 @@ def test_the_original_is_left_as_it_was():
     assert whole == tree("a + x")
 
 
+@pytest.mark.slow
 @given(trees)
 def test_substituting_nothing_gives_the_tree_itself(expression):
     assert substitute(expression, {}) is expression

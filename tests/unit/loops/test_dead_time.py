@@ -87,6 +87,7 @@ def test_a_cascade_is_proved_wherever_the_dead_time_is(place):
     assert found.nominal_interval.poles.right == counted(*place)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", PLACES, ids=str)
 def test_its_roots_say_the_same(place):
     model = cascade(*place)

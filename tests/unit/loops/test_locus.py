@@ -97,6 +97,7 @@ def test_poles_that_come_from_infinity_are_traced(loop):
         assert min(abs(end - root) for end in drawn) < 1e-9
 
 
+@pytest.mark.slow
 def test_a_pole_from_infinity_meets_one_of_the_plant(loop):
     # (s + 1) exp(s/2) has its least value on the axis at -3: there the two meet, and leave as a pair.
     locus = trace_locus(characteristic(loop("K*D/(s + 1)")), (Fraction(0), Fraction(4)), modes=3)

@@ -214,5 +214,6 @@ def test_there_may_be_no_bandwidth_or_no_limit_to_it(loop):
     assert np.isnan(loop("K/(s - 1)").stability("K").bandwidth_hz)
 
 
+@pytest.mark.slow
 def test_the_print_fits_a_terminal(loop):
     assert max(map(len, str(loop("K*D/s").stability("K")).splitlines())) <= 80

@@ -146,6 +146,7 @@ def is_finite(tree):
     return True
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=200)
 @given(trees.filter(is_finite))
 def test_an_expression_means_what_its_tree_means(tree):

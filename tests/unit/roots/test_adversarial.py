@@ -432,6 +432,7 @@ def not_left_out(case, result, expected):
 LARGE = slow_ones(CASES, lambda case: case.name == "200 masses with losses")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", LARGE, ids=IDS)
 def test_what_is_certified_is_right(case):
     try:
@@ -446,6 +447,7 @@ def test_what_is_certified_is_right(case):
 
 
 # Roots that are nearer to each other than the search for them can tell today are refused after a long time.
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "case", [c for c in CASES if "00000000000001" not in c.name], ids=lambda case: case.name
 )
@@ -480,6 +482,7 @@ def test_certified_the_whole_region_is_proved(case):
 ON_THE_BOUNDARY = [case for case in CASES if "limit" in case.name or "side of the region" in case.name]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", ON_THE_BOUNDARY, ids=lambda case: case.name)
 def test_certified_roots_on_the_boundary_are_in_and_say_so(case):
     result = case.solve()

@@ -101,6 +101,7 @@ def test_a_rod_with_a_tip_mass_solves_x_tan_x_equals_mu():
     agree(upper(found(ROD, Modes(4)).poles), [mpc(0, each) for each in x])
 
 
+@pytest.mark.slow
 def test_poles_of_a_kelvin_voigt_beam_solve_a_quadratic_per_mode():
     omega = [(n * pi) ** 2 for n in range(1, 5)]
     eta = mpf("0.004")

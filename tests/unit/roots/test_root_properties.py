@@ -32,6 +32,7 @@ def test_the_product_of_linear_factors_is_the_polynomial(coefficients):
         assert all(product[i].contains(c) for i, c in enumerate(coefficients))
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(FACTORS)
 def test_multiplicities_of_a_product_add_up_to_its_degree(factors):
@@ -42,6 +43,7 @@ def test_multiplicities_of_a_product_add_up_to_its_degree(factors):
     assert sum(root.multiplicity for root in roots) == product.degree()
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(FACTORS)
 def test_multiplicities_are_those_of_the_square_free_factorisation(factors):

@@ -42,6 +42,7 @@ def test_a_table_has_a_row_for_each_root(sweep):
     assert float(first["im"]) == sweep["im"][0, 0, 0]
 
 
+@pytest.mark.slow
 @pytest.mark.needs_module("pyarrow")
 def test_parquet_holds_the_same_table(sweep):
     from pyarrow import parquet
