@@ -178,7 +178,7 @@ def _noncolocated(explained: ZeroExplanation) -> str:
     output, source = explained.output, explained.input
     text = (
         f"{source} does not act where {output} measures. The zeros are the poles of the system in which "
-        f"{source} is whatever keeps {output} at zero (Cramer's rule); that is no support."
+        f"{source} takes whatever value keeps {output} at zero (Cramer's rule), which no support does."
     )
     if explained.words:
         text += (
@@ -201,7 +201,7 @@ def _structure(explained: ZeroExplanation) -> Iterator[list[str]]:
     elif not parts:
         yield ["Nothing moves in it: it has no poles."]
     elif parts[0].names:
-        yield ["In it moves", _members(parts[0])]
+        yield ["What moves in it", _members(parts[0])]
 
 
 def _listed_parts(parts: Sequence[ConstrainedPart], source: str) -> Iterator[str]:
