@@ -11,7 +11,6 @@ import sys
 import tempfile
 from functools import cache
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 from flint import acb, acb_mat, ctx
@@ -73,8 +72,7 @@ def from_array_api(name, folder):
 
 def from_c(name, folder):
     made = exported(name, "c")
-    (header,) = made.companions.values()
-    library, functions = compiled(folder, SimpleNamespace(source=made.text, header=header), name)
+    library, functions = compiled(folder, made, name)
     for number, (tf, w) in enumerate(_points(name)):
         assert functions[number].endswith(public_name(tf))
         yield tf, w, value_at(library, number, 1j * w)

@@ -267,7 +267,7 @@ def helpers(code: str, parameters: str, order: int) -> str:
     """
     always, others = ["cx"], ""
     if re.search(r"\bLANES\b", code):
-        own = [f for f in LANE_FUNCTIONS if f"lane_{f}(" in code]
+        own = [f for f in LANE_FUNCTIONS if re.search(rf"\blane_{f}\(", code)]
         always += ["ROUNDER", "OTHERWISE"] if own else ["LANES"]
         others = "".join(f"#define lane_{f} {f}\n" for f in own)
     text = "\n".join(called_parts(code, PARTS, always)).replace("OTHERWISE\n", others)

@@ -98,7 +98,7 @@ def test_an_interrupt_is_none_of_a_chapter(models):
         report_module._outcome(ended(KeyboardInterrupt()), models["small"], "small")
 
 
-def chapter_or_end(store, path, stem, measured, *limits):
+def chapter_or_end(path, stem, measured, *limits):
     """End the process that computes the model ``fatal``, as a lack of memory would."""
     if stem == "fatal":
         os._exit(9)
