@@ -24,28 +24,18 @@ class Dispersion:
     """The characteristic polynomial of a set of field equations, and what its roots are called.
 
     Two of them are the same if they are one object; as such they may be keys, as lengths may.
-
-    Parameters
-    ----------
-    name : str
-        The field, element or block it was first needed for.
-    kind : str
-        ``exponential``: no roots but the shift; ``wave``: ``gamma^2 = -c_0``; ``bending``: ``4 mu^4 = c_0``,
-        the four roots ``mu*(+-1 +-j)``; ``pair``: ``lambda^4 + c_2 lambda^2 + c_0`` with roots
-        ``+-lambda_1``, ``+-lambda_2``; ``general``: any order, roots without a name.
-    characteristic : tuple of Factored
-        ``c_0, ..., c_(n-1)`` of the monic polynomial whose roots are the exponents plus ``shift``; rational
-        in s and the parameters. Empty for ``exponential``.
-    shift : Factored
-        Every solution is ``exp(-shift*x)`` times one of the polynomial above; zero for most.
-    wavenumbers : tuple of str
-        Generator names: none, ``(gamma,)``, ``(mu,)`` or ``(lambda_1, lambda_2)``.
     """
 
-    name: str
+    name: str  # the field, element or block it was first needed for
+    # ``exponential``: no roots but the shift; ``wave``: ``gamma^2 = -c_0``; ``bending``: ``4 mu^4 = c_0``,
+    # the four roots ``mu*(+-1 +-j)``; ``pair``: ``lambda^4 + c_2 lambda^2 + c_0`` with roots ``+-lambda_1``,
+    # ``+-lambda_2``; ``general``: any order, roots without a name.
     kind: DispersionKind
+    # ``c_0, ..., c_(n-1)`` of the monic polynomial whose roots are the exponents plus ``shift``; rational in
+    # s and the parameters. Empty for ``exponential``.
     characteristic: tuple[Factored, ...]
-    shift: Factored
+    shift: Factored  # every solution is ``exp(-shift*x)`` times one of the polynomial above; zero for most
+    # Generator names: none, ``(gamma,)``, ``(mu,)`` or ``(lambda_1, lambda_2)``.
     wavenumbers: tuple[str, ...] = ()
 
     @property
@@ -56,32 +46,17 @@ class Dispersion:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Kernel:
-    """A generator that is a transcendental function of s.
+    """A generator that is a transcendental function of s."""
 
-    Parameters
-    ----------
-    generator : str
-        Its name in the ring.
-    function : str
-        ``cosh``, ``sinh``, ``cos``, ``sin`` of wavenumber times length; ``exp`` for ``exp(-shift*length)``;
-        ``fundamental`` for the derivative of the given order, at x = length, of the solution h of the
-        characteristic equation with ``h(0) = ... = h^(n-2)(0) = 0`` and ``h^(n-1)(0) = 1``.
-    dispersion : Dispersion
-        Whose wavenumber it is a function of.
-    wavenumber : str
-        Generator of the wavenumber; empty for ``exp`` and ``fundamental``.
-    length : Factored
-        [m]; of the parameters alone. For a delay, a time [s].
-    order : int
-        Of the derivative, for ``fundamental``.
-    """
-
-    generator: str
+    generator: str  # its name in the ring
+    # ``cosh``, ``sinh``, ``cos``, ``sin`` of wavenumber times length; ``exp`` for ``exp(-shift*length)``;
+    # ``fundamental`` for the derivative of the given order, at x = length, of the solution h of the
+    # characteristic equation with ``h(0) = ... = h^(n-2)(0) = 0`` and ``h^(n-1)(0) = 1``.
     function: KernelFunction
-    dispersion: Dispersion
-    wavenumber: str
-    length: Factored
-    order: int = 0
+    dispersion: Dispersion  # whose wavenumber it is a function of
+    wavenumber: str  # generator of the wavenumber; empty for ``exp`` and ``fundamental``
+    length: Factored  # [m]; of the parameters alone. For a delay, a time [s].
+    order: int = 0  # of the derivative, for ``fundamental``
 
 
 @dataclass(frozen=True, slots=True, eq=False)

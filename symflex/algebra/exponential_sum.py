@@ -81,21 +81,11 @@ def _sparse(exponents: Sequence[int]) -> Monomial:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Argument:
-    """What an exponential is taken of, but for a factor.
+    """What an exponential is taken of, but for a factor."""
 
-    Parameters
-    ----------
-    wavenumber : str
-        Generator; empty for the decay all solutions of an equation share.
-    rate : Factored
-        The shift of a decay; not used for a wavenumber.
-    length : Factored
-        [m], for a delay [s].
-    """
-
-    wavenumber: str
-    rate: Factored
-    length: Factored
+    wavenumber: str  # generator; empty for the decay all solutions of an equation share
+    rate: Factored  # the shift of a decay; not used for a wavenumber
+    length: Factored  # [m], for a delay [s]
 
     def is_of(self, kernel: Kernel) -> bool:
         """Tell whether a kernel has this argument."""
@@ -105,36 +95,22 @@ class Argument:
 
 @dataclass(frozen=True, slots=True)
 class AxisWave:
-    """Terms ``exp(g) (even(t) cos(p) + odd(t) sin(p))``.
+    """Terms ``exp(g) (even(t) cos(p) + odd(t) sin(p))``."""
 
-    Parameters
-    ----------
-    growth, phase : tuple of int
-        Multiples of the arguments, which make up g and p.
-    even, odd : Polynomial
-        Coefficients.
-    """
-
+    # growth and phase: multiples of the arguments, which make up g and p.
     growth: Multiples
     phase: Multiples
+    # even and odd: Coefficients.
     even: Polynomial
     odd: Polynomial
 
 
 @dataclass(frozen=True, eq=False)
 class ExponentialSum:
-    """A sum of amplitudes times exponentials, over two to a power.
+    """A sum of amplitudes times exponentials, over two to a power."""
 
-    Parameters
-    ----------
-    terms : mapping of Exponent to Amplitude
-        What is summed.
-    halvings : int
-        What all amplitudes are divided by two so often.
-    """
-
-    terms: Mapping[Exponent, Amplitude]
-    halvings: int = 0
+    terms: Mapping[Exponent, Amplitude]  # what is summed
+    halvings: int = 0  # what all amplitudes are divided by two so often
 
     _known: dict[Exponent, tuple[Combination, ...]] = field(default_factory=dict, repr=False)
 

@@ -23,38 +23,21 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class KernelPair:
-    """A pair of kernels of one argument.
+    """A pair of kernels of one argument."""
 
-    Parameters
-    ----------
-    kind : str
-        ``hyperbolic`` or ``circular``.
-    even, odd : Kernel
-        cosh and sinh, or cos and sin.
-    coordinates : tuple of str
-        ``(E,)``, or ``(t, u)``.
-    """
-
-    kind: Literal["hyperbolic", "circular"]
+    kind: Literal["hyperbolic", "circular"]  # ``hyperbolic`` or ``circular``
+    # even and odd: cosh and sinh, or cos and sin.
     even: Kernel
     odd: Kernel
-    coordinates: tuple[str, ...]
+    coordinates: tuple[str, ...]  # ``(E,)``, or ``(t, u)``
 
 
 @dataclass(frozen=True, eq=False)
 class Exponentials:
-    """The change of coordinates for one table.
+    """The change of coordinates for one table."""
 
-    Parameters
-    ----------
-    ring : Ring
-        With the table's kernels.
-    table : KernelTable
-        Wavenumbers and kernels.
-    """
-
-    ring: Ring
-    table: KernelTable
+    ring: Ring  # with the table's kernels
+    table: KernelTable  # wavenumbers and kernels
 
     @cached_property
     def angles(self) -> tuple[KernelPair, ...]:

@@ -34,15 +34,6 @@ class Factored:
     leading coefficient and no monomial factor. Exponents are nonzero integers; negative ones
     form the denominator. Products and powers never expand; sums expand only what differs.
 
-    Parameters
-    ----------
-    ring : Ring
-        Where the factors live.
-    unit : Fraction
-        The rational number in front; zero makes the whole value zero.
-    factors : tuple of (fmpz_mpoly, int)
-        Pairwise different, in order of appearance.
-
     Examples
     --------
     >>> ring = Ring(("s", "k", "b"))
@@ -52,9 +43,9 @@ class Factored:
     '(s*b + k)^2*k^-1'
     """
 
-    ring: Ring
-    unit: Fraction
-    factors: tuple[tuple[fmpz_mpoly, int], ...] = ()
+    ring: Ring  # where the factors live
+    unit: Fraction  # the rational number in front; zero makes the whole value zero
+    factors: tuple[tuple[fmpz_mpoly, int], ...] = ()  # pairwise different, in order of appearance
 
     @staticmethod
     def number(ring: Ring, value: Fraction | int) -> Factored:

@@ -10,24 +10,12 @@ from flint import arb
 
 @dataclass(frozen=True, slots=True)
 class ElementaryFunction:
-    """A function the expression language knows.
+    """A function the expression language knows."""
 
-    Parameters
-    ----------
-    name : str
-        As written in a specification.
-    evaluate : callable
-        Maps a real or complex ball to a ball at the current precision.
-    latex : str
-        The operator name in LaTeX.
-    derivative : callable
-        The derivative, in the same way.
-    """
-
-    name: str
-    evaluate: Callable[[arb], arb]
-    latex: str
-    derivative: Callable[[arb], arb]
+    name: str  # as written in a specification
+    evaluate: Callable[[arb], arb]  # maps a real or complex ball to a ball at the current precision
+    latex: str  # the operator name in LaTeX
+    derivative: Callable[[arb], arb]  # the derivative, in the same way
 
 
 FUNCTIONS: dict[str, ElementaryFunction] = {

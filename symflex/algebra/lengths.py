@@ -27,18 +27,10 @@ Monomial = tuple[int, ...]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LengthBase:
-    """Base lengths, and the integer coordinates of every length that was given.
+    """Base lengths, and the integer coordinates of every length that was given."""
 
-    Parameters
-    ----------
-    base : tuple of Factored
-        Rationally independent.
-    coordinates : tuple of tuple of int
-        Per given length, its multiples of the base lengths.
-    """
-
-    base: tuple[Factored, ...]
-    coordinates: tuple[tuple[int, ...], ...]
+    base: tuple[Factored, ...]  # rationally independent
+    coordinates: tuple[tuple[int, ...], ...]  # per given length, its multiples of the base lengths
 
 
 def length_base(lengths: Sequence[Factored], *, positive: bool = False) -> LengthBase:

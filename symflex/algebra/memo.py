@@ -19,11 +19,6 @@ class PolynomialMemo(Generic[Made]):
 
     The engine's polynomials have no hash, so the same object is known again, and not an equal one.
 
-    Parameters
-    ----------
-    make : callable
-        The function.
-
     Examples
     --------
     >>> from symflex.algebra import Ring
@@ -33,7 +28,7 @@ class PolynomialMemo(Generic[Made]):
     ([1], True)
     """
 
-    make: Callable[[fmpz_mpoly], Made]
+    make: Callable[[fmpz_mpoly], Made]  # the function
     _known: dict[int, tuple[fmpz_mpoly, Made]] = field(default_factory=dict)
 
     def __call__(self, polynomial: fmpz_mpoly) -> Made:

@@ -39,21 +39,11 @@ Key = tuple[int, ...]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CharacteristicMode:
-    """The solutions ``exp(x_i length)`` of one dispersion at one length; of a decay, ``exp(-shift*length)``.
+    """The solutions ``exp(x_i length)`` of a dispersion at one length; of a decay, ``exp(-shift*length)``."""
 
-    Parameters
-    ----------
-    dispersion : Dispersion
-        Whose roots they are.
-    length : Factored
-        [m]; of a delay, a time [s].
-    is_decay : bool
-        True for the one exponential that all solutions share, with ``-shift`` for a root.
-    """
-
-    dispersion: Dispersion
-    length: Factored
-    is_decay: bool
+    dispersion: Dispersion  # whose roots they are
+    length: Factored  # [m]; of a delay, a time [s]
+    is_decay: bool  # true for the one exponential that all solutions share, with ``-shift`` for a root
 
     @property
     def roots(self) -> int:
@@ -63,38 +53,22 @@ class CharacteristicMode:
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """The terms of a sum with the same number of fundamental functions of every mode.
+    """The terms of a sum with the same number of fundamental functions of every mode."""
 
-    Parameters
-    ----------
-    slots : tuple of int
-        The mode of every function, ascending.
-    terms : tuple of (tuple of int, int)
-        Orders of the derivatives, one per slot, symmetric in slots of the same mode, and the position of the
-        coefficient.
-    keys : tuple of (tuple of int, int)
-        The products of exponentials that do not cancel, sorted, and what each is divided by.
-    """
-
-    slots: tuple[int, ...]
+    slots: tuple[int, ...]  # the mode of every function, ascending
+    # Orders of the derivatives, one per slot, symmetric in slots of the same mode, and the position of the
+    # coefficient.
     terms: tuple[tuple[tuple[int, ...], int], ...]
+    # The products of exponentials that do not cancel, sorted, and what each is divided by.
     keys: tuple[tuple[Key, int], ...]
 
 
 @dataclass(frozen=True, eq=False)
 class ModalSum:
-    """A polynomial in fundamental functions; see :func:`modal_amplitudes`.
+    """A polynomial in fundamental functions; see :func:`modal_amplitudes`."""
 
-    Parameters
-    ----------
-    coefficients : tuple of fmpz_mpoly
-        Free of fundamental functions and decays.
-    frames : tuple of Frame
-        What is summed.
-    """
-
-    coefficients: tuple[fmpz_mpoly, ...]
-    frames: tuple[Frame, ...]
+    coefficients: tuple[fmpz_mpoly, ...]  # free of fundamental functions and decays
+    frames: tuple[Frame, ...]  # what is summed
 
 
 def mode_values(roots: Any, length: Any) -> tuple[Any, Any]:  # noqa: ANN401
@@ -142,18 +116,10 @@ def modal_amplitudes(modes: Any, coefficients: Any, frames: Any) -> list[tuple[A
 
 @dataclass(frozen=True, eq=False)
 class ModalSums:
-    """The sums of polynomials over one ring, each made once.
+    """The sums of polynomials over one ring, each made once."""
 
-    Parameters
-    ----------
-    ring : Ring
-        Of the polynomials and of the dispersions' coefficients.
-    table : KernelTable
-        Of the ring.
-    """
-
-    ring: Ring
-    table: KernelTable
+    ring: Ring  # of the polynomials and of the dispersions' coefficients
+    table: KernelTable  # of the ring
 
     @cached_property
     def _modes(self) -> Mapping[tuple[Dispersion, Factored, bool], CharacteristicMode]:

@@ -39,18 +39,10 @@ def split(ring: Ring, polynomial: fmpz_mpoly, index: int) -> dict[int, fmpz_mpol
 
 @dataclass(frozen=True, eq=False)
 class NormalForm:
-    """Reduces modulo the relations of one table.
+    """Reduces modulo the relations of one table."""
 
-    Parameters
-    ----------
-    ring : Ring
-        Where the table's generators and the dispersions' coefficients live.
-    table : KernelTable
-        Wavenumbers and kernels.
-    """
-
-    ring: Ring
-    table: KernelTable
+    ring: Ring  # where the table's generators and the dispersions' coefficients live
+    table: KernelTable  # wavenumbers and kernels
 
     @cached_property
     def _squares(self) -> tuple[tuple[int, fmpz_mpoly], ...]:

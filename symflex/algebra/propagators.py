@@ -34,56 +34,26 @@ class Propagator:
 
     For ``wave``, ``bending`` and ``pair`` it is the numerator of ``h^(order)(length)`` over a monomial in the
     wavenumbers and ``lambda_1^2 - lambda_2^2``; for ``general`` it is ``h^(order)(length)`` itself.
-
-    Parameters
-    ----------
-    generator : str
-        Its name.
-    dispersion : int
-        Position of its dispersion.
-    length : int
-        Position of its length among those of the dispersion.
-    order : int
-        Of the derivative, or ``EXPONENTIAL``.
-    image : fmpz_mpoly
-        What it is over the kernels' ring.
     """
 
-    generator: str
-    dispersion: int
-    length: int
-    order: int
-    image: fmpz_mpoly
+    generator: str  # its name
+    dispersion: int  # position of its dispersion
+    length: int  # position of its length among those of the dispersion
+    order: int  # of the derivative, or ``EXPONENTIAL``
+    image: fmpz_mpoly  # what it is over the kernels' ring
 
 
 @dataclass(frozen=True, eq=False)
 class Propagation:
-    """The rings before and after propagators are opened, and the way from one to the other.
+    """The rings before and after propagators are opened, and the way from one to the other."""
 
-    Parameters
-    ----------
-    base : Ring
-        Without wavenumbers, propagators and kernels.
-    ring : Ring
-        ``base``, wavenumbers, propagators.
-    kernel_ring : Ring
-        ``base``, wavenumbers, kernels.
-    table : KernelTable
-        What the wavenumbers and kernels are; its values are over ``base``.
-    lengths : tuple of tuple of Factored
-        Per dispersion, the lengths asked for.
-    propagators : tuple of Propagator
-        In the order of their generators.
-    coordinates : tuple of tuple of tuple of int
-        Per dispersion and length, its multiples of the kernels' base lengths.
-    """
-
-    base: Ring
-    ring: Ring
-    kernel_ring: Ring
-    table: KernelTable
-    lengths: tuple[tuple[Factored, ...], ...]
-    propagators: tuple[Propagator, ...]
+    base: Ring  # without wavenumbers, propagators and kernels
+    ring: Ring  # ``base``, wavenumbers, propagators
+    kernel_ring: Ring  # ``base``, wavenumbers, kernels
+    table: KernelTable  # what the wavenumbers and kernels are; its values are over ``base``
+    lengths: tuple[tuple[Factored, ...], ...]  # per dispersion, the lengths asked for
+    propagators: tuple[Propagator, ...]  # in the order of their generators
+    # Per dispersion and length, its multiples of the kernels' base lengths.
     coordinates: tuple[tuple[tuple[int, ...], ...], ...] = ()
 
     def embed(self, value: Factored) -> Factored:

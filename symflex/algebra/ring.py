@@ -40,14 +40,6 @@ SPARSE_BYTES = 1_000
 class Ring:
     """Integer polynomials in named generators, lexicographic order, ``s`` first.
 
-    Parameters
-    ----------
-    names : tuple of str
-        Generator names in order; the first one is ``s``.
-    is_sparse : bool
-        True for :class:`~symflex.algebra.sparse.SparsePolynomial` in place of ``fmpz_mpoly``: any number of
-        names, but no substitution and no common divisors.
-
     Examples
     --------
     >>> ring = Ring(("s", "m", "b"))
@@ -55,7 +47,9 @@ class Ring:
     s*m + b
     """
 
-    names: tuple[str, ...]
+    names: tuple[str, ...]  # generator names in order; the first one is ``s``
+    # True for :class:`~symflex.algebra.sparse.SparsePolynomial` in place of ``fmpz_mpoly``: any number of
+    # names, but no substitution and no common divisors.
     is_sparse: bool = False
     context: fmpz_mpoly_ctx = field(init=False, compare=False, repr=False)
 

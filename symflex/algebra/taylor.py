@@ -47,18 +47,10 @@ BASE = 3
 
 @dataclass(frozen=True, slots=True)
 class TaylorField:
-    """Series to a fixed number of terms.
+    """Series to a fixed number of terms."""
 
-    Parameters
-    ----------
-    terms : int
-        Number of coefficients kept.
-    prime : int
-        The field's size.
-    """
-
-    terms: int
-    prime: int = FIRST_PRIME
+    terms: int  # number of coefficients kept
+    prime: int = FIRST_PRIME  # the field's size
 
     def constant(self, value: int) -> nmod_poly:
         """Return a number as a series."""

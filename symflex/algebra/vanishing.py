@@ -28,21 +28,12 @@ TERMS = (8, 16, 32)
 
 @dataclass(frozen=True, eq=False)
 class Vanishing:
-    """Orders of zeros of polynomials over one ring.
+    """Orders of zeros of polynomials over one ring."""
 
-    Parameters
-    ----------
-    ring : Ring
-        With the table's generators.
-    table : KernelTable
-        Wavenumbers and kernels.
-    solutions : sequence of sequence of (str, Factored)
-        Parameters in terms of the wavenumbers and the others, from the dispersion relations, in the order in
-        which they can be evaluated; one that is finite where the order is asked for is used.
-    """
-
-    ring: Ring
-    table: KernelTable
+    ring: Ring  # with the table's generators
+    table: KernelTable  # wavenumbers and kernels
+    # Parameters in terms of the wavenumbers and the others, from the dispersion relations, in the order in
+    # which they can be evaluated; one that is finite where the order is asked for is used.
     solutions: Sequence[Sequence[tuple[str, Factored]]]
 
     def at_zero(self, polynomial: fmpz_mpoly, wavenumber: str) -> int | None:

@@ -58,41 +58,22 @@ FUNCTION_SWAPS = ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp")
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """One part that is printed differently from what was derived.
+    """One part that is printed differently from what was derived."""
 
-    Parameters
-    ----------
-    place : str
-        ``numerator``, ``denominator``, ``factor``, ``scale``, or ``line NAME``.
-    printed, derived : Expression
-        The part; number 0 for a term that is not printed.
-    """
-
-    place: str
+    place: str  # ``numerator``, ``denominator``, ``factor``, ``scale``, or ``line NAME``
+    # printed and derived: the part; number 0 for a term that is not printed.
     printed: Expression
     derived: Expression
 
 
 @dataclass(frozen=True, slots=True)
 class Correction:
-    """The derived function in the printed formula's own symbols.
+    """The derived function in the printed formula's own symbols."""
 
-    Parameters
-    ----------
-    changes : tuple of Change
-        All there is to change.
-    expression : Expression
-        The corrected formula.
-    scale : Expression or None
-        The corrected scale.
-    lines : tuple of (str, Expression)
-        The corrected ``where`` lines.
-    """
-
-    changes: tuple[Change, ...]
-    expression: Expression
-    scale: Expression | None
-    lines: tuple[tuple[str, Expression], ...]
+    changes: tuple[Change, ...]  # all there is to change
+    expression: Expression  # the corrected formula
+    scale: Expression | None  # the corrected scale
+    lines: tuple[tuple[str, Expression], ...]  # the corrected ``where`` lines
 
 
 def find_correction(reading: FormulaReading, tf: TransferFunction) -> Correction | None:

@@ -22,17 +22,10 @@ MOST_TERMS = 20_000
 
 @dataclass(frozen=True, eq=False)
 class LowestTerms:
-    """A function as a product of irreducible factors that depend on s and have zeros, up to those without.
+    """A function as a product of irreducible factors that depend on s and have zeros, up to those without."""
 
-    Parameters
-    ----------
-    ring : Ring
-        With half-angle generators.
-    zeros, poles : tuple of (fmpz_mpoly, int)
-        Factors above and below the bar with their multiplicities; s itself is not among them.
-    """
-
-    ring: Ring
+    ring: Ring  # with half-angle generators
+    # zeros and poles: factors above and below the bar with their multiplicities; s itself is not among them.
     zeros: tuple[tuple[fmpz_mpoly, int], ...]
     poles: tuple[tuple[fmpz_mpoly, int], ...]
 

@@ -76,30 +76,14 @@ class Wave:
 
 @dataclass(frozen=True)
 class Ground:
-    """What a field is made of; it grows as formulas are read.
+    """What a field is made of; it grows as formulas are read."""
 
-    Parameters
-    ----------
-    names : tuple of str
-        s, the parameters, pi.
-    rootable : frozenset of str
-        Those of them taken positive.
-    order : int
-        Generators stand for the roots of this order.
-    primes : tuple of int
-        Whose roots occur.
-    sums : tuple of Recipe
-        Polynomials whose roots occur, each in s, parameters and earlier roots.
-    waves : tuple of Wave
-        Arguments of transcendental functions.
-    """
-
-    names: tuple[str, ...]
-    rootable: frozenset[str]
-    order: int = 1
-    primes: tuple[int, ...] = ()
-    sums: tuple[Recipe, ...] = ()
-    waves: tuple[Wave, ...] = ()
+    names: tuple[str, ...]  # s, the parameters, pi
+    rootable: frozenset[str]  # those of them taken positive
+    order: int = 1  # generators stand for the roots of this order
+    primes: tuple[int, ...] = ()  # whose roots occur
+    sums: tuple[Recipe, ...] = ()  # polynomials whose roots occur, each in s, parameters and earlier roots
+    waves: tuple[Wave, ...] = ()  # arguments of transcendental functions
     plain: Ring = field(init=False, compare=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -126,15 +110,9 @@ class Ground:
 
 @dataclass(frozen=True, eq=False)
 class Arithmetic:
-    """Arithmetic over one ground.
+    """Arithmetic over one ground."""
 
-    Parameters
-    ----------
-    ground : Ground
-        What it is made of.
-    """
-
-    ground: Ground
+    ground: Ground  # what it is made of
 
     @cached_property
     def ring(self) -> Ring:

@@ -28,46 +28,24 @@ Verdict = Literal["equal", "differs", "agrees", "undecided"]
 
 @dataclass(frozen=True)
 class Audit:
-    """What was found about one printed formula.
+    """What was found about one printed formula."""
 
-    Parameters
-    ----------
-    tf : TransferFunction
-        The derived function.
-    published : Published
-        What was printed.
-    formula : Formula
-        The same with its lines in order.
-    verdict : str
-        ``equal``: proved. ``differs``: proved. ``agrees``: to 50 digits at all points, not proved.
-        ``undecided``: none of these.
-    unread : str
-        Why the formula could not be read exactly; empty when it was.
-    ratio : Expression or None
-        Printed over derived, where that is a number times powers of s and the parameters.
-    correction : Correction or None
-        The smallest change found that makes the formula right.
-    derived : Expression or None
-        The derived function in the print's symbols, where that is possible and no correction says so.
-    comparison : Comparison or None
-        What numbers say; ``None`` where a proof needs none.
-    deviation : Deviation or None
-        On the frequency axis; ``None`` when equal, or where parameters have no value.
-    laws : tuple of LawCheck
-        Structural laws.
-    """
-
-    tf: TransferFunction
-    published: Published
-    formula: Formula
+    tf: TransferFunction  # the derived function
+    published: Published  # what was printed
+    formula: Formula  # the same with its lines in order
+    # ``equal``: proved. ``differs``: proved. ``agrees``: to 50 digits at all points, not proved.
+    # ``undecided``: none of these.
     verdict: Verdict
-    unread: str = ""
+    unread: str = ""  # why the formula could not be read exactly; empty when it was
+    # Printed over derived, where that is a number times powers of s and the parameters.
     ratio: Expression | None = None
-    correction: Correction | None = None
+    correction: Correction | None = None  # the smallest change found that makes the formula right
+    # The derived function in the print's symbols, where that is possible and no correction says so.
     derived: Expression | None = None
-    comparison: Comparison | None = None
+    comparison: Comparison | None = None  # what numbers say; ``None`` where a proof needs none
+    # On the frequency axis; ``None`` when equal, or where parameters have no value.
     deviation: Deviation | None = None
-    laws: tuple[LawCheck, ...] = ()
+    laws: tuple[LawCheck, ...] = ()  # structural laws
 
     @property
     def is_certified(self) -> bool:

@@ -43,24 +43,12 @@ PROBES = 5
 
 @dataclass(frozen=True, slots=True)
 class LawCheck:
-    """One law, and whether the printed formula keeps it.
+    """One law, and whether the printed formula keeps it."""
 
-    Parameters
-    ----------
-    law : str
-        ``poles``, ``double zeros``, ``limit at zero``, ``lossless phase``, ``interlacing``.
-    kept : bool
-        Whether the printed formula keeps it.
-    how : str
-        ``proved`` or ``measured``.
-    detail : str
-        In words.
-    """
-
-    law: str
-    kept: bool
-    how: How
-    detail: str
+    law: str  # ``poles``, ``double zeros``, ``limit at zero``, ``lossless phase``, ``interlacing``
+    kept: bool  # whether the printed formula keeps it
+    how: How  # ``proved`` or ``measured``
+    detail: str  # in words
 
 
 def check_laws(reading: FormulaReading | None, numbers: Numbers | None) -> tuple[LawCheck, ...]:

@@ -45,27 +45,14 @@ _DIRECTIONS = ((4, 3, 5), (3, -4, 5), (12, 5, 13), (5, 12, 13), (15, -8, 17), (8
 
 @dataclass(frozen=True)
 class Numbers:
-    """Both functions with numbers.
+    """Both functions with numbers."""
 
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        The derived function.
-    formula : Formula
-        The printed one.
-    values : mapping of str to ExactValue
-        Of all parameters.
-    invented : tuple of (str, ExactValue)
-        Those that the model gives no value: used to tell functions apart, not to measure them.
-    band : tuple of Fraction
-        Where they are compared [Hz].
-    """
-
-    bound: BoundTransferFunction
-    formula: Formula
-    values: Mapping[str, ExactValue]
+    bound: BoundTransferFunction  # the derived function
+    formula: Formula  # the printed one
+    values: Mapping[str, ExactValue]  # of all parameters
+    # Those that the model gives no value: used to tell functions apart, not to measure them.
     invented: tuple[tuple[str, ExactValue], ...]
-    band: tuple[Fraction, Fraction]
+    band: tuple[Fraction, Fraction]  # where they are compared [Hz]
     _enclosed: dict[int, Callable[[acb], acb]] = field(default_factory=dict, repr=False, compare=False)
 
     def derived_at(self, s: acb, bits: int) -> acb:
@@ -142,28 +129,15 @@ def comparison_points(band: tuple[Fraction, Fraction]) -> tuple[tuple[Fraction, 
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """What the points say.
+    """What the points say."""
 
-    Parameters
-    ----------
-    differs : bool
-        Proved by a ball that excludes equality.
-    agreed : int
-        Points at which they agree to 50 digits.
-    point : tuple of Fraction or None
-        Where they differ [rad/s].
-    printed, derived : complex or None
-        Values there.
-    gap : float
-        Their distance there over the size of the derived one.
-    """
-
-    differs: bool
-    agreed: int
-    point: tuple[Fraction, Fraction] | None = None
+    differs: bool  # proved by a ball that excludes equality
+    agreed: int  # points at which they agree to 50 digits
+    point: tuple[Fraction, Fraction] | None = None  # where they differ [rad/s]
+    # printed and derived: values there.
     printed: complex | None = None
     derived: complex | None = None
-    gap: float = 0.0
+    gap: float = 0.0  # their distance there over the size of the derived one
 
 
 def compare(numbers: Numbers) -> Comparison:
@@ -228,26 +202,17 @@ _FUNCTIONS = {
 
 @dataclass(frozen=True, slots=True)
 class Deviation:
-    """Largest deviations of the printed from the derived frequency response.
+    """Largest deviations of the printed from the derived frequency response."""
 
-    Parameters
-    ----------
-    magnitude_db, magnitude_hz : float
-        Printed over derived in dB, and where.
-    unbounded : bool
-        The magnitude grows without end there: one of the functions has a zero or pole the other lacks.
-    phase_deg, phase_hz : float
-        Printed minus derived, between -180 and 180, and where.
-    band : tuple of Fraction
-        Searched [Hz].
-    """
-
+    # magnitude_db and magnitude_hz: printed over derived in dB, and where.
     magnitude_db: float
     magnitude_hz: float
+    # The magnitude grows without end there: one of the functions has a zero or pole the other lacks.
     unbounded: bool
+    # phase_deg and phase_hz: printed minus derived, between -180 and 180, and where.
     phase_deg: float
     phase_hz: float
-    band: tuple[Fraction, Fraction]
+    band: tuple[Fraction, Fraction]  # searched [Hz]
 
 
 def largest_deviation(numbers: Numbers) -> Deviation | None:

@@ -41,24 +41,13 @@ MOST_GROWTHS = 200
 
 @dataclass(frozen=True)
 class Formula:
-    """A printed formula whose names are all known.
+    """A printed formula whose names are all known."""
 
-    Parameters
-    ----------
-    expression : Expression
-        As printed.
-    scale : Expression or None
-        What the print leaves out.
-    lines : tuple of (str, Expression)
-        The ``where`` lines and the model's definitions that occur, each after those it uses.
-    parameters : frozenset of str
-        The model's parameters.
-    """
-
-    expression: Expression
-    scale: Expression | None
+    expression: Expression  # as printed
+    scale: Expression | None  # what the print leaves out
+    # The ``where`` lines and the model's definitions that occur, each after those it uses.
     lines: tuple[tuple[str, Expression], ...]
-    parameters: frozenset[str]
+    parameters: frozenset[str]  # the model's parameters
 
     @property
     def whole(self) -> Expression:
@@ -158,23 +147,12 @@ def _used(expression: Expression, known: Mapping[str, Expression]) -> list[str]:
 
 @dataclass(frozen=True, eq=False)
 class FormulaReading:
-    """A printed formula and a derived function over one field.
+    """A printed formula and a derived function over one field."""
 
-    Parameters
-    ----------
-    field : Arithmetic
-        Where both live.
-    formula : Formula
-        The printed one.
-    lines : mapping of str to Factored
-        Values of its lines.
-    printed, derived : Factored
-        Values of both.
-    """
-
-    field: Arithmetic
-    formula: Formula
-    lines: Mapping[str, Factored]
+    field: Arithmetic  # where both live
+    formula: Formula  # the printed one
+    lines: Mapping[str, Factored]  # values of its lines
+    # printed and derived: values of both.
     printed: Factored
     derived: Factored
 

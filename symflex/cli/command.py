@@ -49,21 +49,11 @@ class _Setting:
 
 @dataclass(frozen=True)
 class Specification:
-    """Which file a command reads, and with which values.
+    """Which file a command reads, and with which values."""
 
-    Parameters
-    ----------
-    path : str
-        The file.
-    allow_outside : tuple of str
-        Folders that its ``model`` blocks may read besides its own.
-    settings : mapping of str to str
-        Other values of parameters.
-    """
-
-    path: str
-    allow_outside: tuple[str, ...]
-    settings: Mapping[str, str]
+    path: str  # the file
+    allow_outside: tuple[str, ...]  # folders that its ``model`` blocks may read besides its own
+    settings: Mapping[str, str]  # other values of parameters
 
     def load(self) -> Model:
         """Read the specification, and print its warnings to stderr."""

@@ -28,27 +28,14 @@ ACCURACY = 1e-13
 
 @dataclass(frozen=True, slots=True)
 class Export:
-    """What an exporter made.
+    """What an exporter made."""
 
-    Parameters
-    ----------
-    text : str
-        The file's content.
-    warnings : tuple of str
-        What the user should know, for instance an accuracy that was not reached.
-    companions : mapping of str to str
-        Files that belong beside it, by suffix.
-    name : str
-        Of the module or main function, where the language has such.
-    verified : tuple of Verification
-        How well the functions agree with ball arithmetic: one for each function of s, in order, then one for
-        each frequency response in real arithmetic.
-    """
-
-    text: str
-    warnings: tuple[str, ...] = ()
-    companions: Mapping[str, str] = field(default_factory=dict)
-    name: str = ""
+    text: str  # the file's content
+    warnings: tuple[str, ...] = ()  # what the user should know, for instance an accuracy that was not reached
+    companions: Mapping[str, str] = field(default_factory=dict)  # files that belong beside it, by suffix
+    name: str = ""  # of the module or main function, where the language has such
+    # How well the functions agree with ball arithmetic: one for each function of s, in order, then one for
+    # each frequency response in real arithmetic.
     verified: tuple[Verification, ...] = ()
 
 
@@ -86,24 +73,12 @@ class Exporter(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """One function of a file.
+    """One function of a file."""
 
-    Parameters
-    ----------
-    tf : TransferFunction or NestedTransferFunction
-        Whose values it computes.
-    program : Piecewise
-        Of s; of the angular frequency where it is real.
-    wanted : str
-        The name it has where the language and the other names admit it.
-    verification : Verification
-        How well it agrees with ball arithmetic.
-    """
-
-    tf: AnyTransferFunction
-    program: Piecewise
-    wanted: str
-    verification: Verification
+    tf: AnyTransferFunction  # whose values it computes
+    program: Piecewise  # of s; of the angular frequency where it is real
+    wanted: str  # the name it has where the language and the other names admit it
+    verification: Verification  # how well it agrees with ball arithmetic
 
     @property
     def key(self) -> str:
@@ -113,27 +88,14 @@ class Member:
 
 @dataclass(frozen=True, slots=True)
 class Contents:
-    """What a file of numeric code consists of, in no language yet.
+    """What a file of numeric code consists of, in no language yet."""
 
-    Parameters
-    ----------
-    model : Model
-        Title, source and parameters.
-    members : tuple of Member
-        One for each transfer function, each followed by its response in real arithmetic where there is one.
-    stem : str
-        The file's name without suffix; empty where that is not known.
-    is_alone : bool
-        There can be no other files beside it.
-    digits : int
-        Significant digits of printed errors.
-    """
-
-    model: Model
+    model: Model  # title, source and parameters
+    # One for each transfer function, each followed by its response in real arithmetic where there is one.
     members: tuple[Member, ...]
-    stem: str
-    is_alone: bool
-    digits: int
+    stem: str  # the file's name without suffix; empty where that is not known
+    is_alone: bool  # there can be no other files beside it
+    digits: int  # significant digits of printed errors
 
     @property
     def verified(self) -> tuple[Verification, ...]:
@@ -148,20 +110,11 @@ class Language:
 
     Every file has one function ``OUT_over_IN`` of s and the parameters for each transfer function. Lossless
     distributed systems get a second one, ``OUT_over_IN_at``: the frequency response in real arithmetic.
-
-    Parameters
-    ----------
-    suffix : str
-        Of the file's name.
-    summary : str
-        What is made, in a line.
-    print : callable
-        Makes the file of its contents.
     """
 
-    suffix: str
-    summary: str
-    print: Callable[[Contents], Export]
+    suffix: str  # of the file's name
+    summary: str  # what is made, in a line
+    print: Callable[[Contents], Export]  # makes the file of its contents
 
     def export(
         self,

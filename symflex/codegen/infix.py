@@ -42,22 +42,13 @@ _GLUE = "\N{NO-BREAK SPACE}"
 
 @dataclass(frozen=True)
 class InfixPrinter(ABC):
-    """Prints expressions that are evaluated in the order of the tree.
+    """Prints expressions that are evaluated in the order of the tree."""
 
-    Parameters
-    ----------
-    parameters, locals : mapping of str to str
-        Identifiers of parameters and of intermediate values.
-    variable : str
-        Identifier of s, or of what takes its place.
-    inverse : str
-        Identifier of 1/s; only far branches have it.
-    """
-
+    # parameters and locals: identifiers of parameters and of intermediate values.
     parameters: Mapping[str, str]
     locals: Mapping[str, str]
-    variable: str
-    inverse: str = ""
+    variable: str  # identifier of s, or of what takes its place
+    inverse: str = ""  # identifier of 1/s; only far branches have it
 
     times: ClassVar[str] = "*"
     over: ClassVar[str] = "/"

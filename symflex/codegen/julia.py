@@ -133,24 +133,12 @@ def head(name: str, arguments: Sequence[str]) -> list[str]:
 
 @dataclass(frozen=True)
 class PrivateFunctions:
-    """Prints the functions that compute, of positional arguments; all begin with an underscore.
+    """Prints the functions that compute, of positional arguments; all begin with an underscore."""
 
-    Parameters
-    ----------
-    program : Piecewise
-        What they compute.
-    name : str
-        Identifier of the public function.
-    parameters : mapping of str to str
-        Identifiers of the parameters.
-    reserved : collection of str
-        Identifiers that intermediate values cannot have.
-    """
-
-    program: Piecewise
-    name: str
-    parameters: Mapping[str, str]
-    reserved: Collection[str]
+    program: Piecewise  # what they compute
+    name: str  # identifier of the public function
+    parameters: Mapping[str, str]  # identifiers of the parameters
+    reserved: Collection[str]  # identifiers that intermediate values cannot have
 
     @property
     def variable(self) -> str:

@@ -49,24 +49,12 @@ class Medium:
 
 @dataclass(frozen=True, eq=False)
 class FieldSolution:
-    """The general solution of one field: its state at any point in terms of its state at the start.
+    """The general solution of one field: its state at any point in terms of its state at the start."""
 
-    Parameters
-    ----------
-    field : FieldProblem
-        As resolved.
-    medium : Medium
-        Its equations.
-    inputs : tuple of Variable
-        What loads it all along.
-    origin : Factored
-        Where x begins, over the ring without kernels.
-    """
-
-    field: FieldProblem
-    medium: Medium
-    inputs: tuple[Variable, ...]
-    origin: Factored
+    field: FieldProblem  # as resolved
+    medium: Medium  # its equations
+    inputs: tuple[Variable, ...]  # what loads it all along
+    origin: Factored  # where x begins, over the ring without kernels
 
     @property
     def initial(self) -> tuple[Variable, ...]:
@@ -118,36 +106,16 @@ def _dot(left: Iterable[Factored], right: Iterable[Factored], zero: Factored) ->
 
 @dataclass(frozen=True, eq=False)
 class Distributed:
-    """Everything the equations need of a model's distributed parts.
+    """Everything the equations need of a model's distributed parts."""
 
-    Parameters
-    ----------
-    propagation : Propagation
-        The rings and generators.
-    transmissions : mapping of str to Matrix
-        Per line element, the transfer matrix of its length.
-    delays : mapping of str to Factored
-        Per delay block, ``exp(-s*T)``.
-    solutions : mapping of str to FieldSolution
-        Per unknown of a field, the solution of its field.
-    evaluator : ExactEvaluator
-        Over the ring without kernels, for points.
-    lines : mapping of str to (Medium, Factored)
-        Per line element, its equations and its length.
-    along : mapping of str to str
-        Per quantity of a line element along x, the state of its field theory.
-    links : tuple of ChainEnd
-        Of elements that follow from the start of a chain.
-    """
-
-    propagation: Propagation
-    transmissions: Mapping[str, Matrix]
-    delays: Mapping[str, Factored]
-    solutions: Mapping[str, FieldSolution]
-    evaluator: ExactEvaluator
-    lines: Mapping[str, tuple[Medium, Factored]]
-    along: Mapping[str, str]
-    links: tuple[ChainEnd, ...] = ()
+    propagation: Propagation  # the rings and generators
+    transmissions: Mapping[str, Matrix]  # per line element, the transfer matrix of its length
+    delays: Mapping[str, Factored]  # per delay block, ``exp(-s*T)``
+    solutions: Mapping[str, FieldSolution]  # per unknown of a field, the solution of its field
+    evaluator: ExactEvaluator  # over the ring without kernels, for points
+    lines: Mapping[str, tuple[Medium, Factored]]  # per line element, its equations and its length
+    along: Mapping[str, str]  # per quantity of a line element along x, the state of its field theory
+    links: tuple[ChainEnd, ...] = ()  # of elements that follow from the start of a chain
 
     def value(self, call: Call, states: Mapping[str, Sequence[Variable | None]]) -> LinearForm:
         """Return a field's unknown, an element's quantity, or a derivative, at the point a call names.
@@ -427,23 +395,12 @@ def _driven(medium: Medium, length: Factored, propagation: Propagation) -> list[
 
 @dataclass(frozen=True, eq=False)
 class ChainEnd:
-    """The end of an element in terms of its chain.
+    """The end of an element in terms of its chain."""
 
-    Parameters
-    ----------
-    name : str
-        The element.
-    first : str
-        The first element of the chain.
-    length : Factored
-        From the chain's start to the element's end [m].
-    entries : tuple of (str, str, Factored)
-        Where inputs enter: the elements before and after, and the distance from there.
-    """
-
-    name: str
-    first: str
-    length: Factored
+    name: str  # the element
+    first: str  # the first element of the chain
+    length: Factored  # from the chain's start to the element's end [m]
+    # Where inputs enter: the elements before and after, and the distance from there.
     entries: tuple[tuple[str, str, Factored], ...]
 
 

@@ -35,70 +35,35 @@ class OutputRow:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Continuum:
-    """One distributed part, for what goes on inside it: ``dz/dx = matrix z + load u`` from its start on.
+    """One distributed part, for what goes on inside it: ``dz/dx = matrix z + load u`` from its start on."""
 
-    Parameters
-    ----------
-    name : str
-        The element's or field's.
-    kind : str
-        The element's type, or ``field``.
-    system : FieldSystem
-        Over the ring without kernels.
-    start, length : Factored
-        Where x begins, and how far it reaches; over the same ring.
-    initial : tuple of Variable or None
-        Per state, the unknown it equals at the start; None where it is zero there.
-    loads : tuple of Variable
-        What acts all along it, per column of ``system.loads``.
-    """
-
-    name: str
-    kind: str
-    system: FieldSystem
+    name: str  # the element's or field's
+    kind: str  # the element's type, or ``field``
+    system: FieldSystem  # over the ring without kernels
+    # start and length: where x begins, and how far it reaches; over the same ring.
     start: Factored
     length: Factored
+    # Per state, the unknown it equals at the start; None where it is zero there.
     initial: tuple[Variable | None, ...]
-    loads: tuple[Variable, ...] = ()
+    loads: tuple[Variable, ...] = ()  # what acts all along it, per column of ``system.loads``
 
 
 @dataclass(frozen=True)
 class Equations:
-    """``A(s) x + B u = 0``, ``y = C x + D u``, over an exact ring.
+    """``A(s) x + B u = 0``, ``y = C x + D u``, over an exact ring."""
 
-    Parameters
-    ----------
-    model : Model
-        Where they come from.
-    ring : Ring
-        Generators: s, parameters, closed definitions, pi, functions of constants.
-    definitions : tuple of (str, Factored)
-        Each closed definition in terms of the generators before it.
-    constants : tuple of ConstantFunction
-        What the function generators stand for.
-    unknowns, inputs : tuple of Variable
-        The names of x and u.
-    rows : tuple of EquationRow
-        As many as unknowns; polynomial but over a sparse ring.
-    outputs : tuple of OutputRow
-        The names of y and their forms.
-    propagation : Propagation or None
-        What the generators of distributed parts are; ``ring`` is its ring then.
-    continua : tuple of Continuum
-        The distributed parts.
-    is_joined : bool
-        Elements of one law that meet were taken as one.
-    """
-
-    model: Model
-    ring: Ring
+    model: Model  # where they come from
+    ring: Ring  # generators: s, parameters, closed definitions, pi, functions of constants
+    # Each closed definition in terms of the generators before it.
     definitions: tuple[tuple[str, Factored], ...]
-    constants: tuple[ConstantFunction, ...]
+    constants: tuple[ConstantFunction, ...]  # what the function generators stand for
+    # unknowns and inputs: the names of x and u.
     unknowns: tuple[Variable, ...]
     inputs: tuple[Variable, ...]
-    rows: tuple[EquationRow, ...]
-    outputs: tuple[OutputRow, ...]
+    rows: tuple[EquationRow, ...]  # as many as unknowns; polynomial but over a sparse ring
+    outputs: tuple[OutputRow, ...]  # the names of y and their forms
+    # What the generators of distributed parts are; ``ring`` is its ring then.
     propagation: Propagation | None = None
     cleared: Factored | None = None
-    continua: tuple[Continuum, ...] = ()
-    is_joined: bool = False
+    continua: tuple[Continuum, ...] = ()  # the distributed parts
+    is_joined: bool = False  # elements of one law that meet were taken as one

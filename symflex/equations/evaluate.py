@@ -43,35 +43,17 @@ OPENED_DEPTH = 200
 
 @dataclass(frozen=True)
 class ExactEvaluator:
-    """Evaluates the expressions of one model.
+    """Evaluates the expressions of one model."""
 
-    Parameters
-    ----------
-    ring : Ring
-        Generators: s, parameters, definitions, pi and elementary functions of constants.
-    scope : ModelScope
-        What names mean.
-    blocks : mapping of str to Factored
-        The blocks' transfer functions.
-    through : mapping of Variable to LinearForm
-        The elements' through quantities.
-    definitions : mapping of str to Expression
-        Opened inside the arguments of functions.
-    point : mapping of str to int
-        A random point of a prime field, with the definitions that are known by now.
-    fields : collection of str
-        The unknowns of fields.
-    field_value : callable, optional
-        Returns a field's unknown, or a derivative of it, at the point a call names.
-    """
-
-    ring: Ring
-    scope: ModelScope
-    blocks: Mapping[str, Factored]
-    through: Mapping[Variable, LinearForm]
-    definitions: Mapping[str, Expression]
+    ring: Ring  # generators: s, parameters, definitions, pi and elementary functions of constants
+    scope: ModelScope  # what names mean
+    blocks: Mapping[str, Factored]  # the blocks' transfer functions
+    through: Mapping[Variable, LinearForm]  # the elements' through quantities
+    definitions: Mapping[str, Expression]  # opened inside the arguments of functions
+    # A random point of a prime field, with the definitions that are known by now.
     point: Mapping[str, int] = field(default_factory=dict)
-    fields: Collection[str] = ()
+    fields: Collection[str] = ()  # the unknowns of fields
+    # Returns a field's unknown, or a derivative of it, at the point a call names.
     field_value: Callable[[Call], LinearForm] | None = None
 
     @property
@@ -232,15 +214,9 @@ class ExactEvaluator:
 
 @dataclass(frozen=True)
 class Opener:
-    """Puts definitions into the arguments of functions.
+    """Puts definitions into the arguments of functions."""
 
-    Parameters
-    ----------
-    definitions : mapping of str to Expression
-        Each uses only earlier ones.
-    """
-
-    definitions: Mapping[str, Expression]
+    definitions: Mapping[str, Expression]  # each uses only earlier ones
     _opened: dict[str, Expression] = field(default_factory=dict, repr=False)
 
     def open(self, call: Call) -> Call:

@@ -18,19 +18,6 @@ SHOWN_COLUMNS = 160
 class Diagnostic:
     """One problem, with a stable code.
 
-    Parameters
-    ----------
-    code : str
-        ``SF`` and three digits; docs/error-codes.md lists them.
-    message : str
-        What is wrong, with the value found.
-    span : Span, optional
-        Where; ``None`` when the problem has no place in a text.
-    hint : str, optional
-        What to do about it.
-    severity : str
-        ``error``, or ``warning`` for what is allowed and perhaps not meant.
-
     Examples
     --------
     >>> from symflex.errors import Source, Span
@@ -42,10 +29,11 @@ class Diagnostic:
       hint: did you mean 'kg'?
     """
 
-    code: str
-    message: str
-    span: Span | None = None
-    hint: str | None = None
+    code: str  # ``SF`` and three digits; docs/error-codes.md lists them
+    message: str  # what is wrong, with the value found
+    span: Span | None = None  # where; ``None`` when the problem has no place in a text
+    hint: str | None = None  # what to do about it
+    # ``error``, or ``warning`` for what is allowed and perhaps not meant.
     severity: Literal["error", "warning"] = "error"
 
     @property

@@ -7,18 +7,10 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """A named text that positions refer to.
+    """A named text that positions refer to."""
 
-    Parameters
-    ----------
-    name : str
-        As shown in messages; a path, or ``<python>`` for a model built in Python.
-    text : str
-        The whole text.
-    """
-
-    name: str
-    text: str = field(repr=False)
+    name: str  # as shown in messages; a path, or ``<python>`` for a model built in Python
+    text: str = field(repr=False)  # the whole text
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,21 +61,12 @@ class Span:
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """A string value together with the place it was written.
+    """A string value together with the place it was written."""
 
-    Parameters
-    ----------
-    value : str
-        The decoded string.
-    span : Span
-        The characters between the quotes (without them).
-    verbatim : bool
-        True when ``value`` stands in the source character by character, so that an
-        offset in ``value`` is an offset in the source; False when escapes were decoded.
-    """
-
-    value: str
-    span: Span
+    value: str  # the decoded string
+    span: Span  # the characters between the quotes (without them)
+    # True when ``value`` stands in the source character by character, so that an offset in ``value`` is an
+    # offset in the source; False when escapes were decoded.
     verbatim: bool = True
 
     def at(self, start: int, end: int) -> Span:

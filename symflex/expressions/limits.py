@@ -21,36 +21,16 @@ FOLLOWED_BITS = 128
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What a text may contain; beyond any of these it is refused with SF103.
+    """What a text may contain; beyond any of these it is refused with SF103."""
 
-    Parameters
-    ----------
-    characters : int
-        Length of the text.
-    parentheses : int
-        Depth of nested parentheses.
-    depth : int
-        Depth of the tree; a name alone has depth 1.
-    digits : int
-        Digits of a number, without those of its decimal exponent.
-    decimal_exponent : int
-        Magnitude of the exponent after ``e`` in a number.
-    exponent : int
-        Magnitude of a constant exponent, and of the product of exponents nested in one another.
-    bits : int
-        Bits of any coefficient that a power can reach.
-    order : int
-        Primes after the name of a field.
-    """
-
-    characters: int
-    parentheses: int
-    depth: int
-    digits: int
-    decimal_exponent: int
-    exponent: int
-    bits: int
-    order: int
+    characters: int  # length of the text
+    parentheses: int  # depth of nested parentheses
+    depth: int  # depth of the tree; a name alone has depth 1
+    digits: int  # digits of a number, without those of its decimal exponent
+    decimal_exponent: int  # magnitude of the exponent after ``e`` in a number
+    exponent: int  # magnitude of a constant exponent, and of the product of exponents nested in one another
+    bits: int  # bits of any coefficient that a power can reach
+    order: int  # primes after the name of a field
 
 
 USER_LIMITS = Limits(

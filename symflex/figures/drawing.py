@@ -28,23 +28,17 @@ NARROWEST = 1e-6
 class AxisLimits:
     """Ends of axes in place of those that a figure would choose.
 
-    Parameters
-    ----------
-    x, y : (float, float), optional
-        Of the axes across and upwards: real and imaginary part, in an s plane [rad/s]; magnitudes [dB] of a
-        Bode plot upwards, whose frequencies are its band.
-    phase : (float, float), optional
-        Of a Bode plot [deg].
-
     Examples
     --------
     >>> AxisLimits(x=(-10.0, 0.0)).y is None
     True
     """
 
+    # x and y: of the axes across and upwards: real and imaginary part, in an s plane [rad/s]; magnitudes [dB]
+    # of a Bode plot upwards, whose frequencies are its band.
     x: Limits | None = None
     y: Limits | None = None
-    phase: Limits | None = None
+    phase: Limits | None = None  # of a Bode plot [deg]
 
     def __post_init__(self) -> None:
         for ends in (self.x, self.y, self.phase):
@@ -65,24 +59,12 @@ FREE = AxisLimits()
 
 @dataclass(frozen=True, slots=True)
 class Canvas:
-    """What is asked of a figure, whatever its kind.
+    """What is asked of a figure, whatever its kind."""
 
-    Parameters
-    ----------
-    band_hz : (float, float), optional
-        Frequencies shown [Hz].
-    frame : AxisLimits
-        Of axes, in place of those that suit what is drawn.
-    title : str, optional
-        Printed as it is.
-    width : float, optional
-        [inches]; by default what suits the figure.
-    """
-
-    band_hz: Limits | None = None
-    frame: AxisLimits = FREE
-    title: str | None = None
-    width: float | None = None
+    band_hz: Limits | None = None  # frequencies shown [Hz]
+    frame: AxisLimits = FREE  # of axes, in place of those that suit what is drawn
+    title: str | None = None  # printed as it is
+    width: float | None = None  # [inches]; by default what suits the figure
 
 
 Drawing = Callable[["Sequence[TransferFunction]", "Sequence[BoundTransferFunction]", Canvas], "Figure"]

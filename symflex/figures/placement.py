@@ -28,15 +28,6 @@ Box = tuple[float, float, float, float]
 class Panel:
     """A panel of a given size that shows a view, and the roots drawn in it.
 
-    Parameters
-    ----------
-    view : View
-        What it shows.
-    width : float
-        [inches]; both axes have the same scale.
-    roots : tuple of complex
-        Drawn in it [rad/s].
-
     Examples
     --------
     >>> from symflex.figures.s_plane import View
@@ -47,9 +38,9 @@ class Panel:
     1
     """
 
-    view: View
-    width: float
-    roots: tuple[complex, ...]
+    view: View  # what it shows
+    width: float  # [inches]; both axes have the same scale
+    roots: tuple[complex, ...]  # drawn in it [rad/s]
 
     @property
     def scale(self) -> float:

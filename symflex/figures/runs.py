@@ -25,46 +25,22 @@ AT_REST: Final = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Segment:
-    """A distributed part in a panel.
+    """A distributed part in a panel."""
 
-    Parameters
-    ----------
-    name : str
-        The element's or field's.
-    offset : float
-        Where it begins on the panel's axis.
-    is_reversed : bool
-        Its x runs against the axis.
-    """
-
-    name: str
-    offset: float
-    is_reversed: bool = False
+    name: str  # the element's or field's
+    offset: float  # where it begins on the panel's axis
+    is_reversed: bool = False  # its x runs against the axis
 
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """Distributed parts end to end.
+    """Distributed parts end to end."""
 
-    Parameters
-    ----------
-    segments : tuple of Segment
-        In order along the axis.
-    ends : tuple of float
-        Where they begin and end.
-    loaded : tuple of (str, float)
-        Nodes that carry inertia, and where they are.
-    is_turning : bool
-        The displacement is an angle.
-    unit : str
-        Of the axis; empty when unknown.
-    """
-
-    segments: tuple[Segment, ...]
-    ends: tuple[float, ...]
-    loaded: tuple[tuple[str, float], ...] = ()
-    is_turning: bool = False
-    unit: str = "m"
+    segments: tuple[Segment, ...]  # in order along the axis
+    ends: tuple[float, ...]  # where they begin and end
+    loaded: tuple[tuple[str, float], ...] = ()  # nodes that carry inertia, and where they are
+    is_turning: bool = False  # the displacement is an angle
+    unit: str = "m"  # of the axis; empty when unknown
 
 
 @dataclass(frozen=True, slots=True)

@@ -63,19 +63,12 @@ class RootMark:
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """A rectangle of the s plane [rad/s] that holds the origin, and what it shows.
+    """A rectangle of the s plane [rad/s] that holds the origin, and what it shows."""
 
-    Parameters
-    ----------
-    re, im : (float, float)
-        Limits.
-    shown : frozenset of complex
-        The roots that were chosen to be seen.
-    """
-
+    # re and im: Limits.
     re: tuple[float, float]
     im: tuple[float, float]
-    shown: frozenset[complex]
+    shown: frozenset[complex]  # the roots that were chosen to be seen
 
     @property
     def width(self) -> float:

@@ -35,18 +35,10 @@ NEWTON_STEPS = 60
 
 @dataclass(frozen=True, slots=True)
 class AxisRoots:
-    """What was found between two frequencies.
+    """What was found between two frequencies."""
 
-    Parameters
-    ----------
-    roots : tuple of arb
-        Enclosures [rad/s], ascending; one simple root each.
-    undecided : tuple of arb
-        Narrow intervals about which nothing is proved [rad/s].
-    """
-
-    roots: tuple[arb, ...]
-    undecided: tuple[arb, ...]
+    roots: tuple[arb, ...]  # enclosures [rad/s], ascending; one simple root each
+    undecided: tuple[arb, ...]  # narrow intervals about which nothing is proved [rad/s]
 
 
 def find_on_axis(

@@ -28,25 +28,14 @@ BITS: Final = 128
 
 @dataclass(frozen=True, slots=True)
 class AllowedBandwidth:
-    """Up to which frequency a loop can follow, with a gain margin of 6 dB.
+    """Up to which frequency a loop can follow, with a gain margin of 6 dB."""
 
-    Parameters
-    ----------
-    gain : Fraction or None
-        The largest gain with that margin; ``None`` when every gain is stable.
-    frequency : arb or None
-        At which the loop gain first falls below one [rad/s]; ``None`` when there is no such gain, or when the
-        loop gain is below one from the lowest frequencies on.
-    phase_margin : arb or None
-        The smallest one there in absolute value [rad], positive for lag.
-    is_limited : bool
-        By a boundary: twice the gain is one. Otherwise the gains examined end there.
-    """
-
-    gain: Fraction | None
+    gain: Fraction | None  # the largest gain with that margin; ``None`` when every gain is stable
+    # At which the loop gain first falls below one [rad/s]; ``None`` when there is no such gain, or when the
+    # loop gain is below one from the lowest frequencies on.
     frequency: arb | None
-    phase_margin: arb | None
-    is_limited: bool
+    phase_margin: arb | None  # the smallest one there in absolute value [rad], positive for lag
+    is_limited: bool  # by a boundary: twice the gain is one. Otherwise the gains examined end there.
 
 
 def allowed_bandwidth(

@@ -11,24 +11,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Crossing:
-    """A gain at which poles may pass from one side of the imaginary axis to the other.
+    """A gain at which poles may pass from one side of the imaginary axis to the other."""
 
-    Parameters
-    ----------
-    gain : arb
-        Enclosure of the gain.
-    frequencies : tuple of arb
-        Enclosures of omega >= 0 [rad/s] at which poles are on the axis; exactly 0 where they pass through
-        s = 0.
-    is_infinite : bool
-        A pole passes through infinity: the highest power of s vanishes.
-    is_symmetric : bool
-        Poles that mirror each other in the axis for every gain meet on it, and leave it or enter it.
-    """
-
-    gain: arb
+    gain: arb  # enclosure of the gain
+    # Enclosures of omega >= 0 [rad/s] at which poles are on the axis; exactly 0 where they pass through s =
+    # 0.
     frequencies: tuple[arb, ...]
-    is_infinite: bool = False
+    is_infinite: bool = False  # a pole passes through infinity: the highest power of s vanishes
+    # Poles that mirror each other in the axis for every gain meet on it, and leave it or enter it.
     is_symmetric: bool = False
 
 
@@ -36,21 +26,14 @@ class Crossing:
 class PoleCount:
     """Closed-loop poles that are not in the open left half plane, with multiplicity.
 
-    Parameters
-    ----------
-    right : int
-        In the open right half plane.
-    axis : int
-        On the imaginary axis.
-
     Examples
     --------
     >>> PoleCount(2, 0) + PoleCount(0, 1)
     PoleCount(right=2, axis=1)
     """
 
-    right: int
-    axis: int
+    right: int  # in the open right half plane
+    axis: int  # on the imaginary axis
 
     def __add__(self, other: PoleCount) -> PoleCount:
         return PoleCount(self.right + other.right, self.axis + other.axis)

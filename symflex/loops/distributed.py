@@ -56,30 +56,18 @@ SHRINKINGS = 30
 class DistributedFactors:
     """The factors of a characteristic function that hold kernels, together.
 
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        Carries ring and kernels.
-    factors : tuple of GainPolynomial
-        Those with kernels or wavenumbers, and those with negative exponents.
-    limits : (Fraction, Fraction)
-        Range of the gain.
-    up_to : float or None
-        A frequency up to which to search where no end can be proved [rad/s].
-    budget : Budget
-        Of the search.
-
     Attributes
     ----------
     reasons : list of str
         Why something is not certified.
     """
 
-    bound: BoundTransferFunction
+    bound: BoundTransferFunction  # carries ring and kernels
+    # Those with kernels or wavenumbers, and those with negative exponents.
     factors: tuple[GainPolynomial, ...]
-    limits: tuple[Fraction, Fraction]
-    up_to: float | None
-    budget: Budget
+    limits: tuple[Fraction, Fraction]  # range of the gain
+    up_to: float | None  # a frequency up to which to search where no end can be proved [rad/s]
+    budget: Budget  # of the search
     reasons: list[str] = field(default_factory=list)
 
     @cached_property

@@ -52,38 +52,23 @@ THINNINGS = 150
 
 @dataclass(frozen=True)
 class RootLocus:
-    """Closed-loop poles over a range of the gain.
+    """Closed-loop poles over a range of the gain."""
 
-    Parameters
-    ----------
-    gain : str
-        Its name.
-    limits : (Fraction, Fraction)
-        First and last value.
-    start, end : PoleZeroMap
-        Poles at these, and the zeros the poles go to, proved.
-    branches : tuple of tuple of complex
-        Curves [rad/s] from poles at the first gain, not proved. They stop where poles accumulate.
-    arrived : bool
-        Every curve ends next to a proved pole at the last gain, and no two at the same.
-    ends : tuple of complex
-        The proved poles at the last gain [rad/s] to which a curve of any kind goes.
-    entering : tuple of tuple of complex
-        Curves of poles that come from infinity as the gain leaves its first value, as those of a delay do
-        from no gain on.
-    joining : tuple of tuple of complex
-        Curves to poles at the last gain from where none is marked: from higher modes at the first gain, or
-        from where poles accumulate.
-    """
-
-    gain: str
-    limits: tuple[Fraction, Fraction]
+    gain: str  # its name
+    limits: tuple[Fraction, Fraction]  # first and last value
+    # start and end: poles at these, and the zeros the poles go to, proved.
     start: PoleZeroMap
     end: PoleZeroMap
+    # Curves [rad/s] from poles at the first gain, not proved. They stop where poles accumulate.
     branches: tuple[tuple[complex, ...], ...]
-    arrived: bool
+    arrived: bool  # every curve ends next to a proved pole at the last gain, and no two at the same
+    # The proved poles at the last gain [rad/s] to which a curve of any kind goes.
     ends: tuple[complex, ...] = ()
+    # Curves of poles that come from infinity as the gain leaves its first value, as those of a delay do from
+    # no gain on.
     entering: tuple[tuple[complex, ...], ...] = ()
+    # Curves to poles at the last gain from where none is marked: from higher modes at the first gain, or from
+    # where poles accumulate.
     joining: tuple[tuple[complex, ...], ...] = ()
 
 

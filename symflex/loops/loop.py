@@ -28,21 +28,12 @@ TRIALS = ("1", "2", "0.37")
 
 @dataclass(frozen=True, slots=True)
 class GainPolynomial:
-    """One factor of the characteristic function: ``sum(coefficients[i] * K^i)``.
+    """One factor of the characteristic function: ``sum(coefficients[i] * K^i)``."""
 
-    Parameters
-    ----------
-    coefficients : tuple of Factored
-        Functions of s over the ring of the bound transfer function, from K^0 on; some may be zero.
-    multiplicity : int
-        How often the factor occurs.
-    is_hidden : bool
-        It cancelled from the transfer function the loop was read from.
-    """
-
+    # Functions of s over the ring of the bound transfer function, from K^0 on; some may be zero.
     coefficients: tuple[Factored, ...]
-    multiplicity: int
-    is_hidden: bool = False
+    multiplicity: int  # how often the factor occurs
+    is_hidden: bool = False  # it cancelled from the transfer function the loop was read from
 
     @property
     def degree(self) -> int:
@@ -59,23 +50,12 @@ class GainPolynomial:
 
 @dataclass(frozen=True)
 class Loop:
-    """The characteristic function of a model: its roots are all closed-loop poles, hidden ones too.
+    """The characteristic function of a model: its roots are all closed-loop poles, hidden ones too."""
 
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        Carries the ring, the constants and the kernels; its gain has any value.
-    gain : ModelParameter
-        K.
-    nominal : Fraction or None
-        The gain's value, where it is a rational number.
-    factors : tuple of GainPolynomial
-        Whose product the characteristic function is, up to what has no roots.
-    """
-
-    bound: BoundTransferFunction
-    gain: ModelParameter
-    nominal: Fraction | None
+    bound: BoundTransferFunction  # carries the ring, the constants and the kernels; its gain has any value
+    gain: ModelParameter  # k
+    nominal: Fraction | None  # the gain's value, where it is a rational number
+    # Whose product the characteristic function is, up to what has no roots.
     factors: tuple[GainPolynomial, ...]
 
     @property

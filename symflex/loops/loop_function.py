@@ -86,17 +86,10 @@ class LoopValue:
 
 @dataclass(frozen=True, eq=False)
 class LoopFunction:
-    """A and B of one factor ``A + K B`` of a characteristic function.
+    """A and B of one factor ``A + K B`` of a characteristic function."""
 
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        Whose ring and kernels they have.
-    a, b : fmpz_mpoly
-        Polynomials over that ring, without common denominator.
-    """
-
-    bound: BoundTransferFunction
+    bound: BoundTransferFunction  # whose ring and kernels they have
+    # a and b: polynomials over that ring, without common denominator.
     a: fmpz_mpoly
     b: fmpz_mpoly
 

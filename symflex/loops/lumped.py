@@ -37,31 +37,16 @@ DOUBLINGS = 8
 
 @dataclass(frozen=True)
 class LumpedFactor:
-    """One polynomial factor of a characteristic function.
+    """One polynomial factor of a characteristic function."""
 
-    Parameters
-    ----------
-    constants : tuple of RealConstant
-        Real numbers the coefficients hold as symbols.
-    ring : Ring
-        w, K and the constants.
-    even, odd : fmpz_mpoly
-        E and O without their common factor.
-    common : fmpz_mpoly
-        The greatest common factor of E and O.
-    zeros : int
-        Roots at s = 0 whatever the gain, which are no part of E and O.
-    multiplicity : int
-        How often the factor occurs.
-    """
-
-    constants: tuple[RealConstant, ...]
-    ring: Ring
+    constants: tuple[RealConstant, ...]  # real numbers the coefficients hold as symbols
+    ring: Ring  # w, K and the constants
+    # even and odd: E and O without their common factor.
     even: fmpz_mpoly
     odd: fmpz_mpoly
-    common: fmpz_mpoly
-    zeros: int
-    multiplicity: int
+    common: fmpz_mpoly  # the greatest common factor of E and O
+    zeros: int  # roots at s = 0 whatever the gain, which are no part of E and O
+    multiplicity: int  # how often the factor occurs
 
     @classmethod
     def of(cls, bound: BoundTransferFunction, factor: GainPolynomial) -> LumpedFactor:

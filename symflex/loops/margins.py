@@ -28,27 +28,13 @@ SHRINKINGS = 30
 
 @dataclass(frozen=True)
 class LoopGain:
-    """The loop gain ``K B/A`` of a loop closed once, on the imaginary axis.
+    """The loop gain ``K B/A`` of a loop closed once, on the imaginary axis."""
 
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        Carries ring, constants and kernels.
-    factor : GainPolynomial
-        A + K B.
-    distributed : DistributedFactors or None
-        Where it has kernels.
-    digits : int
-        Of frequencies.
-    budget : Budget
-        Limits the search.
-    """
-
-    bound: BoundTransferFunction
-    factor: GainPolynomial
-    distributed: DistributedFactors | None
-    digits: int
-    budget: Budget
+    bound: BoundTransferFunction  # carries ring, constants and kernels
+    factor: GainPolynomial  # a + K B
+    distributed: DistributedFactors | None  # where it has kernels
+    digits: int  # of frequencies
+    budget: Budget  # limits the search
 
     def crossovers(self, gain: Fraction) -> list[tuple[arb, acb]]:
         """Return the frequencies [rad/s] at which it is one in magnitude, ascending, and B/A there."""

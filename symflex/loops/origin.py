@@ -30,18 +30,10 @@ SHRINKING = 0.5
 
 @dataclass(frozen=True, slots=True)
 class LoopAtOrigin:
-    """A and B near 0: ``s^order`` times a power series each, of which no other root lies near.
+    """A and B near 0: ``s^order`` times a power series each, of which no other root lies near."""
 
-    Parameters
-    ----------
-    orders : (int, int)
-        Of the roots of A and B at 0, exact.
-    series : (LocalSeries, LocalSeries)
-        Of A and B.
-    """
-
-    orders: tuple[int, int]
-    series: tuple[LocalSeries, LocalSeries]
+    orders: tuple[int, int]  # of the roots of A and B at 0, exact
+    series: tuple[LocalSeries, LocalSeries]  # of A and B
 
     def gain(self) -> arb | None:
         """Return the gain at which a pole passes through 0; ``None`` when that is infinite."""

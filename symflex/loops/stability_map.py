@@ -22,18 +22,10 @@ BITS = 128
 
 @dataclass(frozen=True, slots=True)
 class Boundary:
-    """A gain at which the number of poles right of the imaginary axis, or on it, changes.
+    """A gain at which the number of poles right of the imaginary axis, or on it, changes."""
 
-    Parameters
-    ----------
-    gain : arb
-        Enclosure.
-    crossings : tuple of Crossing
-        What happens there.
-    """
-
-    gain: arb
-    crossings: tuple[Crossing, ...]
+    gain: arb  # enclosure
+    crossings: tuple[Crossing, ...]  # what happens there
 
     @property
     def frequencies(self) -> tuple[arb, ...]:
@@ -44,19 +36,12 @@ class Boundary:
 
 @dataclass(frozen=True, slots=True)
 class GainInterval:
-    """An open interval of gains on which the number of unstable poles does not change.
+    """An open interval of gains on which the number of unstable poles does not change."""
 
-    Parameters
-    ----------
-    low, high : arb or None
-        Its ends; ``None`` where it has none.
-    poles : PoleCount
-        Closed-loop poles that are not in the left half plane.
-    """
-
+    # low and high: its ends; ``None`` where it has none.
     low: arb | None
     high: arb | None
-    poles: PoleCount
+    poles: PoleCount  # closed-loop poles that are not in the left half plane
 
     def holds(self, gain: Fraction) -> bool:
         """Tell whether a gain is proved to lie inside."""
@@ -68,34 +53,18 @@ class GainInterval:
 
 @dataclass(frozen=True, slots=True)
 class GainMargin:
-    """By which factor the gain may change until a boundary.
+    """By which factor the gain may change until a boundary."""
 
-    Parameters
-    ----------
-    factor : arb
-        Above 1: upwards; below: downwards.
-    boundary : Boundary
-        Which one.
-    """
-
-    factor: arb
-    boundary: Boundary
+    factor: arb  # above 1: upwards; below: downwards
+    boundary: Boundary  # which one
 
 
 @dataclass(frozen=True, slots=True)
 class PhaseMargin:
-    """How much the phase may change at a frequency where the loop gain is one.
+    """How much the phase may change at a frequency where the loop gain is one."""
 
-    Parameters
-    ----------
-    angle : arb
-        [rad]; positive: lag until poles reach the axis; negative: lead.
-    frequency : arb
-        Crossover frequency [rad/s].
-    """
-
-    angle: arb
-    frequency: arb
+    angle: arb  # [rad]; positive: lag until poles reach the axis; negative: lead
+    frequency: arb  # crossover frequency [rad/s]
 
 
 @dataclass(frozen=True)

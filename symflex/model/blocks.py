@@ -40,26 +40,16 @@ BLOCK_LIMIT = 100
 
 @dataclass(slots=True)
 class Loads:
-    """What one run has read for ``model`` blocks: a file is read once, and the number of blocks is bounded.
+    """What one run has read for ``model`` blocks: a file is read once, and blocks are bounded in number."""
 
-    Parameters
-    ----------
-    models : dict of Path to Model
-        By file, those that were resolved.
-    failed : set of Path
-        Files with mistakes, which are reported where they are first read.
-    blocks : dict of Path to int
-        By file, how many ``model`` blocks it holds, counted with those inside them.
-    folders : tuple of Path
-        Resolved folders at and below which files may be read; the first is that of the outermost file.
-    settings : mapping of str to value
-        What parameters are, in whichever file they are declared, instead of what is declared.
-    """
-
-    models: dict[Path, Model] = field(default_factory=dict)
+    models: dict[Path, Model] = field(default_factory=dict)  # by file, those that were resolved
+    # Files with mistakes, which are reported where they are first read.
     failed: set[Path] = field(default_factory=set)
+    # By file, how many ``model`` blocks it holds, counted with those inside them.
     blocks: dict[Path, int] = field(default_factory=dict)
+    # Resolved folders at and below which files may be read; the first is that of the outermost file.
     folders: tuple[Path, ...] = ()
+    # What parameters are, in whichever file they are declared, instead of what is declared.
     settings: Mapping[str, Setting] = field(default_factory=dict)
 
     @staticmethod

@@ -45,24 +45,12 @@ SHOWN_NAMES = 6
 
 @dataclass(frozen=True, slots=True)
 class Surroundings:
-    """What the fields of a model stand among.
+    """What the fields of a model stand among."""
 
-    Parameters
-    ----------
-    scope : ModelScope
-        What names mean.
-    definitions : mapping of str to Expression
-        Each uses only earlier ones.
-    varying : frozenset of str
-        Names of constants that depend on s: definitions and blocks.
-    line : Line
-        Where points lie.
-    """
-
-    scope: ModelScope
-    definitions: Mapping[str, Expression]
-    varying: frozenset[str]
-    line: Line
+    scope: ModelScope  # what names mean
+    definitions: Mapping[str, Expression]  # each uses only earlier ones
+    varying: frozenset[str]  # names of constants that depend on s: definitions and blocks
+    line: Line  # where points lie
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,20 +116,11 @@ def check_fields(reader: Reader, fields: Sequence[FieldProblem], around: Surroun
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """Where the points of a field or of an element that extends along x may lie.
+    """Where the points of a field or of an element that extends along x may lie."""
 
-    Parameters
-    ----------
-    what : str
-        In words, for messages.
-    names : tuple of str
-        What is evaluated at points of it.
-    start, end : Expression
-        Where x begins and ends.
-    """
-
-    what: str
-    names: tuple[str, ...]
+    what: str  # in words, for messages
+    names: tuple[str, ...]  # what is evaluated at points of it
+    # start and end: where x begins and ends.
     start: Expression
     end: Expression
 

@@ -70,31 +70,16 @@ EXTREME_EXPONENT = 10**6
 
 @dataclass(frozen=True, slots=True)
 class Measure:
-    """The dimension of an expression, as far as it is known.
+    """The dimension of an expression, as far as it is known."""
 
-    Parameters
-    ----------
-    dimension : Dimension
-        Known part.
-    unknowns : tuple of (Variable, Fraction)
-        Variables of yet unknown dimension, with exponents.
-    open : bool
-        True when a number without unit takes part: nothing can be checked.
-    literal : bool
-        True when a written number takes part, which may stand for any unit in a sum.
-    cycles, pis : Fraction
-        Exponents of the cycle and of a written ``pi``.
-    cyclic : frozenset of str
-        Parameters given in cycles that take part.
-    """
-
-    dimension: Dimension = DIMENSIONLESS
-    unknowns: tuple[tuple[Variable, Fraction], ...] = ()
-    open: bool = False
-    literal: bool = False
+    dimension: Dimension = DIMENSIONLESS  # known part
+    unknowns: tuple[tuple[Variable, Fraction], ...] = ()  # variables of yet unknown dimension, with exponents
+    open: bool = False  # true when a number without unit takes part: nothing can be checked
+    literal: bool = False  # true when a written number takes part, which may stand for any unit in a sum
+    # cycles and pis: exponents of the cycle and of a written ``pi``.
     cycles: Fraction = Fraction(0)
     pis: Fraction = Fraction(0)
-    cyclic: frozenset[str] = frozenset()
+    cyclic: frozenset[str] = frozenset()  # parameters given in cycles that take part
 
     def times(self, other: Measure) -> Measure:
         """Return the measure of a product."""

@@ -13,20 +13,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class InputKind:
-    """An input that acts on nodes.
+    """An input that acts on nodes."""
 
-    Parameters
-    ----------
-    domain : str
-        Of the nodes.
-    unit : str
-        SI unit of the input.
-    order : int or None
-        Of an input that nodes follow, ``s^order * node = input``; ``None`` of one delivered into them.
-    """
-
-    domain: Domain
-    unit: str
+    domain: Domain  # of the nodes
+    unit: str  # SI unit of the input
+    # Of an input that nodes follow, ``s^order * node = input``; ``None`` of one delivered into them.
     order: int | None = None
 
     @property

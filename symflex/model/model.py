@@ -36,38 +36,21 @@ ONE: Final = ExactValue(Fraction(1))
 
 @dataclass(frozen=True, slots=True)
 class ModelParameter:
-    """A named constant.
+    """A named constant."""
 
-    Parameters
-    ----------
-    name : str
-        As declared.
-    value : ExactValue or None
-        In SI units; what is declared in Hz, rpm or rev counts cycles. ``None`` keeps it symbolic.
-    unit : str
-        SI unit of ``value``; empty when neither declared nor implied by its use.
-    assume : str
-        ``positive``, ``nonnegative`` or ``real``.
-    latex, doc : str
-        Label and description; empty when not given.
-    cycles : int
-        Exponent of the cycle in what ``value`` counts: 1 for Hz, 0 for rad/s.
-    written_unit : str
-        The unit as it was declared; empty when it was not, or when its cycles are meant as radians.
-    scale : ExactValue
-        What one of that unit is in the unit of ``value``.
-    """
-
-    name: str
+    name: str  # as declared
+    # In SI units; what is declared in Hz, rpm or rev counts cycles. ``None`` keeps it symbolic.
     value: ExactValue | None
-    unit: str = ""
-    assume: Assumption = "positive"
+    unit: str = ""  # SI unit of ``value``; empty when neither declared nor implied by its use
+    assume: Assumption = "positive"  # ``positive``, ``nonnegative`` or ``real``
+    # latex and doc: label and description; empty when not given.
     latex: str = ""
     doc: str = ""
     span: Span | None = field(default=None, compare=False, repr=False)
-    cycles: int = 0
+    cycles: int = 0  # exponent of the cycle in what ``value`` counts: 1 for Hz, 0 for rad/s
+    # The unit as it was declared; empty when it was not, or when its cycles are meant as radians.
     written_unit: str = ""
-    scale: ExactValue = ONE
+    scale: ExactValue = ONE  # what one of that unit is in the unit of ``value``
 
     def as_written(self, value: ExactValue | None = None) -> tuple[ExactValue | None, str]:
         """Return a value, by default the parameter's own, in the unit that was written, with that unit.
@@ -141,32 +124,20 @@ class PlacedElement:
 
 @dataclass(frozen=True, slots=True)
 class FieldProblem:
-    """A boundary-value problem along x, Laplace-transformed in time.
+    """A boundary-value problem along x, Laplace-transformed in time."""
 
-    Parameters
-    ----------
-    name : str
-        As declared.
-    unknowns : tuple of str
-        The functions of x it determines.
-    start, end : Expression
-        Where x begins and ends [the length's unit]; constants without s.
-    equations : tuple of Equation
-        One for each unknown, which stands as ``Name("w")`` or, differentiated k times along x, as
-        ``Derivative("w", k)``; linear, with coefficients constant in x.
-    conditions : tuple of Equation
-        As many as the order in x; an unknown of any field stands as ``Call("w", point, order)``.
-    latex, doc : str
-        Label and description; empty when not given.
-    """
-
-    name: str
-    unknowns: tuple[str, ...]
+    name: str  # as declared
+    unknowns: tuple[str, ...]  # the functions of x it determines
+    # start and end: where x begins and ends [the length's unit]; constants without s.
     start: Expression
     end: Expression
+    # One for each unknown, which stands as ``Name("w")`` or, differentiated k times along x, as
+    # ``Derivative("w", k)``; linear, with coefficients constant in x.
     equations: tuple[Equation, ...]
+    # As many as the order in x; an unknown of any field stands as ``Call("w", point, order)``.
     conditions: tuple[Equation, ...]
     span: Span | None = field(default=None, compare=False, repr=False)
+    # latex and doc: label and description; empty when not given.
     latex: str = ""
     doc: str = ""
 

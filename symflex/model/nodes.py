@@ -22,25 +22,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Coupling:
-    """What a coupling says about the domains of its two sides.
+    """What a coupling says about the domains of its two sides."""
 
-    Parameters
-    ----------
-    element : Element
-        Whose ``ratio`` has a unit that depends on both domains.
-    port, partner_port : str
-        This side and the other side.
-    partner : NodeReference
-        The node at the other side.
-    ratio : Dimension or None
-        What the given ratio is measured in, when that is known.
-    """
-
-    element: Element
+    element: Element  # whose ``ratio`` has a unit that depends on both domains
+    # port and partner_port: this side and the other side.
     port: str
     partner_port: str
-    partner: NodeReference
-    ratio: Dimension | None
+    partner: NodeReference  # the node at the other side
+    ratio: Dimension | None  # what the given ratio is measured in, when that is known
 
     def suggested(self, partner: Domain) -> Domain:
         """Return the domain for this side that the ratio's unit asks for, or else its partner's."""

@@ -34,15 +34,6 @@ BIT_LIMIT = 4_000
 class Line:
     """The parameters that places along x are made of.
 
-    Parameters
-    ----------
-    definitions : mapping of str to Expression
-        Opened where they occur; each uses only earlier ones.
-    positive, nonnegative : frozenset of str
-        Parameters by what is assumed of them.
-    values : mapping of str to Fraction
-        Of those that have one.
-
     Examples
     --------
     >>> l, half = Name("l"), Quotient(Name("l"), Number(Fraction(2)))
@@ -51,10 +42,11 @@ class Line:
     (1, -1, None)
     """
 
-    definitions: Mapping[str, Expression]
+    definitions: Mapping[str, Expression]  # opened where they occur; each uses only earlier ones
+    # positive and nonnegative: parameters by what is assumed of them.
     positive: frozenset[str]
     nonnegative: frozenset[str]
-    values: Mapping[str, Fraction]
+    values: Mapping[str, Fraction]  # of those that have one
     _opened: dict[str, Polynomial | None] = field(default_factory=dict, repr=False)
 
     @staticmethod

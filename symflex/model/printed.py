@@ -22,24 +22,12 @@ NUMBERS = Line({}, frozenset(), frozenset(), {})
 
 @dataclass(frozen=True, slots=True)
 class Readable:
-    """What the names of a model mean in its printed formulas.
+    """What the names of a model mean in its printed formulas."""
 
-    Parameters
-    ----------
-    constants : frozenset of str
-        ``s``, ``pi`` and parameters.
-    definitions : mapping of str to Expression
-        The model's, which a ``where`` line of the same name hides.
-    varying : mapping of str to str
-        What may not stand there, in words: nodes, blocks, signals, outputs, inputs.
-    broken : frozenset of str
-        Names whose declaration holds a mistake of its own; nothing is said about them.
-    """
-
-    constants: frozenset[str]
-    definitions: Mapping[str, Expression]
-    varying: Mapping[str, str]
-    broken: frozenset[str]
+    constants: frozenset[str]  # ``s``, ``pi`` and parameters
+    definitions: Mapping[str, Expression]  # the model's, which a ``where`` line of the same name hides
+    varying: Mapping[str, str]  # what may not stand there, in words: nodes, blocks, signals, outputs, inputs
+    broken: frozenset[str]  # names whose declaration holds a mistake of its own; nothing is said about them
 
 
 def readable_names(model: Model, broken: Collection[str] = ()) -> Readable:

@@ -56,32 +56,18 @@ class Meaning:
 
 @dataclass(frozen=True)
 class ModelScope:
-    """All names of one model.
+    """All names of one model."""
 
-    Parameters
-    ----------
-    meanings : mapping of str to tuple of Meaning
-        What a bare name can be read as.
-    attributes : mapping of (str, str) to tuple of Meaning
-        What ``owner.name`` can be read as.
-    owners : mapping of str to tuple of str
-        Names that may stand after ``owner.``.
-    broken : frozenset of str
-        Names whose declaration could not be read; they are known, and nothing more is said about them.
-    unknowns : mapping of str to str
-        The unknowns of all fields, each with its field; they are written with a point, ``w(l)``.
-    inside : frozenset of str
-        In the equations of a field its own unknowns, which stand there bare; empty elsewhere.
-    along : mapping of str to str
-        Quantities of elements that extend along x, ``arm.y``, each with its element in words.
-    """
-
-    meanings: Mapping[str, tuple[Meaning, ...]]
-    attributes: Mapping[tuple[str, str], tuple[Meaning, ...]]
-    owners: Mapping[str, tuple[str, ...]]
+    meanings: Mapping[str, tuple[Meaning, ...]]  # what a bare name can be read as
+    attributes: Mapping[tuple[str, str], tuple[Meaning, ...]]  # what ``owner.name`` can be read as
+    owners: Mapping[str, tuple[str, ...]]  # names that may stand after ``owner.``
+    # Names whose declaration could not be read; they are known, and nothing more is said about them.
     broken: frozenset[str] = frozenset()
+    # The unknowns of all fields, each with its field; they are written with a point, ``w(l)``.
     unknowns: Mapping[str, str] = field(default_factory=dict)
+    # In the equations of a field its own unknowns, which stand there bare; empty elsewhere.
     inside: frozenset[str] = frozenset()
+    # Quantities of elements that extend along x, ``arm.y``, each with its element in words.
     along: Mapping[str, str] = field(default_factory=dict)
 
     def within(self, unknowns: Iterable[str]) -> ModelScope:

@@ -55,31 +55,16 @@ _STEM: Final = re.compile(r"([A-Za-z]+)([0-9]*)")
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    r"""A label and what the formula around it must know.
+    r"""A label and what the formula around it must know."""
 
-    Parameters
-    ----------
-    latex : str
-        Sound in math mode.
-    size : Width
-        Rounded up.
-    is_wordy : bool
-        Holds a word, so that a neighbour needs a thin space.
-    has_superscript : bool
-        Bears a superscript or prime, so that a power needs parentheses.
-    is_sum, is_product : bool
-        Prints an operation, so that it may need parentheses.
-    subscript : Width
-        Of the subscript at its end, above which a power has room.
-    """
-
-    latex: str
-    size: Width
-    is_wordy: bool = False
-    has_superscript: bool = False
+    latex: str  # sound in math mode
+    size: Width  # rounded up
+    is_wordy: bool = False  # holds a word, so that a neighbour needs a thin space
+    has_superscript: bool = False  # bears a superscript or prime, so that a power needs parentheses
+    # is_sum and is_product: prints an operation, so that it may need parentheses.
     is_sum: bool = False
     is_product: bool = False
-    subscript: Width = NOTHING
+    subscript: Width = NOTHING  # of the subscript at its end, above which a power has room
 
     @property
     def width(self) -> float:

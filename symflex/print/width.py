@@ -22,11 +22,6 @@ if TYPE_CHECKING:
 class Width:
     """How wide something is at the three sizes of mathematics [em of ten points].
 
-    Parameters
-    ----------
-    text, script, tiny : float
-        At full size, as a script, and as a script of a script.
-
     Examples
     --------
     >>> Width(1.0, 0.7, 0.5) + Width(0.5, 0.4, 0.35)
@@ -35,6 +30,7 @@ class Width:
     Width(text=0.7, script=0.5, tiny=0.5)
     """
 
+    # text, script and tiny: at full size, as a script, and as a script of a script.
     text: float
     script: float
     tiny: float
@@ -147,21 +143,11 @@ def _table(keys: str | list[str], text: str, script: str, tiny: str) -> dict[str
 
 @dataclass(frozen=True, slots=True)
 class Alphabet:
-    """Letters and digits of a font in mathematics.
+    """Letters and digits of a font in mathematics."""
 
-    Parameters
-    ----------
-    widths : mapping of str to Width
-        With italic correction.
-    apart : mapping of str to str
-        After the letter that is the key, each of these stands further away.
-    kern : Width
-        By so much.
-    """
-
-    widths: Mapping[str, Width]
-    apart: Mapping[str, str]
-    kern: Width
+    widths: Mapping[str, Width]  # with italic correction
+    apart: Mapping[str, str]  # after the letter that is the key, each of these stands further away
+    kern: Width  # by so much
 
     def after(self, before: str, letter: str) -> Width:
         """Return the width that a letter adds after another one, or after none."""

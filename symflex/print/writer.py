@@ -98,50 +98,32 @@ class Written(NamedTuple):
 
 @dataclass(frozen=True)
 class Spelling:
-    """How pieces are spelt.
+    """How pieces are spelt."""
 
-    Parameters
-    ----------
-    fraction, slash, power, applied : str
-        Templates of two pieces: above and below, base and exponent, function and its argument in a fence.
-    digits, negative, root, exponential : str
-        Templates of one piece: a number, minus it, a square root, a power of e.
-    name : callable
-        From a name and the declared labels.
-    function : callable
-        From a function's name as expressions have it.
-    primed : callable
-        From a function of x and how often it is differentiated; up to :data:`MOST_PRIMES` with primes.
-    scientific : callable
-        From a mantissa and a power of ten.
-    fenced : callable
-        From content, the depth of fences in it, and whether it is tall.
-    sum : callable
-        From terms, each with whether it is spelt as ``negative``.
-    product : callable
-        From factors and what stands between them, in turn.
-    between : callable
-        From two factors; what stands between them, and its width.
-    function_power : callable
-        From a function, a call of it and an exponent, which stands at the function.
-    """
-
+    # fraction, slash, power and applied: templates of two pieces: above and below, base and exponent,
+    # function and its argument in a fence.
     fraction: str
     slash: str
     power: str
     applied: str
+    # digits, negative, root and exponential: templates of one piece: a number, minus it, a square root, a
+    # power of e.
     digits: str
     negative: str
     root: str
     exponential: str
-    name: Callable[[str, Mapping[str, str]], str]
-    function: Callable[[str], str]
+    name: Callable[[str, Mapping[str, str]], str]  # from a name and the declared labels
+    function: Callable[[str], str]  # from a function's name as expressions have it
+    # From a function of x and how often it is differentiated; up to :data:`MOST_PRIMES` with primes.
     primed: Callable[[str, int], str]
-    scientific: Callable[[str, str], str]
-    fenced: Callable[[str, int, bool], str]
+    scientific: Callable[[str, str], str]  # from a mantissa and a power of ten
+    fenced: Callable[[str, int, bool], str]  # from content, the depth of fences in it, and whether it is tall
+    # From terms, each with whether it is spelt as ``negative``.
     sum: Callable[[Sequence[tuple[str, bool]]], str]
-    product: Callable[[Sequence[str]], str]
+    product: Callable[[Sequence[str]], str]  # from factors and what stands between them, in turn
+    # From two factors; what stands between them, and its width.
     between: Callable[[Written, Written], tuple[str, Width]]
+    # From a function, a call of it and an exponent, which stands at the function.
     function_power: Callable[[str, str, str], str]
 
 

@@ -13,11 +13,6 @@ _ZERO: Final = Fraction(0)
 class Dimension:
     """Exponents of the SI base units; angles and cycles have dimension one.
 
-    Parameters
-    ----------
-    kg, m, s, A, K, mol, cd : Fraction
-        Exponent of each base unit; half exponents appear under square roots.
-
     Examples
     --------
     >>> length, time = Dimension(m=Fraction(1)), Dimension(s=Fraction(1))
@@ -27,6 +22,7 @@ class Dimension:
     'm^(1/2)'
     """
 
+    # kg, m, s, A, K, mol and cd: exponent of each base unit; half exponents appear under square roots.
     kg: Fraction = _ZERO
     m: Fraction = _ZERO
     s: Fraction = _ZERO

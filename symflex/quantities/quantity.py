@@ -30,30 +30,14 @@ _SPACE: Final = re.compile(rf"[{SPACES}]*")
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """An exact value with its dimension, in SI: ``magnitude * pi**pi_power``, in SI units and cycles.
+    """An exact value with its dimension, in SI: ``magnitude * pi**pi_power``, in SI units and cycles."""
 
-    Parameters
-    ----------
-    magnitude : Fraction
-        The value in SI units, cycles and radians, without its power of pi.
-    pi_power : int
-        Power of pi in the value; 0 when the magnitude is 0.
-    cycles : int
-        Exponent of the cycle in the unit: 1 for Hz and rpm, -1 for mm/rev.
-    dimension : Dimension
-        Exponents of the SI base units.
-    radians : int
-        Exponent of the radian (or degree) in the unit: -1 for N*m/rad.
-    unit : str
-        The unit as it was written; empty for a bare number.
-    """
-
-    magnitude: Fraction
-    pi_power: int
-    cycles: int
-    dimension: Dimension
-    radians: int
-    unit: str
+    magnitude: Fraction  # the value in SI units, cycles and radians, without its power of pi
+    pi_power: int  # power of pi in the value; 0 when the magnitude is 0
+    cycles: int  # exponent of the cycle in the unit: 1 for Hz and rpm, -1 for mm/rev
+    dimension: Dimension  # exponents of the SI base units
+    radians: int  # exponent of the radian (or degree) in the unit: -1 for N*m/rad
+    unit: str  # the unit as it was written; empty for a bare number
 
     def angular(self) -> tuple[Fraction, int]:
         """Return (rational, power of pi) with a cycle counted as 2 pi radians.

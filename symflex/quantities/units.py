@@ -20,29 +20,18 @@ from symflex.quantities.dimension import DIMENSIONLESS, Dimension
 class Unit:
     """A unit as ``scale * pi**pi_power`` times a product of SI base units.
 
-    Parameters
-    ----------
-    scale : Fraction
-        Exact factor to SI, without its power of pi.
-    pi_power : int
-        Power of pi in the factor: 1 for deg.
-    dimension : Dimension
-        Exponents of the SI base units.
-    cycles : int
-        Exponent of the cycle: 1 for Hz, rev and rpm, -1 for mm/rev. A cycle is *not* multiplied in.
-    radians : int
-        Exponent of the radian, which is the number 1: -1 for N*m/rad. A degree counts as a radian.
-
     Examples
     --------
     >>> (UNITS["in"] ** 2).scale
     Fraction(16129, 25000000)
     """
 
-    scale: Fraction
-    pi_power: int = 0
-    dimension: Dimension = DIMENSIONLESS
+    scale: Fraction  # exact factor to SI, without its power of pi
+    pi_power: int = 0  # power of pi in the factor: 1 for deg
+    dimension: Dimension = DIMENSIONLESS  # exponents of the SI base units
+    # Exponent of the cycle: 1 for Hz, rev and rpm, -1 for mm/rev. A cycle is *not* multiplied in.
     cycles: int = 0
+    # Exponent of the radian, which is the number 1: -1 for N*m/rad. A degree counts as a radian.
     radians: int = 0
 
     def __mul__(self, other: Unit) -> Unit:

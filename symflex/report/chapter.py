@@ -24,34 +24,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Chapter:
-    """What a report says about one model, and the files that go with it.
+    """What a report says about one model, and the files that go with it."""
 
-    Parameters
-    ----------
-    stem : str
-        Its anchor, and the name its files begin with.
-    section : Section
-        Title and sections.
-    facts : ModelFacts
-        What the comparison and the claims read.
-    files : mapping of str to bytes
-        Content by path inside the report's folder.
-    warnings : tuple of str
-        What the user should be told.
-    code : int
-        Exit code: 0, 4 when something is not certified or a figure that was asked for cannot be drawn, 5 when
-        a budget was exceeded.
-    failure : str
-        Why the chapter says nothing else; empty for all others.
-    """
-
-    stem: str
-    section: Section
-    facts: ModelFacts
-    files: Mapping[str, bytes]
-    warnings: tuple[str, ...]
+    stem: str  # its anchor, and the name its files begin with
+    section: Section  # title and sections
+    facts: ModelFacts  # what the comparison and the claims read
+    files: Mapping[str, bytes]  # content by path inside the report's folder
+    warnings: tuple[str, ...]  # what the user should be told
+    # Exit code: 0, 4 when something is not certified or a figure that was asked for cannot be drawn, 5 when a
+    # budget was exceeded.
     code: int
-    failure: str = ""
+    failure: str = ""  # why the chapter says nothing else; empty for all others
 
 
 def failed_chapter(

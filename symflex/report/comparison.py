@@ -141,18 +141,10 @@ def bandwidth_cell(facts: ModelFacts) -> Cell:
 
 @dataclass(frozen=True, slots=True)
 class ComparisonColumn:
-    """A column of the comparison.
+    """A column of the comparison."""
 
-    Parameters
-    ----------
-    cell : callable
-        Returns its cell in a model's row.
-    side : str
-        As in :class:`~symflex.report.document.Column`.
-    """
-
-    cell: Callable[[ModelFacts], Cell]
-    side: Side = "text"
+    cell: Callable[[ModelFacts], Cell]  # returns its cell in a model's row
+    side: Side = "text"  # as in :class:`~symflex.report.document.Column`
 
 
 COLUMNS: dict[str, ComparisonColumn] = {

@@ -18,23 +18,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class DataComparison:
-    """What a model says on the lines of a measurement.
+    """What a model says on the lines of a measurement."""
 
-    Parameters
-    ----------
-    measured : MeasuredResponse
-        With n lines.
-    model : array of complex, shape (n,)
-        The transfer function there.
-    unit : str
-        Its unit.
-    decibels, degrees : float
-        Root mean squares of the differences of magnitude and phase over the lines, all alike.
-    """
-
-    measured: MeasuredResponse
-    model: npt.NDArray[np.complex128]
-    unit: str
+    measured: MeasuredResponse  # with n lines
+    model: npt.NDArray[np.complex128]  # shape (n,): The transfer function there
+    unit: str  # its unit
+    # decibels and degrees: root mean squares of the differences of magnitude and phase over the lines, all
+    # alike.
     decibels: float
     degrees: float
 

@@ -26,18 +26,10 @@ Side: TypeAlias = Literal["text", "plain", "number"]
 
 @dataclass(frozen=True, slots=True)
 class Mathematics:
-    """Mathematics in a line of text.
+    """Mathematics in a line of text."""
 
-    Parameters
-    ----------
-    mathml : str
-        Content of a ``math`` element.
-    latex : str
-        For math mode.
-    """
-
-    mathml: str
-    latex: str
+    mathml: str  # content of a ``math`` element
+    latex: str  # for math mode
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,78 +77,38 @@ class Paragraph:
 
 @dataclass(frozen=True, slots=True)
 class DisplayedFormula:
-    """A displayed equation.
+    """A displayed equation."""
 
-    Parameters
-    ----------
-    rows : tuple of MathRow
-        For pages.
-    latex : str
-        A display for paper, such as an ``equation`` environment.
-    name : str
-        What it is an equation of, for those who do not see it.
-    """
-
-    rows: tuple[MathRow, ...]
-    latex: str
-    name: str
+    rows: tuple[MathRow, ...]  # for pages
+    latex: str  # a display for paper, such as an ``equation`` environment
+    name: str  # what it is an equation of, for those who do not see it
 
 
 @dataclass(frozen=True, slots=True)
 class PageColumn:
-    """A column of a table.
+    """A column of a table."""
 
-    Parameters
-    ----------
-    head : tuple of Run
-        Its head.
-    side : str
-        ``text`` is broken into lines, ``plain`` is not, a ``number`` stands at the right.
-    """
-
-    head: Cell
-    side: Side = "text"
+    head: Cell  # its head
+    side: Side = "text"  # ``text`` is broken into lines, ``plain`` is not, a ``number`` stands at the right
 
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A table.
+    """A table."""
 
-    Parameters
-    ----------
-    columns : tuple of PageColumn
-        Heads and how cells stand.
-    rows : tuple of tuple of Cell
-        As many cells each as there are columns.
-    caption : str
-        Plain text above it.
-    latex : str
-        A table for paper that is printed instead, where one was made for it; empty without.
-    """
-
-    columns: tuple[PageColumn, ...]
-    rows: tuple[tuple[Cell, ...], ...]
-    caption: str = ""
-    latex: str = ""
+    columns: tuple[PageColumn, ...]  # heads and how cells stand
+    rows: tuple[tuple[Cell, ...], ...]  # as many cells each as there are columns
+    caption: str = ""  # plain text above it
+    latex: str = ""  # a table for paper that is printed instead, where one was made for it; empty without
 
 
 @dataclass(frozen=True, slots=True)
 class PageFigure:
-    """A figure.
+    """A figure."""
 
-    Parameters
-    ----------
-    stem : str
-        Of its files in the folder of figures, ``stem.pdf`` and ``stem.svg``.
-    svg : str
-        As matplotlib writes it.
-    caption : str
-        Plain text.
-    """
-
-    stem: str
-    svg: str
-    caption: str
+    stem: str  # of its files in the folder of figures, ``stem.pdf`` and ``stem.svg``
+    svg: str  # as matplotlib writes it
+    caption: str  # plain text
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,24 +131,12 @@ Block: TypeAlias = "Paragraph | DisplayedFormula | Table | PageFigure | Listing 
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """A heading and what follows it.
+    """A heading and what follows it."""
 
-    Parameters
-    ----------
-    title : str
-        Plain text.
-    blocks : tuple of Block
-        In order.
-    anchor : str
-        Of letters, digits and hyphens; unique in its report.
-    mathematics : Mathematics or None
-        Stands in place of the title.
-    """
-
-    title: str
-    blocks: tuple[Block, ...]
-    anchor: str
-    mathematics: Mathematics | None = field(default=None)
+    title: str  # plain text
+    blocks: tuple[Block, ...]  # in order
+    anchor: str  # of letters, digits and hyphens; unique in its report
+    mathematics: Mathematics | None = field(default=None)  # stands in place of the title
 
 
 def text(*runs: Run) -> Paragraph:

@@ -36,28 +36,15 @@ TRUNCATED_MODES: Final = 5
 
 @dataclass(frozen=True, slots=True)
 class RootFact:
-    """A pole or zero.
+    """A pole or zero."""
 
-    Parameters
-    ----------
-    re, im : float
-        [rad/s], in double precision.
-    radius : float
-        Bound on the distance of the printed decimals from the root [rad/s].
-    place : str
-        ``origin``, ``imaginary axis`` or ``real axis`` where that is proved, else ``plane``.
-    multiplicity : int
-        As often as it is counted.
-    frequency_hz : float
-        abs(s)/(2 pi).
-    """
-
+    # re and im: [rad/s], in double precision.
     re: float
     im: float
-    radius: float
-    place: Place
-    multiplicity: int
-    frequency_hz: float
+    radius: float  # bound on the distance of the printed decimals from the root [rad/s]
+    place: Place  # ``origin``, ``imaginary axis`` or ``real axis`` where that is proved, else ``plane``
+    multiplicity: int  # as often as it is counted
+    frequency_hz: float  # abs(s)/(2 pi)
 
     @property
     def is_in_right_half_plane(self) -> bool:
@@ -72,75 +59,43 @@ class RootFact:
 
 @dataclass(frozen=True, slots=True)
 class TruncationFacts:
-    """How far a product of the lowest modes is right.
+    """How far a product of the lowest modes is right."""
 
-    Parameters
-    ----------
-    modes : int
-        How many it keeps.
-    last_hz : float
-        Natural frequency of the last one [Hz].
-    one_percent_hz, five_percent_hz : float
-        Up to which its relative error stays within 1 % and 5 % (sampled).
-    """
-
-    modes: int
-    last_hz: float
+    modes: int  # how many it keeps
+    last_hz: float  # natural frequency of the last one [Hz]
+    # one_percent_hz and five_percent_hz: up to which its relative error stays within 1 % and 5 % (sampled).
     one_percent_hz: float
     five_percent_hz: float
 
 
 @dataclass(frozen=True, slots=True)
 class TransferFacts:
-    """Facts about one transfer function.
+    """Facts about one transfer function."""
 
-    Parameters
-    ----------
-    tf, quantity : str
-        ``"OUT/IN"``; receptance, mobility, ...
-    poles, zeros : tuple of RootFact
-        Those in the report's tables, by natural frequency.
-    certified : bool
-        All of them are proved, and their number.
-    is_infinite : bool
-        There are more: the function is transcendental.
-    counts : (int, int) or None
-        Zeros and poles of a rational function, with multiplicity.
-    rigid, undamped : (int, int) or None
-        The same with all compliances rigid, and with all dampers taken away; None where there is no limit.
-        Zeros are None where the rigid model has no response, as nothing moves.
-    colocated : bool or None
-        The output is taken where the input acts; None where one of them has no place.
-    explained : str
-        What its zeros are the poles of: a kind of :class:`~symflex.analysis.explanation.ZeroExplanation`.
-    condition, reason : str
-        When it is minimum phase; see :class:`~symflex.report.minimum_phase.PhaseCondition`.
-    bracket : str
-        The expression that must not be negative, in the spec language; empty without one.
-    bracket_mathematics : Mathematics or None
-        The same for print.
-    truncation : TruncationFacts or None
-        Of distributed systems.
-    stability : str
-        ``stable``, ``marginal``, ``unstable`` or ``unknown``: of all poles, listed or not.
-    """
-
+    # tf and quantity: ``"OUT/IN"``; receptance, mobility, ...
     tf: str
     quantity: str
+    # poles and zeros: those in the report's tables, by natural frequency.
     poles: tuple[RootFact, ...]
     zeros: tuple[RootFact, ...]
-    certified: bool
-    is_infinite: bool
-    counts: tuple[int, int] | None
+    certified: bool  # all of them are proved, and their number
+    is_infinite: bool  # there are more: the function is transcendental
+    counts: tuple[int, int] | None  # zeros and poles of a rational function, with multiplicity
+    # rigid and undamped: the same with all compliances rigid, and with all dampers taken away; None where
+    # there is no limit. Zeros are None where the rigid model has no response, as nothing moves.
     rigid: tuple[int | None, int] | None
     undamped: tuple[int, int] | None
-    colocated: bool | None
+    colocated: bool | None  # the output is taken where the input acts; None where one of them has no place
+    # What its zeros are the poles of: a kind of :class:`~symflex.analysis.explanation.ZeroExplanation`.
     explained: str
+    # condition and reason: when it is minimum phase; see
+    # :class:`~symflex.report.minimum_phase.PhaseCondition`.
     condition: str
     reason: str
-    bracket: str = ""
-    bracket_mathematics: Mathematics | None = None
-    truncation: TruncationFacts | None = None
+    bracket: str = ""  # the expression that must not be negative, in the spec language; empty without one
+    bracket_mathematics: Mathematics | None = None  # the same for print
+    truncation: TruncationFacts | None = None  # of distributed systems
+    # ``stable``, ``marginal``, ``unstable`` or ``unknown``: of all poles, listed or not.
     stability: str = "unknown"
 
     @property
@@ -240,38 +195,21 @@ class TransferFacts:
 
 @dataclass(frozen=True, slots=True)
 class LoopFacts:
-    """For which gains a feedback loop is stable.
+    """For which gains a feedback loop is stable."""
 
-    Parameters
-    ----------
-    gain, unit : str
-        Name and SI unit.
-    stable : tuple of (float or None, float or None)
-        Intervals with all closed-loop poles in the left half plane; None where there is no end.
-    unstable_at_last : int
-        Poles right of the imaginary axis for the largest gains examined.
-    crossings_hz : tuple of float
-        Where poles are on the axis at the boundaries [Hz].
-    is_bounded : bool
-        Gains were examined up to an end.
-    certified : bool
-        All of it is proved, for all poles.
-    bandwidth_hz : float or None
-        Where the loop gain first falls below one with a gain margin of 6 dB [Hz]; infinite when no gain is
-        too high, ``None`` when there is no such frequency.
-    is_bandwidth_limited : bool
-        By a boundary; otherwise by the gains examined.
-    """
-
+    # gain and unit: name and SI unit.
     gain: str
     unit: str
+    # Intervals with all closed-loop poles in the left half plane; None where there is no end.
     stable: tuple[tuple[float | None, float | None], ...]
-    unstable_at_last: int
-    crossings_hz: tuple[float, ...]
-    is_bounded: bool
-    certified: bool
+    unstable_at_last: int  # poles right of the imaginary axis for the largest gains examined
+    crossings_hz: tuple[float, ...]  # where poles are on the axis at the boundaries [Hz]
+    is_bounded: bool  # gains were examined up to an end
+    certified: bool  # all of it is proved, for all poles
+    # Where the loop gain first falls below one with a gain margin of 6 dB [Hz]; infinite when no gain is too
+    # high, ``None`` when there is no such frequency.
     bandwidth_hz: float | None
-    is_bandwidth_limited: bool
+    is_bandwidth_limited: bool  # by a boundary; otherwise by the gains examined
 
     @property
     def is_always_stable(self) -> bool:
@@ -281,91 +219,49 @@ class LoopFacts:
 
 @dataclass(frozen=True, slots=True)
 class ColocationFact:
-    """Up to which frequency an output moves with one where the input acts.
+    """Up to which frequency an output moves with one where the input acts."""
 
-    Parameters
-    ----------
-    tf, reference : str
-        Of the output elsewhere and of the colocated one.
-    phase_degrees, magnitude_db : float
-        Within which.
-    bandwidth_hz : float or None
-        None when they stay together throughout.
-    examined_hz : float
-        Up to which frequency that was examined.
-    is_together : bool
-        At the lowest frequency they are.
-    certified : bool
-        It is proved that they part there, or do not.
-    """
-
+    # tf and reference: of the output elsewhere and of the colocated one.
     tf: str
     reference: str
+    # phase_degrees and magnitude_db: within which.
     phase_degrees: float
     magnitude_db: float
-    bandwidth_hz: float | None
-    examined_hz: float
-    is_together: bool
-    certified: bool = True
+    bandwidth_hz: float | None  # none when they stay together throughout
+    examined_hz: float  # up to which frequency that was examined
+    is_together: bool  # at the lowest frequency they are
+    certified: bool = True  # it is proved that they part there, or do not
 
 
 @dataclass(frozen=True, slots=True)
 class DataFact:
-    """How far a model is off a measured response, root mean squares over its lines.
+    """How far a model is off a measured response, root mean squares over its lines."""
 
-    Parameters
-    ----------
-    tf : str
-        ``"OUT/IN"``.
-    decibels, degrees : float
-        Of magnitude and phase.
-    is_synthetic : bool
-        The data are computed.
-    """
-
-    tf: str
+    tf: str  # ``"OUT/IN"``
+    # decibels and degrees: of magnitude and phase.
     decibels: float
     degrees: float
-    is_synthetic: bool
+    is_synthetic: bool  # the data are computed
 
 
 @dataclass(frozen=True, slots=True)
 class ModelFacts:
-    """Facts about one model.
+    """Facts about one model."""
 
-    Parameters
-    ----------
-    stem, title, source : str
-        Name of its file without suffix, title and source; those may be empty.
-    compliances : tuple of Compliance
-        What gives way in it.
-    is_distributed : bool
-        It has infinitely many modes.
-    has_signals : bool
-        It holds signals, blocks or sources besides its structure.
-    functions : tuple of TransferFacts
-        Of its transfer functions that could be bound to numbers.
-    audits : tuple of (str, str, str)
-        Printed formulas, "OUT/IN", their verdicts, and what should be changed in them, in words.
-    loops : tuple of LoopFacts
-        Of the gains that figures name.
-    colocations : tuple of ColocationFact
-        Of functions that are not colocated, where a colocated one of the same kind is there.
-    data : tuple of DataFact
-        Of measured responses named like a transfer function.
-    """
-
+    # stem, title and source: name of its file without suffix, title and source; those may be empty.
     stem: str
     title: str = ""
     source: str = ""
-    compliances: tuple[Compliance, ...] = ()
-    is_distributed: bool = False
-    has_signals: bool = False
-    functions: tuple[TransferFacts, ...] = ()
+    compliances: tuple[Compliance, ...] = ()  # what gives way in it
+    is_distributed: bool = False  # it has infinitely many modes
+    has_signals: bool = False  # it holds signals, blocks or sources besides its structure
+    functions: tuple[TransferFacts, ...] = ()  # of its transfer functions that could be bound to numbers
+    # Printed formulas, "OUT/IN", their verdicts, and what should be changed in them, in words.
     audits: tuple[tuple[str, str, str], ...] = ()
-    loops: tuple[LoopFacts, ...] = ()
+    loops: tuple[LoopFacts, ...] = ()  # of the gains that figures name
+    # Of functions that are not colocated, where a colocated one of the same kind is there.
     colocations: tuple[ColocationFact, ...] = ()
-    data: tuple[DataFact, ...] = ()
+    data: tuple[DataFact, ...] = ()  # of measured responses named like a transfer function
 
     def of(self, tf: str) -> TransferFacts:
         """Return the facts of one transfer function.

@@ -38,22 +38,13 @@ _QUADRATIC: Final = 2
 
 @dataclass(frozen=True, slots=True)
 class PhaseCondition:
-    """When a transfer function is minimum phase.
+    """When a transfer function is minimum phase."""
 
-    Parameters
-    ----------
-    kind : str
-        ``always`` or ``never``, for all values; ``if positive``: exactly when ``expression`` is not negative;
-        ``as given``: for all values what it is for the given ones; ``unknown``.
-    reason : str
-        How that is known, in words.
-    expression : Expression or None
-        Of the parameters; for ``if positive``.
-    """
-
+    # ``always`` or ``never``, for all values; ``if positive``: exactly when ``expression`` is not negative;
+    # ``as given``: for all values what it is for the given ones; ``unknown``.
     kind: Kind
-    reason: str
-    expression: Expression | None = None
+    reason: str  # how that is known, in words
+    expression: Expression | None = None  # of the parameters; for ``if positive``
 
 
 def minimum_phase(tf: TransferFunction, explained: ZeroExplanation) -> PhaseCondition:

@@ -20,27 +20,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ChapterPart:
-    """One section of the chapter about a model.
+    """One section of the chapter about a model."""
 
-    Parameters
-    ----------
-    title : str
-        Plain text.
-    blocks : tuple of Block
-        What it says.
-    files : mapping of str to bytes
-        Content by path inside the report's folder.
-    warnings : tuple of str
-        What the user should be told on the terminal as well.
-    code : int
-        Exit code: not 0 when something is missing that the specification asks for.
-    """
-
-    title: str
-    blocks: tuple[Block, ...]
-    files: Mapping[str, bytes] = field(default_factory=dict)
-    warnings: tuple[str, ...] = ()
-    code: int = 0
+    title: str  # plain text
+    blocks: tuple[Block, ...]  # what it says
+    files: Mapping[str, bytes] = field(default_factory=dict)  # content by path inside the report's folder
+    warnings: tuple[str, ...] = ()  # what the user should be told on the terminal as well
+    code: int = 0  # exit code: not 0 when something is missing that the specification asks for
 
 
 def code_of(error: SymflexError) -> int:

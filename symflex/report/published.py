@@ -32,24 +32,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class PublishedReport:
-    """What was written.
+    """What was written."""
 
-    Parameters
-    ----------
-    page : Path
-        The page to open.
-    pdf : Path or None
-        None where none was asked for or made.
-    problem : str
-        Why there is no PDF though one was wanted; empty else.
-    code : int
-        Exit code of writing alone.
-    """
-
-    page: Path
-    pdf: Path | None
-    problem: str
-    code: int
+    page: Path  # the page to open
+    pdf: Path | None  # none where none was asked for or made
+    problem: str  # why there is no PDF though one was wanted; empty else
+    code: int  # exit code of writing alone
 
 
 def written(

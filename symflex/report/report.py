@@ -60,33 +60,15 @@ RESERVED: Final = frozenset(("comparison", "claims", "contents", "models", "prov
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """A report before it is printed.
+    """A report before it is printed."""
 
-    Parameters
-    ----------
-    title : str
-        Plain text.
-    subtitle : str
-        Whose models these are; may be empty.
-    date : str
-        As shown; empty for none.
-    sections : tuple of Section
-        Overview, claims, comparison, a chapter per model, provenance.
-    files : mapping of str to bytes
-        Figures, code and data, by path inside the report's folder.
-    warnings : tuple of str
-        What the user should be told.
-    code : int
-        Exit code.
-    """
-
-    title: str
-    subtitle: str
-    date: str
-    sections: tuple[Section, ...]
-    files: Mapping[str, bytes]
-    warnings: tuple[str, ...]
-    code: int
+    title: str  # plain text
+    subtitle: str  # whose models these are; may be empty
+    date: str  # as shown; empty for none
+    sections: tuple[Section, ...]  # overview, claims, comparison, a chapter per model, provenance
+    files: Mapping[str, bytes]  # figures, code and data, by path inside the report's folder
+    warnings: tuple[str, ...]  # what the user should be told
+    code: int  # exit code
 
 
 def find_specifications(

@@ -31,21 +31,11 @@ _RIGID: Final = frozenset(("rigid_link", "transformer", "gyrator", "dc_motor"))
 
 @dataclass(frozen=True, slots=True)
 class Compliance:
-    """A part that gives way.
+    """A part that gives way."""
 
-    Parameters
-    ----------
-    name : str
-        The element or field.
-    is_bending : bool
-        It bends; else it is stretched or twisted.
-    place : str
-        ``base``, ``transmission``, ``link`` or ``contact``.
-    """
-
-    name: str
-    is_bending: bool
-    place: Place
+    name: str  # the element or field
+    is_bending: bool  # it bends; else it is stretched or twisted
+    place: Place  # ``base``, ``transmission``, ``link`` or ``contact``
 
 
 def compliances(model: Model) -> tuple[Compliance, ...]:

@@ -46,27 +46,13 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Study:
-    """A model, and what the pipeline makes of it.
+    """A model, and what the pipeline makes of it."""
 
-    Parameters
-    ----------
-    path : Path
-        Where its text was read.
-    stem : str
-        The name its files in the report begin with.
-    text : str
-        The specification.
-    model : Model
-        Resolved.
-    measured : tuple of MeasuredResponse
-        Responses that models may be compared with.
-    """
-
-    path: Path
-    stem: str
-    text: str
-    model: Model
-    measured: tuple[MeasuredResponse, ...] = ()
+    path: Path  # where its text was read
+    stem: str  # the name its files in the report begin with
+    text: str  # the specification
+    model: Model  # resolved
+    measured: tuple[MeasuredResponse, ...] = ()  # responses that models may be compared with
 
     @staticmethod
     def of(

@@ -42,49 +42,24 @@ SUBDIVISION = "subdivision"
 
 @dataclass(frozen=True, slots=True)
 class Guess:
-    """An engine that guesses all roots of a polynomial.
+    """An engine that guesses all roots of a polynomial."""
 
-    Parameters
-    ----------
-    propose : callable
-        Returns one guess per root in the closed upper half plane, ``None`` where it does not settle.
-    best_to : float
-        Degree up to which it is asked in its turn; beyond, after all others.
-    largest : float
-        Degree beyond which it is not asked.
-    """
-
+    # Returns one guess per root in the closed upper half plane, ``None`` where it does not settle.
     propose: Proposer
-    best_to: float = inf
-    largest: float = inf
+    best_to: float = inf  # degree up to which it is asked in its turn; beyond, after all others
+    largest: float = inf  # degree beyond which it is not asked
 
 
 @dataclass(frozen=True, slots=True)
 class Sought:
-    """A function with kernels whose roots are searched.
+    """A function with kernels whose roots are searched."""
 
-    Parameters
-    ----------
-    function : KernelFunction
-        The function.
-    winding : CertifiedWinding
-        Counts its roots with proof.
-    order : int
-        To which it vanishes at s = 0.
-    holes : tuple of Cell
-        Neighbourhoods of points where roots accumulate, left out.
-    digits : int
-        Significant digits of every root.
-    budget : Budget
-        Of the search.
-    """
-
-    function: KernelFunction
-    winding: CertifiedWinding
-    order: int
-    holes: tuple[Cell, ...]
-    digits: int
-    budget: Budget
+    function: KernelFunction  # the function
+    winding: CertifiedWinding  # counts its roots with proof
+    order: int  # to which it vanishes at s = 0
+    holes: tuple[Cell, ...]  # neighbourhoods of points where roots accumulate, left out
+    digits: int  # significant digits of every root
+    budget: Budget  # of the search
 
     @property
     def mirrors(self) -> bool:
@@ -98,18 +73,10 @@ class Sought:
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """One search of a function.
+    """One search of a function."""
 
-    Parameters
-    ----------
-    search : RootSearch or LosslessSearch
-        What finds roots.
-    scans : bool
-        It begins with the axes, and is done if all roots are there.
-    """
-
-    search: RootSearch | LosslessSearch
-    scans: bool
+    search: RootSearch | LosslessSearch  # what finds roots
+    scans: bool  # it begins with the axes, and is done if all roots are there
 
 
 def without_losses(sought: Sought) -> Iterator[Attempt]:

@@ -56,38 +56,22 @@ class Certificate:
 
 @dataclass(frozen=True, slots=True)
 class HiddenRoot:
-    """A root of a factor that cancelled between numerator and denominator.
+    """A root of a factor that cancelled between numerator and denominator."""
 
-    Parameters
-    ----------
-    root : Root
-        The mode that input and output do not see together.
-    cause : str
-        ``"cancelled"`` exactly; ``"coincident"`` when a pole and a zero agree in all digits.
-    """
-
-    root: Root
+    root: Root  # the mode that input and output do not see together
+    # ``"cancelled"`` exactly; ``"coincident"`` when a pole and a zero agree in all digits.
     cause: str = "cancelled"
 
 
 @dataclass(frozen=True, slots=True)
 class Exclusion:
-    """A part of the s plane that no search can exhaust.
+    """A part of the s plane that no search can exhaust."""
 
-    Parameters
-    ----------
-    re, im : float
-        Its centre [rad/s]; the conjugate is left out too.
-    radius : float
-        [rad/s].
-    reason : str
-        Why.
-    """
-
+    # re and im: its centre [rad/s]; the conjugate is left out too.
     re: float
     im: float
-    radius: float
-    reason: str
+    radius: float  # [rad/s]
+    reason: str  # why
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the exclusion as JSON data."""

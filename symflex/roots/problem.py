@@ -28,13 +28,6 @@ ZERO_TEST_BITS = (64, 256, 1024, 4096)
 class RealConstant:
     """A real number that exact steps treat as an independent symbol.
 
-    Parameters
-    ----------
-    name : str
-        Such as ``pi`` or ``sqrt(2)``; equal names are the same constant.
-    evaluate : callable
-        Returns the constant as a real ball at the current ``flint.ctx.prec``.
-
     Examples
     --------
     >>> from flint import arb
@@ -42,22 +35,13 @@ class RealConstant:
     'pi'
     """
 
-    name: str
-    evaluate: Callable[[], arb]
+    name: str  # such as ``pi`` or ``sqrt(2)``; equal names are the same constant
+    evaluate: Callable[[], arb]  # returns the constant as a real ball at the current ``flint.ctx.prec``
 
 
 @dataclass(frozen=True, slots=True)
 class PolynomialInS:
     """A polynomial in s whose coefficients are integer polynomials in real constants.
-
-    Parameters
-    ----------
-    coefficients : tuple of fmpz_mpoly
-        In ascending powers of s, all in ``context``; trailing zeros are dropped.
-    context : fmpz_mpoly_ctx
-        Ring of the coefficients; generator number i stands for ``constants[i]``.
-    constants : tuple of RealConstant
-        One for each generator; empty when all coefficients are integers.
 
     Raises
     ------
@@ -72,8 +56,10 @@ class PolynomialInS:
     (2, (3, 0, 2))
     """
 
+    # In ascending powers of s, all in ``context``; trailing zeros are dropped.
     coefficients: tuple[fmpz_mpoly, ...]
-    context: fmpz_mpoly_ctx
+    context: fmpz_mpoly_ctx  # ring of the coefficients; generator number i stands for ``constants[i]``
+    # One for each generator; empty when all coefficients are integers.
     constants: tuple[RealConstant, ...] = ()
 
     def __post_init__(self) -> None:
@@ -159,17 +145,13 @@ def _evaluate(coefficient: fmpz_mpoly, values: tuple[arb, ...]) -> arb:
 class RootProblem:
     """The roots of a product of powers of polynomials.
 
-    Parameters
-    ----------
-    factors : tuple of (PolynomialInS, int)
-        Polynomials with positive exponents; they need not be coprime nor square-free.
-
     Examples
     --------
     >>> RootProblem(((PolynomialInS.from_integers([1, 0, 1]), 3),)).degree
     6
     """
 
+    # Polynomials with positive exponents; they need not be coprime nor square-free.
     factors: tuple[tuple[PolynomialInS, int], ...]
 
     def __post_init__(self) -> None:

@@ -26,19 +26,13 @@ HUNDRED = 100
 
 @dataclass(frozen=True, slots=True)
 class RootDecimals:
-    """A root in decimals: the true root lies within ``radius`` of ``re + j im``.
+    """A root in decimals: the true root lies within ``radius`` of ``re + j im``."""
 
-    Parameters
-    ----------
-    re, im : str
-        Decimal strings; ``"0"`` when the component is exactly zero, ``"0e-15"`` when only not told from 0.
-    radius : str
-        Distance bound, rounded up, such as ``"3.1e-52"``; ``"0"`` when the print is exact.
-    """
-
+    # re and im: decimal strings; ``"0"`` when the component is exactly zero, ``"0e-15"`` when only not told
+    # from 0.
     re: str
     im: str
-    radius: str
+    radius: str  # distance bound, rounded up, such as ``"3.1e-52"``; ``"0"`` when the print is exact
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,20 +20,6 @@ ON_AXIS = "a pole lies on the imaginary axis or too close to it to be told"
 class StabilityVerdict:
     """Whether all poles of a model, hidden modes among them, lie in the open left half plane.
 
-    Parameters
-    ----------
-    word : str
-        ``stable``; ``unstable``, with poles in the right half plane; ``marginal``, with none there, which is
-        proved, and some on the imaginary axis; ``unknown``.
-    right : int or None
-        Poles in the open right half plane, with multiplicity; ``None`` where they are not all counted.
-    certified : bool
-        The word is proved.
-    reason : str
-        What it follows from, or what is not proved. Never empty where something is not.
-    found : int
-        Poles in the right half plane that are known, at least.
-
     Examples
     --------
     >>> StabilityVerdict("unstable", 2, True, "", 2).sentence
@@ -42,11 +28,14 @@ class StabilityVerdict:
     'stability not known'
     """
 
+    # ``stable``; ``unstable``, with poles in the right half plane; ``marginal``, with none there, which is
+    # proved, and some on the imaginary axis; ``unknown``.
     word: Literal["stable", "marginal", "unstable", "unknown"]
+    # Poles in the open right half plane, with multiplicity; ``None`` where they are not all counted.
     right: int | None
-    certified: bool
-    reason: str = ""
-    found: int = 0
+    certified: bool  # the word is proved
+    reason: str = ""  # what it follows from, or what is not proved. Never empty where something is not.
+    found: int = 0  # poles in the right half plane that are known, at least
 
     def __post_init__(self) -> None:
         if not self.reason and (not self.certified or self.right is None):

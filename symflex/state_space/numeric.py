@@ -25,47 +25,25 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class BoundState:
-    """One state.
+    """One state."""
 
-    Parameters
-    ----------
-    name : str
-        Letters, digits and underscores.
-    terms : tuple of (str, float)
-        The quantities of the model that it is a sum of, with their coefficients; empty when it is none.
-    unit : str
-        SI unit, empty when unknown.
-    """
-
-    name: str
+    name: str  # letters, digits and underscores
+    # The quantities of the model that it is a sum of, with their coefficients; empty when it is none.
     terms: tuple[tuple[str, float], ...]
-    unit: str
+    unit: str  # SI unit, empty when unknown
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BoundStateSpace:
-    """``w' = A w + B u``, ``y = C w + D u`` in double precision; every entry is the nearest to the exact one.
+    """``w' = A w + B u``, ``y = C w + D u`` in doubles; every entry is the nearest to the exact one."""
 
-    Parameters
-    ----------
-    name : str
-        What programs for control design call it: letters, digits and underscores.
-    arrays : Arrays
-        The matrices.
-    states : tuple of BoundState
-        What the states are.
-    inputs, outputs : tuple of Channel
-        Their names and units.
-    is_minimal : bool
-        Every state is controllable and observable.
-    """
-
-    name: str
-    arrays: Arrays
-    states: tuple[BoundState, ...]
+    name: str  # what programs for control design call it: letters, digits and underscores
+    arrays: Arrays  # the matrices
+    states: tuple[BoundState, ...]  # what the states are
+    # inputs and outputs: their names and units.
     inputs: tuple[Channel, ...]
     outputs: tuple[Channel, ...]
-    is_minimal: bool
+    is_minimal: bool  # every state is controllable and observable
 
     @property
     def A(self) -> npt.NDArray[float64]:  # noqa: N802

@@ -49,17 +49,10 @@ SIZE_LIMIT = 100_000
 
 @dataclass(frozen=True, eq=False)
 class SolvedRows:
-    """Equations solved for the derivatives that are no states.
+    """Equations solved for the derivatives that are no states."""
 
-    Parameters
-    ----------
-    orders : tuple of int
-        Per unknown, how many of its derivatives, itself first, are states.
-    tails : sequence of Row
-        Per unknown, what its derivative of that order equals: states, and powers of s times inputs.
-    """
-
-    orders: tuple[int, ...]
+    orders: tuple[int, ...]  # per unknown, how many of its derivatives, itself first, are states
+    # Per unknown, what its derivative of that order equals: states, and powers of s times inputs.
     tails: Sequence[Row]
     _known: dict[Key, Row] = field(default_factory=dict, repr=False)
 
@@ -201,11 +194,6 @@ def add_term(target: Row, key: Key, value: FieldElement) -> None:
 class FieldElement:
     """A quotient of integer polynomials in lowest terms.
 
-    Parameters
-    ----------
-    num, den : fmpz_mpoly
-        Coprime; the denominator's leading coefficient is positive.
-
     Examples
     --------
     >>> from symflex.algebra import Ring
@@ -217,6 +205,7 @@ class FieldElement:
     True
     """
 
+    # num and den: Coprime; the denominator's leading coefficient is positive.
     num: fmpz_mpoly
     den: fmpz_mpoly
 

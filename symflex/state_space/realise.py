@@ -190,25 +190,14 @@ def _owner(name: Expression) -> str:
 
 @dataclass(frozen=True, eq=False)
 class _Rows:
-    """The equations with columns by number: unknowns first, then inputs.
+    """The equations with columns by number: unknowns first, then inputs."""
 
-    Parameters
-    ----------
-    unknowns, inputs : tuples
-        What the columns are.
-    about : tuple of (Variable, str)
-        Per row what it determines, and its role.
-    rows : tuple of Row
-        Each is zero.
-    results : tuple of Row
-        Per output what it is, not yet reduced.
-    """
-
+    # unknowns and inputs: what the columns are.
     unknowns: tuple[Variable, ...]
     inputs: tuple[str, ...]
-    about: tuple[tuple[Variable, str], ...]
-    rows: tuple[Row, ...]
-    results: tuple[Row, ...]
+    about: tuple[tuple[Variable, str], ...]  # per row what it determines, and its role
+    rows: tuple[Row, ...]  # each is zero
+    results: tuple[Row, ...]  # per output what it is, not yet reduced
 
     @staticmethod
     def of(equations: Equations, outputs: Sequence[str], inputs: Sequence[str]) -> _Rows:

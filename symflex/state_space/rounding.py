@@ -33,14 +33,9 @@ RESPONSE_BITS = 192
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Arrays:
-    """The matrices of state equations in double precision.
+    """The matrices of state equations in double precision."""
 
-    Parameters
-    ----------
-    a, b, c, d : array of float
-        Shapes (n, n), (n, m), (p, n), (p, m) for n states, m inputs, p outputs. Read-only.
-    """
-
+    # a, b, c and d: shapes (n, n), (n, m), (p, n), (p, m) for n states, m inputs, p outputs. Read-only.
     a: npt.NDArray[np.float64]
     b: npt.NDArray[np.float64]
     c: npt.NDArray[np.float64]

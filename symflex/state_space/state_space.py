@@ -19,22 +19,13 @@ Combination = tuple[tuple["Expression", FieldElement], ...]
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """One state.
+    """One state."""
 
-    Parameters
-    ----------
-    name : str
-        Letters, digits and underscores; ``x_tip_dot`` for the derivative of ``x_tip``.
-    terms : Combination
-        What it is: ``s*x_tip``; or a sum of such quantities, inputs among them. ``name.partial`` is the
-        partial state of a filter: what drives it over its denominator.
-    unit : str
-        SI unit, empty when unknown.
-    """
-
-    name: str
+    name: str  # letters, digits and underscores; ``x_tip_dot`` for the derivative of ``x_tip``
+    # What it is: ``s*x_tip``; or a sum of such quantities, inputs among them. ``name.partial`` is the partial
+    # state of a filter: what drives it over its denominator.
     terms: Combination
-    unit: str
+    unit: str  # SI unit, empty when unknown
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,37 +26,21 @@ WORKING_DIGITS = 40
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """The values of one parameter in a grid.
+    """The values of one parameter in a grid."""
 
-    Parameters
-    ----------
-    name : str
-        Of the parameter.
-    values : tuple of ExactValue
-        In SI units, in the order given.
-    """
-
-    name: str
-    values: tuple[ExactValue, ...]
+    name: str  # of the parameter
+    values: tuple[ExactValue, ...]  # in SI units, in the order given
 
 
 @dataclass(frozen=True, slots=True)
 class Range:
-    """Between which limits values are drawn.
+    """Between which limits values are drawn."""
 
-    Parameters
-    ----------
-    name : str
-        Of the parameter.
-    low, high : ExactValue
-        In SI units; of the same power of pi.
-    scale : str
-        ``lin`` for a uniform distribution, ``log`` for one that is uniform in the logarithm.
-    """
-
-    name: str
+    name: str  # of the parameter
+    # low and high: in SI units; of the same power of pi.
     low: ExactValue
     high: ExactValue
+    # ``lin`` for a uniform distribution, ``log`` for one that is uniform in the logarithm.
     scale: Scale = "lin"
 
     def at(self, share: Fraction) -> ExactValue:
@@ -84,17 +68,6 @@ class Range:
 class Design:
     """The points of a sweep: the product of the axes, and for each of its points all draws.
 
-    Parameters
-    ----------
-    axes : tuple of Axis
-        The last one varies fastest.
-    ranges : tuple of Range
-        Drawn from, as a Latin hypercube: each of the N equal parts of every range is met once.
-    draws : int
-        N; 0 for a grid alone.
-    seed : int
-        Of the random numbers, which are those of Python's own generator and the same everywhere.
-
     Raises
     ------
     BudgetError
@@ -107,10 +80,11 @@ class Design:
     (2, ('m',), [Fraction(1, 1), Fraction(2, 1)])
     """
 
-    axes: tuple[Axis, ...] = ()
+    axes: tuple[Axis, ...] = ()  # the last one varies fastest
+    # Drawn from, as a Latin hypercube: each of the N equal parts of every range is met once.
     ranges: tuple[Range, ...] = ()
-    draws: int = 0
-    seed: int = 1
+    draws: int = 0  # n; 0 for a grid alone
+    seed: int = 1  # of the random numbers, which are those of Python's own generator and the same everywhere
 
     def __post_init__(self) -> None:
         if self.count > POINTS_LIMIT:

@@ -73,43 +73,22 @@ class NameOrigin(IntEnum):
 
 @dataclass(frozen=True)
 class Names:
-    """The names of roots.
+    """The names of roots."""
 
-    Parameters
-    ----------
-    mode : array of int, shape (points, roots)
-        Which mode, from 0; -1 where there is no root.
-    link : array of int, shape (points, roots)
-        A :class:`NameOrigin` each.
-    modes : int
-        How many names there are.
-    """
-
-    mode: Integers
-    link: npt.NDArray[np.int8]
-    modes: int
+    mode: Integers  # shape (points, roots): Which mode, from 0; -1 where there is no root
+    link: npt.NDArray[np.int8]  # shape (points, roots): A :class:`NameOrigin` each
+    modes: int  # how many names there are
 
 
 @dataclass(frozen=True)
 class Predecessors:
-    """In which order points get names, and from whom.
+    """In which order points get names, and from whom."""
 
-    Parameters
-    ----------
-    order : tuple of int
-        All points; predecessors come first.
-    before : tuple of int
-        Of every point its predecessor; -1 for the first.
-    earlier : tuple of int
-        Of every point the one before its predecessor on the same axis; -1 where there is none.
-    ratio : tuple of float
-        The step to every point over the step before it.
-    """
-
-    order: tuple[int, ...]
-    before: tuple[int, ...]
+    order: tuple[int, ...]  # all points; predecessors come first
+    before: tuple[int, ...]  # of every point its predecessor; -1 for the first
+    # Of every point the one before its predecessor on the same axis; -1 where there is none.
     earlier: tuple[int, ...]
-    ratio: tuple[float, ...]
+    ratio: tuple[float, ...]  # the step to every point over the step before it
 
 
 def predecessors(design: Design) -> Predecessors:

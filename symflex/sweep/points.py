@@ -72,45 +72,22 @@ class PointStatus(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class FoundRoot:
-    """One root in the closed upper half plane, other than 0.
+    """One root in the closed upper half plane, other than 0."""
 
-    Parameters
-    ----------
-    place : Doubles
-        Centre and radius [rad/s].
-    multiplicity : int
-        Exact where certified; else how many roots the disc holds.
-    status : RootStatus
-        Certified, or several that could not be told apart.
-    """
-
-    place: Doubles
-    multiplicity: int
-    status: RootStatus
+    place: Doubles  # centre and radius [rad/s]
+    multiplicity: int  # exact where certified; else how many roots the disc holds
+    status: RootStatus  # certified, or several that could not be told apart
 
 
 @dataclass(frozen=True, slots=True)
 class PointRoots:
-    """The roots at one point.
+    """The roots at one point."""
 
-    Parameters
-    ----------
-    roots : tuple of FoundRoot
-        By natural frequency.
-    at_zero : int
-        Multiplicity of the root at s = 0.
-    status : PointStatus
-        Whether none is missing.
-    code : str
-        Of the error, where the point failed.
-    family : int
-        Equal for functions that are similar, whose roots then stand in the same order; 0 where not known.
-    """
-
-    roots: tuple[FoundRoot, ...]
-    at_zero: int
-    status: PointStatus
-    code: str = ""
+    roots: tuple[FoundRoot, ...]  # by natural frequency
+    at_zero: int  # multiplicity of the root at s = 0
+    status: PointStatus  # whether none is missing
+    code: str = ""  # of the error, where the point failed
+    # Equal for functions that are similar, whose roots then stand in the same order; 0 where not known.
     family: int = 0
 
 

@@ -20,22 +20,13 @@ LARGEST = 1023
 
 @dataclass(frozen=True, slots=True)
 class Doubles:
-    """A complex number in double precision.
+    """A complex number in double precision."""
 
-    Parameters
-    ----------
-    re, im : float
-        Centre.
-    radius : float
-        The true value lies no further from the centre.
-    is_nearest : bool
-        Both parts are the doubles nearest to the true ones.
-    """
-
+    # re and im: Centre.
     re: float
     im: float
-    radius: float
-    is_nearest: bool
+    radius: float  # the true value lies no further from the centre
+    is_nearest: bool  # both parts are the doubles nearest to the true ones
 
 
 def doubles(re: arb, im: arb) -> Doubles:

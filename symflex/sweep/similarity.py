@@ -32,21 +32,12 @@ Key = tuple[object, ...]
 
 @dataclass(frozen=True, slots=True)
 class Similarity:
-    """Which functions a function is similar to, and its scale of s.
+    """Which functions a function is similar to, and its scale of s."""
 
-    Parameters
-    ----------
-    key : tuple
-        Equal, and of the same ``degree``, for similar functions.
-    scale : fmpq
-        The n-th power of the scale [rad/s]: roots divided by the scale are those of all similar functions.
-    degree : int
-        n.
-    """
-
-    key: Key
+    key: Key  # equal, and of the same ``degree``, for similar functions
+    # The n-th power of the scale [rad/s]: roots divided by the scale are those of all similar functions.
     scale: fmpq
-    degree: int
+    degree: int  # n
 
 
 @dataclass(frozen=True, slots=True)

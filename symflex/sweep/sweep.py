@@ -35,23 +35,12 @@ LINKS = (
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Labelled:
-    """An array whose axes have names.
+    """An array whose axes have names."""
 
-    Parameters
-    ----------
-    name : str
-        Of the array.
-    dims : tuple of str
-        Of its axes.
-    values : array
-        Read-only.
-    unit, doc : str
-        SI unit, empty without one; what it is.
-    """
-
-    name: str
-    dims: tuple[str, ...]
-    values: Array
+    name: str  # of the array
+    dims: tuple[str, ...]  # of its axes
+    values: Array  # read-only
+    # unit and doc: SI unit, empty without one; what it is.
     unit: str = ""
     doc: str = ""
 
@@ -66,21 +55,13 @@ class Labelled:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Sweep:
-    """What was found at all points of a design.
+    """What was found at all points of a design."""
 
-    Parameters
-    ----------
-    attributes : tuple of (str, str)
-        What was swept, in words: ``schema``, ``tf``, ``of``, ``parameters``, ``title``, ``version``, ``key``.
-    coordinates : tuple of Labelled
-        Values of the swept parameters in SI units; numbers of modes or frequencies [Hz].
-    variables : tuple of Labelled
-        The results; their first axes are those of the design.
-    """
-
+    # What was swept, in words: ``schema``, ``tf``, ``of``, ``parameters``, ``title``, ``version``, ``key``.
     attributes: tuple[tuple[str, str], ...]
+    # Values of the swept parameters in SI units; numbers of modes or frequencies [Hz].
     coordinates: tuple[Labelled, ...]
-    variables: tuple[Labelled, ...]
+    variables: tuple[Labelled, ...]  # the results; their first axes are those of the design
 
     def __getitem__(self, name: str) -> Array:
         """Return an array by its name."""

@@ -37,36 +37,16 @@ class Derive(Protocol):
 
 @dataclass(frozen=True)
 class Task:
-    """What is wanted at every point.
+    """What is wanted at every point."""
 
-    Parameters
-    ----------
-    model : Model
-        Resolved; sent to workers as it is.
-    pair : (str, str)
-        Output and input.
-    of : str
-        A key of :data:`QUANTITIES`.
-    names : tuple of str
-        The swept parameters, in the order of a point's values.
-    derive : callable
-        From a model to transfer functions.
-    region : Region, optional
-        Where roots are sought.
-    frequencies : tuple of float
-        Of a response [Hz].
-    gain : str
-        Of margins.
-    """
-
-    model: Model
-    pair: tuple[str, str]
-    of: str
-    names: tuple[str, ...]
-    derive: Derive
-    region: Region | None = None
-    frequencies: tuple[float, ...] = ()
-    gain: str = ""
+    model: Model  # resolved; sent to workers as it is
+    pair: tuple[str, str]  # output and input
+    of: str  # a key of :data:`QUANTITIES`
+    names: tuple[str, ...]  # the swept parameters, in the order of a point's values
+    derive: Derive  # from a model to transfer functions
+    region: Region | None = None  # where roots are sought
+    frequencies: tuple[float, ...] = ()  # of a response [Hz]
+    gain: str = ""  # of margins
 
 
 class Solver(Protocol):

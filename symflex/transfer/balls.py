@@ -173,18 +173,10 @@ Step = tuple[int, tuple[int, ...], int]
 
 @dataclass(frozen=True, slots=True)
 class EvaluationPlan:
-    """How to evaluate one polynomial.
+    """How to evaluate one polynomial."""
 
-    Parameters
-    ----------
-    powers : tuple of (int, int)
-        Positions of generators, and exponents, that occur.
-    steps : tuple of Step
-        One per term.
-    """
-
-    powers: tuple[tuple[int, int], ...]
-    steps: tuple[Step, ...]
+    powers: tuple[tuple[int, int], ...]  # positions of generators, and exponents, that occur
+    steps: tuple[Step, ...]  # one per term
 
     def value(self, powers: Sequence[Value]) -> Value:
         """Return the polynomial's value from those of the powers."""

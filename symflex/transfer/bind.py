@@ -72,21 +72,11 @@ NAMES_SHOWN = 40
 
 @dataclass(frozen=True)
 class EnclosedTransferFunction:
-    """Ball coefficients of a bound transfer function at one precision.
+    """Ball coefficients of a bound transfer function at one precision."""
 
-    Parameters
-    ----------
-    bits : int
-        The precision everything is computed at.
-    unit : acb
-        The factor in front.
-    factors : tuple of (acb_poly, int)
-        Polynomials in s with their exponents.
-    """
-
-    bits: int
-    unit: acb
-    factors: tuple[tuple[acb_poly, int], ...]
+    bits: int  # the precision everything is computed at
+    unit: acb  # the factor in front
+    factors: tuple[tuple[acb_poly, int], ...]  # polynomials in s with their exponents
 
     def __call__(self, s: acb) -> acb:
         """Return a ball that contains the values on the ball ``s`` [rad/s]."""
@@ -107,21 +97,11 @@ class EnclosedTransferFunction:
 
 @dataclass(frozen=True)
 class EnclosedDistributed:
-    """A bound transfer function with kernels, evaluated in balls at one precision.
+    """A bound transfer function with kernels, evaluated in balls at one precision."""
 
-    Parameters
-    ----------
-    bits : int
-        The precision everything is computed at.
-    ratio : Factored
-        Over the ring of kernels; or any other function over it.
-    kernels : KernelValues
-        The values of its generators.
-    """
-
-    bits: int
-    ratio: Factored
-    kernels: KernelValues
+    bits: int  # the precision everything is computed at
+    ratio: Factored  # over the ring of kernels; or any other function over it
+    kernels: KernelValues  # the values of its generators
 
     def __call__(self, s: acb) -> acb:
         """Return a ball that contains the value at ``s``; not finite where a wavenumber is zero."""

@@ -59,22 +59,13 @@ WAYS = 12
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ReducedQuotient:
-    """A quotient in lowest terms.
+    """A quotient in lowest terms."""
 
-    Parameters
-    ----------
-    num, den : Factored
-        Entire in s; they may bear negative powers of wavenumbers, whose poles kernels cancel.
-    shared : Factored
-        The common factor that was cancelled.
-    table : KernelTable
-        What the generators are; its base lengths may be half the given ones.
-    """
-
+    # num and den: entire in s; they may bear negative powers of wavenumbers, whose poles kernels cancel.
     num: Factored
     den: Factored
-    shared: Factored
-    table: KernelTable
+    shared: Factored  # the common factor that was cancelled
+    table: KernelTable  # what the generators are; its base lengths may be half the given ones
 
 
 class KernelReduction:
@@ -560,21 +551,11 @@ def _too_large() -> BudgetError:
 
 @dataclass(frozen=True, eq=False)
 class _Restorer:
-    """The way back from exponentials to kernels.
+    """The way back from exponentials to kernels."""
 
-    Parameters
-    ----------
-    source : Exponentials
-        The coordinates.
-    target : Exponentials
-        The same, or with some angles halved.
-    doubled : tuple of int
-        Which angles of ``source`` are twice those of ``target``.
-    """
-
-    source: Exponentials
-    target: Exponentials
-    doubled: tuple[int, ...]
+    source: Exponentials  # the coordinates
+    target: Exponentials  # the same, or with some angles halved
+    doubled: tuple[int, ...]  # which angles of ``source`` are twice those of ``target``
 
     def odd_angles(self, value: Factored) -> set[int]:
         """Return the angles in which numerator or denominator are odd even as a whole."""

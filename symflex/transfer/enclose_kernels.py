@@ -39,27 +39,13 @@ ZERO = acb(0)
 
 @dataclass(frozen=True, eq=False)
 class KernelValues:
-    """Evaluates a ring of wavenumbers and kernels at the current precision.
+    """Evaluates a ring of wavenumbers and kernels at the current precision."""
 
-    Parameters
-    ----------
-    names : sequence of str
-        Generators of the ring: s, constants, wavenumbers, kernels.
-    table : KernelTable
-        Over the same ring.
-    constants : mapping of str to arb
-        Enclosures of the constants.
-    sums : ModalSums
-        Over the same ring.
-    plans : PolynomialMemo of EvaluationPlan
-        Shared by all precisions.
-    """
-
-    names: Sequence[str]
-    table: KernelTable
-    constants: Mapping[str, arb]
-    sums: ModalSums
-    plans: PolynomialMemo[EvaluationPlan]
+    names: Sequence[str]  # generators of the ring: s, constants, wavenumbers, kernels
+    table: KernelTable  # over the same ring
+    constants: Mapping[str, arb]  # enclosures of the constants
+    sums: ModalSums  # over the same ring
+    plans: PolynomialMemo[EvaluationPlan]  # shared by all precisions
 
     def at(self, s: Value, near: Mapping[str, Value] | None = None) -> dict[str, Value]:
         """Return the values of all generators at ``s`` [rad/s], and characteristic roots without names.

@@ -23,23 +23,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Expansion:
-    """How values over the ring of some equations are opened.
+    """How values over the ring of some equations are opened."""
 
-    Parameters
-    ----------
-    source : Ring
-        The equations' own.
-    plain : Ring
-        s, parameters, pi and functions of constants.
-    ring : Ring
-        The same and, of a distributed system, its wavenumbers and kernels.
-    images : dict of str to Factored
-        What definitions, and propagators, are over ``ring``.
-    """
-
-    source: Ring
-    plain: Ring
-    ring: Ring
+    source: Ring  # the equations' own
+    plain: Ring  # s, parameters, pi and functions of constants
+    ring: Ring  # the same and, of a distributed system, its wavenumbers and kernels
+    # What definitions, and propagators, are over ``ring``.
     images: dict[str, Factored] = field(default_factory=dict)
 
     @staticmethod
@@ -89,18 +78,10 @@ class Expansion:
 
 @dataclass(frozen=True, eq=False)
 class Opening:
-    """How closed polynomials are opened, sums and definitions, each polynomial once.
+    """How closed polynomials are opened, sums and definitions, each polynomial once."""
 
-    Parameters
-    ----------
-    closure : Closure
-        Where they live.
-    expansion : Expansion
-        What follows.
-    """
-
-    closure: Closure
-    expansion: Expansion
+    closure: Closure  # where they live
+    expansion: Expansion  # what follows
     _known: list[tuple[fmpz_mpoly, Factored]] = field(default_factory=list)
 
     def __call__(self, closed: fmpz_mpoly) -> Factored:

@@ -34,17 +34,10 @@ class KernelImages:
     is one of degree 2d in a single variable. A common factor with that angle in it divides both images, and
     its degree does not drop unless theirs do. So images that are coprime and of full degree prove that there
     is none.
-
-    Parameters
-    ----------
-    ring : Ring
-        Where the polynomials live.
-    angles : sequence of KernelPair
-        The kernels: hyperbolic and circular functions, in pairs.
     """
 
-    ring: Ring
-    angles: Sequence[KernelPair]
+    ring: Ring  # where the polynomials live
+    angles: Sequence[KernelPair]  # the kernels: hyperbolic and circular functions, in pairs
 
     def prove_apart(self, f: fmpz_mpoly, g: fmpz_mpoly) -> bool:
         """Tell whether two polynomials are proved to share no factor with a kernel; False decides nothing."""

@@ -95,15 +95,9 @@ LINE = Ring((LAPLACE,))
 
 @dataclass
 class LineImages:
-    """The images of polynomials with every generator but s set to an integer, each made once.
+    """The images of polynomials with every generator but s set to an integer, each made once."""
 
-    Parameters
-    ----------
-    ring : Ring
-        Where the polynomials live; s is its first generator.
-    """
-
-    ring: Ring
+    ring: Ring  # where the polynomials live; s is its first generator
 
     def prove_coprime(self, f: fmpz_mpoly, g: fmpz_mpoly) -> bool:
         """Tell whether two factors are proved coprime; False decides nothing.

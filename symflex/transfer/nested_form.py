@@ -192,18 +192,10 @@ def derive_nested(
 
 @dataclass(frozen=True, eq=False)
 class BoundNested:
-    """A nested transfer function with numbers.
+    """A nested transfer function with numbers."""
 
-    Parameters
-    ----------
-    source : NestedTransferFunction
-        The symbolic function.
-    values : tuple of (str, ExactValue)
-        Every parameter's value, in declared order.
-    """
-
-    source: NestedTransferFunction
-    values: tuple[tuple[str, ExactValue], ...]
+    source: NestedTransferFunction  # the symbolic function
+    values: tuple[tuple[str, ExactValue], ...]  # every parameter's value, in declared order
 
     @property
     def name(self) -> str:
@@ -276,21 +268,11 @@ class BoundNested:
 
 @dataclass(frozen=True, eq=False)
 class EnclosedNested:
-    """A bound nested transfer function, evaluated in balls at one precision.
+    """A bound nested transfer function, evaluated in balls at one precision."""
 
-    Parameters
-    ----------
-    bits : int
-        The precision everything is computed at.
-    source : NestedTransferFunction
-        The function.
-    constants : mapping of str to acb
-        Its generators but for s.
-    """
-
-    bits: int
-    source: NestedTransferFunction
-    constants: Mapping[str, acb]
+    bits: int  # the precision everything is computed at
+    source: NestedTransferFunction  # the function
+    constants: Mapping[str, acb]  # its generators but for s
 
     def __call__(self, s: acb) -> acb:
         """Return a ball that contains the values on the ball ``s`` [rad/s]; not finite near a pole."""

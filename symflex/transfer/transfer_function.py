@@ -35,21 +35,13 @@ class HiddenFactor:
 
 @dataclass(frozen=True)
 class ClosedForm:
-    """The same function with sub-impedances and definitions kept as single symbols.
+    """The same function with sub-impedances and definitions kept as single symbols."""
 
-    Parameters
-    ----------
-    opening : Opening
-        The ring with one generator per closed sum, and the way to the one without.
-    num, den : fmpz_mpoly
-        Polynomials in that ring, coprime also when they are opened.
-    order : tuple of int, optional
-        Degrees in s of both when they are opened, where these have been found without that.
-    """
-
-    opening: Opening
+    opening: Opening  # the ring with one generator per closed sum, and the way to the one without
+    # num and den: polynomials in that ring, coprime also when they are opened.
     num: fmpz_mpoly
     den: fmpz_mpoly
+    # Degrees in s of both when they are opened, where these have been found without that.
     order: tuple[int, int] | None = None
 
     @property

@@ -27,30 +27,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Relation:
-    """``num = constant * factor * transmission / apart * det``, with ``det`` that of the constrained system.
+    """``num = constant*factor*transmission/apart * det``, with ``det`` that of the constrained system."""
 
-    Parameters
-    ----------
-    order : int
-        The power of s in ``factor``, from what the output does to the coordinate it shows.
-    filtered : Factored
-        The rest of ``factor`` that depends on s.
-    transmission : Factored
-        What else the numerator has: zeros that are not poles of the constrained system.
-    apart : Factored
-        What only the constrained system has: poles of it that are not zeros.
-    has_zeros : bool
-        Whether the numerator depends on s but for ``factor``.
-    is_delayed : bool
-        The constant holds exponentials of s besides, which have neither zeros nor poles.
-    """
-
-    order: int
-    filtered: Factored
-    transmission: Factored
-    apart: Factored
-    has_zeros: bool
-    is_delayed: bool
+    order: int  # the power of s in ``factor``, from what the output does to the coordinate it shows
+    filtered: Factored  # the rest of ``factor`` that depends on s
+    transmission: Factored  # what else the numerator has: zeros that are not poles of the constrained system
+    apart: Factored  # what only the constrained system has: poles of it that are not zeros
+    has_zeros: bool  # whether the numerator depends on s but for ``factor``
+    is_delayed: bool  # the constant holds exponentials of s besides, which have neither zeros nor poles
 
     @property
     def is_equality(self) -> bool:

@@ -29,24 +29,12 @@ PAIR = 2
 
 @dataclass(frozen=True, slots=True)
 class Constraint:
-    """A model with one constraint more.
+    """A model with one constraint more."""
 
-    Parameters
-    ----------
-    model : Model
-        The constrained model.
-    held : str
-        What is zero in it: ``x_act = 0``.
-    words : str
-        The same in words: ``node x_act held``.
-    spec : str
-        The line that constrains the specification; empty when it takes more than a line.
-    """
-
-    model: Model
-    held: str
-    words: str
-    spec: str
+    model: Model  # the constrained model
+    held: str  # what is zero in it: ``x_act = 0``
+    words: str  # the same in words: ``node x_act held``
+    spec: str  # the line that constrains the specification; empty when it takes more than a line
 
 
 def hold(model: Model, coordinates: Coordinates) -> Constraint:
@@ -152,24 +140,12 @@ def _is_read(model: Model, owner: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class ReplacedCondition:
-    """A field's condition that gives way to one that keeps an output at zero.
+    """A field's condition that gives way to one that keeps an output at zero."""
 
-    Parameters
-    ----------
-    field : FieldProblem
-        As it was.
-    number : int
-        Which condition holds the input.
-    measured : Call
-        The value of the field that the output shows.
-    constraint : Constraint
-        The model with the condition replaced.
-    """
-
-    field: FieldProblem
-    number: int
-    measured: Call
-    constraint: Constraint
+    field: FieldProblem  # as it was
+    number: int  # which condition holds the input
+    measured: Call  # the value of the field that the output shows
+    constraint: Constraint  # the model with the condition replaced
 
     @property
     def loaded(self) -> Equation:

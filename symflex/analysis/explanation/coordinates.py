@@ -32,18 +32,10 @@ PAIR = 2
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MeasuredCoordinate:
-    """An output that is ``factor`` times one coordinate, or times the difference of two.
+    """An output that is ``factor`` times one coordinate, or times the difference of two."""
 
-    Parameters
-    ----------
-    coordinates : Coordinates
-        What it measures.
-    factor : Factored
-        Over the equations' ring, ``s`` for a velocity.
-    """
-
-    coordinates: Coordinates
-    factor: Factored
+    coordinates: Coordinates  # what it measures
+    factor: Factored  # over the equations' ring, ``s`` for a velocity
 
 
 def acting(model: Model, source: Input) -> Coordinates:

@@ -142,20 +142,11 @@ BENDING_ORDER = 4
 
 @dataclass(frozen=True, slots=True)
 class Bending:
-    """A beam between input and output.
+    """A beam between input and output."""
 
-    Parameters
-    ----------
-    name : str
-        The element or field.
-    is_massless : bool
-        It bends without waves.
-    is_evanescent : bool
-        Proved: at every real s > 0 all its solutions grow or decay along x, and none travels.
-    """
-
-    name: str
-    is_massless: bool
+    name: str  # the element or field
+    is_massless: bool  # it bends without waves
+    # Proved: at every real s > 0 all its solutions grow or decay along x, and none travels.
     is_evanescent: bool
 
 

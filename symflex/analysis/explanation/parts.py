@@ -29,25 +29,15 @@ SUPPORTS = (Fixed, Pin, Slider)
 
 @dataclass(frozen=True, slots=True)
 class ConstrainedPart:
-    """A part of a constrained system that moves by itself.
+    """A part of a constrained system that moves by itself."""
 
-    Parameters
-    ----------
-    elements, fields, signals : tuple of str
-        Names of what it is made of, supports left out.
-    order : int or None
-        Number of its poles; ``None`` when they are infinitely many.
-    has_input : bool
-        Whether the input drives it.
-    determinant : Factored
-        The factors in s of its determinant, over the equations' ring.
-    """
-
+    # elements, fields and signals: names of what it is made of, supports left out.
     elements: tuple[str, ...]
     fields: tuple[str, ...]
     signals: tuple[str, ...]
-    order: int | None
-    has_input: bool
+    order: int | None  # number of its poles; ``None`` when they are infinitely many
+    has_input: bool  # whether the input drives it
+    # The factors in s of its determinant, over the equations' ring.
     determinant: Factored = field(compare=False, repr=False)
 
     @property

@@ -28,19 +28,12 @@ Values = dict[str, acb]
 
 @dataclass(frozen=True)
 class BoundEquations:
-    """``A(s) x = 0`` with numbers.
+    """``A(s) x = 0`` with numbers."""
 
-    Parameters
-    ----------
-    equations : Equations
-        Assembled without names for wavenumbers: fundamental functions are entire in s, also where wavenumbers
-        vanish.
-    values : tuple of (str, ExactValue)
-        Of every parameter that occurs.
-    """
-
+    # Assembled without names for wavenumbers: fundamental functions are entire in s, also where wavenumbers
+    # vanish.
     equations: Equations
-    values: tuple[tuple[str, ExactValue], ...]
+    values: tuple[tuple[str, ExactValue], ...]  # of every parameter that occurs
 
     def at(self, s: acb) -> SystemAt:
         """Return the equations at a ball of s [rad/s], at the current precision."""

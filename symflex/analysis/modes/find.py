@@ -52,18 +52,10 @@ WIDER = 2**8
 
 @dataclass(frozen=True, slots=True)
 class NumberedShape:
-    """A mode shape among the lowest of a model.
+    """A mode shape among the lowest of a model."""
 
-    Parameters
-    ----------
-    shape : EnclosedModeShape
-        The shape.
-    is_hidden : bool
-        The input does not reach it, or the output does not see it.
-    """
-
-    shape: EnclosedModeShape
-    is_hidden: bool
+    shape: EnclosedModeShape  # the shape
+    is_hidden: bool  # the input does not reach it, or the output does not see it
 
 
 def mode_shape(bound: BoundTransferFunction, which: int | Root, digits: int = DIGITS) -> EnclosedModeShape:

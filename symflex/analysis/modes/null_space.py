@@ -23,18 +23,11 @@ Column = tuple[acb, ...]
 
 @dataclass(frozen=True, slots=True)
 class NullSpace:
-    """A basis of the null space.
+    """A basis of the null space."""
 
-    Parameters
-    ----------
-    basis : tuple of tuple of acb
-        For a matrix in the balls whose null space has as many dimensions, a basis of it is enclosed.
-    is_refuted : bool
-        True when no matrix in the balls has a null space of that dimension.
-    """
-
+    # For a matrix in the balls whose null space has as many dimensions, a basis of it is enclosed.
     basis: tuple[Column, ...]
-    is_refuted: bool
+    is_refuted: bool  # true when no matrix in the balls has a null space of that dimension
 
 
 def null_space(matrix: acb_mat, dimension: int = 1, typical: acb_mat | None = None) -> NullSpace | None:

@@ -32,24 +32,13 @@ FEWEST_SAMPLES, MOST_SAMPLES = 32, 4096
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """What one unknown does in a mode.
+    """What one unknown does in a mode."""
 
-    Parameters
-    ----------
-    name : str
-        As an expression names it: ``x_tip``, ``p.theta``, ``motor.i``; ``w''(0)`` of a field at its start.
-    variable : Variable
-        The unknown.
-    value : acb
-        Its complex amplitude, enclosed.
-    unit : str
-        SI unit; empty for signals and fields.
-    """
-
+    # As an expression names it: ``x_tip``, ``p.theta``, ``motor.i``; ``w''(0)`` of a field at its start.
     name: str
-    variable: Variable
-    value: acb
-    unit: str
+    variable: Variable  # the unknown
+    value: acb  # its complex amplitude, enclosed
+    unit: str  # SI unit; empty for signals and fields
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,49 +29,29 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class PoleZeroGain:
-    """A rational function with real coefficients.
+    """A rational function with real coefficients."""
 
-    Parameters
-    ----------
-    poles, zeros : tuple of mpmath.mpc
-        [rad/s], as often as their multiplicity says, both members of each conjugate pair.
-    gain : mpmath.mpf
-        What ``(s - z).../(s - p)...`` is multiplied with.
-    num, den : tuple of mpmath.mpf
-        Coefficients in descending powers of s, ``den`` beginning with 1.
-    """
-
+    # poles and zeros: [rad/s], as often as their multiplicity says, both members of each conjugate pair.
     poles: tuple[mpmath.mpc, ...]
     zeros: tuple[mpmath.mpc, ...]
-    gain: mpmath.mpf
+    gain: mpmath.mpf  # what ``(s - z).../(s - p)...`` is multiplied with
+    # num and den: coefficients in descending powers of s, ``den`` beginning with 1.
     num: tuple[mpmath.mpf, ...]
     den: tuple[mpmath.mpf, ...]
 
 
 @dataclass(frozen=True, eq=False)
 class RationalEvaluator:
-    """Values of a rational function in double precision, neither overflowing nor cancelling.
+    """Values of a rational function in double precision, neither overflowing nor cancelling."""
 
-    Parameters
-    ----------
-    order : int
-        Of the zero at s = 0; negative of a pole.
-    leading : complex
-        What the function over ``s^order`` is at s = 0.
-    poles, zeros : array of complex
-        Those other than 0.
-    terms : tuple of (complex, int, complex), optional
-        Pole, power and coefficient of partial fractions; with them these are summed.
-    polynomial : tuple of float
-        Added to the partial fractions, in ascending powers of s.
-    """
-
-    order: int
-    leading: complex
+    order: int  # of the zero at s = 0; negative of a pole
+    leading: complex  # what the function over ``s^order`` is at s = 0
+    # poles and zeros: those other than 0.
     poles: npt.NDArray[np.complex128]
     zeros: npt.NDArray[np.complex128]
+    # Pole, power and coefficient of partial fractions; with them these are summed.
     terms: tuple[tuple[complex, int, complex], ...] | None = None
-    polynomial: tuple[float, ...] = ()
+    polynomial: tuple[float, ...] = ()  # added to the partial fractions, in ascending powers of s
 
     def __call__(self, s: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
         """Return the values at an array of complex frequencies [rad/s]."""

@@ -63,21 +63,15 @@ class BandError:
 class ErrorScan:
     """Errors at frequencies.
 
-    Parameters
-    ----------
-    frequency_hz, error : array of float, shape (n,)
-        Increasing frequencies [Hz], and the relative error at each.
-    at : callable
-        The error at a frequency [Hz].
-
     Notes
     -----
     The arrays are read-only.
     """
 
+    # frequency_hz and error: shape (n,): Increasing frequencies [Hz], and the relative error at each.
     frequency_hz: npt.NDArray[np.float64]
     error: npt.NDArray[np.float64]
-    at: Callable[[float], float]
+    at: Callable[[float], float]  # the error at a frequency [Hz]
 
     def __post_init__(self) -> None:
         self.frequency_hz.setflags(write=False)

@@ -71,21 +71,11 @@ COINCIDENT = 2
 
 @dataclass(frozen=True, slots=True)
 class LaurentSeries:
-    """The first terms of ``G(s) = (s - p)^order * (coefficients[0] + coefficients[1]*(s - p) + ...)``.
+    """The first terms of ``G(s) = (s - p)^order * (coefficients[0] + coefficients[1]*(s - p) + ...)``."""
 
-    Parameters
-    ----------
-    order : int
-        Of the zero at p; negative of a pole.
-    coefficients : tuple of acb
-        Enclosures; the first differs from zero.
-    is_estimate : bool
-        The order, or the pole, was found numerically: nothing is proved.
-    """
-
-    order: int
-    coefficients: tuple[acb, ...]
-    is_estimate: bool = False
+    order: int  # of the zero at p; negative of a pole
+    coefficients: tuple[acb, ...]  # enclosures; the first differs from zero
+    is_estimate: bool = False  # the order, or the pole, was found numerically: nothing is proved
 
     def coefficient(self, power: int) -> acb:
         """Return the coefficient of ``(s - p)^power``, zero below the order.
@@ -392,24 +382,13 @@ def _is_accurate(coefficients: Sequence[acb], digits: int, bits: int) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class PrincipalPart:
-    """The principal part of a transfer function at one of its poles p.
+    """The principal part of a transfer function at one of its poles p."""
 
-    Parameters
-    ----------
-    root : Root
-        The pole.
-    pole : acb
-        Its enclosure, refined [rad/s].
-    coefficients : tuple of acb
-        Enclosures of the coefficients of ``1/(s - p)``, ``1/(s - p)^2``, ... up to the pole's order.
-    is_estimate : bool
-        The pole could not be told from others, or the residue is not proved.
-    """
-
-    root: Root
-    pole: acb
+    root: Root  # the pole
+    pole: acb  # its enclosure, refined [rad/s]
+    # Enclosures of the coefficients of ``1/(s - p)``, ``1/(s - p)^2``, ... up to the pole's order.
     coefficients: tuple[acb, ...]
-    is_estimate: bool
+    is_estimate: bool  # the pole could not be told from others, or the residue is not proved
 
     @property
     def value(self) -> acb:

@@ -27,31 +27,17 @@ FURTHER = (1, 4)
 
 @dataclass(frozen=True, slots=True)
 class KeptRoots:
-    """The poles and zeros that are kept.
+    """The poles and zeros that are kept."""
 
-    Parameters
-    ----------
-    modes : int
-        Modes among the poles, roots at 0 aside.
-    poles, zeros : tuple of Root
-        Those kept.
-    found : PoleZeroMap
-        What was known, some of those left out among them.
-    omitted_hz : float or None
-        Natural frequency of the first pole left out [Hz].
-    is_exact : bool
-        Nothing is left out of a rational function.
-    excess : int
-        By how much the degree of the numerator exceeds that of the denominator, of a rational function of
-        which nothing is left out; else 0.
-    """
-
-    modes: int
+    modes: int  # modes among the poles, roots at 0 aside
+    # poles and zeros: those kept.
     poles: tuple[Root, ...]
     zeros: tuple[Root, ...]
-    found: PoleZeroMap
-    omitted_hz: float | None
-    is_exact: bool
+    found: PoleZeroMap  # what was known, some of those left out among them
+    omitted_hz: float | None  # natural frequency of the first pole left out [Hz]
+    is_exact: bool  # nothing is left out of a rational function
+    # By how much the degree of the numerator exceeds that of the denominator, of a rational function of which
+    # nothing is left out; else 0.
     excess: int
 
     @property

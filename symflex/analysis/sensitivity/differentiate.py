@@ -155,20 +155,11 @@ class RootBranch:
     """A function of s and the parameters that is zero at a root while its derivative in s is not.
 
     By the implicit function theorem the root is then a differentiable function of the parameters.
-
-    Parameters
-    ----------
-    tangents : Tangents
-        Evaluates the function.
-    factor : fmpz_mpoly
-        The function.
-    root : acb
-        Holds one root of it [rad/s].
     """
 
-    tangents: Tangents
-    factor: fmpz_mpoly
-    root: acb
+    tangents: Tangents  # evaluates the function
+    factor: fmpz_mpoly  # the function
+    root: acb  # holds one root of it [rad/s]
 
     def refined(self, bits: int) -> RootBranch | None:
         """Return the branch with the root to about so many bits, ``None`` when it holds no root after all.

@@ -23,37 +23,18 @@ LEAST_DIGITS = 15
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RootDerivative:
-    """The derivative of a root with respect to a parameter.
+    """The derivative of a root with respect to a parameter."""
 
-    Parameters
-    ----------
-    kind : str
-        ``pole`` or ``zero``.
-    index : int
-        Position of the root among the map's poles or zeros.
-    root : Root
-        The root.
-    parameter : ModelParameter
-        What varies.
-    value : ExactValue
-        The parameter's value [its unit].
-    status : str
-        ``certified``: the derivative is proved to lie in its ball. ``multiple``: roots coincide and part
-        when the parameter changes, so that there is no derivative. ``undecided``: it could not be enclosed.
-    place : acb
-        The root, perhaps closer than in ``root`` [rad/s].
-    derivative : acb, optional
-        ds/dp [rad/s per unit of the parameter].
-    """
-
-    kind: Kind
-    index: int
-    root: Root
-    parameter: ModelParameter
-    value: ExactValue
+    kind: Kind  # ``pole`` or ``zero``
+    index: int  # position of the root among the map's poles or zeros
+    root: Root  # the root
+    parameter: ModelParameter  # what varies
+    value: ExactValue  # the parameter's value [its unit]
+    # ``certified``: the derivative is proved to lie in its ball. ``multiple``: roots coincide and part when
+    # the parameter changes, so that there is no derivative. ``undecided``: it could not be enclosed.
     status: Status
-    place: acb
-    derivative: acb | None = None
+    place: acb  # the root, perhaps closer than in ``root`` [rad/s]
+    derivative: acb | None = None  # ds/dp [rad/s per unit of the parameter]
 
     @property
     def relative(self) -> acb | None:

@@ -39,13 +39,6 @@ Point = dict[str, acb_series]
 class Tangents:
     """Evaluates what a transfer function is made of, to first order.
 
-    Parameters
-    ----------
-    tf : TransferFunction
-        With symbols.
-    values : mapping of str to ExactValue
-        Of all parameters that occur.
-
     Examples
     --------
     >>> from symflex import pipeline
@@ -61,8 +54,8 @@ class Tangents:
     10.0000000000000 + 6.00000000000000*x + O(x^2)
     """
 
-    tf: TransferFunction
-    values: Mapping[str, ExactValue]
+    tf: TransferFunction  # with symbols
+    values: Mapping[str, ExactValue]  # of all parameters that occur
 
     def along(self, direction: str, s: acb) -> Point:
         """Return all generators at ``s`` [rad/s], with their derivatives at the current precision.

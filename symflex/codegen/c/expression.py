@@ -66,32 +66,16 @@ class Kind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """An expression of C.
+    """An expression of C."""
 
-    Parameters
-    ----------
-    text : str
-        The expression; of an imaginary number, its imaginary part.
-    kind : Kind
-        What kind of number it is.
-    varies : bool
-        True when it depends on s.
-    binding : int
-        How tightly its outermost operator binds.
-    depth : int
-        How many calls are nested in it.
-    is_signed : bool
-        True for a real number that stands for a complex one: its square root may be imaginary.
-    real_at : int
-        Of an array of complex numbers, the position of the one that is real; negative for none.
-    """
-
-    text: str
-    kind: Kind
-    varies: bool = False
-    binding: int = _LEAF
-    depth: int = 0
+    text: str  # the expression; of an imaginary number, its imaginary part
+    kind: Kind  # what kind of number it is
+    varies: bool = False  # true when it depends on s
+    binding: int = _LEAF  # how tightly its outermost operator binds
+    depth: int = 0  # how many calls are nested in it
+    # True for a real number that stands for a complex one: its square root may be imaginary.
     is_signed: bool = False
+    # Of an array of complex numbers, the position of the one that is real; negative for none.
     real_at: int = -1
 
     def within(self, tightest: int) -> str:
@@ -101,30 +85,15 @@ class Term:
 
 @dataclass(frozen=True)
 class CPrinter:
-    """Prints expressions as C, evaluated in the order of the tree.
+    """Prints expressions as C, evaluated in the order of the tree."""
 
-    Parameters
-    ----------
-    parameter : callable
-        Returns the identifier of a parameter.
-    known : mapping of str to Term
-        Intermediate values; of lists, the identifier of the array.
-    s : Term
-        What the leaf :class:`Laplace` stands for.
-    array : callable
-        Declares an array with the values of a list, and returns its identifier.
-    hold : callable
-        Makes a variable with a value.
-    in_lanes : bool
-        True to call functions without branches where there are such.
-    """
-
-    parameter: Callable[[str], str]
-    known: Mapping[str, Term]
-    s: Term
+    parameter: Callable[[str], str]  # returns the identifier of a parameter
+    known: Mapping[str, Term]  # intermediate values; of lists, the identifier of the array
+    s: Term  # what the leaf :class:`Laplace` stands for
+    # Declares an array with the values of a list, and returns its identifier.
     array: Callable[[CodeNode], Term]
-    hold: Callable[[Term], Term]
-    in_lanes: bool = False
+    hold: Callable[[Term], Term]  # makes a variable with a value
+    in_lanes: bool = False  # true to call functions without branches where there are such
 
     def print(self, node: CodeNode) -> Term:
         """Return an expression as C; calls nested deeply become variables."""

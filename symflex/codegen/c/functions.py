@@ -22,30 +22,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Functions:
-    """Prints the C functions of one transfer function.
+    """Prints the C functions of one transfer function."""
 
-    Parameters
-    ----------
-    name : str
-        Identifier of the function of s, without what all names of the file begin with.
-    prefix : str
-        What public names begin with.
-    structure : str
-        Name of the type that holds the parameters.
-    members : mapping of str to str
-        The structure's members by the parameters' names.
-    program : Piecewise
-        The function of s.
-    axis : Piecewise, optional
-        The frequency response in real arithmetic, where there is one.
-    """
-
-    name: str
-    prefix: str
-    structure: str
-    members: Mapping[str, str]
-    program: Piecewise
-    axis: Piecewise | None = None
+    name: str  # identifier of the function of s, without what all names of the file begin with
+    prefix: str  # what public names begin with
+    structure: str  # name of the type that holds the parameters
+    members: Mapping[str, str]  # the structure's members by the parameters' names
+    program: Piecewise  # the function of s
+    axis: Piecewise | None = None  # the frequency response in real arithmetic, where there is one
 
     @property
     def value_prototype(self) -> str:

@@ -64,33 +64,16 @@ def statement(opening: str, value: str, depth: int) -> list[str]:
 
 @dataclass
 class Body:
-    """The variables of one C function, and the statements that make them.
+    """The variables of one C function, and the statements that make them."""
 
-    Parameters
-    ----------
-    parameters : mapping of str to str
-        Identifiers of the variables that hold parameters, by the names in the model.
-    s : Term
-        What s is.
-    depth : int
-        How far statements are indented.
-    lines : list of str
-        The statements so far.
-    known : dict of str to Term
-        Assigned values by their names in the program.
-    used : set of str
-        Names of the parameters in use.
-    orders : set of int
-        Orders of the differential equations solved.
-    """
-
+    # Identifiers of the variables that hold parameters, by the names in the model.
     parameters: Mapping[str, str]
-    s: Term
-    depth: int = 1
-    lines: list[str] = field(default_factory=list)
-    known: dict[str, Term] = field(default_factory=dict)
-    used: set[str] = field(default_factory=set)
-    orders: set[int] = field(default_factory=set)
+    s: Term  # what s is
+    depth: int = 1  # how far statements are indented
+    lines: list[str] = field(default_factory=list)  # the statements so far
+    known: dict[str, Term] = field(default_factory=dict)  # assigned values by their names in the program
+    used: set[str] = field(default_factory=set)  # names of the parameters in use
+    orders: set[int] = field(default_factory=set)  # orders of the differential equations solved
     _taken: set[str] = field(default_factory=set)
     _shared: dict[tuple[str, Kind], Term] = field(default_factory=dict)
 

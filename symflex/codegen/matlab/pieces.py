@@ -27,24 +27,12 @@ def roles_of(program: Piecewise) -> list[str]:
 
 @dataclass(frozen=True)
 class LocalFunctions:
-    """Prints the local functions that compute with columns.
+    """Prints the local functions that compute with columns."""
 
-    Parameters
-    ----------
-    program : Piecewise
-        What they compute.
-    names : mapping of str to str
-        Identifiers of these functions, by their roles.
-    parameters : mapping of str to str
-        Identifiers of the parameters.
-    reserved : collection of str
-        Identifiers that intermediate values cannot have.
-    """
-
-    program: Piecewise
-    names: Mapping[str, str]
-    parameters: Mapping[str, str]
-    reserved: Collection[str]
+    program: Piecewise  # what they compute
+    names: Mapping[str, str]  # identifiers of these functions, by their roles
+    parameters: Mapping[str, str]  # identifiers of the parameters
+    reserved: Collection[str]  # identifiers that intermediate values cannot have
 
     @property
     def variable(self) -> str:

@@ -32,22 +32,13 @@ MOST_COEFFICIENTS: Final = 200
 
 @dataclass(frozen=True, slots=True)
 class RationalSystem:
-    """A quotient of polynomials in s, and a dead time.
+    """A quotient of polynomials in s, and a dead time."""
 
-    Parameters
-    ----------
-    tf : TransferFunction
-        What it is.
-    num, den : tuple of Expression
-        Coefficients by descending powers of s.
-    delay : Expression
-        [s]; the number 0 without one.
-    """
-
-    tf: TransferFunction
+    tf: TransferFunction  # what it is
+    # num and den: coefficients by descending powers of s.
     num: tuple[Expression, ...]
     den: tuple[Expression, ...]
-    delay: Expression
+    delay: Expression  # [s]; the number 0 without one
 
     @staticmethod
     def of(tf: AnyTransferFunction) -> RationalSystem | None:

@@ -35,24 +35,13 @@ Single = tuple[int, int, int]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Family:
-    """A wavenumber with its base lengths, or a delay.
+    """A wavenumber with its base lengths, or a delay."""
 
-    Parameters
-    ----------
-    dispersion : Dispersion
-        Whose wavenumber it is.
-    wavenumber : str
-        Generator; empty for a delay or a shift.
-    lengths : tuple of Factored
-        [m]; [s] for a delay.
-    kernels : tuple of tuple of (str, int)
-        Per length, the functions ``cosh``, ``sinh``, ``cos``, ``sin``, ``exp``, with the positions of their
-        generators.
-    """
-
-    dispersion: Dispersion
-    wavenumber: str
-    lengths: tuple[Factored, ...]
+    dispersion: Dispersion  # whose wavenumber it is
+    wavenumber: str  # generator; empty for a delay or a shift
+    lengths: tuple[Factored, ...]  # [m]; [s] for a delay
+    # Per length, the functions ``cosh``, ``sinh``, ``cos``, ``sin``, ``exp``, with the positions of their
+    # generators.
     kernels: tuple[tuple[tuple[str, int], ...], ...]
 
     @property
@@ -87,18 +76,10 @@ def families_of(ring: Ring, table: KernelTable) -> tuple[Family, ...]:
 
 @dataclass(frozen=True, eq=False)
 class KernelSum:
-    """``unit * sum(coefficient * product of terms)``.
+    """``unit * sum(coefficient * product of terms)``."""
 
-    Parameters
-    ----------
-    unit : Fraction
-        In front.
-    terms : mapping of Key to fmpz_mpoly
-        Coefficients are free of the kernels that have families.
-    """
-
-    unit: Fraction
-    terms: Mapping[Key, fmpz_mpoly]
+    unit: Fraction  # in front
+    terms: Mapping[Key, fmpz_mpoly]  # coefficients are free of the kernels that have families
 
     def without_content(self) -> tuple[KernelSum, fmpz_mpoly]:
         """Return the sum with the common factor of all coefficients taken out, and that factor."""

@@ -39,18 +39,10 @@ FURTHER = 8
 
 @dataclass(frozen=True, eq=False)
 class GeneralSeries:
-    """Taylor series of polynomials in the kernels of a table.
+    """Taylor series of polynomials in the kernels of a table."""
 
-    Parameters
-    ----------
-    ring : Ring
-        Of the polynomials.
-    table : KernelTable
-        Its kernels are fundamental functions and exponentials only.
-    """
-
-    ring: Ring
-    table: KernelTable
+    ring: Ring  # of the polynomials
+    table: KernelTable  # its kernels are fundamental functions and exponentials only
 
     def coefficients(self, polynomial: fmpz_mpoly, size: float) -> tuple[Factored, ...]:
         """Return the terms of the series, without leading zeros, as far as an exponent of a size needs.

@@ -28,21 +28,13 @@ Symmetric = dict[tuple[int, int], int]
 
 @dataclass(frozen=True, slots=True)
 class LocalBasis:
-    """Solutions of the equation with characteristic polynomial ``x^n + c_(n-1) x^(n-1) + ... + c_0``.
+    """Solutions of the equation with characteristic polynomial ``x^n + c_(n-1) x^(n-1) + ... + c_0``."""
 
-    Parameters
-    ----------
-    step : int
-        2 for waves, 4 for bending: every solution is ``x^k`` times a series in ``(w x)^step``, w the
-        wavenumber. 1 for a pair of wavenumbers.
-    order : int
-        Number of solutions; solution k has derivative k at zero equal to 1, the others below n zero.
-    coefficients : tuple of mapping
-        ``c_0, ..., c_(n-1)`` as polynomials in e and f, over powers of the wavenumber for a step of 2 or 4.
-    """
-
+    # 2 for waves, 4 for bending: every solution is ``x^k`` times a series in ``(w x)^step``, w the
+    # wavenumber. 1 for a pair of wavenumbers.
     step: int
-    order: int
+    order: int  # number of solutions; solution k has derivative k at zero equal to 1, the others below n zero
+    # ``c_0, ..., c_(n-1)`` as polynomials in e and f, over powers of the wavenumber for a step of 2 or 4.
     coefficients: tuple[Mapping[tuple[int, int], int], ...]
 
     def series(self, solution: int, size: float) -> tuple[Fraction, ...]:

@@ -179,73 +179,42 @@ class Solutions(CodeNode):
     """The values at x = 1 of the solutions of ``y^(n) + c_(n-1) y^(n-1) + ... + c_0 y = 0``, as a list.
 
     Solution k starts from ``y^(i)(0) = 1`` for i = k and 0 for the other i below n.
-
-    Parameters
-    ----------
-    coefficients : tuple of CodeNode
-        ``c_0, ..., c_(n-1)``.
-    terms : int
-        Length of their Taylor series; 0 asks for a method that serves coefficients of any size.
     """
 
     OPERANDS: ClassVar = ("coefficients",)
 
-    coefficients: tuple[CodeNode, ...]
-    terms: int
+    coefficients: tuple[CodeNode, ...]  # ``c_0, ..., c_(n-1)``
+    terms: int  # length of their Taylor series; 0 asks for a method that serves coefficients of any size
 
 
 @dataclass(frozen=True, slots=True)
 class Roots(CodeNode):
-    """The roots of ``x^n + c_(n-1) x^(n-1) + ... + c_0``, and last the least distance of two, as a list.
-
-    Parameters
-    ----------
-    coefficients : tuple of CodeNode
-        ``c_0, ..., c_(n-1)``.
-    """
+    """The roots of ``x^n + c_(n-1) x^(n-1) + ... + c_0``, and last the least distance of two, as a list."""
 
     OPERANDS: ClassVar = ("coefficients",)
 
-    coefficients: tuple[CodeNode, ...]
+    coefficients: tuple[CodeNode, ...]  # ``c_0, ..., c_(n-1)``
 
 
 @dataclass(frozen=True, slots=True)
 class ModeValues(CodeNode):
-    """What a sum needs of all roots at one length; see :func:`symflex.algebra.mode_values`.
-
-    Parameters
-    ----------
-    roots : CodeNode
-        A list as :class:`Roots` gives.
-    length : CodeNode
-        What they are multiplied by.
-    """
+    """What a sum needs of all roots at one length; see :func:`symflex.algebra.mode_values`."""
 
     OPERANDS: ClassVar = ("roots", "length")
 
-    roots: CodeNode
-    length: CodeNode
+    roots: CodeNode  # a list as :class:`Roots` gives
+    length: CodeNode  # what they are multiplied by
 
 
 @dataclass(frozen=True, slots=True)
 class ModalValue(CodeNode):
-    """A sum of exponentials, over the largest one, and the logarithm of that, as a list.
-
-    Parameters
-    ----------
-    modes : tuple of ModeValues or Assigned
-        One per mode.
-    coefficients : tuple of CodeNode
-        As in :class:`symflex.algebra.ModalSum`.
-    frames : tuple
-        Slots, terms and keys of every frame.
-    """
+    """A sum of exponentials, over the largest one, and the logarithm of that, as a list."""
 
     OPERANDS: ClassVar = ("modes", "coefficients")
 
-    modes: tuple[CodeNode, ...]
-    coefficients: tuple[CodeNode, ...]
-    frames: Frames
+    modes: tuple[CodeNode, ...]  # one per mode
+    coefficients: tuple[CodeNode, ...]  # as in :class:`symflex.algebra.ModalSum`
+    frames: Frames  # slots, terms and keys of every frame
 
 
 @dataclass(frozen=True, slots=True)
@@ -268,22 +237,13 @@ class Assignment:
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """A test made for every value of s.
+    """A test made for every value of s."""
 
-    Parameters
-    ----------
-    quantity : CodeNode
-        What is tested.
-    limit : float
-        The condition holds where ``abs(quantity) < limit/abs(scale)``; if it is zero, where the real part of
-        ``scale*quantity`` is negative.
-    scale : CodeNode
-        Free of s.
-    """
-
-    quantity: CodeNode
+    quantity: CodeNode  # what is tested
+    # The condition holds where ``abs(quantity) < limit/abs(scale)``; if it is zero, where the real part of
+    # ``scale*quantity`` is negative.
     limit: float
-    scale: CodeNode
+    scale: CodeNode  # free of s
 
 
 @dataclass(frozen=True, slots=True)
@@ -340,33 +300,17 @@ class Piecewise:
 
     A lumped one has one piece; or two, of which the first is in powers of 1/s, for ``abs(s)`` so large that
     powers of s would overflow, and begins with the assignments of the second.
-
-    Parameters
-    ----------
-    parameters : tuple of str
-        Names of the parameters it takes, as in the model.
-    tests : Straight
-        Makes the quantities of the conditions, in order.
-    conditions : tuple of Condition
-        Condition i adds ``2**i`` to the number of the piece that serves.
-    pieces : tuple of int
-        For every such number, which of ``code`` it is.
-    code : tuple of CodePiece
-        The pieces.
-    turn : int or None
-        None for a function of complex s. For a function of angular frequency in real arithmetic, which the
-        leaf :class:`Laplace` then stands for: its value times ``1j**turn`` is the transfer function.
-    solves : bool
-        True when fundamental functions of any size are computed from matrices.
     """
 
-    parameters: tuple[str, ...]
-    tests: Straight
-    conditions: tuple[Condition, ...]
-    pieces: tuple[int, ...]
-    code: tuple[CodePiece, ...]
+    parameters: tuple[str, ...]  # names of the parameters it takes, as in the model
+    tests: Straight  # makes the quantities of the conditions, in order
+    conditions: tuple[Condition, ...]  # condition i adds ``2**i`` to the number of the piece that serves
+    pieces: tuple[int, ...]  # for every such number, which of ``code`` it is
+    code: tuple[CodePiece, ...]  # the pieces
+    # None for a function of complex s. For a function of angular frequency in real arithmetic, which the leaf
+    # :class:`Laplace` then stands for: its value times ``1j**turn`` is the transfer function.
     turn: int | None = None
-    solves: bool = False
+    solves: bool = False  # true when fundamental functions of any size are computed from matrices
 
     @property
     def is_real(self) -> bool:

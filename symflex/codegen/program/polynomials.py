@@ -24,24 +24,13 @@ Terms = dict[Monomial, int]
 
 @dataclass(frozen=True)
 class RingValues:
-    """What stands for the generators of a ring.
+    """What stands for the generators of a ring."""
 
-    Parameters
-    ----------
-    values : tuple of int
-        An expression for each generator; that of the Laplace variable is s, or 1/s in the far branch.
-    degrees : tuple of int
-        Degree in s of each generator: 1 for s, 0 for a parameter.
-    pi : int
-        Position of the generator pi.
-    is_far : bool
-        True when ``values`` are the generators over ``s**degree``, in powers of 1/s.
-    """
-
+    # An expression for each generator; that of the Laplace variable is s, or 1/s in the far branch.
     values: tuple[int, ...]
-    degrees: tuple[int, ...]
-    pi: int
-    is_far: bool
+    degrees: tuple[int, ...]  # degree in s of each generator: 1 for s, 0 for a parameter
+    pi: int  # position of the generator pi
+    is_far: bool  # true when ``values`` are the generators over ``s**degree``, in powers of 1/s
 
 
 def degree_of(polynomial: fmpz_mpoly, degrees: Sequence[int]) -> int:

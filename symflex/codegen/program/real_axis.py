@@ -31,42 +31,22 @@ RealKey = tuple[RealTerm, ...]
 
 @dataclass(frozen=True, eq=False)
 class RealSum:
-    """``j^turn * waves * sum(coefficient * product of terms)``, everything but the turn real.
+    """``j^turn * waves * sum(coefficient * product of terms)``, everything but the turn real."""
 
-    Parameters
-    ----------
-    terms : mapping of RealKey to fmpz_mpoly
-        Coefficients in the angular frequency, which takes the place of s, and magnitudes of wavenumbers.
-    waves : Factored
-        A product of powers of such magnitudes, with a rational number in front.
-    turn : int
-        The power of j, from 0 to 3.
-    """
-
+    # Coefficients in the angular frequency, which takes the place of s, and magnitudes of wavenumbers.
     terms: Mapping[RealKey, fmpz_mpoly]
-    waves: Factored
-    turn: int
+    waves: Factored  # a product of powers of such magnitudes, with a rational number in front
+    turn: int  # the power of j, from 0 to 3
 
 
 @dataclass(frozen=True, eq=False)
 class RealAxis:
-    """Turns functions of ``s = j omega`` into real ones.
+    """Turns functions of ``s = j omega`` into real ones."""
 
-    Parameters
-    ----------
-    ring : Ring
-        With wavenumbers and kernels.
-    table : KernelTable
-        Over the same ring.
-    positive : tuple of str
-        Parameters known to be positive.
-    signs : mapping of int to bool
-        By identity of a dispersion, whether its ``c_0`` is taken to be negative.
-    """
-
-    ring: Ring
-    table: KernelTable
-    positive: tuple[str, ...]
+    ring: Ring  # with wavenumbers and kernels
+    table: KernelTable  # over the same ring
+    positive: tuple[str, ...]  # parameters known to be positive
+    # By identity of a dispersion, whether its ``c_0`` is taken to be negative.
     signs: Mapping[int, bool] = field(default_factory=dict)
 
     @property

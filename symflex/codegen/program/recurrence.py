@@ -69,18 +69,10 @@ class ProductStep:
 
 @dataclass(frozen=True, slots=True)
 class RecurrencePlan:
-    """How to compute some polynomials together.
+    """How to compute some polynomials together."""
 
-    Parameters
-    ----------
-    steps : tuple of SumStep or ProductStep
-        Each uses earlier ones only.
-    roots : tuple of Scaled
-        The polynomials asked for.
-    """
-
-    steps: tuple[SumStep | ProductStep, ...]
-    roots: tuple[Scaled, ...]
+    steps: tuple[SumStep | ProductStep, ...]  # each uses earlier ones only
+    roots: tuple[Scaled, ...]  # the polynomials asked for
 
 
 def plan_recurrences(

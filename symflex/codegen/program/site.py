@@ -35,35 +35,20 @@ Scales = dict[tuple[int, int], int]
 
 @dataclass
 class Site:
-    """Makes the parts of one piece.
+    """Makes the parts of one piece."""
 
-    Parameters
-    ----------
-    forge : Forge
-        Where expressions are made.
-    tf : TransferFunction
-        With kernels.
-    families : tuple of Family
-        Of its kernels.
-    grows : mapping of int to bool
-        Families of delays whose exponential is greater than one; they are written by its inverse.
-    exponents : mapping of (int, int) to sequence of (int, int)
-        Per family and length, the pairs ``(a, b)`` that occur.
-    mirrored : sequence of int
-        Identities of dispersions whose wavenumbers are even in s and here computed from ``-s``.
-    is_signed : bool
-        True when ``mirrored`` tells the sign of roots of squares; otherwise these are computed as such.
-    axis : RealAxis, optional
-        Given for real arithmetic: the leaf of s is then the angular frequency, wavenumbers are magnitudes.
-    """
-
-    forge: Forge
-    tf: TransferFunction
-    families: tuple[Family, ...]
+    forge: Forge  # where expressions are made
+    tf: TransferFunction  # with kernels
+    families: tuple[Family, ...]  # of its kernels
+    # Families of delays whose exponential is greater than one; they are written by its inverse.
     grows: Mapping[int, bool] = field(default_factory=dict)
+    # Per family and length, the pairs ``(a, b)`` that occur.
     exponents: Mapping[tuple[int, int], Sequence[tuple[int, int]]] = field(default_factory=dict)
+    # Identities of dispersions whose wavenumbers are even in s and here computed from ``-s``.
     mirrored: Sequence[int] = ()
+    # True when ``mirrored`` tells the sign of roots of squares; otherwise these are computed as such.
     is_signed: bool = True
+    # Given for real arithmetic: the leaf of s is then the angular frequency, wavenumbers are magnitudes.
     axis: RealAxis | None = None
 
     def __post_init__(self) -> None:

@@ -97,53 +97,29 @@ TINY = 1e-307
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """How far a function is accurate that is not so everywhere.
+    """How far a function is accurate that is not so everywhere."""
 
-    Parameters
-    ----------
-    highest : Fraction or None
-        Up to here [Hz] every sample was measured and accurate to 1e-12; ``None`` when the first was not.
-    error : float
-        The worst one up to there.
-    lowest : Fraction, optional
-        Down to here [Hz] the same holds; the band's lower end when ``None``.
-    """
-
+    # Up to here [Hz] every sample was measured and accurate to 1e-12; ``None`` when the first was not.
     highest: Fraction | None
-    error: float
-    lowest: Fraction | None = None
+    error: float  # the worst one up to there
+    lowest: Fraction | None = None  # down to here [Hz] the same holds; the band's lower end when ``None``
 
 
 @dataclass(frozen=True, slots=True)
 class Verification:
-    """How well a program agrees with its transfer function.
+    """How well a program agrees with its transfer function."""
 
-    Parameters
-    ----------
-    name : str
-        ``OUT/IN``.
-    form : str
-        The form evaluated: ``closed``, ``closed in s``, ``nested`` or ``factors``; of a distributed system
-        ``pieces`` or ``real``.
-    error : float or None
-        The worst ``|dG| / (|G| (1 + |s G'/G|))`` on the imaginary axis: the relative error beyond what one
-        rounding of ``s`` would cause. ``None`` when it was not measured.
-    band : tuple of Fraction
-        [Hz].
-    samples : int
-        Number of frequencies.
-    reason : str
-        Why it was not measured; empty when it was.
-    reach : Reach or None
-        Only of functions whose exponents are found numerically; these may not be accurate everywhere.
-    """
-
-    name: str
+    name: str  # ``OUT/IN``
+    # The form evaluated: ``closed``, ``closed in s``, ``nested`` or ``factors``; of a distributed system
+    # ``pieces`` or ``real``.
     form: str
+    # The worst ``|dG| / (|G| (1 + |s G'/G|))`` on the imaginary axis: the relative error beyond what one
+    # rounding of ``s`` would cause. ``None`` when it was not measured.
     error: float | None
-    band: tuple[Fraction, Fraction]
-    samples: int
-    reason: str = ""
+    band: tuple[Fraction, Fraction]  # [Hz]
+    samples: int  # number of frequencies
+    reason: str = ""  # why it was not measured; empty when it was
+    # Only of functions whose exponents are found numerically; these may not be accurate everywhere.
     reach: Reach | None = None
 
     def text(self, digits: int = 2) -> str:

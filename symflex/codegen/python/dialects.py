@@ -32,50 +32,24 @@ _COPIES = ("copies",)
 
 @dataclass(frozen=True, slots=True)
 class Dialect:
-    """Python for one library of arrays, or for any.
+    """Python for one library of arrays, or for any."""
 
-    Parameters
-    ----------
-    first : str
-        First line of the module's docstring.
-    imports : str
-        Import statements.
-    sources : tuple of str
-        Files of ``codegen/sources`` with the functions that modules call; a second one replaces parts of the
-        first.
-    space : str
-        What functions are looked up in.
-    words : frozenset of str
-        Names that parameters cannot have, besides Python's keywords.
-    argument, result : str
-        Annotations.
-    array : str
-        What docstrings call an argument.
-    returned : tuple of str
-        What docstrings call the value, and a sentence about it.
-    is_traced : bool
-        True for functions without branches on values.
-    is_argument : bool
-        True when ``space`` is an argument of every function.
-    has_fixed_sizes : bool
-        True to leave magnitudes out of derivatives.
-    remark : str
-        Last lines of the module's docstring.
-    """
-
-    first: str
-    imports: str
+    first: str  # first line of the module's docstring
+    imports: str  # import statements
+    # Files of ``codegen/sources`` with the functions that modules call; a second one replaces parts of the
+    # first.
     sources: tuple[str, ...]
-    space: str
-    words: frozenset[str]
+    space: str  # what functions are looked up in
+    words: frozenset[str]  # names that parameters cannot have, besides Python's keywords
+    # argument and result: Annotations.
     argument: str
     result: str
-    array: str
-    returned: tuple[str, str]
-    is_traced: bool = True
-    is_argument: bool = False
-    has_fixed_sizes: bool = False
-    remark: str = ""
+    array: str  # what docstrings call an argument
+    returned: tuple[str, str]  # what docstrings call the value, and a sentence about it
+    is_traced: bool = True  # true for functions without branches on values
+    is_argument: bool = False  # true when ``space`` is an argument of every function
+    has_fixed_sizes: bool = False  # true to leave magnitudes out of derivatives
+    remark: str = ""  # last lines of the module's docstring
 
     @property
     def reserved(self) -> frozenset[str]:

@@ -26,15 +26,9 @@ WIDTH = 88
 
 @dataclass(frozen=True)
 class PythonPrinter(InfixPrinter):
-    """Prints expressions as Python of numpy.
+    """Prints expressions as Python of numpy."""
 
-    Parameters
-    ----------
-    space : str
-        What functions are looked up in.
-    """
-
-    space: str = "np"
+    space: str = "np"  # what functions are looked up in
 
     def assignment(self, name: str, value: CodeNode, indent: str) -> list[str]:
         """Return the lines of an assignment."""
@@ -84,25 +78,14 @@ class PythonPrinter(InfixPrinter):
 
 @dataclass(frozen=True)
 class ArrayPrinter(PythonPrinter):
-    """Prints expressions as Python of any library of arrays.
+    """Prints expressions as Python of any library of arrays."""
 
-    Parameters
-    ----------
-    numbers : mapping of str to number
-        Values of the assignments that depend on no argument. Functions of these are printed as numbers,
-        because array libraries take arrays only.
-    has_fixed_sizes : bool
-        True to print magnitudes as ``_size``, which has no derivative.
-    meanings : mapping of str to CodeNode
-        What the assignments say.
-    leading : str
-        First arguments of functions that look others up.
-    """
-
+    # Values of the assignments that depend on no argument. Functions of these are printed as numbers, because
+    # array libraries take arrays only.
     numbers: Mapping[str, Any] = field(default_factory=dict)
-    has_fixed_sizes: bool = False
-    meanings: Mapping[str, CodeNode] = field(default_factory=dict)
-    leading: str = ""
+    has_fixed_sizes: bool = False  # true to print magnitudes as ``_size``, which has no derivative
+    meanings: Mapping[str, CodeNode] = field(default_factory=dict)  # what the assignments say
+    leading: str = ""  # first arguments of functions that look others up
 
     def print(self, node: CodeNode) -> str:
         """Return the text of an expression."""

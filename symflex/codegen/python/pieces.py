@@ -41,26 +41,13 @@ class PrivateText(ABC):
     """Prints the private functions behind one transfer function.
 
     Their names begin with what a private function is, so that ``A_over_F_0`` may be another public function.
-
-    Parameters
-    ----------
-    given : Piecewise
-        What they compute.
-    name : str
-        Identifier of the public function.
-    parameters : mapping of str to str
-        Identifiers of the parameters.
-    values : mapping of str to float
-        Values of the parameters that have one.
-    dialect : Dialect
-        Of Python.
     """
 
-    given: Piecewise
-    name: str
-    parameters: Mapping[str, str]
-    values: Mapping[str, float]
-    dialect: Dialect
+    given: Piecewise  # what they compute
+    name: str  # identifier of the public function
+    parameters: Mapping[str, str]  # identifiers of the parameters
+    values: Mapping[str, float]  # values of the parameters that have one
+    dialect: Dialect  # of Python
 
     @property
     def variable(self) -> str:

@@ -26,30 +26,14 @@ LITERAL_WIDTH = 60
 
 @dataclass(frozen=True, slots=True)
 class Signature:
-    """What a generated function takes, and what its docstring says about it.
+    """What a generated function takes, and what its docstring says about it."""
 
-    Parameters
-    ----------
-    variable : str
-        Identifier of the first argument.
-    names : mapping of str to str
-        Identifiers of the parameters.
-    is_real : bool
-        True for a response at an angular frequency.
-    array : str
-        What the docstring calls an argument, ``array_like``.
-    returned : tuple of str
-        Type of the value, and a sentence about it.
-    more : tuple of str
-        Lines of the docstring about arguments after the parameters.
-    """
-
-    variable: str
-    names: Mapping[str, str]
-    is_real: bool
-    array: str
-    returned: tuple[str, str]
-    more: tuple[str, ...] = ()
+    variable: str  # identifier of the first argument
+    names: Mapping[str, str]  # identifiers of the parameters
+    is_real: bool  # true for a response at an angular frequency
+    array: str  # what the docstring calls an argument, ``array_like``
+    returned: tuple[str, str]  # type of the value, and a sentence about it
+    more: tuple[str, ...] = ()  # lines of the docstring about arguments after the parameters
 
 
 def header(first: str, model: Model, verified: Sequence[Verification], digits: int, remark: str = "") -> str:

@@ -42,21 +42,11 @@ TALLEST_MM = 225.0
 
 @dataclass(frozen=True, slots=True)
 class LatexExporter:
-    """A standalone LaTeX document, or the files it is made of.
+    """A standalone LaTeX document, or the files it is made of."""
 
-    Parameters
-    ----------
-    width_mm : float
-        Width of the column.
-    form : str, optional
-        Of the transfer functions; the shortest symbolic one by default.
-    has_figures : bool
-        The files hold figures; a document in one file has none.
-    """
-
-    width_mm: float = TEXT_WIDTH_MM
-    form: str | None = None
-    has_figures: bool = True
+    width_mm: float = TEXT_WIDTH_MM  # width of the column
+    form: str | None = None  # of the transfer functions; the shortest symbolic one by default
+    has_figures: bool = True  # the files hold figures; a document in one file has none
 
     suffix = ".tex"
     summary = "standalone LaTeX document: parameters, transfer functions, poles, zeros, modes"

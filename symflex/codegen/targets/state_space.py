@@ -18,15 +18,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class StateSpaceExporter:
-    """State equations as a function of the parameters, in one numpy module.
+    """State equations as a function of the parameters, in one numpy module."""
 
-    Parameters
-    ----------
-    is_minimal : bool
-        Leave out what no input reaches or no output shows.
-    """
-
-    is_minimal: bool = False
+    is_minimal: bool = False  # leave out what no input reaches or no output shows
 
     suffix = ".py"
     summary = "numpy module with A, B, C, D as a function of the parameters, states named"

@@ -59,33 +59,16 @@ SMOOTH = 3.0
 
 @dataclass(frozen=True, eq=False)
 class Base:
-    """What the resonances are multiplied by.
+    """What the resonances are multiplied by."""
 
-    Parameters
-    ----------
-    function : callable
-        Of angular frequencies [rad/s], shape (n,), to complex values.
-    tf : str
-        ``OUT/IN`` of the specification it comes from; empty for a bare power of s.
-    path : str
-        The specification; empty likewise.
-    unit : str
-        Of its values, empty when unknown.
-    slope : int
-        The power of s, where that is all the base is.
-    taken : tuple of str
-        Names of the specification's parameters.
-    folders : tuple of str or Path
-        That it was allowed to read: its own, and others.
-    """
-
+    # Of angular frequencies [rad/s], shape (n,), to complex values.
     function: Callable[[Real], Complex] = field(repr=False)
-    tf: str = ""
-    path: str = ""
-    unit: str = ""
-    slope: int = 0
-    taken: tuple[str, ...] = ()
-    folders: tuple[str | Path, ...] = ()
+    tf: str = ""  # ``OUT/IN`` of the specification it comes from; empty for a bare power of s
+    path: str = ""  # the specification; empty likewise
+    unit: str = ""  # of its values, empty when unknown
+    slope: int = 0  # the power of s, where that is all the base is
+    taken: tuple[str, ...] = ()  # names of the specification's parameters
+    folders: tuple[str | Path, ...] = ()  # that it was allowed to read: its own, and others
 
     @staticmethod
     def power(slope: int) -> Base:
@@ -95,36 +78,18 @@ class Base:
 
 @dataclass(frozen=True, eq=False)
 class ResonanceFit:
-    """The result of a fit.
+    """The result of a fit."""
 
-    Parameters
-    ----------
-    problem : FitProblem
-        What was fitted.
-    bases : tuple of Base
-        One per response.
-    candidate : Candidate
-        Start and minimum.
-    scores : tuple of Score
-        What the criteria say of the numbers of resonances tried; empty when the number was given.
-    criterion : str
-        The one that chose.
-    phase_tests : tuple of PhaseTest
-        One per response.
-    warnings : tuple of str
-        What to be careful about.
-    poor : tuple of str
-        Why the result is poor, so that standard errors do not tell how far off it may be; empty where it is
-        not.
-    """
-
-    problem: FitProblem
-    bases: tuple[Base, ...]
-    candidate: Candidate
+    problem: FitProblem  # what was fitted
+    bases: tuple[Base, ...]  # one per response
+    candidate: Candidate  # start and minimum
+    # What the criteria say of the numbers of resonances tried; empty when the number was given.
     scores: tuple[Score, ...]
-    criterion: str
-    phase_tests: tuple[PhaseTest, ...]
-    warnings: tuple[str, ...]
+    criterion: str  # the one that chose
+    phase_tests: tuple[PhaseTest, ...]  # one per response
+    warnings: tuple[str, ...]  # what to be careful about
+    # Why the result is poor, so that standard errors do not tell how far off it may be; empty where it is
+    # not.
     poor: tuple[str, ...] = ()
 
     @property

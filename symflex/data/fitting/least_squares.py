@@ -58,30 +58,16 @@ EDGE = 12.0
 
 @dataclass(frozen=True, eq=False)
 class Refined:
-    """The minimum a start led to.
+    """The minimum a start led to."""
 
-    Parameters
-    ----------
-    resonances : Resonances
-        The parameters.
-    has_converged : bool
-        False when the steps ran out.
-    residuals : tuple of array of complex
-        Per response, in units of the standard deviation where that is known.
-    covariance : array of float, shape (p, p), or None
-        Of the packed parameters; None when the lines do not determine all of them.
-    correlation : float
-        What correlated neighbouring lines multiply the variance of a mean by; 1 for independent lines.
-    parameters : int
-        How many parameters were found.
-    """
-
-    resonances: Resonances
-    has_converged: bool
-    residuals: tuple[Complex, ...]
+    resonances: Resonances  # the parameters
+    has_converged: bool  # false when the steps ran out
+    residuals: tuple[Complex, ...]  # per response, in units of the standard deviation where that is known
+    # shape (p, p): Of the packed parameters; None when the lines do not determine all of them.
     covariance: Real | None
+    # What correlated neighbouring lines multiply the variance of a mean by; 1 for independent lines.
     correlation: float
-    parameters: int
+    parameters: int  # how many parameters were found
 
     @property
     def cost(self) -> float:

@@ -49,32 +49,15 @@ MOST_TURNED = 45.0
 
 @dataclass(frozen=True, eq=False)
 class FittedModeShapes:
-    """Mass-normalised mode shapes where responses were measured.
+    """Mass-normalised mode shapes where responses were measured."""
 
-    Parameters
-    ----------
-    names : tuple of str
-        The responses.
-    driving : int
-        Which of them is at the driven point.
-    shapes : array of float, shape (m, n)
-        Of m responses in n modes; at the driven point positive.
-    errors : array of float, shape (m, n)
-        Standard errors.
-    turned : array of float, shape (m, n)
-        How far modal constants are off the real axis [deg]: 0 for real modes.
-    unit : str
-        ``kg^(-1/2)``, or with an inertia.
-    frequency_hz, damping_ratio : array of float, shape (n,)
-        Of the poles that suit all responses best.
-    """
-
-    names: tuple[str, ...]
-    driving: int
-    shapes: Real
-    errors: Real
-    turned: Real
-    unit: str
+    names: tuple[str, ...]  # the responses
+    driving: int  # which of them is at the driven point
+    shapes: Real  # shape (m, n): Of m responses in n modes; at the driven point positive
+    errors: Real  # shape (m, n): Standard errors
+    turned: Real  # shape (m, n): How far modal constants are off the real axis [deg]: 0 for real modes
+    unit: str  # ``kg^(-1/2)``, or with an inertia
+    # frequency_hz and damping_ratio: shape (n,): Of the poles that suit all responses best.
     frequency_hz: Real
     damping_ratio: Real
 

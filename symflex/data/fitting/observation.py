@@ -42,24 +42,15 @@ REACH_IN_LINES = 4
 
 @dataclass(frozen=True, eq=False)
 class Observation:
-    """Where a response has to be known, and how the lines of a measurement follow from that.
+    """Where a response has to be known, and how the lines of a measurement follow from that."""
 
-    Parameters
-    ----------
-    omega : array of float, shape (k,)
-        Positive angular frequencies [rad/s].
-    matrix : sparse array, shape (n, k), or None
-        Its real and conjugating part; None when the lines are the values themselves.
-    mirror : sparse array, shape (n, k), or None
-        Acts on the conjugate values: what negative frequencies give to the lowest lines.
-    places : array of int, shape (n, u), or None
-        Which of :attr:`omega` each line sees, from :data:`REACH_IN_LINES` below it to as many above; a
-        negative number, one's complement, stands for the negative frequency.
-    """
-
-    omega: Real
+    omega: Real  # shape (k,): Positive angular frequencies [rad/s]
+    # shape (n, k): Its real and conjugating part; None when the lines are the values themselves.
     matrix: csr_array | None = None
+    # shape (n, k): Acts on the conjugate values: what negative frequencies give to the lowest lines.
     mirror: csr_array | None = None
+    # shape (n, u): Which of :attr:`omega` each line sees, from :data:`REACH_IN_LINES` below it to as many
+    # above; a negative number, one's complement, stands for the negative frequency.
     places: Places | None = None
 
     def __call__(self, values: Complex) -> Complex:

@@ -72,54 +72,29 @@ UNLIKELY = 1e-5
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """The best fit with one number of resonances.
+    """The best fit with one number of resonances."""
 
-    Parameters
-    ----------
-    count : int
-        How many resonances.
-    start_kind : str
-        The key of :data:`STARTS` that led to it.
-    start : Resonances
-        Where it began.
-    refined : Refined
-        Where it ended.
-    failure : Diagnostic or None
-        Why it cannot be a result.
-    rival : Refined or None
-        The best fit met with another power of s.
-    """
-
-    count: int
-    start_kind: str
-    start: Resonances
-    refined: Refined
-    failure: Diagnostic | None
-    rival: Refined | None = None
+    count: int  # how many resonances
+    start_kind: str  # the key of :data:`STARTS` that led to it
+    start: Resonances  # where it began
+    refined: Refined  # where it ended
+    failure: Diagnostic | None  # why it cannot be a result
+    rival: Refined | None = None  # the best fit met with another power of s
 
 
 @dataclass(frozen=True, slots=True)
 class Score:
-    """What the criteria say of one number of resonances; lower is better.
+    """What the criteria say of one number of resonances; lower is better."""
 
-    Parameters
-    ----------
-    count, parameters : int
-        Resonances and parameters.
-    bic, aicc : float
-        Schwarz 1978; Hurvich & Tsai 1989.
-    reduced : float
-        The sum of squares per degree of freedom.
-    status : str
-        ``usable``; ``failed`` when the fit did; ``weak`` when it has a damping ratio lost in its own error,
-        or strong evidence for one resonance more is missing.
-    """
-
+    # count and parameters: resonances and parameters.
     count: int
     parameters: int
+    # bic and aicc: schwarz 1978; Hurvich & Tsai 1989.
     bic: float
     aicc: float
-    reduced: float
+    reduced: float  # the sum of squares per degree of freedom
+    # ``usable``; ``failed`` when the fit did; ``weak`` when it has a damping ratio lost in its own error, or
+    # strong evidence for one resonance more is missing.
     status: str
 
     @property

@@ -61,54 +61,32 @@ POOR: Final = 2.0
 
 @dataclass(frozen=True, slots=True)
 class PartedBand:
-    """A band in which the measured phase leaves that of the magnitude-only model.
+    """A band in which the measured phase leaves that of the magnitude-only model."""
 
-    Parameters
-    ----------
-    low_hz, high_hz : float
-        Its ends [Hz].
-    worst_degrees, worst_hz : float
-        The largest difference, measured less fitted, and where.
-    """
-
+    # low_hz and high_hz: its ends [Hz].
     low_hz: float
     high_hz: float
+    # worst_degrees and worst_hz: the largest difference, measured less fitted, and where.
     worst_degrees: float
     worst_hz: float
 
 
 @dataclass(frozen=True, eq=False)
 class PhaseTest:
-    """The outcome for one response.
+    """The outcome for one response."""
 
-    Parameters
-    ----------
-    resonances : Resonances
-        The magnitude-only fit, of this response alone.
-    difference : array of float, shape (n,)
-        Measured less fitted phase on the lines [rad], in (-pi, pi].
-    bands : tuple of PartedBand
-        Where they part, beyond :data:`LIMIT_DEGREES` and the noise.
-    magnitude_db : float
-        Root mean square of the magnitude's own misfit [dB].
-    verdict : str
-        ``minimum``: a minimum-phase function has magnitude and phase as measured. ``nonminimum``: none of
-        this order has. ``undetermined``: only one with a lag linear in frequency has, or none describes the
-        magnitude, so that its phase says nothing.
-    with_phase : Resonances or None
-        The minimum-phase function found by fitting magnitude and phase, where the magnitude alone left the
-        phase open and there is one.
-    lag_s : float
-        The lag [s] it needs besides; 0 for none.
-    """
-
-    resonances: Resonances
-    difference: Real
-    bands: tuple[PartedBand, ...]
-    magnitude_db: float
+    resonances: Resonances  # the magnitude-only fit, of this response alone
+    difference: Real  # shape (n,): Measured less fitted phase on the lines [rad], in (-pi, pi]
+    bands: tuple[PartedBand, ...]  # where they part, beyond :data:`LIMIT_DEGREES` and the noise
+    magnitude_db: float  # root mean square of the magnitude's own misfit [dB]
+    # ``minimum``: a minimum-phase function has magnitude and phase as measured. ``nonminimum``: none of this
+    # order has. ``undetermined``: only one with a lag linear in frequency has, or none describes the
+    # magnitude, so that its phase says nothing.
     verdict: Verdict
+    # The minimum-phase function found by fitting magnitude and phase, where the magnitude alone left the
+    # phase open and there is one.
     with_phase: Resonances | None = None
-    lag_s: float = 0.0
+    lag_s: float = 0.0  # the lag [s] it needs besides; 0 for none
 
     @property
     def is_minimum_phase(self) -> bool:

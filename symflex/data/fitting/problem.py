@@ -50,24 +50,14 @@ FEWEST = 5
 
 @dataclass(frozen=True, eq=False)
 class FittedLines:
-    """One measured response as the fit sees it.
+    """One measured response as the fit sees it."""
 
-    Parameters
-    ----------
-    measured : MeasuredResponse
-        The lines.
-    observation : Observation
-        How the lines follow from the response.
-    base, base_at_lines : array of complex
-        The known factor where the observation needs it, and on the lines.
-    deviation : array of float, shape (n,), or None
-        Standard deviation of each part over the magnitude; None when there is no coherence.
-    """
-
-    measured: MeasuredResponse
-    observation: Observation
+    measured: MeasuredResponse  # the lines
+    observation: Observation  # how the lines follow from the response
+    # base and base_at_lines: the known factor where the observation needs it, and on the lines.
     base: Complex
     base_at_lines: Complex
+    # shape (n,): Standard deviation of each part over the magnitude; None when there is no coherence.
     deviation: Real | None
 
     @property
@@ -83,32 +73,17 @@ class FittedLines:
 
 @dataclass(frozen=True, eq=False)
 class FitProblem:
-    """All responses of one fit.
+    """All responses of one fit."""
 
-    Parameters
-    ----------
-    lines : tuple of FittedLines
-        One per response; they share their poles.
-    free : Free
-        What is found of each response besides its resonances.
-    has_base : bool
-        Whether the known factor is a model rather than a power of s; messages speak of it then.
-    slopes : tuple of int
-        The powers of s that each response may have.
-    delays : tuple of float
-        Dead time of each response that a start begins with [s].
-    is_noise_estimated : bool
-        Whether the accuracy of lines was estimated, and not known from coherence.
-    reference : StructurelessFit, optional
-        Of the estimate: how well a function without structure describes the lines.
-    """
-
-    lines: tuple[FittedLines, ...]
-    free: Free
+    lines: tuple[FittedLines, ...]  # one per response; they share their poles
+    free: Free  # what is found of each response besides its resonances
+    # Whether the known factor is a model rather than a power of s; messages speak of it then.
     has_base: bool = True
-    slopes: tuple[int, ...] = (0,)
-    delays: tuple[float, ...] = ()
+    slopes: tuple[int, ...] = (0,)  # the powers of s that each response may have
+    delays: tuple[float, ...] = ()  # dead time of each response that a start begins with [s]
+    # Whether the accuracy of lines was estimated, and not known from coherence.
     is_noise_estimated: bool = False
+    # Of the estimate: how well a function without structure describes the lines.
     reference: StructurelessFit | None = None
     count: int = field(init=False)
 

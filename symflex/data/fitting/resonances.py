@@ -45,25 +45,6 @@ class Free:
 class Resonances:
     """Parameters of n resonances in m responses that share their poles.
 
-    Parameters
-    ----------
-    omega_p, zeta_p : array of float, shape (n,)
-        Natural frequencies [rad/s], ascending, and damping ratios of the poles.
-    omega_z, zeta_z : array of float, shape (m, n)
-        Those of the zeros, ascending in each response. A negative damping ratio is a pair of zeros in the
-        right half plane. Infinite where a response has fewer pairs of zeros. A negative frequency -w stands
-        for two real zeros of opposite sign, the factor 1 + 2 zeta s/w - (s/w)^2: transfer functions of
-        beams have them.
-    gain : array of float, shape (m,)
-        What stands in front of each response.
-    lag : array of float, shape (m,)
-        Time constant of the sensor of each response [s], a factor 1/(1 + lag s), or where it is negative, a
-        lead, 1 - lag s; by default 0.
-    delay : array of float, shape (m,)
-        Dead time of each response [s], a factor exp(-delay s); by default 0.
-    slope : array of int, shape (m,)
-        The power of s of each response; by default 0.
-
     Examples
     --------
     >>> one = Resonances.of([(10.0, 0.05, 11.0, 0.05)])
@@ -71,13 +52,22 @@ class Resonances:
     array([1.])
     """
 
+    # omega_p and zeta_p: shape (n,): Natural frequencies [rad/s], ascending, and damping ratios of the poles.
     omega_p: Real
     zeta_p: Real
+    # omega_z and zeta_z: shape (m, n): Those of the zeros, ascending in each response. A negative damping
+    # ratio is a pair of zeros in the right half plane. Infinite where a response has fewer pairs of zeros. A
+    # negative frequency -w stands for two real zeros of opposite sign, the factor 1 + 2 zeta s/w - (s/w)^2:
+    # transfer functions of beams have them.
     omega_z: Real
     zeta_z: Real
-    gain: Real
+    gain: Real  # shape (m,): What stands in front of each response
+    # shape (m,): Time constant of the sensor of each response [s], a factor 1/(1 + lag s), or where it is
+    # negative, a lead, 1 - lag s; by default 0.
     lag: Real = field(default_factory=lambda: np.zeros(0))
+    # shape (m,): Dead time of each response [s], a factor exp(-delay s); by default 0.
     delay: Real = field(default_factory=lambda: np.zeros(0))
+    # shape (m,): The power of s of each response; by default 0.
     slope: Whole = field(default_factory=lambda: np.zeros(0, np.int64))
 
     def __post_init__(self) -> None:

@@ -43,31 +43,17 @@ LEAST_EXCITED: Final = 0.5
 
 @dataclass(frozen=True, slots=True)
 class MeasurementPlan:
-    """How a measurement is made.
+    """How a measurement is made."""
 
-    Parameters
-    ----------
-    low_hz, high_hz : float
-        The lines shown [Hz].
-    spacing_hz : float
-        Distance of lines: one over the length of a record [Hz].
-    averages : int
-        Number of records.
-    noise : float
-        Standard deviation of the sensor's noise, over that of its signal.
-    rolloff_hz : float or None
-        Corner of the accelerometer with its amplifier, a second-order low pass of damping 0.7; None for none.
-    seed : int
-        Of the random numbers.
-    """
-
+    # low_hz and high_hz: the lines shown [Hz].
     low_hz: float
     high_hz: float
-    spacing_hz: float
-    averages: int = 40
-    noise: float = 0.03
+    spacing_hz: float  # distance of lines: one over the length of a record [Hz]
+    averages: int = 40  # number of records
+    noise: float = 0.03  # standard deviation of the sensor's noise, over that of its signal
+    # Corner of the accelerometer with its amplifier, a second-order low pass of damping 0.7; None for none.
     rolloff_hz: float | None = 5000.0
-    seed: int = 1
+    seed: int = 1  # of the random numbers
 
     @staticmethod
     def of(given: MeasureOptions, band: tuple[Fraction, Fraction] | None) -> MeasurementPlan:

@@ -34,22 +34,13 @@ MEMORY_LIMIT = 300_000_000
 
 @dataclass(frozen=True)
 class Closure:
-    """A ring with one generator per closed sum, and the way back.
+    """A ring with one generator per closed sum, and the way back."""
 
-    Parameters
-    ----------
-    base : Ring
-        s, parameters, definitions, pi, functions of constants.
-    ring : Ring
-        Those of the same generators that stand outside closed sums, s and pi in any case, and then the sums:
-        a monomial takes a byte per generator.
-    sums : tuple of (str, fmpz_mpoly)
-        Each closed generator's name and its polynomial in ``base``.
-    """
-
-    base: Ring
+    base: Ring  # s, parameters, definitions, pi, functions of constants
+    # Those of the same generators that stand outside closed sums, s and pi in any case, and then the sums: a
+    # monomial takes a byte per generator.
     ring: Ring
-    sums: tuple[tuple[str, fmpz_mpoly], ...]
+    sums: tuple[tuple[str, fmpz_mpoly], ...]  # each closed generator's name and its polynomial in ``base``
 
     @cached_property
     def images(self) -> tuple[fmpz_mpoly, ...]:

@@ -46,27 +46,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Determinants:
-    """The determinants of one system, each up to the sign they share.
+    """The determinants of one system, each up to the sign they share."""
 
-    Parameters
-    ----------
-    equations : Equations
-        The system.
-    system : ClosedSystem
-        The same over the closed ring.
-    reduced : ReducedSystem
-        What remains of it without unit pivots.
-    minors : Minors
-        Shared by all determinants.
-    den : fmpz_mpoly
-        The determinant, not zero, over the closed ring.
-    """
-
-    equations: Equations
-    system: ClosedSystem
-    reduced: ReducedSystem
-    minors: Minors
-    den: fmpz_mpoly
+    equations: Equations  # the system
+    system: ClosedSystem  # the same over the closed ring
+    reduced: ReducedSystem  # what remains of it without unit pivots
+    minors: Minors  # shared by all determinants
+    den: fmpz_mpoly  # the determinant, not zero, over the closed ring
 
     @staticmethod
     def of(equations: Equations) -> Determinants:
@@ -129,18 +115,13 @@ Value = TypeVar("Value")
 class LaplaceExpansion(ABC, Generic[Entry, Value]):
     """Values of all minors of some rows, each found once from smaller ones.
 
-    Parameters
-    ----------
-    rows : tuple of dict
-        Sparse rows, in the order of expansion.
-
     Raises
     ------
     BudgetError
         SF502 when the expansion exceeds its limits.
     """
 
-    rows: tuple[Mapping[int, Entry], ...]
+    rows: tuple[Mapping[int, Entry], ...]  # sparse rows, in the order of expansion
     _known: dict[int, Value] = field(default_factory=dict)
 
     def __post_init__(self) -> None:

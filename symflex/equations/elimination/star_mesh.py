@@ -52,21 +52,12 @@ EXPLAINED = 2_500
 
 @dataclass(frozen=True, eq=False)
 class Elimination:
-    """Quotients as steps of a straight-line program.
+    """Quotients as steps of a straight-line program."""
 
-    Parameters
-    ----------
-    program : StraightLine
-        Over the generators of the equations; definitions stand for their values.
-    quotients : tuple of (int, int)
-        Per pair, numerator and denominator; neither need be a polynomial.
-    pivots : tuple of int
-        What was divided by: the product of these is the determinant, up to its sign.
-    """
-
-    program: StraightLine
+    program: StraightLine  # over the generators of the equations; definitions stand for their values
+    # Per pair, numerator and denominator; neither need be a polynomial.
     quotients: tuple[tuple[int, int], ...]
-    pivots: tuple[int, ...]
+    pivots: tuple[int, ...]  # what was divided by: the product of these is the determinant, up to its sign
 
 
 @dataclass(slots=True)

@@ -57,26 +57,16 @@ def _pair_key(kind: int, x: int, y: int) -> int:
 
 @dataclass(frozen=True, eq=False)
 class StraightLine:
-    """Steps in order, each made of earlier ones.
+    """Steps in order, each made of earlier ones."""
 
-    Parameters
-    ----------
-    names : tuple of str
-        The generators' names.
-    kinds : sequence of int
-        Per step, a :class:`Step`.
-    operands : sequence of tuple of int
-        Per step: position of the generator; numerator and denominator of a non-negative number; the steps
-        that are added or multiplied; dividend and divisor; what is negated; base and exponent.
-    roles : mapping of int to str
-        Steps a reader knows by a name: ``w`` for a sub-impedance that elements in parallel add up to, ``Z``
-        for the impedance of all that is joined to a node, and the names of the model's definitions with an
-        equals sign before them.
-    """
-
-    names: tuple[str, ...]
-    kinds: Sequence[int]
+    names: tuple[str, ...]  # the generators' names
+    kinds: Sequence[int]  # per step, a :class:`Step`
+    # Per step: position of the generator; numerator and denominator of a non-negative number; the steps that
+    # are added or multiplied; dividend and divisor; what is negated; base and exponent.
     operands: Sequence[Key]
+    # Steps a reader knows by a name: ``w`` for a sub-impedance that elements in parallel add up to, ``Z`` for
+    # the impedance of all that is joined to a node, and the names of the model's definitions with an equals
+    # sign before them.
     roles: Mapping[int, str]
 
     def steps_of(self, *roots: int) -> list[int]:

@@ -39,24 +39,14 @@ COMPONENT_UNIT: dict[str, str] = {
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """An unknown of the equations, or an input.
+    """An unknown of the equations, or an input."""
 
-    Parameters
-    ----------
-    kind : str
-        ``node`` (displacement [m], angle [rad] or voltage [V]), ``through`` (force [N],
-        torque [N m] or current [A] of an element), ``signal``, ``value`` (an auxiliary
-        unknown that carries a rational expression), ``field`` (an unknown function of x, or
-        one of the constants that fix it) or ``input``.
-    owner : str
-        Name of the node, element, signal, output, field's unknown or input.
-    component : str
-        ``y`` or ``theta`` of a planar node; the quantity's name for a through variable.
-    """
-
+    # ``node`` (displacement [m], angle [rad] or voltage [V]), ``through`` (force [N], torque [N m] or current
+    # [A] of an element), ``signal``, ``value`` (an auxiliary unknown that carries a rational expression),
+    # ``field`` (an unknown function of x, or one of the constants that fix it) or ``input``.
     kind: Literal["node", "through", "signal", "value", "field", "input"]
-    owner: str
-    component: str = ""
+    owner: str  # name of the node, element, signal, output, field's unknown or input
+    component: str = ""  # ``y`` or ``theta`` of a planar node; the quantity's name for a through variable
 
     def __str__(self) -> str:
         return f"{self.owner}.{self.component}" if self.component else self.owner
@@ -145,53 +135,27 @@ class Stamp:
 
 @dataclass(frozen=True, slots=True)
 class Port:
-    """Where an element is attached: a key of its table and the terminals listed there.
+    """Where an element is attached: a key of its table and the terminals listed there."""
 
-    Parameters
-    ----------
-    name : str
-        The key.
-    terminals : int
-        How many nodes it lists; one is written as a string, more as an array.
-    domain : str
-        What the port acts on. ``any`` takes the domain the node has from other elements;
-        ``planar`` needs both deflection y and slope theta; ``whole`` takes the node as it is.
-    doc : str
-        What the node is.
-    default : tuple of str, optional
-        Nodes used when the key is missing.
-    pair : str
-        The key that names two nodes in its place, the second one for the reaction; empty without one.
-    """
-
-    name: str
-    terminals: int
+    name: str  # the key
+    terminals: int  # how many nodes it lists; one is written as a string, more as an array
+    # What the port acts on. ``any`` takes the domain the node has from other elements; ``planar`` needs both
+    # deflection y and slope theta; ``whole`` takes the node as it is.
     domain: PortDomain
-    doc: str
-    default: tuple[str, ...] | None = None
+    doc: str  # what the node is
+    default: tuple[str, ...] | None = None  # nodes used when the key is missing
+    # The key that names two nodes in its place, the second one for the reaction; empty without one.
     pair: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """A key that takes one of a few words, such as the theory of a beam.
+    """A key that takes one of a few words, such as the theory of a beam."""
 
-    Parameters
-    ----------
-    name : str
-        The key.
-    values : tuple of str
-        What it may say.
-    default : str
-        What holds when the key is missing.
-    doc : str
-        What it decides, in the words of an error message: "a theory".
-    """
-
-    name: str
-    values: tuple[str, ...]
-    default: str
-    doc: str
+    name: str  # the key
+    values: tuple[str, ...]  # what it may say
+    default: str  # what holds when the key is missing
+    doc: str  # what it decides, in the words of an error message: "a theory"
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,36 +172,18 @@ class PortTerminal:
 
 @dataclass(frozen=True, slots=True)
 class ElementUse:
-    """One element of a model, with its values in the ring.
+    """One element of a model, with its values in the ring."""
 
-    Parameters
-    ----------
-    name : str
-        The element's name.
-    s : Factored
-        The Laplace variable.
-    terminals : mapping of str to tuple of PortTerminal
-        Per port, in the order written.
-    domains : mapping of str to str
-        Per port, the domain it was found to have.
-    values : mapping of str to Factored
-        Constant parameters (they may depend on s).
-    forms : mapping of str to LinearForm
-        Values that are expressions of signals.
-    choices : mapping of str to str
-        What was chosen, the theory of a beam for instance.
-    transmission : tuple of tuple of Factored
-        Of a distributed element, row by row, the matrix that takes its state from the first end to the
-        second; empty for others.
-    """
-
-    name: str
-    s: Factored
-    terminals: Mapping[str, tuple[PortTerminal, ...]]
-    domains: Mapping[str, Placing]
-    values: Mapping[str, Factored]
-    forms: Mapping[str, LinearForm] = field(default_factory=dict)
+    name: str  # the element's name
+    s: Factored  # the Laplace variable
+    terminals: Mapping[str, tuple[PortTerminal, ...]]  # per port, in the order written
+    domains: Mapping[str, Placing]  # per port, the domain it was found to have
+    values: Mapping[str, Factored]  # constant parameters (they may depend on s)
+    forms: Mapping[str, LinearForm] = field(default_factory=dict)  # values that are expressions of signals
+    # What was chosen, the theory of a beam for instance.
     choices: Mapping[str, str] = field(default_factory=dict)
+    # Of a distributed element, row by row, the matrix that takes its state from the first end to the second;
+    # empty for others.
     transmission: tuple[tuple[Factored, ...], ...] = ()
 
     @property

@@ -29,21 +29,12 @@ TERM_LIMIT = 5_000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Characteristic:
-    """A characteristic polynomial sorted by what its roots look like.
+    """A characteristic polynomial sorted by what its roots look like."""
 
-    Parameters
-    ----------
-    kind : str
-        As of :class:`symflex.algebra.Dispersion`, or ``polynomial`` when every root is zero.
-    coefficients : tuple of Factored
-        ``c_0, ..., c_(n-1)`` in the shifted exponent.
-    shift : Factored
-        The exponents are the roots minus this.
-    """
-
+    # As of :class:`symflex.algebra.Dispersion`, or ``polynomial`` when every root is zero.
     kind: DispersionKind | str
-    coefficients: tuple[Factored, ...]
-    shift: Factored
+    coefficients: tuple[Factored, ...]  # ``c_0, ..., c_(n-1)`` in the shifted exponent
+    shift: Factored  # the exponents are the roots minus this
 
     @property
     def key(self) -> tuple[str, ...]:
@@ -58,24 +49,12 @@ def _text(value: Factored) -> str:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Component:
-    """A part of a field's states that is coupled to no other part.
+    """A part of a field's states that is coupled to no other part."""
 
-    Parameters
-    ----------
-    states : tuple of int
-        Their positions among the system's states.
-    characteristic : Characteristic
-        Of this part alone.
-    coefficients : tuple of Factored
-        ``c_0, ..., c_(n-1)`` of the same polynomial, not shifted.
-    adjugate : tuple of Matrix
-        ``B_0, ..., B_(n-1)``.
-    """
-
-    states: tuple[int, ...]
-    characteristic: Characteristic
-    coefficients: tuple[Factored, ...]
-    adjugate: tuple[Matrix, ...]
+    states: tuple[int, ...]  # their positions among the system's states
+    characteristic: Characteristic  # of this part alone
+    coefficients: tuple[Factored, ...]  # ``c_0, ..., c_(n-1)`` of the same polynomial, not shifted
+    adjugate: tuple[Matrix, ...]  # ``B_0, ..., B_(n-1)``
 
 
 def components(system: FieldSystem) -> tuple[Component, ...]:

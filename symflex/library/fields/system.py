@@ -22,21 +22,12 @@ Matrix = tuple[tuple["Factored", ...], ...]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FieldSystem:
-    """``dz/dx = matrix(s) z + load(s) u``, Laplace-transformed in time.
+    """``dz/dx = matrix(s) z + load(s) u``, Laplace-transformed in time."""
 
-    Parameters
-    ----------
-    states : tuple of str
-        Names of z. A theory lists its across quantities first and its through quantities after them.
-    matrix : tuple of tuple of Factored
-        Constant in x, rational in s and the parameters.
-    loads : tuple of tuple of Factored
-        One column per input that acts all along the field, uniform in x.
-    """
-
+    # Names of z. A theory lists its across quantities first and its through quantities after them.
     states: tuple[str, ...]
-    matrix: Matrix
-    loads: Matrix = ()
+    matrix: Matrix  # constant in x, rational in s and the parameters
+    loads: Matrix = ()  # one column per input that acts all along the field, uniform in x
 
 
 class FieldTheory(Protocol):

@@ -44,27 +44,16 @@ class Literal:
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """A valid TOML document made from a source by blanking what is wrong in it.
+    """A valid TOML document made from a source by blanking what is wrong in it."""
 
-    Parameters
-    ----------
-    source : Source
-        What the spans refer to.
-    text, masked : str
-        The document and its masked copy, see :class:`symflex.model.spec.scan.Scan`.
-    origin : callable
-        Maps an offset in ``text`` to an offset in the source.
-    invalid : mapping
-        For the origin of each stand-in value, the place of the value it stands in for.
-    adopted : mapping
-        For each stand-in header's name, the path of the table it stands in for.
-    """
-
-    source: Source
+    source: Source  # what the spans refer to
+    # text and masked: the document and its masked copy, see :class:`symflex.model.spec.scan.Scan`.
     text: str
     masked: str
-    origin: Callable[[int], int]
+    origin: Callable[[int], int]  # maps an offset in ``text`` to an offset in the source
+    # For the origin of each stand-in value, the place of the value it stands in for.
     invalid: Mapping[int, Span]
+    # For each stand-in header's name, the path of the table it stands in for.
     adopted: Mapping[str, tuple[str, ...]]
 
 

@@ -63,25 +63,14 @@ _CLOSING = {"[": "]", "{": "}"}
 
 @dataclass(frozen=True, slots=True)
 class Statement:
-    """One ``key = value`` or ``[header]``, or text in its place that is neither.
+    """One ``key = value`` or ``[header]``, or text in its place that is neither."""
 
-    Parameters
-    ----------
-    start, end : int
-        Its characters, a comment on its last line included, the line end not.
-    header : bool
-        Whether it starts with a bracket, or is a key with only the closing one.
-    equals : int, optional
-        Offset of the equals sign after the key.
-    unclosed : int, optional
-        Offset of a quote or bracket that is opened and not closed.
-    """
-
+    # start and end: its characters, a comment on its last line included, the line end not.
     start: int
     end: int
-    header: bool
-    equals: int | None
-    unclosed: int | None
+    header: bool  # whether it starts with a bracket, or is a key with only the closing one
+    equals: int | None  # offset of the equals sign after the key
+    unclosed: int | None  # offset of a quote or bracket that is opened and not closed
 
 
 @dataclass(slots=True)
@@ -213,22 +202,13 @@ class _Scanner:
 
 @dataclass(frozen=True, slots=True)
 class Scan:
-    """A text cut into statements.
+    """A text cut into statements."""
 
-    Parameters
-    ----------
-    text : str
-        The text with a byte order mark replaced by a blank.
-    masked : str
-        The same with ``x`` for every character inside strings and for all that is not ASCII, so
-        that offsets in characters and in bytes are one.
-    statements : tuple of Statement
-        In the order of the text.
-    """
-
-    text: str
+    text: str  # the text with a byte order mark replaced by a blank
+    # The same with ``x`` for every character inside strings and for all that is not ASCII, so that offsets in
+    # characters and in bytes are one.
     masked: str
-    statements: tuple[Statement, ...]
+    statements: tuple[Statement, ...]  # in the order of the text
 
 
 def scan(source: Source) -> Scan:

@@ -14,38 +14,21 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class StringValue:
-    """A string.
+    """A string."""
 
-    Parameters
-    ----------
-    text : Text
-        The decoded string with the place between its quotes. A line break directly after
-        opening triple quotes is no part of the value and stands outside that place.
-    span : Span
-        The whole value, with its quotes.
-    """
-
+    # The decoded string with the place between its quotes. A line break directly after opening triple quotes
+    # is no part of the value and stands outside that place.
     text: Text
-    span: Span
+    span: Span  # the whole value, with its quotes
 
 
 @dataclass(frozen=True, slots=True)
 class NumberValue:
-    """An integer or a decimal, exact.
+    """An integer or a decimal, exact."""
 
-    Parameters
-    ----------
-    value : Fraction
-        The exact value: ``0.1`` is 1/10.
-    literal : str
-        The number as it was written, such as ``1_000`` or ``0xff``.
-    span : Span
-        Where it was written.
-    """
-
-    value: Fraction
-    literal: str
-    span: Span
+    value: Fraction  # the exact value: ``0.1`` is 1/10
+    literal: str  # the number as it was written, such as ``1_000`` or ``0xff``
+    span: Span  # where it was written
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,18 +49,11 @@ class ArrayValue:
 
 @dataclass(frozen=True, slots=True)
 class TableValue:
-    """A table in the order of its text.
+    """A table in the order of its text."""
 
-    Parameters
-    ----------
-    entries : tuple of KeyValue
-        Keys are unique.
-    span : Span
-        The header ``[a.b]`` of the table, or the key of an inline or dotted one, or all of
-        ``{...}`` inside an array. The root's is empty and at the start of the text.
-    """
-
-    entries: tuple[KeyValue, ...]
+    entries: tuple[KeyValue, ...]  # keys are unique
+    # The header ``[a.b]`` of the table, or the key of an inline or dotted one, or all of ``{...}`` inside an
+    # array. The root's is empty and at the start of the text.
     span: Span
     _by_key: Mapping[str, KeyValue] = field(init=False, repr=False, compare=False)
 
@@ -96,38 +72,21 @@ class TableValue:
 
 @dataclass(frozen=True, slots=True)
 class OtherValue:
-    """A value the specification language has no use for, kept so that it can be pointed at.
+    """A value the specification language has no use for, kept so that it can be pointed at."""
 
-    Parameters
-    ----------
-    kind : str
-        ``date-time``, ``date``, ``time``, ``inf``, ``nan``; or ``invalid`` for a value whose
-        syntax error is already reported (only from :func:`symflex.model.spec.parse_with_recovery`).
-    span : Span
-        Where it was written.
-    """
-
+    # ``date-time``, ``date``, ``time``, ``inf``, ``nan``; or ``invalid`` for a value whose syntax error is
+    # already reported (only from :func:`symflex.model.spec.parse_with_recovery`).
     kind: str
-    span: Span
+    span: Span  # where it was written
 
 
 @dataclass(frozen=True, slots=True)
 class KeyValue:
-    """One ``key = value``, or a table under its key.
+    """One ``key = value``, or a table under its key."""
 
-    Parameters
-    ----------
-    key : str
-        The decoded key, one part of a dotted one.
-    key_span : Span
-        That part as it was written, with its quotes if it has any.
-    value : Value
-        What it holds.
-    """
-
-    key: str
-    key_span: Span
-    value: Value
+    key: str  # the decoded key, one part of a dotted one
+    key_span: Span  # that part as it was written, with its quotes if it has any
+    value: Value  # what it holds
 
 
 @dataclass(frozen=True, slots=True)

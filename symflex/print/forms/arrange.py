@@ -40,27 +40,16 @@ FACTOR_LIMIT = 400
 
 @dataclass(frozen=True)
 class Arranger:
-    """Arranges polynomials of one ring.
+    """Arranges polynomials of one ring."""
 
-    Parameters
-    ----------
-    ring : Ring
-        The generators, s first, in declared order.
-    names : mapping of str to Expression
-        What to print for a generator, where it is not its own name (closed sums).
-    degrees : mapping of str to int
-        Degree in s of such generators, so that they stand where their power belongs.
-    apart : frozenset of str
-        Functions of s: they stand after what multiplies them, and a sum that begins with one begins with a
-        plus.
-    kept : KeptDefinitions or None
-        Polynomials may be of its source; they are arranged over its ring, which is ``ring``.
-    """
-
-    ring: Ring
+    ring: Ring  # the generators, s first, in declared order
+    # What to print for a generator, where it is not its own name (closed sums).
     names: Mapping[str, Expression]
-    degrees: Mapping[str, int]
+    degrees: Mapping[str, int]  # degree in s of such generators, so that they stand where their power belongs
+    # Functions of s: they stand after what multiplies them, and a sum that begins with one begins with a
+    # plus.
     apart: frozenset[str] = frozenset()
+    # Polynomials may be of its source; they are arranged over its ring, which is ``ring``.
     kept: KeptDefinitions | None = None
 
     @staticmethod

@@ -35,18 +35,10 @@ Laurent = dict[tuple[int, int], tuple[int, int]]
 
 @dataclass(frozen=True, eq=False)
 class Invariants:
-    """The change from kernels to Krylov-Duncan functions, for one table.
+    """The change from kernels to Krylov-Duncan functions, for one table."""
 
-    Parameters
-    ----------
-    source : Ring
-        Of the kernels.
-    table : KernelTable
-        Its kernels, none of them of a dispersion without a formula for its wavenumbers.
-    """
-
-    source: Ring
-    table: KernelTable
+    source: Ring  # of the kernels
+    table: KernelTable  # its kernels, none of them of a dispersion without a formula for its wavenumbers
 
     @cached_property
     def angles(self) -> tuple[tuple[Angle, ...], ...]:

@@ -32,20 +32,11 @@ REWRITE_LIMIT = 5_000
 
 @dataclass(frozen=True, eq=False)
 class KeptDefinitions:
-    """Rewrites polynomials of one ring in definitions.
+    """Rewrites polynomials of one ring in definitions."""
 
-    Parameters
-    ----------
-    source : Ring
-        Of the form.
-    place : int
-        Of the first generator that is no parameter.
-    values : tuple of (str, Factored)
-        Definitions that are polynomials of its generators with whole coefficients, and of earlier ones.
-    """
-
-    source: Ring
-    place: int
+    source: Ring  # of the form
+    place: int  # of the first generator that is no parameter
+    # Definitions that are polynomials of its generators with whole coefficients, and of earlier ones.
     values: tuple[tuple[str, Factored], ...]
 
     @staticmethod

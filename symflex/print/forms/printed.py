@@ -19,32 +19,20 @@ S: Final = Name(LAPLACE)
 
 @dataclass(frozen=True, slots=True)
 class PrintedForm:
-    """A transfer function as an author would write it.
+    """A transfer function as an author would write it."""
 
-    Parameters
-    ----------
-    name : str
-        The form's name, a key of ``FORMS``.
-    num, den : Expression
-        Numerator and denominator, terms and factors in the order of print.
-    where : tuple of (str, Expression)
-        The names that occur and what they stand for; a line may use the names of any other, without cycles.
-    laws : tuple of (str, Equation)
-        Functions of x that occur, with the differential equation each solves: at x = 0 the highest but one of
-        its derivatives is one and those before it are zero. Only for field equations whose exponents have no
-        formula.
-    argument : Expression
-        Of the transfer function: s, or the imaginary unit times the angular frequency.
-    stability : StabilityVerdict, optional
-        Of a form that lists poles: whether the model is stable, which hidden modes decide too.
-    """
-
-    name: str
+    name: str  # the form's name, a key of ``FORMS``
+    # num and den: numerator and denominator, terms and factors in the order of print.
     num: Expression
     den: Expression
+    # The names that occur and what they stand for; a line may use the names of any other, without cycles.
     where: tuple[tuple[str, Expression], ...] = ()
+    # Functions of x that occur, with the differential equation each solves: at x = 0 the highest but one of
+    # its derivatives is one and those before it are zero. Only for field equations whose exponents have no
+    # formula.
     laws: tuple[tuple[str, Equation], ...] = ()
-    argument: Expression = S
+    argument: Expression = S  # of the transfer function: s, or the imaginary unit times the angular frequency
+    # Of a form that lists poles: whether the model is stable, which hidden modes decide too.
     stability: StabilityVerdict | None = None
 
     def at(self, name: str) -> str:

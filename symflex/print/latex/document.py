@@ -65,24 +65,12 @@ class _Block:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    r"""A figure that a document inputs.
+    r"""A figure that a document inputs."""
 
-    Parameters
-    ----------
-    name : str
-        Of its file, without suffix.
-    latex : str
-        A ``pgfpicture`` as wide as the column.
-    title : str
-        Plain text; what it shows.
-    of : tuple of TransferFunction
-        Whose it shows that of; empty where that goes without saying.
-    """
-
-    name: str
-    latex: str
-    title: str
-    of: tuple[TransferFunction, ...] = ()
+    name: str  # of its file, without suffix
+    latex: str  # a ``pgfpicture`` as wide as the column
+    title: str  # plain text; what it shows
+    of: tuple[TransferFunction, ...] = ()  # whose it shows that of; empty where that goes without saying
 
 
 def latex_fragment(tf: AnyTransferFunction, form: PrintedForm, *, width_mm: float = TEXT_WIDTH_MM) -> str:

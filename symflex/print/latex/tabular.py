@@ -28,27 +28,13 @@ _DOT: Final = 0.28
 
 @dataclass(frozen=True, slots=True)
 class TabularColumn:
-    """A column of a table.
+    """A column of a table."""
 
-    Parameters
-    ----------
-    format : str
-        For ``tabular``: ``l``, ``S[...]``, ``p{...}``.
-    head : tuple of str
-        Lines of its head.
-    head_widths : tuple of float
-        Of these lines [em].
-    cells : tuple of str
-        LaTeX.
-    width : float
-        Of the widest cell [em].
-    """
-
-    format: str
-    head: tuple[str, ...]
-    head_widths: tuple[float, ...]
-    cells: tuple[str, ...]
-    width: float
+    format: str  # for ``tabular``: ``l``, ``S[...]``, ``p{...}``
+    head: tuple[str, ...]  # lines of its head
+    head_widths: tuple[float, ...]  # of these lines [em]
+    cells: tuple[str, ...]  # LaTeX
+    width: float  # of the widest cell [em]
 
     def needs(self, *, is_stacked: bool) -> float:
         """Return the width that the column takes [em], its head in one line or in several."""
@@ -58,24 +44,12 @@ class TabularColumn:
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """How a table is set.
+    """How a table is set."""
 
-    Parameters
-    ----------
-    size : str
-        Command that chooses the size of type, empty for the text's own.
-    scale : float
-        How wide letters are then.
-    is_stacked : bool
-        Heads stand in several lines.
-    is_dense : bool
-        Columns stand closer.
-    """
-
-    size: str
-    scale: float
-    is_stacked: bool
-    is_dense: bool = False
+    size: str  # command that chooses the size of type, empty for the text's own
+    scale: float  # how wide letters are then
+    is_stacked: bool  # heads stand in several lines
+    is_dense: bool = False  # columns stand closer
 
     def width(self, columns: Sequence[TabularColumn]) -> float:
         """Return the width of a table set like this [em of ten points]."""

@@ -32,21 +32,11 @@ _ARGUMENT_OF_S: Final = (
 
 @dataclass(frozen=True, slots=True)
 class MathRow:
-    """One equation: its left side, and its right side in pieces between which a line may end.
+    """One equation: its left side, and its right side in pieces between which a line may end."""
 
-    Parameters
-    ----------
-    left : str
-        MathML.
-    pieces : tuple of str
-        MathML, to be shown one after the other.
-    is_where : bool
-        It says what a name stands for.
-    """
-
-    left: str
-    pieces: tuple[str, ...]
-    is_where: bool = False
+    left: str  # MathML
+    pieces: tuple[str, ...]  # MathML, to be shown one after the other
+    is_where: bool = False  # it says what a name stands for
 
 
 def ratio_mathml(tf: TransferFunction) -> str:

@@ -23,36 +23,19 @@ WORST: Final[tuple[Verdict, ...]] = ("not examined", "does not hold", "holds wit
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """What a check found.
+    """What a check found."""
 
-    Parameters
-    ----------
-    verdict : str
-        ``holds``, ``holds with a condition``, ``does not hold`` or ``not examined``.
-    evidence : tuple of Run
-        The numbers it rests on, or why nothing was examined.
-    """
-
-    verdict: Verdict
-    evidence: tuple[Run, ...]
+    verdict: Verdict  # ``holds``, ``holds with a condition``, ``does not hold`` or ``not examined``
+    evidence: tuple[Run, ...]  # the numbers it rests on, or why nothing was examined
 
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """A predicate with what its author adds to the evidence.
+    """A predicate with what its author adds to the evidence."""
 
-    Parameters
-    ----------
-    predicate : Predicate
-        With its values, but for what is checked.
-    of : tuple of str
-        What is checked: ``"model: OUT/IN"``, or the name of a model's file without suffix.
-    note, condition : str
-        Sentences; with a condition, what holds does so under it.
-    """
-
-    predicate: Predicate
-    of: tuple[str, ...]
+    predicate: Predicate  # with its values, but for what is checked
+    of: tuple[str, ...]  # what is checked: ``"model: OUT/IN"``, or the name of a model's file without suffix
+    # note and condition: Sentences; with a condition, what holds does so under it.
     note: str = ""
     condition: str = ""
 
@@ -69,27 +52,13 @@ class Check:
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """A statement of a publication.
+    """A statement of a publication."""
 
-    Parameters
-    ----------
-    key : str
-        A short name, of letters and hyphens.
-    place : str
-        The section it stands in.
-    quote : str
-        Its words.
-    checks : tuple of Check
-        All of them have to hold.
-    is_quotation : bool
-        The words are the publication's own.
-    """
-
-    key: str
-    place: str
-    quote: str
-    checks: tuple[Check, ...]
-    is_quotation: bool = True
+    key: str  # a short name, of letters and hyphens
+    place: str  # the section it stands in
+    quote: str  # its words
+    checks: tuple[Check, ...]  # all of them have to hold
+    is_quotation: bool = True  # the words are the publication's own
 
     def judge(self, models: Models) -> Finding:
         """Return the finding; what needs a model that is not there is not examined."""
@@ -109,24 +78,12 @@ class Claim:
 
 @dataclass(frozen=True, slots=True)
 class Publication:
-    """A publication and what it claims of its models.
+    """A publication and what it claims of its models."""
 
-    Parameters
-    ----------
-    name : str
-        What the ``source`` of its specifications begins with.
-    title : str
-        Its title.
-    models : tuple of str
-        Its models, in its own order.
-    claims : tuple of Claim
-        In the order in which it makes them.
-    """
-
-    name: str
-    title: str
-    models: tuple[str, ...]
-    claims: tuple[Claim, ...]
+    name: str  # what the ``source`` of its specifications begins with
+    title: str  # its title
+    models: tuple[str, ...]  # its models, in its own order
+    claims: tuple[Claim, ...]  # in the order in which it makes them
 
 
 def model_of(name: str) -> str:

@@ -38,19 +38,12 @@ SHORTEST = 1e-12
 
 @dataclass(frozen=True, slots=True)
 class ArcTerm:
-    """Terms ``c x^n`` before one exponential.
+    """Terms ``c x^n`` before one exponential."""
 
-    Parameters
-    ----------
-    linear, square : acb
-        Rates p of x and q of x^2.
-    powers : tuple of (int, acb)
-        n and c.
-    """
-
+    # linear and square: rates p of x and q of x^2.
     linear: acb
     square: acb
-    powers: tuple[tuple[int, acb], ...]
+    powers: tuple[tuple[int, acb], ...]  # n and c
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,15 +59,9 @@ class _Size:
 
 @dataclass(frozen=True, eq=False)
 class ArcSum:
-    """A sum of exponentials.
+    """A sum of exponentials."""
 
-    Parameters
-    ----------
-    terms : tuple of ArcTerm
-        What is summed.
-    """
-
-    terms: tuple[ArcTerm, ...]
+    terms: tuple[ArcTerm, ...]  # what is summed
 
     @cached_property
     def _sizes(self) -> tuple[_Size, ...]:

@@ -36,24 +36,12 @@ Rate = tuple[arb, arb]
 
 @dataclass(frozen=True, slots=True)
 class Enclosures:
-    """What coefficients and arguments are made of.
+    """What coefficients and arguments are made of."""
 
-    Parameters
-    ----------
-    bits : int
-        Precision of what follows.
-    constants : sequence of arb
-        Numbers in coefficients.
-    rates : sequence of arb
-        Per argument what a power of t is multiplied with.
-    degrees : sequence of int
-        That power: 1 or 2.
-    """
-
-    bits: int
-    constants: Sequence[arb]
-    rates: Sequence[arb]
-    degrees: Sequence[int]
+    bits: int  # precision of what follows
+    constants: Sequence[arb]  # numbers in coefficients
+    rates: Sequence[arb]  # per argument what a power of t is multiplied with
+    degrees: Sequence[int]  # that power: 1 or 2
 
     def rate(self, multiples: Multiples) -> Rate:
         """Return what t and t^2 are multiplied with in a combination of arguments."""
@@ -82,21 +70,11 @@ class Enclosures:
 
 @dataclass(frozen=True, eq=False)
 class AxisFunction:
-    """A real function of t.
+    """A real function of t."""
 
-    Parameters
-    ----------
-    waves : tuple of AxisWave
-        Its terms; at least one does not grow, and the others, for large t, decay.
-    axis : int
-        0 real, 1 imaginary.
-    enclosures : Enclosures
-        What its terms are made of.
-    """
-
-    waves: tuple[AxisWave, ...]
-    axis: int
-    enclosures: Enclosures
+    waves: tuple[AxisWave, ...]  # its terms; at least one does not grow, and the others, for large t, decay
+    axis: int  # 0 real, 1 imaginary
+    enclosures: Enclosures  # what its terms are made of
 
     @overload
     def natural_frequency(self, t: arb) -> arb: ...
@@ -154,21 +132,14 @@ Term = tuple[int, int, Powers, Powers]
 
 @dataclass(frozen=True, slots=True)
 class _Numbers:
-    """What a function of t and its derivative are made of.
+    """What a function of t and its derivative are made of."""
 
-    Parameters
-    ----------
-    growths, phases : list of (arb, arb)
-        Rates of t and t^2 in exponentials, and in sines and cosines.
-    products : sequence of (int, int) or None
-        Of exponentials that are products of two before them, the positions of these.
-    values, slopes : list of Term
-        What is summed.
-    """
-
+    # growths and phases: rates of t and t^2 in exponentials, and in sines and cosines.
     growths: list[Rate]
     phases: list[Rate]
+    # Of exponentials that are products of two before them, the positions of these.
     products: Sequence[tuple[int, int] | None]
+    # values and slopes: what is summed.
     values: list[Term]
     slopes: list[Term]
 

@@ -54,18 +54,11 @@ UNITS: Mapping[int, Gaussian] = {REAL: (1, 0), IMAGINARY: (1, 1)}
 
 @dataclass(frozen=True, eq=False)
 class LosslessFunction:
-    """A product of powers of sums of exponentials of x.
+    """A product of powers of sums of exponentials of x."""
 
-    Parameters
-    ----------
-    factors : tuple of (ExponentialSum, int)
-        The sums over x, and their exponents; the first generator is x, the others are constants.
-    enclosures : Enclosures
-        What terms are made of.
-    """
-
+    # The sums over x, and their exponents; the first generator is x, the others are constants.
     factors: tuple[tuple[ExponentialSum, int], ...]
-    enclosures: Enclosures
+    enclosures: Enclosures  # what terms are made of
 
     def on_axis(self, number: int, axis: int) -> AxisFunction | None:
         """Return one factor, divided by what grows fastest, as a real function on an axis.
@@ -191,18 +184,10 @@ def lossless_function(function: KernelFunction, bits: int) -> LosslessFunction |
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Law:
-    """A wavenumber proportional to x or x^2: the fourth or square root of a multiple of s^2.
+    """A wavenumber proportional to x or x^2: the fourth or square root of a multiple of s^2."""
 
-    Parameters
-    ----------
-    degree : int
-        Of x.
-    multiple : Factored
-        What s^2 is multiplied with.
-    """
-
-    degree: int
-    multiple: Factored
+    degree: int  # of x
+    multiple: Factored  # what s^2 is multiplied with
 
 
 def _law_of(bound: BoundTransferFunction, argument: Argument) -> _Law | None:

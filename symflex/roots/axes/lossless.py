@@ -75,24 +75,12 @@ FIRST_PHASE = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class SignChange:
-    """A sign change of one factor on one axis.
+    """A sign change of one factor on one axis."""
 
-    Parameters
-    ----------
-    frequency : float
-        abs(s) [rad/s].
-    t : float
-        Where, in the variable of the axis.
-    source : AxisFunction
-        The factor there.
-    exponent : int
-        Of the factor: the root's multiplicity.
-    """
-
-    frequency: float
-    t: float
-    source: AxisFunction
-    exponent: int
+    frequency: float  # abs(s) [rad/s]
+    t: float  # where, in the variable of the axis
+    source: AxisFunction  # the factor there
+    exponent: int  # of the factor: the root's multiplicity
 
 
 class LosslessSearch:

@@ -53,14 +53,10 @@ class Path(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class LogarithmicLine:
-    """What is straight in z = ln(s).
+    """What is straight in z = ln(s)."""
 
-    Parameters
-    ----------
-    start, end : complex
-        z; an imaginary part that is the double nearest to pi or pi/2 stands for that number itself.
-    """
-
+    # start and end: z; an imaginary part that is the double nearest to pi or pi/2 stands for that number
+    # itself.
     start: complex
     end: complex
 
@@ -85,18 +81,10 @@ class LogarithmicLine:
 
 @dataclass(frozen=True, slots=True)
 class Circle:
-    """About an exact point.
+    """About an exact point."""
 
-    Parameters
-    ----------
-    centre : acb
-        Exact.
-    radius : arb
-        Exact [rad/s].
-    """
-
-    centre: acb
-    radius: arb
+    centre: acb  # exact
+    radius: arb  # exact [rad/s]
 
     def point(self, t: float) -> acb:
         """Return a point."""

@@ -40,24 +40,12 @@ BITS_A_POINT = 6
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LocalSeries:
-    """The first terms of ``F(c + x)``, and a bound of the others.
+    """The first terms of ``F(c + x)``, and a bound of the others."""
 
-    Parameters
-    ----------
-    centre : acb
-        c, exact [rad/s].
-    coefficients : tuple of acb
-        Of the powers of x from 0 on.
-    reach : arb
-        Radius of a disc where F is analytic [rad/s].
-    bound : arb
-        At least abs(F) on that disc's circle.
-    """
-
-    centre: acb
-    coefficients: tuple[acb, ...]
-    reach: arb
-    bound: arb
+    centre: acb  # c, exact [rad/s]
+    coefficients: tuple[acb, ...]  # of the powers of x from 0 on
+    reach: arb  # radius of a disc where F is analytic [rad/s]
+    bound: arb  # at least abs(F) on that disc's circle
 
     def count(self, radius: arb) -> int | None:
         """Return how many roots are closer to the centre than a radius; ``None`` where no term outweighs all.

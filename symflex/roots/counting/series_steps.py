@@ -47,14 +47,9 @@ NOTHING = (inf, arb("nan"))
 
 @dataclass(eq=False)
 class SeriesSteps:
-    """Follows one function by its power series.
+    """Follows one function by its power series."""
 
-    Parameters
-    ----------
-    function : KernelFunction
-        Its :attr:`~symflex.roots.functions.kernel_function.KernelFunction.power` is followed.
-    """
-
+    # Its :attr:`~symflex.roots.functions.kernel_function.KernelFunction.power` is followed.
     function: KernelFunction
     _last: LocalSeries | None = field(default=None, init=False)
     _bits: int = field(default=0, init=False)

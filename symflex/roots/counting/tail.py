@@ -55,18 +55,10 @@ NO_LOSS = "poles of waves without enough loss have no end along the axis"
 
 @dataclass(frozen=True, slots=True)
 class Tail:
-    """How far from 0 roots may lie in the closed right half plane.
+    """How far from 0 roots may lie in the closed right half plane."""
 
-    Parameters
-    ----------
-    radius : float or None
-        Beyond which it is proved that there is none [rad/s].
-    reason : str
-        Why there is no such radius; empty where there is one.
-    """
-
-    radius: float | None
-    reason: str = ""
+    radius: float | None  # beyond which it is proved that there is none [rad/s]
+    reason: str = ""  # why there is no such radius; empty where there is one
 
     def __post_init__(self) -> None:
         if (self.radius is None) != bool(self.reason):

@@ -30,21 +30,11 @@ ROUNDING = 1e-15
 
 @dataclass(frozen=True, slots=True)
 class Proof:
-    """Whether the roots of one side are all there.
+    """Whether the roots of one side are all there."""
 
-    Parameters
-    ----------
-    counted : int
-        Roots in the domain searched, by a certified count; those found where there is none.
-    found : int
-        Roots proved there.
-    reason : str, optional
-        Why the count is not certified.
-    """
-
-    counted: int
-    found: int
-    reason: str | None = None
+    counted: int  # roots in the domain searched, by a certified count; those found where there is none
+    found: int  # roots proved there
+    reason: str | None = None  # why the count is not certified
 
     @property
     def is_complete(self) -> bool:
@@ -54,27 +44,13 @@ class Proof:
 
 @dataclass(frozen=True, slots=True)
 class Count:
-    """Counts the roots of one function with kernels by boundaries.
+    """Counts the roots of one function with kernels by boundaries."""
 
-    Parameters
-    ----------
-    winding : CertifiedWinding
-        Counts with proof.
-    order : int
-        To which the function vanishes at s = 0.
-    holes : tuple of Cell
-        What is left out of every domain.
-    left : float
-        pi, or pi/2 where roots mirror each other in the imaginary axis.
-    lossless : LosslessSearch, optional
-        Counts on arcs more quickly.
-    """
-
-    winding: CertifiedWinding
-    order: int
-    holes: tuple[Cell, ...]
-    left: float
-    lossless: LosslessSearch | None = None
+    winding: CertifiedWinding  # counts with proof
+    order: int  # to which the function vanishes at s = 0
+    holes: tuple[Cell, ...]  # what is left out of every domain
+    left: float  # pi, or pi/2 where roots mirror each other in the imaginary axis
+    lossless: LosslessSearch | None = None  # counts on arcs more quickly
 
     def within(self, z: float) -> int:
         """Return how many roots lie within exp(z), those at 0 included.

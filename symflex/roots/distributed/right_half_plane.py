@@ -41,18 +41,10 @@ MARGIN = 1.01
 
 @dataclass(frozen=True, slots=True)
 class RightHalfPlane:
-    """The roots of one function in the right half plane.
+    """The roots of one function in the right half plane."""
 
-    Parameters
-    ----------
-    roots : tuple of Root
-        Those found, on the imaginary axis too.
-    unproved : str
-        Why there may be others; empty where there are none.
-    """
-
-    roots: tuple[Root, ...]
-    unproved: str = ""
+    roots: tuple[Root, ...]  # those found, on the imaginary axis too
+    unproved: str = ""  # why there may be others; empty where there are none
 
 
 def search_right(

@@ -25,19 +25,12 @@ Doubles = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class SampledSum:
-    """One sum at many points.
+    """One sum at many points."""
 
-    Parameters
-    ----------
-    size, phase : ndarray
-        The real and imaginary parts of its logarithm; the latter up to whole turns [rad].
-    share : ndarray
-        Size of the sum over the sizes of what is summed: how much cancels.
-    """
-
+    # size and phase: the real and imaginary parts of its logarithm; the latter up to whole turns [rad].
     size: Doubles
     phase: Doubles
-    share: Doubles
+    share: Doubles  # size of the sum over the sizes of what is summed: how much cancels
 
 
 class DoubleSums:

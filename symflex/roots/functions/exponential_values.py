@@ -31,21 +31,11 @@ Valued = tuple[tuple[acb, tuple[tuple[str, int], ...]], ...]
 
 @dataclass(frozen=True, eq=False)
 class ExponentialValues:
-    """Evaluates sums of exponentials at one precision.
+    """Evaluates sums of exponentials at one precision."""
 
-    Parameters
-    ----------
-    evaluator : KernelValues
-        Of the ring of kernels.
-    arguments : tuple of Argument
-        Of all sums.
-    sums : tuple of (ExponentialSum, int)
-        Factors and their exponents.
-    """
-
-    evaluator: KernelValues
-    arguments: tuple[Argument, ...]
-    sums: tuple[tuple[ExponentialSum, int], ...]
+    evaluator: KernelValues  # of the ring of kernels
+    arguments: tuple[Argument, ...]  # of all sums
+    sums: tuple[tuple[ExponentialSum, int], ...]  # factors and their exponents
 
     @cached_property
     def coefficients(self) -> tuple[tuple[Valued, ...], ...]:
@@ -154,20 +144,11 @@ class ExponentialValues:
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """What sums are made of at one place.
+    """What sums are made of at one place."""
 
-    Parameters
-    ----------
-    values : mapping of str to acb or acb_series
-        Of s, constants and wavenumbers.
-    arguments : sequence of acb or acb_series
-        Of the exponentials.
-    products, amplitudes : dict
-        What is known already of products of generators, and of sums.
-    """
-
-    values: Mapping[str, Value]
-    arguments: Sequence[Value]
+    values: Mapping[str, Value]  # of s, constants and wavenumbers
+    arguments: Sequence[Value]  # of the exponentials
+    # products and amplitudes: what is known already of products of generators, and of sums.
     products: dict[tuple[tuple[str, int], ...], Value] = field(default_factory=dict)
     amplitudes: dict[int, list[Value]] = field(default_factory=dict)
 

@@ -64,30 +64,15 @@ FactorBall = tuple[acb, acb, int]
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """Value and slope of a function F at a point.
+    """Value and slope of a function F at a point."""
 
-    Parameters
-    ----------
-    log : complex
-        ln F, its imaginary part up to whole turns.
-    slope : complex
-        The logarithmic derivative in the coordinate of the path.
-    """
-
-    log: complex
-    slope: complex
+    log: complex  # ln F, its imaginary part up to whole turns
+    slope: complex  # the logarithmic derivative in the coordinate of the path
 
 
 @dataclass(eq=False)
 class KernelFunction:
     """A product of powers of polynomials in s, wavenumbers and kernels.
-
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        Whose ring and kernels they are.
-    part : Factored
-        Factors of s, of wavenumbers and of kernels; entire together.
 
     Attributes
     ----------
@@ -98,8 +83,8 @@ class KernelFunction:
         Terms evaluated so far; grows with use, so that searches can keep to a budget.
     """
 
-    bound: BoundTransferFunction
-    part: Factored
+    bound: BoundTransferFunction  # whose ring and kernels they are
+    part: Factored  # factors of s, of wavenumbers and of kernels; entire together
     power: int = field(default=1, init=False)
     work: int = field(default=0, init=False)
 

@@ -70,21 +70,12 @@ MODES_LIMIT = 2000
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """What a search brought to light.
+    """What a search brought to light."""
 
-    Parameters
-    ----------
-    roots : tuple of Root
-        In the upper half plane, for even functions in its right quadrant; both with the axes.
-    missing : int
-        Roots that were counted but not found.
-    cell : Cell, optional
-        What was searched.
-    """
-
+    # In the upper half plane, for even functions in its right quadrant; both with the axes.
     roots: tuple[Root, ...]
-    missing: int
-    cell: Cell | None = None
+    missing: int  # roots that were counted but not found
+    cell: Cell | None = None  # what was searched
 
 
 class RootSearch:

@@ -46,25 +46,14 @@ class _SlowError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """A box that holds exactly one root of one factor, and what is known of the others there.
+    """A box that holds exactly one root of one factor, and what is known of the others there."""
 
-    Parameters
-    ----------
-    re, im : arb
-        Enclosures of the root [rad/s], exactly zero where symmetry proves that.
-    reach : arb
-        Half the side of the box in which there is no other root of the factor [rad/s].
-    exponent : int
-        Of the factor.
-    touching : tuple of int
-        Other factors that may have a root in the box.
-    """
-
+    # re and im: enclosures of the root [rad/s], exactly zero where symmetry proves that.
     re: arb
     im: arb
-    reach: arb
-    exponent: int
-    touching: tuple[int, ...]
+    reach: arb  # half the side of the box in which there is no other root of the factor [rad/s]
+    exponent: int  # of the factor
+    touching: tuple[int, ...]  # other factors that may have a root in the box
 
 
 def prove_simple(

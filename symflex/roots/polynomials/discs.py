@@ -35,21 +35,11 @@ CENTRE_STEPS = 40
 
 @dataclass(frozen=True, slots=True)
 class Disc:
-    """A disc in the closed upper half plane, or about a centre on the real axis.
+    """A disc in the closed upper half plane, or about a centre on the real axis."""
 
-    Parameters
-    ----------
-    centre : acb
-        An exact point; imaginary part positive, or exactly zero.
-    radius : arb
-        Exact; infinite when nothing could be proved.
-    count : int
-        Roots in the disc, once a set of discs is :func:`complete`.
-    """
-
-    centre: acb
-    radius: arb
-    count: int = 1
+    centre: acb  # an exact point; imaginary part positive, or exactly zero
+    radius: arb  # exact; infinite when nothing could be proved
+    count: int = 1  # roots in the disc, once a set of discs is :func:`complete`
 
     @property
     def is_real(self) -> bool:
@@ -63,22 +53,13 @@ class Disc:
 
 @dataclass(frozen=True, slots=True)
 class LevelPolynomial:
-    """A real polynomial at the current working precision, with its derivative.
+    """A real polynomial at the current working precision, with its derivative."""
 
-    Parameters
-    ----------
-    value, slope : acb_poly
-        The polynomial, its coefficients real balls, and its derivative.
-    degree : int
-        Of the polynomial, known exactly.
-    budget : Budget
-        Heeded between evaluations: no limit by default.
-    """
-
+    # value and slope: the polynomial, its coefficients real balls, and its derivative.
     value: acb_poly
     slope: acb_poly
-    degree: int
-    budget: Budget = field(default_factory=Budget)
+    degree: int  # of the polynomial, known exactly
+    budget: Budget = field(default_factory=Budget)  # heeded between evaluations: no limit by default
 
     @classmethod
     def of(cls, polynomial: acb_poly, budget: Budget | None = None) -> LevelPolynomial:

@@ -21,37 +21,19 @@ from symflex.roots.problem import PolynomialInS, RealConstant, RootProblem
 
 @dataclass(frozen=True, slots=True)
 class SquareFreePart:
-    """A square-free polynomial without the root 0.
+    """A square-free polynomial without the root 0."""
 
-    Parameters
-    ----------
-    polynomial : PolynomialInS
-        In s, or in z = s^2 when ``in_square``.
-    multiplicity : int
-        Of every root of the part in the whole product.
-    in_square : bool
-        The roots s are plus and minus the square roots of the polynomial's roots.
-    """
-
-    polynomial: PolynomialInS
-    multiplicity: int
-    in_square: bool
+    polynomial: PolynomialInS  # in s, or in z = s^2 when ``in_square``
+    multiplicity: int  # of every root of the part in the whole product
+    in_square: bool  # the roots s are plus and minus the square roots of the polynomial's roots
 
 
 @dataclass(frozen=True, slots=True)
 class Splitting:
-    """A product of polynomials, taken apart exactly.
+    """A product of polynomials, taken apart exactly."""
 
-    Parameters
-    ----------
-    zeros : int
-        Multiplicity of the root s = 0.
-    parts : tuple of SquareFreePart
-        Pairwise coprime.
-    """
-
-    zeros: int
-    parts: tuple[SquareFreePart, ...]
+    zeros: int  # multiplicity of the root s = 0
+    parts: tuple[SquareFreePart, ...]  # pairwise coprime
 
 
 def split(problem: RootProblem, budget: Budget | None = None) -> Splitting:
