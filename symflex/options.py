@@ -461,7 +461,7 @@ def band_ends(band: Ends, *, above_zero: bool = False) -> tuple[Fraction, Fracti
     Raises
     ------
     UsageError
-        SF902 for a text that is no frequency, where the first is not the lower one, and for 0 where
+        SF902 for a text that is not a frequency, where the first is not the lower one, and for 0 where
         frequencies are equally spaced in their logarithm.
 
     Examples
@@ -519,7 +519,7 @@ def tolerance(given: Stated, flag: str, units: tuple[str, ...], example: str) ->
     Raises
     ------
     UsageError
-        SF902 for a text that is no positive number.
+        SF902 for a text that is not a positive number.
     """
     value = plain_number(given, units)
     if isinstance(given, str) and not 0 < value < inf:
@@ -534,7 +534,7 @@ def axis_ends(given: Ends | None, flag: str, *, is_frequency: bool = False) -> t
     Raises
     ------
     UsageError
-        SF902 for what is no number, and where the first is not the lower one.
+        SF902 for what is not a number, and where the first is not the lower one.
     """
     if given is None:
         return None

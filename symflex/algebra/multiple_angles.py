@@ -36,7 +36,7 @@ def lift(ring: Ring, polynomial: fmpz_mpoly, angle: KernelPair, n: int) -> Facto
     Returns
     -------
     Factored or None
-        ``None`` when the polynomial is no polynomial in kernels of the multiple.
+        ``None`` when the polynomial is not one in kernels of the multiple.
     """
     even, odd = ring.index[angle.even.generator], ring.index[angle.odd.generator]
     parts: dict[tuple[int, int], dict[tuple[int, ...], int]] = {}

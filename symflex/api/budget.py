@@ -14,7 +14,7 @@ def budget_of(seconds: float | None) -> Budget:
     Parameters
     ----------
     seconds : float or None
-        Time [s]; ``None`` is no limit of its own.
+        Time [s]; ``None``: no limit of its own.
 
     Raises
     ------

@@ -63,7 +63,7 @@ def write_report(
     Raises
     ------
     SpecError, ModelError
-        With every problem of all files that are no solvable models, before anything is computed.
+        With every problem of all files that are not solvable models, before anything is computed.
     UsageError
         SF902 no specification; SF903 a file cannot be written.
 

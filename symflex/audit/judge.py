@@ -72,7 +72,7 @@ def judge(tf: TransferFunction, published: Published) -> Audit:
     ------
     SpecError
         SF210 an unknown name, SF212 a name that may not stand in a formula, SF215 lines in a circle, SF224 a
-        division by zero, SF225 an exponent that is no number.
+        division by zero, SF225 an exponent that is not a number.
 
     Examples
     --------

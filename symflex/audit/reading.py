@@ -62,7 +62,7 @@ def formula_of(published: Published, model: Model) -> Formula:
     ------
     SpecError
         SF210 an unknown name or function, SF212 a name that may not stand here, SF215 lines that use each
-        other in a circle, SF225 an exponent that is no number: every problem at once, each at its place.
+        other in a circle, SF225 an exponent that is not a number: every problem at once, each at its place.
     """
     where = dict(published.where)
     definitions = {d.name: d.expression for d in model.definitions if d.name not in where}

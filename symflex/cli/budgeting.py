@@ -55,7 +55,7 @@ class Seconds(click.ParamType[float]):
         except ValueError:
             seconds = 0.0
         if not 0 < seconds < inf:
-            self.fail(f"'{str(value)[:40]}' is no positive number of seconds", param, ctx)
+            self.fail(f"'{str(value)[:40]}' is not a positive number of seconds", param, ctx)
         return seconds
 
 
@@ -69,7 +69,7 @@ class Memory(click.ParamType[int]):
         found = SIZE.fullmatch(str(value))
         size = min(int(float(found[1]) * UNITS[found[2].upper()]), sys.maxsize) if found else 0
         if size < SMALLEST_MEMORY:
-            message = f"'{str(value)[:40]}' is no amount of memory such as '4 GB', of 250 MB or more"
+            message = f"'{str(value)[:40]}' is not an amount of memory such as '4 GB', of 250 MB or more"
             self.fail(message, param, ctx)
         return size
 

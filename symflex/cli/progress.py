@@ -73,7 +73,7 @@ class ProgressBar:
         Parameters
         ----------
         done : float
-            The part done, from 0 to 1; what lies outside, or is no number, is drawn as the nearest or as 0.
+            The part done, from 0 to 1; what lies outside is drawn as the nearest, what is not a number as 0.
         text : str
             What is being done; one line, cut where it does not fit.
         """

@@ -60,7 +60,7 @@ def called_parts(code: str, parts: Mapping[tuple[str, ...], str], always: Iterab
     Parameters
     ----------
     code : str
-        What calls them; text of a model, which might look like a call, is no part of it.
+        What calls them; text of a model, which might look like a call, is not part of it.
     parts : mapping of tuple of str to str
         As :func:`parts_of` returns them.
     always : iterable of str

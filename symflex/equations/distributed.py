@@ -282,7 +282,7 @@ def _line(
 ) -> tuple[Medium, Factored]:
     element = use.element
     if not isinstance(element, LineElement):
-        message = f"'{use.name}' is no line element"
+        message = f"'{use.name}' is not a line element"
         raise TypeError(message)
     values = {name: evaluator.constant(e) for name, e in use.values}
     zero = s * 0

@@ -44,7 +44,7 @@ class AxisLimits:
         for ends in (self.x, self.y, self.phase):
             if ends is None:
                 continue
-            # Written so that what is no number is refused too.
+            # Written so that what is not a number is refused too.
             if not -LARGEST <= ends[0] < ends[1] <= LARGEST:
                 message = f"an axis runs from a lower to a higher number, not from {ends[0]:g} to {ends[1]:g}"
                 raise UsageError(Diagnostic("SF902", message))

@@ -72,7 +72,7 @@ def draw_locus(locus: RootLocus, canvas: Canvas) -> Figure:
     )
     for points, shape, colour, label in marks:
         inside = [s for s in points if _is_seen(axes, s)]
-        # Of infinitely many zeros those listed are no number to tell.
+        # Infinitely many zeros have no number that those listed could tell.
         outside = 0 if points is zeros and locus.start.is_infinite else len(points) - len(inside)
         if inside or (points and points is not zeros):
             axes.plot(

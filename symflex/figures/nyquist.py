@@ -131,7 +131,7 @@ def _curve(
 
 
 def _reach(values: npt.NDArray[np.complex128], *, is_loop: bool) -> float:
-    """Return half the side of a square that shows -1, and most of a curve that is no loop gain."""
+    """Return half the side of a square that shows -1, and most of a curve that is not a loop gain."""
     largest = float(np.max(np.abs(values))) if values.size else 1.0
     if is_loop:
         return min(max(1.1 * largest, REACHES[0]), REACHES[1])

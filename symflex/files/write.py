@@ -118,7 +118,7 @@ def write_folder(folder: Path, files: Mapping[str, str]) -> None:
     """
     for name in files:
         if name in ("", ".", "..") or Path(name).name != name or "\\" in name or "\0" in name:
-            message = f"{name!r} is no name of a file"
+            message = f"{name!r} is not a name of a file"
             raise ValueError(message)
     try:
         Path(folder).mkdir(exist_ok=True)

@@ -66,7 +66,7 @@ def find_stable_gains(
     Raises
     ------
     ModelError
-        SF803 a loop with kernels that is no straight line in the gain.
+        SF803 a loop with kernels that is not a straight line in the gain.
     UsageError
         SF804 a range is needed, or is empty.
     BudgetError

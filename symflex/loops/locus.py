@@ -85,7 +85,7 @@ def loop_gain(loop: Loop, gain: Fraction | None = None) -> BoundTransferFunction
     Raises
     ------
     UsageError
-        SF806 when the loop is no straight line in its gain, or K has no value.
+        SF806 when the loop is not a straight line in its gain, or K has no value.
     """
     above, below = _parts(loop)
     return _with(loop.bound, above * _value(loop, gain), below)
@@ -110,7 +110,7 @@ def _parts(loop: Loop) -> tuple[Factored, Factored]:
     one = Factored.number(loop.bound.ratio.ring, 1)
     above = below = one
     if len(loop.with_gain) != 1 or loop.with_gain[0].degree != 1 or loop.with_gain[0].multiplicity != 1:
-        message = f"the characteristic function is no straight line in '{loop.gain.name}'"
+        message = f"the characteristic function is not a straight line in '{loop.gain.name}'"
         hint = "let the parameter occur as the gain of one loop"
         raise UsageError(Diagnostic("SF806", message, loop.gain.span, hint))
     for factor in loop.factors:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from symflex.transfer import BoundTransferFunction, Given, TransferFunction
 
 TRIALS = ("1", "2", "0.37")
-"""Values of a gain without one, for which the other parameters are bound; one is no singular case."""
+"""Values of a gain without one, for which the other parameters are bound; one is not a singular case."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -45,7 +45,7 @@ class LumpedFactor:
     even: fmpz_mpoly
     odd: fmpz_mpoly
     common: fmpz_mpoly  # the greatest common factor of E and O
-    zeros: int  # roots at s = 0 whatever the gain, which are no part of E and O
+    zeros: int  # roots at s = 0 whatever the gain, which are not part of E and O
     multiplicity: int  # how often the factor occurs
 
     @classmethod
@@ -193,7 +193,7 @@ class LumpedFactor:
         return PolynomialInS(tuple(small.context.from_dict(p) for p in parts), small.context, self.constants)
 
     def count(self, gain: Fraction, budget: Budget) -> PoleCount:
-        """Return how many poles lie right of the axis and on it for a gain that is no crossing.
+        """Return how many poles lie right of the axis and on it for a gain that is not a crossing.
 
         Raises
         ------

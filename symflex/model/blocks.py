@@ -246,7 +246,7 @@ def _read(reader: Reader, path: Path, said: Text) -> Source | None:
         reader.take(replace(d, span=said.span) for d in error.diagnostics)
         return None
     if parse_with_recovery(source)[0].root.get(DECLARATION) is None:
-        message = f"'{said.value}' is no specification: it does not declare {DECLARATION}"
+        message = f"'{said.value}' is not a specification: it does not declare {DECLARATION}"
         reader.note("SF258", message, said.span, f"a specification says {DECLARATION} = 1 at its top")
         return None
     return source

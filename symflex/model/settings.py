@@ -60,7 +60,7 @@ def read_settings(texts: Sequence[str]) -> dict[str, str]:
 
 
 def check_names(model: Model, settings: Mapping[str, Setting]) -> None:
-    """Refuse names that are no parameter of a model.
+    """Refuse names that are not parameters of a model.
 
     Raises
     ------

@@ -62,7 +62,7 @@ def chapter_of(
     Raises
     ------
     SpecError, ModelError
-        When the file is no solvable model.
+        When the file is not a solvable model.
     """
     opened = attempt(lambda: Study.of(path, stem, measured, allow_outside))
     if isinstance(opened, SymflexError):

@@ -62,7 +62,7 @@ def written(
     Raises
     ------
     SpecError, ModelError
-        With every problem of all files that are no solvable models, before anything is computed.
+        With every problem of all files that are not solvable models, before anything is computed.
     UsageError
         SF902 no specification; SF903 a file cannot be written.
     """

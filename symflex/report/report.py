@@ -162,8 +162,8 @@ def find_measurements(
 ) -> tuple[tuple[MeasuredResponse, ...], tuple[str, ...]]:
     """Return the measured responses in the data files of folders and below, and why others were left out.
 
-    What stands in ``output``, the folder that reports are written into, is no measurement. A link that leads
-    out of its folder, and not to one of ``allow_outside``, is not followed.
+    What stands in ``output``, the folder that reports are written into, is not a measurement. A link that
+    leads out of its folder, and not to one of ``allow_outside``, is not followed.
     """
     from symflex.data.measurement import read_measurement
 
@@ -195,7 +195,7 @@ def _leads_out(file: Path, folders: Sequence[Path]) -> bool:
 
 
 def check_specifications(named: Mapping[str, Path], allow_outside: tuple[Path, ...] = ()) -> None:
-    """Refuse, before anything is computed, specifications that are no solvable models.
+    """Refuse, before anything is computed, specifications that are not solvable models.
 
     Raises
     ------
@@ -241,7 +241,7 @@ def write_chapters(
     Raises
     ------
     SpecError, ModelError, UsageError
-        With every problem of all files that are no solvable models, before anything is computed.
+        With every problem of all files that are not solvable models, before anything is computed.
     """
     check_specifications(named, allow_outside)
     done: dict[str, Chapter] = {}

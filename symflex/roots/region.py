@@ -45,7 +45,7 @@ class Everything:
 
 @dataclass(frozen=True, slots=True)
 class Band:
-    """The roots with natural frequency abs(s)/(2 pi) from ``low`` to ``high`` [Hz]; ``low`` = 0 is no limit.
+    """The roots with natural frequency abs(s)/(2 pi) from ``low`` (0: no limit) to ``high`` [Hz].
 
     Examples
     --------

@@ -49,7 +49,7 @@ SIZE_LIMIT = 100_000
 
 @dataclass(frozen=True, eq=False)
 class SolvedRows:
-    """Equations solved for the derivatives that are no states."""
+    """Equations solved for the derivatives that are not states."""
 
     orders: tuple[int, ...]  # per unknown, how many of its derivatives, itself first, are states
     # Per unknown, what its derivative of that order equals: states, and powers of s times inputs.

@@ -187,7 +187,7 @@ def check_writable(path: Path) -> None:
     ------
     UsageError
         SF902 an ending that stands for no format; SF914 the library it needs is not installed; SF903 no such
-        folder, or what is there is no file.
+        folder, or what is there is not a file.
     """
     if path.suffix.lower() not in WRITERS:
         raise UsageError(Diagnostic("SF902", f"'{path.name}' must end in {', '.join(WRITERS)}"))
@@ -305,5 +305,5 @@ def _sweep(attributes: Mapping[str, str], arrays: list[Labelled], coordinates: s
         fits = name in known and known[name].dims == dims and known[name].values.dtype.kind in kinds
         require(fits, f"'{name[:40]}' is missing, or of another shape or kind")
     are_swept = set(points) <= {*swept, DRAW} and 0 not in known["point_status"].values.shape
-    require(are_swept, "its axes are no parameters, or empty")
+    require(are_swept, "its axes are not parameters, or are empty")
     return found

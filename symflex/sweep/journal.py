@@ -95,7 +95,7 @@ def open_journal(output: Path, key: str, *, is_fresh: bool = False) -> FolderJou
     Raises
     ------
     UsageError
-        SF916 the folder belongs to another sweep, or is no journal; SF903 it cannot be made.
+        SF916 the folder belongs to another sweep, or is not a journal; SF903 it cannot be made.
     """
     folder = output.with_name(output.name + ".part")
     with _writing(folder):
@@ -115,11 +115,11 @@ def _writing(folder: Path) -> Iterator[None]:
 def _prepare(folder: Path, key: str, *, is_fresh: bool) -> None:
     about = folder / ABOUT
     if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
-        raise UsageError(Diagnostic("SF916", f"'{folder}' is no journal of a sweep", None, "move it away"))
+        raise UsageError(Diagnostic("SF916", f"'{folder}' is not a journal of a sweep", None, "move it away"))
     if folder.is_dir():
         found = _key_of(about)
         if found is None and any(folder.iterdir()) and not _is_begun(folder):
-            message = f"'{folder}' is no journal of a sweep"
+            message = f"'{folder}' is not a journal of a sweep"
             raise UsageError(Diagnostic("SF916", message, None, "move it away or choose another -o"))
         if found is not None and found != key and not is_fresh:
             message = f"'{folder}' belongs to another sweep, or to another version of symflex"

@@ -252,7 +252,7 @@ def double_value(enclosed: Callable[[int], Ball], first: Ball, s: complex, patie
 
 
 def _limit_at(enclosed: Callable[[int], Ball], s: complex) -> complex:
-    """Return the value where parts of an expression are no numbers, by continuity."""
+    """Return the value where parts of an expression are not numbers, by continuity."""
     order, value = order_near(enclosed, s)
     if value is None or order < 0:
         return complex(inf, nan)

@@ -346,7 +346,7 @@ def _read_value(
         angular = not parameter.cycles and (wanted is None or bool(wanted.radians))
         return ExactValue(*(quantity.angular() if angular else quantity.cyclic()))
     if isinstance(given, float) and isfinite(given):
-        # A numpy double is a float whose own repr is no number.
+        # A numpy double is a float whose own repr is not a number.
         return ExactValue(Fraction(Decimal(float.__repr__(given))))
     if isinstance(given, int | Fraction) or (isinstance(given, Decimal) and given.is_finite()):
         return ExactValue(Fraction(given))

@@ -147,7 +147,7 @@ def lowest_modes(
         try:
             found_here = search.shapes(partial(search.again, root), DIGITS)
         except UsageError:
-            continue  # a common factor that is no mode of the model
+            continue  # a common factor that is not a mode of the model
         shapes += [NumberedShape(shape, is_hidden) for shape in found_here]
     kept = tuple(s for i, s in enumerate(shapes) if i < count or s.shape.pole.re > 0)
     return kept, found.verdict
@@ -265,7 +265,7 @@ class _ModeSearch:
                     return tuple(x for x in scaled if x is not None) if None not in scaled else ()
                 if dimension == 1:
                     # With more dimensions it may be that the balls are too wide for fewer.
-                    message = f"s = {_printed(root)} is no pole of the model's equations"
+                    message = f"s = {_printed(root)} is not a pole of the model's equations"
                     hint = "zeros have no shape, nor have the poles of a filter in an output"
                     raise UsageError(Diagnostic("SF902", message, None, hint))
                 return ()

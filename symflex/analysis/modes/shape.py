@@ -221,7 +221,7 @@ class EnclosedModeShape:
         known = {part.name: part for part in self.distributed}
         if name not in known:
             hint = nearest(name, known) or ("available: " + ", ".join(known) if known else None)
-            message = f"'{name[:64]}' is no distributed element or field"
+            message = f"'{name[:64]}' is not a distributed element or field"
             raise UsageError(Diagnostic("SF902", message, None, hint))
         return known[name]
 

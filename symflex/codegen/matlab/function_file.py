@@ -148,7 +148,7 @@ def _text(text: str) -> str:
 
 
 def _disarmed(text: str) -> str:
-    """Return text in which links are no links, and no mark asks for Texinfo."""
+    """Return text in which links are not links, and no mark asks for Texinfo."""
     return _LINK.sub("< ", text).replace("-*-", "- * -")
 
 

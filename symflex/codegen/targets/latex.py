@@ -152,7 +152,7 @@ class LatexExporter:
             try:
                 bound = bind(tf)
             except ModelError:
-                continue  # symbolic, which is no fault
+                continue  # symbolic, which is not a fault
             try:
                 maps.append(locate(bound, digits=ROOT_DIGITS))
             except SymflexError as error:

@@ -269,7 +269,7 @@ def _poor(fit: ResonanceFit, *, is_ambiguous: bool) -> tuple[str, ...]:
         if errors.zeta_p[i] > WEAK * found.zeta_p[i]:
             reasons.append(f"the damping of {where} is lost in its error")
         if found.zeta_p[i] >= 1:
-            reasons.append(f"{where} has the damping ratio {found.zeta_p[i]:.2g}: it is no resonance")
+            reasons.append(f"{where} has the damping ratio {found.zeta_p[i]:.2g}: it is not a resonance")
     return tuple(reasons)
 
 

@@ -202,7 +202,7 @@ def _covariance(
     promise too much. The correlation up to :data:`LARGEST_LAG` lines is estimated from the residuals, and
     enters between two such inverses (White 1980; Newey & West 1987). Where the window is known for all
     responses, the covariance of J'e that follows from it stands there, with as much of that correlation as a
-    window does not bring: what a model lacks is no noise. The scale is that of the residuals.
+    window does not bring: what a model lacks is not noise. The scale is that of the residuals.
     """
     stacked = np.concatenate([_parts(s) for s in slopes])
     if not stacked.shape[1]:

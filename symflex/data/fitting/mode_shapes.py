@@ -260,6 +260,6 @@ def _motion_over_force(name: str, unit: str) -> _Motion:
     kind = KINDS.get((dimension.kg, dimension.m))
     others = (dimension.A, dimension.K, dimension.mol, dimension.cd)
     if kind is None or dimension.s not in (0, 1, 2) or any(others):
-        message = f"{name} in {unit} is no motion over a force"
+        message = f"{name} in {unit} is not a motion over a force"
         raise DataError(Diagnostic("SF602", message, None, "such as m/N, m/(N*s), m/(N*s^2) or rad/(N*m)"))
     return _Motion(2 - int(dimension.s), float(read.scale) * np.pi**read.pi_power, kind)

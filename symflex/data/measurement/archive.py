@@ -54,7 +54,7 @@ def read_archive(data: bytes, limit: int, members: int) -> Arrays:
     --------
     >>> read_archive(b"PK", 100, 10)
     Traceback (most recent call last):
-    ValueError: it is no archive, or is cut short
+    ValueError: it is not an archive, or is cut short
     """
     _check_directory(data)
     try:
@@ -70,7 +70,7 @@ def read_archive(data: bytes, limit: int, members: int) -> Arrays:
 def _check_directory(data: bytes) -> None:
     """Refuse an archive with a list of members that is large itself: each is an object in memory."""
     end = data.rfind(_END, max(len(data) - _END_SIZE - _COMMENT, 0))
-    require(end >= 0 and len(data) - end >= _END_SIZE, "it is no archive, or is cut short")
+    require(end >= 0 and len(data) - end >= _END_SIZE, "it is not an archive, or is cut short")
     size = int.from_bytes(data[end + 12 : end + 16], "little")
     if size > _DIRECTORY_LIMIT or _END_64 in data[max(end - 20, 0) : end]:
         raise OverflowError
@@ -91,7 +91,7 @@ def _member(file: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
 def _array(content: bytes) -> npt.NDArray[Any]:
     """Return the array of an .npy file."""
     reader = ByteReader(content)
-    require(bytes(reader.take(len(_MAGIC))) == _MAGIC, "a member is no array")
+    require(bytes(reader.take(len(_MAGIC))) == _MAGIC, "a member is not an array")
     major = reader.integer("u1")
     reader.take(1)
     header = bytes(reader.take(reader.integer("u2" if major == 1 else "u4"))).decode("latin-1")

@@ -156,7 +156,7 @@ def _word(array: np.ndarray) -> str:
 
 def _numeric(array: np.ndarray, name: str, what: str) -> np.ndarray:
     if array.dtype.kind not in "fciub" or array.ndim > 2:  # noqa: PLR2004
-        message = f"'{name}': {what} is no array of numbers"
+        message = f"'{name}': {what} is not an array of numbers"
         raise DataError(Diagnostic("SF602", message, None, _HINT))
     return array.astype(np.complex128)
 

@@ -102,7 +102,7 @@ class ByteReader:
         if dtype.kind == "U":
             codes = np.frombuffer(taken, np.dtype(self.order + "u4"))
             wrong = (codes > LAST_CHARACTER) | ((codes >= SURROGATES[0]) & (codes <= SURROGATES[1]))
-            require(not np.any(wrong), "a text holds what is no character")
+            require(not np.any(wrong), "a text holds what is not a character")
         return np.frombuffer(taken, dtype).reshape(tuple(shape), order=order)
 
     def integer(self, kind: str) -> int:

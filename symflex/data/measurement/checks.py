@@ -46,7 +46,7 @@ def checked_response(
     Raises
     ------
     DataError
-        SF603 values that are no numbers, or out of range; SF604 frequencies that repeat or do not increase;
+        SF603 values that are not numbers, or out of range; SF604 frequencies that repeat or do not increase;
         SF605 too few lines; SF607 too many.
     """
     frequency, values, coherence = response.frequency_hz, response.values, response.coherence
@@ -162,7 +162,7 @@ def unit_of(text: str, file: str, span: Span | None = None) -> str:
     Raises
     ------
     DataError
-        SF602 when it is no unit.
+        SF602 when it is not a unit.
 
     Examples
     --------

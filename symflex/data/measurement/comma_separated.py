@@ -138,12 +138,12 @@ def _decoded(name: str, data: bytes) -> str:
     try:
         text = data.decode("utf-8").removeprefix("\ufeff")
     except UnicodeDecodeError as error:
-        message = f"'{name}' is no text: byte 0x{data[error.start]:02x} at byte offset {error.start}"
+        message = f"'{name}' is not text: byte 0x{data[error.start]:02x} at byte offset {error.start}"
         raise DataError(
             Diagnostic("SF601", message, None, "binary formats end in .npz, .mat, .uff")
         ) from None
     if "\0" in text:
-        message = f"'{name}' is no text: it holds NUL characters"
+        message = f"'{name}' is not text: it holds NUL characters"
         raise DataError(Diagnostic("SF601", message, None, "binary formats end in .npz, .mat, .uff"))
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
@@ -290,7 +290,7 @@ def _numbers(
             if number is None:
                 is_comma = re.fullmatch(r"[-+]?\d+,\d*(e[-+]?\d+)?", cell.text, re.I)
                 hint = "write decimals with a point" if is_comma else None
-                shown = f"'{cell.text[:40]}' is no number" if cell.text else "a number is missing"
+                shown = f"'{cell.text[:40]}' is not a number" if cell.text else "a number is missing"
                 span = cell if cell.text else Span(source, start, end)
                 problems.append(Diagnostic("SF603", shown, span, hint))
                 number = 1.0

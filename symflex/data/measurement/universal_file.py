@@ -67,7 +67,7 @@ def read_universal_file(name: str, data: bytes, stem: str) -> tuple[MeasuredResp
         if entry.get("func_type") not in (RESPONSE, TRANSMISSIBILITY):
             continue
         if entry.get("abscissa_spec_data_type") not in (FREQUENCY_AXIS, 0, 1):
-            message = f"{name}:{place.line}:1: the abscissa of this dataset is no frequency"
+            message = f"{name}:{place.line}:1: the abscissa of this dataset is not a frequency"
             raise DataError(Diagnostic("SF602", message))
         found.append(_response(name, stem, place, entry, coherences.get(_ends(entry))))
     if not found:

@@ -101,7 +101,7 @@ def _meant(model: Model, nodes: Sequence[Variable], otherwise: str) -> str:
     if not owner or touching > 1:
         return otherwise
     close = nearest(owner, sorted({"ground"}.union(*touched) - {owner}))
-    # A name no element touches is no node; the lone node of one may be meant as it is.
+    # A name that no element touches is not a node; the lone node of one may be meant as it is.
     return otherwise if close is None else close if not touching else f"{close} else {otherwise}"
 
 

@@ -139,7 +139,7 @@ def _bad_header(source: Source, text: str, statement: Statement) -> Diagnostic:
         hint = "begin it with '['"
     elif match and match.end() < len(found):
         hint = f"begin a new line after {match[0]}"
-    return Diagnostic("SF101", f"{_shown(found)} is no table header", span, hint)
+    return Diagnostic("SF101", f"{_shown(found)} is not a table header", span, hint)
 
 
 def _bad_key(source: Source, text: str, statement: Statement) -> Diagnostic:
@@ -151,7 +151,7 @@ def _bad_key(source: Source, text: str, statement: Statement) -> Diagnostic:
             message, hint = "no key before '='", "write key = value"
         else:
             quoted = found.replace("\\", "\\\\").replace('"', '\\"')
-            message, hint = f"{_shown(found)} is no key", f'put it in quotes: "{_cut(quoted)}"'
+            message, hint = f"{_shown(found)} is not a key", f'put it in quotes: "{_cut(quoted)}"'
     elif match and match[2] == ":":
         message = f"expected '=' after the key {_shown(match[1])}, found ':'"
         colon = statement.start + match.start(2)
@@ -177,7 +177,7 @@ def _bad_value(source: Source, text: str, statement: Statement, message: str, of
     if escape := _escape(text, statement, message, offset):
         hint = "write the text between single quotes '...', where a backslash is itself, or double it: \\\\"
         shown = text[escape[0] : escape[1]]
-        return Diagnostic("SF101", f"{_shown(shown)} is no escape sequence", Span(source, *escape), hint)
+        return Diagnostic("SF101", f"{_shown(shown)} is not an escape sequence", Span(source, *escape), hint)
     if found[0] in "\"'":
         message = f"unexpected text after the value: {_shown(text[offset : whole.end])}"
         return Diagnostic("SF101", message, Span(source, offset, max(offset + 1, whole.end)))

@@ -64,7 +64,7 @@ def read_bytes(name: str, limit: int) -> bytes:
     Raises
     ------
     UsageError
-        SF901 when it is no regular file.
+        SF901 when it is not a regular file.
     OSError, ValueError
         When it cannot be opened.
     """
@@ -109,7 +109,7 @@ _EXPONENT = re.compile(r"[+-]?[0-9][0-9_]*+(?:\.[0-9_]*+)?[eE]([+-]?[0-9_]++)")
 
 
 def number_problem(literal: str) -> str | None:
-    """Say why a number is refused, or ``None`` when it is not (or is no number).
+    """Say why a number is refused, or ``None`` when it is not (or is not a number).
 
     Examples
     --------

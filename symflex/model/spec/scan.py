@@ -47,7 +47,7 @@ _TOKEN_ON_LINE = _token(_LINE_STRING)
 
 _BLANK = re.compile(r"(?:[ \t\r\n]++|\#[^\n]*+)*+")
 _KEY_LINE = re.compile(rf"[ \t]*+{KEY}[ \t]*+=")
-# A line that is a header and cannot be an array's item: its first key part is no value.
+# A line that is a header and cannot be an array's item: its first key part is not a value.
 _HEADER_LINE = re.compile(
     r"[ \t]*+\[\[?[ \t]*+(?!(?:true|false|inf|nan)[\s.\]])[A-Za-z_][^\[\]{},=\n]*+"
     r"\]\]?[ \t\r]*+(?:\#[^\n]*+)?$",
@@ -238,7 +238,7 @@ def scan(source: Source) -> Scan:
         hint = "divide it into files that blocks of type model join"
         raise SpecError(Diagnostic("SF103", message, Span(source, 0, 0), hint))
     if broken := _SURROGATE.search(text):
-        message = f"half a surrogate pair, U+{ord(broken[0]):04X}, is no character"
+        message = f"half a surrogate pair, U+{ord(broken[0]):04X}, is not a character"
         raise SpecError(Diagnostic("SF101", message, Span(source, *broken.span())))
     scanner = _Scanner(source, text)
     statements = []

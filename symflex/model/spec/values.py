@@ -17,7 +17,7 @@ class StringValue:
     """A string."""
 
     # The decoded string with the place between its quotes. A line break directly after opening triple quotes
-    # is no part of the value and stands outside that place.
+    # is not part of the value and stands outside that place.
     text: Text
     span: Span  # the whole value, with its quotes
 

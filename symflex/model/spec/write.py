@@ -81,7 +81,7 @@ def _items(mapping: Mapping[Any, object], path: tuple[str, ...]) -> list[tuple[s
     items = []
     for key, value in mapping.items():
         if not isinstance(key, str) or _SURROGATE.search(key):
-            raise _refused("SF104", path, f"the key {key!r} is no text", "keys are strings")
+            raise _refused("SF104", path, f"the key {key!r} is not text", "keys are strings")
         items.append((key, value))
     return items
 

@@ -94,7 +94,7 @@ def _restored(polynomial: fmpz_mpoly, coordinates: Exponentials, normal: NormalF
 
 
 def _expanded_ratio(found: Factored, factor: fmpz_mpoly, normal: NormalForm) -> Fraction | None:
-    """Return the number by which the factors differ from the polynomial, ``None`` when it is no number."""
+    """Return the number by which the factors differ from the polynomial, ``None`` when it is not a number."""
     if any(e < 0 for _, e in found.factors) or found.is_zero:
         return None
     product = normal.reduce((found / found.unit).expand())

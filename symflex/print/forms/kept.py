@@ -35,7 +35,7 @@ class KeptDefinitions:
     """Rewrites polynomials of one ring in definitions."""
 
     source: Ring  # of the form
-    place: int  # of the first generator that is no parameter
+    place: int  # of the first generator that is not a parameter
     # Definitions that are polynomials of its generators with whole coefficients, and of earlier ones.
     values: tuple[tuple[str, Factored], ...]
 

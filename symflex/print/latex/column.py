@@ -41,7 +41,7 @@ def column_width(text: str) -> float:
     match = _MILLIMETRES.fullmatch(text)
     if match is None:
         hint = f"{', '.join(COLUMNS_MM)} or millimetres such as 120mm"
-        raise UsageError(Diagnostic("SF902", f"'{text[:32]}' is no width of a column", None, hint))
+        raise UsageError(Diagnostic("SF902", f"'{text[:32]}' is not a width of a column", None, hint))
     return checked_width(float(match[1]))
 
 

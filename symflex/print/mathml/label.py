@@ -80,7 +80,7 @@ def latex_label(latex: str) -> str:
     Raises
     ------
     ValueError
-        For what is no label that :func:`symflex.print.label.read_label` lets through.
+        For what is not a label that :func:`symflex.print.label.read_label` lets through.
 
     Examples
     --------
@@ -89,7 +89,7 @@ def latex_label(latex: str) -> str:
     """
     content, end = _list(latex, 0, "")
     if end != len(latex):
-        message = f"{latex!r} is no label"
+        message = f"{latex!r} is not a label"
         raise ValueError(message)
     return content
 
@@ -189,7 +189,7 @@ def _command(latex: str, command: str, position: int, style: str) -> tuple[str, 
 def _token(latex: str, position: int) -> re.Match[str]:
     match = _TOKEN.match(latex, position)
     if match is None:
-        message = f"{latex!r} is no label"
+        message = f"{latex!r} is not a label"
         raise ValueError(message)
     return match
 

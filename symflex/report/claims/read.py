@@ -91,7 +91,7 @@ def _claim(reader: Reader, table: TableValue) -> Claim:
     if key and not KEY.match(key):
         entry = table.get("key")
         hint = "keys are small letters, with hyphens between words"
-        reader.note("SF213", f"'{key[:80]}' is no key", entry.value.span if entry else table.span, hint)
+        reader.note("SF213", f"'{key[:80]}' is not a key", entry.value.span if entry else table.span, hint)
     is_quotation = table.get("statement") is None
     quote = _text(reader, table, "quote" if is_quotation else "statement", "a claim")
     checks = tuple(

@@ -208,7 +208,7 @@ class KernelFunction:
         -------
         tuple
             A measure of how far F may turn anywhere on the ball, infinite where nothing is proved, and the
-            turn. ``None`` when the function is no sum of exponentials.
+            turn. ``None`` when the function is not a sum of exponentials.
         """
         if self.exponentials is None:
             return None
@@ -253,7 +253,7 @@ class KernelFunction:
 
     @cached_property
     def in_doubles(self) -> DoubleSums | None:
-        """The factors for guesses at many points; ``None`` where they are no sums of exponentials."""
+        """The factors for guesses at many points; ``None`` where they are not sums of exponentials."""
         if self.exponentials is None:
             return None
         with precision(FIRST_BITS):
@@ -278,8 +278,8 @@ class KernelFunction:
         """Return the product without those powers of wavenumbers that change with the branch, and an order.
 
         Where a wavenumber vanishes they are roots of half or quarter order; numerator and denominator share
-        them, and they are no roots of a transfer function. The order is that of the power in which the choice
-        of the wavenumbers does not matter.
+        them, and they are not roots of a transfer function. The order is that of the power in which choosing
+        the wavenumbers does not matter.
         """
         part, order = self.part, 1
         bits, values, value = self._anywhere()

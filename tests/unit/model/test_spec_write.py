@@ -170,7 +170,7 @@ def test_a_value_that_cannot_be_written_is_refused_by_its_path(value: object) ->
 
 
 def test_a_key_that_is_no_text_is_refused() -> None:
-    with pytest.raises(SpecError, match=r"SF104.*parameters: the key 3 is no text"):
+    with pytest.raises(SpecError, match=r"SF104.*parameters: the key 3 is not text"):
         write({"parameters": {3: 1}})
 
 

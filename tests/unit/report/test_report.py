@@ -205,8 +205,9 @@ def test_a_figure_that_cannot_be_drawn_is_told_in_its_place_and_on_the_terminal(
     text = LOOP.replace("[outputs]", '[figures.square]\nkind = "locus"\ngain = "R"\n[outputs]')
     text = text.replace("K = ", "R = 2\nK = ").replace('"K*i"', '"K*R^2*i"')
     report = report_on(tmp_path, square=text)
-    assert "square: the characteristic function is no straight line in" in html.unescape(report_page(report))
-    assert any("square, figure square: the characteristic function is no" in w for w in report.warnings)
+    page = html.unescape(report_page(report))
+    assert "square: the characteristic function is not a straight line in" in page
+    assert any("square, figure square: the characteristic function is not" in w for w in report.warnings)
 
 
 HELD = SMALL.replace("loss = {", 'wall = { type = "spring", between = ["x", "ground"], k = "k" }\nloss = {')

@@ -83,7 +83,7 @@ PLACE = 3 + 4j
 
 
 def undefined(at):
-    """Return a function that is no number at a point, and has a given form beside it."""
+    """Return a function that is not a number at a point, and has a given form beside it."""
 
     def answer(bits, s):
         with ctx.workprec(bits):
