@@ -68,10 +68,8 @@ def _bases(count: int, path: str | Path, given: FitOptions) -> list[Base]:
 def measure(model: Model, given: MeasureOptions) -> MeasuredResponse:
     """Return a synthetic measurement of one transfer function; see :func:`.measurement.synthesise`.
 
-    Raises
-    ------
-    UsageError
-        SF902 when a pole is undamped, which has no stationary response, or the plan cannot be meant.
+    An undamped pole, which has no stationary response, and a plan that cannot be meant are refused with
+    SF902.
     """
     plan = MeasurementPlan.of(given, model.analysis.band)
     (bound,) = derive_bound(model, pick_pairs(model, [given.tf] if given.tf else [])[:1])

@@ -50,29 +50,11 @@ def find_on_axis(
     budget: Budget,
     order: int = 1,
 ) -> AxisRoots:
-    """Return the roots of a function of A and B at ``s = j omega``.
+    """Return the roots of a real function of A and B at ``s = j omega``, 0 < omega [rad/s] within limits.
 
-    Parameters
-    ----------
-    function : LoopFunction
-        A and B.
-    equation : callable
-        Returns value and derivative in omega of the real function.
-    is_excluded : callable
-        Tells that roots among these values are not asked for.
-    limits : (float, float)
-        Positive frequencies [rad/s].
-    digits : int
-        Significant digits of each root.
-    budget : Budget
-        Spent by every interval.
-    order : int
-        Derivatives of A and B that the function and its derivative are made of.
-
-    Raises
-    ------
-    BudgetError
-        SF505, SF506 when there are too many intervals, or the time is over.
+    ``equation`` returns its value and its derivative in omega, from ``order`` derivatives of A and B;
+    ``is_excluded`` tells that roots among these values are not asked for. The budget is spent by every
+    interval: SF505, SF506 when there are too many, or the time is over.
     """
     low, high = limits
     pending: list[tuple[float, float]] = []

@@ -43,14 +43,8 @@ def allowed_bandwidth(
 ) -> AllowedBandwidth | None:
     """Return the bandwidth that the stable gains next to 0 allow, ``None`` when there are none.
 
-    Parameters
-    ----------
-    intervals : sequence of GainInterval
-        Of positive gains, and maybe negative ones, ascending.
-    limit : Fraction or None
-        Up to which gain was examined; ``None`` for all.
-    loop_gain : LoopGain
-        Of a loop closed once.
+    Intervals ascend, and negative gains may be among them; gains were examined up to ``limit``, None for all.
+    ``loop_gain`` is that of a loop closed once.
     """
     begin = next((i for i in intervals if _is_above(i.high) and not (i.low is not None and i.low > 0)), None)
     if begin is None or not begin.poles.is_stable:

@@ -111,28 +111,15 @@ def dynamic_colocation(
     limits: tuple[float, float] | None = None,
     budget: Budget | None = None,
 ) -> DynamicColocation:
-    """Return up to which frequency an output moves with a colocated one.
+    """Return up to which frequency an output moves with a colocated one, from the same input.
 
-    Parameters
-    ----------
-    tip, joint : BoundTransferFunction
-        From the same input.
-    phase : float
-        Largest difference of phase [degrees], below 90.
-    magnitude : float
-        Largest difference of magnitude [dB]. One decibel is 12 %: a gain margin one plans with anyway; phases
-        of lossless structures do not differ at all until a zero, so that magnitude is what tells them apart.
-    limits : (float, float), optional
-        Frequencies examined [Hz]; by default the model's band.
-    budget : Budget, optional
-        Of the search.
+    ``phase`` is the largest difference of phase [degrees], below 90, ``magnitude`` that of magnitude [dB].
+    One decibel is 12 %: a gain margin one plans with anyway; phases of lossless structures do not differ at
+    all until a zero, so that magnitude is what tells them apart. ``limits`` [Hz] are by default the model's
+    band.
 
-    Raises
-    ------
-    UsageError
-        SF805 different inputs, outputs of different units, or tolerances that are none; SF804 no band.
-    ModelError
-        SF402 one of the functions is identically zero.
+    SF805 different inputs, outputs of different units, or tolerances that are none; SF804 no band; SF402 one
+    of the functions is identically zero.
     """
     if tip.source.input.name != joint.source.input.name:
         message = f"{tip.name} and {joint.name} have different inputs"

@@ -56,10 +56,7 @@ SHRINKINGS = 30
 class DistributedFactors:
     """The factors of a characteristic function that hold kernels, together.
 
-    Attributes
-    ----------
-    reasons : list of str
-        Why something is not certified.
+    ``reasons`` say why something is not certified.
     """
 
     bound: BoundTransferFunction  # carries ring and kernels
@@ -233,10 +230,7 @@ class DistributedFactors:
     def count(self, gain: Fraction) -> PoleCount:
         """Return how many poles lie right of the axis and on it, as far as they are searched.
 
-        Raises
-        ------
-        UncertifiedError
-            SF802 when a pole lies on the path of the count.
+        SF802 when a pole lies on the path of the count.
         """
         function = self._function(gain)
         zeros = self._order_at_zero(gain, function)

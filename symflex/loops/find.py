@@ -48,29 +48,13 @@ def find_stable_gains(
 ) -> StabilityMap:
     """Return for which gains a loop is stable, proved.
 
-    Parameters
-    ----------
-    loop : Loop
-        The characteristic function.
-    limits : (Fraction or None, Fraction or None), optional
-        Range of the gain, its ends left out. By default all gains of the sign that is assumed of it; of a
-        loop with kernels up to 100 times its value.
-    digits : int
-        Significant digits of boundaries and frequencies.
-    budget : Budget, optional
-        Limits the search.
-    up_to : float, optional
-        Where it cannot be proved that no pole lies right of the axis beyond some frequency: how far poles are
-        counted [rad/s]; by default about ten waves of the longest element.
+    ``limits`` are the range of the gain, its ends left out: by default all gains of the sign that is assumed
+    of it; of a loop with kernels up to 100 times its value. ``digits`` are of boundaries and frequencies.
+    Where it cannot be proved that no pole lies right of the axis beyond some frequency, poles are counted
+    ``up_to`` [rad/s]; by default about ten waves of the longest element.
 
-    Raises
-    ------
-    ModelError
-        SF803 a loop with kernels that is not a straight line in the gain.
-    UsageError
-        SF804 a range is needed, or is empty.
-    BudgetError
-        SF505, SF506.
+    SF803 a loop with kernels that is not a straight line in the gain, SF804 a range is needed, or is empty;
+    SF505, SF506.
     """
     budget = budget or entered_budget()
     plain, mixed = _split(loop)
@@ -251,13 +235,7 @@ def _hull(group: Sequence[Crossing]) -> arb:
 
 
 def _sample(low: arb | None, high: arb | None) -> Fraction:
-    """Return a short rational number between two balls.
-
-    Raises
-    ------
-    UncertifiedError
-        SF802 when they meet.
-    """
+    """Return a short rational number between two balls; SF802 when they meet."""
     start = None if low is None else exact_fraction(low) + exact_fraction(low.rad())
     end = None if high is None else exact_fraction(high) - exact_fraction(high.rad())
     if start is None and end is None:

@@ -75,17 +75,7 @@ class RootLocus:
 def loop_gain(loop: Loop, gain: Fraction | None = None) -> BoundTransferFunction:
     """Return the loop's transfer function ``K B/A``, whose value -1 is a closed-loop pole.
 
-    Parameters
-    ----------
-    loop : Loop
-        A straight line in its gain.
-    gain : Fraction, optional
-        K; the nominal one by default.
-
-    Raises
-    ------
-    UsageError
-        SF806 when the loop is not a straight line in its gain, or K has no value.
+    SF806 when the loop is not a straight line in its gain, or K, nominal by default, has no value.
     """
     above, below = _parts(loop)
     return _with(loop.bound, above * _value(loop, gain), below)
@@ -134,26 +124,11 @@ def trace_locus(
     *,
     band_hz: tuple[float, float] | None = None,
 ) -> RootLocus:
-    """Return the root locus of a loop.
+    """Return the root locus of a loop that is a straight line in its gain.
 
-    Parameters
-    ----------
-    loop : Loop
-        A straight line in its gain.
-    limits : (Fraction, Fraction), optional
-        From 0 to 10 times the nominal gain by default.
-    modes : int, optional
-        Of a loop with kernels, how many modes are traced; by default as many as lie in the band at the
-        first or at the last gain, or 5.
-    budget : Budget, optional
-        Of the search for roots.
-    band_hz : (float, float), optional
-        [Hz]
-
-    Raises
-    ------
-    UsageError
-        SF804 no range, SF806 no straight line in the gain.
+    ``limits`` go from 0 to 10 times the nominal gain by default. Of a loop with kernels ``modes`` are traced,
+    by default as many as lie in the band [Hz] at the first or at the last gain, or 5. SF804 no range, SF806
+    no straight line in the gain.
     """
     budget = budget or entered_budget()
     above, below = _parts(loop)
@@ -422,13 +397,7 @@ def _matched(ends: Sequence[complex], proved: Sequence[complex]) -> set[int] | N
 
 
 def require_arrival(locus: RootLocus) -> None:
-    """Raise an error when curves of a locus do not end in proved poles.
-
-    Raises
-    ------
-    UncertifiedError
-        SF807.
-    """
+    """Raise SF807 when curves of a locus do not end in proved poles."""
     if not locus.arrived:
         message = (
             f"the poles traced do not end in those proved at {locus.gain} = {float(locus.limits[1]):.6g}"

@@ -71,19 +71,8 @@ def characteristic_loop(
 ) -> Loop:
     """Return the characteristic function of the model a transfer function is of.
 
-    Parameters
-    ----------
-    tf : TransferFunction
-        Any of the model's, with the gain as a symbol.
-    gain : ModelParameter
-        Of the model.
-    values : mapping of str to number or quantity, optional
-        In place of declared values.
-
-    Raises
-    ------
-    ModelError
-        SF801 the closed loop does not depend on the gain, or the gain shapes waves or delays.
+    Any of the model's will do, with the gain as a symbol. SF801 the closed loop does not depend on the gain,
+    or the gain shapes waves or delays.
     """
     position = tf.ratio.ring.index.get(gain.name)
     if position is not None and any(value.depends_on(gain.name) for value in tf.kernels.values):
@@ -137,13 +126,7 @@ def coefficients_of(polynomial: fmpz_mpoly, position: int, tf: TransferFunction)
 
 
 def pick_gain(parameters: Sequence[ModelParameter], name: str) -> ModelParameter:
-    """Return a model's parameter by its name.
-
-    Raises
-    ------
-    UsageError
-        SF902 when there is none.
-    """
+    """Return a model's parameter by its name; SF902 when there is none."""
     from symflex.errors.diagnostic import nearest
 
     known = {p.name: p for p in parameters}

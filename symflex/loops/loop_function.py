@@ -33,16 +33,9 @@ NOTHING = acb(0)
 
 @dataclass(frozen=True, slots=True)
 class LoopValue:
-    """A and B at ``s = j omega``, divided by a common function, and their derivatives in s.
+    """Enclosures of A and B at ``s = j omega``, divided by a common function, and of their derivatives in s.
 
-    Parameters
-    ----------
-    a, b : acb
-        Enclosures.
-    a_slope, b_slope : acb
-        Of the derivatives.
-    a_bend, b_bend : acb
-        Of the second derivatives, where these were asked for.
+    ``bend`` is a second derivative, where these were asked for.
     """
 
     a: acb

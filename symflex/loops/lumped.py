@@ -195,10 +195,7 @@ class LumpedFactor:
     def count(self, gain: Fraction, budget: Budget) -> PoleCount:
         """Return how many poles lie right of the axis and on it for a gain that is not a crossing.
 
-        Raises
-        ------
-        UncertifiedError
-            SF802 when a root cannot be told from one on the axis.
+        SF802 when a root cannot be told from one on the axis.
         """
         right, axis = 0, self.zeros
         degree = max(degree_in(f, K) for f in (self.even, self.odd, self.common))

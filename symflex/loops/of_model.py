@@ -28,10 +28,7 @@ if TYPE_CHECKING:
 def characteristic_loop(model: Model, gain: str, values: Mapping[str, Given] | None = None) -> Loop:
     """Return the characteristic function in a gain; see :func:`.loop.characteristic_loop`.
 
-    Raises
-    ------
-    UsageError
-        SF902 when there is no such parameter.
+    SF902 when there is no such parameter.
     """
     parameter = pick_gain(model.parameters, gain)
     given = dict(values or {})
@@ -54,12 +51,7 @@ def stability(
 ) -> StabilityMap:
     """Return for which values of a gain the model is stable; see :func:`symflex.loops.find_stable_gains`.
 
-    Raises
-    ------
-    UsageError
-        SF902 when there is no such parameter.
-    ModelError
-        SF801 when no pole depends on it.
+    SF902 when there is no such parameter, SF801 when no pole depends on it.
     """
     limits = gain_ends(given.limits, pick_gain(model.parameters, given.gain))
     radians = None if given.up_to is None else 2 * pi * highest_frequency(given.up_to)

@@ -21,13 +21,7 @@ SHORT_DIGITS = 6
 
 
 def stability_text(found: StabilityMap) -> str:
-    """Return stable ranges, boundaries, counts and margins, in 80 columns for up to 20 digits.
-
-    Parameters
-    ----------
-    found : StabilityMap
-        Of one gain.
-    """
+    """Return stable ranges, boundaries, counts and margins, in 80 columns for up to 20 digits."""
     unit = f" [{found.unit}]" if found.unit else ""
     lines = [f"{found.gain}{unit}   {_status(found)}", f"{INDENT}examined: {_examined(found)}"]
     lines += [f"{INDENT}not proved: {reason}" for reason in found.reasons]
@@ -151,15 +145,7 @@ def _margins(found: StabilityMap) -> list[str]:
 
 
 def bandwidth_text(gain: str, found: AllowedBandwidth) -> str:
-    """Return the bandwidth that a loop allows, in one line.
-
-    Parameters
-    ----------
-    gain : str
-        Its name.
-    found : AllowedBandwidth
-        Of the loop.
-    """
+    """Return the bandwidth that a loop allows, in one line."""
     if found.gain is None:
         return f"without limit: every {gain} > 0 is stable"
     at = f"{gain} = {_number(found.gain)}"

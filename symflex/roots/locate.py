@@ -23,23 +23,10 @@ def locate(
 ) -> PoleZeroMap:
     """Find the poles and zeros of a transfer function, with its hidden modes, proved.
 
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        With numbers.
-    region : Region, optional
-        Everything by default.
-    digits : int
-        Correct significant digits of each root.
-    budget : Budget, optional
-        Limits the search; by default a distributed system's is limited by its work.
-
-    Returns
-    -------
-    PoleZeroMap
-        A transfer function that is identically zero has neither poles nor zeros; all its modes are hidden.
-        Those of a distributed system, of which there are infinitely many, are searched in
-        :func:`default_region` when everything is asked for.
+    Each root has so many correct significant digits. A transfer function that is identically zero has neither
+    poles nor zeros; all its modes are hidden. Those of a distributed system, of which there are infinitely
+    many, are searched in :func:`default_region` when everything is asked for, and the search is limited by
+    its work where no budget is given.
     """
     bound = without_lengths_of_zero(bound)
     if bound.is_distributed:

@@ -182,28 +182,12 @@ def find_pole_zero_map(
     hidden: Sequence[tuple[RootProblem, str]] = (),
     budget: Budget | None = None,
 ) -> PoleZeroMap:
-    """Find poles and zeros in a region.
+    """Find poles and zeros, without common factors, in a region; by default everywhere.
 
-    Parameters
-    ----------
-    tf : str
-        Name shown, ``"OUT/IN"``.
-    poles, zeros : RootProblem
-        Denominator and numerator, without common factors.
-    region : Region, optional
-        Everything by default.
-    digits : int
-        Correct significant digits of each part of each root; more are computed where the region asks for it.
-    hidden : sequence of (RootProblem, str)
-        Cancelled factors, each with its cause. All their roots are reported when the region is a number of
-        modes, else those in the region.
-    budget : Budget, optional
-        When it is exceeded, what was proved so far is returned.
-
-    Returns
-    -------
-    PoleZeroMap
-        A root whose side of the boundary stays undecided after refinement counts as on the boundary.
+    Each part of each root has so many correct significant digits; more are computed where the region asks for
+    it. ``hidden`` are cancelled factors, each with its cause; all their roots are reported when the region is
+    a number of modes, else those in the region. When the budget is exceeded, what was proved so far is
+    returned. A root whose side of the boundary stays undecided after refinement counts as on the boundary.
 
     Examples
     --------

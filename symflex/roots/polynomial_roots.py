@@ -40,31 +40,15 @@ def find_polynomial_roots(
     proposers: tuple[Proposer, ...] = (),
     budget: Budget | None = None,
 ) -> tuple[Root, ...]:
-    """Enclose every root of a product of polynomials.
+    """Enclose every root of a product of polynomials with exact coefficients.
 
-    Parameters
-    ----------
-    problem : RootProblem
-        The polynomials, with exact coefficients.
-    digits : int
-        Correct significant digits wanted in the real and in the imaginary part of every root.
-    proposers : tuple of callables, optional
-        Engines that guess roots, tried in turn; by default chosen by degree.
-    budget : Budget, optional
-        Heeded between evaluations; no limit by default.
+    So many significant digits are correct in the real and in the imaginary part of every root. ``proposers``
+    guess roots, tried in turn; by default chosen by degree. The order is by natural frequency, then real
+    part, positive imaginary part first; both members of a conjugate pair. A root that the constants' balls
+    cannot tell from a neighbour is merged with it and not ``certified``.
 
-    Returns
-    -------
-    tuple of Root
-        By natural frequency, then real part, positive imaginary part first; both members of a conjugate pair.
-        A root that the constants' balls cannot tell from a neighbour is merged with it and not ``certified``.
-
-    Raises
-    ------
-    UncertifiedError
-        SF401 when a leading coefficient cannot be told from zero, SF404 when roots do not separate.
-    BudgetError
-        SF506 when the time is over; ``found`` is a tuple of the roots proved until then.
+    SF401 when a leading coefficient cannot be told from zero, SF404 when roots do not separate, SF506 when
+    the time is over: ``found`` is a tuple of the roots proved until then.
 
     Examples
     --------

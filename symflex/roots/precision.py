@@ -10,12 +10,7 @@ BITS_PER_DIGIT = math.log2(10)
 
 
 class precision:  # noqa: N801 (reads as a statement)
-    """Compute with ``bits`` bits inside the block; restore the former precision on every exit.
-
-    Parameters
-    ----------
-    bits : int
-        Precision of midpoints, at least 2.
+    """Compute with ``bits`` bits, at least 2, inside the block; restore the former precision on every exit.
 
     Examples
     --------

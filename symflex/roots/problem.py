@@ -41,12 +41,7 @@ class RealConstant:
 
 @dataclass(frozen=True, slots=True)
 class PolynomialInS:
-    """A polynomial in s whose coefficients are integer polynomials in real constants.
-
-    Raises
-    ------
-    ModelError
-        SF403 when the polynomial is zero.
+    """A polynomial in s whose coefficients are integer polynomials in real constants; SF403 for zero.
 
     Examples
     --------
@@ -112,11 +107,8 @@ class PolynomialInS:
     def require_leading_coefficient(self) -> None:
         """Prove that the leading coefficient is not zero.
 
-        Raises
-        ------
-        UncertifiedError
-            SF401 when balls of 4096 bits still contain zero, as they do when the constants
-            satisfy a relation that makes the coefficient vanish.
+        SF401 when balls of 4096 bits still contain zero, as they do when the constants satisfy a relation
+        that makes the coefficient vanish.
         """
         if self.is_exact:
             return

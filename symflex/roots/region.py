@@ -186,17 +186,8 @@ Region = Everything | Band | Rectangle | Modes | Mode
 def region_of(given: RootsOptions, mark: str = "") -> Region | None:
     """Return the region that options say, None when they say nothing.
 
-    Parameters
-    ----------
-    given : RootsOptions
-        At most one of ``modes``, ``mode``, ``band`` and ``region``.
-    mark : str
-        What stands before their names in messages.
-
-    Raises
-    ------
-    UsageError
-        SF902 for more than one of them, limits that are none, or a number of a mode below 1.
+    Of ``modes``, ``mode``, ``band`` and ``region`` at most one is given (else SF902, as for limits that are
+    none, or a number of a mode below 1); ``mark`` stands before their names in messages.
 
     Examples
     --------

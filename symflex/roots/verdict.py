@@ -87,15 +87,9 @@ def is_right(root: Root) -> bool:
 def judge(roots: Sequence[Root], unproved: str = "", proof: str = "") -> StabilityVerdict:
     """Return the verdict that known poles allow.
 
-    Parameters
-    ----------
-    roots : sequence of Root
-        Poles and hidden modes; all that are not in the open left half plane, unless ``unproved`` says why
-        not.
-    unproved : str
-        Why there may be others right of the imaginary axis or on it.
-    proof : str
-        What proves that there are none in the open right half plane, but maybe on the axis.
+    ``roots`` are poles and hidden modes: all that are not in the open left half plane, unless ``unproved``
+    says why there may be others right of the imaginary axis or on it. ``proof`` says what proves that there
+    are none in the open right half plane, but maybe on the axis.
 
     Examples
     --------

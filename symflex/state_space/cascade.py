@@ -59,21 +59,10 @@ class _Section:
 
 
 def cascade(zeros: Sequence[mpmath.mpc], poles: Sequence[mpmath.mpc], gain: mpmath.mpf, name: str) -> Arrays:
-    """Return the state equations of ``gain*prod(s - z)/prod(s - p)``.
+    """Return the state equations of ``gain*prod(s - z)/prod(s - p)``; messages call it ``name``.
 
-    Parameters
-    ----------
-    zeros, poles : sequence of mpmath.mpc
-        [rad/s], as often as their multiplicity says, conjugates of each other or real.
-    gain : mpmath.mpf
-        What is left.
-    name : str
-        What messages call it.
-
-    Raises
-    ------
-    ModelError
-        SF236 when there are more zeros than poles, SF233 when a number does not fit in double precision.
+    Roots [rad/s] come as often as their multiplicity says, conjugates of each other or real. SF236 when there
+    are more zeros than poles, SF233 when a number does not fit in double precision.
 
     Examples
     --------

@@ -80,17 +80,9 @@ class BoundStateSpace:
         return f"<BoundStateSpace {self.name}: {shape}>"
 
     def to_control(self, facts: Mapping[str, object] | None = None) -> object:
-        """Return a ``control.StateSpace`` with names; units are in its attribute ``metadata``.
+        """Return a ``control.StateSpace`` with names; units and ``facts`` are in its attribute ``metadata``.
 
-        Parameters
-        ----------
-        facts : mapping of str to object, optional
-            Further entries of ``metadata``.
-
-        Raises
-        ------
-        UsageError
-            SF902 when python-control is not installed.
+        SF902 when python-control is not installed.
         """
         try:
             import control
@@ -109,17 +101,9 @@ class BoundStateSpace:
         return system
 
     def to_scipy(self, facts: Mapping[str, object] | None = None) -> object:
-        """Return a ``scipy.signal.StateSpace``; names and units are in its attribute ``metadata``.
+        """Return a ``scipy.signal.StateSpace``; names, units and ``facts`` are in its attribute ``metadata``.
 
-        Parameters
-        ----------
-        facts : mapping of str to object, optional
-            Further entries of ``metadata``.
-
-        Raises
-        ------
-        UsageError
-            SF902 when scipy is not installed.
+        SF902 when scipy is not installed.
         """
         try:
             from scipy.signal import StateSpace
@@ -131,20 +115,7 @@ class BoundStateSpace:
 
 
 def bound_state_space(system: StateSpace, values: Mapping[str, ExactValue] | None = None) -> BoundStateSpace:
-    """Return a realisation in double precision.
-
-    Parameters
-    ----------
-    system : StateSpace
-        Exact.
-    values : mapping of str to ExactValue, optional
-        Of the parameters that are left in it.
-
-    Raises
-    ------
-    ModelError, UncertifiedError
-        As :func:`symflex.state_space.rounding.rounded` does.
-    """
+    """Return a realisation in double precision, given values of what is left in it; errors as ``rounded``."""
     rounding = rounding_of(system, values)
     states = tuple(
         BoundState(

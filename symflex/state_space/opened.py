@@ -38,19 +38,9 @@ PARTS_LIMIT = 100_000
 
 
 def opened(model: Model) -> Model:
-    """Return a model of the same behaviour without definitions.
+    """Return a model of the same behaviour without definitions; SF501 when they are too large to be opened.
 
     A definition may hold a denominator in s that only shows when it is opened.
-
-    Parameters
-    ----------
-    model : Model
-        Resolved, and not distributed.
-
-    Raises
-    ------
-    BudgetError
-        SF501 when the definitions are too large to be opened.
     """
     if not model.definitions:
         return model
@@ -77,12 +67,7 @@ def with_filters_apart(model: Model) -> Model:
     """Return a model of the same behaviour in which blocks and filters stand one after, or beside, another.
 
     ``y = G_1*G_2*u`` becomes a signal for ``G_2*u`` and one for ``G_1`` times that; in ``c = k*e + k_i/s*e``
-    the integral becomes a signal of its own.
-
-    Parameters
-    ----------
-    model : Model
-        Without definitions.
+    the integral becomes a signal of its own. The model has no definitions.
     """
     splitter = _Splitter(model)
     signals = tuple(replace(x, expression=splitter.apart(x.name, x.expression)) for x in model.signals)
@@ -134,12 +119,7 @@ class _Splitter:
     def apart(self, owner: str, expression: Expression) -> Expression:
         """Return an expression with new signals in place of blocks, and of filters in a sum, times something.
 
-        Parameters
-        ----------
-        owner : str
-            What the expression is the value of; signals in a sum are named after it.
-        expression : Expression
-            Of signals, nodes and inputs.
+        ``owner`` has the expression as its value; signals in a sum are named after it.
         """
         match expression:
             case Sum(terms):

@@ -99,18 +99,9 @@ class SolvedRows:
 def solve(rows: Sequence[Row], weights: Sequence[tuple[int, int]]) -> SolvedRows | None:
     """Return the Popov form of as many rows as unknowns, ``None`` when they do not determine these.
 
-    Parameters
-    ----------
-    rows : sequence of Row
-        Each a sum that is zero.
-    weights : sequence of (int, int)
-        Per unknown its weight, to which a derivative adds 4, and its rank among equal weights; ranks differ.
-        What weighs most in a row is solved for.
-
-    Raises
-    ------
-    BudgetError
-        SF502 when coefficients become too large.
+    Each row is a sum that is zero. ``weights`` are per unknown its weight, to which a derivative adds 4, and
+    its rank among equal weights; ranks differ. What weighs most in a row is solved for. SF502 when
+    coefficients become too large.
 
     Examples
     --------
@@ -211,13 +202,7 @@ class FieldElement:
 
     @staticmethod
     def of(num: fmpz_mpoly, den: fmpz_mpoly) -> FieldElement:
-        """Return a quotient in lowest terms.
-
-        Raises
-        ------
-        ZeroDivisionError
-            When the denominator is zero.
-        """
+        """Return a quotient in lowest terms; ZeroDivisionError when the denominator is zero."""
         if den.is_zero():
             message = "division by zero"
             raise ZeroDivisionError(message)

@@ -67,26 +67,11 @@ NAMES_OF_RATES = ("", "_dot", "_ddot")
 
 
 def realise(model: Model, pairs: Sequence[tuple[str, str]]) -> StateSpace:
-    """Return one realisation with the outputs and inputs of the given pairs.
+    """Return one realisation with the outputs and inputs of the given pairs; other inputs are zero.
 
-    Parameters
-    ----------
-    model : Model
-        Resolved; parameters may be symbols or, by :func:`symflex.model.with_numbers`, numbers.
-    pairs : sequence of (str, str)
-        Outputs and inputs; the realisation has every one that occurs. Other inputs are zero.
-
-    Returns
-    -------
-    StateSpace
-        With all states of the model, uncontrollable and unobservable ones among them.
-
-    Raises
-    ------
-    ModelError
-        SF235 for a distributed model, SF236 for an output that grows with s, SF30x for a singular model.
-    BudgetError
-        SF502 when the coefficients become too large.
+    Parameters may be symbols or, by :func:`symflex.model.with_numbers`, numbers. All states of the model are
+    in it, uncontrollable and unobservable ones too. SF235 for a distributed model, SF236 for an output that
+    grows with s, SF30x for a singular model, SF502 when the coefficients become too large.
 
     Examples
     --------
@@ -136,22 +121,8 @@ def realise_quotient(
     """Return state equations of a rational function of s in a model that is not rational itself.
 
     The states are those of one differential equation for the output: its derivatives, or the partial state.
-
-    Parameters
-    ----------
-    ratio : Factored
-        Output over input.
-    constants : tuple of ConstantFunction
-        What the function generators of its ring stand for.
-    model : Model
-        Names and units of the ends.
-    pair : (str, str)
-        The output and the input.
-
-    Raises
-    ------
-    ModelError
-        SF236 when it grows with s.
+    ``constants`` are what the function generators of its ring stand for; the model has names and units of the
+    ends. SF236 when it grows with s.
     """
     output, source = pair
     ring = ratio.ring

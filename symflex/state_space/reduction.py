@@ -42,15 +42,8 @@ FEW = 2
 def minimal(system: StateSpace) -> StateSpace:
     """Return the controllable and observable part.
 
-    Returns
-    -------
-    StateSpace
-        Minimal for almost all values of its parameters; special values may hide more.
-
-    Raises
-    ------
-    BudgetError
-        SF502 when the combinations of states become too large.
+    It is minimal for almost all values of its parameters; special values may hide more. SF502 when the
+    combinations of states become too large.
 
     Examples
     --------

@@ -49,20 +49,8 @@ class Arrays:
 def rounded(system: StateSpace, values: Mapping[str, ExactValue] | None = None) -> Arrays:
     """Return the matrices with every entry the double nearest to its exact value.
 
-    Parameters
-    ----------
-    system : StateSpace
-        Exact.
-    values : mapping of str to ExactValue, optional
-        Of the parameters that occur in it.
-
-    Raises
-    ------
-    ModelError
-        SF229 for a parameter without value, SF231 when these values divide by zero, SF233 when an entry is
-        too large or too small for double precision.
-    UncertifiedError
-        SF401 when it cannot be told whether an entry is zero.
+    SF229 for a parameter without value, SF231 when these values divide by zero, SF233 when an entry is too
+    large or too small for double precision, SF401 when it cannot be told whether an entry is zero.
 
     Examples
     --------
@@ -104,14 +92,8 @@ def rounding_of(system: StateSpace, values: Mapping[str, ExactValue] | None = No
 class Rounding:
     """Rounds quotients of polynomials to the nearest double.
 
-    Parameters
-    ----------
-    names : sequence of str
-        The ring's generators.
-    constants : mapping of str to callable
-        Encloses a generator at the current precision.
-    exact : mapping of str to Fraction
-        Those that are rational.
+    ``names`` are the ring's generators; ``constants`` enclose a generator at the current precision, and
+    ``exact`` are those that are rational.
     """
 
     def __init__(
@@ -126,13 +108,7 @@ class Rounding:
         self._balls: dict[int, dict[str, arb]] = {}
 
     def nearest(self, value: FieldElement, what: str) -> float:
-        """Return the nearest double; ``what`` is what messages call it.
-
-        Raises
-        ------
-        ModelError, UncertifiedError
-            As :func:`rounded` does.
-        """
+        """Return the nearest double; ``what`` is its name in messages. Errors are those of :func:`rounded`."""
         exact = self._rational(value)
         found = self._of_ball(value, what) if exact is None else _float(exact)
         if found == exact:

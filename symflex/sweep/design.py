@@ -68,10 +68,7 @@ class Range:
 class Design:
     """The points of a sweep: the product of the axes, and for each of its points all draws.
 
-    Raises
-    ------
-    BudgetError
-        SF507 for more than a million points.
+    SF507 for more than a million points.
 
     Examples
     --------

@@ -25,29 +25,12 @@ CONNECT_SECONDS = 10
 def open_executor(
     workers: int | None = None, scheduler: str | None = None
 ) -> Iterator[tuple[Executor | None, int]]:
-    """Open an executor, and close it in the end.
+    """Open an executor, and close it in the end; with it goes how many chunks are solved at a time.
 
-    Parameters
-    ----------
-    workers : int, optional
-        Processes on this computer; as many as it has processors by default. One needs no process of its own.
-    scheduler : str, optional
-        Address of a ``dask.distributed`` scheduler, such as ``tcp://10.0.0.1:8786``; symflex must be
-        installed where its workers are.
-
-    Yields
-    ------
-    executor : Executor or None
-        ``None``: this process.
-    workers : int
-        How many chunks are solved at a time.
-
-    Raises
-    ------
-    UsageError
-        SF914 dask.distributed is not installed; SF917 no scheduler answers.
-    BudgetError
-        SF508 workers of a cluster died.
+    ``None`` is this process. ``workers`` are processes on this computer, by default as many as it has
+    processors; one needs no process of its own. ``scheduler`` is the address of a ``dask.distributed`` one,
+    such as ``tcp://10.0.0.1:8786``; symflex must be installed where its workers are. SF914 dask.distributed
+    is not installed; SF917 no scheduler answers; SF508 workers of a cluster died.
     """
     if scheduler is not None:
         with _cluster(scheduler) as opened:

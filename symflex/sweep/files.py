@@ -134,13 +134,7 @@ def _texts(column: Array) -> Iterator[str]:
 
 
 def parquet_bytes(sweep: Sweep) -> bytes:
-    """Return the same table as Apache Parquet.
-
-    Raises
-    ------
-    UsageError
-        SF914 when pyarrow is not installed.
-    """
+    """Return the same table as Apache Parquet; SF914 when pyarrow is not installed."""
     try:
         import pyarrow  # an extra
         from pyarrow import parquet
@@ -183,11 +177,8 @@ WRITERS: dict[str, Callable[[Sweep], bytes]] = {
 def check_writable(path: Path) -> None:
     """Refuse, before anything is computed, a file that cannot be written afterwards.
 
-    Raises
-    ------
-    UsageError
-        SF902 an ending that stands for no format; SF914 the library it needs is not installed; SF903 no such
-        folder, or what is there is not a file.
+    SF902 an ending that stands for no format; SF914 the library it needs is not installed; SF903 no such
+    folder, or what is there is not a file.
     """
     if path.suffix.lower() not in WRITERS:
         raise UsageError(Diagnostic("SF902", f"'{path.name}' must end in {', '.join(WRITERS)}"))
@@ -205,14 +196,7 @@ def sweep_bytes(sweep: Sweep, suffix: str) -> bytes:
 
 
 def read_sweep(path: str | Path) -> Sweep:
-    """Read a sweep that was written as netCDF or .npz.
-
-    Raises
-    ------
-    UsageError
-        SF901 no such file.
-    DataError
-        SF915 the file holds no sweep.
+    """Read a sweep that was written as netCDF or .npz; SF901 no such file, SF915 it holds no sweep.
 
     Examples
     --------
@@ -276,13 +260,7 @@ def _texts_joined(dims: tuple[str, ...], values: Array) -> tuple[tuple[str, ...]
 
 
 def _sweep(attributes: Mapping[str, str], arrays: list[Labelled], coordinates: set[str]) -> Sweep:
-    """Return a sweep, with every array that one of its kind has, in its shape.
-
-    Raises
-    ------
-    ValueError
-        With what is missing or does not fit.
-    """
+    """Return a sweep, with every array that one of its kind has, in its shape; ValueError if one lacks."""
     sizes: dict[str, int] = {}
     for each in arrays:
         for dim, size in zip(each.dims, each.values.shape, strict=True):

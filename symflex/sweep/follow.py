@@ -172,16 +172,10 @@ def _outwards(design: Design) -> tuple[tuple[int, ...], tuple[int, ...]]:
 def follow(s: Complexes, family: Integers, steps: Predecessors, between: Between | None = None) -> Names:
     """Name the roots of all points.
 
-    Parameters
-    ----------
-    s : array of complex, shape (points, roots)
-        In the closed upper half plane and not 0, by natural frequency; NaN behind the last of a point.
-    family : array of int, shape (points,)
-        Equal and not 0 for points whose roots are the same but for one factor, in the same order.
-    steps : Predecessors
-        The way through the design.
-    between : callable, optional
-        Asked where names are in doubt.
+    ``s`` (points, roots) lie in the closed upper half plane and not at 0, by natural frequency; NaN stands
+    behind the last of a point. ``family`` is equal and not 0 for points whose roots are the same but for one
+    factor, in the same order. ``steps`` is the way through the design; ``between`` is asked where names are
+    in doubt.
 
     Examples
     --------

@@ -33,15 +33,7 @@ MAGIC = b"symflex chunk 1\n"
 
 
 class FolderJournal:
-    """Keeps chunks in a folder; see :func:`open_journal`.
-
-    Parameters
-    ----------
-    folder : Path
-        That exists and belongs to the sweep.
-    key : str
-        Of the sweep.
-    """
+    """Keeps chunks in a folder that belongs to the sweep with this key; see :func:`open_journal`."""
 
     def __init__(self, folder: Path, key: str) -> None:
         self.folder = folder
@@ -83,19 +75,8 @@ class FolderJournal:
 def open_journal(output: Path, key: str, *, is_fresh: bool = False) -> FolderJournal:
     """Return the journal of the sweep whose result goes to a file: the folder ``FILE.part`` beside it.
 
-    Parameters
-    ----------
-    output : Path
-        Where the result goes.
-    key : str
-        Of the sweep, see :func:`symflex.sweep.sweep_key`.
-    is_fresh : bool
-        Start anew, whatever is there.
-
-    Raises
-    ------
-    UsageError
-        SF916 the folder belongs to another sweep, or is not a journal; SF903 it cannot be made.
+    ``key`` is :func:`symflex.sweep.sweep_key`; a fresh journal starts anew, whatever is there. SF916 the
+    folder belongs to another sweep, or is not a journal; SF903 it cannot be made.
     """
     folder = output.with_name(output.name + ".part")
     with _writing(folder):

@@ -39,21 +39,8 @@ if TYPE_CHECKING:
 def plan_sweep(model: Model, given: SweepOptions, frequencies: Sequence[float] = ()) -> tuple[Task, Design]:
     """Return what is asked for at every point, and the points.
 
-    Parameters
-    ----------
-    model : Model
-        Resolved.
-    given : SweepOptions
-        What is asked.
-    frequencies : sequence of float
-        Of a response [Hz]; equally spaced in their logarithm by default.
-
-    Raises
-    ------
-    UsageError
-        SF902 what cannot be swept, read or meant.
-    BudgetError
-        SF507 too many points.
+    Frequencies of a response [Hz] are by default equally spaced in their logarithm. SF902 what cannot be
+    swept, read or meant; SF507 too many points.
     """
     pair = pick_pairs(model, [given.tf] if given.tf else [])[0]
     if isinstance(given.over, Mapping):
@@ -88,11 +75,8 @@ def sweep_task(
 ) -> Task:
     """Return what is wanted at every point of a design; see :class:`symflex.sweep.Task`.
 
-    Raises
-    ------
-    UsageError
-        SF902 when margins are wanted and there is no such gain; SF209 a value with which a length, stiffness
-        or delay has a sign it cannot have.
+    SF902 when margins are wanted and there is no such gain; SF209 a value with which a length, stiffness or
+    delay has a sign it cannot have.
     """
     if of == "margins":
         pick_gain(model.parameters, gain)
@@ -111,15 +95,9 @@ def sweep(
 ) -> Sweep:
     """Solve all points of a design; with an output, write it, and go on where a killed sweep stopped.
 
-    Parameters
-    ----------
-    task, design : Task, Design
-        What is wanted, and where.
-    given : SweepOptions
-        Its ``output`` is the file to write, if any: .nc, .npz, .csv or .parquet; chunks are kept in
-        ``FILE.part`` until it is written. With ``fresh``, what an earlier run kept is discarded.
-    executor, workers, progress
-        See :func:`symflex.sweep.run_sweep`.
+    The ``output`` of the options is a .nc, .npz, .csv or .parquet; chunks are kept in ``FILE.part`` until it
+    is written. With ``fresh``, what an earlier run kept is discarded. The rest is as in
+    :func:`symflex.sweep.run_sweep`.
     """
     # The package imports api, which stands above: its version is read without importing it.
     version = str(vars(sys.modules["symflex"])["__version__"])

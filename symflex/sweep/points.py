@@ -101,21 +101,11 @@ class _Known:
 
 
 class RootSolver:
-    """Finds the roots of one transfer function at many points.
+    """Finds the roots of one transfer function, ``poles`` or ``zeros``, at many points.
 
     Where a point's function is similar to one that was solved, its roots are those times one factor; else the
     search with proof is made. Both give the doubles nearest to the true roots, so the way does not show.
-
-    Parameters
-    ----------
-    tf : TransferFunction
-        With the swept parameters as symbols.
-    names : sequence of str
-        What the values of a point belong to.
-    kind : str
-        ``poles`` or ``zeros``.
-    region : Region, optional
-        As for :func:`symflex.roots.locate.locate`.
+    ``tf`` has the swept parameters as symbols, ``names`` say what the values of a point belong to.
     """
 
     def __init__(
@@ -360,12 +350,7 @@ QUANTITIES: dict[str, Callable[[Task], Solver]] = {
 def solve_chunk(pickled: bytes, points: Sequence[Point]) -> Rows:
     """Return the results at some points; the model is derived once in each process.
 
-    Parameters
-    ----------
-    pickled : bytes
-        A :class:`~symflex.sweep.task.Task`, as the process that started the sweep wrote it.
-    points : sequence of Point
-        Any.
+    ``pickled`` is a :class:`~symflex.sweep.task.Task`, as the process that started the sweep wrote it.
     """
     return _solver(pickled)(points)
 

@@ -32,27 +32,13 @@ def read_design(
 ) -> Design:
     """Return the design that texts say.
 
-    Parameters
-    ----------
-    parameters : sequence of ModelParameter
-        Of the model.
-    texts : sequence of str
-        ``NAME=LO:HI:lin|log:COUNT`` and ``NAME=V1,V2,...`` are axes of a grid; ``NAME=LO:HI``,
-        ``NAME=LO:HI:log`` and ``NAME=+-5%`` (about the declared value) are ranges to draw from. Numbers are
-        in SI units or carry a unit.
-    draws : int
-        How many points are drawn from the ranges.
-    seed : int
-        Of the random numbers.
+    ``NAME=LO:HI:lin|log:COUNT`` and ``NAME=V1,V2,...`` are axes of a grid; ``NAME=LO:HI``, ``NAME=LO:HI:log``
+    and ``NAME=+-5%`` (about the declared value) are ranges from which ``draws`` points are drawn. Numbers are
+    in SI units or carry a unit.
 
-    Raises
-    ------
-    UsageError
-        SF902 what cannot be read, an unknown parameter, one that is swept twice, ranges without draws or
-        draws without ranges; SF203 another unit, SF209 another sign than assumed of the parameter, or 0 for
-        one that is assumed positive, also as the limit of a range.
-    BudgetError
-        SF507 too many points.
+    SF902 what cannot be read, an unknown parameter, one that is swept twice, ranges without draws or draws
+    without ranges; SF203 another unit, SF209 another sign than assumed of the parameter, or 0 for one that is
+    assumed positive, also as the limit of a range; SF507 too many points.
 
     Examples
     --------
@@ -99,15 +85,10 @@ def design_of(
 
 
 def check_design(model: Model, design: Design) -> None:
-    """Refuse values that would give a beam a length of zero, a delay a negative time, and the like.
+    """Refuse values that would give a beam a length of zero, a delay a negative time, and the like: SF209.
 
     The smallest and the largest value of each swept parameter are looked at, with the declared values of
     those that are not swept.
-
-    Raises
-    ------
-    UsageError
-        SF209 a length that is not positive, a negative delay, and the like.
     """
     ends = [(axis.name, axis.values) for axis in design.axes]
     ends += [(each.name, (each.low, each.high)) for each in design.ranges]

@@ -62,15 +62,7 @@ def chunk_size(count: int) -> int:
 
 
 def sweep_key(task: Task, design: Design, version: str) -> str:
-    """Return what tells a sweep from every other: a hash of the model, the design and the version.
-
-    Parameters
-    ----------
-    task, design : Task, Design
-        What is asked for.
-    version : str
-        Of the program: another may print other bytes.
-    """
+    """Return what tells a sweep from every other: a hash of the model, the design and the version."""
     digest = sha256(f"{version}\n{CHUNKS}\n{fingerprint(task)}\n{design.shape}\n".encode())
     for point in design.points:
         digest.update(";".join(map(written, point)).encode())
@@ -88,36 +80,12 @@ def run_sweep(
     attributes: Mapping[str, str] | None = None,
     clock: Callable[[], float] = monotonic,
 ) -> Sweep:
-    """Solve all points of a design.
+    """Solve all points of a design: the same bytes, whatever the executor, the workers and the journal.
 
-    Parameters
-    ----------
-    task : Task
-        What is wanted at each.
-    design : Design
-        The points.
-    executor : concurrent.futures.Executor, optional
-        Where chunks are solved: processes, or a cluster's; in this process without one.
-    workers : int
-        How many work at a time there.
-    journal : Journal, optional
-        Keeps chunks as they come; what it holds already is not solved again.
-    progress : Progress, optional
-        Told how many points are done and how long the rest will take.
-    attributes : mapping of str to str, optional
-        Kept with the result.
-    clock : callable
-        Returns the time [s].
-
-    Returns
-    -------
-    Sweep
-        The same, byte for byte, whatever the executor, the workers and the journal.
-
-    Raises
-    ------
-    BudgetError
-        SF508 when workers end before their work.
+    Chunks are solved by ``workers`` at a time in processes or on a cluster, in this process without an
+    executor. What the journal holds already is not solved again. ``progress`` is told how many points are
+    done and how long the rest will take, by the ``clock`` [s]; ``attributes`` are kept with the result. SF508
+    when workers end before their work.
     """
     size = chunk_size(design.count)
     chunks = range(-(-design.count // size))

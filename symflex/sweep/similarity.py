@@ -58,15 +58,10 @@ class _Product:
 
 
 class Similarities:
-    """Finds the similarity of a transfer function at points.
+    """Finds the similarity of a transfer function, with symbols, at points.
 
     Lumped systems have none, nor those with delays, waves without a formula, or functions of constants; that
     their frequencies could be scaled is not looked for.
-
-    Parameters
-    ----------
-    tf : TransferFunction
-        With symbols.
     """
 
     def __init__(self, tf: TransferFunction) -> None:
@@ -101,13 +96,7 @@ class Similarities:
         self._order = first.order
 
     def at(self, values: Mapping[str, ExactValue]) -> Similarity | None:
-        """Return the similarity at a point, ``None`` where the function has no such scale.
-
-        Parameters
-        ----------
-        values : mapping of str to ExactValue
-            Of all parameters that occur.
-        """
+        """Return the similarity at a point, ``None`` where the function has no such scale."""
         if not self._is_possible:
             return None
         found = _Point(values, self._waves, self._polynomials)

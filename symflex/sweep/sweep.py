@@ -101,10 +101,7 @@ class Sweep:
     def to_xarray(self) -> object:
         """Return the sweep as an ``xarray.Dataset``, with roots and responses as complex numbers ``s``.
 
-        Raises
-        ------
-        UsageError
-            SF914 when xarray is not installed.
+        SF914 when xarray is not installed.
         """
         try:
             import xarray  # an extra
@@ -136,18 +133,10 @@ def _described(each: Labelled) -> dict[str, str]:
 def assembled(
     task: Task, design: Design, rows: Rows, attributes: Mapping[str, str], between: Between | None = None
 ) -> Sweep:
-    """Return the sweep that the rows of all points make.
+    """Return the sweep that the rows of all points, in order, make.
 
-    Parameters
-    ----------
-    task, design : Task, Design
-        What was asked for.
-    rows : dict of str to array
-        As :func:`symflex.sweep.solve.solve_chunk` returns them, for all points in order.
-    attributes : mapping of str to str
-        Added to what the task says.
-    between : callable, optional
-        Solves points between others where names are in doubt; see :func:`symflex.sweep.follow.follow`.
+    ``attributes`` are added to what the task says; ``between`` solves points between others where names are
+    in doubt, see :func:`symflex.sweep.follow.follow`.
     """
     dims = tuple(label(axis.name) for axis in design.axes) + ((DRAW,) if design.draws else ())
     coordinates = list(_parameters(task, design))

@@ -45,23 +45,10 @@ class Relation:
 def relate(
     whole: Determinants, pair: tuple[str, str], factor: Factored, constrained: Determinants
 ) -> Relation | None:
-    """Return how a numerator and the determinant of a constrained system are related.
+    """Return how the numerator of a pair and the determinant of a constrained system are related.
 
-    Parameters
-    ----------
-    whole : Determinants
-        Of the system.
-    pair : (str, str)
-        Output and input.
-    factor : Factored
-        What the output multiplies its coordinate with, over the equations' ring.
-    constrained : Determinants
-        Of the constrained system.
-
-    Returns
-    -------
-    Relation or None
-        ``None`` when the numerator is zero, or when the generators of the two rings differ.
+    ``pair`` is output and input; ``factor`` is what the output multiplies its coordinate with, over the
+    equations' ring. ``None`` when the numerator is zero, or when the generators of the two rings differ.
     """
     equations = whole.equations
     if _generators(constrained.equations) != _generators(equations):

@@ -178,20 +178,8 @@ class ReplacedCondition:
 def replace_condition(model: Model, source: Input, output: Expression) -> ReplacedCondition | None:
     """Return the model in which what an output shows is zero, instead of the condition that holds the input.
 
-    Parameters
-    ----------
-    model : Model
-        With fields.
-    source : Input
-        A free signal.
-    output : Expression
-        What is measured.
-
-    Returns
-    -------
-    ReplacedCondition or None
-        ``None`` unless the input stands in one condition and nowhere else, and the output is a multiple of
-        one value of a field.
+    ``None`` unless the input, a free signal, stands in one condition and nowhere else, and the output is a
+    multiple of one value of a field.
     """
     unknowns = {u for f in model.fields for u in f.unknowns}
     calls = [*{n: None for n in names(output) if isinstance(n, Call) and n.name in unknowns}]

@@ -44,17 +44,7 @@ def is_line(use: PlacedElement) -> bool:
 
 
 def ends_of_element(model: Model, use: PlacedElement, resting: Collection[Variable]) -> str:
-    """Return how both ends of a line element are held.
-
-    Parameters
-    ----------
-    model : Model
-        Where it stands.
-    use : PlacedElement
-        A line element.
-    resting : collection of Variable
-        The coordinates at rest.
-    """
+    """Return how both ends of a line element are held, given the coordinates at rest."""
     (_, references), *_ = use.nodes
     domain = dict(use.domains)["between"]
     return ", ".join(_end(model, use, r, domain == "planar", resting) for r in references)
@@ -151,17 +141,7 @@ class Bending:
 
 
 def bending_between(model: Model, equations: Equations, output: Output, source: Input) -> Bending | None:
-    """Return the beam without which input and output are not connected, or the field they both belong to.
-
-    Parameters
-    ----------
-    model : Model
-        Resolved.
-    equations : Equations
-        Assembled from it.
-    output, source : Output, Input
-        The pair.
-    """
+    """Return the beam without which input and output are not connected, or the field they both belong to."""
     motion = measured(equations, output.name)
     if motion is not None:
         starts = {v for v, _ in acting(model, source)} or _driven(model, source)

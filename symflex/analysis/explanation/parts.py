@@ -133,16 +133,10 @@ class _Matrix:
 
 
 def separate(equations: Equations, source: str, model: Model | None = None) -> Separation:
-    """Return the parts of a system, those without poles left out.
+    """Return the parts of a constrained system, those without poles left out.
 
-    Parameters
-    ----------
-    equations : Equations
-        Of the constrained system.
-    source : str
-        Name of the input whose parts are marked.
-    model : Model, optional
-        Whose elements are named; by default all those of the equations.
+    Parts that hold the input ``source`` are marked; elements of ``model`` are named, by default all those of
+    the equations.
     """
     named = equations.model if model is None else model
     matrix = _Matrix.of(equations, source)

@@ -29,15 +29,7 @@ CONTEXT = {
 
 
 def explanation_text(explained: ZeroExplanation, width: int = WIDTH) -> str:
-    """Return an explanation as lines of at most ``width`` columns.
-
-    Parameters
-    ----------
-    explained : ZeroExplanation
-        What was found.
-    width : int
-        Columns available; names longer than a line stand over.
-    """
+    """Return an explanation as lines of at most ``width`` columns; longer names stand over."""
     lines = [f"zeros of {explained.tf} explained   {CONTEXT[explained.kind]}"]
     for paragraph in explanation_paragraphs(explained):
         lines.append("")

@@ -194,23 +194,10 @@ class _Case:
 def explain_zeros(
     model: Model, bound: BoundTransferFunction, found: PoleZeroMap, nested: Nested | None = None
 ) -> ZeroExplanation:
-    """Explain the zeros of a transfer function.
+    """Explain the zeros of a transfer function; the model's numbers are those of ``bound``.
 
-    Parameters
-    ----------
-    model : Model
-        Resolved; the numbers are those of ``bound``.
-    bound : BoundTransferFunction
-        With numbers.
-    found : PoleZeroMap
-        Its poles and zeros.
-    nested : callable, optional
-        Returns the transfer function of a ``model`` block over a given ring.
-
-    Raises
-    ------
-    BudgetError
-        SF50x when a determinant would be too large.
+    ``nested`` returns the transfer function of a ``model`` block over a given ring. A determinant that would
+    be too large raises a BudgetError, SF50x.
 
     Examples
     --------

@@ -100,13 +100,7 @@ class SystemAt:
 
 
 def evaluated(value: Factored, values: Mapping[str, acb]) -> acb:
-    """Return a rational function with a ball in place of every generator.
-
-    Raises
-    ------
-    KeyError
-        When it holds a generator that has no value.
-    """
+    """Return a rational function with a ball in place of every generator; KeyError where one has no value."""
     names = value.ring.names
     result = acb(ball(value.unit))
     for factor, exponent in value.factors:

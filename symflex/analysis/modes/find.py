@@ -59,31 +59,15 @@ class NumberedShape:
 
 
 def mode_shape(bound: BoundTransferFunction, which: int | Root, digits: int = DIGITS) -> EnclosedModeShape:
-    """Return the shape of one mode.
+    """Return the shape of one mode, of a pair the member with positive imaginary part.
 
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        Whose poles are counted.
-    which : int or Root
-        The number of the mode: 1 is the lowest pole other than 0, a conjugate pair or a real pole is one
-        mode, and one of multiplicity m counts as m. 0 is the rigid-body motion, at s = 0. Or a root: a pole,
-        or a hidden mode.
-    digits : int
-        Correct digits of displacements, relative to the largest.
+    ``which`` is the number of the mode: 1 is the lowest pole other than 0, a conjugate pair or a real pole is
+    one mode, and one of multiplicity m counts as m. 0 is the rigid-body motion, at s = 0. Or it is a root: a
+    pole, or a hidden mode. ``digits`` of displacements are correct, relative to the largest.
 
-    Returns
-    -------
-    EnclosedModeShape
-        Of the member of a pair with positive imaginary part.
-
-    Raises
-    ------
-    UsageError
-        SF902 when there is no such mode, or the root is no pole; SF904 when the root, or 0, has several
-        shapes, or a multiple pole fewer shapes than its multiplicity.
-    UncertifiedError
-        SF406 when the equations cannot be told to be singular at the pole.
+    SF902 when there is no such mode, or the root is no pole; SF904 when the root, or 0, has several shapes,
+    or a multiple pole fewer shapes than its multiplicity; SF406 (UncertifiedError) when the equations cannot
+    be told to be singular at the pole.
 
     Examples
     --------

@@ -36,21 +36,10 @@ def null_space(matrix: acb_mat, dimension: int = 1, typical: acb_mat | None = No
     With ``[A B; C 0] [X; T] = [0; 1]``, B and C of full rank and generic, the bordered matrix is regular as
     soon as the null space of A has at most ``dimension`` dimensions; it has exactly as many where T = 0, and
     X is a basis then (Govaerts 2000, Numerical Methods for Bifurcations of Dynamical Equilibria, chapter 3).
+    None when the balls are too wide to tell.
 
-    Parameters
-    ----------
-    matrix : acb_mat
-        Square.
-    dimension : int
-        Of the null space sought.
-    typical : acb_mat, optional
-        A matrix whose entries are as large as those of this one are in general. Rows and columns are scaled
-        after it; where entries vanish by the singularity itself, they tell nothing of the scale.
-
-    Returns
-    -------
-    NullSpace or None
-        None when the balls are too wide to tell.
+    ``typical`` is a matrix whose entries are as large as those of this one are in general. Rows and columns
+    are scaled after it; where entries vanish by the singularity itself, they tell nothing of the scale.
 
     Examples
     --------

@@ -256,14 +256,8 @@ def normalised(shape: EnclosedModeShape, digits: int) -> EnclosedModeShape | Non
 
     Displacements are those of nodes in translation, along beams, rods and strings, and of each field's first
     unknown. Where all of these are at rest, the largest angle is 1; where no angle moves either, the largest
-    voltage; else the largest of what is left.
-
-    Parameters
-    ----------
-    shape : EnclosedModeShape
-        Of any scale.
-    digits : int
-        What is smaller than ``10^-digits`` of another motion, in SI units, is at rest.
+    voltage; else the largest of what is left. What is smaller than ``10^-digits`` of another motion, in SI
+    units, is at rest.
     """
     groups = [list(places) for places in _groups(shape)]
     largest = max((p.size for group in groups for p in group), default=0.0)

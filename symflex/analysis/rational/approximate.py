@@ -34,33 +34,14 @@ def approximate(
 ) -> RationalApproximation:
     """Return a rational function close to a transfer function at low frequencies.
 
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        With numbers.
-    modes : int, optional
-        How many modes are kept, besides roots at 0. By default those up to the end of ``band``, else as many
-        as the model's ``[analysis]`` says, else five.
-    form : str
-        ``product`` or ``modal``; see :data:`symflex.analysis.rational.FORMS`.
-    band : (float, float), optional
-        Where the error is stated [Hz]; by default from a thousandth of the lowest natural frequency to the
-        highest one kept.
+    ``modes`` are kept, besides roots at 0: by default those up to the end of ``band``, else as many as the
+    model's ``[analysis]`` says, else five; if these are all, the function is exact. ``form`` is ``product``
+    or ``modal``, see :data:`symflex.analysis.rational.FORMS`. The error is stated in ``band`` [Hz], by
+    default from a thousandth of the lowest natural frequency to the highest one kept.
 
-    Returns
-    -------
-    RationalApproximation
-        Of a rational function all of whose modes are kept, the function itself.
-
-    Raises
-    ------
-    UsageError
-        SF902 for an unknown form or a negative number of modes, SF227 for a band that is empty or not
-        positive.
-    ModelError
-        SF402 when the function is identically zero.
-    UncertifiedError
-        SF405 when residues, or the behaviour near s = 0, cannot be told.
+    SF902 for an unknown form or a negative number of modes, SF227 for a band that is empty or not positive,
+    SF402 when the function is identically zero, SF405 when residues, or the behaviour near s = 0, cannot be
+    told.
 
     Examples
     --------

@@ -103,11 +103,8 @@ class ErrorScan:
     def valid_to(self, tolerance: float) -> float:
         """Return the frequency [Hz] up to which no sample exceeds the tolerance.
 
-        Returns
-        -------
-        float
-            Between the last good and the first bad sample, found by bisection; 0 when the first is bad,
-            :attr:`high_hz` when none is.
+        It lies between the last good and the first bad sample, found by bisection; 0 when the first is bad,
+        :attr:`high_hz` when none is.
         """
         bad = np.flatnonzero(~(self.error <= tolerance))
         if not bad.size:
@@ -130,18 +127,7 @@ def scan_error(
     low_hz: float,
     high_hz: float,
 ) -> ErrorScan:
-    r"""Sample the error of an approximation in a band.
-
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        G, evaluated to double precision.
-    approximation : callable
-        R(s).
-    roots : PoleZeroMap
-        The poles and zeros of G in the band, about which samples are dense.
-    low_hz, high_hz : float
-        [Hz].
+    r"""Sample the error of an approximation in a band [Hz], densely about the poles and zeros there.
 
     Examples
     --------

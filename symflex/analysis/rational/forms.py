@@ -52,19 +52,7 @@ Form = Callable[["BoundTransferFunction", "KeptRoots", int], Approximant]
 def product_form(bound: BoundTransferFunction, kept: KeptRoots, digits: int) -> Approximant:
     """Return the product over the poles and zeros that are kept, right to the leading order at s = 0.
 
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        Not identically zero.
-    kept : KeptRoots
-        Its poles and zeros.
-    digits : int
-        Significant digits of the leading coefficient.
-
-    Raises
-    ------
-    UncertifiedError
-        SF405 when the behaviour near s = 0 cannot be told.
+    SF405 when the behaviour near s = 0 cannot be told.
     """
     start = expand_at_zero(bound, -(10**6), digits)
     order = _order_at_zero(kept.zeros) - _order_at_zero(kept.poles)
@@ -93,24 +81,9 @@ def product_form(bound: BoundTransferFunction, kept: KeptRoots, digits: int) -> 
 def modal_form(bound: BoundTransferFunction, kept: KeptRoots, digits: int) -> Approximant:
     """Return the sum of the principal parts at the poles that are kept, and a static correction.
 
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        Not identically zero.
-    kept : KeptRoots
-        Its poles.
-    digits : int
-        Significant digits of residues and correction.
-
-    Raises
-    ------
-    UncertifiedError
-        SF405 when a residue cannot be told.
-
-    Notes
-    -----
     With c_1/(s - p) + c_2/(s - p)^2 + ... at every pole and g_0 the coefficient of s^0 in the Laurent series
-    of G at s = 0, the correction is g_0 minus what the poles other than 0 contribute at s = 0.
+    of G at s = 0, the correction is g_0 minus what the poles other than 0 contribute at s = 0. SF405 when a
+    residue cannot be told.
     """
     highest = kept.excess
     residues = residues_at(bound, kept.poles, digits)

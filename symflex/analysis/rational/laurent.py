@@ -78,13 +78,7 @@ class LaurentSeries:
     is_estimate: bool = False  # the order, or the pole, was found numerically: nothing is proved
 
     def coefficient(self, power: int) -> acb:
-        """Return the coefficient of ``(s - p)^power``, zero below the order.
-
-        Raises
-        ------
-        IndexError
-            When the series was not computed that far.
-        """
+        """Return the coefficient of ``(s - p)^power``, zero below the order; IndexError if not computed."""
         return acb(0) if power < self.order else self.coefficients[power - self.order]
 
     @property
@@ -94,21 +88,9 @@ class LaurentSeries:
 
 
 def expand_at_zero(bound: BoundTransferFunction, last: int, digits: int) -> LaurentSeries:
-    """Return the Laurent series at s = 0.
+    """Return the Laurent series at s = 0 up to the power ``last``, and at least its leading term.
 
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        Not identically zero.
-    last : int
-        The highest power of s wanted; the leading term is always there.
-    digits : int
-        Significant digits of every coefficient that is not zero.
-
-    Raises
-    ------
-    UncertifiedError
-        SF405 when the coefficients cannot be told.
+    Every coefficient that is not zero has so many significant digits. SF405 when they cannot be told.
 
     Examples
     --------
@@ -198,21 +180,9 @@ def _quotient(
 
 
 def expand_at_pole(bound: BoundTransferFunction, root: Root, digits: int) -> tuple[acb, LaurentSeries]:
-    """Return a pole other than 0, refined, and the principal part there.
+    """Return a pole other than 0, refined, and the principal part there, to so many significant digits.
 
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        The function.
-    root : Root
-        One of its poles, told apart from the others.
-    digits : int
-        Significant digits of every coefficient that is not zero.
-
-    Raises
-    ------
-    UncertifiedError
-        SF405 when the poles cannot be told apart, or the coefficients cannot be told.
+    SF405 when poles cannot be told apart, or the coefficients cannot be told.
     """
     multiplicity, ratio = root.multiplicity, bound.ratio
     if not root.certified:
@@ -406,31 +376,11 @@ class PrincipalPart:
 def find_residues(
     bound: BoundTransferFunction, region: Region | None = None, digits: int = 15, budget: Budget | None = None
 ) -> tuple[PrincipalPart, ...]:
-    r"""Return the principal parts at the poles in a region.
+    r"""Return the principal parts at the poles in a region, in their order; both members of a conjugate pair.
 
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        With numbers.
-    region : Region, optional
-        As for :func:`symflex.roots.locate.locate`.
-    digits : int
-        Significant digits of every coefficient that is not zero.
-    budget : Budget, optional
-        Limits the search for the poles.
-
-    Returns
-    -------
-    tuple of PrincipalPart
-        In the order of the poles; both members of a conjugate pair.
-
-    Raises
-    ------
-    UncertifiedError
-        SF405 when poles cannot be told apart, or the behaviour at one cannot be told.
-    BudgetError
-        SF505, SF506 when the search for the poles takes too long; see
-        :meth:`symflex.roots.PoleZeroMap.complete`.
+    The region is one of :func:`symflex.roots.locate.locate`; the budget limits the search for poles, which
+    raises SF505 or SF506 when it takes too long. SF405 when poles cannot be told apart, or the behaviour at
+    one cannot be told.
 
     Examples
     --------

@@ -46,23 +46,10 @@ def series_length(terms: int) -> Iterator[None]:
 def local_values(
     evaluator: KernelValues, centre: acb, terms: int, branches: int = 1
 ) -> dict[str, Value] | None:
-    """Return the series of all generators about a centre, at the current precision.
+    """Return the series of all generators about p [rad/s]; None where a wavenumber is no such series.
 
-    Parameters
-    ----------
-    evaluator : KernelValues
-        Of the ring.
-    centre : acb
-        p [rad/s].
-    terms : int
-        Terms in e computed with; roots of what vanishes lose some.
-    branches : int
-        n: 1 where wavenumbers neither vanish nor meet, else :data:`BRANCHES`.
-
-    Returns
-    -------
-    dict of str to acb or acb_series, or None
-        None where a wavenumber is no such series.
+    So many ``terms`` in e are computed with; roots of what vanishes lose some. ``branches`` is n: 1 where
+    wavenumbers neither vanish nor meet, else :data:`BRANCHES`.
     """
     with series_length(terms):
         plain: dict[str, Value] = {name: acb(value) for name, value in evaluator.constants.items()}

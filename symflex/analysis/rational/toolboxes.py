@@ -104,24 +104,10 @@ class RationalFunction(ABC):
     def to_control(self, form: str = TRANSFER_FUNCTION) -> object:
         """Return a system of python-control, named by :meth:`label`, with named input and output.
 
-        Parameters
-        ----------
-        form : str
-            ``transfer-function``; or ``state-space``, see :meth:`state_space`, which loses no digits.
-
-        Returns
-        -------
-        control.TransferFunction or control.StateSpace
-            Its attribute ``metadata`` holds units, the frequencies up to which it is valid, and what
-            rounding coefficients does to it.
-
-        Raises
-        ------
-        UsageError
-            SF902 when python-control is not installed, and for an unknown form.
-        ModelError
-            SF233 when a coefficient is too large or too small for double precision, SF236 as
-            :meth:`state_space`.
+        ``form`` is ``transfer-function`` or ``state-space``, which loses no digits. The attribute
+        ``metadata`` holds units, the frequencies up to which it is valid, and what rounding coefficients does
+        to it. SF902 when python-control is not installed, and for an unknown form; SF233 when a coefficient
+        is too large or too small for double precision; SF236 as :meth:`state_space`.
         """
         _check(form, CONTROL_FORMS)
         try:
@@ -139,10 +125,7 @@ class RationalFunction(ABC):
     def to_frd(self, omega: npt.ArrayLike) -> object:
         """Return a ``control.FrequencyResponseData`` at angular frequencies [rad/s]; named as the others.
 
-        Raises
-        ------
-        UsageError
-            SF902 when python-control is not installed, when frequencies do not increase, and at a pole.
+        SF902 when python-control is not installed, when frequencies do not increase, and at a pole.
         """
 
         def value(s: complex) -> complex:
@@ -151,26 +134,10 @@ class RationalFunction(ABC):
         return frequency_response_data(self.source, value, omega, self.label(), self.metadata())
 
     def to_scipy(self, form: str = ZEROS_POLES_GAIN) -> object:
-        """Return a system of ``scipy.signal``.
+        """Return a system of ``scipy.signal``, with ``metadata`` and errors as :meth:`to_control`.
 
-        Parameters
-        ----------
-        form : str
-            ``zeros-poles-gain``, which keeps the digits that coefficients lose; ``transfer-function``;
-            ``state-space``.
-
-        Returns
-        -------
-        scipy.signal.ZerosPolesGain, TransferFunction or StateSpace
-            Its attribute ``metadata`` holds name, units and the frequencies up to which it is valid.
-
-        Raises
-        ------
-        UsageError
-            SF902 when scipy is not installed, and for an unknown form.
-        ModelError
-            SF233 when a number is too large or too small for double precision, SF236 as
-            :meth:`state_space`.
+        ``form`` is ``zeros-poles-gain``, which keeps the digits that coefficients lose, ``transfer-function``
+        or ``state-space``.
         """
         _check(form, SCIPY_FORMS)
         try:
@@ -218,19 +185,9 @@ class RationalFunction(ABC):
 
 
 class ExactFunction(RationalFunction):
-    """A bound transfer function that is rational.
+    """A bound transfer function that is rational; SF235 for one that is not.
 
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        With numbers.
-    is_minimal : bool
-        Leave uncontrollable and unobservable states out of state equations.
-
-    Raises
-    ------
-    ModelError
-        SF235 when it is not rational.
+    With ``is_minimal``, uncontrollable and unobservable states are left out of state equations.
     """
 
     def __init__(self, bound: BoundTransferFunction, *, is_minimal: bool = False) -> None:
@@ -253,13 +210,7 @@ class ExactFunction(RationalFunction):
         return {"exact": True}
 
     def coefficients(self) -> Coefficients:
-        """Return the nearest doubles to the coefficients.
-
-        Raises
-        ------
-        ModelError
-            SF233 when one is too large or too small for double precision.
-        """
+        """Return the nearest doubles to the coefficients; SF233 when one is too large or too small."""
         above, below = self._parts
         return self._rounded(above), self._rounded(below)
 
@@ -320,23 +271,8 @@ def frequency_response_data(
 ) -> object:
     """Return a ``control.FrequencyResponseData`` of values at s = j omega.
 
-    Parameters
-    ----------
-    source : TransferFunction
-        The names of its ends.
-    value : callable
-        The function of s [rad/s].
-    omega : array_like of float, shape (n,)
-        Angular frequencies [rad/s], none of them negative, each larger than the one before.
-    label : str
-        A name of letters, digits and underscores.
-    metadata : dict
-        For the attribute of this name.
-
-    Raises
-    ------
-    UsageError
-        SF902 when python-control is not installed, for other frequencies, and at a pole.
+    ``omega`` [rad/s] increases and is nowhere negative. SF902 when python-control is not installed, for other
+    frequencies, and at a pole.
     """
     try:
         import control

@@ -55,21 +55,8 @@ def truncate(bound: BoundTransferFunction, modes: int, digits: int) -> KeptRoots
 
     Poles in the right half plane are kept wherever they lie: without them the approximation would be stable.
     Zeros are left out from above until there are no more than poles, unless nothing is left out of a rational
-    function: what grows with s is of no use to a simulation.
-
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        With numbers.
-    modes : int
-        As :class:`symflex.roots.Modes` counts, roots at 0 aside.
-    digits : int
-        Significant digits of the roots.
-
-    Raises
-    ------
-    UsageError
-        SF902 for a number of modes below zero.
+    function: what grows with s is of no use to a simulation. Modes count as in :class:`symflex.roots.Modes`,
+    roots at 0 aside; SF902 for a number below zero.
     """
     if modes < 0:
         raise UsageError(Diagnostic("SF902", f"the number of modes cannot be {modes}"))

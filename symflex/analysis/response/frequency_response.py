@@ -123,26 +123,10 @@ def respond(
 ) -> SampledResponse:
     """Evaluate a transfer function on the imaginary axis to double precision.
 
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        With numbers.
-    omega : array_like of float, shape (n,)
-        Angular frequencies [rad/s], finite.
-    roots : PoleZeroMap, optional
-        All poles and zeros, when they are known already; those of a distributed system do not matter.
-
-    Returns
-    -------
-    SampledResponse
-        Each value is right to the last bits of its absolute value; ``inf + nan*1j`` at a pole. The phase is
-        counted from the poles and zeros, for a distributed system followed from s = 0, so it does not depend
-        on how fine the grid is.
-
-    Raises
-    ------
-    ValueError
-        When ``omega`` is not one-dimensional or not finite.
+    Each value is right to the last bits of its absolute value; ``inf + nan*1j`` at a pole. The phase is
+    counted from the poles and zeros, for a distributed system followed from s = 0, so it does not depend on
+    how fine the grid is. ``roots`` are all poles and zeros, when they are known already; those of a
+    distributed system do not matter. ValueError unless ``omega`` [rad/s] is one-dimensional and finite.
 
     Examples
     --------

@@ -40,18 +40,10 @@ BEYOND_LAST_POLE = 1.3
 
 
 def default_band(*maps: PoleZeroMap) -> tuple[float, float]:
-    """Return a band [Hz] that shows all poles and zeros.
+    """Return a band [Hz] that shows all poles and zeros of functions that are to be shown together.
 
-    Parameters
-    ----------
-    *maps : PoleZeroMap
-        Of the functions to be shown together.
-
-    Returns
-    -------
-    tuple of float
-        From a decade below the lowest to a decade above the highest nonzero natural frequency, of a
-        distributed system a little above the highest pole found; 0.1 Hz to 10 Hz when there is none.
+    It goes from a decade below the lowest to a decade above the highest nonzero natural frequency, of a
+    distributed system a little above the highest pole found; 0.1 Hz to 10 Hz when there is none.
 
     Examples
     --------
@@ -76,17 +68,8 @@ def default_band(*maps: PoleZeroMap) -> tuple[float, float]:
 def roots_if_found(bound: BoundTransferFunction, band: Band | None = None) -> PoleZeroMap:
     """Return the poles and zeros, or as many as can be had: a response needs none.
 
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        With numbers.
-    band : Band, optional
-        Everything by default; for a distributed system :func:`symflex.roots.default_region`.
-
-    Returns
-    -------
-    PoleZeroMap
-        Its certificate says why where roots may be missing.
+    The certificate says why where roots may be missing. Without a band all are sought, of a distributed
+    system those of :func:`symflex.roots.default_region`.
     """
     region = band if bound.is_distributed else None
     try:
@@ -108,31 +91,13 @@ def adaptive_grid(
 ) -> npt.NDArray[np.float64]:
     """Return angular frequencies [rad/s] on which no peak or trough of a transfer function is missed.
 
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        With numbers.
-    low_hz, high_hz : float
-        Limits of the band [Hz], 0 < low < high.
-    points : int
-        Logarithmically spaced points, at least 2; more are added around lightly damped poles and zeros.
-    roots : PoleZeroMap, optional
-        All poles and zeros, of a distributed system those in the band, when they are known already.
+    ``points`` are spaced logarithmically. Around a root -a + j b more advance in equal steps of the phase it
+    causes, b itself among them; around a root on the axis they close in up to 1e-7 b and leave it out. Where
+    roots may be missing, points are added until the values turn little from one to the next: a peak narrower
+    than the first steps may be missed then. ``roots`` are all poles and zeros, of a distributed system those
+    in the band, when they are known already.
 
-    Returns
-    -------
-    array of float
-        Increasing. Around a root -a + j b the points advance in equal steps of the phase it causes, b itself
-        among them; around a root on the axis they close in up to 1e-7 b and leave it out. Where roots may be
-        missing, points are added until the values turn little from one to the next: a peak narrower than the
-        first steps may be missed then.
-
-    Raises
-    ------
-    UsageError
-        SF227 when the band is empty or not positive.
-    ValueError
-        When ``points`` is less than 2.
+    SF227 when the band is empty or not positive, ValueError for fewer than 2 points.
     """
     if not 0 < low_hz < high_hz < float("inf"):
         message = f"a band runs from a positive to a higher frequency, not from {low_hz:g} to {high_hz:g} Hz"

@@ -42,20 +42,9 @@ if TYPE_CHECKING:
 def count_turns(
     omega: npt.NDArray[np.float64], values: npt.NDArray[np.complex128], roots: PoleZeroMap
 ) -> npt.NDArray[np.int64]:
-    """Return how many whole turns to add to ``np.angle(values)``.
+    """Return how many whole turns to add to ``np.angle(values)``, given all poles and zeros.
 
-    Parameters
-    ----------
-    omega : array of float, shape (n,)
-        [rad/s].
-    values : array of complex, shape (n,)
-        The transfer function at ``1j*omega``; entries that are 0 or not finite do not matter.
-    roots : PoleZeroMap
-        All of its poles and zeros.
-
-    Returns
-    -------
-    array of int, shape (n,)
+    Values are those at ``1j*omega``; entries that are 0 or not finite do not matter.
 
     Examples
     --------
@@ -107,19 +96,10 @@ Point = tuple[complex, "Sample"]
 
 
 def follow_phase(bound: BoundTransferFunction, omega: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """Return the continuous phase [rad] at increasing positive frequencies; NaN exactly at a root.
+    """Return the continuous phase [rad] of a distributed system; NaN exactly at a root.
 
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        Of a distributed system, not identically zero.
-    omega : array of float, shape (n,)
-        [rad/s], positive and increasing.
-
-    Raises
-    ------
-    BudgetError
-        SF505 when the band holds too many resonances.
+    Frequencies [rad/s] are positive and increase; the function is not identically zero. SF505 when the band
+    holds too many resonances.
     """
     walk = _Walk(bound)
     phase = np.full(omega.shape, np.nan)

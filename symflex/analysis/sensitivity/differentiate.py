@@ -47,26 +47,11 @@ def differentiate(
     parameters: Sequence[ModelParameter] | None = None,
     digits: int = 15,
 ) -> tuple[RootDerivative, ...]:
-    """Return how poles and zeros move with parameters.
+    """Return how poles and zeros move with parameters: poles first, each with all parameters.
 
-    Parameters
-    ----------
-    tf : TransferFunction
-        With the parameters as symbols.
-    values : mapping of str to ExactValue
-        Of all parameters that occur in it.
-    found : PoleZeroMap
-        Its poles and zeros with these values.
-    parameters : sequence of ModelParameter, optional
-        All that occur by default; those that do not are left out.
-    digits : int
-        Significant digits wanted in each derivative; fewer are certified where that takes too long.
-
-    Returns
-    -------
-    tuple of RootDerivative
-        Poles first, each with all parameters. A root at 0 that is there for all values of the parameters has
-        the derivative 0, exactly.
+    ``tf`` has the parameters as symbols, ``found`` its roots at the values; by default all parameters that
+    occur are taken. A root at 0 that is there for all values of the parameters has the derivative 0, exactly.
+    Where the significant digits wanted of a derivative take too long, fewer are certified.
     """
     used = [p for p in tf.parameters if parameters is None or p in parameters]
     if tf.ratio.is_zero:
@@ -195,20 +180,8 @@ class RootBranch:
 def find_branch(tangents: Tangents, part: Factored, root: Root) -> RootBranch | Obstacle:
     """Return the factor of a numerator or denominator that alone is zero at a root, and simply.
 
-    Parameters
-    ----------
-    tangents : Tangents
-        Of the transfer function the part belongs to.
-    part : Factored
-        Its numerator or denominator.
-    root : Root
-        Of the part with numbers.
-
-    Returns
-    -------
-    RootBranch or str
-        ``"multiple"`` where a root of higher multiplicity splits, or several factors meet in it: it has no
-        derivative. ``"undecided"`` where the enclosure of the root does not tell.
+    Else ``"multiple"``, where a root of higher multiplicity splits, or several factors meet in it: it has no
+    derivative; or ``"undecided"``, where the enclosure of the root does not tell.
     """
     place, bits = root.enclosure(), root.working_bits()
     for _ in range(ROUNDS_OF_ROOTS):

@@ -25,23 +25,9 @@ def sensitivities(
     names: Sequence[str] = (),
     digits: int = 15,
 ) -> tuple[RootDerivative, ...]:
-    """Return how poles and zeros move with parameters; see :func:`.differentiate`.
+    """Return how poles and zeros move with the parameters named, or with all; see :func:`.differentiate`.
 
-    Parameters
-    ----------
-    model : Model
-        Where ``bound`` comes from.
-    bound, found : BoundTransferFunction, PoleZeroMap
-        A transfer function with numbers, and its roots.
-    names : sequence of str
-        Parameters; all on which the function depends when none is given.
-    digits : int
-        Significant digits of every derivative.
-
-    Raises
-    ------
-    UsageError
-        SF902 for a parameter the model does not have.
+    SF902 for a parameter the model does not have.
     """
     for name in names:
         pick_gain(model.parameters, name)

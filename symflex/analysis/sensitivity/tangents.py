@@ -60,17 +60,8 @@ class Tangents:
     def along(self, direction: str, s: acb) -> Point:
         """Return all generators at ``s`` [rad/s], with their derivatives at the current precision.
 
-        Parameters
-        ----------
-        direction : str
-            With respect to what: ``"s"``, or a parameter.
-        s : acb
-            A number or a ball, on which wavenumbers take one branch each.
-
-        Returns
-        -------
-        dict of str to acb_series
-            Values that are not finite where a wavenumber is zero or two of them are equal.
+        ``direction`` is ``"s"``, or a parameter. On a ball wavenumbers take one branch each; where one is
+        zero, or two are equal, values are not finite.
         """
         real = {
             name: first_order(ball(v.rational) * arb.pi() ** v.pi_power, int(name == direction))
@@ -195,17 +186,7 @@ def first_order(value: arb, slope: arb | int = 0) -> arb_series:
 def constant_tangent(expression: Expression, values: Mapping[str, arb_series]) -> arb_series:
     """Return an expression of constants to first order, at the current precision.
 
-    Parameters
-    ----------
-    expression : Expression
-        Of numbers, ``pi``, named constants and elementary functions.
-    values : mapping of str to arb_series
-        The named constants, to first order.
-
-    Returns
-    -------
-    arb_series
-        Not finite where the expression has no derivative, such as ``sqrt(k)`` at ``k = 0``.
+    Not finite where the expression has no derivative, such as ``sqrt(k)`` at ``k = 0``.
 
     Examples
     --------

@@ -29,12 +29,8 @@ OBSTACLES = {"multiple": "no derivative: multiple roots part", "undecided": "not
 def sensitivity_text(moved: Sequence[RootDerivative], width: int = WIDTH) -> str:
     """Return how natural frequencies and damping ratios change, a line per pair of roots and parameter.
 
-    Parameters
-    ----------
-    moved : sequence of RootDerivative
-        Of poles, then of zeros; each root with all parameters in the same order.
-    width : int
-        Columns available; names that do not fit stand on lines of their own.
+    ``moved`` holds poles, then zeros; each root with all parameters in the same order. Names that do not fit
+    in the width stand on lines of their own.
     """
     lines: list[str] = []
     for kind, group in groupby(moved, key=lambda m: m.kind):
@@ -134,17 +130,9 @@ def sensitivity_formula(
 ) -> tuple[sympy.Expr, sympy.Expr]:
     """Return numerator and denominator of ``ds/dp = -(d den/dp)/(d den/ds)`` at simple roots of ``den``.
 
-    Factors that do not hold the parameter, whose roots stay where they are, and factors that are zero at
-    s = 0 only are left out; of a power, its base is taken. Where nothing is left, no root moves: 0 and 1.
-
-    Parameters
-    ----------
-    den : Expr
-        A denominator or numerator.
-    where : sequence of (Symbol, Expr)
-        Names that stand for expressions, to be put in.
-    s, parameter : Symbol
-        What ``den`` is differentiated by.
+    Factors that do not hold the parameter, whose roots stay where they are, and factors that are zero at s =
+    0 only are left out; of a power, its base is taken. Where nothing is left, no root moves: 0 and 1.
+    ``where`` has names that stand for expressions, to be put in.
 
     Examples
     --------

@@ -115,10 +115,7 @@ class ResonanceFit:
     def standard_errors(self) -> Resonances:
         """Return the standard error of every parameter, in a record of the same shape; 0 if it was fixed.
 
-        Raises
-        ------
-        FitError
-            SF613 where the data do not determine all parameters; :func:`fit_resonances` returns no such fit.
+        SF613 where the data do not determine all parameters; :func:`fit_resonances` returns no such fit.
         """
         covariance = self.refined.covariance
         if covariance is None:
@@ -159,29 +156,15 @@ class ResonanceFit:
 def fit_resonances(
     measured: Sequence[MeasuredResponse], bases: Sequence[Base] | None = None, given: FitOptions = DEFAULTS
 ) -> ResonanceFit:
-    """Fit simple resonances, in cascade with a known base, to one or several measured responses.
+    """Fit simple resonances, in cascade with a known base, to responses that share their poles.
 
-    Parameters
-    ----------
-    measured : sequence of MeasuredResponse
-        Responses that share their poles.
-    bases : sequence of Base, optional
-        The known factor of each. Without it, a gain times a power of s, the same for all.
-    given : FitOptions
-        How many resonances, from which start, chosen by which criterion, and what is fitted besides: its
-        ``modes``, ``start`` (a key of :data:`symflex.data.fitting.order.STARTS`, or ``auto`` for the best of
-        all), ``criterion``, ``is_gain_free`` (always so without bases), ``is_lag_free``, ``is_lag_signed``,
-        ``is_delay_free``; and ``slope``, the power of s of a fit without bases.
+    Each response has its base; without any, it is a gain times a power of s, the same for all. Of the
+    options, ``slope`` is that power, ``start`` a key of :data:`symflex.data.fitting.order.STARTS` or ``auto``
+    for the best of all; ``is_gain_free`` holds anyway without bases.
 
-    Raises
-    ------
-    UsageError
-        SF902 for an unknown start or criterion, or options that contradict each other.
-    DataError
-        SF605 too few lines for what is asked.
-    FitError
-        SF611 no (or not enough) resonances to begin with; SF612 no convergence; SF613 parameters that the
-        data do not determine; SF614 a pole that left the band; SF615 a base that vanishes in it.
+    SF902 for an unknown start or criterion, or options that contradict each other; SF605 too few lines for
+    what is asked; SF611 no (or not enough) resonances to begin with; SF612 no convergence; SF613 parameters
+    that the data do not determine; SF614 a pole that left the band; SF615 a base that vanishes in it.
 
     Examples
     --------

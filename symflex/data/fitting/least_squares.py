@@ -84,14 +84,8 @@ class Refined:
 def refine(problem: FitProblem, start: Resonances, *, steps: int = STEPS) -> Refined:
     """Return the minimum that a start leads to: logarithmic first, then complex where deviations are known.
 
-    Parameters
-    ----------
-    problem : FitProblem
-        What is fitted.
-    start : Resonances
-        Positive frequencies and pole damping.
-    steps : int
-        Evaluations allowed for each of the two residuals.
+    The start has positive frequencies and pole damping; each of the two residuals is evaluated ``steps``
+    times at most.
     """
     # On the way the effect of the window does not matter, and without it a step takes a sixth of the time.
     plain = problem.without_window() if problem.has_deviations else problem

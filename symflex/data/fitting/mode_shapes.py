@@ -65,22 +65,9 @@ class FittedModeShapes:
 def mode_shapes(fit: ResonanceFit, measured: Sequence[MeasuredResponse]) -> FittedModeShapes:
     """Return mass-normalised mode shapes where responses were measured.
 
-    Parameters
-    ----------
-    fit : ResonanceFit
-        Of the response at the driven point alone, without a base.
-    measured : sequence of MeasuredResponse
-        Displacements, velocities or accelerations over the same force, as their units say; the fitted
-        response is among them.
-
-    Raises
-    ------
-    UsageError
-        SF902 when the fit is of several responses or has a base.
-    DataError
-        SF602 when a unit is missing, or is not that of a motion over a force.
-    FitError
-        SF616 when a modal constant at the driven point is not positive.
+    The fit is of the response at the driven point alone, without a base (else SF902). Responses are
+    displacements, velocities or accelerations over the same force, as their units say (else SF602), the
+    fitted one among them. SF616 when a modal constant at the driven point is not positive.
     """
     if len(fit.measured) > 1 or fit.bases[0].path:
         message = "mode shapes come from a fit of the driven point alone, without a base"
@@ -163,10 +150,7 @@ def _system(response: MeasuredResponse, motion: _Motion) -> _ResponseSystem:
 def _refined(systems: Sequence[_ResponseSystem], fit: ResonanceFit) -> tuple[Real, Real]:
     """Return ln omega_p and ln zeta_p that leave least of all responses, and their covariance.
 
-    Raises
-    ------
-    FitError
-        SF612 when the search does not end, SF613 when the data do not determine them.
+    SF612 when the search does not end, SF613 when the data do not determine them.
     """
     found = fit.resonances
     start = np.log(np.concatenate([found.omega_p, found.zeta_p]))
@@ -245,13 +229,7 @@ class _Motion:
 
 
 def _motion_over_force(name: str, unit: str) -> _Motion:
-    """Return what a response is, from its unit.
-
-    Raises
-    ------
-    DataError
-        SF602 when the unit is missing or another one.
-    """
+    """Return what a response is, from its unit; SF602 when that is missing or another one."""
     if not unit:
         message = f"{name} has no unit: is it a receptance, a mobility or an accelerance?"
         raise DataError(Diagnostic("SF602", message, None, "for example '# unit: m/N' in its first lines"))

@@ -56,16 +56,10 @@ def strange(omega_z: Real, zeta_z: Real, low: float, high: float) -> npt.NDArray
 
 
 def over_poles(problem: FitProblem, poles: Complex, most: int) -> list[Resonances]:
-    """Return the functions with these poles that describe the lines best, the best first.
+    """Return at most so many functions with these poles that describe the lines best, the best first.
 
-    Parameters
-    ----------
-    problem : FitProblem
-        With the powers of s to be tried, and the dead times to begin with.
-    poles : array of complex, shape (n,)
-        In the upper half plane.
-    most : int
-        How many functions at most.
+    Poles lie in the upper half plane; the problem says which powers of s are tried, and dead times to begin
+    with.
     """
     choices = [_numerators(problem, r, poles, most) for r in range(len(problem.lines))]
     if not all(choices):

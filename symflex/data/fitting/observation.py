@@ -69,17 +69,10 @@ class Observation:
 
 
 def observe(frequency_hz: Real, spacing_hz: float | None, window: str) -> Observation:
-    """Return how lines of a measurement follow from the response.
+    """Return how lines of a measurement follow from the response seen through a ``hann`` window, or none.
 
-    Parameters
-    ----------
-    frequency_hz : array of float, shape (n,)
-        The lines.
-    spacing_hz : float or None
-        The distance of neighbouring lines, one over the length of a record; None when it is not the same
-        throughout, and then the lines are taken as the values themselves.
-    window : str
-        ``hann``, or empty for none.
+    Lines have a distance of one over the length of a record; where that is not the same throughout, None,
+    they are taken as the values themselves.
 
     Examples
     --------
@@ -134,24 +127,10 @@ OVERLAPPING = (0, 1, -1)
 def score_covariance(line: FittedLines, inside: Complex, slopes: Complex) -> Real | None:
     """Return the covariance of J'e for the lines of one response, in units of their variance.
 
-    It is J'J where lines are independent and their errors circular.
+    It is J'J where lines are independent and their errors circular; None where they were not seen through a
+    window. ``inside`` is the response at ``line.observation.omega``, ``slopes`` (n, p) is J: derivatives on
+    the lines over the standard deviation of each part.
 
-    Parameters
-    ----------
-    line : FittedLines
-        With deviations.
-    inside : array of complex, shape (k,)
-        The response at ``line.observation.omega``.
-    slopes : array of complex, shape (n, p)
-        J: derivatives on the lines over the standard deviation of each part.
-
-    Returns
-    -------
-    array of float, shape (p, p), or None
-        None where the lines were not seen through a window.
-
-    Notes
-    -----
     The noise is what coherence says less the leakage that the response implies. Records are taken to overlap
     by half; how many there are follows from the number of independent averages (Welch 1967).
     """

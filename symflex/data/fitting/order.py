@@ -140,18 +140,10 @@ STARTS: Mapping[str, Callable[[FitProblem, int], Iterator[Resonances]]] = {
 def best_of_starts(
     problem: FitProblem, count: int, kind: str = "auto", *, is_quick: bool = False
 ) -> Candidate | None:
-    """Return the best fit with so many resonances; None when no start has as many.
+    """Return the best fit with so many resonances, at least one; None when no start has as many.
 
-    Parameters
-    ----------
-    problem : FitProblem
-        What is fitted.
-    count : int
-        At least one.
-    kind : str
-        A key of :data:`STARTS`, or ``auto``.
-    is_quick : bool
-        With few steps, for comparing numbers of resonances.
+    ``kind`` is a key of :data:`STARTS`, or ``auto``. A quick one takes few steps, for comparing numbers of
+    resonances.
     """
     kinds = [kind]
     if kind == "auto":
@@ -191,11 +183,8 @@ def chosen_order(
 ) -> tuple[Candidate, tuple[Score, ...]]:
     """Return the fit whose number of resonances the criterion prefers, and what it says of all tried.
 
-    Raises
-    ------
-    FitError
-        SF611 when no resonance improves on the base alone; SF612 to SF614 when the number preferred by far
-        gives no fit.
+    SF611 when no resonance improves on the base alone; SF612 to SF614 when the number preferred by far gives
+    no fit.
     """
     # Numbers are compared without the window, a sixth of the work; the best one is then fitted with it.
     plain = problem.without_window()

@@ -166,18 +166,8 @@ def fit_problem(
 ) -> FitProblem:
     """Return the problem of fitting resonances to responses, given the known factor of each.
 
-    Parameters
-    ----------
-    measured : sequence of MeasuredResponse
-        At least one.
-    bases : sequence of functions
-        Of angular frequencies [rad/s], one per response.
-    free : Free
-        What is found of each response besides its resonances.
-    has_base : bool
-        Whether the known factor is a model rather than a power of s.
-    slopes : tuple of int
-        The powers of s that each response may have.
+    Known factors are functions of angular frequencies [rad/s], a model's or powers of s; ``slopes`` are the
+    powers of s that each response may have.
     """
     lines = []
     for response, base in zip(measured, bases, strict=True):
@@ -220,12 +210,7 @@ def with_rough_noise(problem: FitProblem) -> FitProblem:
 def with_noise(problem: FitProblem, count: int | None) -> FitProblem:
     """Return the problem with deviations estimated for the lines that have no coherence.
 
-    Parameters
-    ----------
-    problem : FitProblem
-        With rough deviations, and dead times to begin with.
-    count : int or None
-        How many resonances are looked for, None when that is open.
+    So far they are rough. ``count`` resonances are looked for, None when that is open.
     """
     if all(line.measured.coherence is not None for line in problem.lines):
         return problem

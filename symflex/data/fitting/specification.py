@@ -38,12 +38,8 @@ def fit_specification(found: ResonanceFit, folder: str | Path) -> str:
     """Return the specification of a fit that will stand in a folder.
 
     It has been read, resolved and assembled as ``symflex check`` does. A base that a ``model`` block can
-    stand for is referred to; any other, and one that does not stand at or below the folder, is copied.
-
-    Raises
-    ------
-    FitError
-        SF617 where neither way gives a specification that is accepted.
+    stand for is referred to; any other, and one that does not stand at or below the folder, is copied. SF617
+    where neither way gives a specification that is accepted.
     """
     bases = tuple(dict.fromkeys(Path(base.path) for base in found.bases if base.path))
     allowed = tuple(place for base in found.bases for place in base.folders)
@@ -79,21 +75,10 @@ def _written(
 ) -> str:
     """Return the text of a specification with the fitted functions.
 
-    Parameters
-    ----------
-    fit : ResonanceFit
-        The result.
-    folder : str or Path
-        Where the file will stand: the base is referred to from there.
-    taken : collection of str
-        Names of the base's parameters, which mean something else.
-    copied : mapping, optional
-        The base as nested values, to be copied; without it a ``model`` block refers to it.
-
-    Notes
-    -----
     Frequencies are written in Hz and damping ratios as they are, with nine digits and their standard errors.
-    Zeros in the right half plane have a negative damping ratio.
+    Zeros in the right half plane have a negative damping ratio. Names of the base's parameters are ``taken``:
+    they mean something else. The base is ``copied`` as nested values, or referred to by a ``model`` block
+    from the folder.
     """
     found, errors = fit.resonances, fit.standard_errors()
     prefix = _prefix(taken)

@@ -22,17 +22,7 @@ STARTS: Final = {
 
 
 def fit_text(fit: ResonanceFit, width: int = 80, shapes: FittedModeShapes | None = None) -> str:
-    """Return the report of a fit.
-
-    Parameters
-    ----------
-    fit : ResonanceFit
-        The result.
-    width : int
-        Columns of the terminal.
-    shapes : FittedModeShapes, optional
-        Printed too.
-    """
+    """Return the report of a fit, and of mode shapes, for a terminal of so many columns."""
     found = fit.resonances
     lines = [line for reason in fit.poor for line in _wrapped(f"POOR FIT: {reason}", width, "")]
     for r, measured in enumerate(fit.measured):

@@ -34,21 +34,8 @@ _IS_ENCRYPTED = 1
 def read_archive(data: bytes, limit: int, members: int) -> Arrays:
     """Return the arrays of an .npz by name.
 
-    Parameters
-    ----------
-    data : bytes
-        The file.
-    limit : int
-        Bytes of all arrays together.
-    members : int
-        How many there may be.
-
-    Raises
-    ------
-    ValueError
-        With the reason: no archive, encrypted, cut short, arrays of objects.
-    OverflowError
-        When the arrays together, or their number, exceed a limit.
+    ValueError with the reason: no archive, encrypted, cut short, arrays of objects. OverflowError when the
+    arrays take more than ``limit`` bytes together, or are more than ``members``.
 
     Examples
     --------

@@ -36,10 +36,7 @@ _HINT: Final = "arrays: frequency_hz (n), values (n or m x n, complex), coherenc
 def read_npz(name: str, data: bytes, stem: str) -> tuple[MeasuredResponse, ...]:
     """Read responses from a numpy archive; nothing in it is unpickled.
 
-    Raises
-    ------
-    DataError
-        SF601 no such archive; SF602 arrays missing; SF603, SF604, SF605 values; SF607 too large.
+    SF601 no such archive; otherwise as :func:`responses_of`; SF607 too large.
     """
     try:
         arrays = read_archive(data, MAX_BYTES, MAX_RESPONSES)
@@ -53,11 +50,7 @@ def read_npz(name: str, data: bytes, stem: str) -> tuple[MeasuredResponse, ...]:
 def read_mat(name: str, data: bytes, stem: str) -> tuple[MeasuredResponse, ...]:
     """Read responses from a MATLAB file of version 4 to 7.
 
-    Raises
-    ------
-    DataError
-        SF601 no such file, or version 7.3; SF602 variables missing; SF603, SF604, SF605 values; SF607 too
-        large.
+    SF601 no such file, or version 7.3; otherwise as :func:`responses_of`; SF607 too large.
     """
     try:
         arrays = read_variables(data, MAX_BYTES)
@@ -74,21 +67,12 @@ def read_mat(name: str, data: bytes, stem: str) -> tuple[MeasuredResponse, ...]:
 def responses_of(arrays: Mapping[str, np.ndarray], name: str, stem: str) -> tuple[MeasuredResponse, ...]:
     """Return the responses that named arrays hold.
 
-    Parameters
-    ----------
-    arrays : mapping of str to array
-        ``frequency_hz`` (n) or ``omega`` [rad/s]; ``values`` (n, or m rows of n), or ``re`` and ``im``;
-        names are compared without case, and some usual ones are understood. ``coherence``, ``averages``,
-        ``window``, ``unit``, ``tf`` (m names), ``synthetic`` where known.
-    name : str
-        What messages call the file.
-    stem : str
-        The responses' name when the file gives none.
+    These are ``frequency_hz`` (n) or ``omega`` [rad/s]; ``values`` (n, or m rows of n), or ``re`` and ``im``;
+    names are compared without case, and some usual ones are understood. ``coherence``, ``averages``,
+    ``window``, ``unit``, ``tf`` (m names), ``synthetic`` where known. Messages call the file ``name``;
+    responses are called ``stem`` when the file gives no name.
 
-    Raises
-    ------
-    DataError
-        SF602 arrays missing or of the wrong shape; SF603, SF604 values; SF605 none, or too few.
+    SF602 arrays missing or of the wrong shape; SF603, SF604 values; SF605 none, or too few.
 
     Examples
     --------

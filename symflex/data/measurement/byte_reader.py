@@ -38,12 +38,7 @@ def require(is_met: bool, reason: str) -> None:
 class ByteReader:
     """Bytes that are taken one after the other.
 
-    Parameters
-    ----------
-    data : bytes or memoryview
-        All of them.
-    order : str
-        ``<`` or ``>``: which end of a number comes first.
+    ``order``, ``<`` or ``>``, is which end of a number comes first.
 
     Examples
     --------
@@ -66,13 +61,7 @@ class ByteReader:
         return len(self.data) - self.place
 
     def take(self, count: int) -> memoryview:
-        """Return the next bytes.
-
-        Raises
-        ------
-        ValueError
-            When there are fewer.
-        """
+        """Return the next bytes; ValueError when there are fewer."""
         require(0 <= count <= self.left, CUT)
         self.place += count
         return self.data[self.place - count : self.place]
@@ -84,10 +73,8 @@ class ByteReader:
     def numbers(self, kind: str, shape: Sequence[int], order: Literal["C", "F"] = "C") -> npt.NDArray[Any]:
         """Return an array of numbers of one kind, such as ``f8``, in the bytes' own order.
 
-        Raises
-        ------
-        ValueError
-            When there are fewer bytes, or the shape is none; nothing is allocated for what is not there.
+        ValueError when there are fewer bytes, or the shape is none; nothing is allocated for what is not
+        there.
         """
         if len(shape) > DIMENSIONS_LIMIT or any(size < 0 for size in shape):
             message = f"an array has the shape {' x '.join(map(str, shape))}"[:SHOWN]

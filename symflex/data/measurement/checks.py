@@ -34,20 +34,9 @@ def checked_response(
 ) -> MeasuredResponse:
     """Return a response whose lines are in order, without the one at 0 Hz.
 
-    Parameters
-    ----------
-    response : MeasuredResponse
-        As it was read.
-    file : str
-        What messages call the file.
-    span_of : callable
-        Of a line's index and one of ``frequency``, ``value``, ``coherence``: where it stands, or None.
-
-    Raises
-    ------
-    DataError
-        SF603 values that are not numbers, or out of range; SF604 frequencies that repeat or do not increase;
-        SF605 too few lines; SF607 too many.
+    ``span_of`` says where a line's ``frequency``, ``value`` or ``coherence`` stands. SF603 values that are not
+    numbers, or out of range; SF604 frequencies that repeat or do not increase; SF605 too few lines; SF607 too
+    many.
     """
     frequency, values, coherence = response.frequency_hz, response.values, response.coherence
     if frequency.size > MAX_LINES:
@@ -138,13 +127,7 @@ def nowhere(index: int, column: str) -> Span | None:
 
 
 def averages_of(text: str, file: str, span: Span | None = None) -> float:
-    """Return a number of averages.
-
-    Raises
-    ------
-    DataError
-        SF603 when it is none.
-    """
+    """Return a number of averages; SF603 when it is none."""
     try:
         number = float(text)
     except ValueError:
@@ -157,12 +140,7 @@ def averages_of(text: str, file: str, span: Span | None = None) -> float:
 
 
 def unit_of(text: str, file: str, span: Span | None = None) -> str:
-    """Return the unit of the values, checked; empty when there is none.
-
-    Raises
-    ------
-    DataError
-        SF602 when it is not a unit.
+    """Return the unit of the values, checked; empty when there is none, SF602 when it is not a unit.
 
     Examples
     --------

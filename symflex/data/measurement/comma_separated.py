@@ -65,22 +65,9 @@ class DataColumn:
 
 
 def read_columns(name: str, data: bytes, stem: str) -> tuple[MeasuredResponse, ...]:
-    """Read one response from text in columns.
+    """Read one response from text in columns; it is called ``stem`` when the file gives no name.
 
-    Parameters
-    ----------
-    name : str
-        What messages call the file.
-    data : bytes
-        UTF-8 or ASCII.
-    stem : str
-        The response's name when the file gives none.
-
-    Raises
-    ------
-    DataError
-        SF601 no text; SF602 columns missing, unknown or in an unknown unit; SF603, SF604, SF605, SF607
-        values.
+    SF601 no text; SF602 columns missing, unknown or in an unknown unit; SF603, SF604, SF605, SF607 values.
     """
     text = _decoded(name, data)
     source = Source(name, text)

@@ -43,27 +43,11 @@ class NewerFileError(ValueError):
 
 
 def read_variables(data: bytes, limit: int) -> Arrays:
-    """Return the variables of a MATLAB file by name.
+    """Return the variables of a MATLAB file by name; compressed ones may grow to ``limit`` bytes together.
 
-    Parameters
-    ----------
-    data : bytes
-        The file.
-    limit : int
-        Bytes that compressed variables may grow to, together.
-
-    Returns
-    -------
-    dict of str to array
-        Numbers and logical values in their shape without dimensions of size one, text as an array of lines,
-        cells of text as an array of their texts; of what is none of these an empty array of objects.
-
-    Raises
-    ------
-    ValueError
-        With the reason: no such file, or cut short.
-    OverflowError
-        Too large, or too many variables.
+    Numbers and logical values have their shape without dimensions of size one, text is an array of lines,
+    cells of text an array of their texts; of what is none of these there is an empty array of objects.
+    ValueError with the reason: no such file, or cut short; OverflowError too large, or too many variables.
     """
     if 0 in data[:4]:  # in version 5 text stands there
         return _version_4(data)

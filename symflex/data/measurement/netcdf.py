@@ -23,20 +23,9 @@ _OFFSETS: Final = {1: "i4", 2: "i8"}
 def read_netcdf(data: bytes, items: int) -> tuple[Attributes, dict[str, Variable]]:
     r"""Return global attributes, and by name of every variable its dimensions, values and attributes.
 
-    Parameters
-    ----------
-    data : bytes
-        The file.
-    items : int
-        How many dimensions, variables and attributes there may be of each.
-
-    Raises
-    ------
-    ValueError
-        With the reason: no such file, cut short, an unlimited dimension that is not empty, or variables that
-        stand in the same place.
-    OverflowError
-        Too many items.
+    ValueError with the reason: no such file, cut short, an unlimited dimension that is not empty, or
+    variables that stand in the same place. OverflowError for more than ``items`` dimensions, variables or
+    attributes.
 
     Examples
     --------

@@ -86,25 +86,10 @@ def prepared(
     averages: float | None = None,
     window: str | None = None,
 ) -> tuple[MeasuredResponse, ...]:
-    """Return responses with what is known of them, and the lines in a band alone.
+    """Return responses with what is known of them, and the lines in a band [Hz] alone.
 
-    Parameters
-    ----------
-    responses : sequence of MeasuredResponse
-        As read.
-    band : (float, float), optional
-        The lowest and the highest frequency kept [Hz].
-    averages : float, optional
-        Independent averages.
-    window : str, optional
-        ``hann`` or ``none``.
-
-    Raises
-    ------
-    UsageError
-        SF902 a band whose ends are not in order, an unknown window, or no number of averages.
-    DataError
-        SF605 when a response has no lines in the band.
+    ``window`` is ``hann`` or ``none``. SF902 a band whose ends are not in order, an unknown window, or no
+    number of averages; SF605 when a response has no lines in the band.
 
     Examples
     --------

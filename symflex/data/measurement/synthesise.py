@@ -59,10 +59,7 @@ class MeasurementPlan:
     def of(given: MeasureOptions, band: tuple[Fraction, Fraction] | None) -> MeasurementPlan:
         """Return the plan that options say, over a band [Hz] where they say none.
 
-        Raises
-        ------
-        UsageError
-            SF902 where there is none at all, and for a plan that cannot be meant.
+        SF902 where there is none at all, and for a plan that cannot be meant.
         """
         if given.band is None and band is None:
             message = "the specification has no [analysis] band"
@@ -113,23 +110,9 @@ class MeasurementPlan:
 def synthesise(
     name: str, function: Callable[[Real], Complex], plan: MeasurementPlan, unit: str = ""
 ) -> MeasuredResponse:
-    """Return the measurement of a model.
+    """Return the measurement of a model whose response is a function of positive frequencies [rad/s].
 
-    Parameters
-    ----------
-    name : str
-        ``OUT/IN``.
-    function : callable
-        The frequency response at positive angular frequencies [rad/s], shape (n,).
-    plan : MeasurementPlan
-        How it is measured.
-    unit : str
-        Of the response.
-
-    Raises
-    ------
-    UsageError
-        SF902 for a plan that cannot be meant, or what the sensor shows is not finite in the band.
+    SF902 for a plan that cannot be meant, or where what the sensor shows is not finite in the band.
 
     Examples
     --------

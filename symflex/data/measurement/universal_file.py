@@ -43,13 +43,8 @@ class DatasetPlace:
 def read_universal_file(name: str, data: bytes, stem: str) -> tuple[MeasuredResponse, ...]:
     """Read all frequency responses of a universal file; coherence functions of the same ends become weights.
 
-    Raises
-    ------
-    UsageError
-        SF902 when pyuff is not installed.
-    DataError
-        SF601 no universal file, or a dataset that cannot be read; SF602 none with a frequency response;
-        SF603, SF604, SF605 values; SF607 too many datasets or lines.
+    SF902 when pyuff is not installed; SF601 no universal file, or a dataset that cannot be read; SF602 none
+    with a frequency response; SF603, SF604, SF605 values; SF607 too many datasets or lines.
     """
     places = _datasets(name, data)
     if not places:

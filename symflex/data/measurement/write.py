@@ -65,13 +65,7 @@ def npz_bytes(response: MeasuredResponse) -> bytes:
 
 
 def universal_bytes(response: MeasuredResponse) -> bytes:
-    """Return a response, and its coherence, as datasets 58 of a universal file.
-
-    Raises
-    ------
-    UsageError
-        SF902 when pyuff is not installed.
-    """
+    """Return a response, and its coherence, as datasets 58 of a universal file; SF902 without pyuff."""
     pyuff = load_pyuff()
     lines = response.frequency_hz
     told = [f"averages={response.averages:g}"] if response.averages else []
@@ -119,10 +113,7 @@ WRITERS: Mapping[str, Callable[[MeasuredResponse], bytes]] = {
 def measurement_bytes(response: MeasuredResponse, path: str | Path) -> bytes:
     """Return the content of a file of the format its name asks for.
 
-    Raises
-    ------
-    UsageError
-        SF902 for another ending, or when a library for the format is not installed.
+    SF902 for another ending, or when a library for the format is not installed.
     """
     suffix = Path(path).suffix.lower()
     if suffix not in WRITERS:

@@ -90,10 +90,7 @@ class ArcSum:
     def turn(self, radius: arb) -> arb:
         """Return how far the argument turns on the arc of a radius: proved.
 
-        Raises
-        ------
-        RootOnPathError
-            A root lies on the arc, or too close to it.
+        RootOnPathError where a root lies on the arc, or too close to it.
         """
         if self._power is not None:
             return self._power * arb.pi() / 4

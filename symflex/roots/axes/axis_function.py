@@ -163,15 +163,7 @@ def _numbers(waves: Sequence[AxisWave], enclosures: Enclosures) -> _Numbers:
 
 
 class AxisValues:
-    """Evaluates a function of t, and its derivative, at one precision, which has to be the current one.
-
-    Parameters
-    ----------
-    numbers : _Numbers
-        What it is made of.
-    bits : int
-        The precision.
-    """
+    """Evaluates a function of t, and its derivative, at one precision, which has to be the current one."""
 
     def __init__(self, numbers: _Numbers, bits: int) -> None:
         self._growths = _rounded_rates(numbers.growths)

@@ -35,13 +35,7 @@ CLOSE = 1e-12
 
 
 class AxisNewton:
-    """Encloses roots to a number of digits.
-
-    Parameters
-    ----------
-    digits : int
-        Significant digits of abs(s).
-    """
+    """Encloses roots to a number of significant digits of abs(s)."""
 
     def __init__(self, digits: int) -> None:
         self._goal_bits = bits_for_digits(digits + 2)

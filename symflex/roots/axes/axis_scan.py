@@ -47,21 +47,10 @@ HALF = log(2)
 
 
 def sign_changes(winding: Winding, low: float, high: float, angle: float) -> list[complex]:
-    """Return z = ln(s) next to every sign change on a ray, in ascending order.
+    """Return z = ln(s) next to every sign change of an even function on a ray, in ascending order.
 
-    Parameters
-    ----------
-    winding : Winding
-        Of an even function.
-    low, high : float
-        ln of the radii between which to look.
-    angle : float
-        0 for the real axis, pi/2 for the imaginary one.
-
-    Raises
-    ------
-    RootOnPathError
-        A sample is a root.
+    ``low`` and ``high`` are ln of the radii between which to look; ``angle`` is 0 for the real axis, pi/2 for
+    the imaginary one. RootOnPathError where a sample is a root.
     """
     turned = angle - BESIDE if angle else 0.0
     sums = winding.function.in_doubles

@@ -80,10 +80,7 @@ class LosslessFunction:
     def turn(self, z: float) -> arb:
         """Return how far arg of the function turns from s = exp(z) to j exp(z), on an arc about 0: proved.
 
-        Raises
-        ------
-        RootOnPathError
-            A root lies on the arc, or too close to it.
+        RootOnPathError where a root lies on the arc, or too close to it.
         """
         with precision(FLOAT_BITS):
             radius = (arb(z) / 2).exp()
@@ -138,14 +135,9 @@ def _divided(wave: AxisWave, growth: Multiples) -> AxisWave:
 
 
 def lossless_function(function: KernelFunction, bits: int) -> LosslessFunction | None:
-    """Return a function of x, ``None`` where there are losses, delays or wavenumbers of another law.
+    """Return a function as one of x, ``None`` where there are losses, delays or waves of another law.
 
-    Parameters
-    ----------
-    function : KernelFunction
-        The same function of s.
-    bits : int
-        Precision of its numbers; up to this it can be evaluated.
+    ``bits`` are the precision of its numbers; up to this it can be evaluated.
     """
     sums = function.exponentials
     if sums is None:

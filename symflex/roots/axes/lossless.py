@@ -84,23 +84,11 @@ class SignChange:
 
 
 class LosslessSearch:
-    """Searches one lossless function.
+    """Searches one lossless function, real but for a constant factor on both axes, factor by factor.
 
-    Parameters
-    ----------
-    function : LosslessFunction
-        Real, but for a constant factor, on both axes, factor by factor; what is not is left to a count.
-    order : int
-        To which the function vanishes at s = 0.
-    digits : int
-        Significant digits of every root.
-
-    Attributes
-    ----------
-    roots : list of Root
-        What :meth:`scan` found, in the closed right upper quadrant.
-    reached : float
-        ln of the radius up to which it searched.
+    What is not real is left to a count. ``order`` is that to which the function vanishes at s = 0.
+    :meth:`scan` puts what it finds in the closed right upper quadrant into ``roots``; ``reached`` is ln of
+    the radius up to which it searched.
     """
 
     def __init__(self, function: LosslessFunction, order: int, digits: int) -> None:
@@ -136,10 +124,7 @@ class LosslessSearch:
     def count(self, z: float) -> int:
         """Return the number of roots with ln(abs(s)) below ``z``, without those at 0: proved.
 
-        Raises
-        ------
-        RootOnPathError
-            A root lies on the circle, or too close to it.
+        RootOnPathError where a root lies on the circle, or too close to it.
         """
         turn = self.function.turn(z)
         with precision(COUNT_BITS):
@@ -266,12 +251,8 @@ class LosslessSearch:
     def numbered(self, number: int) -> Root | None:
         """Return one mode by its number, from 1, without those below it; ``None`` where it is not isolated.
 
-        Modes count by natural frequency; roots that mirror each other count as one.
-
-        Raises
-        ------
-        RootOnPathError
-            Roots are too close to each other for circles to pass between them.
+        Modes count by natural frequency; roots that mirror each other count as one. RootOnPathError where
+        roots are too close to each other for circles to pass between them.
         """
         low, below = self._circle(number - 1, WITHIN)
         high, upto = self._circle(number, BEYOND)

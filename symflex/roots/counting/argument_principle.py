@@ -99,18 +99,11 @@ class Circle:
 
 
 class CertifiedWinding(Winding):
-    """Follows one function along paths with proof.
+    """Follows one function along paths with proof; every step spends from the budget.
 
-    Parameters
-    ----------
-    function : KernelFunction
-        What is followed.
-    budget : Budget
-        Spent by every step.
-    tries_series : bool
-        Where steps are too long for sums of exponentials, power series are tried before shorter steps: next
-        to points where wavenumbers meet these would have to be very short. They are tried anyway on a path
-        where a step turned far less than it might have.
+    With ``tries_series``, where steps are too long for sums of exponentials, power series are tried before
+    shorter steps: next to points where wavenumbers meet these would have to be very short. They are tried
+    anyway on a path where a step turned far less than it might have.
     """
 
     def __init__(self, function: KernelFunction, budget: Budget, *, tries_series: bool = False) -> None:
@@ -123,10 +116,7 @@ class CertifiedWinding(Winding):
     def count(self, cell: Cell) -> int:
         """Return the number of roots in a cell, with multiplicity: proved.
 
-        Raises
-        ------
-        RootOnPathError
-            A root lies on the cell's boundary, or too close to it.
+        RootOnPathError where a root lies on the cell's boundary, or too close to it.
         """
         smallest = max(SMALLEST, 1e-9 * cell.size)
         with precision(BITS):
@@ -138,18 +128,9 @@ class CertifiedWinding(Winding):
     def count_within(self, z: float, left: float) -> int:
         """Return the number of roots with ln(abs(s)) below ``z``, those at s = 0 included: proved.
 
-        Parameters
-        ----------
-        z : float
-            ln of the radius.
-        left : float
-            pi, or pi/2 for functions whose roots mirror each other in the imaginary axis: by symmetry an arc
-            from the positive real axis tells what the circle does.
-
-        Raises
-        ------
-        RootOnPathError
-            A root lies on the circle, or too close to it.
+        ``left`` is pi, or pi/2 for functions whose roots mirror each other in the imaginary axis: by symmetry
+        an arc from the positive real axis tells what the circle does. RootOnPathError where a root lies on
+        the circle, or too close to it.
         """
         turn = self.certified_turn(complex(z, 0.0), complex(z, left))
         with precision(BITS):
@@ -158,10 +139,7 @@ class CertifiedWinding(Winding):
     def count_in_disc(self, centre: acb, radius: arb) -> int:
         """Return the number of roots closer to an exact point than a radius [rad/s]: proved.
 
-        Raises
-        ------
-        RootOnPathError
-            A root lies on the circle, or too close to it.
+        RootOnPathError where a root lies on the circle, or too close to it.
         """
         bits = max(BITS, centre.bits() + BITS)
         with precision(bits):
@@ -171,10 +149,7 @@ class CertifiedWinding(Winding):
     def certified_turn(self, start: complex, end: complex, smallest: float = SMALLEST) -> arb:
         """Return a ball around the change of the argument [rad] from ``start`` straight to ``end``, in z.
 
-        Raises
-        ------
-        RootOnPathError
-            When steps would become smaller than ``smallest``.
+        RootOnPathError when steps would become smaller than ``smallest``.
         """
         if (end, start) in self._turns:
             return -self._turns[end, start]

@@ -48,12 +48,9 @@ class LocalSeries:
     bound: arb  # at least abs(F) on that disc's circle
 
     def count(self, radius: arb) -> int | None:
-        """Return how many roots are closer to the centre than a radius; ``None`` where no term outweighs all.
+        """Return how many roots are closer to the centre than an exact radius [rad/s] below the reach.
 
-        Parameters
-        ----------
-        radius : arb
-            Exact, smaller than the reach [rad/s].
+        ``None`` where no term outweighs all others.
         """
         share = radius / self.reach
         if not share < 1:
@@ -91,20 +88,12 @@ class LocalSeries:
 def local_series(
     function: KernelFunction, centre: acb, reach: arb, bits: int, points: int
 ) -> LocalSeries | None:
-    """Return a function's series about a point, ``None`` where it cannot be bounded on the circle.
+    """Return a function's series about an exact point, ``None`` where it cannot be bounded on the circle.
 
-    Parameters
-    ----------
-    function : KernelFunction
-        Its :attr:`~symflex.roots.functions.kernel_function.KernelFunction.power` is expanded.
-    centre : acb
-        Exact [rad/s].
-    reach : arb
-        Exact radius of the circle on which the function is bounded [rad/s].
-    bits : int
-        Precision of the coefficients.
-    points : int
-        Where values are taken; each makes the error that comes of their number smaller by ``2^-6``.
+    What is expanded is the function's :attr:`~symflex.roots.functions.kernel_function.KernelFunction.power`.
+    ``reach`` is the exact radius of the circle on which it is bounded [rad/s], ``bits`` the precision of the
+    coefficients. Values are taken at so many ``points``; each makes the error that comes of their number
+    smaller by ``2^-6``.
     """
     bound = bound_on_circle(function, centre, reach, ARCS)
     if bound is None:
@@ -124,18 +113,9 @@ def sampled_series(
 ) -> LocalSeries | None:
     """Return a function's series about a point from values on a circle, ``None`` where these are not finite.
 
-    Parameters
-    ----------
-    function, centre, reach, bits
-        See :func:`local_series`.
-    bound : arb
-        Of the function on the circle of radius ``reach``.
-    points : int
-        Where values are taken; each makes the error that comes of their number smaller by ``shrunk``.
-    terms : int
-        Coefficients wanted; not more than points.
-    shrunk : float
-        Radius of the circle where values are taken, over ``reach``.
+    See :func:`local_series`; ``bound`` is that of the function on the circle of radius ``reach``, and
+    ``shrunk`` the radius of the circle where values are taken, over ``reach``: each point makes the error
+    that comes of their number smaller by it. There are no more ``terms`` than points.
     """
     with precision(bits):
         radius = (reach * shrunk).mid()
@@ -160,16 +140,8 @@ def sampled_series(
 def bound_on_circle(function: KernelFunction, centre: acb, reach: arb, arcs: int) -> arb | None:
     """Return at least the size of an analytic function on a circle, ``None`` where none is found.
 
-    Parameters
-    ----------
-    function : KernelFunction
-        Its :attr:`~symflex.roots.functions.kernel_function.KernelFunction.power` is bounded.
-    centre : acb
-        Exact [rad/s].
-    reach : arb
-        Exact radius [rad/s].
-    arcs : int
-        Into which the circle is cut at first.
+    Centre and radius ``reach`` [rad/s] are exact; the circle is cut into so many ``arcs`` at first. What is
+    bounded is the function's :attr:`~symflex.roots.functions.kernel_function.KernelFunction.power`.
     """
     with precision(WIDE_BITS):
         disc = centre + acb(arb(0, reach), arb(0, reach))

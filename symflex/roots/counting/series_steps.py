@@ -57,21 +57,8 @@ class SeriesSteps:
     def change(self, middle: acb, reach: arb, start: acb, end: acb, bits: int) -> tuple[float, arb]:
         """Return a bound on how far the argument turns away from that of an exponential, and its turn.
 
-        Parameters
-        ----------
-        middle : acb
-            Of the step.
-        reach : arb
-            The most that s moves from the middle on the step [rad/s].
-        start, end : acb
-            Of the step.
-        bits : int
-            Precision, if more than usual is needed.
-
-        Returns
-        -------
-        tuple
-            The bound is infinite where nothing is proved.
+        The bound is infinite where nothing is proved. ``reach`` is the most that s moves from the middle on
+        the step [rad/s]; ``bits`` the precision, if more than usual is needed.
         """
         bits = max(BITS, 2 * bits)
         with precision(bits):

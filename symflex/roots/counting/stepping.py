@@ -33,18 +33,9 @@ SPREAD = 2.0**-50
 def total_turn(change: Callable[[float, float], tuple[float, arb]], first: float, smallest: float) -> arb:
     """Return the change of an argument along a path from t = 0 to 1.
 
-    Parameters
-    ----------
-    change : callable
-        Returns for a step between two t a bound on the deviation from its middle, and the turn from one end
-        to the other, which has to be right where the bound is at most ``ROOM``.
-    first, smallest : float
-        Length of the first step in t, and of those that are too short.
-
-    Raises
-    ------
-    RootOnPathError
-        When steps would become smaller than ``smallest``.
+    ``change`` returns for a step between two t a bound on the deviation from its middle, and the turn from
+    one end to the other, which has to be right where the bound is at most ``ROOM``. ``first`` is the length
+    of the first step in t; RootOnPathError when steps would become smaller than ``smallest``.
     """
     total = arb(0)
     t, step = 0.0, first

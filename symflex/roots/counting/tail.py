@@ -86,22 +86,10 @@ def right_tail(
 ) -> Tail:
     """Return a radius beyond which a sum of polynomials in kernels has no root with ``Re(s) >= 0``.
 
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        Whose ring and kernels they have.
-    polynomials : sequence of fmpz_mpoly
-        What is added.
-    scales : sequence of acb
-        What each is multiplied with: balls, complex ones too.
-    start : float
-        The smallest radius tried [rad/s].
-
-    Returns
-    -------
-    Tail
-        Without a radius where no one term outweighs the others, as in lossless structures, whose poles lie
-        along the axis without end, or where wavenumbers have no formula.
+    Each polynomial of the ring of ``bound`` is multiplied with its scale, a ball and maybe a complex one.
+    ``start`` is the smallest radius tried [rad/s]. There is no radius where no one term outweighs the others,
+    as in lossless structures, whose poles lie along the axis without end, or where wavenumbers have no
+    formula.
     """
     table = bound.kernels
     arguments = arguments_of(table)

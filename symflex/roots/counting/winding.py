@@ -109,15 +109,7 @@ class Cell:
 
 
 class Winding:
-    """Follows one function along paths, remembering its values.
-
-    Parameters
-    ----------
-    function : KernelFunction
-        What is followed.
-    budget : Budget
-        Spent by every value.
-    """
+    """Follows one function along paths, remembering its values, each of which spends from the budget."""
 
     def __init__(self, function: KernelFunction, budget: Budget) -> None:
         self.function = function
@@ -129,25 +121,14 @@ class Winding:
     def spend(self) -> None:
         """Go on if the work and the time allow it.
 
-        Raises
-        ------
-        BudgetError
-            SF505 when the search has become too long and no time was given, SF506 when that is over.
+        SF505 when the search has become too long and no time was given, SF506 when that is over.
         """
         self.budget.spend()
         if not self.budget.is_timed and self.function.work > WORK_LIMIT:
             raise BudgetError(Diagnostic("SF505", TOO_LONG, None, SHORTER))
 
     def sample(self, z: complex) -> Sample:
-        """Return ln F and its slope at a point.
-
-        Raises
-        ------
-        RootOnPathError
-            The point is a root.
-        BudgetError
-            SF505 when the search has become too long.
-        """
+        """Return ln F and its slope at a point; RootOnPathError where it is a root. Spends."""
         if z not in self._samples:
             self.spend()
             self._samples[z] = self.function.at_logarithm(z)
@@ -165,12 +146,8 @@ class Winding:
     def smallest(self, left: float, holes: Sequence[Cell] = ()) -> float:
         """Return ln of a radius within which no roots lie but those at s = 0, by all appearances.
 
-        Parameters
-        ----------
-        left : float
-            pi, or pi/2 for functions whose roots mirror each other in the imaginary axis.
-        holes : sequence of Cell
-            To stay away from.
+        ``left`` is pi, or pi/2 for functions whose roots mirror each other in the imaginary axis; holes are
+        stayed away from.
         """
         order = self.function.order_at_zero()
         z = self._scale()
@@ -208,10 +185,7 @@ class Winding:
     def turn(self, start: complex, end: complex, smallest: float = SMALLEST_STEP) -> float:
         """Return the change of the argument [rad] from ``start`` straight to ``end``.
 
-        Raises
-        ------
-        RootOnPathError
-            When steps would become smaller than ``smallest``.
+        RootOnPathError when steps would become smaller than ``smallest``.
         """
         if (end, start) in self._edges:
             return -self._edges[end, start]
@@ -239,10 +213,7 @@ class Winding:
     def count(self, cell: Cell) -> int:
         """Return the number of roots in a cell, with multiplicity.
 
-        Raises
-        ------
-        RootOnPathError
-            A root lies on the cell's boundary, or too close to it.
+        RootOnPathError where a root lies on the cell's boundary, or too close to it.
         """
         smallest = max(SMALLEST_STEP, 1e-7 * cell.size)
         turns = sum(self.turn(start, end, smallest) for start, end in cell.edges) / (2 * pi)

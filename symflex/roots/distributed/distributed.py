@@ -55,24 +55,12 @@ def default_region(bound: BoundTransferFunction) -> Region:
 def locate_distributed(
     bound: BoundTransferFunction, region: Region | None, digits: int, budget: Budget
 ) -> PoleZeroMap:
-    """Find the poles and zeros of a transfer function with kernels, proved.
+    """Find the poles and zeros of a transfer function with kernels, to so many significant digits, proved.
 
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        Of a distributed system.
-    region : Region, optional
-        :func:`default_region` for everything. For a number of modes, the lowest poles and the lowest zeros;
-        roots that mirror each other in the axes count as one mode.
-    digits : int
-        Significant digits wanted in each root.
-    budget : Budget
-        When it is exceeded, what was proved so far is returned.
-
-    Returns
-    -------
-    PoleZeroMap
-        Certified if every root in the region was counted, found, and told apart from the others.
+    For everything :func:`default_region` is searched. For a number of modes, the lowest poles and the lowest
+    zeros; roots that mirror each other in the axes count as one mode. When the budget is exceeded, what was
+    proved so far is returned. Certified if every root in the region was counted, found, and told apart from
+    the others.
     """
     is_default = region is None or isinstance(region, Everything)
     where = default_region(bound) if region is None or isinstance(region, Everything) else region
@@ -250,12 +238,8 @@ class _Searched:
     ) -> tuple[StabilityVerdict, tuple[Root, ...], tuple[Root, ...]]:
         """Return whether the model is stable, and its poles and hidden modes in the right half plane.
 
-        Parameters
-        ----------
-        unproved : str or None
-            What could not be proved of the region.
-        is_over : bool
-            The budget was exceeded: nothing more is searched.
+        ``unproved`` is what could not be proved of the region. Where the budget ``is_over``, nothing more is
+        searched.
         """
         bound = self.bound
         product = Factored(

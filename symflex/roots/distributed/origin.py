@@ -34,23 +34,10 @@ def roots_at_zero(
 ) -> tuple[list[Root], int]:
     """Return the root at s = 0, and how often the function without powers of s winds about 0 there.
 
-    Parameters
-    ----------
-    winding : CertifiedWinding
-        Of the function without powers of s.
-    part : Factored
-        The product whose roots are sought, with them.
-    left : float
-        pi, or pi/2 for functions whose roots mirror each other in the imaginary axis.
-    holes : sequence of Cell
-        To stay away from.
-    is_hidden : bool
-        Only powers of s count, not what kernels vanish like.
-
-    Raises
-    ------
-    UncertifiedError
-        SF404 when no circle about 0 can be counted.
+    ``winding`` is of the function without powers of s, ``part`` the product with them. ``left`` is pi, or
+    pi/2 for functions whose roots mirror each other in the imaginary axis; holes are stayed away from. Of
+    what is hidden only powers of s count, not what kernels vanish like. SF404 when no circle about 0 can be
+    counted.
     """
     function = winding.function
     power, zero = function.power, arb(0)

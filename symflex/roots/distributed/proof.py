@@ -55,10 +55,7 @@ class Count:
     def within(self, z: float) -> int:
         """Return how many roots lie within exp(z), those at 0 included.
 
-        Raises
-        ------
-        RootOnPathError
-            A root lies on the circle, or too close to it.
+        RootOnPathError where a root lies on the circle, or too close to it.
         """
         if self.lossless is not None:
             return self.lossless.count(z) + self.order
@@ -86,18 +83,9 @@ class Count:
     def proof(
         self, domain: Cell, located: Sequence[Root], at_zero: Sequence[Root], innermost: float | None
     ) -> Proof:
-        """Count a domain, and compare.
+        """Count the domain that was searched, and compare with all roots located, mirror images included.
 
-        Parameters
-        ----------
-        domain : Cell
-            What was searched.
-        located : sequence of Root
-            All roots found, those at 0 and mirror images included.
-        at_zero : sequence of Root
-            The root at 0.
-        innermost : float, optional
-            ln of the radius of a disc about 0 within which none was sought.
+        ``innermost`` is ln of the radius of a disc about 0 within which none was sought.
         """
         if not are_apart(located):
             found = sum(root.multiplicity for root in located)
@@ -130,12 +118,8 @@ class Count:
     def right(self, high: float, budget: Budget) -> int:
         """Return how many roots lie right of the imaginary axis, with ln(abs(s)) below ``high``: proved.
 
-        Raises
-        ------
-        RootOnPathError
-            A root lies on the path, which follows the imaginary axis, or too close to it.
-        BudgetError
-            SF505, SF506.
+        RootOnPathError where a root lies on the path, which follows the imaginary axis, or too close to it;
+        SF505, SF506.
         """
         winding = CertifiedWinding(self.winding.function, budget, tries_series=True)
         low = min(winding.smallest(pi, self.holes), high - 1.0)

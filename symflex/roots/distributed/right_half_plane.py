@@ -58,20 +58,8 @@ def search_right(
 ) -> RightHalfPlane:
     """Count the roots of a function with kernels right of the imaginary axis, and find them.
 
-    Parameters
-    ----------
-    bound, part : BoundTransferFunction, Factored
-        The function.
-    side : Side
-        The same, perhaps searched elsewhere.
-    known : sequence of Root
-        Those found already, anywhere, proved.
-    reached : float
-        Up to which abs(s) all roots are known [rad/s]; 0 where that is not so.
-    digits : int
-        Significant digits of every root.
-    budget : Budget
-        Of the search.
+    ``side`` is the same function, perhaps searched elsewhere; ``known`` roots are those found already,
+    anywhere, proved. Up to an abs(s) of ``reached`` [rad/s] all roots are known; 0 where that is not so.
     """
     if side.is_finite:
         return RightHalfPlane(tuple(known))

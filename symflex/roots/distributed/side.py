@@ -50,34 +50,9 @@ MORE_DIGITS = 30
 class Side:
     """The numerator, the denominator, or what cancelled between them.
 
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        The function.
-    part : Factored
-        The product whose roots are sought.
-    digits : int
-        Significant digits of every root.
-    budget : Budget
-        Of the search.
-    is_hidden : bool
-        Only powers of s count as roots at 0, not what kernels vanish like.
-    engines : sequence of str
-        How roots may be found; what one cannot do is left to the next.
-
-    Raises
-    ------
-    TypeError
-        When none of them can.
-
-    Attributes
-    ----------
-    roots : list of Root
-        All found so far, mirror images and roots at 0 included.
-    missing : int
-        Roots counted but not found.
-    engine : str
-        How the roots were found.
+    Of what is hidden, only powers of s count as roots at 0, not what kernels vanish like. What one of the
+    ``engines`` cannot do is left to the next; TypeError when none of them can. ``roots`` are all found so
+    far, mirror images and roots at 0 included; so many are ``missing``: counted but not found.
     """
 
     def __init__(

@@ -34,13 +34,7 @@ class SampledSum:
 
 
 class DoubleSums:
-    """Evaluates sums of exponentials in doubles.
-
-    Parameters
-    ----------
-    values : ExponentialValues
-        The same sums in balls.
-    """
+    """Evaluates the same sums of exponentials as :class:`ExponentialValues`, in doubles."""
 
     def __init__(self, values: ExponentialValues) -> None:
         evaluator = values.evaluator

@@ -71,12 +71,7 @@ class ExponentialValues:
     def at(self, s: Value, near: Place | None = None) -> Place:
         """Return what sums are made of at a point or on a ball, or as series about these.
 
-        Parameters
-        ----------
-        s : acb or acb_series
-            Where.
-        near : Place, optional
-            A ball that holds it: wavenumbers take the same branch.
+        Near a ball that holds s, wavenumbers take the same branch as there.
         """
         values = self.evaluator.generators_at(s, None if near is None else near.values)
         arguments = []

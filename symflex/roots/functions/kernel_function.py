@@ -74,13 +74,9 @@ class Sample:
 class KernelFunction:
     """A product of powers of polynomials in s, wavenumbers and kernels.
 
-    Attributes
-    ----------
-    power : int
-        What is counted is ``part**power``: a power that makes a function of one value out of one whose sign
-        or phase depends on the branch of a wavenumber; 1 for most.
-    work : int
-        Terms evaluated so far; grows with use, so that searches can keep to a budget.
+    What is counted is ``part**power``: a power that makes a function of one value out of one whose sign or
+    phase depends on the branch of a wavenumber; 1 for most. ``work`` is the number of terms evaluated so far;
+    it grows with use, so that searches can keep to a budget.
     """
 
     bound: BoundTransferFunction  # whose ring and kernels they are
@@ -193,22 +189,10 @@ class KernelFunction:
         return self.reach(abs(cexp(z))) if self.in_doubles is None else self.in_doubles.fastest(z)
 
     def turn_of_exponentials(self, ball: acb, start: acb, end: acb, bits: int) -> tuple[float, arb] | None:
-        """Return how far arg F, of :attr:`power`, turns between two points of a ball.
+        """Return how far arg F, of :attr:`power`, turns between two points of a ball that holds the path.
 
-        Parameters
-        ----------
-        ball : acb
-            Holds the path from one point to the other.
-        start, end : acb
-            Points.
-        bits : int
-            Precision.
-
-        Returns
-        -------
-        tuple
-            A measure of how far F may turn anywhere on the ball, infinite where nothing is proved, and the
-            turn. ``None`` when the function is not a sum of exponentials.
+        First comes a measure of how far F may turn anywhere on the ball, infinite where nothing is proved,
+        then the turn. ``None`` when the function is not a sum of exponentials.
         """
         if self.exponentials is None:
             return None

@@ -24,15 +24,7 @@ MOST_TERMS = 3000
 
 
 def without_squares(bound: BoundTransferFunction, part: Factored) -> tuple[BoundTransferFunction, Factored]:
-    """Return a product of factors without squares, and the function with the kernels these are made of.
-
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        Whose kernels the factors have.
-    part : Factored
-        Polynomials in s, wavenumbers and kernels.
-    """
+    """Return a product of factors without squares, and the function with the kernels these are made of."""
     table = bound.kernels
     if any(kernel.function == "fundamental" for kernel in table.kernels):
         return bound, part

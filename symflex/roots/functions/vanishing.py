@@ -24,10 +24,7 @@ EVEN = ("cosh", "cos", "exp")
 def without_lengths_of_zero(bound: BoundTransferFunction) -> BoundTransferFunction:
     """Return the function with the values of kernels whose length is zero in their place.
 
-    Raises
-    ------
-    ModelError
-        SF231 when the denominator vanishes: two nodes are one.
+    SF231 when the denominator vanishes: two nodes are one.
 
     Examples
     --------

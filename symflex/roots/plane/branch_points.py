@@ -47,22 +47,9 @@ def prove_together(
 ) -> Root | None:
     """Return roots next to a point as one, in a disc that holds so many; ``None`` where none is proved.
 
-    Parameters
-    ----------
-    function : KernelFunction
-        A product of factors.
-    s : acb
-        Exact, close to the roots [rad/s].
-    within : arb
-        Exact radius that the disc stays below [rad/s].
-    digits : int
-        Significant digits wanted.
-    count : int
-        Of the roots of ``function**function.power``, with multiplicity.
-    even : bool
-        Whether roots mirror each other in the imaginary axis.
-    is_close : bool
-        They have to agree in all digits wanted.
+    The point is exact. ``count`` is of the roots of ``function**function.power``, with multiplicity; the disc
+    stays below the exact radius ``within`` [rad/s]. ``even`` roots mirror each other in the imaginary axis;
+    those that are ``is_close`` have to agree in all digits wanted.
     """
     wanted = bits_for_digits(digits + DIGITS_A_SHRINKING * SHRINKINGS)
     most = min(SERIES_POINTS + count * wanted // BITS_A_POINT, MOST_POINTS)

@@ -37,20 +37,8 @@ def resolve(
 ) -> list[Root] | None:
     """Return all roots inside a circle with enclosures, ``None`` where they do not separate.
 
-    Parameters
-    ----------
-    function : KernelFunction
-        A product of factors.
-    centre : acb
-        An exact point.
-    radius : arb
-        [rad/s]; the circle passes between roots, well away from all.
-    digits : int
-        Significant digits wanted in each root.
-    bits : int
-        Precision of the moments.
-    even : bool
-        Whether roots mirror each other in the imaginary axis.
+    The centre is exact; the circle, of ``radius`` [rad/s], passes between roots, well away from all. ``bits``
+    are the precision of the moments; ``even`` roots mirror each other in the imaginary axis.
     """
     found: list[Root] = []
     with precision(bits):

@@ -66,14 +66,8 @@ def _hole_about(point: complex) -> Cell:
 def is_whole_ring(cell: Cell, left: float, holes: Sequence[Cell]) -> bool:
     """Tell whether a cell and its mirror images make a ring, whose circles pass by all holes.
 
-    Parameters
-    ----------
-    cell : Cell
-        In the upper half plane.
-    left : float
-        Argument of s up to which the search goes: pi, or pi/2 where mirror images make up for the rest.
-    holes : sequence of Cell
-        Neighbourhoods that are left out.
+    The cell lies in the upper half plane. ``left`` is the argument of s up to which the search goes: pi, or
+    pi/2 where mirror images make up for the rest.
     """
     return (
         cell.right <= 0
@@ -88,14 +82,7 @@ def is_whole_ring(cell: Cell, left: float, holes: Sequence[Cell]) -> bool:
 def parts(domain: Cell, left: float, holes: Sequence[Cell]) -> tuple[tuple[Cell, ...], tuple[Cell, ...]]:
     """Return the cells that were searched, and the holes in them, mirror images included.
 
-    Parameters
-    ----------
-    domain : Cell
-        What was to be searched.
-    left : float
-        See :func:`is_whole_ring`.
-    holes : sequence of Cell
-        Neighbourhoods that are left out.
+    ``left`` is that of :func:`is_whole_ring`.
     """
     if is_whole_ring(domain, left, holes):
         cell = Cell(domain.low, domain.high, -pi, pi)
@@ -154,19 +141,9 @@ def _is_between(cell: Cell, root: Root) -> bool | None:
 
 
 def limits(region: Region, *, is_even: bool) -> tuple[float, float, float, float]:
-    """Return ln(abs(s)) and arg(s) between which a region lies, folded into the upper half plane.
+    """Return ln(abs(s)) and arg(s) between which a band or rectangle lies, folded into the upper half plane.
 
-    Parameters
-    ----------
-    region : Region
-        A band or a rectangle.
-    is_even : bool
-        Roots mirror each other in the imaginary axis too.
-
-    Raises
-    ------
-    TypeError
-        For any other region.
+    Roots of even functions mirror each other in the imaginary axis too. TypeError for any other region.
     """
     match region:
         case Band(low, high):

@@ -79,31 +79,12 @@ class Found:
 
 
 class RootSearch:
-    """Searches one function.
+    """Searches one function with at least one kernel.
 
-    Parameters
-    ----------
-    winding : Winding
-        Counts the roots of a function with at least one kernel.
-    proof : CertifiedWinding
-        Of the same function.
-    holes : sequence of Cell
-        What is left out: neighbourhoods of points where roots accumulate.
-    digits : int
-        Significant digits of every root.
-
-    Attributes
-    ----------
-    is_even : bool
-        Roots mirror each other in the imaginary axis.
-    excluded : set of Cell
-        The holes that a search met.
-    roots : list of Root
-        What :meth:`extend` found: in the upper half plane, for even functions in its right quadrant.
-    missing : int
-        Roots that were counted on the way but not found.
-    reached : float
-        ln of the radius up to which it searched.
+    Holes, neighbourhoods of points where roots accumulate, are left out; ``excluded`` are those that a search
+    met. :meth:`extend` puts what it finds in the upper half plane, for even functions in its right quadrant,
+    into ``roots``; so many are ``missing``: counted on the way but not found. ``reached`` is ln of the radius
+    up to which it searched.
     """
 
     def __init__(self, winding: Winding, proof: CertifiedWinding, holes: Sequence[Cell], digits: int) -> None:
@@ -131,11 +112,7 @@ class RootSearch:
         """Search outwards until there are enough modes, and at least to ln of a radius.
 
         The results accumulate in :attr:`roots` and :attr:`missing`; none lacks as far as :attr:`reached`.
-
-        Raises
-        ------
-        BudgetError
-            SF505, SF506; what was found stays.
+        SF505, SF506; what was found stays.
         """
         if self.reached == -inf:
             self.reached = self.smallest()
@@ -154,19 +131,8 @@ class RootSearch:
     def scan(self, modes: int, radius: float, is_complete: Callable[[], bool]) -> bool:
         """Search both axes outwards until there are enough modes; see :meth:`extend`.
 
-        Parameters
-        ----------
-        modes : int
-            Wanted.
-        radius : float
-            ln of a radius up to which to go in any case.
-        is_complete : callable
-            Tells whether :attr:`roots` are all up to :attr:`reached`; asked every now and then.
-
-        Returns
-        -------
-        bool
-            False when there are roots off the axes.
+        ``radius`` is ln of one up to which to go in any case. ``is_complete`` tells whether :attr:`roots` are
+        all up to :attr:`reached`; it is asked every now and then. False when there are roots off the axes.
         """
         if self.reached == -inf:
             self.reached = self.smallest()

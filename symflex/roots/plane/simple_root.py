@@ -65,28 +65,12 @@ def prove_simple(
     even: bool | None = None,
     first_bits: int = FIRST_BITS,
 ) -> Root | None:
-    """Return the root of a factor next to a point with an enclosure, or ``None`` where none is proved.
+    """Return the root of a factor next to an exact point with an enclosure, ``None`` where none is proved.
 
-    Parameters
-    ----------
-    function : KernelFunction
-        A product of factors.
-    s : acb
-        Exact, close to the root.
-    digits : int
-        Significant digits wanted.
-    factor : int, optional
-        Which factor; the nearest root by default.
-    even : bool, optional
-        Whether roots mirror each other in the imaginary axis.
-    first_bits : int
-        Precision of the first steps: next to other roots, few bits may lead astray.
-
-    Returns
-    -------
-    Root
-        ``multiplicity`` is the factor's exponent. Where other factors have roots in the same box that cannot
-        be told apart, it is the sum of all exponents, and the root is not ``certified``.
+    By default it is the factor with the nearest root. Even functions have roots that mirror each other in the
+    imaginary axis. ``first_bits`` is the precision of the first steps: next to other roots, few bits may lead
+    astray. The multiplicity is the factor's exponent; where other factors have roots in the same box that
+    cannot be told apart, it is the sum of all exponents, and the root is not ``certified``.
     """
     is_even = function.is_even if even is None else even
     wanted = bits_for_digits(digits + 2) + GUARD_BITS

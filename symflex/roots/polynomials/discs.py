@@ -115,21 +115,9 @@ class LevelPolynomial:
     ) -> tuple[Disc, ...] | None:
         """Tell apart ``count`` roots close to a centre by the roots of the local Taylor polynomial.
 
-        Parameters
-        ----------
-        centre : acb
-            Exact; on the real axis when the cluster is its own mirror image.
-        count : int
-            Roots supposed in the cluster.
-        goal : callable
-            As for :meth:`polish`.
-        proposers : sequence of callables
-            Engines that guess the roots of a local polynomial with real coefficients.
-
-        Returns
-        -------
-        tuple of Disc or None
-            In the closed upper half plane if the centre is real; None when no engine tells the roots apart.
+        The centre is exact, and on the real axis when the cluster is its own mirror image; then discs are in
+        the closed upper half plane. ``goal`` is that of :meth:`polish`. None when no proposer, which guess
+        the roots of a local polynomial with real coefficients, tells the roots apart.
         """
         is_real = centre.imag == 0
         centred = self._centred(centre, count)
@@ -182,10 +170,7 @@ def all_roots(polynomial: acb_poly) -> tuple[acb, ...] | None:
 def real_symmetric_roots(polynomial: acb_poly) -> tuple[acb, ...] | None:
     """Return the roots of a real polynomial in the closed upper half plane, as midpoints.
 
-    Returns
-    -------
-    tuple of acb or None
-        None when the current precision does not separate the roots.
+    None when the current precision does not separate the roots.
 
     Examples
     --------

@@ -17,17 +17,9 @@ if TYPE_CHECKING:
 
 
 def propose_by_durand_kerner(polynomial: acb_poly) -> tuple[acb, ...] | None:
-    """Guess the roots of a real polynomial of positive degree.
+    """Guess the roots of a real polynomial of positive degree, at the current precision.
 
-    Parameters
-    ----------
-    polynomial : acb_poly
-        Real ball coefficients, at the current ``flint.ctx.prec``.
-
-    Returns
-    -------
-    tuple of acb or None
-        Exact points with imaginary part positive or exactly zero; None when the roots do not separate.
+    They are exact points with imaginary part positive or exactly zero; None when the roots do not separate.
 
     Examples
     --------

@@ -55,31 +55,12 @@ def isolations(
 ) -> Iterator[tuple[Disc, ...]]:
     """Enclose every root of a square-free polynomial, ever closer.
 
-    Parameters
-    ----------
-    polynomial : PolynomialInS
-        In s, or in z = s^2; of positive degree, without the root 0.
-    digits : int
-        Correct digits wanted in each nonzero component of the roots s.
-    in_square : bool
-        The variable is z = s^2.
-    proposers : sequence of callables
-        Engines that guess roots; the next one is asked when a guess does not certify.
-    budget : Budget, optional
-        Heeded between evaluations; no limit by default.
+    The polynomial in s, or in z = s^2, is of positive degree and without the root 0. Yielded are discs of all
+    roots, at last with so many correct digits in each nonzero component of the roots s, or at the bound on
+    precision; a ``count`` above one marks roots that could not be told apart within that bound. The next one
+    of the ``proposers`` is asked when a guess does not certify.
 
-    Yields
-    ------
-    tuple of Disc
-        All roots; at last with all digits wanted, or at the bound on precision. A ``count`` above one marks
-        roots that could not be told apart within that bound.
-
-    Raises
-    ------
-    UncertifiedError
-        SF404 when the bound on precision is reached without isolating discs.
-    BudgetError
-        SF506 when the time is over.
+    SF404 when the bound on precision is reached without isolating discs, SF506 when the time is over.
 
     Examples
     --------

@@ -49,15 +49,7 @@ DOUBLE_BITS = 64
 def propose_by_laguerre(polynomial: acb_poly) -> tuple[acb, ...] | None:
     """Guess the roots of a real polynomial of positive degree; the budget entered is heeded before each step.
 
-    Parameters
-    ----------
-    polynomial : acb_poly
-        Real ball coefficients, at the current ``flint.ctx.prec``.
-
-    Returns
-    -------
-    tuple of acb or None
-        Exact points with imaginary part positive or exactly zero; None when it does not settle.
+    They are exact points with imaginary part positive or exactly zero; None when it does not settle.
 
     Examples
     --------
@@ -70,25 +62,7 @@ def propose_by_laguerre(polynomial: acb_poly) -> tuple[acb, ...] | None:
 
 
 def guess_by_laguerre(polynomial: acb_poly, budget: Budget) -> Iterator[acb]:
-    """Yield one guess after the other, until there are all or it does not settle.
-
-    Parameters
-    ----------
-    polynomial : acb_poly
-        As for :func:`propose_by_laguerre`.
-    budget : Budget
-        Heeded before each step.
-
-    Raises
-    ------
-    BudgetError
-        SF506 when the time is over.
-
-    Examples
-    --------
-    >>> next(guess_by_laguerre(acb_poly([-1, 1]), Budget())).real
-    1.00000000000000
-    """
+    """Yield one guess after the other, until there are all or it does not settle; SF506 when time is over."""
     degree = int(polynomial.degree())
     shift = _central_exponent(polynomial, degree)
     scaled = acb_poly([polynomial[i] * arb(2) ** (shift * i) for i in range(degree + 1)])

@@ -36,21 +36,9 @@ def prove_singly(
 ) -> Iterator[Disc]:
     """Yield discs with exactly one root each, disjoint, the roots nearest to 0 first as a rule.
 
-    Parameters
-    ----------
-    polynomial : PolynomialInS
-        In s, or in z = s^2; square-free, without the root 0.
-    digits : int
-        As for :func:`symflex.roots.polynomials.isolation.isolations`.
-    budget : Budget
-        Heeded between roots and between steps.
-    in_square : bool
-        The variable is z = s^2.
-
-    Raises
-    ------
-    BudgetError
-        SF506 when the time is over.
+    The polynomial in s, or in z = s^2, is square-free and without the root 0; digits are those of
+    :func:`symflex.roots.polynomials.isolation.isolations`. The budget is heeded between roots and between
+    steps: SF506.
 
     Examples
     --------

@@ -37,24 +37,9 @@ class Splitting:
 
 
 def split(problem: RootProblem, budget: Budget | None = None) -> Splitting:
-    """Take a product of polynomials apart into coprime square-free parts.
+    """Take a product of polynomials apart into coprime square-free parts; SF506 when the time is over.
 
-    Parameters
-    ----------
-    problem : RootProblem
-        Any factors.
-    budget : Budget, optional
-        Heeded between factors; no limit by default.
-
-    Returns
-    -------
-    Splitting
-        Exact over Q(constants), the constants taken as algebraically independent.
-
-    Raises
-    ------
-    BudgetError
-        SF506 when the time is over.
+    It is exact over Q(constants), the constants taken as algebraically independent.
 
     Examples
     --------
