@@ -108,7 +108,7 @@ class Rounding:
         self._balls: dict[int, dict[str, arb]] = {}
 
     def nearest(self, value: FieldElement, what: str) -> float:
-        """Return the nearest double; ``what`` is its name in messages. Errors are those of :func:`rounded`."""
+        """Return the nearest double; ``what`` is its name in messages. Errors as of :func:`rounded`."""
         exact = self._rational(value)
         found = self._of_ball(value, what) if exact is None else _float(exact)
         if found == exact:
