@@ -34,9 +34,9 @@ def checked_response(
 ) -> MeasuredResponse:
     """Return a response whose lines are in order, without the one at 0 Hz.
 
-    ``span_of`` says where a line's ``frequency``, ``value`` or ``coherence`` stands. SF603 values that are not
-    numbers, or out of range; SF604 frequencies that repeat or do not increase; SF605 too few lines; SF607 too
-    many.
+    ``span_of`` says where a line's ``frequency``, ``value`` or ``coherence`` stands. SF603 values that are
+    not numbers, or out of range; SF604 frequencies that repeat or do not increase; SF605 too few lines; SF607
+    too many.
     """
     frequency, values, coherence = response.frequency_hz, response.values, response.coherence
     if frequency.size > MAX_LINES:
