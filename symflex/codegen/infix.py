@@ -18,6 +18,7 @@ from symflex.codegen.program import (
     InverseLaplace,
     Item,
     Laplace,
+    LargerRoot,
     ModalValue,
     ModeValues,
     Multiply,
@@ -26,6 +27,7 @@ from symflex.codegen.program import (
     RealNumber,
     Roots,
     Solutions,
+    ToComplex,
     nearest_double,
 )
 
@@ -73,7 +75,11 @@ class InfixPrinter(ABC):
 
     def applied(self, function: str, argument: CodeNode) -> str:
         """Return the text of an elementary function's value."""
-        return f"{'exp' if function == 'complex_exp' else function}({self.print(argument)})"
+        return f"{function.removeprefix('complex_')}({self.print(argument)})"
+
+    def to_complex(self, operand: CodeNode) -> tuple[str, int]:
+        """Return the text of a real number as a complex one, and how tightly it binds."""
+        return f"{self.complex_number(1.0, 0.0)} {self.times} {self.within(operand, _SIGN)}", _PRODUCT
 
     def piece_number(self, program: Piecewise) -> str:
         """Return the sum of ``2**i`` over the tests that hold; empty without tests."""
@@ -127,6 +133,10 @@ class InfixPrinter(ABC):
                 return self.pi if is_pi else repr(nearest_double(value, pi_power)), _LEAF
             case ComplexNumber(real, imaginary):
                 return self.complex_number(nearest_double(real), nearest_double(imaginary)), _LEAF
+            case ToComplex(operand):
+                return self.to_complex(operand)
+            case LargerRoot(formula):
+                return self._print(formula)
             case ParameterValue(name):
                 return self.parameters[name], _LEAF
             case Assigned(name):

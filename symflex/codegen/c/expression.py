@@ -23,10 +23,12 @@ from symflex.codegen.program import (
     InverseLaplace,
     Item,
     Laplace,
+    LargerRoot,
     Multiply,
     Negate,
     ParameterValue,
     RealNumber,
+    ToComplex,
     nearest_double,
 )
 
@@ -43,8 +45,8 @@ _SUM, _PRODUCT, _SIGN, _LEAF = range(4)
 
 REAL_FUNCTIONS = {
     name: name for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh")
-} | {"abs": "fabs"}
-"""What C calls each of the elementary functions of a real number, and the magnitude."""
+} | {"complex_exp": "exp"}
+"""What C calls each of the elementary functions of a real number."""
 
 
 LANE_FUNCTIONS = ("tan", "exp", "tanh")
@@ -73,8 +75,6 @@ class Term:
     varies: bool = False  # true when it depends on s
     binding: int = _LEAF  # how tightly its outermost operator binds
     depth: int = 0  # how many calls are nested in it
-    # True for a real number that stands for a complex one: its square root may be imaginary.
-    is_signed: bool = False
     # Of an array of complex numbers, the position of the one that is real; negative for none.
     real_at: int = -1
 
@@ -106,6 +106,8 @@ class CPrinter:
                 return Term(repr(nearest_double(value, pi_power)), Kind.REAL)
             case ComplexNumber(real, imaginary):
                 return _complex(nearest_double(real), nearest_double(imaginary))
+            case ToComplex(operand) | LargerRoot(operand):
+                return self.whole(operand)
             case ParameterValue(name):
                 return Term(self.parameter(name), Kind.REAL)
             case Assigned(name):
@@ -131,9 +133,8 @@ class CPrinter:
                 return self._apply(function, self.print(argument))
             case Item(values, position):
                 held = self.listed(values)
-                if position == held.real_at:
-                    return Term(f"{held.text}[{position}].re", Kind.REAL, held.varies)
-                return Term(f"{held.text}[{position}]", held.kind, held.varies)
+                part, kind = (".re", Kind.REAL) if position == held.real_at else ("", held.kind)
+                return Term(f"{held.text}[{position}]{part}", kind, held.varies)
         message = f"no text for {type(node).__name__}"
         raise TypeError(message)
 
@@ -161,16 +162,12 @@ class CPrinter:
 
     def _apply(self, function: str, x: Term) -> Term:
         if function == "abs":
-            size = _call("cx_abs" if x.kind is Kind.COMPLEX else "fabs", Kind.REAL, x)
-            return replace(size, is_signed=False)
-        if function == "complex_exp":
-            if x.kind is Kind.REAL:
-                return replace(_call("exp", Kind.REAL, x), is_signed=False)
-            return _call("cx_cis" if x.kind is Kind.IMAGINARY else "cx_exp", Kind.COMPLEX, x)
-        is_complex = x.kind is not Kind.REAL or x.is_signed
-        if function == "sqrt" and is_complex:
+            return _call("cx_abs" if x.kind is Kind.COMPLEX else "fabs", Kind.REAL, x)
+        if function == "complex_sqrt":
             return _call("cx_sqrt", Kind.COMPLEX, complex_term(x))
-        if is_complex:
+        if function == "complex_exp" and x.kind is not Kind.REAL:
+            return _call("cx_cis" if x.kind is Kind.IMAGINARY else "cx_exp", Kind.COMPLEX, x)
+        if x.kind is not Kind.REAL:
             message = f"no text for {function} of a complex number"
             raise TypeError(message)
         if self.in_lanes and x.varies and function in LANE_FUNCTIONS:
@@ -182,21 +179,20 @@ def _complex(real: float, imaginary: float) -> Term:
     if not real:
         return Term(repr(imaginary), Kind.IMAGINARY, binding=_SIGN if imaginary < 0 else _LEAF)
     if not imaginary:
-        return Term(repr(real), Kind.REAL, binding=_SIGN if real < 0 else _LEAF, is_signed=True)
+        return Term(repr(real), Kind.REAL, binding=_SIGN if real < 0 else _LEAF)
     return Term(f"cx_of({real!r}, {imaginary!r})", Kind.COMPLEX)
 
 
 def _infix(x: Term, operator: str, y: Term, kind: Kind) -> Term:
     binding, others = (_SUM, (_SUM, _PRODUCT)) if operator in "+-" else (_PRODUCT, (_PRODUCT, _SIGN))
     text = f"{x.within(others[0])} {operator} {y.within(others[1])}"
-    depth, is_signed = max(x.depth, y.depth), x.is_signed or y.is_signed
-    return Term(text, kind, x.varies or y.varies, binding, depth, is_signed)
+    return Term(text, kind, x.varies or y.varies, binding, max(x.depth, y.depth))
 
 
 def _call(name: str, kind: Kind, *arguments: Term) -> Term:
     text = ", ".join(a.text for a in arguments)
-    depth, is_signed = 1 + max(a.depth for a in arguments), any(a.is_signed for a in arguments)
-    return Term(f"{name}({text})", kind, any(a.varies for a in arguments), _LEAF, depth, is_signed)
+    depth = 1 + max(a.depth for a in arguments)
+    return Term(f"{name}({text})", kind, any(a.varies for a in arguments), _LEAF, depth)
 
 
 def complex_term(x: Term) -> Term:
@@ -282,8 +278,6 @@ def product(x: Term, y: Term) -> Term:
     >>> product(Term("w", Kind.IMAGINARY), Term("w", Kind.IMAGINARY)).text
     '-(w * w)'
     """
-    if x.text == "1.0" and x.kind is Kind.REAL:
-        return replace(y, is_signed=x.is_signed or y.is_signed)
     match x.kind, y.kind:
         case (Kind.COMPLEX, Kind.COMPLEX):
             return _call("cx_mul", Kind.COMPLEX, x, y)
@@ -294,7 +288,7 @@ def product(x: Term, y: Term) -> Term:
         case (Kind.COMPLEX, _):
             return product(y, x)
         case (Kind.IMAGINARY, Kind.IMAGINARY):
-            return replace(negative(_infix(x, "*", y, Kind.REAL)), is_signed=True)
+            return negative(_infix(x, "*", y, Kind.REAL))
     return _infix(x, "*", y, Kind.REAL if x.kind is y.kind else Kind.IMAGINARY)
 
 
@@ -315,7 +309,7 @@ def quotient(x: Term, y: Term) -> Term:
         case (Kind.REAL, Kind.IMAGINARY):
             return negative(_infix(x, "/", y, Kind.IMAGINARY))
         case (Kind.IMAGINARY, Kind.IMAGINARY):
-            return replace(_infix(x, "/", y, Kind.REAL), is_signed=True)
+            return _infix(x, "/", y, Kind.REAL)
     return _infix(x, "/", y, x.kind)
 
 
@@ -328,5 +322,5 @@ def _power(base: Term, exponent: int) -> Term:
         return result
     if exponent <= FEW and base.binding == _LEAF and not base.depth:
         text = " * ".join([base.text] * exponent)
-        return Term(text, Kind.REAL, base.varies, _PRODUCT, is_signed=base.is_signed)
+        return Term(text, Kind.REAL, base.varies, _PRODUCT)
     return _call("pow", Kind.REAL, base, Term(f"{exponent}.0", Kind.REAL))

@@ -137,7 +137,7 @@ class Body:
         """Make a variable with a value."""
         name = self.name(wanted)
         self.say(f"const {term.kind.type} {name} =", term.text)
-        return Term(name, term.kind, term.varies, is_signed=term.is_signed)
+        return Term(name, term.kind, term.varies)
 
     def opening(self, members: Mapping[str, str]) -> list[str]:
         """Return the lines that take the parameters in use out of their structure."""

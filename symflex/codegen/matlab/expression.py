@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import TYPE_CHECKING, ClassVar
 
 from symflex.codegen.infix import InfixPrinter, in_lines
-from symflex.codegen.program import CodeNode, ComplexNumber, Multiply
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from symflex.codegen.program import CodeNode
     from symflex.codegen.program.nodes import Frames
 
 WIDTH = 88
@@ -25,12 +24,9 @@ class MatlabPrinter(InfixPrinter):
     times: ClassVar[str] = ".*"
     over: ClassVar[str] = "./"
 
-    def _print(self, node: CodeNode) -> tuple[str, int]:
-        """Return the text and how tightly it binds; a square root needs no complex operand to be complex."""
-        if isinstance(node, Multiply) and node.factors[0] == _ONE:
-            rest = node.factors[1:]
-            return super()._print(Multiply(rest) if len(rest) > 1 else rest[0])
-        return super()._print(node)
+    def to_complex(self, operand: CodeNode) -> tuple[str, int]:
+        """Return the number itself: a square root needs no complex operand to be complex."""
+        return self._print(operand)
 
     def complex_number(self, real: float, imaginary: float) -> str:
         """Return a number as text that needs no parentheses."""
@@ -69,9 +65,6 @@ class MatlabPrinter(InfixPrinter):
             ]
             texts.append(self.listed(parts))
         return self.listed(texts)
-
-
-_ONE = ComplexNumber(Fraction(1), Fraction(0))
 
 
 def _matrix(rows: Sequence[Sequence[int]], shift: int) -> str:

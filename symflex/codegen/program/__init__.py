@@ -19,6 +19,7 @@ from symflex.codegen.program.nodes import (
     InverseLaplace,
     Item,
     Laplace,
+    LargerRoot,
     ModalValue,
     ModeValues,
     Multiply,
@@ -29,6 +30,7 @@ from symflex.codegen.program.nodes import (
     Roots,
     Solutions,
     Straight,
+    ToComplex,
     lumped,
 )
 from symflex.codegen.program.prose import inert, wrapped
@@ -54,6 +56,7 @@ __all__ = [
     "InverseLaplace",
     "Item",
     "Laplace",
+    "LargerRoot",
     "ModalValue",
     "ModeValues",
     "Multiply",
@@ -65,6 +68,7 @@ __all__ = [
     "Roots",
     "Solutions",
     "Straight",
+    "ToComplex",
     "Verification",
     "available_forms",
     "build_nested",

@@ -24,6 +24,7 @@ from symflex.codegen.program.nodes import (
     InverseLaplace,
     Item,
     Laplace,
+    LargerRoot,
     ModalValue,
     ModeValues,
     Multiply,
@@ -33,6 +34,7 @@ from symflex.codegen.program.nodes import (
     RealNumber,
     Roots,
     Solutions,
+    ToComplex,
 )
 from symflex.codegen.program.runtime import (
     characteristic_roots,
@@ -54,7 +56,7 @@ CONSTANT_BITS = 256
 
 NUMPY_FUNCTIONS = {
     name: name for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh", "abs")
-}
+} | {"complex_sqrt": "sqrt"}
 """What numpy calls each of the elementary functions, and the magnitude."""
 
 
@@ -230,6 +232,10 @@ class _ProgramRun:
                 return nearest_double(value, pi_power)
             case ComplexNumber(real, imaginary):
                 return complex(nearest_double(real), nearest_double(imaginary))
+            case ToComplex(operand):
+                return (1 + 0j) * self.value(operand)
+            case LargerRoot(formula):
+                return self.value(formula)
             case ParameterValue(name):
                 return self._parameters[name]
             case Assigned(name):

@@ -28,6 +28,7 @@ from symflex.codegen.program.nodes import (
     InverseLaplace,
     Item,
     Laplace,
+    LargerRoot,
     ModalValue,
     ModeValues,
     Multiply,
@@ -36,6 +37,7 @@ from symflex.codegen.program.nodes import (
     RealNumber,
     Roots,
     Solutions,
+    ToComplex,
 )
 
 if TYPE_CHECKING:
@@ -87,6 +89,18 @@ class Forge:
     def complex_number(self, real: Fraction | int, imaginary: Fraction | int) -> int:
         """Return ``real + 1j*imaginary``."""
         return self._make(ComplexNumber(Fraction(real), Fraction(imaginary)))
+
+    def to_complex(self, x: int) -> int:
+        """Return a real number as a complex one; see :class:`nodes.ToComplex`."""
+        minus, size = self.signed(x)
+        if self.is_number(size, 0):
+            return size
+        number = self.complex_number(1, 0) if self.is_number(size, 1) else self._make(ToComplex(_row(size)))
+        return self.negate(number) if minus else number
+
+    def larger_root(self, formula: int, middle: int, product: int) -> int:
+        """Return the value of a formula that is known to be a :class:`nodes.LargerRoot`."""
+        return self._make(LargerRoot(_row(formula), _row(middle), _row(product)))
 
     def parameter(self, name: str) -> int:
         """Return a parameter."""

@@ -94,6 +94,15 @@ class ComplexNumber(CodeNode):
 
 
 @dataclass(frozen=True, slots=True)
+class ToComplex(CodeNode):
+    """A real number as a complex one, for functions whose value is complex where it is negative."""
+
+    OPERANDS: ClassVar = ("operand",)
+
+    operand: CodeNode
+
+
+@dataclass(frozen=True, slots=True)
 class ParameterValue(CodeNode):
     """A parameter, by its name in the model."""
 
@@ -165,8 +174,26 @@ class Negate(CodeNode):
 
 
 @dataclass(frozen=True, slots=True)
+class LargerRoot(CodeNode):
+    """The root ``m*(1 + sqrt(1 - p/(m*m)))`` of ``x^2 - 2*m*x + p`` where m is in the right half plane.
+
+    Where m is small beside the root of p, the formula's value keeps digits that its derivative loses.
+    """
+
+    OPERANDS: ClassVar = ("formula", "middle", "product")
+
+    formula: CodeNode  # the expression above, for languages without derivatives
+    middle: CodeNode  # m
+    product: CodeNode  # p
+
+
+@dataclass(frozen=True, slots=True)
 class Apply(CodeNode):
-    """An elementary function; ``function`` is a key of ``kernels.FUNCTIONS``, ``abs`` or ``complex_exp``."""
+    """An elementary function.
+
+    ``function`` is a key of ``kernels.FUNCTIONS``, ``abs``, or ``complex_exp`` and ``complex_sqrt`` where the
+    value may be complex.
+    """
 
     OPERANDS: ClassVar = ("argument",)
 

@@ -150,15 +150,16 @@ class Site:
         inside = forge.add(
             [forge.constant(1), forge.negate(forge.divide(c0, forge.multiply([middle, middle])))]
         )
-        large = forge.multiply([middle, forge.add([forge.constant(1), self._root(inside)])])
+        formula = forge.multiply([middle, forge.add([forge.constant(1), self._root(inside)])])
+        large = forge.larger_root(formula, middle, c0)
         first, second = self._root(large), self._root(forge.divide(c0, large))
         return self._labelled(first, "lambda_1"), self._labelled(second, "lambda_2")
 
     def _root(self, x: int) -> int:
-        """Return the principal square root, of a complex number also where it is free of s."""
-        if not self.forge.depends[x] and self.axis is None:
-            x = self.forge.multiply([self.forge.complex_number(1, 0), x])
-        return self.forge.apply("sqrt", x)
+        """Return the principal square root; in real arithmetic that of a positive number."""
+        if self.axis is not None:
+            return self.forge.apply("sqrt", x)
+        return self.forge.apply("complex_sqrt", x if self.forge.depends[x] else self.forge.to_complex(x))
 
     def _labelled(self, x: int, name: str) -> int:
         return self.forge.label(x, name)
@@ -366,7 +367,7 @@ class Site:
         if self.axis is None:
             function = "complex_exp"
             if not forge.depends[exponent]:
-                exponent = forge.multiply([forge.complex_number(1, 0), exponent])
+                exponent = forge.to_complex(exponent)
         return self._labelled(forge.apply(function, exponent), "decay")
 
     def _spirals(self, i: int, j: int, step: int) -> tuple[int, int]:

@@ -11,9 +11,8 @@ from textwrap import TextWrapper
 from typing import TYPE_CHECKING, Any
 
 from symflex.codegen.infix import InfixPrinter
-from symflex.codegen.program import Add, Apply, Assigned, CodeNode, Divide, Multiply, Negate
+from symflex.codegen.program import Apply, CodeNode, LargerRoot
 from symflex.codegen.program.evaluate import NUMPY_FUNCTIONS, number_of
-from symflex.codegen.program.nodes import ONE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -84,14 +83,12 @@ class ArrayPrinter(PythonPrinter):
     # array libraries take arrays only.
     numbers: Mapping[str, Any] = field(default_factory=dict)
     has_fixed_sizes: bool = False  # true to print magnitudes as ``_size``, which has no derivative
-    meanings: Mapping[str, CodeNode] = field(default_factory=dict)  # what the assignments say
     leading: str = ""  # first arguments of functions that look others up
 
     def print(self, node: CodeNode) -> str:
         """Return the text of an expression."""
-        if (pair := self._pair(node)) is not None:
-            middle, product = (self.print(x) for x in pair)
-            return f"_larger({self.leading}{middle}, {product})"
+        if isinstance(node, LargerRoot):
+            return f"_larger({self.leading}{self.print(node.middle)}, {self.print(node.product)})"
         return super().print(node)
 
     def applied(self, function: str, argument: CodeNode) -> str:
@@ -111,33 +108,6 @@ class ArrayPrinter(PythonPrinter):
         text = super().call(function, arguments)
         takes_space = function not in ("series_solutions", "mode_values")
         return text.replace("(", f"({self.leading}", 1) if takes_space else text
-
-    def _pair(self, node: CodeNode) -> tuple[CodeNode, CodeNode] | None:
-        """Return m and p of ``m*(1 + sqrt(1 - p/(m*m)))``, the larger root of ``x^2 - 2*m*x + p``.
-
-        Where m is small beside the root of p, the derivative of this form loses digits that its value keeps.
-        """
-        match node:
-            case Multiply((middle, factor)):
-                match self._meaning(factor):
-                    case Add((first, root)) if first == ONE:
-                        return self._under_root(middle, self._meaning(root))
-        return None
-
-    def _under_root(self, middle: CodeNode, root: CodeNode) -> tuple[CodeNode, CodeNode] | None:
-        match root:
-            case Apply("sqrt", argument):
-                match self._meaning(argument):
-                    case Add((first, Negate(last))) if first == ONE:
-                        match self._meaning(last):
-                            case Divide(product, square) if self._meaning(square) == Multiply(
-                                (middle, middle)
-                            ):
-                                return middle, product
-        return None
-
-    def _meaning(self, node: CodeNode) -> CodeNode:
-        return self.meanings.get(node.name, node) if isinstance(node, Assigned) else node
 
 
 def statement(target: str, value: str, indent: str) -> list[str]:

@@ -287,7 +287,6 @@ class TracedText(PrivateText):
         has_fixed_sizes = (
             self.dialect.has_fixed_sizes and bool(self.program.conditions) and not self.program.is_real
         )
-        meanings = {a.name: a.value for a in assignments}
         printer = ArrayPrinter(
             self.parameters,
             names,
@@ -296,7 +295,6 @@ class TracedText(PrivateText):
             self.dialect.space,
             numbers,
             has_fixed_sizes,
-            meanings,
             self.leading,
         )
         lines = [line for a in assignments for line in printer.assignment(a.name, a.value, "    ")]
