@@ -92,10 +92,7 @@ class Ground:
     def grown(self, **more: object) -> Ground:
         """Return the ground with other entries.
 
-        Raises
-        ------
-        UnreadError
-            When it would become unreasonably large.
+        Raises UnreadError when it would become unreasonably large.
         """
         ground = replace(self, **more)  # type: ignore[arg-type]
         size = len(ground.primes) + len(ground.sums) + 3 * len(ground.waves)
@@ -164,14 +161,8 @@ class Arithmetic:
     def power(self, value: Factored, exponent: Fraction) -> Factored:
         """Return the principal value of a rational power, for positive s and parameters.
 
-        Raises
-        ------
-        UnreadError
-            When the power is not in any field of this kind.
-        GrowError
-            When it is in a larger one.
-        ZeroDivisionError
-            For zero raised to a negative power.
+        Raises UnreadError when the power is not in any field of this kind; GrowError when it is in a larger
+        one; ZeroDivisionError for zero raised to a negative power.
         """
         if value.is_zero:
             if exponent < 0:
@@ -350,12 +341,8 @@ class Arithmetic:
     def function(self, name: str, argument: Factored) -> Factored:
         """Return ``exp``, ``sin``, ``cos``, ``tan``, ``sinh``, ``cosh``, ``tanh`` or ``sqrt`` of a value.
 
-        Raises
-        ------
-        UnreadError, GrowError
-            As :meth:`power`.
-        ZeroDivisionError
-            For the tangent of a right angle; there is none in the field but by mistake.
+        Raises UnreadError, GrowError as :meth:`power`; ZeroDivisionError for the tangent of a right angle;
+        there is none in the field but by mistake.
         """
         if name == "sqrt":
             return self.power(argument, Fraction(1, 2))
@@ -495,10 +482,7 @@ class Arithmetic:
     def reduced(self, value: Factored) -> Factored:
         """Return a value with every factor in normal form.
 
-        Raises
-        ------
-        ZeroDivisionError
-            When a denominator is zero.
+        Raises ZeroDivisionError when a denominator is zero.
         """
         result = self.number(value.unit)
         for factor, exponent in value.factors:

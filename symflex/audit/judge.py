@@ -61,18 +61,8 @@ class Audit:
 def judge(tf: TransferFunction, published: Published) -> Audit:
     """Compare a printed formula with the derived function.
 
-    Parameters
-    ----------
-    tf : TransferFunction
-        Derived, of the output and input the formula is about.
-    published : Published
-        What was printed.
-
-    Raises
-    ------
-    SpecError
-        SF210 an unknown name, SF212 a name that may not stand in a formula, SF215 lines in a circle, SF224 a
-        division by zero, SF225 an exponent that is not a number.
+    Raises SpecError: SF210 an unknown name, SF212 a name that may not stand in a formula, SF215 lines in a
+    circle, SF224 a division by zero, SF225 an exponent that is not a number.
 
     Examples
     --------
@@ -153,12 +143,8 @@ def _difference(audit: Audit, reading: FormulaReading | None, numbers: Numbers) 
 def audit(model: Model, names: Sequence[str] = ()) -> tuple[Audit, ...]:
     """Return what is found about the model's printed formulas, those named "OUT/IN" or all.
 
-    Raises
-    ------
-    UsageError
-        SF902 for a name without a printed formula.
-    SpecError
-        With every problem of all formulas, each at its place.
+    Raises UsageError: SF902 for a name without a printed formula; SpecError with every problem of all
+    formulas, each at its place.
     """
     printed = {"/".join(p.tf): p for p in model.published}
     for name in names:

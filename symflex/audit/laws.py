@@ -54,12 +54,8 @@ class LawCheck:
 def check_laws(reading: FormulaReading | None, numbers: Numbers | None) -> tuple[LawCheck, ...]:
     """Return every law that could be checked.
 
-    Parameters
-    ----------
-    reading : FormulaReading or None
-        Both functions exactly, ``None`` when they could not be read.
-    numbers : Numbers or None
-        Both with the model's own values, ``None`` where a parameter has none.
+    ``reading`` holds both functions exactly, None when they could not be read; ``numbers`` both with the
+    model's own values, None where a parameter has none.
     """
     found: list[LawCheck | None] = []
     if reading is not None:

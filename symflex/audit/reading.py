@@ -58,11 +58,9 @@ class Formula:
 def formula_of(published: Published, model: Model) -> Formula:
     """Return a printed formula with its lines in order.
 
-    Raises
-    ------
-    SpecError
-        SF210 an unknown name or function, SF212 a name that may not stand here, SF215 lines that use each
-        other in a circle, SF225 an exponent that is not a number: every problem at once, each at its place.
+    Raises SpecError: SF210 an unknown name or function, SF212 a name that may not stand here, SF215 lines
+    that use each other in a circle, SF225 an exponent that is not a number: every problem at once, each at
+    its place.
     """
     where = dict(published.where)
     definitions = {d.name: d.expression for d in model.definitions if d.name not in where}
@@ -164,14 +162,8 @@ class FormulaReading:
 def read(formula: Formula, tf: TransferFunction) -> FormulaReading:
     """Return both functions over the smallest field that holds them.
 
-    Raises
-    ------
-    UnreadError
-        When one of them is in no field of this kind.
-    SpecError
-        SF224 when the formula divides by zero.
-    BudgetError
-        SF501 when an expansion would become too large.
+    Raises UnreadError when one of them is in no field of this kind; SpecError: SF224 when the formula
+    divides by zero; BudgetError: SF501 when an expansion would become too large.
     """
     ground = ground_of([(p.name, p.assume != "real") for p in tf.model.parameters])
 
@@ -271,10 +263,7 @@ def _division(part: Expression, whole: Expression) -> SpecError:
 def derived_value(field: Arithmetic, tf: TransferFunction) -> Factored:
     """Return a derived transfer function over the field.
 
-    Raises
-    ------
-    UnreadError, GrowError
-        As :class:`~symflex.audit.field.Field`.
+    Raises UnreadError, GrowError as :class:`~symflex.audit.field.Field`.
     """
     ring, table = tf.ratio.ring, tf.kernels
     images: dict[str, Factored] = {}

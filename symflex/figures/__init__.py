@@ -80,37 +80,16 @@ def draw(
 ) -> Figure:
     """Draw a figure of one or several transfer functions.
 
-    Parameters
-    ----------
-    kind : str
-        A key of :data:`FIGURES`.
-    tfs, bounds : sequences of equal length, at least one
-        The functions, and the same with numbers.
-    band_hz : (number, number), optional
-        Frequencies shown [Hz]. Without it a Bode plot takes the model's ``band``, or else one that shows all
-        poles and zeros; a pole-zero plot focuses on the resonances that belong together and marks the rest at
-        its border, and with it shows those up to its end; of modes, the lowest are shown, or those in it.
-    frame : AxisLimits, optional
-        Of axes, in place of those that suit what is drawn.
-    title : str, optional
-        Printed as it is, never read as mathematics.
-    width_mm : float, optional
-        Of the figure; by default 3.5 inches, or 7.16 for what needs the width of a page.
-    font : str, optional
-        A key of :data:`FONTS`; :func:`render` is to be told the same one.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-
-    Raises
-    ------
-    UsageError
-        SF208 an unknown kind; SF911 a kind that is not available yet; SF227 an empty band; SF208 an unknown
-        font; SF902 the width is not between 80 and 1000 mm or too small for what is drawn, or limits are of
-        axes that the figure has not.
-    ModelError
-        SF402 a transfer function is identically zero.
+    ``kind`` is a key of :data:`FIGURES`, ``bounds`` are the functions ``tfs`` with numbers. Without
+    ``band_hz`` [Hz] a Bode plot takes the model's ``band``, or else one that shows all poles and zeros; a
+    pole-zero plot focuses on the resonances that belong together and marks the rest at its border, and with
+    it shows those up to its end; of modes, the lowest are shown, or those in it. ``frame`` takes the place of
+    limits that suit what is drawn; ``title`` is printed as it is, never read as mathematics. The figure is
+    3.5 inches wide by default, or 7.16 for what needs the width of a page. :func:`render` is to be told the
+    same ``font``, a key of :data:`FONTS`. Raises UsageError: SF208 an unknown kind; SF911 a kind that is not
+    available yet; SF227 an empty band; SF208 an unknown font; SF902 the width is not between 80 and 1000 mm
+    or too small for what is drawn, or limits are of axes that the figure has not; ModelError: SF402 a
+    transfer function is identically zero.
     """
     if kind not in FIGURES:
         if kind in LOOP_FIGURES:
@@ -191,31 +170,11 @@ def draw_loop(
 ) -> Figure:
     """Draw a root locus, or the Nyquist plot of a loop gain ``K B/A``.
 
-    Parameters
-    ----------
-    kind : str
-        ``locus`` or ``nyquist``.
-    loop : Loop
-        A straight line in its gain.
-    limits : (Fraction, Fraction), optional
-        First and last gain of a locus; from 0 to 10 times the nominal one by default.
-    modes : int, optional
-        Traced in the locus of a loop with kernels; by default those in the band, or the lowest five.
-    band_hz : (number, number), optional
-        Frequencies of a Nyquist plot [Hz]; a locus is shown up to its end.
-    frame : AxisLimits, optional
-        Of axes, in place of those that suit what is drawn.
-    title : str, optional
-        Printed as it is.
-    width_mm, font
-        As for :func:`draw`.
-
-    Raises
-    ------
-    UsageError
-        SF208 an unknown kind, SF804 no range, SF806 no straight line in the gain.
-    UncertifiedError
-        SF807 the curves do not end in proved poles.
+    ``kind`` is ``locus`` or ``nyquist``. ``limits`` are the first and last gain of a locus, by default from 0
+    to 10 times the nominal one; ``modes`` are traced in the locus of a loop with kernels, by default those in
+    the band, or the lowest five. ``band_hz`` are frequencies of a Nyquist plot [Hz]; a locus is shown up to
+    its end. The rest is as for :func:`draw`. Raises UsageError: SF208 an unknown kind, SF804 no range, SF806
+    no straight line in the gain; UncertifiedError: SF807 the curves do not end in proved poles.
     """
     if kind not in LOOP_FIGURES:
         hint = "kinds: " + ", ".join(LOOP_FIGURES)

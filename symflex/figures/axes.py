@@ -127,12 +127,7 @@ def point_of(root: Root) -> complex:
 def drawable(values: npt.NDArray[np.complex128], reach: float) -> npt.NDArray[np.complex128]:
     """Return values with those far outside brought nearer, in their own directions.
 
-    Parameters
-    ----------
-    values : array of complex
-        A curve; infinite values become gaps.
-    reach : float
-        Half the width of what is shown.
+    ``reach`` is half the width of what is shown; infinite values become gaps.
 
     Examples
     --------

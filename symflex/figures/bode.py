@@ -117,10 +117,7 @@ def said_of_grid(found: PoleZeroMap) -> str:
 def draw_response(response: SampledResponse) -> Figure | None:
     """Draw magnitude and phase of one frequency response, at its own frequencies.
 
-    Returns
-    -------
-    matplotlib.figure.Figure or None
-        None when it has less than two positive frequencies.
+    None when it has less than two positive frequencies.
     """
     frequency = response.frequency_hz
     kept = frequency > 0

@@ -36,19 +36,8 @@ PARTED_COLOUR: Final = "#F6E3D4"
 def draw_measured(measured: MeasuredResponse, model: npt.NDArray[np.complex128], unit: str = "") -> Figure:
     """Draw a model over a measured response.
 
-    Parameters
-    ----------
-    measured : MeasuredResponse
-        With n lines.
-    model : array of complex, shape (n,)
-        The model on these lines.
-    unit : str
-        Of the values, where the data do not say.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Synthetic data are called so in the title.
+    ``model`` is the model on the measured lines; ``unit`` is that of the values, where the data do not say.
+    Synthetic data are called so in the title.
     """
     with paper_style():
         figure, top, bottom = magnitude_over_phase(COLUMN_INCHES, HEIGHT_INCHES, RATIO)
@@ -64,17 +53,7 @@ def draw_measured(measured: MeasuredResponse, model: npt.NDArray[np.complex128],
 def draw_fit(fit: ResonanceFit, response: int = 0) -> Figure:
     """Draw one response of a fit: data, start, fit; and the phase of the magnitude-only fit where it parts.
 
-    Parameters
-    ----------
-    fit : ResonanceFit
-        The result.
-    response : int
-        Which of its responses.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Synthetic data are called so in the title.
+    Synthetic data are called so in the title.
     """
     line, test = fit.problem.lines[response], fit.phase_tests[response]
     measured = line.measured

@@ -68,16 +68,10 @@ def draw_modes(
     """Draw the shapes of the lowest modes of the first function's model, hidden ones among them.
 
     As many as ``[analysis]`` says, else five, or the first 40 of a band; and all of poles in the right half
-    plane. Rigid-body motions at 0 are left out. The title says whether the model is stable. The part in
-    phase with the largest displacement is drawn in full, what moves in quadrature dashed. See
-    :func:`symflex.figures.draw`.
-
-    Raises
-    ------
-    ModelError
-        SF402 when there is no mode other than at 0.
-    UsageError
-        SF902 when the panels have no room in the width asked for.
+    plane. Rigid-body motions at 0 are left out. The title says whether the model is stable. The part in phase
+    with the largest displacement is drawn in full, what moves in quadrature dashed. See
+    :func:`symflex.figures.draw`. Raises ModelError: SF402 when there is no mode other than at 0; UsageError:
+    SF902 when the panels have no room in the width asked for.
     """
     band_hz = canvas.band_hz
     band = None if band_hz is None else Band(Fraction(band_hz[0]), Fraction(band_hz[1]))

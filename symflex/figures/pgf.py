@@ -49,12 +49,7 @@ _TURNED: Final = {"top": "right", "bottom": "left", "center": "center"}
 def pgf_text(text: str, *, is_math: bool = True) -> str:
     r"""Return a text of a figure as LaTeX.
 
-    Parameters
-    ----------
-    text : str
-        With mathematics between dollar signs.
-    is_math : bool, optional
-        False when dollar signs are dollar signs.
+    ``is_math`` is False when dollar signs are dollar signs.
 
     Examples
     --------
@@ -122,13 +117,7 @@ def _point(x: float, y: float) -> str:
 
 
 class _Renderer(RendererBase):
-    """Writes what matplotlib draws, at 72 dots per inch.
-
-    Parameters
-    ----------
-    width, height : float
-        Of the figure [inches].
-    """
+    """Writes what matplotlib draws, at 72 dots per inch."""
 
     def __init__(self, width: float, height: float) -> None:
         super().__init__()

@@ -109,15 +109,9 @@ def marks_of(found: PoleZeroMap) -> tuple[RootMark, ...]:
 def choose_view(marks: Sequence[RootMark], high_hz: float | None, ratios: tuple[float, float]) -> View:
     """Choose the part of the s plane to show.
 
-    Parameters
-    ----------
-    marks : sequence of RootMark
-        All poles and zeros of all panels.
-    high_hz : float or None
-        Show the roots up to this natural frequency [Hz]; without it, the resonances from the lowest on, as
-        far as no gap separates them, and the real roots of their size.
-    ratios : (float, float)
-        Smallest and largest width over height.
+    It shows the roots up to the natural frequency ``high_hz`` [Hz]; without it, the resonances from the
+    lowest on, as far as no gap separates them, and the real roots of their size. ``ratios`` are the smallest
+    and the largest width over height.
 
     Examples
     --------

@@ -31,19 +31,8 @@ FORMATS: Final[dict[str, dict[str, str | None]]] = {
 def render(figure: Figure, format: str, *, font: str = DEFAULT_FONT) -> bytes:
     """Return a figure as the content of a file; equal figures give equal bytes.
 
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        As :func:`symflex.figures.draw` returns it.
-    format : str
-        ``pdf``, ``pgf``, ``png`` or ``svg``.
-    font : str, optional
-        That in which it was drawn.
-
-    Raises
-    ------
-    UsageError
-        SF208 for any other format or font.
+    ``format`` is ``pdf``, ``pgf``, ``png`` or ``svg``; ``font`` is that in which the figure was drawn. Raises
+    UsageError: SF208 for any other format or font.
     """
     if format not in FORMATS:
         hint = nearest(format, FORMATS) or "formats: " + ", ".join(FORMATS)
@@ -72,21 +61,8 @@ def _quietly() -> Iterator[None]:
 def save(figure: Figure, path: Path, format: str | None = None, *, font: str = DEFAULT_FONT) -> None:
     """Write a figure to a file, as a whole or not at all.
 
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        As :func:`symflex.figures.draw` returns it.
-    path : Path
-        Replaced when it exists.
-    format : str, optional
-        ``pdf``, ``pgf``, ``png`` or ``svg``; by default what the file's name ends in.
-    font : str, optional
-        That in which it was drawn.
-
-    Raises
-    ------
-    UsageError
-        SF208 an unknown format; SF903 the file cannot be written.
+    The format is by default what the file's name ends in. Raises UsageError: SF208 an unknown format; SF903
+    the file cannot be written.
     """
     chosen = path.suffix.removeprefix(".").lower() if format is None else format
     write_atomically(path, render(figure, chosen, font=font))

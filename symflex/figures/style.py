@@ -93,15 +93,7 @@ _PAPER: Final[dict[str, object]] = {
 def paper_style(font: str = DEFAULT_FONT) -> AbstractContextManager[None]:
     """Return a context in which matplotlib draws as for a paper, whatever the user's own settings.
 
-    Parameters
-    ----------
-    font : str, optional
-        A key of :data:`FONTS`.
-
-    Raises
-    ------
-    UsageError
-        SF208 for any other font.
+    Raises UsageError: SF208 for any other font.
     """
     if font not in FONTS:
         hint = nearest(font, FONTS) or "fonts: " + ", ".join(FONTS)

@@ -76,23 +76,8 @@ def draw_sweep(
     line for each of these. Otherwise, and of draws: medians and what holds 90 % of the points, from the 5th
     to the 95th percentile.
 
-    Parameters
-    ----------
-    sweep : Sweep
-        Of roots, a response or margins.
-    modes : int, optional
-        Names of modes shown, from the first.
-    title : str, optional
-        Printed as it is; by default the model's.
-    width : float, optional
-        [inches]; a column by default.
-    font : str, optional
-        A key of :data:`symflex.figures.FONTS`.
-
-    Raises
-    ------
-    ModelError
-        SF402 there is nothing to draw.
+    ``modes`` are the names of those shown, from the first; ``width`` is in inches, a column by default.
+    Raises ModelError: SF402 there is nothing to draw.
     """
     with paper_style(font):
         width = width or COLUMN_INCHES

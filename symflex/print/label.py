@@ -99,12 +99,7 @@ def read_label(latex: str) -> Label | None:
 def labels_of(named: Iterable[tuple[str, str]], reserved: Mapping[str, str]) -> dict[str, str]:
     r"""Return a label for every name, no two alike.
 
-    Parameters
-    ----------
-    named : iterable of (str, str)
-        Names with their declared labels, which may be empty.
-    reserved : Mapping of str to str
-        Names with labels that no other may take.
+    ``named`` are names with their declared labels, which may be empty; labels in ``reserved`` are taken.
 
     Examples
     --------

@@ -52,14 +52,7 @@ def form_text(tf: AnyTransferFunction, form: PrintedForm) -> str:
 def derive_text(tf: AnyTransferFunction, form: PrintedForm, width: int = WIDTH) -> str:
     """Return a transfer function as a fraction, with its definitions and hidden modes.
 
-    Parameters
-    ----------
-    tf : TransferFunction or NestedTransferFunction
-        Derived.
-    form : PrintedForm
-        Its arrangement.
-    width : int
-        Columns available; longer sums are broken before plus and minus.
+    Sums longer than ``width`` columns are broken before plus and minus.
     """
     quantity = tf.quantity + (f" [{tf.unit}]" if tf.unit else "")
     verdict = f"; {form.stability.headline}" if form.stability else ""
@@ -225,14 +218,7 @@ def _at_factor(text: str, i: int) -> bool:
 def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
     """Return poles and zeros as tables, with the certificate.
 
-    Parameters
-    ----------
-    found : PoleZeroMap
-        Roots in a region.
-    digits : int
-        Significant digits of every root.
-    width : int
-        Columns available; where a line per root is too long, its imaginary part stands below its real part.
+    Where a line per root is longer than ``width`` columns, the imaginary part stands below the real part.
     """
     certificate = found.certificate
     status = "certified" if certificate.certified else f"NOT CERTIFIED: {certificate.reason}"

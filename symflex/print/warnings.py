@@ -23,18 +23,8 @@ MOST_WARNINGS = 100
 def warnings(model: Model, equations: Equations | None = None) -> tuple[Diagnostic, ...]:
     """Return what a specification says that may not be meant.
 
-    Parameters
-    ----------
-    model : Model
-        Resolved.
-    equations : Equations, optional
-        Of the model, where they are there already.
-
-    Returns
-    -------
-    tuple of Diagnostic
-        What nothing uses, how frequencies were read, and, where the equations have a unique solution, inputs,
-        outputs and elements without effect. Those of the model's own text come first.
+    That is what nothing uses, how frequencies were read, and, where the equations have a unique solution,
+    inputs, outputs and elements without effect. Those of the model's own text come first.
     """
     try:
         equations = equations or assemble(model)

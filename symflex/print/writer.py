@@ -137,15 +137,7 @@ _SHORT_EXPONENT: Final = 8
 
 
 class ExpressionWriter:
-    """Writes expressions in one notation with one set of labels.
-
-    Parameters
-    ----------
-    labels : Mapping of str to str
-        Declared labels in LaTeX.
-    spelling : Spelling
-        How pieces are spelt.
-    """
+    """Writes expressions in one notation with one set of labels."""
 
     def __init__(self, labels: Mapping[str, str], spelling: Spelling) -> None:
         self._labels = labels
@@ -156,10 +148,7 @@ class ExpressionWriter:
     def piece(self, expression: Expression, style: Style = Style.DISPLAY) -> Written:
         """Return a subtree printed in a style.
 
-        Raises
-        ------
-        TypeError
-            For an equation or a quantity of an element, which no transfer function holds.
+        Raises TypeError for an equation or a quantity of an element, which no transfer function holds.
         """
         done: list[Written] = []
         pending: list[tuple[Expression, Style, bool]] = [(expression, style, False)]

@@ -71,15 +71,7 @@ _EM_PER_CHARACTER: Final = 0.34
 def report_article(report: Report) -> str:
     """Return a report as a LaTeX document; figures are read from the folder ``figures`` beside it.
 
-    Parameters
-    ----------
-    report : Report
-        Composed.
-
-    Returns
-    -------
-    str
-        To be compiled three times, for the table of contents.
+    It is compiled three times, for the table of contents.
     """
     byline = r"\\[2pt]".join(escape_text(line) for line in (report.subtitle, report.date) if line)
     parts = [

@@ -57,12 +57,7 @@ def chapter_of(
     """Read a specification and return its chapter, with measured responses where they fit.
 
     A section that cannot be computed, for want of a value or because it would be too large, says why in its
-    place; the others stand.
-
-    Raises
-    ------
-    SpecError, ModelError
-        When the file is not a solvable model.
+    place; the others stand. Raises SpecError, ModelError when the file is not a solvable model.
     """
     opened = attempt(lambda: Study.of(path, stem, measured, allow_outside))
     if isinstance(opened, SymflexError):

@@ -266,10 +266,7 @@ class ModelFacts:
     def of(self, tf: str) -> TransferFacts:
         """Return the facts of one transfer function.
 
-        Raises
-        ------
-        KeyError
-            When there are none.
+        Raises KeyError when there are none.
         """
         for facts in self.functions:
             if facts.tf == tf:
@@ -318,10 +315,7 @@ def bare_facts(stem: str, model: Model) -> ModelFacts:
 def facts_of(study: Study) -> ModelFacts:
     """Return the facts about a model.
 
-    Parameters
-    ----------
-    study : Study
-        The model with its transfer functions; those that cannot be bound to numbers have no facts.
+    Functions that cannot be bound to numbers have none.
     """
     model = study.model
     rigid, undamped = study.rigid_counts, study.undamped_counts

@@ -15,19 +15,9 @@ if TYPE_CHECKING:
 def write_tree(folder: Path, files: Mapping[str, bytes]) -> None:
     """Write files into a folder and its subfolders, which are made when they are missing.
 
-    Parameters
-    ----------
-    folder : Path
-        Is made, with the folders above it, when it is missing; it may be a symbolic link, its subfolders not.
-    files : mapping of str to bytes
-        Content by relative path, ``/`` between names.
-
-    Raises
-    ------
-    ValueError
-        For a path that leads elsewhere.
-    UsageError
-        SF903 when something cannot be written, or a subfolder is a symbolic link.
+    ``folder`` may be a symbolic link, its subfolders not; ``files`` are contents by relative path, ``/``
+    between names. Raises ValueError for a path that leads elsewhere; UsageError: SF903 when something cannot
+    be written, or a subfolder is a symbolic link.
     """
     for name in files:
         path = PurePosixPath(name)

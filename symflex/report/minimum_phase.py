@@ -50,12 +50,7 @@ class PhaseCondition:
 def minimum_phase(tf: TransferFunction, explained: ZeroExplanation) -> PhaseCondition:
     """Return the condition under which a transfer function is minimum phase.
 
-    Parameters
-    ----------
-    tf : TransferFunction
-        Symbolic.
-    explained : ZeroExplanation
-        What its zeros are the poles of.
+    ``explained`` says what its zeros are the poles of.
 
     Examples
     --------

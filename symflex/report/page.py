@@ -52,18 +52,7 @@ _NAMESPACES: Final = re.compile(r'\sxmlns(?::\w+)?="[^"]*"')
 
 
 def report_page(report: Report) -> str:
-    """Return a report as HTML.
-
-    Parameters
-    ----------
-    report : Report
-        Composed.
-
-    Returns
-    -------
-    str
-        HTML 5 with its style inside.
-    """
+    """Return a report as HTML."""
     byline = " · ".join(filter(None, (report.subtitle, report.date)))
     parts = [
         "<!DOCTYPE html>",

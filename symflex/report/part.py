@@ -55,9 +55,6 @@ class SectionMaker(Protocol):
     def __call__(self, study: Study) -> ChapterPart | None:
         """Return the section, None where a model gives no cause for it.
 
-        Raises
-        ------
-        SymflexError
-            When what it needs cannot be computed; the report says so in its place.
+        Raises SymflexError when what it needs cannot be computed; the report says so in its place.
         """
         ...

@@ -33,20 +33,10 @@ def has_compiler() -> bool:
 def compile_pdf(tex: str, figures: Mapping[str, bytes], epoch: int | None) -> bytes:
     r"""Return a LaTeX document as PDF.
 
-    Parameters
-    ----------
-    tex : str
-        The document. Commands that would run programs are refused, and files outside its folder are neither
-        read nor written.
-    figures : mapping of str to bytes
-        Files it includes, by path beside it.
-    epoch : int or None
-        The time it is given, in seconds since 1970; equal documents then give equal bytes.
-
-    Raises
-    ------
-    SymflexError
-        SF912 when it does not compile, with the last lines of the log.
+    Commands that would run programs are refused, and files outside its folder are neither read nor written;
+    it includes ``figures`` by their paths beside it. ``epoch`` is the time it is given, in seconds since
+    1970; equal documents then give equal bytes. Raises SymflexError: SF912 when it does not compile, with the
+    last lines of the log.
     """
     environment = {**os.environ, "openout_any": "p", "openin_any": "p", "TEXMFOUTPUT": ""}
     if epoch is not None:

@@ -45,26 +45,10 @@ def written(
 ) -> tuple[PublishedReport, Report]:
     """Write the report that options ask for.
 
-    Parameters
-    ----------
-    given : ReportOptions
-        With the day that is printed, and ``jobs``: 0 for all models in this process.
-    progress : Progress
-        Told of each step.
-    said : callable
-        Told how many models and measured responses there are.
-
-    Returns
-    -------
-    tuple of PublishedReport and Report
-        What was written; the warnings of the report name what was left out, too.
-
-    Raises
-    ------
-    SpecError, ModelError
-        With every problem of all files that are not solvable models, before anything is computed.
-    UsageError
-        SF902 no specification; SF903 a file cannot be written.
+    With ``jobs`` of 0 all models are computed in this process. ``said`` is told how many models and measured
+    responses there are. The warnings of the report name what was left out, too. Raises SpecError, ModelError:
+    With every problem of all files that are not solvable models, before anything is computed; UsageError:
+    SF902 no specification; SF903 a file cannot be written.
     """
     folder, paths = Path(given.output), [Path(spec) for spec in given.specs]
     check_folder(folder)
@@ -83,21 +67,8 @@ def written(
 def publish(report: Report, folder: Path, progress: Progress, *, pdf: bool | None = None) -> PublishedReport:
     """Write a report into a folder; what stands there stays, but for files of the same names.
 
-    Parameters
-    ----------
-    report : Report
-        Composed.
-    folder : Path
-        Made where it is missing.
-    progress : Progress
-        Told of each step.
-    pdf : bool, optional
-        Whether a PDF is wanted; by default where pdflatex is there. The article is written in any case.
-
-    Raises
-    ------
-    UsageError
-        SF903 when a file cannot be written.
+    ``pdf`` says whether one is wanted, by default where pdflatex is there. The article is written in any
+    case. Raises UsageError: SF903 when a file cannot be written.
     """
     progress.report(0.9, "writing")
     tex = report_article(report)

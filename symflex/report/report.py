@@ -77,13 +77,9 @@ def find_specifications(
     """Return the specifications that arguments name; a folder stands for the ``.toml`` files in it and below.
 
     Those of a folder come by name, before those of folders in it. What stands in ``output``, the folder that
-    reports are written into, is left out.
-
-    Raises
-    ------
-    UsageError
-        SF902 for a folder without any, for a link that leads out of a folder and not to one of
-        ``allow_outside``, a file of measured data, and for more than :data:`MOST_MODELS`.
+    reports are written into, is left out. Raises UsageError: SF902 for a folder without any, for a link that
+    leads out of a folder and not to one of ``allow_outside``, a file of measured data, and for more than
+    :data:`MOST_MODELS`.
     """
     found: list[Path] = []
     for path in paths:
@@ -145,10 +141,7 @@ def find_claims(
 ) -> tuple[Publication, ...]:
     """Return what publications claim of specifications, by files ``claims.toml`` in the same folders.
 
-    Raises
-    ------
-    UsageError, SpecError
-        See :func:`symflex.report.claims.read_claims`.
+    Raises UsageError, SpecError: See :func:`symflex.report.claims.read_claims`.
     """
     folders = dict.fromkeys(path.parent for path in specifications)
     files = [
@@ -197,10 +190,7 @@ def _leads_out(file: Path, folders: Sequence[Path]) -> bool:
 def check_specifications(named: Mapping[str, Path], allow_outside: tuple[Path, ...] = ()) -> None:
     """Refuse, before anything is computed, specifications that are not solvable models.
 
-    Raises
-    ------
-    SpecError, ModelError, UsageError
-        With every problem of all files.
+    Raises SpecError, ModelError, UsageError with every problem of all files.
     """
     failed: list[SymflexError] = []
     for stem, path in named.items():
@@ -224,24 +214,11 @@ def write_chapters(
 ) -> tuple[Chapter, ...]:
     """Return the chapters, in order, computed side by side, once all specifications are checked.
 
-    Parameters
-    ----------
-    named : mapping of str to Path
-        Specifications by name.
-    processes : int
-        How many compute several models at once, each on its own; 0 for none besides this one. In a process of
-        its own a model that ends it, or makes the program fail, costs its own chapter only.
-    progress : Progress
-        Told what is being computed.
-    measured : tuple of MeasuredResponse
-        Drawn with the transfer functions of the same names.
-    allow_outside : tuple of Path
-        Folders that ``model`` blocks may read besides those of the specifications.
-
-    Raises
-    ------
-    SpecError, ModelError, UsageError
-        With every problem of all files that are not solvable models, before anything is computed.
+    So many ``processes`` compute several models at once, each on its own; 0 for none besides this one. In a
+    process of its own a model that ends it, or makes the program fail, costs its own chapter only.
+    ``measured`` responses are drawn with the transfer functions of the same names; ``model`` blocks may read
+    the folders of ``allow_outside`` besides those of the specifications. Raises SpecError, ModelError,
+    UsageError with every problem of all files that are not solvable models, before anything is computed.
     """
     check_specifications(named, allow_outside)
     done: dict[str, Chapter] = {}
@@ -346,14 +323,8 @@ def _chapter_in(
 def compose(chapters: Sequence[Chapter], date: str, publications: Sequence[Publication] = ()) -> Report:
     """Return the report of chapters.
 
-    Parameters
-    ----------
-    chapters : sequence of Chapter
-        At least one.
-    date : str
-        As shown; empty for none.
-    publications : sequence of Publication
-        Claims of the first that is a source of a model are judged.
+    ``date`` is printed as it is, empty for none; of the publications, the first that is a source of a model
+    has its claims judged.
     """
     publication = publication_of((c.facts.source for c in chapters), publications)
     ordered = _ordered(chapters, publication)

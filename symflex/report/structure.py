@@ -73,17 +73,7 @@ def compliances(model: Model) -> tuple[Compliance, ...]:
 def is_colocated(model: Model, output: Output, source: Input) -> bool | None:
     """Tell whether an output is taken where an input acts, or rigidly joined to it.
 
-    Parameters
-    ----------
-    model : Model
-        Resolved.
-    output, source : Output, Input
-        The pair.
-
-    Returns
-    -------
-    bool or None
-        None where the output shows no motion of a place, or where the input acts at none.
+    None where the output shows no motion of a place, or where the input acts at none.
     """
     model = in_one_way(model)
     (output,) = (each for each in model.outputs if each.name == output.name)

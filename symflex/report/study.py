@@ -63,12 +63,8 @@ class Study:
     ) -> Study:
         """Read a specification; its ``model`` blocks may read the folders of ``allow_outside`` too.
 
-        Raises
-        ------
-        SpecError
-            With every problem of the file, printed formulas included.
-        ModelError
-            When the equations have no unique solution.
+        Raises SpecError with every problem of the file, printed formulas included; ModelError when the
+        equations have no unique solution.
         """
         model = pipeline.load(path, allow_outside)
         pipeline.check_published(model, model.published)
@@ -84,10 +80,8 @@ class Study:
     def tfs(self) -> tuple[TransferFunction, ...]:
         """The transfer functions in symbols.
 
-        Raises
-        ------
-        ModelError, BudgetError
-            When the equations have no unique solution, or their symbolic one would be too large.
+        Raises ModelError, BudgetError when the equations have no unique solution, or their symbolic one
+        would be too large.
         """
         return _result(self._derived)
 
@@ -110,10 +104,7 @@ class Study:
     def bounds(self) -> tuple[BoundTransferFunction, ...]:
         """The same functions with numbers.
 
-        Raises
-        ------
-        ModelError
-            SF229 when a parameter has no value.
+        Raises ModelError: SF229 when a parameter has no value.
         """
         return _result(self._bound)
 
@@ -213,10 +204,7 @@ class Study:
     def loop(self, gain: str) -> Loop:
         """Return the characteristic function as a polynomial in a gain.
 
-        Raises
-        ------
-        ModelError
-            SF801 when it does not depend on the gain.
+        Raises ModelError: SF801 when it does not depend on the gain.
         """
         if gain not in self._characteristic:
             self._characteristic[gain] = attempt(lambda: pipeline.characteristic_loop(self.model, gain))

@@ -52,21 +52,10 @@ DISTRIBUTED_CANDIDATES = ("hyperbolic", "factored", "vaughan", "krylov")
 def print_form(tf: AnyTransferFunction, form: str | None = None, digits: int = 6) -> PrintedForm:
     """Return a transfer function in the named form, or in the one that prints shortest.
 
-    Parameters
-    ----------
-    tf : TransferFunction or NestedTransferFunction
-        Derived.
-    form : str, optional
-        A key of :data:`FORMS`; ``nested`` for those derived so, which have no other.
-    digits : int
-        Significant digits of forms that print decimals.
-
-    Raises
-    ------
-    UsageError
-        SF902 when there is no such form, or the function has none.
-    ModelError
-        SF229 when the form needs numbers and a parameter has none.
+    ``form`` is a key of :data:`FORMS`; functions derived nested have the form ``nested`` and no other.
+    ``digits`` are the significant ones of forms that print decimals. Raises UsageError: SF902 when there is
+    no such form, or the function has none; ModelError: SF229 when the form needs numbers and a parameter has
+    none.
     """
     if isinstance(tf, NestedTransferFunction):
         if form not in (None, "nested"):
@@ -95,15 +84,7 @@ def print_forms(
 ) -> tuple[tuple[PrintedForm, ...], tuple[str, ...]]:
     """Return all functions in the named form, and a sentence on each that lacks it, in its default form.
 
-    Parameters
-    ----------
-    tfs, form, digits
-        See :func:`print_form`.
-
-    Raises
-    ------
-    UsageError
-        SF902 when none of them has the form.
+    The arguments are those of :func:`print_form`. Raises UsageError: SF902 when none of them has the form.
     """
     found: list[PrintedForm] = []
     sentences: list[str] = []
@@ -122,11 +103,6 @@ def print_forms(
 
 def terms_to_print(tf: AnyTransferFunction, form: str | None = None) -> int:
     """Return about how many terms a symbolic form prints; 0 where that is not known, or few in any case.
-
-    Parameters
-    ----------
-    tf, form
-        See :func:`print_form`.
 
     Examples
     --------

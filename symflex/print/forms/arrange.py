@@ -149,13 +149,8 @@ class Arranger:
     def separated(self, polynomial: fmpz_mpoly, *, by_functions: bool) -> Expression:
         """Return a sum of coefficients times sums of functions.
 
-        Parameters
-        ----------
-        polynomial : fmpz_mpoly
-            Over the ring.
-        by_functions : bool
-            Collect the coefficients of every product of functions, or the functions that one monomial
-            multiplies.
+        ``by_functions`` collects the coefficients of every product of functions, otherwise the functions that
+        one monomial multiplies are collected.
         """
         parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
         for monomial, coefficient in _terms(self.closed(polynomial)).items():

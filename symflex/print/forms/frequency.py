@@ -58,12 +58,8 @@ def frequency_form(tf: TransferFunction, digits: int) -> PrintedForm:
     """Return the function of ``omega = s/j``, each sum split into its real and its imaginary part.
 
     The expression grammar has no imaginary unit: it stands as a name, ``j`` where that is free, with the line
-    ``j = sqrt(-1)``. With the line of omega the form holds for every complex s, as every form does.
-
-    Raises
-    ------
-    UsageError
-        SF902 where the exponents of field equations have no formula.
+    ``j = sqrt(-1)``. With the line of omega the form holds for every complex s, as every form does. Raises
+    UsageError: SF902 where the exponents of field equations have no formula.
     """
     del digits
     require_formula(tf, "frequency")

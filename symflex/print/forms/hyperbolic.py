@@ -20,10 +20,7 @@ if TYPE_CHECKING:
 def hyperbolic_form(tf: TransferFunction, digits: int) -> PrintedForm:
     """Return the function in cosh, sinh, cos and sin of ``q = mu*l``; delays are exponentials.
 
-    Raises
-    ------
-    UsageError
-        SF902 for a rational function.
+    Raises UsageError: SF902 for a rational function.
     """
     del digits
     require_kernels(tf, "hyperbolic")

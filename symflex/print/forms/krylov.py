@@ -32,12 +32,8 @@ def krylov_form(tf: TransferFunction, digits: int) -> PrintedForm:
 
     For a beam ``K_0 = cosh(q)*cos(q)``, ``K_1 = (cosh(q)*sin(q) + sinh(q)*cos(q))/(2*mu)``, ...; for a rod
     ``K_0 = cosh(q)``, ``K_1 = sinh(q)/gamma``. Where the exponents of field equations have no formula, the
-    solutions and their derivatives at the ends stand as ``h(l)``, ``h'(l)``.
-
-    Raises
-    ------
-    UsageError
-        SF902 for a rational function.
+    solutions and their derivatives at the ends stand as ``h(l)``, ``h'(l)``. Raises UsageError: SF902 for a
+    rational function.
     """
     del digits
     require_kernels(tf, "krylov")

@@ -54,13 +54,7 @@ class Notation:
 
 
 class Naming:
-    """Hands out names, none twice.
-
-    Parameters
-    ----------
-    taken : iterable of str
-        Names that are not free.
-    """
+    """Hands out names, none twice."""
 
     def __init__(self, taken: Iterable[str]) -> None:
         self._taken = set(taken)
@@ -110,16 +104,8 @@ def notation_of(
 ) -> Notation:
     """Return names for the arguments ``q = mu*l``, the wavenumbers and what these are made of.
 
-    Parameters
-    ----------
-    tf : TransferFunction
-        Distributed.
-    used : collection of str
-        The generators that occur, wavenumbers standing by themselves among them.
-    naming : Naming
-        Where names are taken from.
-    table : KernelTable, optional
-        Of the lengths, where they are not the transfer function's own.
+    ``used`` are the generators that occur, wavenumbers standing by themselves among them; ``table`` holds the
+    lengths where they are not the transfer function's own.
     """
     printer = plain_printer(tf)
     angles = angles_of(table or tf.kernels, used)

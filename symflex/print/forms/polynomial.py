@@ -47,10 +47,7 @@ def _arranger(tf: TransferFunction) -> Arranger:
 def monic_form(tf: TransferFunction, digits: int) -> PrintedForm:
     """Return the polynomial form divided by the denominator's leading coefficient.
 
-    Raises
-    ------
-    UsageError
-        SF902 for a function with kernels.
+    Raises UsageError: SF902 for a function with kernels.
     """
     del digits
     return _normalised(tf, "monic", max)
@@ -59,12 +56,8 @@ def monic_form(tf: TransferFunction, digits: int) -> PrintedForm:
 def constant_form(tf: TransferFunction, digits: int) -> PrintedForm:
     """Return the polynomial form divided by the coefficient of the denominator's lowest power of s.
 
-    Without poles at 0 the denominator's constant term is 1, and that of the numerator the static gain.
-
-    Raises
-    ------
-    UsageError
-        SF902 for a function with kernels.
+    Without poles at 0 the denominator's constant term is 1, and that of the numerator the static gain. Raises
+    UsageError: SF902 for a function with kernels.
     """
     del digits
     return _normalised(tf, "constant", min)

@@ -41,12 +41,7 @@ Sides = tuple[Expression, Expression]
 class ProductPrinter:
     """Prints products over one ring; a sum met again is not arranged again.
 
-    Parameters
-    ----------
-    arranger : Arranger
-        For the ring.
-    imaginary : str, optional
-        The generator of the imaginary unit: sums are split into real and imaginary part.
+    With the generator of the imaginary unit given, sums are split into real and imaginary part.
     """
 
     def __init__(self, arranger: Arranger, imaginary: str = "") -> None:
@@ -141,14 +136,7 @@ def length(sides: Iterable[Expression]) -> int:
 def shortest_sides(printer: ProductPrinter, value: Factored, laws: Mapping[str, Factored]) -> Sides:
     """Return the sides of a product, powers of wavenumbers traded for s and parameters if that is shorter.
 
-    Parameters
-    ----------
-    printer : ProductPrinter
-        For the value's ring.
-    value : Factored
-        A quotient.
-    laws : mapping of str to Factored
-        For a wavenumber, a product of its power with s and parameters that is one.
+    ``laws`` give, for a wavenumber, a product of its power with s and parameters that is one.
     """
     tried = [value]
     for name, one in laws.items():

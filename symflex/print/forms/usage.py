@@ -35,10 +35,7 @@ def refuse(tf: TransferFunction, form: str, reason: str) -> UsageError:
 def require_kernels(tf: TransferFunction, form: str) -> None:
     """Refuse a rational function.
 
-    Raises
-    ------
-    UsageError
-        SF902.
+    Raises UsageError SF902.
     """
     if not tf.is_distributed:
         raise refuse(tf, form, "it is a rational function of s")
@@ -47,10 +44,7 @@ def require_kernels(tf: TransferFunction, form: str) -> None:
 def require_rational(tf: TransferFunction, form: str) -> None:
     """Refuse a function with kernels.
 
-    Raises
-    ------
-    UsageError
-        SF902.
+    Raises UsageError SF902.
     """
     if tf.is_distributed:
         raise refuse(tf, form, "it is not a rational function of s")
@@ -59,10 +53,7 @@ def require_rational(tf: TransferFunction, form: str) -> None:
 def require_formula(tf: TransferFunction, form: str) -> None:
     """Refuse a function whose wavenumbers have no formula.
 
-    Raises
-    ------
-    UsageError
-        SF902.
+    Raises UsageError SF902.
     """
     if tf.is_nameless:
         raise refuse(tf, form, "the exponents of its field equations have no formula")

@@ -60,12 +60,8 @@ def vaughan_form(tf: TransferFunction, digits: int) -> PrintedForm:
     """Return the function in ``S = exp(-q)*sin(q)`` and ``C = exp(-q)*cos(q)`` of ``q = sqrt(T*p)``.
 
     Here ``T = l^2/2`` and ``p = s/a``; with losses p is ``sqrt(c_0)``, which then takes the place of ``s/a``.
-    Rods, shafts, strings and beams with shear or axial force are written in ``D = exp(-gamma*l)``.
-
-    Raises
-    ------
-    UsageError
-        SF902 for a rational function, and where the exponents of field equations have no formula.
+    Rods, shafts, strings and beams with shear or axial force are written in ``D = exp(-gamma*l)``. Raises
+    UsageError: SF902 for a rational function, and where the exponents of field equations have no formula.
     """
     del digits
     require_kernels(tf, "vaughan")

@@ -26,12 +26,7 @@ BITS_PER_DIGIT = 4
 def zpk_form(tf: TransferFunction, digits: int) -> PrintedForm:
     """Return gain times real first- and second-order factors, in decimals of the given digits.
 
-    Raises
-    ------
-    ModelError
-        SF229 when a parameter has no value.
-    UsageError
-        SF902 for a function with kernels.
+    Raises ModelError: SF229 when a parameter has no value; UsageError: SF902 for a function with kernels.
     """
     from symflex.roots.locate import locate  # imports numpy
 

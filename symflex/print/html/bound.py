@@ -16,13 +16,7 @@ if TYPE_CHECKING:
 
 
 def bound_html(bound: BoundTransferFunction) -> str:
-    """Return a transfer function with numbers as HTML, in the shortest symbolic form.
-
-    Parameters
-    ----------
-    bound : BoundTransferFunction
-        With numbers.
-    """
+    """Return a transfer function with numbers as HTML, in the shortest symbolic form."""
     tf = bound.source
     parameters = {p.name: p for p in tf.model.parameters}
     labels = model_labels(tf.model)

@@ -17,13 +17,7 @@ MOST_FUNCTIONS: Final = 60
 
 
 def model_html(model: Model) -> str:
-    """Return a model as HTML; symbols of parameters are mathematics between dollar signs.
-
-    Parameters
-    ----------
-    model : Model
-        Resolved.
-    """
+    """Return a model as HTML; symbols of parameters are mathematics between dollar signs."""
     title = _cut(model.title) or "Model without title"
     lines = [f"<div><strong>{title}</strong>"]
     if model.source:

@@ -28,13 +28,7 @@ HEAD: Final = (
 
 
 def roots_html(found: PoleZeroMap) -> str:
-    """Return poles, zeros and hidden modes as a table with the certificate above it.
-
-    Parameters
-    ----------
-    found : PoleZeroMap
-        Roots in a region.
-    """
+    """Return poles, zeros and hidden modes as a table with the certificate above it."""
     certificate = found.certificate
     status = "certified" if certificate.certified else f"NOT CERTIFIED: {certificate.reason}"
     count = f"{certificate.found} of {certificate.counted} roots enclosed"

@@ -19,16 +19,7 @@ def html_table(
 ) -> str:
     """Return a table.
 
-    Parameters
-    ----------
-    head : sequence of str
-        HTML of the head's cells.
-    columns : sequence of str
-        :data:`TEXT` or :data:`NUMBER` for each.
-    rows : sequence of sequence of str
-        HTML of the cells.
-    caption : str, optional
-        HTML above the table.
+    Head, cells and caption are HTML; every column is :data:`TEXT` or :data:`NUMBER`.
     """
     lines = ["<table>"]
     if caption:

@@ -21,15 +21,7 @@ _MILLIMETRES: Final = re.compile(r"([0-9]{1,6}(?:\.[0-9]{1,6})?) ?(?:mm)?")
 def column_width(text: str) -> float:
     """Return the width of a column [mm] from its name or from millimetres.
 
-    Parameters
-    ----------
-    text : str
-        ``ieee``, ``a4``, or a number such as ``120`` or ``120mm``.
-
-    Raises
-    ------
-    UsageError
-        SF902 when it is neither, or not between 80 and 1000 mm.
+    Raises UsageError: SF902 when it is neither, or not between 80 and 1000 mm.
 
     Examples
     --------
@@ -48,10 +40,7 @@ def column_width(text: str) -> float:
 def checked_width(width_mm: float) -> float:
     """Return the width of a column [mm] if it is one.
 
-    Raises
-    ------
-    UsageError
-        SF902 when it is not between 80 and 1000 mm.
+    Raises UsageError: SF902 when it is not between 80 and 1000 mm.
     """
     if not NARROWEST_MM <= width_mm <= WIDEST_MM:
         message = f"a column is from {NARROWEST_MM:g} to {WIDEST_MM:g} mm wide, found {width_mm:g} mm"

@@ -74,15 +74,7 @@ class Picture:
 
 
 def latex_fragment(tf: AnyTransferFunction, form: PrintedForm, *, width_mm: float = TEXT_WIDTH_MM) -> str:
-    r"""Return one transfer function for ``\input`` in a paper, with its definitions; it needs amsmath.
-
-    Parameters
-    ----------
-    tf, form : TransferFunction, PrintedForm
-        What is printed, and how.
-    width_mm : float, optional
-        Width of the column, set in ten points.
-    """
+    r"""Return one transfer function for ``\input`` in a paper, with its definitions; it needs amsmath."""
     return _file(_equation(tf, form, width_mm, ""), width_mm)
 
 
@@ -96,26 +88,9 @@ def latex_document(
 ) -> str:
     r"""Return an article with the model's parameters, transfer functions, poles, zeros and modes.
 
-    Parameters
-    ----------
-    model : Model
-        Gives title, source and parameters.
-    tfs, forms : sequence of TransferFunction, sequence of PrintedForm
-        In pairs, in the order of print.
-    pole_zero_maps : sequence of PoleZeroMap, optional
-        Each is printed after the transfer function of its name.
-    width_mm : float, optional
-        Width of the text.
-
-    Returns
-    -------
-    str
-        It compiles with two runs of pdflatex or lualatex, without warnings.
-
-    Raises
-    ------
-    UsageError
-        SF902 when a map belongs to none of the transfer functions.
+    Functions and forms are pairs, in the order of print; each pole-zero map is printed after the function of
+    its name. Two runs of pdflatex or lualatex compile it, without warnings. Raises UsageError: SF902 when a
+    map belongs to none of the transfer functions.
     """
     blocks = _blocks(model, tfs, forms, pole_zero_maps, width_mm)
     return "".join((*_opening(model, width_mm), *(block.text for block in blocks), "\\end{document}\n"))
@@ -136,10 +111,7 @@ def latex_files(
     (``V_tip_over_F_poles.tex``), of the parameters or of the modes, or a figure (``fig5.pgf``), and names the
     packages that it needs. See :func:`latex_document`.
 
-    Returns
-    -------
-    dict of str to str
-        Text by name of file; :data:`DOCUMENT` is the one to compile.
+    The texts stand by the names of their files; :data:`DOCUMENT` is the one to compile.
     """
     files: dict[str, str] = {}
     parts = list(_opening(model, width_mm, _FOR_FIGURES if pictures else ()))

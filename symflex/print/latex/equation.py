@@ -95,21 +95,10 @@ def transfer_function_latex(
 ) -> str:
     r"""Return a transfer function as a numbered display, with its definitions in ``where`` lines.
 
-    Parameters
-    ----------
-    tf : TransferFunction
-        What is printed.
-    form : PrintedForm
-        Its numerator, denominator and definitions.
-    width_mm : float or None
-        Width of the text, set in ten points, treated as 80 mm when it is less; ``None`` never breaks a line.
-    label : str, optional
-        In place of :func:`equation_label` of the name, where several models share a document.
-
-    Returns
-    -------
-    str
-        ``equation`` when one line suffices, else ``align`` with numerator and denominator named and broken.
+    It is an ``equation`` when one line suffices, else an ``align`` with numerator and denominator named and
+    broken. ``width_mm`` is that of the text, set in ten points, and treated as 80 mm when it is less;
+    ``None`` never breaks a line. ``label`` stands in place of :func:`equation_label` of the name, where
+    several models share a document.
     """
     writer = Writer(form_labels(tf, form))
     width = None if width_mm is None else max(width_mm, NARROWEST_MM) / EM_MM
@@ -129,18 +118,7 @@ def formula_latex(
 ) -> str:
     r"""Return an equation of any expression as a display without a number, broken where it must be.
 
-    Parameters
-    ----------
-    left : str
-        LaTeX of its left side.
-    expression : Expression
-        Its right side.
-    where : sequence of (str, Expression)
-        Lines below it.
-    labels : Mapping of str to str
-        Declared labels.
-    width_mm : float
-        Width of the text, set in ten points.
+    ``left`` is LaTeX already; the pairs of ``where`` are lines below the equation.
 
     Examples
     --------
@@ -178,11 +156,8 @@ def notebook_latex(tf: AnyTransferFunction, form: PrintedForm) -> str | None:
 
     Only commands that KaTeX and MathJax share are used.
 
-    Returns
-    -------
-    str or None
-        :func:`inline_latex`, or an ``aligned`` environment. None when it would be longer than
-        :data:`LONGEST_IN_NOTEBOOK` characters, which a page takes seconds to set.
+    It is :func:`inline_latex` or an ``aligned`` environment; None when it would be longer than
+    :data:`LONGEST_IN_NOTEBOOK` characters, which a page takes seconds to set.
     """
     writer = Writer(form_labels(tf, form))
     width = NOTEBOOK_MM / EM_MM
@@ -355,20 +330,8 @@ def _row(
 ) -> _DisplayRow:
     """Return an equation with its right side broken.
 
-    Parameters
-    ----------
-    left, left_width : str, float
-        Its left side.
-    expression : Expression
-        Its right side.
-    writer : Writer
-        Gives names their labels.
-    width : float or None
-        Of a line [em]; None never breaks one.
-    column : float
-        Width of the widest left side.
-    tag : float
-        Room that the first line leaves for its number.
+    Widths are in em: of a line (None never breaks one), of the widest left side, and the room that the first
+    line leaves for its number.
     """
     if width is None:
         return _DisplayRow(left, left_width, (writer.piece(expression).markup,))

@@ -21,19 +21,8 @@ if TYPE_CHECKING:
 def latex_expression(expression: Expression, labels: Mapping[str, str], style: Style = Style.DISPLAY) -> str:
     r"""Return an expression as LaTeX for math mode.
 
-    Parameters
-    ----------
-    expression : Expression
-        Any width and depth.
-    labels : Mapping of str to str
-        Declared labels; other names get :func:`~symflex.print.label.label_of`.
-    style : Style, optional
-        How its quotients print.
-
-    Raises
-    ------
-    TypeError
-        For an equation or a quantity of an element, which no transfer function holds.
+    Names without a declared label get :func:`~symflex.print.label.label_of`. Raises TypeError for an
+    equation or a quantity of an element, which no transfer function holds.
 
     Examples
     --------
@@ -48,13 +37,7 @@ def latex_expression(expression: Expression, labels: Mapping[str, str], style: S
 
 
 class Writer(ExpressionWriter):
-    """Writes expressions as LaTeX with one set of labels.
-
-    Parameters
-    ----------
-    labels : Mapping of str to str
-        Declared labels.
-    """
+    """Writes expressions as LaTeX with one set of labels."""
 
     def __init__(self, labels: Mapping[str, str]) -> None:
         super().__init__(labels, LATEX)

@@ -74,19 +74,9 @@ _DOT: Final = r"{}\cdot "
 def break_lines(expression: Expression, writer: Writer, first: float, others: float) -> list[str]:
     r"""Return an expression as lines for display.
 
-    Parameters
-    ----------
-    expression : Expression
-        Any.
-    writer : Writer
-        Gives names their labels.
-    first, others : float
-        Room in the first line and in those that continue it [em]; none of these is used beyond the first's.
-
-    Returns
-    -------
-    list of str
-        Each begins with its indentation, and all but the first with their operator.
+    ``first`` and ``others`` are the room in the first line and in those that continue it [em]; none of these
+    is used beyond the first's. Each line begins with its indentation, and all but the first with their
+    operator.
 
     Examples
     --------

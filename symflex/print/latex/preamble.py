@@ -29,12 +29,7 @@ _PREAMBLE: Final = r"""\documentclass[10pt,a4paper]{article}
 def preamble(width_mm: float = COLUMNS_MM["a4"], packages: Sequence[str] = ()) -> str:
     """Return everything before the document begins.
 
-    Parameters
-    ----------
-    width_mm : float, optional
-        Width of the text; the page is of A4 where it has margins then.
-    packages : sequence of str, optional
-        More that the document needs.
+    The text is ``width_mm`` wide, on a page of A4 where it has margins then.
     """
     needed = width_mm + 2 * _MARGIN_MM
     paper = "" if needed <= _A4_MM else f"paperwidth={needed:g}mm,paperheight=297mm,"

@@ -57,13 +57,6 @@ def parameter_table(model: Model, *, width_mm: float = COLUMNS_MM["a4"]) -> str:
 
     Values that are not short decimals are rounded to :data:`VALUE_DIGITS` significant digits; a parameter
     without a value is called symbolic. Needs booktabs, siunitx and array.
-
-    Parameters
-    ----------
-    model : Model
-        Whose parameters, in declared order.
-    width_mm : float, optional
-        Width of the column; meanings are broken into lines where they must be.
     """
     labels = model_labels(model)
     widths = [symbol(p.name, labels).width for p in model.parameters]
@@ -117,16 +110,7 @@ def root_table(
     certifies, at most ``digits``; where a narrow column has no room for them fewer, but not less than three.
     Needs booktabs and siunitx.
 
-    Parameters
-    ----------
-    found : PoleZeroMap
-        Certified roots.
-    kind : str
-        A key of :data:`KINDS`.
-    digits : int, optional
-        Significant digits.
-    width_mm : float, optional
-        Width of the column.
+    ``kind`` is a key of :data:`KINDS`.
     """
     entries = one_of_each_pair(roots_of(found, kind))
     heads = (
@@ -151,11 +135,6 @@ def mode_table(
     r"""Return the table of the modes that are poles of any of several functions: frequencies and damping.
 
     Rigid-body motions come first; a conjugate pair, or a real pole, is one mode. See :func:`root_table`.
-
-    Parameters
-    ----------
-    maps : sequence of PoleZeroMap
-        Of transfer functions of one model.
     """
     from symflex.roots.root import overlap  # imports numpy
 

@@ -73,14 +73,7 @@ def fitting(columns: Sequence[TabularColumn], width: float) -> Setting | None:
 def tabular(columns: Sequence[TabularColumn], setting: Setting, heights: Sequence[int] | None = None) -> str:
     r"""Return a table, centred, as a paragraph of its own.
 
-    Parameters
-    ----------
-    columns : sequence of TabularColumn
-        Of equally many cells.
-    setting : Setting
-        How it is set.
-    heights : sequence of int, optional
-        Lines of each row, one by default.
+    ``heights`` are the lines that each row takes, one by default.
     """
     formats = "".join(column.format for column in columns)
     lines = zip(*(column.cells for column in columns), strict=True)
@@ -102,12 +95,8 @@ def number_column(
 ) -> TabularColumn:
     r"""Return a column of numbers, aligned by siunitx; cells in braces are none.
 
-    Parameters
-    ----------
-    head, head_widths : tuple
-        Lines of the head, and their widths [em].
-    cells : sequence of str
-        Decimals such as ``-1.5e-3``, of which ``\pm`` may stand before.
+    Cells are decimals such as ``-1.5e-3``, of which ``\pm`` may stand before; the widths of the lines of the
+    head are in em.
     """
     numbers = [cell for cell in cells if not cell.startswith("{")]
     signed = any(cell.startswith(("-", r"\pm")) for cell in numbers)

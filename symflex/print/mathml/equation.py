@@ -47,17 +47,9 @@ def ratio_mathml(tf: TransferFunction) -> str:
 def transfer_function_mathml(tf: TransferFunction, form: PrintedForm) -> tuple[MathRow, ...] | None:
     """Return a transfer function as equations below each other.
 
-    Parameters
-    ----------
-    tf, form : TransferFunction, PrintedForm
-        What is printed, and how.
-
-    Returns
-    -------
-    tuple of MathRow or None
-        The quotient in one row where it is at most :data:`WIDEST_FRACTION` wide, else with names for what is
-        wide and their rows below it; then the ``where`` rows. None when all of it would be longer than
-        :data:`LONGEST` characters.
+    The quotient is one row where it is at most :data:`WIDEST_FRACTION` wide, else it has names for what is
+    wide and their rows below it; then come the ``where`` rows. None when all of it would be longer than
+    :data:`LONGEST` characters.
     """
     labels = form_labels(tf, form)
     writer = MathmlWriter(labels)

@@ -46,17 +46,8 @@ _MINUS: Final = operator("-", "prefix")
 def mathml_expression(expression: Expression, labels: Mapping[str, str]) -> str:
     """Return an expression as MathML, without the ``math`` element around it.
 
-    Parameters
-    ----------
-    expression : Expression
-        Any width and depth.
-    labels : Mapping of str to str
-        Declared labels in LaTeX; other names get theirs from their letters.
-
-    Raises
-    ------
-    TypeError
-        For an equation or a quantity of an element, which no transfer function holds.
+    Labels are declared ones in LaTeX; other names get theirs from their letters. Raises TypeError for an
+    equation or a quantity of an element, which no transfer function holds.
 
     Examples
     --------
@@ -70,13 +61,7 @@ def mathml_expression(expression: Expression, labels: Mapping[str, str]) -> str:
 
 
 class MathmlWriter(ExpressionWriter):
-    """Writes expressions as MathML with one set of labels.
-
-    Parameters
-    ----------
-    labels : Mapping of str to str
-        Declared labels in LaTeX.
-    """
+    """Writes expressions as MathML with one set of labels."""
 
     def __init__(self, labels: Mapping[str, str]) -> None:
         super().__init__(labels, MATHML)
@@ -91,12 +76,7 @@ class MathmlWriter(ExpressionWriter):
 
         Sums are parted before their signs, then products between factors, then parentheses inside.
 
-        Parameters
-        ----------
-        expression : Expression
-            Any.
-        width : float, optional
-            What is not wider [em] stays whole, and so does what has no place to be parted.
+        What is not wider than ``width`` [em] stays whole, and so does what has no place to be parted.
         """
         found: list[str] = []
         # A sign or parenthesis beside a node stays with its first or last piece.

@@ -53,13 +53,6 @@ _UNDER: Final = frozenset(("underline",))
 def label_mathml(name: str, labels: Mapping[str, str]) -> str:
     r"""Return the label of a name, declared or made.
 
-    Parameters
-    ----------
-    name : str
-        A parameter, definition, input, output or name of a form.
-    labels : Mapping of str to str
-        Declared labels, as :func:`symflex.print.latex.model_labels` returns them.
-
     Examples
     --------
     >>> label_mathml("omega_p1", {})
@@ -77,10 +70,7 @@ def label_mathml(name: str, labels: Mapping[str, str]) -> str:
 def latex_label(latex: str) -> str:
     r"""Return a sound label as MathML.
 
-    Raises
-    ------
-    ValueError
-        For what is not a label that :func:`symflex.print.label.read_label` lets through.
+    Raises ValueError for what is not a label that :func:`symflex.print.label.read_label` lets through.
 
     Examples
     --------

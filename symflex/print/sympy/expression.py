@@ -39,18 +39,8 @@ def symbols_of(model: Model) -> dict[str, sympy.Symbol]:
 def to_sympy(expression: Expression, symbols: Mapping[str, sympy.Symbol]) -> sympy.Expr:
     """Return an expression as a SymPy expression, in the same nesting.
 
-    Parameters
-    ----------
-    expression : Expression
-        Any expression of names, numbers and functions.
-    symbols : mapping of str to Symbol
-        What to use for names; a missing name becomes a plain symbol.
-
-    Returns
-    -------
-    sympy.Expr
-        A function of x that only a differential equation determines is an undefined function, or its
-        derivative at a point.
+    A name that ``symbols`` lack becomes a plain symbol. A function of x that only a differential equation
+    determines becomes an undefined function, or its derivative at a point.
 
     Examples
     --------

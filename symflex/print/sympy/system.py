@@ -32,18 +32,9 @@ PI = "pi"
 def sympy_system(function: TransferFunction | BoundTransferFunction) -> SympyTransferFunction:
     """Return numerator and denominator as polynomials in ``s`` with exact coefficients.
 
-    Parameters
-    ----------
-    function : TransferFunction or BoundTransferFunction
-        With symbols, which bear the parameters' assumptions, or with numbers: rational ones, and pi and roots
-        where the model has them.
-
-    Raises
-    ------
-    ModelError
-        SF235 when it is not rational in s.
-    BudgetError
-        SF501 when its polynomials are too large to be multiplied out.
+    Symbols bear the parameters' assumptions; numbers are rational, with pi and roots where the model has
+    them. Raises ModelError: SF235 when it is not rational in s; BudgetError: SF501 when its polynomials are
+    too large to be multiplied out.
 
     Examples
     --------

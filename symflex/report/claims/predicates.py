@@ -30,14 +30,8 @@ def modes_at(
 ) -> Finding:
     """Tell whether poles that oscillate have these natural frequencies: all of them, or the lowest.
 
-    Parameters
-    ----------
-    hertz : tuple of float
-        Natural frequencies [Hz], ascending.
-    within : float
-        How far each may be off [Hz].
-    lowest : bool
-        There may be more beyond the last one.
+    ``hertz`` are ascending natural frequencies [Hz], each off by at most ``within`` [Hz]; with ``lowest``
+    there may be more beyond the last one.
     """
     lines, is_true = [], True
     for stem, function in functions(models, of):
@@ -51,13 +45,7 @@ def modes_at(
 
 
 def counts(models: Models, of: tuple[str, ...], *, zeros: int, poles: int) -> Finding:
-    """Tell whether rational functions have so many zeros and poles.
-
-    Parameters
-    ----------
-    zeros, poles : int
-        With multiplicity.
-    """
+    """Tell whether rational functions have so many zeros and poles."""
     found = [f for _, f in functions(models, of)]
     is_true = all(f.counts == (zeros, poles) for f in found)
     return judged(is_true, " ".join(f"{f.tf}: {_counts(f)}." for f in found))
@@ -74,12 +62,7 @@ def arrangement(
 ) -> Finding:
     """Tell whether the pole-zero array is made of so many pairs, zeros at 0, and other poles.
 
-    Parameters
-    ----------
-    pole_pairs, zero_pairs : int
-        Conjugate pairs that oscillate.
-    zeros_at_origin, other_poles : int
-        Zeros at s = 0, and poles that are of no pair.
+    Pairs are conjugate pairs that oscillate; ``other_poles`` are of no pair.
     """
     lines, is_true = [], True
     for _, function in functions(models, of):
@@ -107,14 +90,7 @@ def added_per_mode(
 ) -> Finding:
     """Tell whether each flexible mode adds so many zeros and poles to the model with rigid compliances.
 
-    Parameters
-    ----------
-    zeros, poles : int
-        By each mode.
-    zeros_are_real : bool
-        All zeros lie on the real axis.
-    needs_dampers : bool
-        It is otherwise without dampers, which is said as a condition.
+    With ``needs_dampers`` it is otherwise without dampers, which is said as a condition.
     """
     lines, is_true = [], True
     for stem, function in functions(models, of):
@@ -199,10 +175,7 @@ def same_poles(models: Models, of: tuple[str, ...]) -> Finding:
 def mirrored_real_zeros(models: Models, of: tuple[str, ...], *, count: int = 0) -> Finding:
     """Tell whether all zeros are real, each with its mirror image in the imaginary axis.
 
-    Parameters
-    ----------
-    count : int
-        How many zeros there are; 0 for any number.
+    A ``count`` of 0 stands for any number.
     """
     lines: list[Run] = []
     found = functions(models, of)
@@ -230,10 +203,7 @@ def minimum_phase(models: Models, of: tuple[str, ...]) -> Finding:
 def nonminimum_phase(models: Models, of: tuple[str, ...], *, for_these_values: bool = False) -> Finding:
     """Tell whether zeros lie in the right half plane.
 
-    Parameters
-    ----------
-    for_these_values : bool
-        What it is for other values of the parameters is left out.
+    With ``for_these_values``, what it is for other values of the parameters is left out.
     """
     lines: list[Run] = []
     found = functions(models, of)
@@ -275,13 +245,9 @@ def best_fit(
 ) -> Finding:
     """Tell whether of all models that measured data are compared with, these alone are close to them.
 
-    Parameters
-    ----------
-    decibels : float
-        Root mean square of the error in magnitude that counts as close; 0 where the publication gives no
-        measure, and the claim is not examined.
-    synthetic : str
-        What is said where the only data are synthetic.
+    ``decibels`` is the root mean square of the error in magnitude that counts as close; 0 where the
+    publication gives no measure, and the claim is not examined. ``synthetic`` is said where the only data are
+    synthetic.
     """
     told = [(stem, fact) for stem, facts in models.items() for fact in facts.data]
     measured = [(stem, fact) for stem, fact in told if not fact.is_synthetic]
@@ -366,10 +332,7 @@ PREDICATES: Final[Mapping[str, Predicate]] = {
 def functions(models: Models, of: tuple[str, ...]) -> list[tuple[str, TransferFacts]]:
     """Return the transfer functions named, with their models' names.
 
-    Raises
-    ------
-    KeyError
-        For one that the models do not have.
+    Raises KeyError for one that the models do not have.
     """
     found: list[tuple[str, TransferFacts]] = []
     for name in of:

@@ -55,13 +55,9 @@ def is_claims(path: Path) -> bool:
 def read_claims(path: Path) -> Publication:
     """Return what a file claims.
 
-    Raises
-    ------
-    UsageError
-        SF901 when the file cannot be read.
-    SpecError
-        With the place of every problem: SF1xx of the syntax, SF200 for another version, SF206 to SF208, SF213
-        and SF214 for what is wrong, unknown or missing.
+    Raises UsageError: SF901 when the file cannot be read; SpecError with the place of every problem: SF1xx
+    of the syntax, SF200 for another version, SF206 to SF208, SF213 and SF214 for what is wrong, unknown or
+    missing.
     """
     root = parse(read(path)).root
     reader = Reader()
