@@ -10,10 +10,11 @@ used: in balls and in doubles at any s, on the axes where there are no losses, o
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from fractions import Fraction
 from functools import cached_property
 from itertools import product
 from math import comb
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from flint import acb
 
@@ -31,6 +32,8 @@ MOST_EXPONENTIALS = 1500
 
 Gaussian = tuple[int, int]
 """An integer a + j b."""
+Part = TypeVar("Part", int, Fraction)
+"""Of complex numbers whose parts are rational."""
 Exponent = tuple[tuple[int, int, int], ...]
 """Positions of arguments, ascending, and what each is multiplied with: a + j b."""
 Monomial = tuple[tuple[int, int], ...]
@@ -46,14 +49,15 @@ REAL: Exponent = ()
 """The exponent 0."""
 
 
-def times(a: Gaussian, b: Gaussian) -> Gaussian:
-    """Return a product."""
+def times(a: tuple[Part, Part], b: tuple[Part, Part]) -> tuple[Part, Part]:
+    """Return a product of complex numbers."""
     return a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]
 
 
-def power(a: Gaussian, n: int) -> Gaussian:
+def power(a: tuple[Part, Part], n: int) -> tuple[Part, Part]:
     """Return a power that is not negative."""
-    found = (1, 0)
+    kind = type(a[0])
+    found = (kind(1), kind(0))
     for _ in range(n):
         found = times(found, a)
     return found
@@ -233,7 +237,7 @@ def exponential_sum(
             exponents[i] = 0
         rest = tuple(exponents)
         number = int(coefficient) << (degree - own)
-        pieces = [[(x, *piece) for piece in _expanded(powers)] for x, powers in by_argument.items()]
+        pieces = [[(x, *piece) for piece in expanded(powers)] for x, powers in by_argument.items()]
         for chosen in product(*pieces):
             factor = (number, 0)
             key = []
@@ -254,7 +258,7 @@ def exponential_sum(
     return ExponentialSum({exponent: own for exponent, own in found.items() if own}, degree)
 
 
-def _expanded(powers: Mapping[str, int]) -> Iterator[tuple[int, int, Gaussian]]:
+def expanded(powers: Mapping[str, int]) -> Iterator[tuple[int, int, Gaussian]]:
     """Yield a, b and the coefficient of every exponential in a product of kernels of one argument.
 
     The product is the sum of ``coefficient * exp((a + j b) x)``, over two to the power of its degree.

@@ -20,7 +20,13 @@ from symflex.algebra import LAPLACE, Factored, degree_in
 from symflex.algebra.normal_form import NormalForm
 from symflex.budget import spend
 from symflex.codegen.program.build import TERM_LIMIT
-from symflex.codegen.program.exponents import KernelSum, derivative_at_zero, expand, families_of
+from symflex.codegen.program.exponents import (
+    derivative_at_zero,
+    expand,
+    families_of,
+    in_lengths,
+    in_other_lengths,
+)
 from symflex.codegen.program.forge import Forge
 from symflex.codegen.program.local_basis import (
     SERIES_ERROR,
@@ -44,7 +50,7 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.algebra import Dispersion, Ring
-    from symflex.codegen.program.exponents import Key
+    from symflex.codegen.program.exponents import KernelSum, Key
     from symflex.codegen.program.site import Scales
     from symflex.transfer import TransferFunction
 
@@ -130,7 +136,7 @@ _Test = tuple[int, float, int]
 """Expression, limit and scale of a condition."""
 
 
-_Choice = tuple[tuple[bool, ...], tuple[bool, ...], tuple[int, ...], bool, tuple[int, ...]]
+_Choice = tuple[tuple[bool, ...], tuple[bool, ...], tuple["Dispersion", ...], bool, tuple["Dispersion", ...]]
 """What makes a piece: groups near zero, delays that grow, dispersions mirrored, meeting pairs, lone ones."""
 
 
@@ -165,9 +171,9 @@ class _Half:
     that.
     """
 
-    terms: Mapping[Key, fmpz_mpoly]
+    terms: KernelSum
     waves: Factored
-    far: Mapping[Key, fmpz_mpoly]
+    far: KernelSum
     unit: Fraction
 
 
@@ -211,16 +217,14 @@ class _PieceMaker:
             symmetric, remaining = self._symmetric(product_of_waves)
             waves[side] = remaining
             plain = plain * symmetric ** (-1 if side else 1)
-        sums = [expand(self.ring, k.expand(), self.families) for k in kernels]
-        sums = self._in_segments(sums)
+        found = [expand(self.ring, k.expand(), self.families) for k in kernels]
+        sums = self._in_segments([terms for terms, _ in found])
         halves = []
-        for side, (own, found) in enumerate(zip(waves, sums, strict=True)):
-            rest, content = found.without_content()
+        for side, (own, terms, (_, common)) in enumerate(zip(waves, sums, found, strict=True)):
             # A common factor without wavenumbers leaves the half; wavenumbers stay, to balance its own.
-            common = Factored.polynomial(self.ring, content) * rest.unit
             free = common.filter(lambda f: not self._holds(f, self.waves | self.kernels)) * common.unit
             plain = plain * free ** (-1 if side else 1)
-            halves.append(self._half(rest, own * (common / free)))
+            halves.append(self._half(terms, own * (common / free)))
         return plain, (halves[0], halves[1])
 
     def _symmetric(self, value: Factored) -> tuple[Factored, Factored]:
@@ -290,13 +294,13 @@ class _PieceMaker:
             changes.append(matrix)
             families[i] = replace(family, lengths=tuple(new))
         self.families = tuple(families)
-        return [s.in_lengths(changes) for s in sums]
+        return [in_lengths(s, changes) for s in sums]
 
-    def _half(self, found: KernelSum, waves: Factored) -> _Half:
-        doubled = {key: p * 2 ** self._still(key) for key, p in found.terms.items()}
+    def _half(self, terms: KernelSum, waves: Factored) -> _Half:
+        doubled = {key: p * 2 ** self._still(key) for key, p in terms.items()}
         common = gcd(*(int(c) for p in doubled.values() for c in p.coeffs()))
         far = {key: p / self.ring.constant(common) for key, p in doubled.items()}
-        return _Half(found.terms, waves, far, Fraction(common))
+        return _Half(terms, waves, far, Fraction(common))
 
     def _still(self, key: Key) -> int:
         """Return how many circular families do not oscillate in a product."""
@@ -306,10 +310,10 @@ class _PieceMaker:
         )
 
     def _groups(self) -> Iterator[_Group]:
-        found: dict[int, list[int]] = {}
+        found: dict[Dispersion, list[int]] = {}
         for i, family in enumerate(self.families):
             if family.wavenumber:
-                found.setdefault(id(family.dispersion), []).append(i)
+                found.setdefault(family.dispersion, []).append(i)
         for ids in found.values():
             family = self.families[ids[0]]
             for position, length in enumerate(family.lengths):
@@ -363,7 +367,7 @@ class _PieceMaker:
         tests, counts = self._sizes(site)
         first, one = len(tests), forge.constant(1)
         tests += [(site.exponent(self.families[i], 0), 0.0, one) for i in self.delays]
-        roots = [(id(d), parts) for d in self.table.dispersions if (parts := site.plain_parts(d)) is not None]
+        roots = [(d, parts) for d in self.table.dispersions if (parts := site.plain_parts(d)) is not None]
         third = len(tests)
         tests += [(s, 0.0, scale) for _, (scale, s) in roots]
         second = len(tests)
@@ -382,20 +386,18 @@ class _PieceMaker:
             bits = [bool(number >> i & 1) for i in range(len(tests))]
             near = self._near(bits, counts)
             grows = tuple(bits[first:third])
-            small = [id(g.dispersion) for g, n in zip(self.groups, near, strict=True) if n]
+            small = [g.dispersion for g, n in zip(self.groups, near, strict=True) if n]
             mirrored = tuple(
                 d
                 for (d, _), b in zip(roots, bits[third:second], strict=True)
-                if b and small.count(d) < sum(id(g.dispersion) == d for g in self.groups)
+                if b and small.count(d) < sum(g.dispersion is d for g in self.groups)
             )
-            far = {id(self.groups[i].dispersion) for i in pairs if not near[i]}
+            far = {self.groups[i].dispersion for i in pairs if not near[i]}
             lone = tuple(
-                id(d)
-                for d, b in zip(laws, bits[fourth:fifth], strict=True)
-                if b and id(d) in far and not all(near)
+                d for d, b in zip(laws, bits[fourth:fifth], strict=True) if b and d in far and not all(near)
             )
             meets = any(
-                bits[second + j] and not near[i] and id(self.groups[i].dispersion) not in lone
+                bits[second + j] and not near[i] and self.groups[i].dispersion not in lone
                 for j, i in enumerate(pairs)
             )
             key = (near, grows, mirrored, meets, lone)
@@ -434,9 +436,9 @@ class _PieceMaker:
         self,
         near: tuple[bool, ...],
         grows: tuple[bool, ...] = (),
-        mirrored: tuple[int, ...] = (),
+        mirrored: tuple[Dispersion, ...] = (),
         meets: bool = False,
-        lone: tuple[int, ...] = (),
+        lone: tuple[Dispersion, ...] = (),
         *,
         is_complex: bool = False,
     ) -> CodePiece:
@@ -452,7 +454,7 @@ class _PieceMaker:
         )
         groups: list[_Group | _Lone] = [g for g, n in zip(self.groups, near, strict=True) if n]
         for group, is_near in zip(self.groups, near, strict=True):
-            if not is_near and id(group.dispersion) in lone and (own := self._lone(group)) is not None:
+            if not is_near and group.dispersion in lone and (own := self._lone(group)) is not None:
                 groups.append(own)
         scales = self._scales(groups, site.grows)
         values, gain = [], self.plain
@@ -533,7 +535,7 @@ class _PieceMaker:
             spend()
             if len(near) == 1 and self._is_negligible(orders[0], found):
                 break
-            terms: dict[Key, fmpz_mpoly] = dict(half.terms)
+            terms = half.terms
             for group, order in zip(near, orders, strict=True):
                 terms = self._derivative(terms, group, order)
             lone = [g.dispersion for g in near if isinstance(g, _Lone)]
@@ -553,12 +555,10 @@ class _PieceMaker:
         largest = max(taylor_term(self.reach, m) for m in range(lower[0], order))
         return taylor_term(self.reach, order) < SERIES_ERROR + largest
 
-    def _derivative(
-        self, terms: Mapping[Key, fmpz_mpoly], group: _Group | _Lone, order: int
-    ) -> dict[Key, fmpz_mpoly]:
+    def _derivative(self, terms: KernelSum, group: _Group | _Lone, order: int) -> KernelSum:
         """Return the derivative of a sum with respect to a length at zero."""
         gens = [self.ring.generator(self.families[i].wavenumber) for i in group.families]
-        found: dict[Key, fmpz_mpoly] = {}
+        found: KernelSum = {}
         for key, polynomial in terms.items():
             if len(gens) == 1:
                 (i,) = group.families
@@ -659,7 +659,7 @@ class _PieceMaker:
                 if any(near) and not all(near):
                     code.append(self._piece(near, is_complex=True))
                 else:
-                    signs = dict(zip(map(id, signed), negative, strict=True))
+                    signs = dict(zip(signed, negative, strict=True))
                     made = self._real_piece(axis.where(signs), first_turn, is_near=all(near))
                     if made is None:
                         return None
@@ -748,7 +748,7 @@ def _longer_and_shorter(
     """
     count = range(len(values))
     for i in families:
-        terms = [[_in_lengths(key[i][0], matrix) for key in s.terms] for s in sums]
+        terms = [[in_other_lengths(key[i][0], matrix) for key in s] for s in sums]
         highest = [max(a[k] + abs(b[k]) for side in terms for a, b in side) for k in count]
         largest = max(
             ([x + sign * y for x, y in zip(a, b, strict=True)] for a, b in terms[1] for sign in (1, -1)),
@@ -762,17 +762,8 @@ def _longer_and_shorter(
     return None
 
 
-def _in_lengths(
-    pairs: Sequence[tuple[int, int]], matrix: Sequence[Sequence[int]]
-) -> tuple[list[int], list[int]]:
-    """Return what a term's ``a`` and ``b`` are in other lengths."""
-    a, b = zip(*pairs, strict=True)
-    columns = list(zip(*matrix, strict=True))
-    return [sum(map(mul, a, column)) for column in columns], [sum(map(mul, b, column)) for column in columns]
-
-
 def _has_corner(sums: Sequence[KernelSum], i: int) -> bool:
     """Tell whether one term of the denominator has the largest exponents of a family at every length."""
-    pairs = [key[i][0] for s in sums for key in s.terms]
+    pairs = [key[i][0] for s in sums for key in s]
     most = tuple(max(abs(p[j][0]) + abs(p[j][1]) for p in pairs) for j in range(len(pairs[0])))
-    return any(tuple(a for a, _ in key[i][0]) == most for key in sums[1].terms)
+    return any(tuple(a for a, _ in key[i][0]) == most for key in sums[1])

@@ -1,26 +1,30 @@
-"""Polynomials in kernels as sums of exponentials, in exact arithmetic.
+"""Polynomials in kernels as programs compute them: sums of real exponentials times cosines and sines.
+
+    2 cosh(q) sin(q)  =  e^q sin(q) + e^(-q) sin(q)
 
 Input: a polynomial over the ring of kernels.
-Output: a :class:`KernelSum`: per product of functions ``exp(sum(a_i q_i)) cos(sum(b_i q_i))``, one for
-every wavenumber, a polynomial in s, the parameters and the wavenumbers.
+Output: per product of terms ``exp(sum(a_i q_i)) cos(sum(b_i q_i))``, or the sine, one for every wavenumber, a
+polynomial in s, the parameters and the wavenumbers. Powers of kernels are multiplied out as for every
+:class:`symflex.algebra.exponential_sum.ExponentialSum`; conjugate exponentials are one term here.
 """
 
 from __future__ import annotations
 
-from collections import defaultdict
-from dataclasses import dataclass, replace
-from fractions import Fraction
-from functools import cache
+from dataclasses import dataclass
+from functools import cache, reduce
+from itertools import product
+from operator import mul
 from typing import TYPE_CHECKING
 
-from symflex.algebra.exponential_sum import spread
+from symflex.algebra import Factored
+from symflex.algebra.exponential_sum import expanded, times
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from flint import fmpz_mpoly
 
-    from symflex.algebra import Dispersion, Factored, Kernel, KernelTable, Ring
+    from symflex.algebra import Dispersion, KernelTable, Ring
 
 Term = tuple[tuple[tuple[int, int], ...], int]
 """Pairs ``(a_i, b_i)``, one per length, and 0 for the cosine or 1 for the sine; the first b that is not zero
@@ -29,8 +33,11 @@ is positive."""
 Key = tuple[Term, ...]
 """One term per family."""
 
-Single = tuple[int, int, int]
-"""``(a, b, parity)`` of one length; b is not negative."""
+KernelSum = dict[Key, "fmpz_mpoly"]
+"""Products of terms with their coefficients, which are free of the kernels that have families."""
+
+Powers = tuple[tuple[str, int], ...]
+"""Functions of one argument, and exponents."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,70 +59,83 @@ class Family:
 
 def families_of(ring: Ring, table: KernelTable) -> tuple[Family, ...]:
     """Return the families of a table; fundamental functions have none."""
-    found: dict[tuple[str, int], dict[int, list[tuple[str, int]]]] = {}
-    firsts: dict[tuple[str, int], Kernel] = {}
-    lengths: dict[int, Factored] = {}
+    found: dict[tuple[str, Dispersion], dict[Factored, list[tuple[str, int]]]] = {}
     for kernel in table.kernels:
-        if kernel.function == "fundamental":
-            continue
-        key = (kernel.wavenumber, id(kernel.dispersion))
-        firsts.setdefault(key, kernel)
-        lengths[id(kernel.length)] = kernel.length
-        own = found.setdefault(key, {}).setdefault(id(kernel.length), [])
-        own.append((kernel.function, ring.index[kernel.generator]))
+        if kernel.function != "fundamental":
+            family = found.setdefault((kernel.wavenumber, kernel.dispersion), {})
+            family.setdefault(kernel.length, []).append((kernel.function, ring.index[kernel.generator]))
     return tuple(
-        Family(
-            firsts[key].dispersion,
-            firsts[key].wavenumber,
-            tuple(lengths[i] for i in own),
-            tuple(tuple(functions) for functions in own.values()),
-        )
-        for key, own in found.items()
+        Family(dispersion, wavenumber, tuple(own), tuple(map(tuple, own.values())))
+        for (wavenumber, dispersion), own in found.items()
     )
 
 
-@dataclass(frozen=True, eq=False)
-class KernelSum:
-    """``unit * sum(coefficient * product of terms)``."""
+def expand(ring: Ring, polynomial: fmpz_mpoly, families: Sequence[Family]) -> tuple[KernelSum, Factored]:
+    """Return a polynomial in kernels as a sum whose coefficients share no factor, and that factor."""
+    halved = {i for family in families for own in family.kernels for f, i in own if f != "exp"}
+    positions = halved | {i for family in families for own in family.kernels for _, i in own}
+    degree = max(sum(int(m[i]) for i in halved) for m in polynomial.monoms())
+    collected: dict[Key, dict[tuple[int, ...], int]] = {}
+    for monomial, coefficient in polynomial.terms():
+        exponents = [int(e) for e in monomial]
+        rest = tuple(0 if i in positions else e for i, e in enumerate(exponents))
+        number = int(coefficient) << (degree - sum(exponents[i] for i in halved))
+        for chosen in product(
+            *(_terms(tuple(tuple((f, exponents[i]) for f, i in own) for own in x.kernels)) for x in families)
+        ):
+            terms = collected.setdefault(tuple(t for t, _ in chosen), {})
+            terms[rest] = terms.get(rest, 0) + reduce(mul, (n for _, n in chosen), number)
+    whole = ((key, {m: x for m, x in terms.items() if x}) for key, terms in collected.items())
+    found = {key: ring.context.from_dict(terms) for key, terms in whole if terms}
+    common = reduce(lambda x, y: x.gcd(y), found.values())
+    if int(common.leading_coefficient()) < 0:
+        common = -common
+    return {k: p / common for k, p in found.items()}, Factored.polynomial(ring, common) / 2**degree
 
-    unit: Fraction  # in front
-    terms: Mapping[Key, fmpz_mpoly]  # coefficients are free of the kernels that have families
 
-    def without_content(self) -> tuple[KernelSum, fmpz_mpoly]:
-        """Return the sum with the common factor of all coefficients taken out, and that factor."""
-        polynomials = list(self.terms.values())
-        common = polynomials[0]
-        for polynomial in polynomials[1:]:
-            common = common.gcd(polynomial)
-        if int(common.leading_coefficient()) < 0:
-            common = -common
-        return replace(self, terms={k: p / common for k, p in self.terms.items()}), common
+@cache
+def _terms(powers: tuple[Powers, ...]) -> tuple[tuple[Term, int], ...]:
+    """Return a product of powers of the kernels of one wavenumber, for all lengths together.
 
-    def in_lengths(self, changes: Sequence[Sequence[Sequence[int]]]) -> KernelSum:
-        """Return the sum in other base lengths.
+    The numbers are over two to the power of the degree.
+    """
+    found = []
+    # The greatest angles first, each before its opposite.
+    pieces = (sorted(expanded(dict(own)), key=lambda x: (-x[0], -abs(x[1]), -x[1])) for own in powers)
+    for chosen in product(*pieces):
+        first = next((b for _, b, _ in chosen if b), 0)
+        if first >= 0:
+            # z e^jR and its conjugate make 2 Re z cos R - 2 Im z sin R; z is real or imaginary.
+            re, im = reduce(times, (weight for _, _, weight in chosen))
+            # A delay's kernel falls with its exponent.
+            pairs = tuple(
+                (-a if own[0][0] == "exp" else a, b) for (a, b, _), own in zip(chosen, powers, strict=True)
+            )
+            found.append(((pairs, int(im != 0)), (re - im) * (2 if first else 1)))
+    return tuple(found)
 
-        Parameters
-        ----------
-        changes : sequence of matrices of int
-            Per family and old length, its multiples of the new ones.
-        """
-        terms = {}
-        for key, polynomial in self.terms.items():
-            moved = []
-            for (pairs, parity), matrix in zip(key, changes, strict=True):
-                count = len(matrix[0])
-                new = tuple(
-                    (
-                        sum(a * row[k] for (a, _), row in zip(pairs, matrix, strict=True)),
-                        sum(b * row[k] for (_, b), row in zip(pairs, matrix, strict=True)),
-                    )
-                    for k in range(count)
-                )
-                term, sign = canonical(new, parity)
-                polynomial = polynomial * sign  # noqa: PLW2901
-                moved.append(term)
-            terms[tuple(moved)] = polynomial
-        return replace(self, terms=terms)
+
+def in_lengths(terms: KernelSum, changes: Sequence[Sequence[Sequence[int]]]) -> KernelSum:
+    """Return a sum in other base lengths: per family and old length, its multiples of the new ones."""
+    moved: KernelSum = {}
+    for key, polynomial in terms.items():
+        sign, images = 1, []
+        for (pairs, parity), matrix in zip(key, changes, strict=True):
+            a, b = in_other_lengths(pairs, matrix)
+            image, own = canonical(tuple(zip(a, b, strict=True)), parity)
+            images.append(image)
+            sign *= own
+        moved[tuple(images)] = polynomial * sign
+    return moved
+
+
+def in_other_lengths(
+    pairs: Sequence[tuple[int, int]], matrix: Sequence[Sequence[int]]
+) -> tuple[list[int], list[int]]:
+    """Return what a term's ``a`` and ``b`` are in other lengths."""
+    a, b = zip(*pairs, strict=True)
+    columns = list(zip(*matrix, strict=True))
+    return [sum(map(mul, a, column)) for column in columns], [sum(map(mul, b, column)) for column in columns]
 
 
 def canonical(pairs: tuple[tuple[int, int], ...], parity: int) -> tuple[Term, int]:
@@ -126,89 +146,6 @@ def canonical(pairs: tuple[tuple[int, int], ...], parity: int) -> tuple[Term, in
     if first > 0:
         return (pairs, parity), 1
     return (tuple((a, -b) for a, b in pairs), parity), -1 if parity else 1
-
-
-def expand(ring: Ring, polynomial: fmpz_mpoly, families: Sequence[Family]) -> KernelSum:
-    """Return a polynomial in kernels as a sum of exponentials."""
-    positions = {i for family in families for own in family.kernels for _, i in own}
-    collected: dict[Key, dict[tuple[int, ...], Fraction]] = {}
-    for monomial, coefficient in polynomial.terms():
-        exponents = [int(e) for e in monomial]
-        rest = tuple(0 if i in positions else e for i, e in enumerate(exponents))
-        products: dict[Key, Fraction] = {(): Fraction(int(coefficient))}
-        for family in families:
-            powers = tuple(
-                tuple(
-                    {f: exponents[i] for f, i in own}.get(f, 0) for f in ("cosh", "sinh", "cos", "sin", "exp")
-                )
-                for own in family.kernels
-            )
-            products = {(*key, t): x * y for key, x in products.items() for t, y in _joint(powers)}
-        for key, x in products.items():
-            terms = collected.setdefault(key, {})
-            terms[rest] = terms.get(rest, Fraction(0)) + x
-    # All denominators are powers of two.
-    scale = max((x.denominator for terms in collected.values() for x in terms.values()), default=1)
-    found = {}
-    for key, terms in collected.items():
-        whole = {m: int(x * scale) for m, x in terms.items() if x}
-        if whole:
-            found[key] = ring.context.from_dict(whole)
-    return KernelSum(Fraction(1, scale), found)
-
-
-@cache
-def _joint(powers: tuple[tuple[int, int, int, int, int], ...]) -> tuple[tuple[Term, Fraction], ...]:
-    """Return a product of powers of the kernels of one wavenumber, for all lengths together."""
-    found: dict[Term, Fraction] = {((), 0): Fraction(1)}
-    for own in powers:
-        longer: dict[Term, Fraction] = defaultdict(Fraction)
-        for (pairs, parity), x in found.items():
-            for (a, b, other), y in _product(*own):
-                # Products of cosines and sines as sums of those of the sum and the difference.
-                for sign in (1, -1) if b and any(c for _, c in pairs) else (1,):
-                    term, number = _combined(pairs, parity, (a, b, other), sign)
-                    if number:
-                        longer[term] += x * y * number
-        found = longer
-    return tuple((t, x) for t, x in found.items() if x)
-
-
-def _combined(
-    pairs: tuple[tuple[int, int], ...], parity: int, single: Single, sign: int
-) -> tuple[Term, Fraction]:
-    a, b, other = single
-    is_single = b == 0 or not any(c for _, c in pairs)
-    if is_single:
-        term, number = canonical((*pairs, (a, b)), max(parity, other))
-        return term, Fraction(number)
-    term, number = canonical((*pairs, (a, sign * b)), parity ^ other)
-    half = Fraction(number, 2)
-    if parity and other:
-        # sin A sin B = (cos(A - B) - cos(A + B))/2
-        return term, -half * sign
-    if other:
-        # cos A sin B = (sin(A + B) - sin(A - B))/2
-        return term, half * sign
-    return term, half
-
-
-@cache
-def _product(cosh: int, sinh: int, cos: int, sin: int, exp: int) -> tuple[tuple[Single, Fraction], ...]:
-    """Return a product of powers of the kernels of one length; ``exp`` is exp(-q)."""
-    half = Fraction(1, 2)
-    hyperbolic = {a - exp: x * half ** (cosh + sinh) for a, x in spread(cosh, sinh).items()}
-    # exp(j b q) with Gaussian coefficients; 1/j^sin is taken out.
-    circular = {b: y * half ** (cos + sin) for b, y in spread(cos, sin).items()}
-    sign = -1 if sin % 4 in (2, 3) else 1
-    waves: dict[tuple[int, int], Fraction] = {}
-    for b, weight in circular.items():
-        if b >= 0 and weight:
-            # Odd powers of sin leave odd sums: 1/j times (e^jbq - e^-jbq) is 2 sin.
-            waves[b, sin % 2] = weight * sign * (1 if b == 0 else 2)
-    return tuple(
-        ((a, b, parity), x * y) for a, x in hyperbolic.items() if x for (b, parity), y in waves.items() if y
-    )
 
 
 def derivative_at_zero(term: Term, position: int, order: int) -> tuple[tuple[Term, int], ...]:

@@ -117,18 +117,18 @@ class _ModalWorkshop:
                     self.plain = self.plain * (piece**-1 if at else piece)
 
     @cached_property
-    def longest(self) -> Mapping[int, Factored]:
-        """The longest length of every dispersion with fundamental functions, by identity."""
-        found: dict[int, list[Factored]] = {}
+    def longest(self) -> Mapping[Dispersion, Factored]:
+        """The longest length of every dispersion with fundamental functions."""
+        found: dict[Dispersion, list[Factored]] = {}
         for mode in self.sums.modes:
             if not mode.is_decay:
-                found.setdefault(id(mode.dispersion), []).append(mode.length)
+                found.setdefault(mode.dispersion, []).append(mode.length)
         size = partial(declared_length, self.tf)
         return {law: max(lengths, key=lambda x: abs(size(x))) for law, lengths in found.items()}
 
     @property
     def _laws(self) -> list[Dispersion]:
-        return [d for d in self.table.dispersions if id(d) in self.longest]
+        return [d for d in self.table.dispersions if d in self.longest]
 
     def program(self) -> Piecewise:
         """Return the program."""
@@ -165,7 +165,7 @@ class _ModalWorkshop:
 
     def _roots(self, site: Site, law: Dispersion) -> int:
         """Return the roots of a dispersion times its longest length."""
-        forge, x = site.forge, site.length(self.longest[id(law)])
+        forge, x = site.forge, site.length(self.longest[law])
         n = law.order
         return forge.roots(
             [forge.multiply([forge.power(x, n - i), site.coefficient(law, i)]) for i in range(n)]
@@ -176,7 +176,7 @@ class _ModalWorkshop:
         if mode.is_decay:
             shift = forge.multiply([site.length(mode.length), site.value(mode.dispersion.shift)])
             return forge.mode_values(forge.roots([shift]), forge.constant(1))
-        ratio = site.value(mode.length / self.longest[id(mode.dispersion)])
+        ratio = site.value(mode.length / self.longest[mode.dispersion])
         return forge.mode_values(self._roots(site, mode.dispersion), ratio)
 
     def _modal(self, *, is_mean: bool) -> CodePiece:
@@ -215,7 +215,7 @@ class _ModalWorkshop:
         forge = site.forge
         found: list[int] = []
         for law in self._laws:
-            x = site.length(self.longest[id(law)])
+            x = site.length(self.longest[law])
             static, moving = [forge.constant(1)], []
             for i, c in enumerate(law.characteristic):
                 if c.is_zero:
@@ -256,7 +256,7 @@ class _ModalWorkshop:
             for orders, i in frame.terms:
                 # The roots are scaled: h^(k) is L^(n - 1 - k) times what they give.
                 powers[i] = [
-                    forge.power(site.length(self.longest[id(mode.dispersion)]), mode.roots - 1 - order)
+                    forge.power(site.length(self.longest[mode.dispersion]), mode.roots - 1 - order)
                     for mode, order in zip((self.sums.modes[m] for m in frame.slots), orders, strict=True)
                     if not mode.is_decay
                 ]
@@ -307,17 +307,16 @@ class _ModalWorkshop:
         Where ``sum(abs(c_i) r^i) < r^n``, every root of ``x^n + ... + c_0`` is less than r in size.
         """
         forge = site.forge
-        reaches: dict[tuple[int, bool], list[int]] = {}
-        laws: dict[tuple[int, bool], Dispersion] = {}
+        reaches: dict[tuple[Dispersion, bool], list[int]] = {}
         for mode, degree in zip(self.sums.modes, self._degrees(), strict=True):
             if degree:
-                key = (id(mode.dispersion), mode.is_decay)
-                laws[key] = mode.dispersion
                 part = [forge.constant(degree / Fraction(self.reach)), site.length(mode.length)]
-                reaches.setdefault(key, []).append(forge.apply("abs", forge.multiply(part)))
+                reaches.setdefault((mode.dispersion, mode.is_decay), []).append(
+                    forge.apply("abs", forge.multiply(part))
+                )
         parts: list[int] = []
-        for (law, is_decay), own in reaches.items():
-            dispersion, scale = laws[law, is_decay], forge.add(own)
+        for (dispersion, is_decay), own in reaches.items():
+            scale = forge.add(own)
             if is_decay:
                 parts.append(forge.apply("abs", forge.multiply([scale, site.value(dispersion.shift)])))
                 continue

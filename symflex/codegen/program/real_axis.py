@@ -12,6 +12,7 @@ from math import gcd, lcm
 from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored
+from symflex.algebra.exponential_sum import power, times
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -19,9 +20,11 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.algebra import Dispersion, KernelTable, Ring
-    from symflex.codegen.program.exponents import Family, Key, Term
+    from symflex.codegen.program.exponents import Family, KernelSum, Term
 
 Gaussian = tuple[Fraction, Fraction]
+ONE: Gaussian = (Fraction(1), Fraction(0))
+TURN: Gaussian = (Fraction(0), Fraction(1))
 
 RealTerm = tuple[tuple[tuple[Fraction, Fraction], ...], int]
 """As :data:`symflex.codegen.program.exponents.Term`, with the magnitudes of wavenumbers times lengths."""
@@ -46,8 +49,8 @@ class RealAxis:
     ring: Ring  # with wavenumbers and kernels
     table: KernelTable  # over the same ring
     positive: tuple[str, ...]  # parameters known to be positive
-    # By identity of a dispersion, whether its ``c_0`` is taken to be negative.
-    signs: Mapping[int, bool] = field(default_factory=dict)
+    # Of a dispersion, whether its ``c_0`` is taken to be negative.
+    signs: Mapping[Dispersion, bool] = field(default_factory=dict)
 
     @property
     def is_real(self) -> bool:
@@ -60,14 +63,14 @@ class RealAxis:
                 return False
         return True
 
-    def where(self, signs: Mapping[int, bool]) -> RealAxis:
+    def where(self, signs: Mapping[Dispersion, bool]) -> RealAxis:
         """Return the same for given signs of ``c_0``."""
         return replace(self, signs=signs)
 
     def sign(self, dispersion: Dispersion) -> bool | None:
         """Return whether ``c_0`` is negative, ``None`` when it depends on values."""
-        if id(dispersion) in self.signs:
-            return self.signs[id(dispersion)]
+        if dispersion in self.signs:
+            return self.signs[dispersion]
         value = self.coefficient(dispersion)
         known = {self.ring.index[n] for n in (*self.positive, "pi")} | {0}
         for factor, _ in value.factors:
@@ -102,40 +105,32 @@ class RealAxis:
             turn += lowest * exponent
         return result, turn % 4
 
-    def real_sum(
-        self, terms: Mapping[Key, fmpz_mpoly], waves: Factored, families: Sequence[Family]
-    ) -> RealSum | None:
-        """Return a sum of exponentials in real terms; ``None`` when it is not real up to a power of j.
+    def real_sum(self, terms: KernelSum, waves: Factored, families: Sequence[Family]) -> RealSum | None:
+        """Return a sum, times a product of powers of wavenumbers, in real terms.
 
-        Parameters
-        ----------
-        terms : mapping of Key to fmpz_mpoly
-            As in :class:`KernelSum`.
-        waves : Factored
-            A product of powers of wavenumbers in front.
-        families : sequence of Family
-            What the keys refer to.
+        ``None`` when it is not real up to a power of j.
         """
         powers = {}
         for factor, exponent in waves.factors:
             if len(factor) > 1:
                 return None
             powers[str(factor)] = exponent
-        by_name = {d.wavenumbers[0]: d for d in self.table.dispersions}
         places = [
-            (self.ring.index[n], d, powers.get(str(self.ring.generator(n)), 0)) for n, d in by_name.items()
+            (self.ring.index[n], self._direction(d), powers.get(str(self.ring.generator(n)), 0))
+            for d in self.table.dispersions
+            for n in d.wavenumbers[:1]
         ]
         collected: dict[RealKey, dict[tuple[int, ...], Gaussian]] = {}
         for key, polynomial in terms.items():
             images = [self._image(t, f.dispersion) for t, f in zip(key, families, strict=True)]
             for monomial, coefficient in polynomial.terms():
                 exponents = tuple(int(e) for e in monomial)
-                number = _times((Fraction(int(coefficient)), Fraction(0)), _turned(exponents[0]))
-                for i, dispersion, extra in places:
-                    number = _times(number, _power(self._direction(dispersion), exponents[i] + extra))
+                number = times((Fraction(int(coefficient)), Fraction(0)), power(TURN, exponents[0] % 4))
+                for i, direction, extra in places:
+                    number = times(number, _power(direction, exponents[i] + extra))
                 products: list[tuple[RealKey, Gaussian]] = [((), number)]
                 for image in images:
-                    products = [((*k, t), _times(x, y)) for k, x in products for t, y in image]
+                    products = [((*k, t), times(x, y)) for k, x in products for t, y in image]
                 for k, x in products:
                     own = collected.setdefault(k, {})
                     have = own.get(exponents, (Fraction(0), Fraction(0)))
@@ -162,24 +157,23 @@ class RealAxis:
     def _direction(self, dispersion: Dispersion) -> Gaussian:
         """Return the wavenumber over its real magnitude."""
         if dispersion.kind == "bending":
-            return (Fraction(1, 2), Fraction(1, 2)) if self.sign(dispersion) else (Fraction(1), Fraction(0))
-        return (Fraction(1), Fraction(0)) if self.sign(dispersion) else (Fraction(0), Fraction(1))
+            return (Fraction(1, 2), Fraction(1, 2)) if self.sign(dispersion) else ONE
+        return ONE if self.sign(dispersion) else TURN
 
     def _image(self, term: Term, dispersion: Dispersion) -> list[tuple[RealTerm, Gaussian]]:
         """Return a term in functions of the real magnitude."""
         pairs = tuple((Fraction(a), Fraction(b)) for a, b in term[0])
-        parity, one = term[1], (Fraction(1), Fraction(0))
-        negative = self.sign(dispersion)
-        if dispersion.kind == "wave" and not negative:
-            return _oscillation(tuple((Fraction(0), a) for a, _ in pairs), one)
-        if dispersion.kind == "wave" or not negative:
-            return [((pairs, parity), one)]
-        # exp((a + j b)(1 + j) x/2) and exp((a - j b)(1 + j) x/2)
-        up = tuple(((a - b) / 2, (a + b) / 2) for a, b in pairs)
-        down = tuple(((a + b) / 2, (a - b) / 2) for a, b in pairs)
-        half = (Fraction(1, 2), Fraction(0)) if parity == 0 else (Fraction(0), Fraction(-1, 2))
-        other = half if parity == 0 else (Fraction(0), Fraction(1, 2))
-        return [*_oscillation(up, half), *_oscillation(down, other)]
+        direction = self._direction(dispersion)
+        if direction == ONE:
+            return [((pairs, term[1]), ONE)]
+        # A cosine is half the sum of conjugate exponentials, a sine -j/2 times their difference.
+        half = times((Fraction(1, 2), Fraction(0)), _power(TURN, -term[1]))
+        parts = [(1, half), (-1, _conjugate(half))] if any(b for _, b in pairs) else [(1, ONE)]
+        return [
+            item
+            for sign, number in parts
+            for item in _oscillation(tuple(times((a, sign * b), direction) for a, b in pairs), number)
+        ]
 
 
 def _oscillation(
@@ -191,21 +185,13 @@ def _oscillation(
         return [((pairs, 0), number)]
     sign = 1 if first > 0 else -1
     same = tuple((a, sign * b) for a, b in pairs)
-    return [((same, 0), number), ((same, 1), _times(number, (Fraction(0), Fraction(sign))))]
+    return [((same, 0), number), ((same, 1), times(number, (Fraction(0), Fraction(sign))))]
 
 
-def _times(left: Gaussian, right: Gaussian) -> Gaussian:
-    return left[0] * right[0] - left[1] * right[1], left[0] * right[1] + left[1] * right[0]
+def _conjugate(value: Gaussian) -> Gaussian:
+    return value[0], -value[1]
 
 
 def _power(base: Gaussian, exponent: int) -> Gaussian:
     size = base[0] ** 2 + base[1] ** 2
-    step = base if exponent >= 0 else (base[0] / size, -base[1] / size)
-    result = (Fraction(1), Fraction(0))
-    for _ in range(abs(exponent)):
-        result = _times(result, step)
-    return result
-
-
-def _turned(power: int) -> Gaussian:
-    return _power((Fraction(0), Fraction(1)), power % 4)
+    return power(base if exponent >= 0 else (base[0] / size, -base[1] / size), abs(exponent))

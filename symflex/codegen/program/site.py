@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.algebra import Dispersion, Factored, Kernel
-    from symflex.codegen.program.exponents import Family, Key, Term
+    from symflex.codegen.program.exponents import Family, KernelSum, Key, Term
     from symflex.codegen.program.forge import Forge
     from symflex.codegen.program.local_basis import LocalBasis
     from symflex.codegen.program.real_axis import RealAxis, RealKey, RealSum, RealTerm
@@ -44,8 +44,8 @@ class Site:
     grows: Mapping[int, bool] = field(default_factory=dict)
     # Per family and length, the pairs ``(a, b)`` that occur.
     exponents: Mapping[tuple[int, int], Sequence[tuple[int, int]]] = field(default_factory=dict)
-    # Identities of dispersions whose wavenumbers are even in s and here computed from ``-s``.
-    mirrored: Sequence[int] = ()
+    # Dispersions whose wavenumbers are even in s and here computed from ``-s``.
+    mirrored: Sequence[Dispersion] = ()
     # True when ``mirrored`` tells the sign of roots of squares; otherwise these are computed as such.
     is_signed: bool = True
     # Given for real arithmetic: the leaf of s is then the angular frequency, wavenumbers are magnitudes.
@@ -98,7 +98,7 @@ class Site:
         c0 = self.coefficient(law)
         negative = self.axis.sign(law) if self.axis is not None else None
         if (root := self.plain_root(law)) is not None:
-            if self.axis is None and id(law) in self.mirrored:
+            if self.axis is None and law in self.mirrored:
                 root = forge.negate(root)
             return (
                 self._labelled(root, "gamma")
@@ -236,21 +236,7 @@ class Site:
     # ------------------------------------------------------------------------------------ local solutions
 
     def local(self, basis: LocalBasis, dispersion: Dispersion, length: Factored, k: int, size: float) -> int:
-        """Return solution k of an equation in a length; see :class:`LocalBasis`.
-
-        Parameters
-        ----------
-        basis : LocalBasis
-            The equation.
-        dispersion : Dispersion
-            Whose wavenumbers it is made of.
-        length : Factored
-            Where it is evaluated.
-        k : int
-            Number of the solution.
-        size : float
-            Largest exponent.
-        """
+        """Return solution k of an equation at a length, for exponents up to a size."""
         forge, x = self.forge, self.length(length)
         if basis.step > 1:
             argument = self._argument(dispersion, length)
@@ -270,13 +256,7 @@ class Site:
     def local_of_smaller(
         self, basis: LocalBasis, dispersion: Dispersion, length: Factored, k: int, size: float
     ) -> int:
-        """Return solution k of an equation in a length, of the smaller wavenumber of a pair alone.
-
-        Parameters
-        ----------
-        basis, dispersion, length, k, size
-            As for :meth:`local`; the basis is that of a wave.
-        """
+        """Return what :meth:`local` does for the smaller wavenumber of a pair, on the basis of a wave."""
         forge, x = self.forge, self.length(length)
         wavenumber = self._generators.generator(dispersion.wavenumbers[1])
         argument = forge.multiply([forge.power(x, 2), wavenumber, wavenumber])
@@ -293,16 +273,8 @@ class Site:
 
     # ---------------------------------------------------------------------------------- sums of exponentials
 
-    def exponential_sum(self, terms: Mapping[Key, fmpz_mpoly], scales: Scales) -> int:
-        """Return a sum over the largest exponential.
-
-        Parameters
-        ----------
-        terms : mapping of Key to fmpz_mpoly
-            As in :class:`KernelSum`, but for half of every circular term that oscillates.
-        scales : mapping of (int, int) to int
-            What is divided out.
-        """
+    def exponential_sum(self, terms: KernelSum, scales: Scales) -> int:
+        """Return a sum over its largest exponential; of circular terms that oscillate, half is given."""
         return self.sum_of_leaves({key: self.polynomial(p) for key, p in terms.items()}, scales)
 
     def sum_of_leaves(self, leaves: Mapping[Key, int], scales: Scales) -> int:
