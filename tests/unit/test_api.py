@@ -17,7 +17,7 @@ from symflex.errors import BudgetError, UsageError
 from symflex.print.forms.usage import RATIONAL
 from symflex.roots import Budget
 from symflex.roots.counting import winding
-from tests.unit.roots.distributed import DELAY_LOOP, ROD, SLIDING_FREE
+from tests.unit.roots.distributed_models import DELAY_LOOP, ROD, SLIDING_FREE
 
 TABLES = {
     "parameters": {

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.unit.roots.distributed import SLIDING_FREE
+from tests.unit.roots.distributed_models import SLIDING_FREE
 
 ROOT_KEYS = {
     "re", "im", "radius", "multiplicity", "frequency_hz", "damping_ratio", "on_imaginary_axis", "is_real",

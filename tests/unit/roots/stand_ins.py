@@ -10,7 +10,7 @@ from symflex.roots import Mode, Position
 from symflex.roots.distributed.side import Side
 from symflex.roots.engines import LOSSLESS
 from symflex.roots.root import Root
-from tests.unit.roots.distributed import ROD, bound
+from tests.unit.roots.distributed_models import ROD, bound
 
 UNLIMITED = Budget()
 OVER = BudgetError(Diagnostic("SF506", "the time given is over"))

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from symflex.roots import Root, find_polynomial_roots, precision
 from symflex.roots.root import exact_fraction
-from tests.unit.roots.polynomials import problem, problem_of
+from tests.unit.roots.root_problems import problem, problem_of
 
 
 def box(re, im):

@@ -23,7 +23,7 @@ from symflex.roots import (
 from symflex.roots.pole_zero_map import Certificate, Exclusion, PoleZeroMap, right_beyond
 from symflex.roots.region import Everything
 from symflex.roots.root import Root
-from tests.unit.roots.polynomials import problem, with_root_of_two
+from tests.unit.roots.root_problems import problem, with_root_of_two
 
 POLES = problem(0, 0, 9, 0, 1)  # s^2 (s^2 + 9)
 ZEROS = problem(4, 0, 1)

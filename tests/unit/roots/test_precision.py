@@ -7,7 +7,7 @@ import pytest
 
 from symflex.roots import Modes, find_pole_zero_map, find_polynomial_roots, precision
 from symflex.roots.precision import bits_for_digits
-from tests.unit.roots.polynomials import problem, problem_of
+from tests.unit.roots.root_problems import problem, problem_of
 
 
 def test_precision_holds_inside_the_block():

@@ -9,7 +9,7 @@ from flint import arb, fmpz_mpoly_ctx
 
 from symflex.errors import ModelError, UncertifiedError
 from symflex.roots import PolynomialInS, RootProblem, find_polynomial_roots, precision
-from tests.unit.roots.polynomials import problem, with_pi, with_root_of_two
+from tests.unit.roots.root_problems import problem, with_pi, with_root_of_two
 
 
 def test_rationals_are_scaled_to_integers():

@@ -20,7 +20,7 @@ from symflex.roots import (
     find_pole_zero_map,
     find_polynomial_roots,
 )
-from tests.unit.roots.polynomials import from_roots, problem, with_pi
+from tests.unit.roots.root_problems import from_roots, problem, with_pi
 
 NOTHING = problem(1)
 

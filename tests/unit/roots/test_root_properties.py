@@ -9,7 +9,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from symflex.roots import find_polynomial_roots, precision
-from tests.unit.roots.polynomials import problem_of
+from tests.unit.roots.root_problems import problem_of
 
 SMALL = st.integers(min_value=-20, max_value=20)
 COEFFICIENTS = st.lists(SMALL, min_size=2, max_size=12).filter(lambda c: c[-1] != 0)

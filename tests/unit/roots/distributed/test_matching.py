@@ -1,0 +1,202 @@
+"""What poles and zeros share, which roots are chosen, and what is said of them, with stand-ins."""
+
+from __future__ import annotations
+
+from cmath import exp as cexp
+from cmath import phase
+from dataclasses import dataclass, field
+from fractions import Fraction
+from math import inf, log
+
+import pytest
+
+from symflex import pipeline
+from symflex.errors import BudgetError
+from symflex.roots import Band, Mode, Modes, Rectangle
+from symflex.roots.counting.winding import Cell
+from symflex.roots.distributed.distributed import (
+    MATCHING_ROUNDS,
+    _chosen,
+    _degenerate_points,
+    _exclusion,
+    _find,
+    _lowest,
+    _match,
+    default_region,
+)
+from tests.unit.roots.distributed_models import KELVIN_VOIGT, ON_A_FOUNDATION, ROD, SLIDING_FREE, bound
+from tests.unit.roots.stand_ins import places, root
+
+
+@dataclass
+class StandIn:
+    """A side with these roots; refined, they keep to their middle."""
+
+    roots: list
+    reached: float = -inf
+    modes: int = 9
+    asked: list = field(default_factory=list)
+    searched: list = field(default_factory=list)
+
+    def refined(self, given):
+        return root(float(given.re.mid()), float(given.im.mid()), given.multiplicity)
+
+    def extend(self, modes, radius=-inf):
+        self.asked.append((modes, radius))
+
+    def search(self, region):
+        self.searched.append(region)
+
+
+def matched(poles, zeros):
+    sides = StandIn(list(poles)), StandIn(list(zeros))
+    shared = _match(*sides)
+    return places(shared), places(sides[0].roots), places(sides[1].roots)
+
+
+def test_what_poles_and_zeros_do_not_share_stays():
+    assert matched([root(-1, 2)], [root(-1, 3), root(-2, 2)]) == (
+        [],
+        [(-1, 2, 1)],
+        [(-1, 3, 1), (-2, 2, 1)],
+    )
+
+
+def test_a_shared_root_is_neither_pole_nor_zero():
+    poles, zeros = [root(-1, 2), root(-3, 0)], [root(-4, 0), root(-1, 2)]
+    assert matched(poles, zeros) == ([(-1, 2, 1)], [(-3, 0, 1)], [(-4, 0, 1)])
+
+
+@pytest.mark.parametrize(("pole", "zero"), [(3, 1), (1, 3), (2, 2)])
+def test_of_a_multiple_root_the_smaller_multiplicity_is_shared(pole, zero):
+    both = min(pole, zero)
+    left = [[(-1, 2, n - both)] if n > both else [] for n in (pole, zero)]
+    assert matched([root(-1, 2, pole)], [root(-1, 2, zero)]) == ([(-1, 2, both)], *left)
+
+
+def test_enclosures_that_overlap_and_centre_elsewhere_are_not_shared():
+    # Refined, both are known to be apart.
+    assert matched([root(-1, 2, size=0.1)], [root(-1.05, 2, size=0.1)])[0] == []
+    assert len(matched([root(-1, 2, size=0.1)], [root(-1, 2, size=0.01)])[0]) == 1
+
+
+@pytest.mark.parametrize(("one", "other"), [(True, False), (False, True), (True, True)])
+def test_what_is_shared_is_certified_where_both_are(one, other):
+    sides = StandIn([root(-1, 2, certified=one)]), StandIn([root(-1, 2, certified=other)])
+    assert [r.certified for r in _match(*sides)] == [one and other]
+
+
+def test_modes_are_asked_for_until_enough_are_left():
+    poles, zeros = StandIn([root(-1, 2)], reached=2.0, modes=2), StandIn([root(-1, 2)], reached=3.0, modes=1)
+    # After the first match nothing is shared any more.
+    assert places(_find((poles, zeros), Modes(2))) == []
+    assert poles.asked[:2] == [(2, -inf), (0, 3.0)]
+    assert poles.asked[2][0] == 2 + 1
+    assert zeros.asked == poles.asked
+
+
+def test_so_many_modes_are_lacking_that_it_is_given_up():
+    class Sharing(StandIn):
+        def extend(self, modes, radius=-inf):
+            super().extend(modes, radius)
+            self.roots = [root(-1, 2)]
+
+    poles, zeros = Sharing([], modes=1), Sharing([], modes=1)
+    with pytest.raises(
+        BudgetError, match=r"SF505.*: too many poles and zeros coincide to tell the modes"
+    ) as e:
+        _find((poles, zeros), Modes(3))
+    assert e.value.diagnostics[0].hint == "ask for a band, which shows those that do not"
+    assert [modes for modes, _ in poles.asked if modes] == [3 + 2 * k for k in range(MATCHING_ROUNDS)]
+
+
+def test_zeros_may_be_fewer_than_modes_asked_for():
+    class Sharing(StandIn):
+        def extend(self, modes, radius=-inf):
+            super().extend(modes, radius)
+            self.roots = [root(-1, 2)]
+
+    shared = _find((Sharing([], modes=3), Sharing([], modes=0)), Modes(3))
+    assert places(shared) == [(-1, 2, 1)]
+
+
+@pytest.mark.parametrize("modes", [3, 4])
+def test_modes_left_that_are_enough_are_not_asked_for_again(modes):
+    class Sharing(StandIn):
+        def extend(self, modes, radius=-inf):
+            super().extend(modes, radius)
+            self.roots = [root(-1, 2)]
+
+    sides = Sharing([], modes=modes), Sharing([], modes=modes)
+    assert places(_find(sides, Modes(3))) == [(-1, 2, 1)]
+    assert [asked for asked, _ in sides[0].asked] == [3, 0]
+
+
+def test_a_region_is_searched_once_on_both_sides():
+    poles, zeros = StandIn([root(-1, 2)]), StandIn([root(-1, 2)])
+    region = Band(Fraction(1), Fraction(2))
+    assert places(_find((poles, zeros), region)) == [(-1, 2, 1)]
+    assert poles.searched == zeros.searched == [region]
+    alone = StandIn([root(-1, 2)])
+    assert _find((alone,), region) == []
+    assert places(alone.roots) == [(-1, 2, 1)]
+
+
+FIVE = [root(0, 0, 2), root(0, 4), root(0, -4), root(-7, 0, 2), root(0, 9), root(0, -9)]
+
+
+@pytest.mark.parametrize(("count", "upto"), [(0, 1), (1, 3), (2, 4), (3, 4), (4, 6), (9, 6)])
+def test_the_lowest_modes_come_with_their_mirror_images_and_the_roots_at_0(count, upto):
+    assert places(_lowest(FIVE, count)) == places(FIVE[:upto])
+    assert places(_chosen(FIVE[::-1], Modes(count))) == places(_lowest(FIVE, count))
+
+
+def test_of_a_mode_by_its_number_all_that_was_found_is_chosen():
+    assert sorted(places(_chosen(FIVE, Mode(3)))) == sorted(places(FIVE))
+
+
+def test_of_a_rectangle_what_lies_outside_is_left_out_and_what_lies_on_it_marked():
+    found = _chosen(FIVE, Rectangle(Fraction(-5), Fraction(5), Fraction(-4), Fraction(9, 2)))
+    assert [(float(r.im), r.on_boundary) for r in found] == [(0, False), (4, False), (-4, True)]
+
+
+@pytest.mark.parametrize(
+    ("analysis", "region"),
+    [
+        ("", Modes(5)),
+        ("[analysis]\nmodes = 3", Modes(3)),
+        ('[analysis]\nband = ["1 Hz", "9 Hz"]', Band(Fraction(1), Fraction(9))),
+    ],
+)
+def test_without_a_region_the_models_own_is_searched(analysis, region):
+    model = pipeline.loads(ROD + analysis)
+    assert default_region(pipeline.derive_bound(model, model.transfer_functions)[0]) == region
+
+
+@pytest.mark.parametrize(
+    ("text", "points"),
+    [
+        # gamma = s; q^4 = s^2/4; gamma^2 = s^2 + 1
+        (ROD, [(0, 0, 2)]),
+        (SLIDING_FREE, [(0, 0, 2)]),
+        (ON_A_FOUNDATION, [(0, -1, 1), (0, 1, 1)]),
+        (KELVIN_VOIGT, [(0, 0, 2)]),
+    ],
+)
+def test_wavenumbers_vanish_where_their_law_does(text, points):
+    assert sorted(places(_degenerate_points(bound(text)))) == points
+
+
+@pytest.mark.parametrize(
+    ("point", "re", "im"), [(2j, 0.0, 2.0), (-5 + 0j, -5.0, 0.0), (3 + 4j, 3.0, 4.0), (5 + 0j, 5.0, 0.0)]
+)
+def test_a_neighbourhood_left_out_is_said_as_a_disc_about_its_point(point, re, im):
+    z = complex(log(abs(point)), phase(point))
+    found = _exclusion(Cell(z.real - 0.05, z.real + 0.05, z.imag - 0.05, z.imag + 0.05))
+    assert (found.re, found.im) == pytest.approx((re, im), abs=1e-12)
+    # What lies on an axis lies on it exactly.
+    assert all(x == y for x, y in ((found.re, re), (found.im, im)) if y == 0)
+    assert found.reason == "infinitely many roots accumulate there"
+    # All of the neighbourhood is in it, its farthest corner on its edge.
+    farthest = abs(point) * abs(cexp(0.05 + 0.05j) - 1)
+    assert found.radius == pytest.approx(farthest)

@@ -1,0 +1,425 @@
+"""One side of a transfer function: what was found, and counts that notice what was tampered with."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import exp, inf, log, pi
+from types import SimpleNamespace
+
+import mpmath
+import pytest
+
+from symflex.algebra import Factored
+from symflex.algebra.origin import OriginSeries
+from symflex.budget import Budget
+from symflex.errors import BudgetError, UncertifiedError
+from symflex.roots import Band, Modes, Rectangle
+from symflex.roots.counting.winding import Cell, RootOnPathError
+from symflex.roots.distributed import origin
+from symflex.roots.distributed.origin import roots_at_zero, turns_about_zero
+from symflex.roots.distributed.proof import TOUCHING, UNPROVED, Proof, are_apart
+from symflex.roots.distributed.side import Side, accumulation_points, groups
+from symflex.roots.engines import GUESS_AND_PROVE, LOSSLESS, SUBDIVISION
+from symflex.roots.plane.search import MODES_LIMIT
+from symflex.roots.problem import polynomial_in_s
+from tests.unit.roots.distributed_models import DELAY_LOOP, FREE, KELVIN_VOIGT, ROD, bound
+from tests.unit.roots.stand_ins import root, side
+
+LUMPED = """
+symflex = 1
+inputs.u = {}
+outputs.y = "u*(s + 7)/((s + 1)*(s + 2)^2*((s - 1/2)^2 + 100))"
+"""
+
+
+def rod(n):
+    """Return omega_n with omega tan omega = 2."""
+    return float(
+        mpmath.findroot(lambda x: x * mpmath.sin(x) - 2 * mpmath.cos(x), (n - 1) * pi + 2 / (n * pi))
+    )
+
+
+def delays(count):
+    """Return the lowest roots of s + 2 exp(-s/2), 2 W_k(-1)."""
+    every = [2 * complex(mpmath.lambertw(-1, k)) for k in range(-9, 10)]
+    return sorted((s for s in every if s.imag >= 0), key=abs)[:count]
+
+
+ENGINES = [LOSSLESS, GUESS_AND_PROVE, SUBDIVISION]
+
+
+@pytest.fixture(params=ENGINES)
+def found(request):
+    """A rod whose three lowest modes were found, and proved to be all."""
+    one = side(ROD, engines=(request.param,))
+    one.extend(3)
+    return one
+
+
+def test_modes_found_are_those_of_the_closed_form(found):
+    sizes = sorted(float(r.im) for r in found.roots if r.im > 0)
+    assert sizes == pytest.approx([rod(n) for n in (1, 2, 3)])
+    assert all(r.on_imaginary_axis and r.multiplicity == 1 for r in found.roots)
+    assert found.prove(Modes(3)) == Proof(6, 6)
+    assert (found.modes, found.missing) == (3, 0)
+    assert rod(3) < mpmath.exp(found.reached) < rod(4)
+
+
+@pytest.mark.parametrize("engine", [LOSSLESS, GUESS_AND_PROVE])
+@pytest.mark.parametrize("n", [0, 1, 2, 3, 4, 5])
+def test_a_root_taken_away_is_missed(engine, n):
+    one = side(ROD, engines=(engine,))
+    one.extend(3)
+    del one._located[n]
+    one._known = None
+    assert one.counted() == Proof(6, 5)
+    assert not one.counted().is_complete
+
+
+@pytest.mark.parametrize("engine", [LOSSLESS, GUESS_AND_PROVE])
+def test_a_root_too_many_is_noticed(engine):
+    one = side(ROD, engines=(engine,))
+    one.extend(3)
+    one._located.append(root(-0.5, 0.5))
+    one._known = None
+    assert one.counted() == Proof(6, 7)
+    # One beyond the domain is none of it.
+    one._located[-1] = root(0, 100)
+    one._known = None
+    assert one.counted() == Proof(6, 6)
+
+
+def test_roots_that_touch_are_no_proof(found):
+    found._located.append(found._located[0])
+    found._known = None
+    assert found.counted() == Proof(7, 7, TOUCHING)
+
+
+def test_a_root_on_the_circle_is_no_proof():
+    one = side(ROD, engines=(LOSSLESS,))
+    one.extend(3)
+    edge = rod(3)
+    one._located = [root(0, edge, size=1e-9)]
+    one._domain = Cell(-inf, log(edge), 0.0, pi)
+    one._known = None
+    assert one.counted() == Proof(0, 0, "a root lies on the boundary of what was searched")
+    one._located, one._known = [], None
+    assert one.counted() == Proof(0, 0, UNPROVED)
+
+
+def test_before_a_search_nothing_is_proved():
+    assert side(ROD).counted() == Proof(0, 0, "nothing was searched")
+
+
+def test_a_count_is_kept_until_other_roots_are_set():
+    one = side(ROD)
+    one.extend(2)
+    assert one.counted() is one.counted()
+    one._set([])
+    assert one.counted() == Proof(4, 0)
+
+
+@pytest.mark.parametrize(("proof", "is_complete"), [((3, 3), True), ((3, 2), False), ((3, 3, "why"), False)])
+def test_a_proof_is_complete_when_all_counted_are_found_and_nothing_speaks_against_it(proof, is_complete):
+    assert Proof(*proof).is_complete is is_complete
+
+
+@pytest.mark.parametrize("engine", [GUESS_AND_PROVE, SUBDIVISION])
+def test_roots_of_a_delay_are_lamberts(engine):
+    one = side(DELAY_LOOP, engines=(engine,))
+    one.extend(4)
+    found = sorted((complex(r.re, r.im) for r in one.roots if r.im >= 0), key=abs)
+    assert found[:4] == pytest.approx(delays(4))
+    assert one.prove(Modes(4)).is_complete
+
+
+@pytest.mark.parametrize("engine", [GUESS_AND_PROVE, SUBDIVISION])
+def test_a_rectangle_holds_the_roots_that_lie_in_it(engine):
+    one = side(DELAY_LOOP, engines=(engine,))
+    region = Rectangle(Fraction(-8), Fraction(-3), Fraction(5), Fraction(30))
+    one.search(region)
+    assert one.prove(region).is_complete
+    inside = [s for s in delays(9) if -8 < s.real < -3 and 5 < s.imag < 30]
+    assert len(inside) == 2
+    known = [complex(r.re, r.im) for r in one.roots]
+    assert all(min(abs(s - each) for each in known) < 1e-9 for s in inside)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_band_holds_the_modes_between_its_ends(engine):
+    one = side(ROD, engines=(engine, SUBDIVISION))
+    region = Band(Fraction(1, 2), Fraction(3, 2))
+    one.search(region)
+    assert one.prove(region).is_complete
+    expected = [rod(n) for n in range(1, 9) if pi < rod(n) < 3 * pi]
+    sizes = [float(r.im) for r in one.roots if r.im > 0]
+    assert [x for x in sorted(sizes) if pi < x < 3 * pi] == pytest.approx(expected)
+    # The engine asked first proved it.
+    assert one.engine == engine
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_band_from_0_holds_all_modes_below_its_end(engine):
+    one = side(FREE, engines=(engine, SUBDIVISION))
+    region = Band(Fraction(0), Fraction(10))
+    one.search(region)
+    proof = one.prove(region)
+    # 22.4 and 61.7 rad/s (Blevins 1979), both signs, and two poles at 0
+    assert sorted(round(float(r.im), 1) for r in one.roots if 0 < r.im < 20 * pi) == [22.4, 61.7]
+    assert proof.is_complete
+    assert one.engine == engine
+    assert sum(r.multiplicity for r in one.roots if r.is_zero) == 2
+
+
+def test_a_free_beam_has_a_double_pole_at_0_that_is_counted():
+    one = side(FREE)
+    one.extend(2)
+    (zero,) = (r for r in one.roots if r.is_zero)
+    assert zero.multiplicity == 2
+    assert one.prove(Modes(2)) == Proof(6, 6)
+    # Without it the count is not met.
+    one._located.remove(zero)
+    one._known = None
+    assert not one.counted().is_complete
+
+
+@pytest.mark.parametrize(("n", "engine"), [(1, LOSSLESS), (4, LOSSLESS), (2, GUESS_AND_PROVE)])
+def test_a_mode_by_number_is_that_one(n, engine):
+    one = side(ROD, engines=(engine,))
+    assert float(one.numbered(n).im) == pytest.approx(rod(n))
+    assert [abs(float(r.im)) for r in one.roots] == pytest.approx([rod(n)] * 2)
+
+
+def test_a_polynomial_has_all_its_roots_at_once():
+    one = side(LUMPED)
+    assert one.is_finite
+    assert sorted((round(float(r.re), 9), r.multiplicity) for r in one.roots) == [
+        (-2, 2),
+        (-1, 1),
+        (0.5, 1),
+        (0.5, 1),
+    ]
+    assert one.prove(Modes(1)) == Proof(5, 5)
+    assert (one.reached, one.modes) == (-inf, MODES_LIMIT)
+    one.search(Modes(1))
+    one.extend(3)
+    assert len(one.roots) == 4
+    one.roots = []
+    one.restore()
+    assert len(one.roots) == 4
+    # -1, twice -2, and the pair are four modes.
+    assert [round(float(abs(one.numbered(n).enclosure())), 6) for n in (1, 2, 3)] == [1, 2, 2]
+    assert one.numbered(9) is None
+    assert one.roots == []
+
+
+def test_too_many_modes_are_not_searched():
+    with pytest.raises(BudgetError, match="SF505") as failed:
+        side(ROD).extend(MODES_LIMIT + 1)
+    (diagnostic,) = failed.value.diagnostics
+    assert diagnostic.hint == "ask for a band"
+    assert diagnostic.message.endswith(f"are searched, not {MODES_LIMIT + 1}")
+
+
+def test_a_root_is_refined_to_more_than_twice_its_digits():
+    one = side(ROD)
+    one.extend(1)
+    (upper,) = (r for r in one.roots if r.im > 0)
+    finer = one.refined(upper)
+    assert upper.im.overlaps(finer.im)
+    assert finer.im.rel_accuracy_bits() > 2 * 20 * 3.32
+    (zero,) = (r for r in side(FREE).roots if r.is_zero)
+    assert one.refined(zero) is zero
+    blurred = root(0, 1, certified=False)
+    assert one.refined(blurred) is blurred
+
+
+@pytest.mark.parametrize(("high", "count"), [(3.0, 2), (20.0, 2), (0.5, 0)])
+def test_roots_right_of_the_axis_are_counted_up_to_a_radius(high, count):
+    # s + 3 exp(-s), whose roots are W_k(-3).
+    text = 'symflex = 1\nblocks.D = { type = "delay", T = 1 }\ninputs.u = {}\noutputs.y = "u/(s + 3*D)"'
+    right = [s for k in range(-4, 5) if (s := complex(mpmath.lambertw(-3, k))).real > 0]
+    assert side(text).count_right(log(high)) == sum(abs(s) < high for s in right) == count
+
+
+def test_a_root_on_the_axis_is_not_counted_past():
+    with pytest.raises(RootOnPathError):
+        side(ROD).count_right(log(5.0))
+
+
+def test_poles_accumulate_where_a_lossy_beam_no_longer_resists():
+    # E (1 + eta s) vanishes at -1/eta.
+    assert accumulation_points(bound(KELVIN_VOIGT)) == (pytest.approx(-250),)
+    assert accumulation_points(bound(ROD)) == ()
+    (hole,) = side(KELVIN_VOIGT).holes
+    assert (hole.low + hole.high) / 2 == pytest.approx(log(250))
+
+
+@pytest.mark.parametrize(
+    ("roots", "apart"),
+    [
+        ([], True),
+        ([root(0, 3), root(0, 4)], True),
+        ([root(0, 3), root(0, 3)], False),
+        ([root(1, 3, size=1e-3), root(-1, 3, size=1e-3), root(1, -3, size=1e-3)], True),
+        ([root(1, 3, size=1e-3), root(1.0015, 3, size=1e-3)], False),
+        ([root(1, 3, size=1e-3), root(1.0025, 3, size=1e-3)], True),
+        # as far from 0 as each other, elsewhere
+        ([root(3, 4), root(4, 3), root(0, 5), root(5, 0)], True),
+        # a large one holds what lies between
+        ([root(3, 4, size=0.5), root(3, 3.2), root(3.1, 4.2, size=0.01)], False),
+        ([root(3, 9), root(3, 4, size=0.5), root(5, 5), root(3.2, 4.4)], False),
+    ],
+)
+def test_enclosures_are_apart_when_none_meets_another(roots, apart):
+    assert are_apart(roots) is apart
+
+
+def test_roots_that_mirror_each_other_are_one_group():
+    zero, real, mirrored = root(0, 0, 2), root(3, 0), root(-3, 0)
+    four = [root(re, im) for re in (-1, 1) for im in (-2, 2)]
+    assert groups([zero, real, *four, mirrored, root(2, 1)]) == [[real, mirrored], four, [root(2, 1)]]
+
+
+def test_a_factor_without_kernels_is_a_polynomial_in_s():
+    source = bound(ROD)
+    s = source.ratio.ring.context.gen(0)
+    assert polynomial_in_s(source, 3 * s**2 - 5).integers() == (-5, 0, 3)
+
+
+# ------------------------------------------------------------------- proofs that lack something, one by one
+
+
+def test_a_subdivision_that_lost_roots_says_how_many():
+    one = side(ROD, engines=(SUBDIVISION,))
+    one.extend(2)
+    one.missing = 3
+    assert one.prove(Modes(2)) == Proof(7, 4, "3 roots were counted but not found")
+    one.missing = 0
+    one._located.append(one._located[0])
+    assert one.prove(Modes(2)) == Proof(5, 5, TOUCHING)
+
+
+def test_a_subdivision_that_may_have_left_roots_inside_proves_nothing():
+    one = side(ROD, engines=(SUBDIVISION,))
+    one.extend(2)
+    assert one.prove(Modes(2)) == Proof(4, 4)
+    one._innermost = (log(rod(1)) + log(rod(2))) / 2
+    assert one.prove(Modes(2)) == Proof(4, 4, UNPROVED)
+    # As little as where the circle meets one of them.
+    one._innermost = log(rod(1))
+    assert one.prove(Modes(2)) == Proof(4, 4, UNPROVED)
+
+
+def test_inside_of_a_ring_no_roots_are_left_unseen():
+    one = side(ROD, engines=(GUESS_AND_PROVE,))
+    one.extend(3)
+    one._located = [r for r in one._located if abs(float(r.im)) > rod(1) + 0.1]
+    one._domain = Cell((log(rod(1)) + log(rod(2))) / 2, one._domain.high, 0.0, pi)
+    one._innermost, one._known = None, None
+    assert one.counted() == Proof(4, 4)
+    one._innermost, one._known = one._domain.low, None
+    assert one.counted() == Proof(4, 4, UNPROVED)
+
+
+def test_roots_of_a_polynomial_factor_are_those_of_the_polynomial():
+    # (s + 1)(s + 4)(s + 2 D)
+    text = """
+symflex = 1
+blocks.D = { type = "delay", T = 0.5 }
+inputs.u = {}
+outputs.y = "u/((s + 1)*(s + 4)*(s + 2*D))"
+"""
+    one = side(text, engines=(GUESS_AND_PROVE,))
+    one.extend(3)
+    assert sorted(float(r.re) for r in one.roots if r.re.is_exact()) == [-4, -1]
+    assert one.prove(Modes(3)).is_complete
+
+
+class Circles:
+    """Counts about 0, by how far below a radius of 1 they are."""
+
+    def __init__(self, *counts, power):
+        self.counts = list(counts)
+        self.function = SimpleNamespace(power=power, bound=SimpleNamespace(name="X/F"))
+
+    def smallest(self, left, holes):
+        return 0.0
+
+    def count_within(self, z, left):
+        count = self.counts.pop(0)
+        if count is None:
+            raise RootOnPathError
+        return count
+
+
+@pytest.mark.parametrize(
+    ("counts", "power", "found"),
+    [
+        ((0,), 1, (-1.0, 0)),
+        ((2, 2, 2, 2), 1, (-64.0, 2)),
+        ((2, 1, None, None), 1, (-4.0, 1)),
+        ((None, 4, 4, 4), 2, (-64.0, 2)),
+        ((4, 3, 3, 3), 2, (-1.0, 2)),
+        ((2, 0), 1, (-4.0, 0)),
+    ],
+)
+def test_the_smallest_circle_that_could_be_counted_tells_the_roots_next_to_0(counts, power, found):
+    assert turns_about_zero(Circles(*counts, power=power), pi / 2, ()) == found
+
+
+def test_an_order_at_0_that_cannot_be_told_is_an_error():
+    with pytest.raises(
+        UncertifiedError, match=r"SF404.*the order of the root of \S+ at s = 0 cannot be told"
+    ):
+        turns_about_zero(Circles(None, 3, None, 5, power=2), pi / 2, ())
+
+
+@pytest.mark.parametrize(
+    ("turns", "hidden", "expected"),
+    [
+        (0, False, []),
+        (1, False, [(1, True, True)]),
+        (2, False, [(2, False, True)]),
+        (2, True, []),
+    ],
+)
+def test_roots_next_to_0_of_functions_without_a_formula_are_in_a_small_box(
+    monkeypatch, turns, hidden, expected
+):
+    one = side(ROD)
+    monkeypatch.setattr(OriginSeries, "order", lambda self, part: None)
+    monkeypatch.setattr(origin, "turns_about_zero", lambda *given: (-5.0, turns))
+    roots, order = roots_at_zero(one._winding, bound(ROD).den, pi / 2, (), is_hidden=hidden)
+    assert order == turns
+    assert [(r.multiplicity, r.certified, r.re.contains(0) and r.im.contains(0)) for r in roots] == expected
+    for each in roots:
+        assert (each.is_real, each.on_imaginary_axis) == (False, False)
+        assert exp(-5) <= float(each.re.rad()) == float(each.im.rad()) < 1.001 * exp(-5)
+
+
+def test_a_power_of_s_alone_is_a_root_at_0_whatever_lies_next_to_it(monkeypatch):
+    one = side(ROD)
+    monkeypatch.setattr(OriginSeries, "order", lambda self, part: None)
+    monkeypatch.setattr(origin, "turns_about_zero", lambda *given: (-5.0, 0))
+    part = bound(ROD).den
+    s = part.ring.context.gen(0)
+    ((zero,), order) = roots_at_zero(
+        one._winding, part * Factored.polynomial(part.ring, s**3), pi / 2, (), is_hidden=False
+    )
+    assert (zero.is_zero, zero.multiplicity, zero.certified, order) == (True, 3, True, 0)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_what_kernels_vanish_like_at_0_is_a_root_there(engine):
+    # cosh(s) - 1, with double roots at 0 and at every 2 pi j n.
+    source = bound(ROD)
+    ring = source.ratio.ring
+    (cosh,) = (ring.generator(k.generator) for k in source.kernels.kernels if k.function == "cosh")
+    one = Side(source, Factored.polynomial(ring, cosh - 1), 20, Budget(), engines=(engine,))
+    one.extend(4)
+    (zero,) = (r for r in one.roots if r.is_zero)
+    assert zero.multiplicity == 2
+    found = sorted((float(r.im), r.multiplicity) for r in one.roots if r.im > 0)[:2]
+    assert found == [(pytest.approx(2 * pi), 2), (pytest.approx(4 * pi), 2)]
+    assert one.prove(Modes(4)).is_complete

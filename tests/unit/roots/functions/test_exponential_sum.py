@@ -1,0 +1,256 @@
+"""Polynomials in kernels as sums of exponentials, in balls, series and doubles, against mpmath."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import mpmath
+import numpy as np
+import pytest
+from flint import acb, acb_series, arb
+from mpmath import mp, mpc
+
+from symflex.algebra.exponential_sum import MOST_EXPONENTIALS, arguments_of, exponential_sum, spread
+from symflex.roots.functions.double_sums import DoubleSums, _wavenumbers
+from symflex.roots.functions.exponential_values import ExponentialValues
+from symflex.roots.precision import precision
+from symflex.transfer.enclose_kernels import expansion
+from tests.unit.roots.distributed_models import DELAY_LOOP, ROD, SLIDING_FREE, bound
+
+PLACES = [0.7, 2 + 3j, 1 + 8j, 30j]
+
+
+class Polynomials:
+    """Polynomials in s, wavenumbers and kernels of a model, as sums and as functions of mpmath."""
+
+    def __init__(self, text, make):
+        source = bound(text)
+        ring, self.table = source.ratio.ring, source.kernels
+        names = {k.function: ring.generator(k.generator) for k in self.table.kernels}
+        if self.table.wavenumbers:
+            names["q"] = ring.generator(self.table.wavenumbers[0])
+        names["s"] = ring.context.gen(0)
+        arguments = arguments_of(self.table)
+        self.made = make
+        sums = [exponential_sum(ring, self.table, arguments, p) for p in make(**names)]
+        self.sums = sums
+        with precision(120):
+            constants = {name: evaluate() for name, evaluate in source.constants}
+            self.values = ExponentialValues(
+                source.kernel_values(constants), arguments, tuple((each, 1) for each in sums)
+            )
+
+    def exact(self, s, q, length):
+        kernels = {
+            name: getattr(mpmath, name)(q * length)
+            for name in {k.function for k in self.table.kernels}
+            if name != "exp"
+        }
+        if any(k.function == "exp" for k in self.table.kernels):
+            kernels["exp"] = mpmath.exp(-s * length)
+        if self.table.wavenumbers:
+            kernels["q"] = q
+        return self.made(s=s, **kernels)
+
+
+def beam():
+    # E I = rho A = l = 1: q^4 = -s^2/4 times -1, so q = sqrt(s/2), and kernels are of q l.
+    return Polynomials(
+        SLIDING_FREE,
+        lambda s, q, cosh, sinh, cos, sin: [
+            3 * s**2 * cosh**3 * sin**2 * cos - 5 * q * sinh * sin + 7,
+            cosh * sin * 2 - s * sinh**2 * cos,
+            (cosh + sinh) * (cos - sin) * q**3,
+            sin**3 * sinh**3 + s**0,
+        ],
+    )
+
+
+def rod():
+    return Polynomials(ROD, lambda s, q, cosh, sinh: [cosh * 2 + s * sinh, sinh**3 - q * cosh, q**2 + s])
+
+
+def delay():
+    return Polynomials(DELAY_LOOP, lambda s, exp: [s + 2 * exp, s**2 * exp**3 - exp + 1, s**0 * 3])
+
+
+MODELS = {
+    "beam": (beam, lambda s: mpmath.sqrt(s / 2), 1),
+    "rod": (rod, lambda s: s, 1),
+    "delay": (delay, lambda s: s, mpmath.mpf(1) / 2),
+}
+
+
+@pytest.fixture(params=MODELS)
+def model(request):
+    make, wavenumber, length = MODELS[request.param]
+    made = make()
+    return made, lambda s: made.exact(mpmath.mpmathify(s), wavenumber(mpmath.mpmathify(s)), length)
+
+
+def close(found, expected, digits=25):
+    return abs(
+        mpc(found.real.mid().str(40, radius=False), found.imag.mid().str(40, radius=False)) - expected
+    ) < (abs(expected) * mpmath.mpf(10) ** -digits)
+
+
+@pytest.mark.parametrize("s", PLACES)
+def test_sums_have_the_values_of_polynomials_in_kernels(model, s):
+    made, exact = model
+    with mp.workdps(50), precision(120):
+        place = made.values.at(acb(s))
+        for i, expected in enumerate(exact(s)):
+            assert close(made.values.value(i, place), expected)
+
+
+@pytest.mark.parametrize("s", PLACES)
+def test_series_have_the_slopes_of_polynomials_in_kernels(model, s):
+    made, exact = model
+    with mp.workdps(80), precision(120):
+        place = made.values.at(expansion(acb(s)))
+        for i in range(len(made.sums)):
+            slope = mpmath.diff(lambda x, i=i: exact(x)[i], mpmath.mpmathify(s), h=mpmath.mpf(10) ** -35)
+            series = made.values.value(i, place)
+            found = series[1] if isinstance(series, acb_series) else acb(0)
+            assert close(found, slope) if slope else found.contains(0)
+
+
+@pytest.mark.parametrize("s", PLACES)
+def test_divided_by_one_exponential_the_sum_is_smaller_by_it(model, s):
+    made, _ = model
+    with precision(120):
+        place = made.values.at(acb(s))
+        for i, terms in enumerate(made.sums):
+            own = made.values.exponents(i, place)
+            whole = made.values.value(i, place)
+            for k, exponent in enumerate(terms.terms):
+                factor = acb(1) if own[k] is None else own[k].exp()
+                assert (made.values.value(i, place, exponent) * factor - whole).contains(0)
+                assert made.values.exponents(i, place, exponent)[k] is None
+
+
+@pytest.mark.parametrize("s", [5.0, 4 + 9j, 40j])
+def test_the_largest_term_is_the_largest(model, s):
+    made, _ = model
+    with precision(120):
+        place = made.values.at(acb(s))
+        for i in range(len(made.sums)):
+            exponents = made.values.exponents(i, place)
+            sizes = [
+                float((abs(c) * (1 if e is None else abs(e.exp()))).mid())
+                for c, e in zip(made.values.amplitudes(i, place), exponents, strict=True)
+            ]
+            largest = list(made.sums[i].terms).index(made.values.largest([i], place))
+            assert sizes[largest] == pytest.approx(max(sizes))
+
+
+def test_a_place_near_another_has_wavenumbers_of_the_same_branch():
+    # sqrt(s^2) changes its sign on the imaginary axis.
+    made = rod()
+    (name,) = made.table.wavenumbers
+    with precision(120):
+        around = made.values.at(acb(arb(0, 0.1), 3))
+        right, left = (made.values.at(acb(re, 3), around).values[name] for re in (0.05, -0.05))
+        assert abs(abs(right - left) - 0.1) < 1e-15
+        assert around.values[name].overlaps(right)
+        assert around.values[name].overlaps(left)
+
+
+def test_a_ball_of_places_has_a_ball_of_values(model):
+    made, exact = model
+    with mp.workdps(50), precision(120):
+        place = made.values.at(acb(arb(2, 0.01), arb(3, 0.01)))
+        for i in range(len(made.sums)):
+            ball = made.values.value(i, place)
+            for s in (2 + 3j, 2.009 + 3.009j, 1.991 + 3.009j):
+                expected = exact(s)[i]
+                assert ball.contains(acb(float(expected.real), float(mpmath.im(expected))))
+
+
+def test_too_many_exponentials_are_not_written():
+    source = bound(DELAY_LOOP)
+    ring, table = source.ratio.ring, source.kernels
+    decay = ring.generator(table.kernels[0].generator)
+    arguments = arguments_of(table)
+    polynomial = sum((decay**n for n in range(MOST_EXPONENTIALS)), 0 * decay)
+    assert len(exponential_sum(ring, table, arguments, polynomial).terms) == MOST_EXPONENTIALS
+    assert exponential_sum(ring, table, arguments, polynomial + decay**MOST_EXPONENTIALS) is None
+
+
+@pytest.mark.parametrize(
+    ("even", "odd", "expected"),
+    [
+        (0, 0, {0: 1}),
+        (2, 0, {2: 1, 0: 2, -2: 1}),
+        (0, 2, {2: 1, 0: -2, -2: 1}),
+        (1, 1, {2: 1, -2: -1}),
+        (2, 1, {3: 1, 1: 1, -1: -1, -3: -1}),
+        (1, 2, {3: 1, 1: -1, -1: -1, -3: 1}),
+    ],
+)
+def test_powers_of_hyperbolic_functions_are_multiplied_out(even, odd, expected):
+    assert spread(even, odd) == expected
+
+
+# ----------------------------------------------------------------------------------------------- in doubles
+
+
+def test_samples_in_doubles_are_those_of_mpmath(model):
+    made, exact = model
+    with precision(64):
+        sums = DoubleSums(made.values)
+    radii = np.array([0.7, 2.0, 5.5])
+    for angle in (0.0, 1.1, np.pi / 2 - 0.01):
+        order = list(reversed(range(len(made.sums))))
+        for i, sample in zip(order, sums.sampled(np.log(radii), angle, order), strict=True):
+            for k, radius in enumerate(radii):
+                s = acb(radius * np.exp(1j * angle))
+                expected = exact(complex(s))[i]
+                assert sample.size[k] == pytest.approx(float(mpmath.log(abs(expected))), abs=1e-9)
+                assert np.exp(1j * sample.phase[k]) == pytest.approx(
+                    complex(expected / abs(expected)), abs=1e-9
+                )
+                with precision(64):
+                    place = made.values.at(s)
+                    parts = [
+                        abs(complex(c) * (1 if e is None else complex(e.exp())))
+                        for c, e in zip(
+                            made.values.amplitudes(i, place), made.values.exponents(i, place), strict=True
+                        )
+                    ]
+                assert sample.share[k] == pytest.approx(float(abs(expected)) / sum(parts), rel=1e-6)
+
+
+def test_the_fastest_exponent_is_that_of_the_highest_power_of_kernels():
+    with precision(64):
+        of_beam, of_rod, of_delay = (DoubleSums(make().values) for make in (beam, rod, delay))
+    # cosh^3 sin^2 cos and sin^3 sinh^3 of q = sqrt(s/2): abs(3 + 3 j) abs(q)
+    assert of_beam.fastest(complex(np.log(32.0))) == pytest.approx(4 * 3 * np.sqrt(2))
+    assert of_rod.fastest(np.log(32.0) + 1j) == pytest.approx(3 * 32)
+    assert of_delay.fastest(complex(np.log(32.0))) == pytest.approx(3 * 16)
+
+
+def test_without_exponentials_nothing_is_fast():
+    with precision(64):
+        sums = DoubleSums(Polynomials(ROD, lambda s, q, cosh, sinh: [s + 3]).values)
+    assert sums.fastest(1 + 0j) == 0.0
+    assert DoubleSums(Polynomials(ROD, lambda s, q, cosh, sinh: []).values).fastest(1 + 0j) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("kind", "c", "names"),
+    [("wave", [3 - 2j], "a"), ("bending", [5 + 1j], "a"), ("pair", [3 + 1j, 0, -7 + 2j], "ab")],
+)
+def test_wavenumbers_in_doubles_solve_their_equations(kind, c, names):
+    law = SimpleNamespace(kind=kind, wavenumbers=tuple(names))
+    found = _wavenumbers(law, [np.array([each], dtype=complex) for each in c])
+    assert list(found) == list(names)
+    # q^2 + c = 0, 4 q^4 = c, q^4 + c_2 q^2 + c_0 = 0
+    for (q,) in found.values():
+        rest = {
+            "wave": q**2 + c[0],
+            "bending": 4 * q**4 - c[0],
+            "pair": q**4 + c[-1] * q**2 + c[0],
+        }[kind]
+        assert abs(rest) < 1e-12
+    assert len({complex(np.round(q[0] ** 2, 9)) for q in found.values()}) == len(names)

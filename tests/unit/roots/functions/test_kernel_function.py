@@ -1,0 +1,440 @@
+"""Functions with kernels against closed forms: values, slopes, turns, symmetry, and how fast they turn."""
+
+from __future__ import annotations
+
+from math import log, pi
+
+import mpmath
+import pytest
+from flint import acb, arb
+from mpmath import mp, mpc
+
+from symflex.algebra import Factored
+from symflex.errors import ModelError, UncertifiedError
+from symflex.roots.functions.kernel_function import (
+    KernelFunction,
+    _KernelFactors,
+    _parity,
+    _spectral_size,
+    has_kernels,
+    split_off_kernels,
+)
+from symflex.roots.precision import precision
+from tests.unit.roots.distributed_models import (
+    DELAY_LOOP,
+    FREE,
+    KELVIN_VOIGT,
+    ON_A_FOUNDATION,
+    ROD,
+    SLIDING_FREE,
+    bound,
+)
+
+BITS = 160
+
+
+def bending(s):
+    """Return x with x^4 = -s^2, of the branch with a positive real part."""
+    return mpmath.sqrt(mpmath.mpmathify(s)) * mpmath.expjpi(mpmath.mpf(1) / 4)
+
+
+def sliding_free(s):
+    x = bending(s)
+    return (mpmath.cos(x) * mpmath.sinh(x) + mpmath.sin(x) * mpmath.cosh(x)) / x
+
+
+def free(s):
+    x = bending(s)
+    return mpmath.cos(x) * mpmath.cosh(x) - 1
+
+
+def on_a_foundation(s):
+    # g^2 = s^2 + 1: 2 s^2 sinh(g)/g + cosh(g)
+    g = mpmath.sqrt(s * s + 1)
+    return 2 * s * s * mpmath.sinh(g) / g + mpmath.cosh(g)
+
+
+TWO_RODS = """
+symflex = 1
+[parameters]
+E = "1 N/m^2"
+A = "1 m^2"
+rho = "1 kg/m^3"
+l = "1 m"
+[elements]
+a = {{ type = "rod", between = ["ground", "x"], E = "E", A = "A", rho = "rho", l = "l" }}
+b = {{ type = "rod", between = ["x", "y"], E = "{modulus}*E", A = "A", rho = "rho", l = "pi*l" }}
+[inputs]
+F = {{ force = "y" }}
+[outputs]
+Y = "y"
+"""
+TWO_DELAYS = """
+symflex = 1
+blocks.D = { type = "delay", T = 0.5 }
+blocks.L = { type = "delay", T = 2 }
+inputs.u = {}
+outputs.y = "u/(s + 2*D + 3*L)"
+"""
+
+
+def two_rods(speed):
+    """Return what vanishes where z coth(l s/c) of one and z tanh(l s/c) of the other add up to 0."""
+    return lambda s: (
+        mpmath.cosh(s) * mpmath.cosh(mp.pi * s / speed)
+        + speed * mpmath.sinh(s) * mpmath.sinh(mp.pi * s / speed)
+    )
+
+
+CLOSED = {
+    "two lengths": (TWO_RODS.format(modulus=1), two_rods(1)),
+    "two speeds": (TWO_RODS.format(modulus=4), two_rods(2)),
+    "two delays": (TWO_DELAYS, lambda s: s + 2 * mpmath.exp(-s / 2) + 3 * mpmath.exp(-2 * s)),
+    "rod": (ROD, lambda s: 2 * mpmath.cosh(s) + s * mpmath.sinh(s)),
+    "delay": (DELAY_LOOP, lambda s: s + 2 * mpmath.exp(-s / 2)),
+    "sliding and free": (SLIDING_FREE, sliding_free),
+    "free": (FREE, free),
+    "on a foundation": (ON_A_FOUNDATION, on_a_foundation),
+}
+PLACES = [0.7, 2 + 3j, -1 + 4j, 0.5 - 2j]
+
+
+def function_of(text):
+    source = bound(text)
+    return KernelFunction(source, source.den)
+
+
+@pytest.fixture(params=CLOSED)
+def model(request):
+    text, closed = CLOSED[request.param]
+    return function_of(text), closed
+
+
+def number(value):
+    return mpc(value.real.mid().str(40, radius=False), value.imag.mid().str(40, radius=False))
+
+
+def slope(closed, s):
+    """Return the logarithmic derivative in ln(s)."""
+    s = mpmath.mpmathify(s)
+    return s * mpmath.diff(closed, s, h=mpmath.mpf(10) ** -25) / closed(s)
+
+
+def test_values_are_those_of_the_closed_form_but_for_a_power_of_s_and_a_number(model):
+    function, closed = model
+    with mp.workdps(50):
+        ratios = [number(function.value(acb(s), BITS)) / closed(mpmath.mpmathify(s)) for s in PLACES]
+        power = round(float(mpmath.log(abs(ratios[1] / ratios[0])) / mpmath.log(abs(PLACES[1] / PLACES[0]))))
+        numbers = [r / mpmath.mpmathify(s) ** power for r, s in zip(ratios, PLACES, strict=True)]
+        assert all(abs(each / numbers[0] - 1) < 1e-25 for each in numbers)
+
+
+@pytest.mark.parametrize("s", PLACES)
+def test_slopes_are_those_of_the_closed_form_but_for_one_whole_number(model, s):
+    function, closed = model
+    with mp.workdps(60):
+        z = complex(mpmath.log(mpmath.mpmathify(s)))
+        here = complex(slope(closed, mpmath.exp(z)))
+        assert abs(here - complex(slope(closed, s))) < 1e-9
+        over = function.at_logarithm(z).slope - here
+        assert over == pytest.approx(round(over.real), abs=1e-9)
+        there = function.at_point(acb(PLACES[0])).slope - complex(slope(closed, PLACES[0]))
+        assert over == pytest.approx(there, abs=1e-9)
+
+
+@pytest.mark.parametrize("s", PLACES)
+def test_logarithms_are_those_of_values(model, s):
+    function, _ = model
+    sample = function.at_point(acb(s))
+    value = complex(number(function.value(acb(s), BITS)))
+    assert sample.log.real == pytest.approx(log(abs(value)))
+    turned = sample.log.imag - complex(mpmath.log(value)).imag
+    assert turned / (2 * pi) == pytest.approx(round(turned / (2 * pi)), abs=1e-9)
+
+
+def test_factors_multiply_to_the_value(model):
+    function, _ = model
+    s = acb(2, 3)
+    with precision(BITS):
+        total, change = acb(1), acb(0)
+        for value, derivative, exponent in function.enclosed(s, BITS):
+            total *= value**exponent
+            change += exponent * derivative / value
+        assert total.overlaps(function.value(s, BITS)) or function.power > 1
+        sample = function.at_point(s)
+        assert complex(function.power * s * change) == pytest.approx(sample.slope)
+
+
+def test_about_a_ball_values_are_of_its_middle_and_slopes_of_all_of_it(model):
+    function, _ = model
+    centre, ball = acb(2, 3), acb(arb(2, 0.01), arb(3, 0.01))
+    with precision(BITS):
+        exact, wide = function.enclosed(centre, BITS), function.enclosed_about(ball, centre, BITS)
+        corner = [derivative for _, derivative, _ in function.enclosed(acb(2.009, 3.009), BITS)]
+        for (value, derivative, e), (found, around, exponent), other in zip(exact, wide, corner, strict=True):
+            assert (found - value).contains(0)
+            assert found.rel_accuracy_bits() > 100
+            assert around.contains(derivative.mid())
+            assert around.contains(other.mid())
+            assert e == exponent
+
+
+def test_how_far_it_turns_between_two_points_is_the_difference_of_logarithms(model):
+    function, closed = model
+    start, end = acb(2, 3), acb(2.05, 3.1)
+    with precision(BITS):
+        ball = acb(arb(2.025, 0.03), arb(3.05, 0.06))
+        off, turn = function.turn_of_exponentials(ball, start, end, BITS)
+        assert off < 1.5
+        first, last = function.value(start, BITS), function.value(end, BITS)
+        assert (turn - (last / first).arg()).contains(0)
+        assert turn.rad() < 1e-20
+    # Of the closed form, whose power of s turns besides.
+    with mp.workdps(40):
+        s, t = mpc(2, 3), mpc("2.05", "3.1")
+        own = float(turn) / function.power - float(mpmath.arg(closed(t) / closed(s)))
+        per_power = float(mpmath.arg(t / s))
+        assert own / per_power == pytest.approx(round(own / per_power), abs=1e-6)
+
+
+def test_a_ball_that_holds_a_root_turns_anywhere():
+    off, _ = function_of(DELAY_LOOP).turn_of_exponentials(acb(arb(0, 9), arb(0, 9)), acb(0), acb(1), BITS)
+    assert off > 1.5
+
+
+@pytest.mark.parametrize(
+    ("text", "is_even"),
+    [
+        (ROD, True),
+        (FREE, True),
+        (SLIDING_FREE, True),
+        (ON_A_FOUNDATION, True),
+        (DELAY_LOOP, False),
+        (KELVIN_VOIGT, False),
+    ],
+)
+def test_without_losses_and_delays_roots_mirror_each_other_in_both_axes(text, is_even):
+    assert function_of(text).is_even is is_even
+
+
+@pytest.mark.parametrize(
+    ("text", "s", "reach"),
+    [(ROD, 7.0, 7.0), (DELAY_LOOP, 7.0, 3.5), (ON_A_FOUNDATION, 7.0, 50**0.5), (FREE, 8.0, 2.0)],
+)
+def test_the_largest_argument_of_a_kernel_is_known(text, s, reach):
+    # s l/c, s T, sqrt(s^2 + 1), sqrt(s/2)
+    function = function_of(text)
+    assert function.reach(s) == pytest.approx(reach)
+    assert function.frequency_of(reach) == pytest.approx(s)
+
+
+@pytest.mark.parametrize(
+    ("text", "z", "fastest"),
+    [(ROD, log(7) + 1j, 7.0), (DELAY_LOOP, log(7) + 1j, 3.5), (ON_A_FOUNDATION, log(7) + 0j, 50**0.5)],
+)
+def test_the_fastest_exponent_is_known_on_every_ray(text, z, fastest):
+    assert function_of(text).fastest(z) == pytest.approx(fastest)
+
+
+def test_without_samples_in_doubles_the_largest_argument_of_a_kernel_stands_for_the_fastest():
+    class InBalls(KernelFunction):
+        in_doubles = None
+
+    source = bound(ROD)
+    assert InBalls(source, source.den).fastest(log(7) + 1j) == pytest.approx(7)
+
+
+@pytest.mark.parametrize("s", PLACES)
+def test_polynomials_in_kernels_are_evaluated_as_they_stand(s):
+    function = function_of(ROD)
+    with precision(BITS):
+        factors = [factor for factor, _ in function.part.factors]
+        plain = _KernelFactors(function._kernel_values(BITS), factors)
+        place = plain.at(acb(s))
+        for i, (value, _, _) in enumerate(function.enclosed(acb(s), BITS)):
+            assert (abs(plain.value(i, place)) - abs(value)).contains(0)
+            assert plain.value(i, place).rel_accuracy_bits() > 100
+
+
+def test_polynomials_in_kernels_keep_the_branch_of_a_place_nearby():
+    # sqrt(s^2) changes its sign on the imaginary axis.
+    function = function_of(ROD)
+    (name,) = function.bound.kernels.wavenumbers
+    with precision(BITS):
+        plain = _KernelFactors(function._kernel_values(BITS), [])
+        around = plain.at(acb(arb(0, 0.1), 3))
+        right, left = (plain.at(acb(re, 3), around).values[name] for re in (0.05, -0.05))
+        assert abs(abs(right - left) - 0.1) < 1e-15
+
+
+def kernels_of(text):
+    """Return a function with kernels, what makes a product of a polynomial in these, and their names."""
+    source = bound(text)
+    ring = source.ratio.ring
+    names = {k.function: ring.generator(k.generator) for k in source.kernels.kernels}
+    return source, lambda polynomial: Factored.polynomial(ring, polynomial), names
+
+
+def test_what_is_0_everywhere_has_no_roots_to_look_for():
+    source, product, names = kernels_of(ROD)
+    with pytest.raises(ModelError) as failed:
+        KernelFunction(source, product(names["cosh"] ** 2 - names["sinh"] ** 2 - 1))
+    (diagnostic,) = failed.value.diagnostics
+    assert diagnostic.code == "SF231"
+    assert diagnostic.message == "a part of X/F is 0/0 or 0 at every s for these values"
+    assert diagnostic.hint == "a rigid or massless limit has its own equations"
+
+
+@pytest.mark.parametrize("text", [ROD, SLIDING_FREE])
+def test_what_depends_on_the_branch_of_a_wavenumber_is_no_function(text):
+    # cosh(x) + sinh(x), where x may be -x.
+    source, product, names = kernels_of(text)
+    with pytest.raises(UncertifiedError) as failed:
+        KernelFunction(source, product(names["cosh"] + names["sinh"]))
+    (diagnostic,) = failed.value.diagnostics
+    assert diagnostic.code == "SF404"
+    assert diagnostic.message == f"a part of {source.name} has no value of its own for every s"
+
+
+@pytest.mark.parametrize(
+    ("text", "make", "closed"),
+    [
+        (ROD, lambda cosh, sinh: sinh, lambda s: mpmath.sinh(s) / s),
+        (ROD, lambda cosh, sinh: cosh * sinh**3, lambda s: mpmath.cosh(s) * mpmath.sinh(s) ** 3 / s),
+        (ROD, lambda cosh, sinh: cosh * sinh**2, lambda s: mpmath.cosh(s) * mpmath.sinh(s) ** 2),
+        # of q = sqrt(s/2), which may be turned by 90 degrees
+        (
+            SLIDING_FREE,
+            lambda cosh, sinh, cos, sin: sinh * sin,
+            lambda s: mpmath.sinh(mpmath.sqrt(s / 2)) * mpmath.sin(mpmath.sqrt(s / 2)) / (s / 2),
+        ),
+        (
+            SLIDING_FREE,
+            lambda cosh, sinh, cos, sin: cosh * sin + sinh * cos,
+            lambda s: (
+                (
+                    mpmath.cosh(mpmath.sqrt(s / 2)) * mpmath.sin(mpmath.sqrt(s / 2))
+                    + mpmath.sinh(mpmath.sqrt(s / 2)) * mpmath.cos(mpmath.sqrt(s / 2))
+                )
+                / mpmath.sqrt(s / 2)
+            ),
+        ),
+        (
+            SLIDING_FREE,
+            lambda cosh, sinh, cos, sin: cosh * cos,
+            lambda s: mpmath.cosh(mpmath.sqrt(s / 2)) * mpmath.cos(mpmath.sqrt(s / 2)),
+        ),
+    ],
+)
+def test_powers_of_wavenumbers_that_change_with_the_branch_are_divided_by(text, make, closed):
+    source, product, names = kernels_of(text)
+    function = KernelFunction(source, product(make(**names)))
+    assert function.power == 1
+    with mp.workdps(50):
+        for s in PLACES:
+            expected = closed(mpmath.mpmathify(s))
+            assert abs(number(function.value(acb(s), BITS)) - expected) < 1e-25 * abs(expected)
+
+
+def test_laws_of_waves_have_poles_where_a_lossy_beam_no_longer_resists():
+    # 1 + s/250 = 0
+    function = function_of(KELVIN_VOIGT)
+    assert function.is_analytic_on(acb(arb(-240, 9), arb(0, 9)), BITS)
+    assert not function.is_analytic_on(acb(arb(-240, 11), arb(0, 11)), BITS)
+
+
+def test_a_root_has_no_logarithm():
+    # cosh(s) of a rod without a tip, whose roots doubles do not know, and s of a loop without delay at 0.
+    source = bound(DELAY_LOOP)
+    s = source.ratio.ring.context.gen(0)
+    exact = KernelFunction(source, source.den * source.den.polynomial(source.ratio.ring, s - 3))
+    assert exact.at_point(acb(3)) is None
+    assert exact.at_point(acb(3.5)) is not None
+
+
+def test_simple_samples_count_every_root_once():
+    source = bound(DELAY_LOOP)
+    function = KernelFunction(source, source.den**3)
+    once = KernelFunction(source, source.den).at_logarithm(0.3 + 1j)
+    whole, simple = (function.at_logarithm(0.3 + 1j, is_simple=each) for each in (False, True))
+    assert whole.slope == pytest.approx(3 * once.slope)
+    assert simple.slope == pytest.approx(once.slope)
+    assert simple.log.real == pytest.approx(once.log.real)
+
+
+def test_work_grows_with_every_value_and_with_their_precision():
+    function = function_of(ROD)
+    steps = []
+    for bits in (64, 128, 1280):
+        before = function.work
+        function.value(acb(1), bits)
+        steps.append(function.work - before)
+    assert steps[0] == steps[1] > 0
+    assert steps[2] == 10 * steps[1]
+
+
+def test_powers_of_s_are_even_or_odd_or_neither():
+    s = bound(ROD).ratio.ring.context.gen(0)
+    assert [_parity(p) for p in (s**2 + 1, s**3 - s, s + 1, s**0 * 5)] == [0, 1, None, 0]
+
+
+@pytest.mark.parametrize(
+    ("coefficients", "size"),
+    [([acb(0), acb(-16)], 16), ([acb(27), acb(0), acb(0)], 3), ([acb(1), acb(100j)], 100)],
+)
+def test_the_largest_root_is_about_as_large_as_a_coefficients_root(coefficients, size):
+    # The coefficient of the power order - k, to the power 1/k.
+    assert float(_spectral_size(coefficients).real) == pytest.approx(size)
+
+
+def test_factors_are_those_with_kernels_and_those_with_s_alone():
+    source = bound(DELAY_LOOP)
+    ring, table = source.ratio.ring, source.kernels
+    s, decay = ring.context.gen(0), ring.generator(table.kernels[0].generator)
+    value = source.den.polynomial(ring, s + 5) ** 2
+    mixed = source.den.polynomial(ring, s - decay)
+    alone = source.den.polynomial(ring, decay)
+    plain, found = split_off_kernels(value * mixed * alone, table)
+    assert [(str(f), e) for f, e in plain.factors] == [(str(f), e) for f, e in value.factors]
+    assert [(str(f), e) for f, e in found.factors] == [(str(f), e) for f, e in mixed.factors]
+    assert [has_kernels(each, table) for each in (value, mixed, alone)] == [False, True, True]
+    # Of a denominator there are no roots.
+    assert not has_kernels(mixed**-1, table)
+
+
+# Pinned, E = I = rho = A = l = G = 1 and kappa = 1/2: 2 w^4 - (1 + 3 k^2) w^2 + k^4 = 0 with k = n pi.
+TIMOSHENKO = """
+symflex = 1
+[elements.arm]
+type = "beam"
+between = ["p", "q"]
+theory = "timoshenko"
+E = "1 N/m^2"
+I = "1 m^4"
+rho = "1 kg/m^3"
+A = "1 m^2"
+l = "1 m"
+G = "1 N/m^2"
+kappa = 0.5
+[elements]
+near = { type = "pin", at = "p" }
+far = { type = "pin", at = "q" }
+[inputs]
+M = { torque = "p.theta" }
+[outputs]
+angle = "p.theta"
+"""
+
+
+@pytest.mark.parametrize("n", [1, 2])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_of_two_wavenumbers_either_may_be_the_first(n, sign):
+    function = function_of(TIMOSHENKO)
+    k = n * mp.pi
+    with mp.workdps(40):
+        b = 1 + 3 * k**2
+        w = mpmath.sqrt((b + sign * mpmath.sqrt(b * b - 8 * k**4)) / 4)
+        here, beside = (
+            abs(number(function.value(acb(0, arb(mp.nstr(w * scale, 30))), 300))) for scale in (1, 1 + 1e-6)
+        )
+    assert here < 1e-6 * beside

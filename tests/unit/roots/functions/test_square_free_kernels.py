@@ -1,0 +1,101 @@
+"""Squares hidden in polynomials in kernels: found with their multiplicities, and nothing else changed."""
+
+from __future__ import annotations
+
+import pytest
+from flint import acb
+
+from symflex.algebra import Factored
+from symflex.roots.functions import square_free_kernels
+from symflex.roots.functions.square_free_kernels import without_squares
+from symflex.roots.precision import precision
+from tests.unit.roots.distributed_models import DELAY_LOOP, ROD, SLIDING_FREE, bound
+
+PLACES = [0.7, 2 + 3j, 1 + 8j]
+
+
+def product_of(text, make):
+    """Return a function, and a product of polynomials in its kernels, each given with its exponent."""
+    source = bound(text)
+    ring = source.ratio.ring
+    names = {k.function: ring.generator(k.generator) for k in source.kernels.kernels}
+    part = Factored.number(ring, 1)
+    for polynomial, exponent in make(s=ring.context.gen(0), **names):
+        part = part * Factored.polynomial(ring, polynomial) ** exponent
+    return source, part
+
+
+SQUARES = {
+    # (cosh sinh)^2 with sinh of twice the half, 2 sinh(x/2)^2, 2 cosh(x/2)^2, once more squared
+    "sinh and cosh": (ROD, lambda s, cosh, sinh: [(cosh**4 - cosh**2, 1)], [2, 2, 2]),
+    "cosh - 1": (ROD, lambda s, cosh, sinh: [(cosh - 1, 1)], [2]),
+    "cosh + 1": (ROD, lambda s, cosh, sinh: [(cosh + 1, 2)], [4]),
+    "beside another": (ROD, lambda s, cosh, sinh: [(cosh - 1, 1), (cosh + s * sinh, 1)], [1, 2]),
+    "under it": (ROD, lambda s, cosh, sinh: [(cosh - 1, -1), (cosh + s * sinh, 3)], [-2, 3]),
+    # of the circular ones as well: 2 sin(x/2)^2, and both
+    "1 - cos": (SLIDING_FREE, lambda s, cosh, sinh, cos, sin: [(1 - cos, 1)], [2]),
+    "both": (SLIDING_FREE, lambda s, cosh, sinh, cos, sin: [((cosh - 1) * (1 + cos), 1)], [2, 2]),
+    "squared": (
+        SLIDING_FREE,
+        lambda s, cosh, sinh, cos, sin: [
+            (sinh**2 * cos**2 + 2 * sinh * cos * sin * cosh + sin**2 * cosh**2, 1)
+        ],
+        [2],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SQUARES)
+def test_squares_are_found_with_their_multiplicity(name):
+    text, make, exponents = SQUARES[name]
+    function, part = without_squares(*product_of(text, make))
+    kernels = [function.ratio.ring.index[g] for g in function.kernels.generators]
+    found = [e for f, e in part.factors if any(f.degrees()[i] for i in kernels)]
+    assert sorted(found) == exponents
+
+
+def value(function, part, s):
+    with precision(160):
+        constants = {name: evaluate() for name, evaluate in function.constants}
+        kernels = function.kernel_values(constants)
+        return kernels.value(part, kernels.at(acb(s)))
+
+
+@pytest.mark.parametrize("name", SQUARES)
+def test_the_product_keeps_its_values_but_for_one_number(name):
+    text, make, _ = SQUARES[name]
+    before = product_of(text, make)
+    after = without_squares(*before)
+    with precision(160):
+        ratios = [value(*after, s) / value(*before, s) for s in PLACES]
+        assert all((ratio / ratios[0] - 1).contains(0) for ratio in ratios)
+        assert all(ratio.rel_accuracy_bits() > 80 for ratio in ratios)
+
+
+@pytest.mark.parametrize(
+    ("text", "make"),
+    [
+        (ROD, lambda s, cosh, sinh: [(cosh + s * sinh, 1)]),
+        (ROD, lambda s, cosh, sinh: [(cosh + s * sinh, 2)]),
+        (ROD, lambda s, cosh, sinh: [(cosh, 2), (s, 1)]),
+        (DELAY_LOOP, lambda s, exp: [(s + 2 * exp, 1)]),
+    ],
+)
+def test_without_a_hidden_square_values_are_the_same(text, make):
+    source, part = product_of(text, make)
+    after = without_squares(source, part)
+    with precision(160):
+        assert all((value(source, part, s) - value(*after, s)).contains(0) for s in PLACES)
+
+
+def test_nothing_is_changed_where_no_square_is_hidden():
+    source, part = product_of(ROD, lambda s, cosh, sinh: [(cosh + s * sinh, 1)])
+    assert without_squares(source, part) == (source, part)
+
+
+@pytest.mark.parametrize(("most", "count"), [(3, [2]), (1, [1])])
+def test_squares_of_long_polynomials_are_not_sought(monkeypatch, most, count):
+    # cosh - 1 has two terms, (E - 1)^2 three.
+    monkeypatch.setattr(square_free_kernels, "MOST_TERMS", most)
+    _, part = without_squares(*product_of(ROD, lambda s, cosh, sinh: [(cosh - 1, 1)]))
+    assert [e for _, e in part.factors] == count

@@ -1,0 +1,175 @@
+"""Searches for the roots of polynomials that are broken off: what they return is proved, and is not all."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import count
+
+import pytest
+from flint import acb, arb, fmpz_poly
+
+from symflex.errors import BudgetError
+from symflex.roots import (
+    Band,
+    Budget,
+    Everything,
+    Mode,
+    Modes,
+    PolynomialInS,
+    RootProblem,
+    find_pole_zero_map,
+    find_polynomial_roots,
+    precision,
+)
+from symflex.roots.polynomials.singly import differs_from_zero, prove_singly
+from tests.unit.roots.root_problems import problem, problem_of
+
+DEGREE = 40
+CHEBYSHEV = fmpz_poly.chebyshev_t(DEGREE)
+NEVER = RootProblem(())
+
+
+def budget(calls):
+    """A budget that is over after so many looks at the clock."""
+    return Budget(calls, clock=count().__next__)
+
+
+def broken_off(polynomials, calls, digits=20):
+    """The roots found until then, ``None`` when the search ended before."""
+    try:
+        find_polynomial_roots(polynomials, digits, budget=budget(calls))
+    except BudgetError as error:
+        assert error.diagnostics[0].code == "SF506"
+        return error.found
+    return None
+
+
+def nodes():
+    """The roots of the Chebyshev polynomial, cos((k - 1/2) pi/n)."""
+    with precision(200):
+        return [((arb(k) - arb("0.5")) * arb.pi() / DEGREE).cos() for k in range(1, DEGREE + 1)]
+
+
+def holders(root, values):
+    with precision(200):
+        return [i for i, value in enumerate(values) if root.re.overlaps(value) and root.im.contains(0)]
+
+
+@pytest.mark.parametrize("calls", [20, 60, 100, 150, 200, 250])
+def test_every_root_of_a_search_broken_off_is_one(calls):
+    # T_n(s - 2): all roots real, none at 0 and no symmetry.
+    shifted = CHEBYSHEV(fmpz_poly([-2, 1]))
+    found = broken_off(problem_of(shifted), calls)
+    with precision(200):
+        values = [value + 2 for value in nodes()]
+    assert found is not None
+    held = [holders(root, values) for root in found]
+    assert all(len(each) == 1 for each in held)
+    assert len({each[0] for each in held}) == len(found)
+    assert all(root.certified and root.is_real and root.multiplicity == 1 for root in found)
+    assert all(root.re.rel_accuracy_bits() > 66 for root in found)
+
+
+def test_more_time_proves_more_roots():
+    polynomial = problem_of(CHEBYSHEV(fmpz_poly([-2, 1])))
+    numbers = [len(broken_off(polynomial, calls)) for calls in (10, 150, 250)]
+    assert numbers[0] == 0 < numbers[1] < numbers[2] < DEGREE
+
+
+def test_enough_time_finds_all():
+    polynomial = problem_of(CHEBYSHEV)
+    assert broken_off(polynomial, 100_000) is None
+    assert len(find_polynomial_roots(polynomial, 20, budget=budget(100_000))) == DEGREE
+
+
+def test_undamped_roots_of_a_search_broken_off_stay_on_the_axis():
+    # T_n(j s): s = -j cos(...), in s^2 for even n.
+    turned = fmpz_poly([int(c) * (1 if i % 4 == 0 else -1) for i, c in enumerate(CHEBYSHEV.coeffs())])
+    found = broken_off(problem_of(turned), 150)
+    assert 0 < len(found) < DEGREE
+    assert all(root.on_imaginary_axis and root.re == 0 for root in found)
+    with precision(200):
+        assert all(sum(bool(root.im.overlaps(value)) for value in nodes()) == 1 for root in found)
+
+
+@pytest.mark.parametrize("calls", range(10, 300, 29))
+def test_multiplicities_are_right_though_parts_are_missing(calls):
+    # s^3 (T_12(s - 2))^2 T_7(s - 4): roots at 0 three times, 12 double, 7 simple ones
+    double, simple = fmpz_poly.chebyshev_t(12), fmpz_poly.chebyshev_t(7)
+    product = double(fmpz_poly([-2, 1])) ** 2 * simple(fmpz_poly([-4, 1])) * fmpz_poly([0, 0, 0, 1])
+    found = broken_off(problem_of(product), calls)
+    assert found is None or all(root.certified for root in found)
+    for root in found or ():
+        assert root.multiplicity == (3 if root.is_zero else 2 if root.re < 3 else 1)
+
+
+def test_all_roots_are_kept_when_only_digits_are_missing():
+    # s^2 + e s + 1, e = 10^-80: the small real part takes a second, more precise round.
+    polynomial = problem(10**80, 1, 10**80)
+    partial = [found for calls in range(2, 200) if (found := broken_off(polynomial, calls, 30)) is not None]
+    upper, lower = partial[-1]
+    assert (upper.im > 0, lower.im < 0, upper.certified) == (True, True, True)
+    with precision(400):
+        exact = (1 - arb(10) ** -160 / 4).sqrt()
+        assert upper.im.overlaps(exact)
+        assert upper.re.overlaps(-(arb(10) ** -80) / 2)
+    assert any(found == () for found in partial)
+
+
+def test_what_a_map_lost_is_said():
+    poles = problem_of(CHEBYSHEV(fmpz_poly([-2, 1])))
+    result = find_pole_zero_map("y/u", poles, problem(4, 0, 1), Everything(), 20, budget=budget(250))
+    certificate = result.certificate
+    assert (certificate.counted, certificate.is_exceeded, certificate.code) == (42, True, "SF506")
+    assert 0 < certificate.found == len(result.poles) < DEGREE
+    assert result.zeros == ()
+
+
+def test_poles_are_complete_when_only_the_zeros_took_too_long():
+    zeros = problem_of(CHEBYSHEV(fmpz_poly([-2, 1])))
+    result = find_pole_zero_map("y/u", problem(4, 0, 1), zeros, Everything(), 20, budget=budget(250))
+    assert [root.decimal(3).im for root in result.poles] == ["2.00", "-2.00"]
+    assert 0 < len(result.zeros) < DEGREE
+
+
+def test_a_band_is_kept_to_in_a_search_broken_off():
+    poles = problem_of(CHEBYSHEV(fmpz_poly([-2, 1])))
+    band = Band(Fraction(0), Fraction(161, 1000))
+    result = find_pole_zero_map("y/u", poles, NEVER, band, 20, budget=budget(250))
+    assert 0 < len(result.poles) < result.certificate.found
+    assert all(root.re < 1.012 for root in result.poles)
+
+
+def test_which_mode_is_the_nth_is_not_known_where_some_are_missing():
+    poles = problem_of(CHEBYSHEV(fmpz_poly([-2, 1])))
+    result = find_pole_zero_map("y/u", poles, NEVER, Mode(2), 20, budget=budget(250))
+    assert result.poles == ()
+    assert result.certificate.found > 0
+
+
+def test_the_lowest_modes_found_are_shown():
+    poles = problem_of(CHEBYSHEV(fmpz_poly([-2, 1])))
+    result = find_pole_zero_map("y/u", poles, NEVER, Modes(2), 20, budget=budget(250))
+    assert len(result.poles) == 2
+    assert not result.certificate.certified
+
+
+def test_a_root_that_another_part_may_share_is_left_out():
+    polynomial = PolynomialInS.from_integers([-1, 1])
+    with precision(100):
+        boxes = [arb(1, 0.1), arb(2, 0.1)]
+    assert [differs_from_zero(polynomial, acb(box), 100) for box in boxes] == [False, True]
+
+
+def test_singles_of_close_roots_do_not_overlap():
+    # (s - 1)(s - 1 - 10^-30)(s - 3)
+    tiny = 10**30
+    f = fmpz_poly([-1, 1]) * fmpz_poly([-tiny - 1, tiny]) * fmpz_poly([-3, 1])
+    discs = list(
+        prove_singly(PolynomialInS.from_integers([int(c) for c in f.coeffs()]), 40, Budget(), in_square=False)
+    )
+    with precision(300):
+        roots = [arb(1), 1 + arb(10) ** -30, arb(3)]
+        held = [[i for i, r in enumerate(roots) if abs(r - d.centre.real) <= d.radius] for d in discs]
+    assert all(len(each) == 1 for each in held)
+    assert len({each[0] for each in held}) == len(discs)
