@@ -466,7 +466,7 @@ class BoundTransferFunction:
         ModelError
             SF235 for beams, rods and delays.
         """
-        from symflex.print.sympy.system import sympy_system
+        from symflex.print.sympy import sympy_system
 
         return sympy_system(self.bound)
 

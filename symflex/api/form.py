@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from symflex.expressions import Expression, Name
 from symflex.print.forms import PrintedForm
-from symflex.print.sympy.expression import symbols_of, to_sympy
+from symflex.print.sympy import symbols_of, to_sympy
 from symflex.print.text import form_text
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symflex.codegen.state_space.equations import StateEquations
-from symflex.print.sympy.expression import symbols_of, to_sympy
+from symflex.print.sympy import symbols_of, to_sympy
 from symflex.transfer.bind import read_values
 
 if TYPE_CHECKING:

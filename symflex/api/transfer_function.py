@@ -17,7 +17,7 @@ from symflex.errors.diagnostic import nearest
 from symflex.expressions import Name
 from symflex.print.forms import counts_of, hidden_expressions, print_form
 from symflex.print.json_format import derive_json
-from symflex.print.sympy.expression import symbols_of, to_sympy
+from symflex.print.sympy import symbols_of, to_sympy
 
 if TYPE_CHECKING:
     import sympy
@@ -150,7 +150,7 @@ class TransferFunction:
         BudgetError
             SF501 when numerator or denominator are too large to be multiplied out.
         """
-        from symflex.print.sympy.system import sympy_system
+        from symflex.print.sympy import sympy_system
 
         return sympy_system(self.exact)
 

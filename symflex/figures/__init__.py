@@ -26,7 +26,7 @@ from symflex.figures.style import DEFAULT_FONT, FONTS, family_of, paper_style
 from symflex.figures.sweep import draw_sweep
 from symflex.loops import closed_loop, loop_gain, require_arrival, trace_locus
 from symflex.model.analysis import FIGURE_KINDS
-from symflex.print.latex.column import checked_width
+from symflex.print.latex.page import checked_width
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Final
 from symflex.figures.axes import draw_zero_lines, set_round_ticks
 from symflex.figures.drawing import FREE
 from symflex.figures.labels import label_of_tf
-from symflex.figures.placement import Panel, text_width
-from symflex.figures.s_plane import RootMark, View, choose_view, leaving, marks_of
+from symflex.figures.s_plane import Panel, RootMark, View, choose_view, leaving, marks_of, text_width
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,

@@ -10,7 +10,7 @@ import re
 from typing import TYPE_CHECKING, Final, assert_never
 
 from symflex.print.latex import TEXT_WIDTH_MM, escape_text
-from symflex.print.latex.preamble import preamble
+from symflex.print.latex.page import preamble
 from symflex.print.latex.text import text_width
 from symflex.print.width import EM_MM
 from symflex.report.document import (

@@ -21,10 +21,10 @@ from symflex.report.document import (
     Side,
     Table,
     columns,
+    counted,
     text,
 )
 from symflex.report.facts import ModelFacts
-from symflex.report.numerals import counted
 from symflex.report.structure import PLACES
 
 if TYPE_CHECKING:

@@ -2,12 +2,14 @@
 
 Text in blocks is plain: the printers (:mod:`symflex.report.page`, :mod:`symflex.report.article`) escape all
 of it. Mathematics comes from the printers of :mod:`symflex.print`, in both languages, and is sound in them.
+Numbers and units are for people: real minus signs, powers of ten, dots between units.
 """
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from symflex.print.latex import latex_expression, model_labels
 from symflex.print.mathml import mathml_expression
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
     from symflex.expressions import Expression
     from symflex.model import Model
     from symflex.print.mathml import MathRow
+
 
 Verdict: TypeAlias = Literal["holds", "holds with a condition", "does not hold", "not examined"]
 Tone: TypeAlias = Literal["good", "fair", "bad", "quiet"]
@@ -163,3 +166,47 @@ def mathematics(expression: Expression, model: Model) -> Mathematics:
 def labelled(expression: Expression, labels: Mapping[str, str]) -> Mathematics:
     """Return an expression with given labels."""
     return Mathematics(mathml_expression(expression, labels), latex_expression(expression, labels))
+
+
+_RAISED: Final = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+_POWER: Final = re.compile(r"\^(-?[0-9]+)")
+
+
+def exponents(decimal: str) -> str:
+    """Return a decimal such as ``-1.5e-3`` as it is written by hand.
+
+    Examples
+    --------
+    >>> exponents("-1.5e-3"), exponents("0.25")
+    ('−1.5·10⁻³', '0.25')
+    """
+    mantissa, _, exponent = decimal.partition("e")
+    shown = mantissa.replace("-", "−")
+    return f"{shown}·10{exponent.translate(_RAISED)}" if exponent else shown
+
+
+def unit_text(unit: str) -> str:
+    """Return a unit, nothing for a pure number.
+
+    Examples
+    --------
+    >>> unit_text("kg*m^2"), unit_text("1")
+    ('kg·m²', '')
+    """
+    if unit == "1":
+        return ""
+    return _POWER.sub(lambda m: m[1].translate(_RAISED), unit).replace("*", "·")
+
+
+def counted(count: int, noun: str, plural: str = "") -> str:
+    """Return a number of things.
+
+    Examples
+    --------
+    >>> counted(1, "pole"), counted(0, "zero"), counted(3, "zero")
+    ('1 pole', 'no zeros', '3 zeros')
+    """
+    many = plural or f"{noun}s"
+    if not count:
+        return f"no {many}"
+    return f"{count} {noun if count == 1 else many}"

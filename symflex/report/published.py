@@ -1,16 +1,15 @@
-"""A report as files in a folder: page, article, its PDF where that can be made, figures, code and data."""
+"""A report as files in a folder, and nowhere else: page, article, its PDF where that can be made, data."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from datetime import UTC, date, datetime
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
-from symflex.errors import SymflexError
-from symflex.files.write import check_folder
+from symflex.errors import Diagnostic, SymflexError, UsageError
+from symflex.files.write import check_folder, write_atomically
 from symflex.report.article import report_article
-from symflex.report.folder import write_tree
 from symflex.report.page import report_page
 from symflex.report.pdf import HOW_TO, compile_pdf, has_compiler
 from symflex.report.report import (
@@ -23,7 +22,7 @@ from symflex.report.report import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from symflex.options import ReportOptions
     from symflex.report.report import Report
@@ -95,3 +94,41 @@ def _epoch(shown: str) -> int:
     """Return the seconds since 1970 of the day printed, for the file's own metadata."""
     day = date.fromisoformat(shown) if shown else date(1970, 1, 2)
     return int(datetime(day.year, day.month, day.day, tzinfo=UTC).timestamp())
+
+
+def write_tree(folder: Path, files: Mapping[str, bytes]) -> None:
+    """Write files into a folder and its subfolders, which are made when they are missing.
+
+    ``folder`` may be a symbolic link, its subfolders not; ``files`` are contents by relative path, ``/``
+    between names. Raises ValueError for a path that leads elsewhere; UsageError: SF903 when something cannot
+    be written, or a subfolder is a symbolic link.
+    """
+    for name in files:
+        path = PurePosixPath(name)
+        if path.is_absolute() or not path.parts or "\\" in name or "\0" in name or ".." in path.parts:
+            message = f"{name!r} leads out of the folder"
+            raise ValueError(message)
+    made: set[Path] = set()
+    for name, content in files.items():
+        target = Path(folder, *PurePosixPath(name).parts)
+        for parent in (folder, *(p for p in reversed(target.parents) if folder in p.parents)):
+            if parent not in made:
+                _make(parent, is_root=parent == folder)
+                made.add(parent)
+        write_atomically(target, content)
+
+
+def _make(folder: Path, *, is_root: bool) -> None:
+    name = str(folder)
+    try:
+        if not is_root and folder.is_symlink():
+            raise _unwritable(name, "it is a symbolic link, and links are not written through")
+        folder.mkdir(parents=is_root, exist_ok=True)
+    except OSError as error:
+        raise _unwritable(name, error.strerror or "input/output error") from None
+    except ValueError:
+        raise _unwritable(name, "the name holds a character no folder can have") from None
+
+
+def _unwritable(name: str, reason: str) -> UsageError:
+    return UsageError(Diagnostic("SF903", f"cannot write into '{name}': {reason}"))

@@ -28,8 +28,7 @@ from symflex.report.chapter import Chapter, chapter_of, failed_chapter
 from symflex.report.claims import CLAIMS, claim_section, is_claims, publication_of, read_claims
 from symflex.report.claims.section import claims_json, judge_all
 from symflex.report.comparison import comparison_section
-from symflex.report.document import Badge, Code, PageLink, Section, Table, columns, text
-from symflex.report.numerals import counted
+from symflex.report.document import Badge, Code, PageLink, Section, Table, columns, counted, text
 from symflex.report.sections.roots import stability_mark
 from symflex.report.study import Study, attempt
 from symflex.sweep.executors import end_with_parent

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Final, TypeVar
 
+import numpy as np
+
 from symflex import pipeline
 from symflex.analysis.response import adaptive_grid, default_band, respond
 from symflex.budget import entered_budget
@@ -14,13 +16,14 @@ from symflex.loops import find_stable_gains
 from symflex.model import with_numbers
 from symflex.options import ColocationOptions
 from symflex.print.forms import print_forms
-from symflex.report.data_comparison import compared
 from symflex.report.facts import facts_of
 from symflex.report.limits import rigid_counts, undamped_counts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from pathlib import Path
+
+    import numpy.typing as npt
 
     from symflex.analysis.explanation import ZeroExplanation
     from symflex.analysis.rational import RationalApproximation
@@ -30,11 +33,11 @@ if TYPE_CHECKING:
     from symflex.loops import DynamicColocation, Loop, StabilityMap
     from symflex.model import Model
     from symflex.print.forms import PrintedForm
-    from symflex.report.data_comparison import DataComparison
     from symflex.report.facts import ModelFacts
     from symflex.report.limits import Counts, RigidCounts
     from symflex.roots import PoleZeroMap
     from symflex.transfer import BoundTransferFunction, TransferFunction
+
 
 MOST_FUNCTIONS: Final = 24
 """Transfer functions of one model that a report shows; the number of those it leaves out is said."""
@@ -276,3 +279,23 @@ def attempt(compute: Callable[[], T]) -> T | SymflexError:
 def said(error: SymflexError) -> str:
     """Return the messages of an error in one line."""
     return "; ".join(d.message for d in error.diagnostics)
+
+
+@dataclass(frozen=True, eq=False)
+class DataComparison:
+    """What a model says on the lines of a measurement."""
+
+    measured: MeasuredResponse  # with n lines
+    model: npt.NDArray[np.complex128]  # shape (n,): The transfer function there
+    unit: str  # its unit
+    # decibels and degrees: root mean squares of the differences of magnitude and phase over the lines, all
+    # alike.
+    decibels: float
+    degrees: float
+
+
+def compared(measured: MeasuredResponse, bound: BoundTransferFunction) -> DataComparison:
+    """Return a comparison with the values of the data as they stand, windows and sensors included."""
+    model = np.asarray(respond(bound, measured.omega).values, np.complex128)
+    unit = bound.source.unit
+    return DataComparison(measured, model, unit, measured.misfit_db(model), measured.misfit_degrees(model))

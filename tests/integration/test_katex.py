@@ -15,7 +15,7 @@ import pytest
 from symflex import pipeline
 from symflex.errors import SymflexError
 from symflex.print.forms import print_form
-from symflex.print.forms.usage import forms_of
+from symflex.print.forms.printed import forms_of
 from symflex.print.latex import inline_latex, notebook_latex, transfer_function_latex
 from tests.conftest import REASON
 from tests.house.repository import specifications

@@ -28,7 +28,7 @@ from symflex.expressions import (
 from symflex.model import load_model
 from symflex.model.spec import read
 from symflex.print.forms import PrintedForm, print_form
-from symflex.print.forms.usage import forms_of
+from symflex.print.forms.printed import forms_of
 from symflex.print.latex import latex_document, latex_expression, latex_fragment
 from symflex.print.latex.expression import Writer
 from symflex.roots.locate import locate

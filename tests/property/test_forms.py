@@ -9,7 +9,7 @@ from symflex import pipeline
 from symflex.algebra import degree_in
 from symflex.expressions import format_expression
 from symflex.print.forms import hidden_expressions, print_form
-from symflex.print.forms.usage import RATIONAL
+from symflex.print.forms.printed import RATIONAL
 from tests.contract.exact import Point, read, value_of
 from tests.property.networks import networks, to_toml
 

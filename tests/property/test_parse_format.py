@@ -20,7 +20,7 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.print.forms import hidden_expressions, print_form
-from symflex.print.forms.usage import forms_of
+from symflex.print.forms.printed import forms_of
 from symflex.print.json_format import derive_json
 from tests.contract.exact import read
 from tests.house.repository import EACH_TIME, slow_ones, specifications

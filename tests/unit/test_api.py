@@ -14,7 +14,7 @@ import sympy
 import symflex
 from symflex.api import budget as api_budget
 from symflex.errors import BudgetError, UsageError
-from symflex.print.forms.usage import RATIONAL
+from symflex.print.forms.printed import RATIONAL
 from symflex.roots import Budget
 from symflex.roots.counting import winding
 from tests.unit.roots.distributed_models import DELAY_LOOP, ROD, SLIDING_FREE

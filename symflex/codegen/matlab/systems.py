@@ -15,8 +15,7 @@ from symflex.codegen.module_text import FORMULA_TERMS
 from symflex.codegen.program import identifiers, wrapped
 from symflex.expressions import Name, format_expression, number, substitute, sum_of
 from symflex.print.forms.arrange import Arranger, coefficients
-from symflex.print.forms.names import constant_symbols
-from symflex.print.forms.notation import plain_printer
+from symflex.print.forms.notation import constant_symbols, plain_printer
 from symflex.transfer import TransferFunction
 
 if TYPE_CHECKING:

@@ -17,8 +17,7 @@ from symflex.print.forms.kept import with_definitions
 from symflex.print.forms.krylov import krylov_form
 from symflex.print.forms.nested import nested_form, step_names
 from symflex.print.forms.polynomial import constant_form, factored_form, monic_form, polynomial_form
-from symflex.print.forms.printed import Arrange, PrintedForm
-from symflex.print.forms.usage import counts_of, forms_of
+from symflex.print.forms.printed import Arrange, PrintedForm, counts_of, forms_of
 from symflex.print.forms.vaughan import vaughan_form
 from symflex.print.forms.zpk import zpk_form
 from symflex.transfer import NestedTransferFunction

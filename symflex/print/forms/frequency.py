@@ -27,11 +27,11 @@ from symflex.print.forms.arrange import Arranger
 from symflex.print.forms.economical import LARGE, angle_doubled, is_half
 from symflex.print.forms.invariants import IMAGINARY, in_krylov_functions, krylov_name
 from symflex.print.forms.kept import KeptDefinitions
-from symflex.print.forms.names import constant_symbols
 from symflex.print.forms.notation import (
     Line,
     Naming,
     angles_of,
+    constant_symbols,
     pair_coefficients,
     pair_root,
     plain_printer,
@@ -39,9 +39,8 @@ from symflex.print.forms.notation import (
     speed_squared,
     wave_times_length,
 )
-from symflex.print.forms.printed import PrintedForm
+from symflex.print.forms.printed import PrintedForm, require_formula
 from symflex.print.forms.products import ProductPrinter, shortest_sides
-from symflex.print.forms.usage import require_formula
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly

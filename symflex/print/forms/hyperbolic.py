@@ -6,11 +6,9 @@ from typing import TYPE_CHECKING
 
 from symflex.print.forms.arrange import Arranger
 from symflex.print.forms.kept import KeptDefinitions
-from symflex.print.forms.names import constant_symbols
-from symflex.print.forms.notation import Naming, Notation, notation_of, wavenumber_laws
-from symflex.print.forms.printed import PrintedForm
+from symflex.print.forms.notation import Naming, Notation, constant_symbols, notation_of, wavenumber_laws
+from symflex.print.forms.printed import PrintedForm, require_kernels
 from symflex.print.forms.products import ProductPrinter, shortest_sides
-from symflex.print.forms.usage import require_kernels
 
 if TYPE_CHECKING:
     from symflex.algebra import Factored

@@ -10,17 +10,17 @@ from symflex.print.forms.arrange import Arranger
 from symflex.print.forms.hyperbolic import in_kernels
 from symflex.print.forms.invariants import Invariants, in_krylov_functions, krylov_name
 from symflex.print.forms.kept import KeptDefinitions
-from symflex.print.forms.names import constant_symbols, free_family
 from symflex.print.forms.notation import (
     Line,
     Naming,
+    constant_symbols,
+    free_family,
     notation_of,
     reachable,
     wavenumber_laws,
 )
-from symflex.print.forms.printed import PrintedForm
+from symflex.print.forms.printed import PrintedForm, require_kernels
 from symflex.print.forms.products import ProductPrinter, shortest_sides
-from symflex.print.forms.usage import require_kernels
 
 if TYPE_CHECKING:
     from symflex.print.forms.notation import Angle

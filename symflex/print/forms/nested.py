@@ -15,7 +15,7 @@ from symflex.algebra import LAPLACE
 from symflex.budget import spend
 from symflex.equations.elimination import ONE, Step
 from symflex.expressions import Expression, Name, Negative, Number, Power, Product, Quotient, Sum, number
-from symflex.print.forms.names import names_of
+from symflex.print.forms.notation import names_of
 from symflex.print.forms.printed import PrintedForm
 
 if TYPE_CHECKING:

@@ -11,9 +11,8 @@ from symflex.print.forms.arrange import Arranger, coefficients
 from symflex.print.forms.hyperbolic import collected_form, in_kernels
 from symflex.print.forms.irreducible import irreducible_kernels
 from symflex.print.forms.kept import KeptDefinitions
-from symflex.print.forms.names import constant_symbols
-from symflex.print.forms.printed import PrintedForm
-from symflex.print.forms.usage import require_rational
+from symflex.print.forms.notation import constant_symbols
+from symflex.print.forms.printed import PrintedForm, require_rational
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

@@ -26,11 +26,11 @@ from symflex.expressions import (
 )
 from symflex.print.forms.arrange import Arranger
 from symflex.print.forms.kept import KeptDefinitions
-from symflex.print.forms.names import constant_symbols
 from symflex.print.forms.notation import (
     Line,
     Naming,
     angles_of,
+    constant_symbols,
     other_kernels,
     plain_printer,
     reachable,
@@ -40,9 +40,8 @@ from symflex.print.forms.notation import (
     wave_times_length,
     wavenumber_laws,
 )
-from symflex.print.forms.printed import PrintedForm
+from symflex.print.forms.printed import PrintedForm, require_formula, require_kernels
 from symflex.print.forms.products import ProductPrinter, Sides, length
-from symflex.print.forms.usage import require_formula, require_kernels
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly

@@ -9,8 +9,7 @@ from flint import arb, fmpz
 
 from symflex.algebra import LAPLACE
 from symflex.expressions import Expression, Name, number, power, product_of, sum_of
-from symflex.print.forms.printed import PrintedForm
-from symflex.print.forms.usage import require_rational
+from symflex.print.forms.printed import PrintedForm, require_rational
 from symflex.transfer import EnclosedTransferFunction, bind
 
 if TYPE_CHECKING:

@@ -1,7 +1,6 @@
 """LaTeX: expressions, equations that fit the column, tables, documents that compile without warnings."""
 
 from symflex.print.label import label_of
-from symflex.print.latex.column import COLUMNS_MM, column_width
 from symflex.print.latex.document import (
     DOCUMENT,
     TEXT_WIDTH_MM,
@@ -21,6 +20,7 @@ from symflex.print.latex.equation import (
     transfer_function_latex,
 )
 from symflex.print.latex.expression import latex_expression
+from symflex.print.latex.page import COLUMNS_MM, column_width
 from symflex.print.latex.table import mode_table, parameter_table, root_table
 from symflex.print.latex.text import escape_text
 

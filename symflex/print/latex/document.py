@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, Final
 from symflex.algebra import LAPLACE
 from symflex.errors import Diagnostic, UsageError
 from symflex.print.forms import counts_of, with_hidden
-from symflex.print.latex.column import COLUMNS_MM
 from symflex.print.latex.equation import equation_label, form_labels, ratio_latex, transfer_function_latex
 from symflex.print.latex.expression import Writer
-from symflex.print.latex.preamble import preamble
+from symflex.print.latex.page import COLUMNS_MM, preamble
 from symflex.print.latex.table import (
     KINDS,
     VALUE_DIGITS,

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Final
 from symflex.algebra import LAPLACE
 from symflex.expressions import Call, Derivative, Expression, Name, Negative, is_number, names, number
 from symflex.print.label import labels_of, symbol
-from symflex.print.latex.column import NARROWEST_MM
 from symflex.print.latex.expression import Writer
 from symflex.print.latex.lines import break_lines
+from symflex.print.latex.page import NARROWEST_MM
 from symflex.print.width import EM_MM, FRACTION_EDGES, MINUS, QUAD, RELATION
 from symflex.print.writer import ExpressionWriter, Style, Written
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Final
 from flint import arb
 
 from symflex.print.label import symbol
-from symflex.print.latex.column import COLUMNS_MM
 from symflex.print.latex.equation import model_labels
+from symflex.print.latex.page import COLUMNS_MM
 from symflex.print.latex.tabular import (
     SETTINGS,
     Setting,

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.expressions import Call, Derivative, Name, is_number, names, number
 from symflex.print.latex.equation import form_labels, free_names, split_sign, varying_names
-from symflex.print.mathml.element import identifier, operator, row
+from symflex.print.mathml.element import identifier, label_mathml, operator, row
 from symflex.print.mathml.expression import MathmlWriter
-from symflex.print.mathml.label import label_mathml
 from symflex.print.writer import Style
 
 if TYPE_CHECKING:

@@ -17,11 +17,11 @@ from symflex.print.mathml.element import (
     fence,
     fence_signs,
     identifier,
+    label_mathml,
     numeral,
     operator,
     row,
 )
-from symflex.print.mathml.label import label_mathml
 from symflex.print.width import NOTHING, Width
 from symflex.print.writer import (
     MOST_PRIMES,

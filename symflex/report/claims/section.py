@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, Final, Literal
 
-from symflex.report.document import Aside, Badge, Section, Table, columns, text
-from symflex.report.numerals import counted
+from symflex.report.document import Aside, Badge, Section, Table, columns, counted, text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -2,14 +2,12 @@
 
 from symflex.report.part import SectionMaker
 from symflex.report.sections.audits import audit_section
-from symflex.report.sections.data import data_section
 from symflex.report.sections.equations import equation_section
 from symflex.report.sections.exports import export_section
-from symflex.report.sections.figures import figure_section
+from symflex.report.sections.figures import data_section, figure_section
 from symflex.report.sections.loops import loop_section
-from symflex.report.sections.parameters import parameter_section
 from symflex.report.sections.roots import root_section
-from symflex.report.sections.specification import specification_section
+from symflex.report.sections.specification import parameter_section, specification_section
 
 SECTIONS: dict[str, SectionMaker] = {
     "parameters": parameter_section,

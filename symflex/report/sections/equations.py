@@ -9,8 +9,17 @@ from symflex.print.forms import counts_of, with_hidden
 from symflex.print.json_format import derive_document
 from symflex.print.latex import TEXT_WIDTH_MM, form_labels, ratio_latex, transfer_function_latex
 from symflex.print.mathml import ratio_mathml, transfer_function_mathml
-from symflex.report.document import Code, DisplayedFormula, Mathematics, Notice, Section, labelled, text
-from symflex.report.numerals import counted, unit_text
+from symflex.report.document import (
+    Code,
+    DisplayedFormula,
+    Mathematics,
+    Notice,
+    Section,
+    counted,
+    labelled,
+    text,
+    unit_text,
+)
 from symflex.report.part import ChapterPart
 from symflex.report.study import MOST_FUNCTIONS
 

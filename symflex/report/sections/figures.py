@@ -1,4 +1,4 @@
-"""The figures a specification asks for, or a Bode plot and a pole-zero array where it asks for none."""
+"""Figures that the specification asks for, and measured responses with the model over them."""
 
 from __future__ import annotations
 
@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING, Final
 from symflex.errors import Diagnostic, SymflexError, UncertifiedError
 from symflex.figures import FIGURES, LOOP_FIGURES, draw, draw_loop, draw_measured, unavailable
 from symflex.model import Figure
-from symflex.report.document import Notice
+from symflex.report.document import Code, Notice, text
 from symflex.report.part import ChapterPart, code_of, picture
 from symflex.report.study import attempt
 
 if TYPE_CHECKING:
     from symflex.report.document import Block, PageFigure
-    from symflex.report.study import Study
+    from symflex.report.study import DataComparison, Study
     from symflex.transfer import BoundTransferFunction
+
 
 MOST_CURVES: Final = 4
 WORDS: Final = {"bode": "Bode plot", "poles_zeros": "Poles and zeros", "modes": "Mode shapes"}
@@ -86,3 +87,33 @@ def _picture(
     drawn = draw(figure.kind, [b.source for b in chosen], chosen, band_hz=figure.band)
     caption += f"{WORDS.get(figure.kind, figure.kind)} of {', '.join(b.name for b in chosen)}."
     return picture(f"{study.stem}_{figure.name}", drawn, caption, files)
+
+
+def data_section(study: Study) -> ChapterPart | None:
+    """Return every measured response that a transfer function of the model is named like."""
+    blocks: list[Block] = []
+    files: dict[str, bytes] = {}
+    shown = {"/".join(pair) for figure in study.model.figures if figure.has_data for pair in figure.of}
+    for i, found in enumerate(study.comparisons):
+        measured = found.measured
+        if measured.name not in shown:
+            drawn = draw_measured(measured, found.model, found.unit)
+            kind = "SYNTHETIC data, computed and not measured," if measured.is_synthetic else "measured data"
+            caption = f"{measured.name}: the model over {kind} of {measured.values.size} lines."
+            blocks.append(picture(f"{study.stem}_data_{i + 1}", drawn, caption, files))
+        band = f"{measured.frequency_hz[0]:.4g} to {measured.frequency_hz[-1]:.4g} Hz"
+        misfit = f"{found.decibels:.3g} dB and {found.degrees:.3g} degrees rms"
+        blocks.append(
+            text(
+                "From ",
+                band,
+                ", ",
+                Code(measured.name),
+                f" is off {_kind(found)} by {misfit}, all lines alike.",
+            )
+        )
+    return ChapterPart("Data", tuple(blocks), files) if blocks else None
+
+
+def _kind(found: DataComparison) -> str:
+    return "the synthetic data" if found.measured.is_synthetic else "the measured data"

@@ -10,8 +10,7 @@ from symflex.errors import SymflexError
 from symflex.print.latex import ratio_latex, root_table
 from symflex.print.latex.table import KINDS, damping_text, frequency_text, one_of_each_pair, roots_of
 from symflex.print.text import region_text
-from symflex.report.document import Badge, Mathematics, Notice, Section, Table, columns, text
-from symflex.report.numerals import exponents
+from symflex.report.document import Badge, Mathematics, Notice, Section, Table, columns, exponents, text
 from symflex.report.part import ChapterPart, code_of
 from symflex.report.sections.equations import ratio_line
 from symflex.report.study import attempt, said

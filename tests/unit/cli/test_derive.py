@@ -5,7 +5,7 @@ from math import gcd
 import pytest
 
 from symflex import pipeline
-from symflex.print.forms.usage import RATIONAL, forms_of
+from symflex.print.forms.printed import RATIONAL, forms_of
 from tests.contract.exact import read
 from tests.house.repository import in_turns
 from tests.unit.cli.commands import DERIVATIONS, TWO_MASS

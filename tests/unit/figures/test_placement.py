@@ -6,8 +6,7 @@ import pytest
 
 from symflex import pipeline
 from symflex.figures import draw
-from symflex.figures.placement import Panel
-from symflex.figures.s_plane import View
+from symflex.figures.s_plane import Panel, View
 
 SQUARE = View((-10.0, 10.0), (-10.0, 10.0), frozenset())
 

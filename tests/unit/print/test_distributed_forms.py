@@ -21,10 +21,10 @@ from symflex.expressions import (
     format_expression,
 )
 from symflex.print.forms import FORMS, hidden_expressions, print_form, with_hidden
-from symflex.print.forms.usage import forms_of
+from symflex.print.forms.printed import forms_of
 from symflex.print.json_format import derive_json
 from symflex.print.latex import transfer_function_latex
-from symflex.print.sympy.expression import to_sympy
+from symflex.print.sympy import to_sympy
 from symflex.print.text import derive_text, form_text
 from tests.contract.exact import read
 from tests.house.repository import slow_ones

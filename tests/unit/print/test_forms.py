@@ -14,7 +14,7 @@ from symflex import pipeline
 from symflex.errors import ModelError
 from symflex.expressions import format_expression
 from symflex.print.forms import hidden_expressions, print_form
-from symflex.print.forms.usage import RATIONAL
+from symflex.print.forms.printed import RATIONAL
 from symflex.print.json_format import derive_json
 from symflex.print.text import derive_text
 from tests.contract.exact import Point, read, value_of
@@ -237,7 +237,7 @@ def test_a_function_of_constants_prints_as_it_was_written():
 PROGRAM = """
 from symflex import pipeline
 from symflex.print.forms import print_form
-from symflex.print.forms.usage import forms_of
+from symflex.print.forms.printed import forms_of
 from symflex.expressions import format_expression
 for tf in pipeline.derive_all(pipeline.load("derivations/eppinger1988/lumped_bending_beam.toml")):
     for name in (*forms_of(tf), None):

@@ -11,8 +11,7 @@ from flint import arb
 
 from symflex import pipeline
 from symflex.model import ModelParameter
-from symflex.print.html import bound_html, escape_html, model_html, roots_html
-from symflex.print.html.table import LONGEST, NUMBER, html_table
+from symflex.print.html import LONGEST, NUMBER, bound_html, escape_html, html_table, model_html, roots_html
 from symflex.roots import Certificate, Everything, HiddenRoot, PoleZeroMap, Root
 from tests.unit.codegen.test_numpy_hostile import HOSTILE
 

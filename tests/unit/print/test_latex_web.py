@@ -12,7 +12,7 @@ from symflex.algebra import FUNCTIONS
 from symflex.errors import SymflexError
 from symflex.model.labels import ALLOWED_COMMANDS
 from symflex.print.forms import print_form
-from symflex.print.forms.usage import forms_of
+from symflex.print.forms.printed import forms_of
 from symflex.print.latex import inline_latex, label_of, latex_fragment, notebook_latex
 from symflex.print.latex.equation import LONGEST_IN_NOTEBOOK
 from tests.house.repository import specifications

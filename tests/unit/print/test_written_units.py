@@ -6,7 +6,7 @@ import pytest
 
 from symflex import pipeline
 from symflex.codegen.exporters import EXPORTERS
-from symflex.print.html.model import model_html
+from symflex.print.html import model_html
 from symflex.print.latex import parameter_table
 
 SPEC = """

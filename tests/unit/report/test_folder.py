@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from symflex.errors import UsageError
-from symflex.report.folder import write_tree
+from symflex.report.published import write_tree
 
 
 def test_files_go_where_they_belong(tmp_path):

@@ -1,19 +1,27 @@
-"""Exact transfer functions for SymPy's control package.
-
-Input: a transfer function, with symbols or with numbers. Output: ``sympy.physics.control.TransferFunction``.
-"""
+"""Expressions and systems of SymPy, made only when a user asks for them."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 import sympy
-from sympy.physics.control import TransferFunction as SympyTransferFunction
 
 from symflex.algebra import LAPLACE
-from symflex.expressions import Name, substitute
+from symflex.expressions import (
+    FUNCTIONS,
+    Attribute,
+    Call,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+    substitute,
+)
 from symflex.model.units import exact_expression
-from symflex.print.sympy.expression import symbols_of, to_sympy
 from symflex.state_space import not_rational
 from symflex.transfer import BoundTransferFunction
 
@@ -21,12 +29,63 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from flint import fmpz_mpoly
+    from sympy.physics.control import TransferFunction as SympyTransferFunction
 
     from symflex.algebra import Factored
     from symflex.expressions import Expression
+    from symflex.model import Model
     from symflex.transfer import TransferFunction
 
-PI = "pi"
+
+def symbols_of(model: Model) -> dict[str, sympy.Symbol]:
+    """Return one SymPy symbol per parameter, with its assumption; others are made without any."""
+    assumptions = {
+        "positive": {"positive": True},
+        "nonnegative": {"nonnegative": True},
+        "real": {"real": True},
+    }
+    return {p.name: sympy.Symbol(p.name, **assumptions[p.assume]) for p in model.parameters}
+
+
+def to_sympy(expression: Expression, symbols: Mapping[str, sympy.Symbol]) -> sympy.Expr:
+    """Return an expression as a SymPy expression, in the same nesting.
+
+    A name that ``symbols`` lack becomes a plain symbol. A function of x that only a differential equation
+    determines becomes an undefined function, or its derivative at a point.
+
+    Examples
+    --------
+    >>> from symflex.expressions import Name, Sum
+    >>> to_sympy(Sum((Name("a"), Name("b"))), {})
+    a + b
+    """
+    match expression:
+        case Number(value):
+            return sympy.Rational(value.numerator, value.denominator)
+        case Name("pi"):
+            return sympy.pi
+        case Name(name):
+            return symbols[name] if name in symbols else sympy.Symbol(name)
+        case Attribute(owner, name):
+            return sympy.Symbol(f"{owner}.{name}")
+        case Negative(operand):
+            return -to_sympy(operand, symbols)
+        case Sum(terms):
+            return sympy.Add(*(to_sympy(t, symbols) for t in terms))
+        case Product(factors):
+            return sympy.Mul(*(to_sympy(f, symbols) for f in factors))
+        case Quotient(numerator, denominator):
+            return to_sympy(numerator, symbols) / to_sympy(denominator, symbols)
+        case Power(base, exponent):
+            return to_sympy(base, symbols) ** to_sympy(exponent, symbols)
+        case Call(name, argument) if name in FUNCTIONS:
+            return getattr(sympy, name)(to_sympy(argument, symbols))
+        case Call(name, argument, order):
+            point, x = to_sympy(argument, symbols), sympy.Dummy("x")
+            function = sympy.Function(name)
+            return sympy.Subs(function(x).diff(x, order), x, point) if order else function(point)
+    message = f"{type(expression).__name__} has no SymPy counterpart"
+    raise TypeError(message)
 
 
 def sympy_system(function: TransferFunction | BoundTransferFunction) -> SympyTransferFunction:
@@ -51,6 +110,8 @@ def sympy_system(function: TransferFunction | BoundTransferFunction) -> SympyTra
     >>> sympy_system(tf), sympy_system(pipeline.bind(tf))
     (TransferFunction(1, b + m*s, s), TransferFunction(10, 20*s + 1, s))
     """
+    from sympy.physics.control import TransferFunction as SympyTransferFunction  # takes a while
+
     if function.is_distributed:
         raise not_rational(function.name)
     numbers: dict[str, Expression] = {}
@@ -62,7 +123,7 @@ def sympy_system(function: TransferFunction | BoundTransferFunction) -> SympyTra
     symbols = symbols_of(source.model)
     s = to_sympy(Name(LAPLACE), symbols)
     images = {c.generator: to_sympy(substitute(c.expression, numbers), symbols) for c in source.constants}
-    images = {**symbols, LAPLACE: s, PI: sympy.pi, **images}
+    images = {**symbols, LAPLACE: s, "pi": sympy.pi, **images}
     ratio = function.ratio
     num, den = (_polynomial(part, images) for part in (ratio.numerator(), ratio.denominator()))
     return SympyTransferFunction(num, den, s)

@@ -1,11 +1,15 @@
-"""Widths of the columns that papers are set in."""
+"""The page that LaTeX sets: widths of papers' columns, and the preamble of a document of its own."""
 
 from __future__ import annotations
 
 import re
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from symflex.errors import Diagnostic, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
 
 COLUMNS_MM: Final = {"ieee": 88.5, "a4": 170.0}
 """A column of IEEE journals (252 points) and the text of a page of A4 with margins of 20 mm [mm]."""
@@ -46,3 +50,33 @@ def checked_width(width_mm: float) -> float:
         message = f"a column is from {NARROWEST_MM:g} to {WIDEST_MM:g} mm wide, found {width_mm:g} mm"
         raise UsageError(Diagnostic("SF902", message))
     return width_mm
+
+
+_JUSTIFIED_MM: Final = 120.0
+_MARGIN_MM: Final = 20.0
+_A4_MM: Final = 210.0
+
+_PREAMBLE: Final = r"""\documentclass[10pt,a4paper]{article}
+\usepackage[T1]{fontenc}
+\IfFileExists{lmodern.sty}{\usepackage{lmodern}}{}
+\IfFileExists{microtype.sty}{\usepackage{microtype}}{}
+\usepackage[%stextwidth=%gmm,textheight=245mm]{geometry}
+\usepackage{amsmath}
+\usepackage{array}
+\usepackage{booktabs}
+\usepackage{siunitx}
+\sisetup{per-mode=symbol}
+%s\raggedbottom%s"""
+
+
+def preamble(width_mm: float = COLUMNS_MM["a4"], packages: Sequence[str] = ()) -> str:
+    """Return everything before the document begins.
+
+    The text is ``width_mm`` wide, on a page of A4 where it has margins then.
+    """
+    needed = width_mm + 2 * _MARGIN_MM
+    paper = "" if needed <= _A4_MM else f"paperwidth={needed:g}mm,paperheight=297mm,"
+    # Justified lines of a narrow column would need hyphenation of every word in them.
+    ragged = "" if width_mm >= _JUSTIFIED_MM else "\n\\AtBeginDocument{\\raggedright}"
+    more = "".join(f"\\usepackage{{{package}}}\n" for package in packages)
+    return _PREAMBLE % (paper, width_mm, more, ragged)

@@ -1,0 +1,192 @@
+"""HTML for notebooks: a model, its numbers and roots. No text of a model becomes markup or mathematics."""
+
+from __future__ import annotations
+
+import html
+from typing import TYPE_CHECKING, Final
+
+from symflex.print.forms import print_form
+from symflex.print.latex import model_labels, notebook_latex
+from symflex.print.latex.table import damping_text, decimal_text, frequency_text, one_of_each_pair
+from symflex.print.text import region_text
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.model import Model, ModelParameter
+    from symflex.print.latex.table import PrintedRoot
+    from symflex.roots import PoleZeroMap
+    from symflex.transfer import BoundTransferFunction
+
+
+# MathJax and KaTeX look for mathematics within one text node: alone in a node, these begin none.
+_ALONE: Final = {"$": "<span>$</span>", "\\": "<span>\\</span>"}
+
+
+def escape_html(text: str) -> str:
+    r"""Return plain text as HTML that shows it as an element's content, whatever it holds.
+
+    White space becomes single spaces and what does not print vanishes, also what would turn the direction of
+    writing. Dollar signs and backslashes stand in elements of their own, so that no typesetter of a page
+    finds mathematics.
+
+    Examples
+    --------
+    >>> print(escape_html("<b>5 & 6</b>"), escape_html(r"\(x\)"))
+    &lt;b&gt;5 &amp; 6&lt;/b&gt; <span>\</span>(x<span>\</span>)
+    """
+    plain = "".join(c for c in " ".join(text.split()) if c.isprintable())
+    return "".join(_ALONE.get(c, html.escape(c)) for c in plain)
+
+
+TEXT: Final = "left"
+NUMBER: Final = "right"
+
+LONGEST: Final = 200
+"""Rows that are shown; the number of those that are not is said."""
+
+
+def html_table(
+    head: Sequence[str], columns: Sequence[str], rows: Sequence[Sequence[str]], caption: str = ""
+) -> str:
+    """Return a table.
+
+    Head, cells and caption are HTML; every column is :data:`TEXT` or :data:`NUMBER`.
+    """
+    lines = ["<table>"]
+    if caption:
+        lines.append(f'<caption style="text-align: left">{caption}</caption>')
+    lines.append(f"<thead>{_html_row('th', head, columns)}</thead>")
+    lines.append("<tbody>")
+    lines += [_html_row("td", row, columns) for row in rows[:LONGEST]]
+    if len(rows) > LONGEST:
+        text = f"and {len(rows) - LONGEST} more"
+        lines.append(f'<tr><td colspan="{len(head)}" style="text-align: left">{text}</td></tr>')
+    return "\n".join((*lines, "</tbody>", "</table>"))
+
+
+def _html_row(tag: str, cells: Sequence[str], columns: Sequence[str]) -> str:
+    written = [
+        f'<{tag} style="text-align: {side}">{cell}</{tag}>' for cell, side in zip(cells, columns, strict=True)
+    ]
+    return f"<tr>{''.join(written)}</tr>"
+
+
+LONGEST_TEXT: Final = 400
+MOST_FUNCTIONS: Final = 60
+
+
+def model_html(model: Model) -> str:
+    """Return a model as HTML; symbols of parameters are mathematics between dollar signs."""
+    title = _cut(model.title) or "Model without title"
+    lines = [f"<div><strong>{title}</strong>"]
+    if model.source:
+        lines.append(f"<div>{_cut(model.source)}</div>")
+    if model.parameters:
+        labels = model_labels(model)
+        rows = [
+            (
+                f"${escape_label(labels[p.name])}$",
+                f"<code>{escape_html(p.name)}</code>",
+                *_written(p),
+                _cut(p.doc),
+            )
+            for p in model.parameters
+        ]
+        head = ("Symbol", "Name", "Value", "Unit", "Meaning")
+        lines.append(html_table(head, (TEXT, TEXT, NUMBER, TEXT, TEXT), rows))
+    names = [f"<code>{escape_html('/'.join(pair))}</code>" for pair in model.transfer_functions]
+    more = f" and {len(names) - MOST_FUNCTIONS} more" if len(names) > MOST_FUNCTIONS else ""
+    if names:
+        lines.append(f"<div>Transfer functions: {', '.join(names[:MOST_FUNCTIONS])}{more}</div>")
+    return "\n".join((*lines, "</div>"))
+
+
+def escape_label(latex: str) -> str:
+    """Return a label, sound LaTeX already, as the text of an HTML element."""
+    return latex.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+
+
+def _written(parameter: ModelParameter) -> tuple[str, str]:
+    value, unit = parameter.as_written()
+    shown = "symbolic" if value is None else decimal_text(value)
+    return shown, escape_html("" if unit == "1" else unit)
+
+
+def _cut(text: str) -> str:
+    return escape_html(text if len(text) <= LONGEST_TEXT else f"{text[:LONGEST_TEXT]}\u2026")
+
+
+def bound_html(bound: BoundTransferFunction) -> str:
+    """Return a transfer function with numbers as HTML, in the shortest symbolic form."""
+    tf = bound.source
+    parameters = {p.name: p for p in tf.model.parameters}
+    labels = model_labels(tf.model)
+    formula = notebook_latex(tf, print_form(tf))
+    lines = [f"<div><div>{escape_html(bound.name)}, {escape_html(tf.quantity)}</div>"]
+    if formula is not None:
+        lines.append(f"<div>$\\displaystyle {escape_label(formula)}$</div>")
+    rows = [
+        (
+            f"${escape_label(labels[name])}$" if name in labels else "",
+            f"<code>{escape_html(name)}</code>",
+            decimal_text(value if shown is None else shown),
+            escape_html("" if unit == "1" else unit),
+        )
+        for name, value in bound.values
+        for shown, unit in (parameters[name].as_written(value) if name in parameters else (value, ""),)
+    ]
+    if rows:
+        lines.append(html_table(("Symbol", "Name", "Value", "Unit"), (TEXT, TEXT, NUMBER, TEXT), rows))
+    return "\n".join((*lines, "</div>"))
+
+
+DIGITS: Final = 10
+"""Significant digits shown at most; fewer where the enclosure does not certify them."""
+
+HEAD: Final = (
+    "",
+    "Re s [rad/s]",
+    "Im s [rad/s]",
+    "radius [rad/s]",
+    "frequency [Hz]",
+    "damping ratio",
+    "multiplicity",
+)
+
+
+def roots_html(found: PoleZeroMap) -> str:
+    """Return poles, zeros and hidden modes as a table with the certificate above it."""
+    certificate = found.certificate
+    status = "certified" if certificate.certified else f"NOT CERTIFIED: {certificate.reason}"
+    count = f"{certificate.found} of {certificate.counted} roots enclosed"
+    caption = f"<strong>{escape_html(found.tf)}</strong>, {escape_html(status)}: {count}"
+    caption += f"<br>{escape_html(found.verdict.sentence)}"
+    if shown := region_text(found.region):
+        caption += f"<br>shown: {escape_html(shown)}"
+    if found.excluded:
+        caption += f"<br>{len(found.excluded)} neighbourhoods where roots accumulate are left out"
+    rows = []
+    for word, roots in (
+        ("pole", found.all_poles),
+        ("zero", found.zeros),
+        ("hidden", tuple(h.root for h in found.hidden)),
+    ):
+        rows += [_root_cells(word, entry) for entry in one_of_each_pair(roots)]
+    return html_table(HEAD, (TEXT, *[NUMBER] * (len(HEAD) - 1)), rows, caption)
+
+
+def _root_cells(word: str, entry: PrintedRoot) -> tuple[str, ...]:
+    root = entry.root
+    printed = root.decimal(DIGITS)
+    mark = ("" if root.certified else " ?") + (" |" if root.on_boundary else "")
+    sign = "&pm;" if entry.is_pair else ""
+    return (
+        f"{word}{mark}",
+        printed.re.replace("-", "\u2212"),
+        sign + printed.im.replace("-", "\u2212"),
+        printed.radius,
+        frequency_text(root, DIGITS),
+        damping_text(root, DIGITS),
+        str(root.multiplicity),
+    )

@@ -1,1 +1,0 @@
-"""Expressions and systems of SymPy, made only when a user asks for them."""
