@@ -188,10 +188,10 @@ def sensitivities(
     names: Sequence[str] = (),
     digits: int = 15,
 ) -> tuple[RootDerivative, ...]:
-    """Return how poles and zeros move with parameters; see :mod:`symflex.analysis.sensitivity.of_model`."""
-    from symflex.analysis.sensitivity import of_model  # imports numpy
+    """Return how poles and zeros move with parameters; see :mod:`symflex.analysis.sensitivity`."""
+    from symflex.analysis.sensitivity import sensitivity  # imports numpy
 
-    return of_model.sensitivities(model, bound, found, names, digits)
+    return sensitivity.sensitivities(model, bound, found, names, digits)
 
 
 def stability(

@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
 
-from symflex.analysis.explanation.joints import in_one_way, joined_values
+from symflex.analysis.explanation.coordinates import in_one_way, joined_values
 from symflex.expressions import Attribute, Call, Derivative, Expression, Name, format_expression, names
 
 if TYPE_CHECKING:

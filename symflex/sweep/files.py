@@ -12,9 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from symflex.data.measurement.archive import read_archive
-from symflex.data.measurement.byte_reader import require
-from symflex.data.measurement.netcdf import read_netcdf
+from symflex.data.measurement.array_files import read_archive, read_netcdf, require
 from symflex.errors import DataError, Diagnostic, UsageError
 from symflex.files import write
 from symflex.model.spec.read import read_bytes

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from hashlib import sha256
 from typing import TYPE_CHECKING
 
-from symflex.data.measurement.archive import read_archive
+from symflex.data.measurement.array_files import read_archive
 from symflex.errors import Diagnostic, UsageError
 from symflex.files.write import write_atomically
 from symflex.model.spec.read import read_bytes

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symflex.data.measurement.comma_separated import read_columns
-from symflex.data.measurement.write import csv_bytes
+from symflex.data.measurement.files import csv_bytes
 from tests.fuzz.measured import RESPONSE, answered
 
 ROOMS = ("symflex.data.measurement",)

@@ -7,7 +7,7 @@ import struct
 import zipfile
 
 from symflex.data.measurement.arrays import read_npz
-from symflex.data.measurement.write import npz_bytes
+from symflex.data.measurement.files import npz_bytes
 from tests.fuzz.measured import RESPONSE, answered
 
 ROOMS = ("symflex.data.measurement", "zipfile")

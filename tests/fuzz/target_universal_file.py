@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from symflex.data.measurement.files import universal_bytes
 from symflex.data.measurement.universal_file import read_universal_file
-from symflex.data.measurement.write import universal_bytes
 from tests.fuzz.measured import RESPONSE, answered
 
 ROOMS = ("symflex.data.measurement", "pyuff")

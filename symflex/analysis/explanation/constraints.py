@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symflex.analysis.explanation.coordinates import driven_source
+from symflex.analysis.explanation.coordinates import driven_source, holds
 from symflex.expressions import Attribute, Call, Derivative, Equation, Name, Number, format_expression, names
 from symflex.library.elements import ELEMENTS
 from symflex.model import NodeReference, PlacedElement
@@ -204,11 +204,6 @@ def replace_condition(model: Model, source: Input, output: Expression) -> Replac
     words = f"{held} in place of {format_expression(field.conditions[number])}"
     constraint = Constraint(replace(model, fields=fields), held, words, f'"{held}"')
     return ReplacedCondition(field, number, calls[0], constraint)
-
-
-def holds(expression: Expression, name: str) -> bool:
-    """Tell whether a name stands in an expression."""
-    return any(isinstance(n, Name) and n.name == name for n in names(expression))
 
 
 def _is_elsewhere(model: Model, name: str) -> bool:

@@ -24,9 +24,8 @@ from typing import TYPE_CHECKING, Literal
 from symflex.algebra import LAPLACE, Factored, degree_in
 from symflex.analysis.explanation.comparison import Relation, agree, relate, varying
 from symflex.analysis.explanation.constraints import Constraint, hold, open_circuit, replace_condition
-from symflex.analysis.explanation.coordinates import acting, measured
+from symflex.analysis.explanation.coordinates import acting, in_one_way, measured, seen_at_the_input
 from symflex.analysis.explanation.ends import bending_between, ends_of_element, ends_of_field, is_line
-from symflex.analysis.explanation.joints import in_one_way, seen_at_the_input
 from symflex.analysis.explanation.parts import ConstrainedPart, Separation, separate
 from symflex.analysis.explanation.text import explanation_json, explanation_text
 from symflex.equations import assemble

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat
 
-from symflex.analysis.modes.bound_equations import BoundEquations
-from symflex.analysis.modes.null_space import null_space
+from symflex.analysis.modes.bound_equations import BoundEquations, null_space
 from symflex.analysis.modes.shape import EnclosedModeShape, Motion, normalised
 from symflex.budget import spend
 from symflex.equations import assemble

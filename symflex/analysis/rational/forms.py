@@ -23,8 +23,8 @@ from symflex.transfer.bind import EnclosedTransferFunction
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from symflex.analysis.rational.approximate import KeptRoots
     from symflex.analysis.rational.laurent import PrincipalPart
-    from symflex.analysis.rational.truncation import KeptRoots
     from symflex.roots import Root
     from symflex.transfer import BoundTransferFunction
 

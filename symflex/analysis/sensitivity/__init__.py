@@ -1,6 +1,5 @@
 """Sensitivities: how poles and zeros move with parameters, proved."""
 
-from symflex.analysis.sensitivity.differentiate import differentiate
-from symflex.analysis.sensitivity.sensitivity import RootDerivative
+from symflex.analysis.sensitivity.sensitivity import RootDerivative, differentiate
 
 __all__ = ["RootDerivative", "differentiate"]

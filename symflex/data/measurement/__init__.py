@@ -1,9 +1,8 @@
 """Measured frequency responses: reading, writing, and making synthetic ones."""
 
+from symflex.data.measurement.files import READERS, WRITERS, measurement_bytes, prepared, read_measurement
 from symflex.data.measurement.measured_response import MeasuredResponse
-from symflex.data.measurement.read import READERS, prepared, read_measurement
 from symflex.data.measurement.synthesise import MeasurementPlan, synthesise
-from symflex.data.measurement.write import WRITERS, measurement_bytes
 
 __all__ = [
     "READERS",

@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from symflex.data.measurement.archive import read_archive
-from symflex.data.measurement.checks import (
+from symflex.data.measurement.array_files import read_archive
+from symflex.data.measurement.matlab_file import NewerFileError, read_variables
+from symflex.data.measurement.measured_response import (
     MAX_BYTES,
     MAX_RESPONSES,
+    MeasuredResponse,
     averages_of,
     checked_response,
     listed_names,
@@ -18,8 +20,6 @@ from symflex.data.measurement.checks import (
     unit_of,
     window_of,
 )
-from symflex.data.measurement.matlab_file import NewerFileError, read_variables
-from symflex.data.measurement.measured_response import MeasuredResponse
 from symflex.errors import DataError, Diagnostic
 
 if TYPE_CHECKING:

@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from symflex.data.measurement.checks import (
+from symflex.data.measurement.measured_response import (
     MAX_ERRORS,
     MAX_LINES,
+    MeasuredResponse,
     averages_of,
     checked_response,
     unit_of,
     window_of,
 )
-from symflex.data.measurement.measured_response import MeasuredResponse
 from symflex.errors import DataError, Diagnostic, Source, Span
 from symflex.errors.diagnostic import nearest
 

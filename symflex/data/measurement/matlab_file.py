@@ -14,7 +14,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from symflex.data.measurement.byte_reader import CUT, SHOWN, SURROGATES, ByteReader, require
+from symflex.data.measurement.array_files import CUT, SHOWN, SURROGATES, ByteReader, require
 
 Arrays = dict[str, npt.NDArray[Any]]
 

@@ -13,8 +13,13 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from symflex.data.measurement.checks import MAX_LINES, MAX_RESPONSES, checked_response, nowhere
-from symflex.data.measurement.measured_response import MeasuredResponse
+from symflex.data.measurement.measured_response import (
+    MAX_LINES,
+    MAX_RESPONSES,
+    MeasuredResponse,
+    checked_response,
+    nowhere,
+)
 from symflex.errors import DataError, Diagnostic, UsageError
 
 if TYPE_CHECKING:

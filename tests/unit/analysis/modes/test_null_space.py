@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from flint import acb, acb_mat, arb, ctx
 
-from symflex.analysis.modes.null_space import null_space
+from symflex.analysis.modes.bound_equations import null_space
 
 
 def test_the_null_vector_of_a_singular_matrix_is_enclosed():
