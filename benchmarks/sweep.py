@@ -23,7 +23,7 @@ from symflex import pipeline
 from symflex.options import SweepOptions
 from symflex.roots import Modes
 from symflex.sweep import Sweep, read_design
-from symflex.sweep.executors import open_executor
+from symflex.sweep.run import open_executor
 
 POINTS = (2500, 5000, 10_000)
 MODES = 10

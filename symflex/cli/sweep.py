@@ -27,8 +27,8 @@ def command(spec: Specification, given: SweepOptions) -> int:
     """
     from symflex import pipeline
     from symflex.cli.progress import ProgressBar
-    from symflex.sweep.executors import open_executor
     from symflex.sweep.files import check_writable
+    from symflex.sweep.run import open_executor
     from symflex.sweep.text import sweep_json, sweep_text
 
     if given.workers and given.scheduler:

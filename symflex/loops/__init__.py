@@ -1,16 +1,17 @@
 """Stable gains of feedback loops, proved: poles right of the imaginary axis counted, none missing."""
 
-from symflex.loops.bandwidth import AllowedBandwidth
 from symflex.loops.colocation import DynamicColocation, dynamic_colocation
-from symflex.loops.crossing import Crossing, PoleCount
 from symflex.loops.find import find_stable_gains
 from symflex.loops.locus import RootLocus, closed_loop, loop_gain, require_arrival, trace_locus
 from symflex.loops.loop import GainPolynomial, Loop, characteristic_loop, pick_gain
+from symflex.loops.margins import AllowedBandwidth
 from symflex.loops.stability_map import (
     Boundary,
+    Crossing,
     GainInterval,
     GainMargin,
     PhaseMargin,
+    PoleCount,
     StabilityMap,
     decibels,
     degrees,

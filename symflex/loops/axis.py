@@ -18,7 +18,7 @@ from symflex.roots.precision import bits_for_digits
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from symflex.loops.loop_function import LoopFunction, LoopValue
+    from symflex.loops.loop import LoopFunction, LoopValue
     from symflex.roots import Budget
 
 BITS = 96

@@ -18,16 +18,16 @@ from symflex.algebra import Factored
 from symflex.algebra.origin import OriginSeries
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.loops.axis import find_on_axis
-from symflex.loops.crossing import Crossing, PoleCount
-from symflex.loops.loop_function import LoopFunction, LoopValue
+from symflex.loops.loop import LoopFunction, LoopValue
 from symflex.loops.origin import LoopAtOrigin, loop_at_origin
+from symflex.loops.stability_map import Crossing, PoleCount
 from symflex.roots import Band, precision
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.tail import right_tail
 from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
 from symflex.roots.distributed.side import Side
 from symflex.roots.functions.kernel_function import KernelFunction
-from symflex.roots.functions.square_free_kernels import without_squares
+from symflex.roots.functions.simplified import without_squares
 from symflex.roots.root import exact_fraction
 from symflex.transfer.balls import ball
 

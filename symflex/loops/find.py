@@ -12,12 +12,17 @@ from flint import acb, arb
 from symflex.algebra import degree_in
 from symflex.budget import Budget, entered_budget
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
-from symflex.loops.bandwidth import allowed_bandwidth
-from symflex.loops.crossing import PoleCount
 from symflex.loops.distributed import DistributedFactors
 from symflex.loops.lumped import LumpedFactor
-from symflex.loops.margins import LoopGain
-from symflex.loops.stability_map import Boundary, GainInterval, GainMargin, PhaseMargin, StabilityMap
+from symflex.loops.margins import LoopGain, allowed_bandwidth
+from symflex.loops.stability_map import (
+    Boundary,
+    GainInterval,
+    GainMargin,
+    PhaseMargin,
+    PoleCount,
+    StabilityMap,
+)
 from symflex.roots import precision
 from symflex.roots.root import exact_fraction
 from symflex.transfer.balls import ball
@@ -25,8 +30,8 @@ from symflex.transfer.balls import ball
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.loops.crossing import Crossing
     from symflex.loops.loop import GainPolynomial, Loop
+    from symflex.loops.stability_map import Crossing
 
 RANGE_OF_NOMINAL = 100
 """How many times the nominal gain is examined of a loop with kernels: it may have boundaries without end."""

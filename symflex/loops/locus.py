@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from symflex.algebra import Factored
 from symflex.budget import Budget, entered_budget, spend
 from symflex.errors import Diagnostic, UncertifiedError, UsageError
-from symflex.loops.loop_function import LoopFunction
+from symflex.loops.loop import LoopFunction
 from symflex.roots import Band, Modes, Position
 from symflex.roots.locate import locate
 from symflex.roots.verdict import is_right

@@ -1,26 +1,41 @@
-"""The characteristic function of a model as a polynomial in one gain.
+"""The characteristic function of a model as a polynomial in one gain, and its values on the imaginary axis.
 
-Input: a transfer function derived with the gain as a symbol.
-Output: a :class:`Loop`: the factors of the equations' determinant, before anything cancelled from it.
+Input: a transfer function derived with the gain as a symbol. Output: a :class:`Loop`: the factors of the
+equations' determinant, before anything cancelled from it; and with kernels, the two parts of ``A(s) + K
+B(s)`` in balls. Both are divided by the same exponential, the one that is largest in the middle of a ball, so
+that neither overflows nor turns fast; their quotient, which alone decides where poles cross the axis, stays
+what it is.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
+from math import lcm
 from typing import TYPE_CHECKING
 
+from flint import acb, acb_series, arb
+
 from symflex.algebra import Factored, degree_in
+from symflex.algebra.exponential_sum import arguments_of, exponential_sum
 from symflex.errors import Diagnostic, ModelError, UsageError
+from symflex.roots import precision
+from symflex.roots.functions.exponential_values import ExponentialValues
 from symflex.transfer import bind, bind_polynomials
+from symflex.transfer.enclose_kernels import expansion
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from flint import fmpz_mpoly
 
+    from symflex.algebra.exponential_sum import Argument, ExponentialSum
     from symflex.model import ExactValue, ModelParameter
     from symflex.transfer import BoundTransferFunction, Given, TransferFunction
+    from symflex.transfer.balls import Value
+    from symflex.transfer.enclose_kernels import KernelValues
+
 
 TRIALS = ("1", "2", "0.37")
 """Values of a gain without one, for which the other parameters are bound; one is not a singular case."""
@@ -134,3 +149,170 @@ def pick_gain(parameters: Sequence[ModelParameter], name: str) -> ModelParameter
         hint = nearest(name, known) or "parameters: " + ", ".join(list(known)[:8])
         raise UsageError(Diagnostic("SF902", f"there is no parameter '{name[:64]}'", None, hint))
     return known[name]
+
+
+NOTHING = acb(0)
+
+
+@dataclass(frozen=True, slots=True)
+class LoopValue:
+    """Enclosures of A and B at ``s = j omega``, divided by a common function, and of their derivatives in s.
+
+    ``bend`` is a second derivative, where these were asked for.
+    """
+
+    a: acb
+    a_slope: acb
+    b: acb
+    b_slope: acb
+    a_bend: acb
+    b_bend: acb
+
+    def crossing(self) -> tuple[arb, arb]:
+        """``Im(A conj(B))``, which vanishes where the gain is real, and its derivative in omega."""
+        value = (self.a * self.b.conjugate()).imag
+        j = acb(0, 1)
+        slope = j * self.a_slope * self.b.conjugate() + self.a * (j * self.b_slope).conjugate()
+        return value, slope.imag
+
+    def excess(self, gain: arb) -> tuple[arb, arb]:
+        """``abs(A)^2 - K^2 abs(B)^2``, which vanishes where the loop gain is one, and its derivative."""
+        square = gain * gain
+        a, b = self.a.conjugate(), self.b.conjugate()
+        value = (self.a * a).real - square * (self.b * b).real
+        j = acb(0, 1)
+        slope = 2 * (j * self.a_slope * a).real - 2 * square * (j * self.b_slope * b).real
+        return value, slope
+
+    def meeting(self) -> tuple[arb, arb]:
+        """Return what vanishes where poles meet on the axis if A/B is real there, and its derivative.
+
+        It is ``-Im((A' B - A B') conj(B)^2)``, the derivative of A/B in omega but for a positive factor.
+        """
+        j, conjugate = acb(0, 1), self.b.conjugate()
+        wronskian = self.a_slope * self.b - self.a * self.b_slope
+        change = self.a_bend * self.b - self.a * self.b_bend
+        slope = j * change * conjugate + 2 * wronskian * (j * self.b_slope).conjugate()
+        return (j * wronskian * conjugate * conjugate).real, (j * slope * conjugate).real
+
+    def gain(self) -> arb:
+        """``-Re(A/B)``: the gain of a pole here, where that is real."""
+        return -(self.a / self.b).real
+
+
+@dataclass(frozen=True, eq=False)
+class LoopFunction:
+    """A and B of one factor ``A + K B`` of a characteristic function."""
+
+    bound: BoundTransferFunction  # whose ring and kernels they have
+    # a and b: polynomials over that ring, without common denominator.
+    a: fmpz_mpoly
+    b: fmpz_mpoly
+
+    @classmethod
+    def of(cls, bound: BoundTransferFunction, a: Factored, b: Factored) -> LoopFunction:
+        """Return two functions with the same quotient that are polynomials over the ring."""
+        ring = bound.ratio.ring
+        below = Factored.number(ring, 1)
+        for value in (a, b):
+            for factor, exponent in value.factors:
+                missing = -exponent - below.exponent_of(factor)
+                if missing > 0:
+                    below = below * Factored(ring, Fraction(1), ((factor, missing),))
+        scale = lcm(a.unit.denominator, b.unit.denominator)
+        return cls(bound, (a * below * scale).expand(), (b * below * scale).expand())
+
+    @cached_property
+    def arguments(self) -> tuple[Argument, ...]:
+        """What the exponentials are taken of."""
+        return arguments_of(self.bound.kernels) or ()
+
+    @cached_property
+    def sums(self) -> tuple[ExponentialSum, ExponentialSum] | None:
+        """A and B as sums of exponentials, ``None`` where wavenumbers have no formula."""
+        if arguments_of(self.bound.kernels) is None:
+            return None
+        ring, kernels = self.bound.ratio.ring, self.bound.kernels
+        a, b = (exponential_sum(ring, kernels, self.arguments, f) for f in (self.a, self.b))
+        return None if a is None or b is None else (a, b)
+
+    @cached_property
+    def _evaluators(self) -> dict[int, tuple[KernelValues, ExponentialValues | None]]:
+        return {}
+
+    def evaluator(self, bits: int) -> tuple[KernelValues, ExponentialValues | None]:
+        """Return what evaluates kernels and sums of exponentials at one precision."""
+        if bits not in self._evaluators:
+            with precision(bits):
+                constants = {name: evaluate() for name, evaluate in self.bound.constants}
+                kernels = self.bound.kernel_values(constants)
+            sums = None
+            if self.sums is not None:
+                sums = ExponentialValues(kernels, self.arguments, tuple((f, 1) for f in self.sums))
+            self._evaluators[bits] = (kernels, sums)
+        return self._evaluators[bits]
+
+    def on(self, omega: arb, bits: int, order: int = 1) -> tuple[LoopValue, LoopValue]:
+        """Return the values on a ball of frequencies, and those in its middle, with so many derivatives.
+
+        The first are enclosures by the mean value theorem where these are narrower.
+        """
+        if order > 1 and self.sums is None:
+            message = "second derivatives need exponentials"
+            raise ValueError(message)
+        with precision(bits):
+            middle = omega.mid()
+            wide = acb(0, omega)
+            kernels, sums = self.evaluator(bits)
+            if sums is None:
+                around = kernels.at(expansion(wide))
+                centre = kernels.at(expansion(acb(0, middle)), around)
+                values = [[kernels.polynomial(f, v) for f in (self.a, self.b)] for v in (around, centre)]
+            else:
+                around_place = sums.at(_series(wide, order))
+                centre_place = sums.at(_series(acb(0, middle), order), around_place)
+                less = sums.largest((0, 1), centre_place)
+                values = [
+                    [sums.value(i, place, less) for i in (0, 1)] for place in (around_place, centre_place)
+                ]
+            (a, b), (a_mid, b_mid) = ([_derivatives(v) for v in pair] for pair in values)
+            off = acb(0, omega - middle)
+            narrow = [_narrower(value[0], mid[0] + value[1] * off) for value, mid in ((a, a_mid), (b, b_mid))]
+            return (
+                LoopValue(narrow[0], a[1], narrow[1], b[1], a[2], b[2]),
+                LoopValue(a_mid[0], a_mid[1], b_mid[0], b_mid[1], a_mid[2], b_mid[2]),
+            )
+
+    def near(self, s: complex, bits: int = 96) -> tuple[complex, complex, complex, complex]:
+        """Return A, A', B and B' at a point, divided alike, in doubles and without proof."""
+        with precision(bits):
+            kernels, sums = self.evaluator(bits)
+            point = expansion(acb(s.real, s.imag))
+            if sums is None:
+                place = kernels.at(point)
+                values = [kernels.polynomial(f, place) for f in (self.a, self.b)]
+            else:
+                at = sums.at(point)
+                less = sums.largest((0, 1), at)
+                values = [sums.value(i, at, less) for i in (0, 1)]
+            (a, a_slope, _), (b, b_slope, _) = (_derivatives(value) for value in values)
+            return complex(a.mid()), complex(a_slope.mid()), complex(b.mid()), complex(b_slope.mid())
+
+
+def _series(s: acb, order: int) -> acb_series:
+    """Return ``s + x`` up to a power of x."""
+    return expansion(s) if order == 1 else acb_series([s, acb(1)], order + 1)
+
+
+def _narrower(one: acb, other: acb) -> acb:
+    if not other.is_finite():
+        return one
+    if not one.is_finite():
+        return other
+    return other if other.rad() < one.rad() else one
+
+
+def _derivatives(value: Value) -> tuple[acb, acb, acb]:
+    if not isinstance(value, acb_series):
+        return value, NOTHING, NOTHING
+    return value[0], value[1], 2 * value[2]

@@ -17,7 +17,7 @@ from flint import arb
 
 from symflex.algebra import Ring, degree_in
 from symflex.errors import Diagnostic, UncertifiedError
-from symflex.loops.crossing import Crossing, PoleCount
+from symflex.loops.stability_map import Crossing, PoleCount
 from symflex.roots import Budget, PolynomialInS, RealConstant, RootProblem, find_polynomial_roots, precision
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
-    from symflex.loops.loop_function import LoopFunction
+    from symflex.loops.loop import LoopFunction
     from symflex.roots import Budget
     from symflex.roots.counting.local_series import LocalSeries
 

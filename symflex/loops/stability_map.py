@@ -1,4 +1,4 @@
-"""For which values of a gain a loop is stable: the result, and its JSON."""
+"""For which values of a gain a loop is stable, and where poles cross the axis: the result, and its JSON."""
 
 from __future__ import annotations
 
@@ -13,8 +13,10 @@ from symflex.transfer.balls import ball
 if TYPE_CHECKING:
     from fractions import Fraction
 
-    from symflex.loops.bandwidth import AllowedBandwidth
-    from symflex.loops.crossing import Crossing, PoleCount
+    from flint import arb
+
+    from symflex.loops.margins import AllowedBandwidth
+
 
 SCHEMA = "symflex.stability/1"
 BITS = 128
@@ -242,3 +244,38 @@ def decibels(factor: arb) -> arb:
     """Return ``20 log10`` of a positive factor."""
     with precision(BITS):
         return 20 * factor.log() / arb(10).log()
+
+
+@dataclass(frozen=True, slots=True)
+class Crossing:
+    """A gain at which poles may pass from one side of the imaginary axis to the other."""
+
+    gain: arb  # enclosure of the gain
+    # Enclosures of omega >= 0 [rad/s] at which poles are on the axis; exactly 0 where they pass through s =
+    # 0.
+    frequencies: tuple[arb, ...]
+    is_infinite: bool = False  # a pole passes through infinity: the highest power of s vanishes
+    # Poles that mirror each other in the axis for every gain meet on it, and leave it or enter it.
+    is_symmetric: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class PoleCount:
+    """Closed-loop poles that are not in the open left half plane, with multiplicity.
+
+    Examples
+    --------
+    >>> PoleCount(2, 0) + PoleCount(0, 1)
+    PoleCount(right=2, axis=1)
+    """
+
+    right: int  # in the open right half plane
+    axis: int  # on the imaginary axis
+
+    def __add__(self, other: PoleCount) -> PoleCount:
+        return PoleCount(self.right + other.right, self.axis + other.axis)
+
+    @property
+    def is_stable(self) -> bool:
+        """All poles lie in the open left half plane."""
+        return not self.right and not self.axis

@@ -31,7 +31,7 @@ from symflex.report.comparison import comparison_section
 from symflex.report.document import Badge, Code, PageLink, Section, Table, columns, counted, text
 from symflex.report.sections.roots import stability_mark
 from symflex.report.study import Study, attempt
-from symflex.sweep.executors import end_with_parent
+from symflex.sweep.run import end_with_parent
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from symflex.budget import Budget, entered_budget
 from symflex.roots.distributed.distributed import locate_distributed
-from symflex.roots.functions.vanishing import without_lengths_of_zero
+from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.pole_zero_map import PoleZeroMap, find_pole_zero_map
 from symflex.roots.problem import problem_of
 

@@ -15,7 +15,7 @@ import mpmath
 import numpy as np
 
 from symflex.errors import Diagnostic, ModelError
-from symflex.state_space.rounding import Arrays
+from symflex.state_space.numeric import Arrays
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

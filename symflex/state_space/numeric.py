@@ -1,25 +1,33 @@
-"""State equations with numbers, ready for simulation and control design.
+"""State equations with numbers, ready for simulation and control design: every entry the nearest double.
 
-Input: a :class:`StateSpace` without parameters, or poles, zeros and gain. Output: :class:`BoundStateSpace`.
+Input: a :class:`StateSpace`, and values for the parameters that are left in it. Output: :class:`Arrays`, each
+entry rounded once, and :class:`BoundStateSpace`.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
+from math import inf, isfinite
+from sys import float_info
 from typing import TYPE_CHECKING
 
-from symflex.errors import Diagnostic, UsageError
+import numpy as np
+from flint import acb, acb_mat, arb, ctx
+
+from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.expressions import format_expression
-from symflex.state_space.rounding import rounded, rounding_of
+from symflex.transfer.balls import enclosure, later, value_at
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     import numpy.typing as npt
+    from flint import fmpz_mpoly
     from numpy import float64
 
     from symflex.model import ExactValue
-    from symflex.state_space.rounding import Arrays
+    from symflex.state_space.popov import FieldElement
     from symflex.state_space.state_space import Channel, StateSpace
 
 
@@ -144,3 +152,183 @@ PIP = {
 def not_installed(package: str) -> UsageError:
     """Return the error for a program that is asked for and not there."""
     return UsageError(Diagnostic("SF902", f"{package} is not installed", None, PIP[package]))
+
+
+FIRST_BITS, LAST_BITS = 128, 4096
+RESPONSE_BITS = 192
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Arrays:
+    """The matrices of state equations in double precision."""
+
+    # a, b, c and d: shapes (n, n), (n, m), (p, n), (p, m) for n states, m inputs, p outputs. Read-only.
+    a: npt.NDArray[np.float64]
+    b: npt.NDArray[np.float64]
+    c: npt.NDArray[np.float64]
+    d: npt.NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        for array in (self.a, self.b, self.c, self.d):
+            array.setflags(write=False)
+
+
+def rounded(system: StateSpace, values: Mapping[str, ExactValue] | None = None) -> Arrays:
+    """Return the matrices with every entry the double nearest to its exact value.
+
+    SF229 for a parameter without value, SF231 when these values divide by zero, SF233 when an entry is too
+    large or too small for double precision, SF401 when it cannot be told whether an entry is zero.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> from symflex.model import with_numbers
+    >>> from symflex.state_space.realise import realise
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... parameters = {m = "3 kg", b = "1 N*s/m"}
+    ... elements.body = {type = "mass", at = "x", m = "m"}
+    ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
+    ... inputs.F = {force = "x"}
+    ... outputs.X = "x"
+    ... ''')
+    >>> rounded(realise(with_numbers(model), [("X", "F")])).a.tolist()
+    [[0.0, 1.0], [0.0, -0.3333333333333333]]
+    """
+    rounding = rounding_of(system, values)
+    arrays = []
+    for letter, rows, shape in system.matrices:
+        array = np.zeros(shape)
+        for i, row in enumerate(rows):
+            for j, value in row.items():
+                what = f"entry {letter}[{i + 1}, {j + 1}] of the state equations"
+                array[i, j] = rounding.nearest(value, what)
+        arrays.append(array)
+    return Arrays(*arrays)
+
+
+def rounding_of(system: StateSpace, values: Mapping[str, ExactValue] | None = None) -> Rounding:
+    """Return what rounds the entries of a realisation."""
+    known = values or {}
+    given = {name: enclosure(value) for name, value in known.items()}
+    constants = {c.generator: later(c.expression, given) for c in system.constants}
+    exact = {name: v.rational for name, v in known.items() if not v.pi_power}
+    return Rounding(system.ring.names, {"pi": arb.pi, **given, **constants}, exact)
+
+
+class Rounding:
+    """Rounds quotients of polynomials to the nearest double.
+
+    ``names`` are the ring's generators; ``constants`` enclose a generator at the current precision, and
+    ``exact`` are those that are rational.
+    """
+
+    def __init__(
+        self,
+        names: Sequence[str],
+        constants: Mapping[str, Callable[[], arb]],
+        exact: Mapping[str, Fraction] | None = None,
+    ) -> None:
+        self._names = names
+        self._constants = constants
+        self._exact = exact or {}
+        self._balls: dict[int, dict[str, arb]] = {}
+
+    def nearest(self, value: FieldElement, what: str) -> float:
+        """Return the nearest double; ``what`` is its name in messages. Errors as of :func:`rounded`."""
+        exact = self._rational(value)
+        found = self._of_ball(value, what) if exact is None else _float(exact)
+        if found == exact:
+            return found
+        if not isfinite(found) or abs(found) < float_info.min:
+            size = "large" if abs(found) > 1 else "small"
+            message = f"{what} is too {size} for double precision"
+            hint = "choose units in which values lie nearer to 1, such as mm and t"
+            raise ModelError(Diagnostic("SF233", message, None, hint))
+        return found
+
+    def _rational(self, value: FieldElement) -> Fraction | None:
+        above, below = (self._exact_value(part) for part in (value.num, value.den))
+        if above is None or below is None:
+            return None
+        if not below:
+            raise _zero_denominator()
+        return above / below
+
+    def _exact_value(self, polynomial: fmpz_mpoly) -> Fraction | None:
+        degrees = zip(self._names, polynomial.degrees(), strict=True)
+        if any(degree > 0 and name not in self._exact for name, degree in degrees):
+            return None
+        return value_at(polynomial, lambda i: self._exact[self._names[i]], Fraction)
+
+    def _of_ball(self, value: FieldElement, what: str) -> float:
+        bits = FIRST_BITS
+        while bits <= LAST_BITS:
+            with ctx.workprec(bits):
+                below = self._enclosed(value.den, bits)
+                if not below.contains(0):
+                    quotient = self._enclosed(value.num, bits) / below
+                    low, high = float(quotient.lower()), float(quotient.upper())
+                    if low == high:
+                        return low
+            bits *= 2
+        message = f"it cannot be told whether {what} is zero"
+        raise UncertifiedError(Diagnostic("SF401", message))
+
+    def _enclosed(self, polynomial: fmpz_mpoly, bits: int) -> arb:
+        known = self._balls.setdefault(bits, {})
+
+        def value(i: int) -> arb:
+            name = self._names[i]
+            if name not in known:
+                known[name] = self._constant(name)
+            return known[name]
+
+        return value_at(polynomial, value, arb)
+
+    def _constant(self, name: str) -> arb:
+        if name not in self._constants:
+            raise ModelError(Diagnostic("SF229", f"parameter '{name}' has no value"))
+        return self._constants[name]()
+
+
+def _float(value: Fraction) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        return inf if value > 0 else -inf
+
+
+def _zero_denominator() -> ModelError:
+    message = "the state equations divide by zero for these values"
+    hint = "a rigid or massless limit has its own equations: bind() first, then state_space()"
+    return ModelError(Diagnostic("SF231", message, None, hint))
+
+
+def response(arrays: Arrays, points: Sequence[complex]) -> list[tuple[tuple[complex, ...], ...]]:
+    """Return ``C (s - A)^-1 B + D`` at each s [rad/s], per output a row; not a number at poles.
+
+    The matrices count as exact, and what is computed with them is enclosed and then rounded.
+    """
+    with ctx.workprec(RESPONSE_BITS):
+        a, b, c, d = (_acb_matrix(array) for array in (arrays.a, arrays.b, arrays.c, arrays.d))
+        n = len(arrays.a)
+        found = []
+        for s in points:
+            value = d
+            if n:
+                shifted = (
+                    acb_mat(n, n, [acb(s) if i == j else acb(0) for i in range(n) for j in range(n)]) - a
+                )
+                try:
+                    value = d + c * shifted.solve(b)
+                except ZeroDivisionError:
+                    value = d * acb("nan")
+            rows = value.tolist()
+            found.append(tuple(tuple(complex(x.mid()) for x in row) for row in rows))
+        return found
+
+
+def _acb_matrix(array: npt.NDArray[np.float64]) -> acb_mat:
+    rows, columns = array.shape
+    return acb_mat(rows, columns, [acb(float(x)) for x in array.ravel()])

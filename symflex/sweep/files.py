@@ -22,7 +22,7 @@ from symflex.sweep.sweep import DRAW, FREQUENCY, MODE, SCHEMA, Labelled, Sweep, 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from symflex.sweep.task import Array
+    from symflex.sweep.design import Array
 
 NEW_YEAR = (1980, 1, 1, 0, 0, 0)
 """The date of every file in an archive."""

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from symflex.sweep.task import Rows
+    from symflex.sweep.design import Rows
 
 SCHEMA = "symflex.sweep.journal/1"
 ABOUT = "sweep.json"

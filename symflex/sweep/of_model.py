@@ -17,12 +17,12 @@ from symflex.files.write import write_atomically
 from symflex.loops import pick_gain
 from symflex.options import FREQUENCIES, RootsOptions, band_ends
 from symflex.roots.region import region_of
+from symflex.sweep.design import Task
 from symflex.sweep.files import check_writable, sweep_bytes
 from symflex.sweep.journal import open_journal
 from symflex.sweep.points import logarithmic
 from symflex.sweep.read import check_design, design_of, read_design
 from symflex.sweep.run import run_sweep, sweep_key
-from symflex.sweep.task import Task
 from symflex.transfer.of_model import derive_all, pick_pairs
 
 if TYPE_CHECKING:

@@ -22,12 +22,11 @@ from symflex.loops import characteristic_loop, find_stable_gains, pick_gain
 from symflex.loops.stability_map import degrees, hertz
 from symflex.model import ExactValue
 from symflex.roots import Everything, Modes, precision
-from symflex.roots.functions.vanishing import without_lengths_of_zero
+from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
-from symflex.sweep.design import Range, between
+from symflex.sweep.design import Range, between, codes_of, derived
 from symflex.sweep.rounding import Doubles, doubles, rounded
 from symflex.sweep.similarity import Similarities
-from symflex.sweep.task import codes_of, derived
 from symflex.transfer import bind
 
 if TYPE_CHECKING:
@@ -37,9 +36,8 @@ if TYPE_CHECKING:
     from symflex.loops import StabilityMap
     from symflex.model import ExactValue
     from symflex.roots import PoleZeroMap, Region, Root
-    from symflex.sweep.design import Point
+    from symflex.sweep.design import Point, Rows, Solver, Task
     from symflex.sweep.similarity import Similarity
-    from symflex.sweep.task import Rows, Solver, Task
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
 

@@ -15,9 +15,8 @@ from symflex.sweep.points import MARGINS, PointStatus, RootStatus
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from symflex.sweep.design import Design
+    from symflex.sweep.design import Array, Design, Rows, Task
     from symflex.sweep.follow import Between
-    from symflex.sweep.task import Array, Rows, Task
 
 SCHEMA = "symflex.sweep/1"
 MODE, FREQUENCY, DRAW = "mode", "frequency", "draw"

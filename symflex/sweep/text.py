@@ -13,7 +13,7 @@ from symflex.sweep.points import RootStatus
 
 if TYPE_CHECKING:
     from symflex.sweep import Sweep
-    from symflex.sweep.task import Array
+    from symflex.sweep.design import Array
 
 INDENT = "  "
 MODES_SHOWN = 24

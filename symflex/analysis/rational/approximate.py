@@ -15,7 +15,7 @@ from symflex.analysis.response import default_band
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.roots import Band, Everything, Modes, Position
-from symflex.roots.functions.vanishing import without_lengths_of_zero
+from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
 from symflex.roots.verdict import is_right
 

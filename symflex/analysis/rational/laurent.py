@@ -36,7 +36,7 @@ from symflex.roots.counting.local_series import (
     local_series,
 )
 from symflex.roots.functions.kernel_function import KernelFunction
-from symflex.roots.functions.vanishing import without_lengths_of_zero
+from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
 from symflex.roots.precision import bits_for_digits
 from symflex.roots.root import GUARD_BITS

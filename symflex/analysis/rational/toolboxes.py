@@ -26,9 +26,8 @@ from symflex.model import with_numbers
 from symflex.roots.locate import locate
 from symflex.roots.multiprecision import to_complex_mpmath
 from symflex.state_space import minimal, not_rational, realise, realise_quotient
-from symflex.state_space.numeric import BoundStateSpace, bound_state_space, not_installed
+from symflex.state_space.numeric import BoundStateSpace, Rounding, bound_state_space, not_installed
 from symflex.state_space.popov import FieldElement
-from symflex.state_space.rounding import Rounding
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from flint import acb, ctx
 
 from symflex.analysis.response.phase import count_turns, follow_phase
-from symflex.roots.functions.vanishing import without_lengths_of_zero
+from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
 from symflex.transfer.bind import EnclosedDistributed
 

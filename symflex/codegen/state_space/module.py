@@ -52,7 +52,7 @@ from symflex.expressions import (
     names,
 )
 from symflex.model.linearity import integer_exponent
-from symflex.state_space.rounding import Arrays, response
+from symflex.state_space.numeric import Arrays, response
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

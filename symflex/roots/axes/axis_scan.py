@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from symflex.roots.counting.winding import Winding
-    from symflex.roots.functions.double_sums import Doubles, DoubleSums
+    from symflex.roots.functions.exponential_values import Doubles, DoubleSums
     from symflex.roots.functions.kernel_function import Sample
 
 STEP = 1.0

@@ -21,8 +21,8 @@ from symflex.roots.distributed.origin import roots_at_zero
 from symflex.roots.distributed.proof import TOUCHING, UNPROVED, Count, Proof, are_apart
 from symflex.roots.engines import SEARCHES, SUBDIVISION, Sought
 from symflex.roots.functions.kernel_function import KernelFunction, has_kernels, split_off_kernels
-from symflex.roots.functions.square_free_kernels import without_squares
-from symflex.roots.plane.branch_points import prove_together
+from symflex.roots.functions.simplified import without_squares
+from symflex.roots.plane.clusters import prove_together
 from symflex.roots.plane.domains import WIDER, holes_about, is_whole_ring, limits
 from symflex.roots.plane.search import HIGHEST, MODES_LIMIT, RootSearch
 from symflex.roots.plane.simple_root import prove_simple

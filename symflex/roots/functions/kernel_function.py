@@ -20,8 +20,7 @@ from symflex.algebra.exponential_sum import REAL, arguments_of, combination, exp
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.roots.argument import ROOM, deviation
-from symflex.roots.functions.double_sums import DoubleSums
-from symflex.roots.functions.exponential_values import ExponentialValues, Place
+from symflex.roots.functions.exponential_values import DoubleSums, ExponentialValues, Place
 from symflex.roots.precision import precision
 from symflex.transfer.balls import at_centre
 from symflex.transfer.enclose_kernels import expansion

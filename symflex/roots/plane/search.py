@@ -16,8 +16,7 @@ from flint import acb, arb
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.axes.axis_scan import sign_changes
 from symflex.roots.counting.winding import RING, Cell, RootOnPathError
-from symflex.roots.plane.branch_points import in_disc, is_branched, prove_together, snapped
-from symflex.roots.plane.clusters import middle_of, resolve
+from symflex.roots.plane.clusters import in_disc, is_branched, middle_of, prove_together, resolve, snapped
 from symflex.roots.plane.simple_root import prove_simple
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.root import Root, overlap

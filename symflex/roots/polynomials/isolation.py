@@ -64,7 +64,7 @@ def isolations(
 
     Examples
     --------
-    >>> from symflex.roots.polynomials.durand_kerner import propose_by_durand_kerner
+    >>> from symflex.roots.polynomials.guesses import propose_by_durand_kerner
     >>> from symflex.roots.problem import PolynomialInS
     >>> polynomial = PolynomialInS.from_integers([-2, 0, 1])
     >>> [found] = isolations(polynomial, 10, in_square=False, proposers=[propose_by_durand_kerner])

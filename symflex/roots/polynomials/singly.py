@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 from flint import acb, acb_poly, arb, arb_poly
 
 from symflex.roots.polynomials.discs import Disc, LevelPolynomial, overlapping_pairs, with_mirrors
+from symflex.roots.polynomials.guesses import guess_by_laguerre
 from symflex.roots.polynomials.isolation import first_bits, goal_of
-from symflex.roots.polynomials.laguerre import guess_by_laguerre
 from symflex.roots.precision import precision
 
 if TYPE_CHECKING:

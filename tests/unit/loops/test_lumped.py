@@ -10,9 +10,9 @@ import pytest
 from flint import arb
 
 from symflex.algebra import Factored, Ring
-from symflex.loops.crossing import PoleCount
 from symflex.loops.loop import GainPolynomial
 from symflex.loops.lumped import LumpedFactor
+from symflex.loops.stability_map import PoleCount
 from symflex.roots import Budget, precision
 
 RING = Ring(("s", "c"))

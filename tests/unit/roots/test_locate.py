@@ -11,7 +11,7 @@ from symflex.budget import Budget
 from symflex.errors import BudgetError, ModelError
 from symflex.roots import Band, Modes
 from symflex.roots.engines import SEARCHES
-from symflex.roots.functions.vanishing import _value, without_lengths_of_zero
+from symflex.roots.functions.simplified import _value, without_lengths_of_zero
 from symflex.roots.locate import locate
 from tests.unit.roots.distributed_models import DELAY_LOOP, ROD, bound
 from tests.unit.roots.stand_ins import poles_by

@@ -12,7 +12,7 @@ from symflex import pipeline
 from symflex.errors import BudgetError, ModelError
 from symflex.model import with_numbers
 from symflex.state_space import minimal, realise
-from symflex.state_space.rounding import response, rounded
+from symflex.state_space.numeric import response, rounded
 from tests.property.networks import networks, to_toml
 from tests.unit.state_space.test_realise import DERIVATIONS, TWO_MASSES
 

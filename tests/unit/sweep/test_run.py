@@ -252,7 +252,7 @@ def test_an_address_that_is_none_is_refused_and_leaves_nothing_to_close():
     # Finalizers complain when the interpreter ends, and not before.
     script = (
         "from symflex.errors import UsageError\n"
-        "from symflex.sweep.executors import open_executor\n"
+        "from symflex.sweep.run import open_executor\n"
         "for address in ('garbage', 'xyz://a:1'):\n"
         "    try:\n"
         "        with open_executor(scheduler=address):\n"

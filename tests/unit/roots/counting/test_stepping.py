@@ -23,8 +23,7 @@ from symflex.roots.counting.argument_principle import (
     _principal,
     _whole,
 )
-from symflex.roots.counting.local_series import LocalSeries
-from symflex.roots.counting.series_steps import BLURRED, MOST, SeriesSteps, _followed
+from symflex.roots.counting.local_series import BLURRED, MOST, LocalSeries, SeriesSteps, _followed
 from symflex.roots.counting.stepping import FORGETTING, GOAL, NEARER, total_turn
 from symflex.roots.counting.winding import Cell, RootOnPathError, Winding, continuous_step
 from symflex.roots.functions.kernel_function import Sample

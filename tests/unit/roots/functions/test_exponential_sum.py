@@ -11,8 +11,7 @@ from flint import acb, acb_series, arb
 from mpmath import mp, mpc
 
 from symflex.algebra.exponential_sum import MOST_EXPONENTIALS, arguments_of, exponential_sum, spread
-from symflex.roots.functions.double_sums import DoubleSums, _wavenumbers
-from symflex.roots.functions.exponential_values import ExponentialValues
+from symflex.roots.functions.exponential_values import DoubleSums, ExponentialValues, _wavenumbers
 from symflex.roots.precision import precision
 from symflex.transfer.enclose_kernels import expansion
 from tests.unit.roots.distributed_models import DELAY_LOOP, ROD, SLIDING_FREE, bound

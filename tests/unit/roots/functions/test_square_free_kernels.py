@@ -6,8 +6,8 @@ import pytest
 from flint import acb
 
 from symflex.algebra import Factored
-from symflex.roots.functions import square_free_kernels
-from symflex.roots.functions.square_free_kernels import without_squares
+from symflex.roots.functions import simplified
+from symflex.roots.functions.simplified import without_squares
 from symflex.roots.precision import precision
 from tests.unit.roots.distributed_models import DELAY_LOOP, ROD, SLIDING_FREE, bound
 
@@ -96,6 +96,6 @@ def test_nothing_is_changed_where_no_square_is_hidden():
 @pytest.mark.parametrize(("most", "count"), [(3, [2]), (1, [1])])
 def test_squares_of_long_polynomials_are_not_sought(monkeypatch, most, count):
     # cosh - 1 has two terms, (E - 1)^2 three.
-    monkeypatch.setattr(square_free_kernels, "MOST_TERMS", most)
+    monkeypatch.setattr(simplified, "MOST_TERMS", most)
     _, part = without_squares(*product_of(ROD, lambda s, cosh, sinh: [(cosh - 1, 1)]))
     assert [e for _, e in part.factors] == count

@@ -25,7 +25,7 @@ from symflex.roots.polynomial_roots import (
     in_order,
 )
 from symflex.roots.polynomials.discs import Disc
-from symflex.roots.polynomials.durand_kerner import propose_by_durand_kerner
+from symflex.roots.polynomials.guesses import propose_by_durand_kerner
 from symflex.roots.polynomials.squarefree import Splitting, SquareFreePart
 
 CORNERS = [(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]

@@ -1,11 +1,13 @@
-"""Guesses by Laguerre's method with implicit deflation: the engine for high degrees.
+"""Guesses of the roots of a polynomial: FLINT's Durand-Kerner for low degrees, Laguerre for high ones.
 
-Input: a real polynomial in balls. Output: one guess per root in the closed upper half plane, good to
-about double precision; proving them is the business of :mod:`symflex.roots.polynomials.discs`.
+Input: a real polynomial in balls. Output: one guess per root in the closed upper half plane; proving them is
+the business of :mod:`symflex.roots.polynomials.discs`. The Durand-Kerner iteration is good to the working
+precision, and its time grows with the third power of the degree.
 
-The polynomial is evaluated in balls, since a chain of 200 masses needs some 400 bits to evaluate at all, but
-what an iteration decides fits doubles: corrections, and the sums over the roots already found
-(Maehly 1954). Each root starts where the last one ended, so about five iterations find it.
+Laguerre's method, with implicit deflation, is good to about double precision. The polynomial is evaluated in
+balls, since a chain of 200 masses needs some 400 bits to evaluate at all, but what an iteration decides fits
+doubles: corrections, and the sums over the roots already found (Maehly 1954). Each root starts where the last
+one ended, so about five iterations find it.
 """
 
 from __future__ import annotations
@@ -19,12 +21,14 @@ import numpy as np
 from flint import acb, acb_poly, arb
 
 from symflex.budget import Budget, entered_budget
+from symflex.roots.polynomials.discs import real_symmetric_roots
 from symflex.roots.precision import precision
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     import numpy.typing as npt
+    from flint import acb
 
 
 ITERATIONS = 80
@@ -179,3 +183,16 @@ def _log_derivatives(
         complex(float(slope.real.mid()), float(slope.imag.mid())),
         complex(float(bend.real.mid()), float(bend.imag.mid())),
     )
+
+
+def propose_by_durand_kerner(polynomial: acb_poly) -> tuple[acb, ...] | None:
+    """Guess the roots of a real polynomial of positive degree, at the current precision.
+
+    They are exact points with imaginary part positive or exactly zero; None when the roots do not separate.
+
+    Examples
+    --------
+    >>> [int(g.imag.unique_fmpz()) for g in propose_by_durand_kerner(acb_poly([4, 0, 1]))]
+    [2]
+    """
+    return real_symmetric_roots(acb_poly([polynomial[i].mid() for i in range(len(polynomial))]))
