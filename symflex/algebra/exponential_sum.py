@@ -104,9 +104,8 @@ class AxisWave:
     # growth and phase: multiples of the arguments, which make up g and p.
     growth: Multiples
     phase: Multiples
-    # even and odd: Coefficients.
-    even: Polynomial
-    odd: Polynomial
+    even: Polynomial  # of the cosine
+    odd: Polynomial  # of the sine
 
 
 @dataclass(frozen=True, eq=False)

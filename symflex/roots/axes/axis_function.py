@@ -1,7 +1,9 @@
 """Functions without losses on the real and on the imaginary axis of s, where they are real.
 
 On the real axis ``s = t^2``, on the imaginary one ``s = 2 j t^2``; a function is a sum of products of
-exponentials, sines and cosines with polynomials in t.
+exponentials, sines and cosines with polynomials in t. Its derivative is of the same kind, and every proof rests on it:
+
+    d/dt exp(g) (E cos(p) + O sin(p)) = exp(g) ((E' + g' E + p' O) cos(p) + (O' + g' O - p' E) sin(p))
 """
 
 from __future__ import annotations
@@ -145,6 +147,7 @@ class _Numbers:
 
 
 def _numbers(waves: Sequence[AxisWave], enclosures: Enclosures) -> _Numbers:
+    """Return what values and derivatives are made of: per wave its terms, and those of the formula above."""
     growing = sorted({w.growth for w in waves if any(w.growth)}, key=_length)
     turning = list(dict.fromkeys(w.phase for w in waves))
     growths, phases = ([enclosures.rate(key) for key in keys] for keys in (growing, turning))
@@ -153,8 +156,8 @@ def _numbers(waves: Sequence[AxisWave], enclosures: Enclosures) -> _Numbers:
         g, p = growing.index(wave.growth) if any(wave.growth) else NONE, turning.index(wave.phase)
         even, odd = enclosures.coefficients(wave.even), enclosures.coefficients(wave.odd)
         values.append((g, p, _powers(even), _powers(odd)))
-        turn, back = phases[p], (-phases[p][0], -phases[p][1])
-        slope_of_even, slope_of_odd = [_derived(even), _by(odd, turn)], [_derived(odd), _by(even, back)]
+        turn, turn_back = phases[p], (-phases[p][0], -phases[p][1])
+        slope_of_even, slope_of_odd = [_derived(even), _by(odd, turn)], [_derived(odd), _by(even, turn_back)]
         if g != NONE:
             slope_of_even.append(_by(even, growths[g]))
             slope_of_odd.append(_by(odd, growths[g]))

@@ -30,7 +30,7 @@ ROUNDS = 40
 """Interval Newton steps; each nearly doubles what is known, so that few are ever taken."""
 BISECTIONS = 100
 """Nearly twice the bits of a double."""
-CLOSE = 1e-12
+CLOSER = 1e-12
 """Relative to t: no further Newton step is needed after one as short as this."""
 
 
@@ -135,7 +135,7 @@ def bracketed(source: AxisFunction, low: float, high: float) -> float:
             closer = t - float(value) / float(slope) if slope != 0 else inf
             if not low <= closer <= high:
                 closer = (low + high) / 2
-            if abs(closer - t) <= CLOSE * t:
+            if abs(closer - t) <= CLOSER * t:
                 return closer
             t = closer
     return t
