@@ -17,7 +17,7 @@ from symflex.roots.axes.axis_function import (
     Enclosures,
     _products,
 )
-from symflex.roots.axes.axis_root import CLOSE, AxisNewton, bits_of, bracketed, changes_sign
+from symflex.roots.axes.axis_root import CLOSER, AxisNewton, bits_of, bracketed, changes_sign
 from symflex.roots.precision import precision
 
 BITS = 300
@@ -214,15 +214,15 @@ def test_signs_are_opposite_about_one_root(low, high, changes):
 @pytest.mark.parametrize(("low", "high", "root"), [(0.5, 2.9, 2), (2.1, 30.0, 3), (0.0, 2.0001, 2)])
 def test_newton_steps_between_two_places_end_at_the_root(low, high, root, sign):
     source = polynomial(6 * sign, -5 * sign, sign)
-    assert bracketed(source, low, high) == pytest.approx(root, rel=10 * CLOSE)
+    assert bracketed(source, low, high) == pytest.approx(root, rel=10 * CLOSER)
 
 
 def test_newton_steps_that_lead_away_are_bisected():
     # t^7 - 1 from 1e-3 to 2e3: from the middle Newton's are short, and from next to 0 one leads far away.
-    assert bracketed(polynomial(-1, 0, 0, 0, 0, 0, 0, 1), 1e-3, 2e3) == pytest.approx(1, rel=10 * CLOSE)
+    assert bracketed(polynomial(-1, 0, 0, 0, 0, 0, 0, 1), 1e-3, 2e3) == pytest.approx(1, rel=10 * CLOSER)
 
 
 def test_a_slope_of_zero_ends_no_search_for_a_root():
     # t^3 - 5 t^2 + 7 t - 1, stationary at 1 and at 7/3; its only root between 0 and 2 lies below 1.
     (root,) = (float(r.real) for r in np.roots([1, -5, 7, -1]) if abs(r.imag) < 1e-9 and 0 < r.real < 1)
-    assert bracketed(polynomial(-1, 7, -5, 1), 0.0, 2.0) == pytest.approx(root, rel=10 * CLOSE)
+    assert bracketed(polynomial(-1, 7, -5, 1), 0.0, 2.0) == pytest.approx(root, rel=10 * CLOSER)
