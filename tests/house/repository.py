@@ -58,7 +58,10 @@ def tracked_files() -> list[Path]:
 
 def _is_generated(path: Path) -> bool:
     parts = path.relative_to(ROOT).parts
-    return any(part in {"__pycache__", ".hypothesis", "build", "dist", "site"} or part.endswith("_cache") for part in parts)
+    return any(
+        part in {"__pycache__", ".hypothesis", "build", "dist", "site"} or part.endswith("_cache")
+        for part in parts
+    )
 
 
 def pages() -> list[Path]:
