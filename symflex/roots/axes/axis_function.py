@@ -1,7 +1,8 @@
 """Functions without losses on the real and on the imaginary axis of s, where they are real.
 
 On the real axis ``s = t^2``, on the imaginary one ``s = 2 j t^2``; a function is a sum of products of
-exponentials, sines and cosines with polynomials in t. Its derivative is of the same kind, and every proof rests on it:
+exponentials, sines and cosines with polynomials in t. Its derivative is of the same kind; every proof rests
+on it:
 
     d/dt exp(g) (E cos(p) + O sin(p)) = exp(g) ((E' + g' E + p' O) cos(p) + (O' + g' O - p' E) sin(p))
 """
