@@ -11,11 +11,11 @@ from dataclasses import dataclass, field, replace
 from math import isfinite
 from typing import TYPE_CHECKING, Protocol
 
-from symflex.codegen.program import choose_programs
+from symflex.codegen.program import choose_programs, identifiers
 from symflex.codegen.program.verify import SAMPLES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Mapping, Sequence
     from fractions import Fraction
 
     from symflex.codegen.program import Piecewise, Verification
@@ -96,6 +96,12 @@ class Contents:
     stem: str  # the file's name without suffix; empty where that is not known
     is_alone: bool  # there can be no other files beside it
     digits: int  # significant digits of printed errors
+
+    def names(self, reserved: Collection[str]) -> tuple[Mapping[str, str], Mapping[str, str]]:
+        """Return identifiers of members by their keys, and of parameters by their names."""
+        public = identifiers({m.key: m.wanted for m in self.members}, reserved)
+        wanted = {p.name: p.name for p in self.model.parameters}
+        return public, identifiers(wanted, {*reserved, *public.values()})
 
     @property
     def verified(self) -> tuple[Verification, ...]:

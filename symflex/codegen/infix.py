@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from symflex.codegen.program import Condition, Piecewise
     from symflex.codegen.program.nodes import Frames
 
-_SUM, _PRODUCT, _SIGN, _POWER, _LEAF = range(5)
+_SUM, _PRODUCT, _SIGN, _POWER, LEAF = range(5)
 
 _GLUE = "\N{NO-BREAK SPACE}"
 
@@ -61,7 +61,7 @@ class InfixPrinter(ABC):
 
     def quotient(self, numerator: CodeNode, denominator: CodeNode) -> str:
         """Return the text of a quotient."""
-        return f"{self.within(numerator, _PRODUCT)} {self.over} {self.within(denominator, _SIGN)}"
+        return self.print(Divide(numerator, denominator))
 
     def within(self, node: CodeNode, tightest: int) -> str:
         """Return the text of an operand, in parentheses when it binds less tightly."""
@@ -107,17 +107,17 @@ class InfixPrinter(ABC):
     def power(self, base: str, exponent: int) -> str:
         """Return a power of text that needs no parentheses."""
 
-    @abstractmethod
     def listed(self, texts: Iterable[str]) -> str:
         """Return a list."""
+        return f"[{', '.join(texts)}]"
 
-    @abstractmethod
     def item(self, values: str, position: int) -> str:
         """Return one value of a list, counted from 0."""
+        return f"{values}[{position}]"
 
-    @abstractmethod
     def call(self, function: str, arguments: Sequence[str]) -> str:
         """Return a call of a run-time function, named as in :mod:`symflex.codegen.program.runtime`."""
+        return f"_{function}({', '.join(arguments)})"
 
     @abstractmethod
     def frames(self, frames: Frames) -> str:
@@ -130,35 +130,28 @@ class InfixPrinter(ABC):
         match node:
             case RealNumber(value, pi_power):
                 is_pi = value == 1 and pi_power == 1
-                return self.pi if is_pi else repr(nearest_double(value, pi_power)), _LEAF
+                return self.pi if is_pi else repr(nearest_double(value, pi_power)), LEAF
             case ComplexNumber(real, imaginary):
-                return self.complex_number(nearest_double(real), nearest_double(imaginary)), _LEAF
+                return self.complex_number(nearest_double(real), nearest_double(imaginary)), LEAF
             case ToComplex(operand):
                 return self.to_complex(operand)
             case LargerRoot(formula):
                 return self._print(formula)
             case ParameterValue(name):
-                return self.parameters[name], _LEAF
+                return self.parameters[name], LEAF
             case Assigned(name):
-                return self.locals[name], _LEAF
+                return self.locals[name], LEAF
             case Laplace():
-                return self.variable, _LEAF
+                return self.variable, LEAF
             case InverseLaplace():
-                return self.inverse, _LEAF
-            case Add(terms):
-                return self._sum(terms), _SUM
-            case Multiply(factors):
-                texts = [self.within(factors[0], _PRODUCT), *(self.within(f, _SIGN) for f in factors[1:])]
-                return f" {self.times} ".join(texts), _PRODUCT
-            case Divide(numerator, denominator):
-                return self.quotient(numerator, denominator), _PRODUCT
+                return self.inverse, LEAF
+            case Add() | Multiply() | Divide() | Negate():
+                return self.operation(node)
             case IntegerPower(base, exponent):
-                return self.power(self.within(base, _LEAF), exponent), _POWER
-            case Negate(operand):
-                return f"-{self.within(operand, _POWER)}", _SIGN
+                return self.power(self.within(base, LEAF), exponent), _POWER
             case Apply(function, argument):
-                return self.applied(function, argument), _LEAF
-        return self._with_lists(node), _LEAF
+                return self.applied(function, argument), LEAF
+        return self._with_lists(node), LEAF
 
     def _with_lists(self, node: CodeNode) -> str:
         """Return the text of what takes lists or gives them."""
@@ -178,9 +171,22 @@ class InfixPrinter(ABC):
                 lists = [self._listed(modes), self._listed(coefficients)]
                 return self.call("modal_value", [*lists, self.frames(frames)])
             case Item(values, position):
-                return self.item(self.within(values, _LEAF), position)
+                return self.item(self.within(values, LEAF), position)
         message = f"no text for {type(node).__name__}"
         raise TypeError(message)
+
+    def operation(self, node: Add | Multiply | Divide | Negate) -> tuple[str, int]:
+        """Return the text of a sum, product, quotient or negative number, and how tightly it binds."""
+        match node:
+            case Add(terms):
+                return self._sum(terms), _SUM
+            case Multiply(factors):
+                texts = [self.within(factors[0], _PRODUCT), *(self.within(f, _SIGN) for f in factors[1:])]
+                return f" {self.times} ".join(texts), _PRODUCT
+            case Divide(above, below):
+                return f"{self.within(above, _PRODUCT)} {self.over} {self.within(below, _SIGN)}", _PRODUCT
+            case Negate(operand):
+                return f"-{self.within(operand, _POWER)}", _SIGN
 
     def _listed(self, nodes: Iterable[CodeNode]) -> str:
         return self.listed(self.print(n) for n in nodes)

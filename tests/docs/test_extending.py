@@ -42,6 +42,22 @@ from symflex.roots.engines import GUESSES
 found = find_polynomial_roots(RootProblem.from_rationals([25, 6, 1]), 10, [GUESSES["eigenvalues"].propose])
 print([(root.decimal(3).re, root.decimal(3).im, root.certified) for root in found])
 """
+CANTILEVER = """
+symflex = 1
+parameters = { EI = "3 N*m^2", rhoA = "2 kg/m", l = "1.5 m" }
+inputs     = { F = {} }
+outputs    = { W = "w(l)" }
+
+[fields.w]
+domain     = ["0", "l"]
+equation   = "EI*w'''' + rhoA*s^2*w = 0"
+conditions = ["w(0) = 0", "w'(0) = 0", "w''(l) = 0", "EI*w'''(l) = -F"]
+"""
+IN_NODE = """
+import {TRANSFER_FUNCTIONS} from "./exported.mjs";
+const [name, s, values] = JSON.parse(process.argv[1]);
+console.log(JSON.stringify(TRANSFER_FUNCTIONS[name](s, values)));
+"""
 pytestmark = pytest.mark.needs_tool("git")
 
 
@@ -109,6 +125,37 @@ def test_the_new_target_writes_a_module_that_runs(extended):
     (extended / "exported.py").write_text(text, encoding="utf-8")
     code = "from exported import *; num, den = TRANSFER_FUNCTIONS['X/F']; print(degree(den, Symbol('s')))"
     assert python(extended, "-c", code).strip() == "2"
+
+
+def in_javascript(folder, model, name, s, values):
+    """The value of a transfer function, as node computes it from the exported module."""
+    (folder / "exporting.toml").write_text(model, encoding="utf-8")
+    text = python(folder, "-m", "symflex", "export", "exporting.toml", "--to", "js")
+    (folder / "exported.mjs").write_text(text, encoding="utf-8")
+    given = json.dumps([name, [s.real, s.imag], values])
+    command = ["node", "--input-type=module", "-e", IN_NODE, given]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return complex(*json.loads(done.stdout))
+
+
+@pytest.mark.slow
+@pytest.mark.needs_tool("node")
+def test_the_new_language_computes_a_lumped_model(extended):
+    s = -0.3 + 2.1j
+    found = in_javascript(extended, MODEL, "X/F", s, {"k": 7.0})
+    assert abs(found * ((2 + 1) * s**2 + 7) - 1) < 1e-14
+
+
+@pytest.mark.slow
+@pytest.mark.needs_tool("node")
+@pytest.mark.parametrize("s", [1e-3j, 0.4 + 3j, -2 + 90j])
+def test_the_new_language_computes_a_cantilever(extended, s):
+    # EI w'''' = b^4 EI w with w, w' = 0 at the root and w'' = 0, EI w''' = -F at the tip.
+    b = (-2 * s**2 / 3) ** 0.25
+    sine, cosine, sinh, cosh = (f(1.5 * b) for f in (cmath.sin, cmath.cos, cmath.sinh, cmath.cosh))
+    expected = (sine * cosh - cosine * sinh) / (3 * b**3 * (1 + cosine * cosh))
+    assert abs(in_javascript(extended, CANTILEVER, "W/F", s, {}) / expected - 1) < 1e-11
 
 
 @pytest.mark.slow

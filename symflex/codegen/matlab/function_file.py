@@ -102,7 +102,7 @@ def matlab_function_file(contents: Contents) -> Export:
     code = ""
     for m in members:
         own = {role: private[f"{m.key} {role}"] for role in roles_of(m.program)}
-        functions = LocalFunctions(m.program, own, parameters, taken - WORDS)
+        functions = LocalFunctions(m.program, public[m.key], parameters, taken - WORDS, own)
         local = functions.blocks()
         blocks += [_public(m, public[m.key], functions, digits), *local]
         code += "\n".join([*functions.call(), *local])

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
+from symflex.codegen.functions import PrivateFunctions
 from symflex.codegen.matlab.expression import MatlabPrinter, continued, statement
-from symflex.codegen.program import Assignment, CodePiece, Piecewise, identifiers
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
+
+    from symflex.codegen.program import CodePiece, Piecewise
 
 LONGEST = 63
 """Characters that MATLAB tells identifiers apart by."""
@@ -26,18 +28,18 @@ def roles_of(program: Piecewise) -> list[str]:
 
 
 @dataclass(frozen=True)
-class LocalFunctions:
+class LocalFunctions(PrivateFunctions):
     """Prints the local functions that compute with columns."""
 
-    program: Piecewise  # what they compute
-    names: Mapping[str, str]  # identifiers of these functions, by their roles
-    parameters: Mapping[str, str]  # identifiers of the parameters
-    reserved: Collection[str]  # identifiers that intermediate values cannot have
+    printer: ClassVar = MatlabPrinter
+    longest: ClassVar = LONGEST
+    step: ClassVar = "  "
 
-    @property
-    def variable(self) -> str:
-        """The first argument's name."""
-        return "omega" if self.program.is_real else "s"
+    names: Mapping[str, str]  # identifiers of these functions, by their roles
+
+    def statement(self, target: str, value: str, indent: str) -> list[str]:
+        """Return ``target = value``."""
+        return statement(target, value, indent)
 
     def call(self) -> list[str]:
         """Return the statement that computes the value of ``s``, or ``omega``, and ``given``."""
@@ -61,36 +63,27 @@ class LocalFunctions:
     # ------------------------------------------------------------------------------------------- functions
 
     def _function(self, outputs: str, role: str, variable: str, body: Sequence[str]) -> str:
-        given = [variable, *(self.parameters[p] for p in self.program.parameters)]
-        head = continued(f"function {outputs} = {self.names[role]}({', '.join(given)})", "")
+        given = ", ".join(self.arguments(variable))
+        head = continued(f"function {outputs} = {self.names[role]}({given})", "")
         return "\n".join([*head, *body, "end", ""])
-
-    def _scope(self, assignments: Sequence[Assignment], *words: str) -> tuple[MatlabPrinter, list[str]]:
-        """Return a printer, and identifiers for the code's own words, the first one s or its like."""
-        own = {f"{word} of the code": word for word in words}
-        taken = {*self.reserved, *self.parameters.values()}
-        names = identifiers({**own, **{a.name: a.name for a in assignments}}, taken, LONGEST)
-        found = [names[key] for key in own]
-        printer = MatlabPrinter(self.parameters, names, found[0], found[-1])
-        return printer, found
 
     def _lumped(self, program: Piecewise) -> str:
         near, far, late = program.near, program.far, program.late
         early = (*near.constants, *near.assignments)
         if far is None:
-            printer, (s, value) = self._scope(early, "s", "value")
-            lines = [*_assigned(early, printer), *statement(value, printer.print(near.values[0]))]
+            printer, (s, value) = self.scope(early, "s", "value")
+            lines = [*self.assigned(early, printer), *statement(value, printer.print(near.values[0]))]
             return self._function(value, "value", s, lines)
         words = ("s", "value", "limit", "is_far", "far_value", "inverse")
-        printer, (s, value, limit, is_far, far_value, inverse) = self._scope((*early, *late), *words)
+        printer, (s, value, limit, is_far, far_value, inverse) = self.scope((*early, *late), *words)
         lines = [
-            *_assigned(early, printer),
+            *self.assigned(early, printer),
             *statement(value, printer.print(near.values[0])),
             *statement(limit, repr(program.limit)),
             *statement(is_far, f"abs({s}) > {limit}"),
             f"  if any({is_far})",
             *statement(inverse, f"1.0 ./ {s}", "    "),
-            *_assigned(late, printer, "    "),
+            *self.assigned(late, printer, 2),
             *statement(far_value, printer.print(far.values[0]), "    "),
             *statement(f"{value}({is_far})", f"{far_value}({is_far})", "    "),
             "  end",
@@ -100,27 +93,30 @@ class LocalFunctions:
     def _number(self, program: Piecewise) -> str:
         """Return the function that tells which piece serves."""
         assignments = (*program.tests.constants, *program.tests.assignments)
-        printer, (variable, number) = self._scope(assignments, self.variable, "number")
-        lines = [*_assigned(assignments, printer), *statement(number, printer.piece_number(program) or "0")]
+        printer, (variable, number) = self.scope(assignments, self.variable, "number")
+        lines = [
+            *self.assigned(assignments, printer),
+            *statement(number, printer.piece_number(program) or "0"),
+        ]
         return self._function(number, "number", variable, lines)
 
     def _piece(self, number: int, piece: CodePiece) -> list[str]:
         assignments = (*piece.code.constants, *piece.code.assignments)
         if piece.circle:
             words = (self.variable, "num", "den", "growth", "radius")
-            printer, (variable, *results) = self._scope(assignments, *words)
-            lines = _assigned(assignments, printer)
+            printer, (variable, *results) = self.scope(assignments, *words)
+            lines = self.assigned(assignments, printer)
             for name, node in zip(results, piece.code.values, strict=True):
                 lines += statement(name, printer.print(node))
             parts = self._function(f"[{', '.join(results)}]", f"{number}_parts", variable, lines)
             return [parts, self._mean(number, piece.circle)]
         wanted = [self.variable, "value", "num", "den", *(["s"] if piece.is_complex else [])]
-        printer, (variable, value, num, den, *place) = self._scope(assignments, *wanted)
+        printer, (variable, value, num, den, *place) = self.scope(assignments, *wanted)
         lines = []
         for s in place:
             printer = replace(printer, variable=s)
             lines += statement(s, f"1i .* {variable}")
-        lines += _assigned(assignments, printer)
+        lines += self.assigned(assignments, printer)
         above, below = piece.code.values
         if not self.program.is_real:
             lines += statement(value, printer.quotient(above, below))
@@ -133,14 +129,7 @@ class LocalFunctions:
         return [self._function(f"[{num}, {den}]", str(number), variable, lines)]
 
     def _mean(self, number: int, points: int) -> str:
-        _, (variable, value, z) = self._scope((), self.variable, "value", "z")
-        given = ", ".join([z, *(self.parameters[p] for p in self.program.parameters)])
+        _, (variable, value, z) = self.scope((), self.variable, "value", "z")
+        given = ", ".join(self.arguments(z))
         whole = f"mean_over_circle(@({z}) {self.names[f'{number}_parts']}({given}), {variable}, {points})"
         return self._function(value, str(number), variable, statement(value, whole))
-
-
-def _assigned(assignments: Sequence[Assignment], printer: MatlabPrinter, indent: str = "  ") -> list[str]:
-    lines: list[str] = []
-    for assignment in assignments:
-        lines += statement(printer.locals[assignment.name], printer.print(assignment.value), indent)
-    return lines

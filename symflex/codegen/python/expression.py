@@ -15,7 +15,7 @@ from symflex.codegen.program import Apply, CodeNode, LargerRoot
 from symflex.codegen.program.evaluate import NUMPY_FUNCTIONS, number_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from symflex.codegen.program.nodes import Frames
 
@@ -54,21 +54,13 @@ class PythonPrinter(InfixPrinter):
         """Return a power of text that needs no parentheses."""
         return f"{base}**{exponent}"
 
-    def listed(self, texts: Iterable[str]) -> str:
-        """Return a list."""
-        return f"[{', '.join(texts)}]"
-
-    def item(self, values: str, position: int) -> str:
-        """Return one value of a list."""
-        return f"{values}[{position}]"
-
     def call(self, function: str, arguments: Sequence[str]) -> str:
         """Return a call of a run-time function."""
         if function == "mode_values":
             # What finds the roots also gives the least distance of two.
             roots, length = arguments
             arguments = (f"{roots}[:-1]", length)
-        return f"_{function}({', '.join(arguments)})"
+        return super().call(function, arguments)
 
     def frames(self, frames: Frames) -> str:
         """Return the frames of a sum of exponentials."""
