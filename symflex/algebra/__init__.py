@@ -6,8 +6,6 @@ from symflex.algebra.factored import Factored, common_denominator, least_common_
 from symflex.algebra.factorisation import irreducible_factors, square_free_factors
 from symflex.algebra.functions import FUNCTIONS, ElementaryFunction
 from symflex.algebra.memo import PolynomialMemo
-from symflex.algebra.modal_sum import ModalSums, modal_amplitudes, mode_values
-from symflex.algebra.propagators import Propagation, Propagator, propagate
 from symflex.algebra.residue import PRIME, random_point, residue
 from symflex.algebra.ring import LAPLACE, MEMORY_LIMIT, Ring, degree_in, expanded_length, terms_of
 
@@ -22,19 +20,13 @@ __all__ = [
     "Factored",
     "Kernel",
     "KernelTable",
-    "ModalSums",
     "PolynomialMemo",
-    "Propagation",
-    "Propagator",
     "Ring",
     "common_denominator",
     "degree_in",
     "expanded_length",
     "irreducible_factors",
     "least_common_multiple",
-    "modal_amplitudes",
-    "mode_values",
-    "propagate",
     "random_point",
     "residue",
     "square_free_factors",

@@ -7,11 +7,11 @@ length are the kernels. Both are generators of the ring, with exact definitions 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
-    from collections.abc import Container
+    from collections.abc import Container, Iterable
 
     from symflex.algebra.factored import Factored
 
@@ -107,6 +107,20 @@ class KernelTable:
     def kernels_of(self, dispersion: Dispersion) -> tuple[Kernel, ...]:
         """Return the kernels of one dispersion, in order."""
         return tuple(k for k in self.kernels if k.dispersion is dispersion)
+
+    def embedded(self, images: Iterable[tuple[Factored, Factored]]) -> KernelTable:
+        """Return the table with its values replaced, by identity."""
+        found = dict(images)
+        dispersions = {
+            d: replace(d, characteristic=tuple(found[c] for c in d.characteristic), shift=found[d.shift])
+            for d in self.dispersions
+        }
+        return KernelTable(
+            tuple(dispersions.values()),
+            tuple(
+                replace(k, dispersion=dispersions[k.dispersion], length=found[k.length]) for k in self.kernels
+            ),
+        )
 
 
 NO_KERNELS = KernelTable()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from importlib import import_module
@@ -12,6 +13,8 @@ import click
 
 BUDGET_EXCEEDED = 5
 """An exit code."""
+YOUNG_OBJECTS = 50_000
+"""Made between two looks for cycles among them, some 10 MB. Python's 700 are few: a start keeps all."""
 WATCHED = "watched"
 """What the context holds of a command line that was started as a program, not called from Python."""
 
@@ -94,6 +97,7 @@ def main(arguments: list[str] | None = None) -> None:
     """Run the command line and exit with the documented code."""
     # The matrices of a fit are small: threads that wait for each other cost more than they compute.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    gc.set_threshold(YOUNG_OBJECTS)
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:  # closed by who started the program
             setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))
@@ -107,6 +111,7 @@ def main(arguments: list[str] | None = None) -> None:
         sys.stderr.flush()
     except OSError as problem:
         code = _unwritable(problem)
+    gc.freeze()  # what modules hold need not be searched for cycles once more at the end
     if code == BUDGET_EXCEEDED:
         # Taking a large computation apart piece by piece would take time that is over.
         os._exit(code)

@@ -21,7 +21,6 @@ from symflex.algebra import (
     residue,
 )
 from symflex.budget import spend
-from symflex.equations.distributed import survey, transfer_matrix
 from symflex.equations.equations import ConstantFunction, Continuum, Equations, OutputRow
 from symflex.equations.evaluate import ExactEvaluator, Opener, written_denominator
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
@@ -152,6 +151,8 @@ class _Assembly:
         delays = any(b.block is not None and b.block.kernel_time for b in self.model.blocks)
         if not (lines or delays or self.model.fields):
             return None
+        from symflex.equations.distributed import survey  # only with beams
+
         evaluator, _ = self._evaluator(self._blocks())
         if self.problems:
             raise ModelError(*self.problems)
@@ -236,6 +237,8 @@ class _Assembly:
         """Let the ends of a chain follow from its start and what enters on the way."""
         if self.distributed is None:
             return
+        from symflex.equations.distributed import transfer_matrix  # loaded with what is joined
+
         propagation = self.distributed.propagation
         for link in self.distributed.links:
             (element, use), (_, first) = self.lines[link.name], self.lines[link.first]

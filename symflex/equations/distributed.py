@@ -16,7 +16,8 @@ from fractions import Fraction
 from math import factorial
 from typing import TYPE_CHECKING
 
-from symflex.algebra import Dispersion, Factored, propagate
+from symflex.algebra import Dispersion, Factored
+from symflex.algebra.propagators import propagate
 from symflex.budget import spend
 from symflex.equations.coefficients import read_equation
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
@@ -28,7 +29,8 @@ from symflex.library.fields import FIELDS, Component, FieldSystem, components, f
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from symflex.algebra import Factored, Propagation
+    from symflex.algebra import Factored
+    from symflex.algebra.propagators import Propagation
     from symflex.equations.evaluate import ExactEvaluator
     from symflex.errors import Span
     from symflex.library.fields import FieldSystem, Matrix

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from symflex.algebra import Factored, Propagation, Ring
+    from symflex.algebra import Factored, Ring
+    from symflex.algebra.propagators import Propagation
     from symflex.expressions import Call
     from symflex.library.elements import EquationRow, LinearForm, Variable
     from symflex.library.fields import FieldSystem

@@ -23,7 +23,7 @@ from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.roots import precision
 from symflex.roots.functions.exponential_values import ExponentialValues
 from symflex.transfer import bind, bind_polynomials
-from symflex.transfer.enclose_kernels import expansion
+from symflex.transfer.balls import expansion
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

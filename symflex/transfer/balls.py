@@ -45,6 +45,11 @@ def ball(value: Fraction) -> arb:
     return arb(fmpq(value.numerator, value.denominator))
 
 
+def expansion(s: acb) -> acb_series:
+    """Return ``s + x`` to first order in x."""
+    return acb_series([s, acb(1)], 2)
+
+
 def at_centre(value: Value) -> acb:
     """Return the first coefficient of a series, itself what is none."""
     return value[0] if isinstance(value, acb_series) else value

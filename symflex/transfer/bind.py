@@ -27,7 +27,6 @@ from symflex.algebra import (
     NO_KERNELS,
     Factored,
     KernelTable,
-    ModalSums,
     PolynomialMemo,
     Ring,
     degree_in,
@@ -44,6 +43,7 @@ from symflex.transfer.balls import (
     ball,
     double_value,
     enclosure,
+    expansion,
     later,
     order_near,
     plan,
@@ -51,8 +51,6 @@ from symflex.transfer.balls import (
     value_at,
 )
 from symflex.transfer.derive import derive, nested_transfer
-from symflex.transfer.distributed import embedded_table
-from symflex.transfer.enclose_kernels import KernelValues, expansion
 from symflex.transfer.lowest_terms import cancel
 from symflex.transfer.transfer_function import HiddenFactor, TransferFunction
 
@@ -61,7 +59,9 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
+    from symflex.algebra.modal_sum import ModalSums
     from symflex.model import Model, ModelParameter
+    from symflex.transfer.enclose_kernels import KernelValues
 
 Given = int | float | Fraction | Decimal | str | ExactValue
 """A value as a user gives it; one that was read before stays exact."""
@@ -207,6 +207,8 @@ class BoundTransferFunction:
 
     def kernel_values(self, constants: Mapping[str, arb]) -> KernelValues:
         """Return the evaluator of the ring of kernels, from enclosures of the constants."""
+        from symflex.transfer.enclose_kernels import KernelValues  # only with beams
+
         return KernelValues(self.ratio.ring.names, self.kernels, constants, self._modal_sums, self._plans)
 
     @cached_property
@@ -215,6 +217,8 @@ class BoundTransferFunction:
 
     @cached_property
     def _modal_sums(self) -> ModalSums:
+        from symflex.algebra.modal_sum import ModalSums  # only with beams
+
         return ModalSums(self.ratio.ring, self.kernels)
 
     @cached_property
@@ -443,7 +447,7 @@ def bind_polynomials(
 
 def _bound_table(table: KernelTable, images: _Substitution) -> KernelTable:
     """Return the table with values in its coefficients and lengths."""
-    return embedded_table(table, [(v, images.apply_factored(v)) for v in table.values])
+    return table.embedded([(v, images.apply_factored(v)) for v in table.values])
 
 
 def _used_constants(tf: TransferFunction) -> list[str]:

@@ -15,7 +15,6 @@ from symflex.algebra import LAPLACE, NO_KERNELS, Factored, KernelTable, degree_i
 from symflex.equations import assemble
 from symflex.equations.elimination import Determinants, explain_singular
 from symflex.errors import Diagnostic, ModelError
-from symflex.transfer.distributed import KernelReduction, embedded_table
 from symflex.transfer.expansion import Expansion, Opening
 from symflex.transfer.lowest_terms import DeterminantsOnLine, LineImages, cancel
 from symflex.transfer.quantity import name_quantity, unit_of_quotient
@@ -26,9 +25,11 @@ if TYPE_CHECKING:
 
     from flint import fmpz, fmpz_mpoly
 
-    from symflex.algebra import Propagation, Ring
+    from symflex.algebra import Ring
+    from symflex.algebra.propagators import Propagation
     from symflex.equations import Equations, OutputRow
     from symflex.model import Input, Output, PlacedBlock
+    from symflex.transfer.distributed import KernelReduction
 
 
 def derive(equations: Equations, output: str, source: str) -> TransferFunction:
@@ -86,6 +87,8 @@ class _CramerQuotients:
 
     def _kernel_reduction(self, propagation: Propagation) -> KernelReduction:
         """Return how quotients of kernels are reduced, with definitions opened everywhere."""
+        from symflex.transfer.distributed import KernelReduction  # only with beams
+
         table = propagation.table
         opened = [(v, self._expansion.expanded(propagation.embed(v))) for v in table.values]
         self._cleared = self._expansion.expanded(
@@ -93,7 +96,7 @@ class _CramerQuotients:
         )
         parameters = [p.name for p in self._equations.model.parameters]
         ring = self._expansion.ring
-        return KernelReduction(ring, embedded_table(table, opened), parameters, propagation.coordinates)
+        return KernelReduction(ring, table.embedded(opened), parameters, propagation.coordinates)
 
     def finish(self, row: OutputRow, source: str, num: fmpz_mpoly) -> TransferFunction:
         """Return the reduced transfer function ``num / den / divisor``."""

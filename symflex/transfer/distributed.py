@@ -614,21 +614,3 @@ class _Restorer:
                 images[angle.coordinates[0]] = 2 * t * u
                 images[angle.coordinates[1]] = u * u - t * t
         return polynomial.compose(*images.values(), ctx=ring.context)
-
-
-def embedded_table(table: KernelTable, image: Sequence[tuple[Factored, Factored]]) -> KernelTable:
-    """Return a table with its values replaced, by identity."""
-    found = {old: new for old, new in image}
-
-    def of(value: Factored) -> Factored:
-        return found[value]
-
-    dispersions = {
-        d: replace(d, characteristic=tuple(of(c) for c in d.characteristic), shift=of(d.shift))
-        for d in table.dispersions
-    }
-    lengths = {k.length: of(k.length) for k in table.kernels}
-    kernels = tuple(
-        replace(k, dispersion=dispersions[k.dispersion], length=lengths[k.length]) for k in table.kernels
-    )
-    return KernelTable(tuple(dispersions.values()), kernels)

@@ -20,9 +20,9 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat, acb_poly, acb_series, arb, ctx
 
-from symflex.algebra import ModalSums, modal_amplitudes, mode_values
 from symflex.algebra.interval_newton import narrowed, stays_inside
-from symflex.transfer.balls import Value, at_centre, ball
+from symflex.algebra.modal_sum import ModalSums, modal_amplitudes, mode_values
+from symflex.transfer.balls import Value, at_centre, ball, expansion
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -286,11 +286,6 @@ def fundamental_functions(coefficients: Sequence[Value], length: Value) -> tuple
         block[n - 1, n + j] = -c
     grown = (block * reach).exp()
     return tuple(acb_series([grown[i, n - 1], grown[i, 2 * n - 1]], 2) for i in range(n))
-
-
-def expansion(s: acb) -> acb_series:
-    """Return ``s + x`` to first order in x."""
-    return acb_series([s, acb(1)], 2)
 
 
 NOWHERE = acb("nan", "nan")

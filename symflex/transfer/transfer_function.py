@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE, NO_KERNELS, KernelTable, ModalSums, degree_in
+from symflex.algebra import LAPLACE, NO_KERNELS, KernelTable, degree_in
 from symflex.expressions import Name, names
 
 if TYPE_CHECKING:
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.algebra import Factored, Ring
+    from symflex.algebra.modal_sum import ModalSums
     from symflex.equations import ConstantFunction
     from symflex.equations.elimination import Closure
     from symflex.model import Input, Model, ModelParameter, Output
@@ -219,6 +220,8 @@ class TransferFunction:
     @cached_property
     def modal_sums(self) -> ModalSums:
         """The polynomials of the ring in fundamental functions as sums of exponentials."""
+        from symflex.algebra.modal_sum import ModalSums  # only with beams
+
         return ModalSums(self.ratio.ring, self.kernels)
 
     @cached_property

@@ -20,7 +20,8 @@ from symflex.transfer.balls import ball, enclose
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from symflex.algebra import Factored, Propagation
+    from symflex.algebra import Factored
+    from symflex.algebra.propagators import Propagation
     from symflex.equations import Continuum, Equations
     from symflex.library.elements import Variable
     from symflex.model import ExactValue

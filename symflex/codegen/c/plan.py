@@ -1,8 +1,9 @@
 """How to compute a sum of exponentials of characteristic roots, as a table of numbers that C code follows.
 
 Input: the frames of a sum.
-Output: numbers in the order in which ``cx_modal`` reads them. What :func:`symflex.algebra.modal_amplitudes`
-finds out as it goes, which terms come together after each slot, is in the table.
+Output: numbers in the order in which ``cx_modal`` reads them. What
+:func:`~symflex.algebra.modal_sum.modal_amplitudes` finds out as it goes, which terms come together after
+each slot, is in the table.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from flint import arb, ctx, fmpq
 
-from symflex.algebra import mode_values
+from symflex.algebra.modal_sum import mode_values
 from symflex.codegen.program.nodes import (
     Add,
     Apply,

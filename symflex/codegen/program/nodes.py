@@ -25,7 +25,7 @@ Frames = tuple[
     tuple[tuple[int, ...], tuple[tuple[tuple[int, ...], int], ...], tuple[tuple[tuple[int, ...], int], ...]],
     ...,
 ]
-"""Slots, terms and keys of the frames of a :class:`symflex.algebra.ModalSum`."""
+"""Slots, terms and keys of the frames of a :class:`symflex.algebra.modal_sum.ModalSum`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,7 +225,7 @@ class Roots(CodeNode):
 
 @dataclass(frozen=True, slots=True)
 class ModeValues(CodeNode):
-    """What a sum needs of all roots at one length; see :func:`symflex.algebra.mode_values`."""
+    """What a sum needs of all roots at one length; see :func:`symflex.algebra.modal_sum.mode_values`."""
 
     OPERANDS: ClassVar = ("roots", "length")
 
@@ -240,7 +240,7 @@ class ModalValue(CodeNode):
     OPERANDS: ClassVar = ("modes", "coefficients")
 
     modes: tuple[CodeNode, ...]  # one per mode
-    coefficients: tuple[CodeNode, ...]  # as in :class:`symflex.algebra.ModalSum`
+    coefficients: tuple[CodeNode, ...]  # as in :class:`symflex.algebra.modal_sum.ModalSum`
     frames: Frames  # slots, terms and keys of every frame
 
 

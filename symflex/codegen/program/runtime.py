@@ -1,6 +1,6 @@
 """What generated code of distributed systems needs besides arithmetic; it is copied into modules.
 
-The functions use numpy, each other and :func:`symflex.algebra.modal_amplitudes`, and nothing else.
+The functions use numpy, each other and :func:`symflex.algebra.modal_sum.modal_amplitudes`, and nothing else.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from symflex.algebra import modal_amplitudes
+from symflex.algebra.modal_sum import modal_amplitudes
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -8,7 +8,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from symflex.algebra import modal_amplitudes, mode_values
+from symflex.algebra.modal_sum import modal_amplitudes, mode_values
 from symflex.codegen.program import runtime
 from symflex.codegen.source_parts import called_parts, parts_of
 

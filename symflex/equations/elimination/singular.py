@@ -13,8 +13,6 @@ from typing import TYPE_CHECKING
 from flint import nmod_mat
 
 from symflex.algebra import PRIME, random_point, residue
-from symflex.algebra.origin import find_point
-from symflex.algebra.taylor import TaylorField, random_values
 from symflex.errors import Diagnostic, ModelError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import format_expression
@@ -26,7 +24,9 @@ if TYPE_CHECKING:
 
     from flint import nmod_mat, nmod_poly
 
-    from symflex.algebra import Factored, Propagation
+    from symflex.algebra import Factored
+    from symflex.algebra.propagators import Propagation
+    from symflex.algebra.taylor import TaylorField
     from symflex.equations import Equations
     from symflex.errors import Span
     from symflex.library.elements import EquationRow, LinearForm, Variable
@@ -177,6 +177,9 @@ def _number(
 def _point_of_kernels(
     equations: Equations, propagation: Propagation
 ) -> tuple[TaylorField, dict[str, nmod_poly]]:
+    from symflex.algebra.origin import find_point  # only with beams
+    from symflex.algebra.taylor import TaylorField, random_values
+
     ring = propagation.kernel_ring
 
     def define(values: dict[str, nmod_poly], field: TaylorField) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, UsageError
@@ -9,17 +10,12 @@ from symflex.errors.diagnostic import nearest
 from symflex.expressions import format_expression
 from symflex.print.forms.arrange import Arranger
 from symflex.print.forms.definitions import definitions_form
-from symflex.print.forms.economical import economical
-from symflex.print.forms.frequency import frequency_form
 from symflex.print.forms.hidden import hidden_expressions, with_hidden
 from symflex.print.forms.hyperbolic import hyperbolic_form
 from symflex.print.forms.kept import with_definitions
-from symflex.print.forms.krylov import krylov_form
 from symflex.print.forms.nested import nested_form, step_names
 from symflex.print.forms.polynomial import constant_form, factored_form, monic_form, polynomial_form
 from symflex.print.forms.printed import Arrange, PrintedForm, counts_of, forms_of
-from symflex.print.forms.vaughan import vaughan_form
-from symflex.print.forms.zpk import zpk_form
 from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
@@ -27,17 +23,28 @@ if TYPE_CHECKING:
 
     from symflex.transfer import AnyTransferFunction, TransferFunction
 
+
+def _later(name: str) -> Arrange:
+    """Return a form whose module is imported when it is asked for, as few prints need these."""
+
+    def form(tf: TransferFunction, digits: int) -> PrintedForm:
+        made: Arrange = getattr(import_module(f"symflex.print.forms.{name}"), f"{name}_form")
+        return made(tf, digits)
+
+    return form
+
+
 FORMS: dict[str, Arrange] = {
     "polynomial": polynomial_form,
     "monic": monic_form,
     "constant": constant_form,
     "factored": factored_form,
     "definitions": definitions_form,
-    "zpk": zpk_form,
+    "zpk": _later("zpk"),
     "hyperbolic": hyperbolic_form,
-    "krylov": krylov_form,
-    "vaughan": vaughan_form,
-    "frequency": frequency_form,
+    "krylov": _later("krylov"),
+    "vaughan": _later("vaughan"),
+    "frequency": _later("frequency"),
 }
 
 LARGE = 300
@@ -65,6 +72,8 @@ def print_form(tf: AnyTransferFunction, form: str | None = None, digits: int = 6
         message = f"{tf.name} is derived in expanded form"
         raise UsageError(Diagnostic("SF902", message, None, "ask for the nested representation"))
     if tf.is_distributed:
+        from symflex.print.forms.economical import economical  # only with beams
+
         tf = economical(tf)
     if form is None:
         return min((_made(tf, name, digits) for name in _candidates(tf)), key=_length)

@@ -9,7 +9,6 @@ from symflex.algebra import LAPLACE, Factored, Ring, degree_in, irreducible_fact
 from symflex.expressions import Expression, Name, number, power, product_of, quotient, sum_of
 from symflex.print.forms.arrange import Arranger, coefficients
 from symflex.print.forms.hyperbolic import collected_form, in_kernels
-from symflex.print.forms.irreducible import irreducible_kernels
 from symflex.print.forms.kept import KeptDefinitions
 from symflex.print.forms.notation import constant_symbols
 from symflex.print.forms.printed import PrintedForm, require_rational
@@ -98,6 +97,8 @@ def factored_form(tf: TransferFunction, digits: int) -> PrintedForm:
     """
     del digits
     if tf.is_distributed:
+        from symflex.print.forms.irreducible import irreducible_kernels  # only with beams
+
         return in_kernels(tf, "factored", irreducible_kernels(tf.ratio, tf.kernels))
     arranger = _arranger(tf)
     return PrintedForm(

@@ -22,8 +22,7 @@ from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.roots.argument import ROOM, deviation
 from symflex.roots.functions.exponential_values import DoubleSums, ExponentialValues, Place
 from symflex.roots.precision import precision
-from symflex.transfer.balls import at_centre
-from symflex.transfer.enclose_kernels import expansion
+from symflex.transfer.balls import at_centre, expansion
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

@@ -7,15 +7,15 @@ from itertools import islice, product
 import mpmath as mp
 import pytest
 
-from symflex.algebra import Dispersion, Factored, Ring, propagate
+from symflex.algebra import Dispersion, Factored, Ring
 from symflex.algebra.exponentials import Exponentials
 from symflex.algebra.multiple_angles import lift
 from symflex.algebra.normal_form import NormalForm
 from symflex.algebra.origin import OriginSeries
+from symflex.algebra.propagators import propagate
 from symflex.algebra.taylor import TaylorField, primes, square_root
 from symflex.algebra.vanishing import Vanishing
 from symflex.errors import BudgetError
-from symflex.transfer.distributed import embedded_table
 from symflex.transfer.lowest_terms import cancel
 
 BASE = Ring(("s", "r", "p", "l", "x"))
@@ -49,7 +49,7 @@ def embedded(found):
         factors = tuple((f.compose(*gens, ctx=ring.context), e) for f, e in v.factors)
         return Factored(ring, v.unit, factors)
 
-    return embedded_table(table, [(v, over(v)) for v in table.values])
+    return table.embedded([(v, over(v)) for v in table.values])
 
 
 def value(factored, values):

@@ -5,8 +5,8 @@ from __future__ import annotations
 import mpmath as mp
 import pytest
 
-from symflex.algebra import ModalSums, modal_amplitudes, mode_values
 from symflex.algebra import modal_sum as module
+from symflex.algebra.modal_sum import ModalSums, modal_amplitudes, mode_values
 from symflex.errors import BudgetError
 from tests.unit.algebra.test_distributed_kernels import (
     POINT,

@@ -7,11 +7,11 @@ from itertools import islice, pairwise
 import pytest
 from flint import fmpz
 
-from symflex.algebra import Dispersion, Factored, Ring, propagate
+from symflex.algebra import Dispersion, Factored, Ring
 from symflex.algebra.origin import OriginSeries, find_point
+from symflex.algebra.propagators import propagate
 from symflex.algebra.taylor import BASE, TaylorField, primes
 from symflex.algebra.vanishing import Vanishing
-from symflex.transfer.distributed import embedded_table
 
 RING = Ring(("s", "r", "p", "l", "x"))
 S, R, P, L, X = (Factored.generator(RING, name) for name in RING.names)
@@ -113,7 +113,7 @@ def kernels_of(kind, shift=ZERO, lengths=(L, X)):
     """Return a ring with a dispersion's wavenumbers and kernels, its table, and its generators."""
     found = propagate(RING, [(Dispersion("w", kind, LAWS.get(kind, ()), shift), list(lengths))])
     ring = found.kernel_ring
-    table = embedded_table(found.table, [(v, over(ring, v)) for v in found.table.values])
+    table = found.table.embedded([(v, over(ring, v)) for v in found.table.values])
     return ring, table, [Factored.generator(ring, n) for n in ring.names]
 
 
@@ -191,7 +191,7 @@ def test_a_point_where_all_relations_hold_has_values_beside_dispersions_without_
     laws = [Dispersion(kind, kind, LAWS[kind], ZERO) for kind in ("general", "wave", "pair")]
     found = propagate(RING, [(law, [L, X]) for law in laws])
     ring = found.kernel_ring
-    table = embedded_table(found.table, [(v, over(ring, v)) for v in found.table.values])
+    table = found.table.embedded([(v, over(ring, v)) for v in found.table.values])
     field, values = find_point(ring, table, 1, lambda values, field: True)
     for even in (k for k in table.kernels if k.function == "cosh"):
         c, s = (Factored.generator(ring, even.generator.replace("cosh", f)) for f in ("cosh", "sinh"))

@@ -6,8 +6,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from symflex.algebra import Dispersion, Factored, Ring, propagate
+from symflex.algebra import Dispersion, Factored, Ring
 from symflex.algebra.exponentials import Exponentials
+from symflex.algebra.propagators import propagate
 from symflex.transfer.kernel_images import KernelImages
 
 BASE = Ring(("s", "k", "l"))

@@ -13,7 +13,7 @@ from mpmath import mp, mpc
 from symflex.algebra.exponential_sum import MOST_EXPONENTIALS, arguments_of, exponential_sum, spread
 from symflex.roots.functions.exponential_values import DoubleSums, ExponentialValues, _wavenumbers
 from symflex.roots.precision import precision
-from symflex.transfer.enclose_kernels import expansion
+from symflex.transfer.balls import expansion
 from tests.unit.roots.distributed_models import DELAY_LOOP, ROD, SLIDING_FREE, bound
 
 PLACES = [0.7, 2 + 3j, 1 + 8j, 30j]
